@@ -1,0 +1,26 @@
+//! What the robot and its eyes are, in numbers: frames, pixels, camera models, the stereo
+//! rig, the workspace, calibration files and measurement sessions.
+//!
+//! Pure computation: no device, no window, no OpenCV. Lengths are meters, angles radians,
+//! pixels have their origin at the center of the top-left pixel.
+
+pub mod calibration;
+pub mod camera;
+pub mod chessboard;
+pub mod frame;
+pub mod image_pair;
+pub mod job;
+pub mod pixel;
+pub mod stereo;
+
+pub use calibration::{
+    CalibrationOptions, CornerResidual, Corners, Evidence, FitSummary, PairFit, PairObservation,
+    ParameterCovariance, RejectedPair, StereoCalibration,
+};
+pub use camera::{Camera, CameraModel, Fisheye, ModelKind, Pinhole, ProjectError};
+pub use chessboard::{BoardError, Chessboard, InnerCorners};
+pub use frame::{Direction, Frame, Point, Pose};
+pub use image_pair::{Stamp, StereoFrame};
+pub use job::{Cancelled, JobContext, Unattended};
+pub use pixel::{Eye, Pixel, PixelSpace, Raw, Rectified};
+pub use stereo::StereoCameras;
