@@ -1,0 +1,8 @@
+//! Calibrating the eyes.
+
+use plumbline_model::Chessboard;
+
+/// The board that the laboratory of NICO uses: 9×6 squares of 30 mm.
+pub fn default_board() -> Chessboard {
+    Chessboard { inner_columns: 8, inner_rows: 5, square_m: 0.03 }
+}

@@ -1,0 +1,88 @@
+//! Messages to the operator, with a bounded history.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+
+/// How much a message matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum NoticeLevel {
+    /// Something happened.
+    Info,
+    /// Something was done as asked.
+    Success,
+    /// Something needs attention.
+    Warning,
+    /// Something could not be done.
+    Error,
+}
+
+/// One message.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Notice {
+    /// Counts up; tells the window which ones are new.
+    pub number: u64,
+    /// How much it matters.
+    pub level: NoticeLevel,
+    /// What happened and, if something is wrong, what to do.
+    pub text: String,
+    /// When, UTC.
+    pub at: Timestamp,
+}
+
+/// The newest messages, oldest first.
+#[derive(Clone, Debug, Default)]
+pub struct Notices {
+    newest: VecDeque<Notice>,
+    count: u64,
+}
+
+impl Notices {
+    /// How many messages are kept.
+    pub const KEPT: usize = 500;
+
+    /// Adds a message; the oldest one goes when there are too many.
+    pub fn add(&mut self, level: NoticeLevel, text: impl Into<String>) {
+        let text = text.into();
+        match level {
+            NoticeLevel::Info | NoticeLevel::Success => log::info!("{text}"),
+            NoticeLevel::Warning => log::warn!("{text}"),
+            NoticeLevel::Error => log::error!("{text}"),
+        }
+        if self.newest.len() == Self::KEPT {
+            self.newest.pop_front();
+        }
+        self.count += 1;
+        self.newest.push_back(Notice { number: self.count, level, text, at: Timestamp::now() });
+    }
+
+    /// Empties the history; numbers go on counting.
+    pub fn clear(&mut self) {
+        self.newest.clear();
+    }
+
+    /// What the window shows, oldest first.
+    pub fn view(&self) -> Arc<[Notice]> {
+        self.newest.iter().cloned().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_history_is_bounded_and_keeps_the_newest() {
+        let mut notices = Notices::default();
+        for i in 0..Notices::KEPT + 3 {
+            notices.add(NoticeLevel::Info, format!("message {i}"));
+        }
+        let view = notices.view();
+        assert_eq!(view.len(), Notices::KEPT);
+        assert_eq!(view[0].text, "message 3");
+        assert_eq!(view[view.len() - 1].number, Notices::KEPT as u64 + 3);
+    }
+}

@@ -1,0 +1,119 @@
+//! What the window draws: an immutable snapshot of everything the engine knows.
+//!
+//! A view is cheap to take and to keep: images and long lists are shared, not copied.
+
+mod eyes;
+mod live;
+mod map;
+
+use std::sync::Arc;
+use std::time::Duration;
+
+pub use eyes::{
+    AcceptedCalibration, BoardPlace, BoardSeen, CaptureHint, CollectedPair, Coverage, CoverageGrid,
+    EarlierCalibration, EyesView, GhostBoard, Origin, Proposal,
+};
+pub use live::{
+    AimView, CornersView, DisparityView, LiveView, ProbeReading, ProbeView, RectifiedView, ReplayView,
+    SourceStatus, SourceView, StageStatistics, Statistics,
+};
+pub use map::TableMap;
+
+use crate::command::JobId;
+use crate::notice::Notice;
+
+/// Everything that can be shown, at one moment.
+#[derive(Clone, Debug, Default)]
+pub struct View {
+    /// Counts up with every change.
+    pub revision: u64,
+    /// Where the images come from.
+    pub source: Arc<SourceView>,
+    /// The newest images and what was computed from them.
+    pub live: Arc<LiveView>,
+    /// Calibrating the eyes.
+    pub eyes: Arc<EyesView>,
+    /// Long work, oldest first: what is running and what has ended and was not dismissed.
+    pub jobs: Arc<[JobView]>,
+    /// Messages, oldest first.
+    pub notices: Arc<[Notice]>,
+    /// Commands that were lost because too many came at once; zero unless something hangs.
+    pub lost_commands: u64,
+}
+
+impl View {
+    /// The oldest job that is still running.
+    pub fn running_job(&self) -> Option<&JobView> {
+        self.jobs.iter().find(|job| job.state.is_running())
+    }
+}
+
+/// How far a step of the rail is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum StepState {
+    /// Nothing has been done yet.
+    #[default]
+    NotDone,
+    /// Work is under way.
+    Running,
+    /// Done, and what it depends on has not changed.
+    Done,
+    /// Done, but something it depends on changed since.
+    Stale {
+        /// What changed, as a sentence.
+        why: String,
+    },
+}
+
+/// A job, running or ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JobView {
+    /// Its number, for [`crate::command::JobCommand`].
+    pub id: JobId,
+    /// What it does, for people: "Solve 30 pairs".
+    pub title: String,
+    /// How far it is or how it ended.
+    pub state: JobState,
+    /// Time since it started, or that it took.
+    pub elapsed: Duration,
+}
+
+/// How far a job is or how it ended. Every way to end looks different.
+#[derive(Clone, Debug, PartialEq)]
+pub enum JobState {
+    /// At work.
+    Running {
+        /// 0 to 1.
+        fraction: f64,
+        /// What it is doing just now.
+        doing: String,
+        /// Estimated from the time that the fraction took; `None` too early to say.
+        remaining: Option<Duration>,
+        /// Was asked to stop and will at its next checkpoint.
+        cancelling: bool,
+    },
+    /// Ended with a result.
+    Done {
+        /// The result in a sentence.
+        summary: String,
+    },
+    /// Stopped on request; nothing was changed.
+    Cancelled,
+    /// Could not be done.
+    Failed {
+        /// What is wrong and what to do.
+        reason: String,
+    },
+    /// A defect of this program; nothing was changed.
+    Panicked {
+        /// What the program said when it stopped.
+        message: String,
+    },
+}
+
+impl JobState {
+    /// Whether it has not ended.
+    pub fn is_running(&self) -> bool {
+        matches!(self, Self::Running { .. })
+    }
+}
