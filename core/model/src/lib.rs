@@ -4,6 +4,7 @@
 //! Pure computation: no device, no window, no OpenCV. Lengths are meters, angles radians,
 //! pixels have their origin at the center of the top-left pixel.
 
+pub mod aim;
 pub mod calibration;
 pub mod camera;
 pub mod chessboard;
@@ -12,7 +13,9 @@ pub mod image_pair;
 pub mod job;
 pub mod pixel;
 pub mod stereo;
+pub mod workspace;
 
+pub use aim::{AimError, AimedPair};
 pub use calibration::{
     CalibrationOptions, CornerResidual, Corners, Evidence, FitSummary, PairFit, PairObservation,
     ParameterCovariance, RejectedPair, StereoCalibration,
@@ -24,3 +27,4 @@ pub use image_pair::{Stamp, StereoFrame};
 pub use job::{Cancelled, JobContext, Unattended};
 pub use pixel::{Eye, Pixel, PixelSpace, Raw, Rectified};
 pub use stereo::StereoCameras;
+pub use workspace::Workspace;
