@@ -1,0 +1,68 @@
+//! The words on a view: its name, what the pointer is on, and how old the picture is.
+
+use egui::{Align2, Pos2, Rect, Ui, Vec2, vec2};
+
+use super::pixels::color_text;
+use super::{ImageTransform, ImageView};
+use crate::format;
+use crate::glyph::{self, Glyph};
+use crate::texture::Picture;
+use crate::theme::{self, ON_IMAGE, RIM, Role};
+
+const INSET: f32 = 8.0;
+
+pub(super) fn paint(
+    view: &ImageView<'_>,
+    ui: &Ui,
+    rect: Rect,
+    transform: &ImageTransform,
+    picture: &Picture,
+    hover_px: Option<[f64; 2]>,
+) {
+    let corner = Rect::from_min_max(rect.min + Vec2::splat(INSET), rect.max - Vec2::splat(INSET));
+    if view.caption {
+        chip(ui, rect, corner.left_top(), Align2::LEFT_TOP, view.label, None);
+    }
+    if let Some(sentence) = view.stale {
+        let below = if view.caption { 26.0 } else { 0.0 };
+        let at = corner.left_top() + vec2(0.0, below);
+        chip(ui, rect, at, Align2::LEFT_TOP, sentence, Some(Role::Warning));
+    }
+    if view.readout
+        && let Some(at_px) = hover_px
+    {
+        let text = readout(view, transform, picture, at_px);
+        chip(ui, rect, corner.left_bottom(), Align2::LEFT_BOTTOM, &text, None);
+    }
+}
+
+/// "(312.4, 87.0)   120 80 33   3.2×".
+fn readout(view: &ImageView<'_>, transform: &ImageTransform, picture: &Picture, at_px: [f64; 2]) -> String {
+    let mut text = format::pixel_position(at_px);
+    if let Some([column, row]) = transform.pixel_at(at_px) {
+        let value = match view.value_text {
+            Some(value_text) => value_text(column, row),
+            None => Some(color_text(picture.image()[(column, row)], " ")),
+        };
+        text.push_str("   ");
+        text.push_str(&value.unwrap_or_else(|| "no value".to_owned()));
+    }
+    text.push_str(&format!("   {}×", format::significant(transform.points_per_px, 2)));
+    text
+}
+
+fn chip(ui: &Ui, clip: Rect, at: Pos2, anchor: Align2, text: &str, warning: Option<Role>) {
+    let painter = ui.painter_at(clip);
+    let font = theme::font(ui, &egui::TextStyle::Small);
+    let mark_width = if warning.is_some() { 16.0 } else { 0.0 };
+    let wrap = (clip.width() - 2.0 * INSET - mark_width - 12.0).max(40.0);
+    let galley = painter.layout(text.to_owned(), font, ON_IMAGE.text_strong, wrap);
+    let rect = anchor.anchor_size(at, galley.size() + vec2(12.0 + mark_width, 6.0));
+    painter.rect_filled(rect, 4.0, RIM);
+    if let Some(role) = warning {
+        let center =
+            rect.left_top() + vec2(13.0, 3.0 + galley.rows.first().map_or(7.0, |row| row.height() / 2.0));
+        glyph::paint(&painter, center, 10.0, Glyph::Warning, role.color(&ON_IMAGE));
+    }
+    painter.galley(rect.min + vec2(6.0 + mark_width, 3.0), galley, ON_IMAGE.text_strong);
+}
