@@ -1,1 +1,8 @@
-//! core/vision
+//! What the eyes see, measured: chessboard corners, stereo calibration, rectification,
+//! disparity, and where in space a point of the image is.
+//!
+//! Everything here is a plain function or a plain struct with a `process`-like method: no thread,
+//! no window, no device.
+
+pub mod calibrate;
+pub mod chessboard;
