@@ -1,0 +1,65 @@
+//! The few things that cameras and videos need from OpenCV.
+
+use image::RgbImage;
+use opencv::core::{CV_8U, Mat, MatTraitConst, MatTraitConstManual};
+use opencv::imgproc;
+
+/// OpenCV's own message, without its file and line.
+pub(crate) fn message(error: &opencv::Error) -> String {
+    error.message.trim().to_owned()
+}
+
+/// Keeps OpenCV's readers from writing to standard error: what goes wrong is told by ours.
+pub(crate) fn quiet() {
+    static ONCE: std::sync::Once = std::sync::Once::new();
+    ONCE.call_once(|| {
+        let silent = opencv::core::LogLevel::LOG_LEVEL_SILENT;
+        if let Err(error) = opencv::core::set_log_level(silent) {
+            log::debug!("OpenCV keeps its log level: {}", message(&error));
+        }
+    });
+}
+
+/// An 8-bit gray, BGR or BGRA image as RGB.
+pub(crate) fn rgb_image(mat: &Mat) -> Result<RgbImage, String> {
+    if mat.empty() {
+        return Err("the frame is empty".to_owned());
+    }
+    let code = match (mat.depth(), mat.channels()) {
+        (CV_8U, 1) => imgproc::COLOR_GRAY2RGB,
+        (CV_8U, 3) => imgproc::COLOR_BGR2RGB,
+        (CV_8U, 4) => imgproc::COLOR_BGRA2RGB,
+        (depth, channels) => {
+            return Err(format!("frames of {channels} channels and depth code {depth} are not read"));
+        }
+    };
+    let mut rgb = Mat::default();
+    imgproc::cvt_color_def(mat, &mut rgb, code).map_err(|error| message(&error))?;
+    let (Ok(width), Ok(height)) = (u32::try_from(rgb.cols()), u32::try_from(rgb.rows())) else {
+        return Err("the frame has no size".to_owned());
+    };
+    let bytes = rgb.data_bytes().map_err(|error| message(&error))?.to_vec();
+    RgbImage::from_raw(width, height, bytes).ok_or_else(|| "the frame is incomplete".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use opencv::core::{Scalar, Vec3b};
+
+    #[test]
+    fn channels_are_put_in_order() {
+        let blue_green_red = Vec3b::from([1, 2, 3]);
+        let mat = Mat::from_slice(&[blue_green_red]).expect("a mat").clone_pointee();
+        let image = rgb_image(&mat).expect("BGR");
+        assert_eq!(image.get_pixel(0, 0).0, [3, 2, 1]);
+    }
+
+    #[test]
+    fn other_kinds_are_refused_not_misread() {
+        let mat =
+            Mat::new_rows_cols_with_default(2, 2, opencv::core::CV_16UC1, Scalar::all(1.0)).expect("a mat");
+        assert!(rgb_image(&mat).is_err());
+        assert!(rgb_image(&Mat::default()).is_err());
+    }
+}
