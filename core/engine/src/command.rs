@@ -119,12 +119,19 @@ pub enum AimChoice {
 }
 
 /// Joint angles of the head.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeadPose {
     /// `head_z`, positive looks to the left, radians.
     pub head_z_rad: f64,
     /// `head_y`, positive looks up, radians.
     pub head_y_rad: f64,
+}
+
+impl Default for HeadPose {
+    /// As it works on the table.
+    fn default() -> Self {
+        Self { head_z_rad: 0.0, head_y_rad: plumbline_model::workspace::WORKING_HEAD_Y_RAD }
+    }
 }
 
 /// Calibrating the eyes, in the order of work.
@@ -194,6 +201,9 @@ pub enum EyesCommand {
         /// `_left` replaced by (or `_right` added to) its name.
         file: PathBuf,
     },
+    /// Collects, in place of what is collected, the pairs that the proposal (or else the
+    /// calibration in use) was solved from, to solve them again.
+    CollectEvidence,
     /// Proposes a calibration that was accepted earlier.
     ProposeEarlier {
         /// Its id in [`crate::view::EyesView::earlier`].

@@ -100,10 +100,10 @@ pub struct CollectedPair {
     pub left: Option<Corners>,
     /// Corners in the right image.
     pub right: Option<Corners>,
-    /// The left image.
-    pub left_image: Arc<GrayImage>,
+    /// The left image; `None` where only corners are known (read from a calibration file).
+    pub left_image: Option<Arc<GrayImage>>,
     /// The right image.
-    pub right_image: Arc<GrayImage>,
+    pub right_image: Option<Arc<GrayImage>>,
     /// Where the board was, roughly; `None` when that could not be told.
     pub place: Option<BoardPlace>,
 }
@@ -118,10 +118,10 @@ impl CollectedPair {
     }
 
     /// Image of one eye.
-    pub fn image(&self, eye: Eye) -> &Arc<GrayImage> {
+    pub fn image(&self, eye: Eye) -> Option<&Arc<GrayImage>> {
         match eye {
-            Eye::Left => &self.left_image,
-            Eye::Right => &self.right_image,
+            Eye::Left => self.left_image.as_ref(),
+            Eye::Right => self.right_image.as_ref(),
         }
     }
 }
@@ -131,9 +131,10 @@ impl CollectedPair {
 pub struct BoardPlace {
     /// From the left eye to the middle of the board, meters.
     pub distance_m: f64,
-    /// Of the board's normal against the line of sight, about the image's horizontal axis, radians.
+    /// Tilt against the line of sight about the image's horizontal axis, radians; positive:
+    /// the top is further away than the bottom.
     pub tilt_up_down_rad: f64,
-    /// About the image's vertical axis, radians.
+    /// Tilt about the image's vertical axis, radians; positive: the left is further away.
     pub tilt_left_right_rad: f64,
 }
 
@@ -144,12 +145,11 @@ pub struct Coverage {
     pub left: CoverageGrid,
     /// Corners per cell of the right image.
     pub right: CoverageGrid,
-    /// Pairs per bin of distance; `distance_edges_m` has one more entry.
+    /// Pairs per bin of distance, near to far; the last bin is open.
     pub by_distance: Vec<u32>,
-    /// Edges of the bins, meters.
+    /// Where one bin ends and the next begins, meters; one entry fewer than bins.
     pub distance_edges_m: Vec<f64>,
-    /// Pairs per direction of tilt, counted where the tilt is strong enough to help:
-    /// upright, top away, top near, left away, right away.
+    /// Pairs per direction of tilt, in the order of [`Coverage::TILT_NAMES`].
     pub by_tilt: [u32; 5],
 }
 

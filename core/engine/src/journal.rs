@@ -1,0 +1,270 @@
+//! Every command, written down as it is applied, so that a bug report is a replay.
+//!
+//! One JSON object per line: a heading, then one entry per command with the number of the pair
+//! that was newest at that moment.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use crossbeam_channel::{Receiver, Sender};
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+
+use crate::command::{Command, LiveCommand};
+
+/// First line of a journal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Heading {
+    /// Version of this format: 1.
+    pub journal: u32,
+    /// Program and version.
+    pub software: String,
+    /// When the program was started, UTC.
+    pub started: Timestamp,
+}
+
+/// One command and when it was applied.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Entry {
+    /// Since the program was started, seconds.
+    pub at_secs: f64,
+    /// Number of the newest pair when it was applied.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub newest_seq: Option<u64>,
+    /// What was asked.
+    #[serde(flatten)]
+    pub command: Command,
+}
+
+/// Why a journal cannot be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum JournalError {
+    /// The file system says no.
+    #[error(
+        "{path}: {error}. Check that the folder exists and can be written, or choose another data folder."
+    )]
+    Io {
+        /// Which file.
+        path: PathBuf,
+        /// What the system says.
+        error: std::io::Error,
+    },
+    /// A line is not what it should be.
+    #[error(
+        "{path}, line {line}: {reason}. This is not a journal of this program, or it was edited by hand."
+    )]
+    Line {
+        /// Which file.
+        path: PathBuf,
+        /// From 1.
+        line: usize,
+        /// What is wrong.
+        reason: String,
+    },
+}
+
+/// Writes entries on a thread of its own, so that a slow disk holds nothing up.
+pub struct Journal {
+    entries: Option<Sender<Entry>>,
+    lost: u64,
+    waiting_probe: Option<Entry>,
+    writer: Option<std::thread::JoinHandle<()>>,
+}
+
+/// Entries that may wait for the disk.
+const WAITING: usize = 1024;
+/// Journals that are kept.
+const KEPT: usize = 30;
+
+impl Journal {
+    /// Starts a journal in a folder, which is made if it is not there.
+    pub fn start(folder: &Path) -> Result<Self, JournalError> {
+        let io = |path: &Path| {
+            let path = path.to_owned();
+            move |error| JournalError::Io { path, error }
+        };
+        std::fs::create_dir_all(folder).map_err(io(folder))?;
+        forget_oldest(folder);
+        let started = Timestamp::now();
+        let path = folder.join(format!(
+            "{}_{}.jsonl",
+            started.strftime("%Y-%m-%dT%H-%M-%S%.3f"),
+            std::process::id()
+        ));
+        let mut file = BufWriter::new(File::create(&path).map_err(io(&path))?);
+        let heading = Heading { journal: 1, software: crate::software(), started };
+        write_line(&mut file, &heading).map_err(io(&path))?;
+        let (entries, waiting) = crossbeam_channel::bounded(WAITING);
+        let writer = std::thread::Builder::new()
+            .name("journal".into())
+            .spawn(move || write_entries(file, &waiting))
+            .map_err(io(folder))?;
+        Ok(Self { entries: Some(entries), lost: 0, waiting_probe: None, writer: Some(writer) })
+    }
+
+    /// Hands an entry to the writer; never waits.
+    pub fn note(&mut self, entry: Entry) {
+        // The mouse moves the probe sixty times a second: of a row of probes only the last one
+        // says anything.
+        if matches!(entry.command, Command::Live(LiveCommand::Probe(_))) {
+            self.waiting_probe = Some(entry);
+            return;
+        }
+        if let Some(probe) = self.waiting_probe.take() {
+            self.hand_over(probe);
+        }
+        self.hand_over(entry);
+    }
+
+    /// Entries that were lost because the disk did not keep up.
+    pub fn lost(&self) -> u64 {
+        self.lost
+    }
+
+    fn hand_over(&mut self, entry: Entry) {
+        if let Some(entries) = &self.entries {
+            self.lost += u64::from(entries.try_send(entry).is_err());
+        }
+    }
+}
+
+impl Drop for Journal {
+    fn drop(&mut self) {
+        if let Some(probe) = self.waiting_probe.take() {
+            self.hand_over(probe);
+        }
+        self.entries = None;
+        if let Some(writer) = self.writer.take() {
+            // A writer that panicked has nothing left to say.
+            let _ = writer.join();
+        }
+    }
+}
+
+/// Reads a journal. A last line without an end, as a crash leaves it, is left out.
+pub fn read(path: &Path) -> Result<(Heading, Vec<Entry>), JournalError> {
+    let io = |error| JournalError::Io { path: path.to_owned(), error };
+    let bad = |line: usize, reason: String| JournalError::Line { path: path.to_owned(), line, reason };
+    let mut reader = BufReader::new(File::open(path).map_err(io)?);
+    let mut text = String::new();
+    reader.read_line(&mut text).map_err(io)?;
+    let heading: Heading = serde_json::from_str(&text).map_err(|error| bad(1, error.to_string()))?;
+    let mut entries = Vec::new();
+    for line in 2.. {
+        text.clear();
+        reader.read_line(&mut text).map_err(io)?;
+        if !text.ends_with('\n') {
+            break;
+        }
+        entries.push(serde_json::from_str(&text).map_err(|error| bad(line, error.to_string()))?);
+    }
+    Ok((heading, entries))
+}
+
+fn write_line(file: &mut impl Write, value: &impl Serialize) -> std::io::Result<()> {
+    serde_json::to_writer(&mut *file, value)?;
+    file.write_all(b"\n")?;
+    file.flush()
+}
+
+fn write_entries(mut file: BufWriter<File>, waiting: &Receiver<Entry>) {
+    for entry in waiting {
+        if let Err(error) = write_line(&mut file, &entry) {
+            log::error!("the journal ends here, the disk says: {error}");
+            return;
+        }
+    }
+}
+
+fn forget_oldest(folder: &Path) {
+    let Ok(listing) = std::fs::read_dir(folder) else { return };
+    let mut journals: Vec<PathBuf> = listing
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "jsonl"))
+        .collect();
+    // Names begin with the time, so they sort by age.
+    journals.sort();
+    for path in journals.iter().take(journals.len().saturating_sub(KEPT - 1)) {
+        if let Err(error) = std::fs::remove_file(path) {
+            log::warn!("an old journal stays: {}: {error}", path.display());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::command::{EyesCommand, ProbePoint, SourceCommand};
+
+    fn entry(at_secs: f64, command: impl Into<Command>) -> Entry {
+        Entry { at_secs, newest_seq: Some(3), command: command.into() }
+    }
+
+    fn only_file(folder: &Path) -> PathBuf {
+        let mut listing = std::fs::read_dir(folder).expect("folder");
+        listing.next().expect("a journal").expect("readable").path()
+    }
+
+    #[test]
+    fn what_was_noted_is_read_back() {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let commands = [
+            entry(0.5, SourceCommand::OpenPath("pairs".into())),
+            entry(1.0, EyesCommand::ChooseBoard { columns: 9, rows: 6, square_m: 0.03 }),
+            entry(1.5, EyesCommand::Capture),
+            entry(2.0, EyesCommand::DropPair { pair: "frame_09.png".into() }),
+        ];
+        let mut journal = Journal::start(folder.path()).expect("writable");
+        for entry in &commands {
+            journal.note(entry.clone());
+        }
+        drop(journal);
+        let (heading, entries) = read(&only_file(folder.path())).expect("readable");
+        assert_eq!(heading.journal, 1);
+        assert_eq!(entries, commands);
+    }
+
+    #[test]
+    fn of_a_row_of_probes_the_last_is_kept() {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let probe = |u_px| LiveCommand::Probe(ProbePoint::Rectified { u_px, v_px: 1.0 });
+        let mut journal = Journal::start(folder.path()).expect("writable");
+        for i in 0..50 {
+            journal.note(entry(f64::from(i), probe(f64::from(i))));
+        }
+        journal.note(entry(50.0, LiveCommand::StopProbe));
+        drop(journal);
+        let (_, entries) = read(&only_file(folder.path())).expect("readable");
+        assert_eq!(entries, [entry(49.0, probe(49.0)), entry(50.0, LiveCommand::StopProbe)]);
+    }
+
+    #[test]
+    fn a_half_written_last_line_is_left_out_and_a_spoiled_line_is_named() {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let mut journal = Journal::start(folder.path()).expect("writable");
+        journal.note(entry(1.0, EyesCommand::Capture));
+        drop(journal);
+        let path = only_file(folder.path());
+        let whole = std::fs::read_to_string(&path).expect("text");
+        std::fs::write(&path, format!("{whole}{{\"at_secs\":2.0,\"workfl")).expect("writable");
+        assert_eq!(read(&path).expect("readable").1.len(), 1);
+        std::fs::write(&path, format!("{whole}not json\n")).expect("writable");
+        let message = read(&path).expect_err("spoiled").to_string();
+        assert!(message.contains("line 3"), "{message}");
+    }
+
+    #[test]
+    fn old_journals_are_forgotten() {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        for i in 0..KEPT + 5 {
+            std::fs::write(folder.path().join(format!("2020-01-01T00-00-{i:03}.jsonl")), "{}")
+                .expect("writable");
+        }
+        drop(Journal::start(folder.path()).expect("writable"));
+        let count = std::fs::read_dir(folder.path()).expect("folder").count();
+        assert_eq!(count, KEPT);
+        assert!(!folder.path().join("2020-01-01T00-00-000.jsonl").exists());
+    }
+}
