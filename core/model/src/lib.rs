@@ -8,10 +8,12 @@ pub mod aim;
 pub mod calibration;
 pub mod camera;
 pub mod chessboard;
+pub mod formats;
 pub mod frame;
 pub mod image_pair;
 pub mod job;
 pub mod pixel;
+pub mod session;
 pub mod stereo;
 pub mod workspace;
 
@@ -22,9 +24,11 @@ pub use calibration::{
 };
 pub use camera::{Camera, CameraModel, Fisheye, ModelKind, Pinhole, ProjectError};
 pub use chessboard::{BoardError, Chessboard, InnerCorners};
+pub use formats::FormatError;
 pub use frame::{Direction, Frame, Point, Pose};
 pub use image_pair::{Stamp, StereoFrame};
 pub use job::{Cancelled, JobContext, Unattended};
 pub use pixel::{Eye, Pixel, PixelSpace, Raw, Rectified};
+pub use session::{Session, SessionError};
 pub use stereo::StereoCameras;
 pub use workspace::Workspace;

@@ -1,0 +1,123 @@
+//! Measurement sessions: a folder with a manifest and plain tables, from which every result can
+//! be recomputed. Format version 1; SI units, angles of the joint in radians, an empty cell
+//! means "not measured".
+//!
+//! ```text
+//! session.toml                      rig, start, touchscreen, kinematic chain
+//! touches.csv                       a fingertip met the touchscreen
+//! localizations.csv                 stereo vision located something whose place is known
+//! poses.csv                         a point of the robot was measured from outside
+//! stereo/left/*  stereo/right/*     images; the same file name makes a pair
+//! log.mcap                          live streams, if recorded
+//! ```
+
+mod error;
+mod localizations;
+mod manifest;
+mod poses;
+mod stereo_images;
+mod table;
+mod touches;
+
+use std::path::{Path, PathBuf};
+
+pub use error::{Cell, SessionError};
+pub use localizations::{LocalizationRow, LocalizationTable};
+pub use manifest::{Chain, Manifest, RigReference, Touchscreen};
+pub use poses::{External, PoseRow, PoseTable};
+pub use stereo_images::{StereoImagePair, StereoImages, UnpairedImage};
+pub use table::{Column, ColumnValues, Table};
+pub use touches::{Screen, TouchRow, TouchTable};
+
+/// File names inside a session folder.
+pub mod names {
+    /// The manifest.
+    pub const MANIFEST: &str = "session.toml";
+    /// Touches of the touchscreen.
+    pub const TOUCHES: &str = "touches.csv";
+    /// Stereo localizations of known places.
+    pub const LOCALIZATIONS: &str = "localizations.csv";
+    /// Externally measured points of the robot.
+    pub const POSES: &str = "poses.csv";
+    /// Folder of stereo images.
+    pub const STEREO: &str = "stereo";
+    /// Live streams.
+    pub const LOG: &str = "log.mcap";
+}
+
+/// A session in memory.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Session {
+    /// What was measured with what, and when.
+    pub manifest: Manifest,
+    /// `touches.csv`.
+    pub touches: Option<TouchTable>,
+    /// `localizations.csv`.
+    pub localizations: Option<LocalizationTable>,
+    /// `poses.csv`.
+    pub poses: Option<PoseTable>,
+    /// Images under `stereo/`: paths, not pixels.
+    pub stereo: StereoImages,
+    /// Path of `log.mcap`, if there is one.
+    pub log: Option<PathBuf>,
+}
+
+impl Session {
+    /// Reads a session folder; images and log are listed, not opened.
+    pub fn read(folder: &Path) -> Result<Self, SessionError> {
+        if !folder.is_dir() {
+            return Err(SessionError::NotAFolder { folder: folder.to_path_buf() });
+        }
+        let manifest = Manifest::read(&folder.join(names::MANIFEST))?;
+        let existing = |name: &str| Some(folder.join(name)).filter(|file| file.exists());
+        let joints = |file: &Path| manifest.chain_for(file).map(|chain| chain.joints.as_slice());
+        let session = Self {
+            touches: existing(names::TOUCHES)
+                .map(|file| {
+                    manifest.touchscreen_for(&file)?;
+                    TouchTable::read(&file, joints(&file)?)
+                })
+                .transpose()?,
+            localizations: existing(names::LOCALIZATIONS)
+                .map(|file| LocalizationTable::read(&file))
+                .transpose()?,
+            poses: existing(names::POSES).map(|file| PoseTable::read(&file, joints(&file)?)).transpose()?,
+            stereo: StereoImages::list(&folder.join(names::STEREO))?,
+            log: existing(names::LOG),
+            manifest,
+        };
+        if session.is_empty() {
+            return Err(SessionError::NothingMeasured { folder: folder.to_path_buf() });
+        }
+        Ok(session)
+    }
+
+    fn is_empty(&self) -> bool {
+        self.touches.is_none()
+            && self.localizations.is_none()
+            && self.poses.is_none()
+            && self.stereo.is_empty()
+            && self.log.is_none()
+    }
+
+    /// Writes manifest and tables into the folder, which is made if need be. Each file replaces
+    /// its predecessor in one step; tables that this session does not have, images and the log
+    /// are left as they are.
+    pub fn write(&self, folder: &Path) -> Result<(), SessionError> {
+        std::fs::create_dir_all(folder)
+            .map_err(|source| SessionError::Unwritable { file: folder.to_path_buf(), source })?;
+        let touches = self.touches.as_ref().map(|table| (names::TOUCHES, table.table()));
+        let localizations = self.localizations.as_ref().map(|table| (names::LOCALIZATIONS, table.table()));
+        let poses = self.poses.as_ref().map(|table| (names::POSES, table.table()));
+        if touches.is_some() {
+            self.manifest.touchscreen_for(&folder.join(names::TOUCHES))?;
+        }
+        for (name, _) in touches.iter().chain(&poses) {
+            self.manifest.chain_for(&folder.join(name))?;
+        }
+        for (name, table) in touches.into_iter().chain(localizations).chain(poses) {
+            table.write(&folder.join(name))?;
+        }
+        self.manifest.write(&folder.join(names::MANIFEST))
+    }
+}

@@ -1,0 +1,136 @@
+//! `poses.csv`: a point of the robot was measured from outside.
+
+use std::path::Path;
+
+use super::error::SessionError;
+use super::table::{ColumnBuilder, ColumnKind, JointColumn, Table};
+use crate::frame::{Frame, Point};
+
+/// The fixed frame of an external measuring device; it need not be the robot's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct External;
+impl Frame for External {
+    const NAME: &'static str = "external";
+}
+
+const MEASURED: [&str; 3] = ["meas_x_m", "meas_y_m", "meas_z_m"];
+const NUMBERS: [&str; 2] = ["payload_kg", "t_secs"];
+const TEXTS: [&str; 3] = ["group", "approach", "set"];
+const OF_JOINTS: [JointColumn; 3] = [JointColumn::COMMANDED, JointColumn::ENCODER, JointColumn::TORQUE];
+
+/// One measured pose. `None` means not measured.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PoseRow {
+    /// Commanded joint angles (rad), in the order of the chain's joints.
+    pub commanded_rad: Vec<Option<f64>>,
+    /// Encoder readings (rad), same order.
+    pub encoder_rad: Vec<Option<f64>>,
+    /// Measured place of the chain's tip.
+    pub measured: Option<Point<External>>,
+    /// Measured joint torques (N·m), in the order of the chain's joints.
+    pub torque_nm: Vec<Option<f64>>,
+    /// Known mass at the palm, kg; nominally 0.
+    pub payload_kg: Option<f64>,
+    /// Time since the robot was switched on, s.
+    pub t_secs: Option<f64>,
+    /// Rows of one group repeat the same command from the same side.
+    pub group: Option<String>,
+    /// Side from which the pose was approached.
+    pub approach: Option<String>,
+    /// Label that blocks cross-validation.
+    pub set: Option<String>,
+}
+
+/// All measured poses of a session.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseTable {
+    joints: Vec<String>,
+    table: Table,
+}
+
+impl PoseTable {
+    /// Reads the table of a chain with these joints.
+    pub fn read(file: &Path, joints: &[String]) -> Result<Self, SessionError> {
+        let read = Table::read(file, |name| {
+            let of_joint = OF_JOINTS.iter().any(|column| column.is_of(name, joints));
+            if of_joint || MEASURED.contains(&name) || NUMBERS.contains(&name) {
+                Some(ColumnKind::Number)
+            } else {
+                TEXTS.contains(&name).then_some(ColumnKind::Text)
+            }
+        })?;
+        for joint in joints {
+            let names = [JointColumn::COMMANDED.name(joint), JointColumn::ENCODER.name(joint)];
+            if !names.iter().any(|name| read.table.has(name)) {
+                return Err(read.missing(
+                    &names.join(" or "),
+                    "every joint of the chain in session.toml needs its commanded or encoder angle",
+                ));
+            }
+        }
+        for name in MEASURED {
+            read.require(name, "add the measured place of the chain's tip")?;
+        }
+        read.require_whole_points(&MEASURED)?;
+        Ok(Self { joints: joints.to_vec(), table: read.table })
+    }
+
+    /// A table from rows; columns that no row has are left out, commanded angles only when every
+    /// joint has encoder readings.
+    pub fn from_rows(joints: Vec<String>, rows: &[PoseRow]) -> Self {
+        let mut columns = ColumnBuilder::new(rows);
+        columns.text("group", |row| row.group.clone());
+        columns.text("approach", |row| row.approach.clone());
+        columns.text("set", |row| row.set.clone());
+        columns.joints(&joints, JointColumn::COMMANDED, |row| &row.commanded_rad);
+        columns.joints(&joints, JointColumn::ENCODER, |row| &row.encoder_rad);
+        for (i, name) in MEASURED.into_iter().enumerate() {
+            columns.number(name, |row| row.measured.map(|point| point.coords[i]));
+        }
+        columns.joints(&joints, JointColumn::TORQUE, |row| &row.torque_nm);
+        columns.number("payload_kg", |row| row.payload_kg);
+        columns.number("t_secs", |row| row.t_secs);
+        let encoders_known = (0..joints.len())
+            .all(|i| rows.iter().any(|row| row.encoder_rad.get(i).copied().flatten().is_some()));
+        let table = columns.finish(|name| {
+            MEASURED.contains(&name) || (!encoders_known && JointColumn::COMMANDED.is_of(name, &joints))
+        });
+        Self { joints, table }
+    }
+
+    /// Joints of the chain, from base to tip.
+    pub fn joints(&self) -> &[String] {
+        &self.joints
+    }
+
+    /// The columns themselves, those that the format does not define included.
+    pub fn table(&self) -> &Table {
+        &self.table
+    }
+
+    /// Number of poses.
+    pub fn row_count(&self) -> usize {
+        self.table.row_count()
+    }
+
+    /// One pose; `None` past the last row.
+    pub fn row(&self, row: usize) -> Option<PoseRow> {
+        let (table, joints) = (&self.table, &self.joints);
+        (row < table.row_count()).then(|| PoseRow {
+            commanded_rad: JointColumn::COMMANDED.row(table, joints, row),
+            encoder_rad: JointColumn::ENCODER.row(table, joints, row),
+            measured: table.tuple(MEASURED, row).map(|[x, y, z]| Point::new(x, y, z)),
+            torque_nm: JointColumn::TORQUE.row(table, joints, row),
+            payload_kg: table.number("payload_kg", row),
+            t_secs: table.number("t_secs", row),
+            group: table.text("group", row),
+            approach: table.text("approach", row),
+            set: table.text("set", row),
+        })
+    }
+
+    /// All poses in order.
+    pub fn rows(&self) -> impl Iterator<Item = PoseRow> + '_ {
+        (0..self.row_count()).filter_map(|row| self.row(row))
+    }
+}

@@ -1,0 +1,390 @@
+//! Tables of typed columns, kept in the order of the file, unknown columns included.
+
+use std::collections::HashSet;
+use std::path::Path;
+
+use super::error::{Cell, SessionError};
+use crate::formats::Replacement;
+
+/// The values of a column, one per row; `None` where the cell is empty.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ColumnValues {
+    /// Finite numbers.
+    Numbers(Vec<Option<f64>>),
+    /// Texts.
+    Texts(Vec<Option<String>>),
+    /// True or false.
+    Flags(Vec<Option<bool>>),
+}
+
+/// What the cells of a column should hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ColumnKind {
+    Number,
+    Text,
+    Flag,
+}
+
+/// One column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Name in the header.
+    pub name: String,
+    /// Its cells.
+    pub values: ColumnValues,
+}
+
+/// A table with a header. Columns that the format does not define are kept as texts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    columns: Vec<Column>,
+    row_count: usize,
+}
+
+impl ColumnValues {
+    fn new(kind: ColumnKind) -> Self {
+        match kind {
+            ColumnKind::Number => Self::Numbers(Vec::new()),
+            ColumnKind::Text => Self::Texts(Vec::new()),
+            ColumnKind::Flag => Self::Flags(Vec::new()),
+        }
+    }
+
+    /// Number of cells.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Numbers(cells) => cells.len(),
+            Self::Texts(cells) => cells.len(),
+            Self::Flags(cells) => cells.len(),
+        }
+    }
+
+    /// Whether there are no rows.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Whether nothing was measured in any row.
+    pub fn is_blank(&self) -> bool {
+        (0..self.len()).all(|row| self.text(row).is_empty())
+    }
+
+    /// A cell as it is written to a file; empty when not measured.
+    fn text(&self, row: usize) -> String {
+        match self {
+            // Debug keeps the decimal point and all digits.
+            Self::Numbers(cells) => cells[row].map(|value| format!("{value:?}")).unwrap_or_default(),
+            Self::Texts(cells) => cells[row].clone().unwrap_or_default(),
+            Self::Flags(cells) => cells[row].map(|value| value.to_string()).unwrap_or_default(),
+        }
+    }
+
+    fn push(&mut self, text: &str, cell: impl Fn() -> Cell) -> Result<(), SessionError> {
+        let trimmed = text.trim();
+        match self {
+            Self::Texts(cells) => cells.push(Some(text.to_owned()).filter(|text| !text.is_empty())),
+            Self::Numbers(cells) if trimmed.is_empty() => cells.push(None),
+            Self::Flags(cells) if trimmed.is_empty() => cells.push(None),
+            Self::Numbers(cells) => match trimmed.parse::<f64>() {
+                Ok(value) if value.is_finite() => cells.push(Some(value)),
+                Ok(_) => return Err(SessionError::NotFinite { cell: cell(), found: trimmed.to_owned() }),
+                Err(_) => return Err(wrong_type(cell(), "a number", trimmed)),
+            },
+            // Spreadsheets write TRUE and FALSE.
+            Self::Flags(cells) => match trimmed.to_ascii_lowercase().as_str() {
+                "true" => cells.push(Some(true)),
+                "false" => cells.push(Some(false)),
+                _ => return Err(wrong_type(cell(), "true or false", trimmed)),
+            },
+        }
+        Ok(())
+    }
+}
+
+fn wrong_type(cell: Cell, expected: &'static str, found: &str) -> SessionError {
+    SessionError::WrongType { cell, expected, found: found.to_owned() }
+}
+
+impl Table {
+    /// A table from columns of equal length; columns without any value are left out unless
+    /// `required` says otherwise.
+    pub(crate) fn from_columns(columns: Vec<Column>, required: impl Fn(&str) -> bool) -> Self {
+        let row_count = columns.first().map_or(0, |column| column.values.len());
+        debug_assert!(columns.iter().all(|column| column.values.len() == row_count));
+        let columns = columns
+            .into_iter()
+            .filter(|column| required(&column.name) || !column.values.is_blank())
+            .collect();
+        Self { columns, row_count }
+    }
+
+    /// Reads a table; `kind` gives the type of the columns that the format defines.
+    pub(crate) fn read(
+        file: &Path,
+        kind: impl Fn(&str) -> Option<ColumnKind>,
+    ) -> Result<ReadTable<'_>, SessionError> {
+        let bytes = std::fs::read(file)
+            .map_err(|source| SessionError::Unreadable { file: file.to_path_buf(), source })?;
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+        // Lengths are checked here, so that the error can name the column.
+        let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(bytes);
+        let header = reader.headers().map_err(|error| not_csv(file, &error))?.clone();
+        let mut columns = read_header(file, &header, kind)?;
+        let mut record = csv::StringRecord::new();
+        let mut lines = Vec::new();
+        while reader.read_record(&mut record).map_err(|error| not_csv(file, &error))? {
+            let line = record.position().map_or(0, csv::Position::line);
+            read_row(file, line, &record, &mut columns)?;
+            lines.push(line);
+        }
+        Ok(ReadTable { file, table: Self { columns, row_count: lines.len() }, lines })
+    }
+
+    /// Writes the table in one step.
+    pub(crate) fn write(&self, file: &Path) -> Result<(), SessionError> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let in_memory = "a table is written to memory, row by row of equal length";
+        writer.write_record(self.columns.iter().map(|column| column.name.as_str())).expect(in_memory);
+        for row in 0..self.row_count {
+            writer.write_record(self.columns.iter().map(|column| column.values.text(row))).expect(in_memory);
+        }
+        let bytes = writer.into_inner().expect(in_memory);
+        let replacement = Replacement::of(file);
+        replacement.fill(&String::from_utf8_lossy(&bytes))?;
+        Ok(replacement.commit()?)
+    }
+
+    /// Number of rows.
+    pub fn row_count(&self) -> usize {
+        self.row_count
+    }
+
+    /// All columns, in the order of the file.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// Whether a column is there.
+    pub fn has(&self, name: &str) -> bool {
+        self.column(name).is_some()
+    }
+
+    fn column(&self, name: &str) -> Option<&Column> {
+        self.columns.iter().find(|column| column.name == name)
+    }
+
+    /// A column of numbers; `None` if there is no such column.
+    pub fn numbers(&self, name: &str) -> Option<&[Option<f64>]> {
+        match &self.column(name)?.values {
+            ColumnValues::Numbers(cells) => Some(cells),
+            _ => None,
+        }
+    }
+
+    /// A column of texts; `None` if there is no such column.
+    pub fn texts(&self, name: &str) -> Option<&[Option<String>]> {
+        match &self.column(name)?.values {
+            ColumnValues::Texts(cells) => Some(cells),
+            _ => None,
+        }
+    }
+
+    /// A column of flags; `None` if there is no such column.
+    pub fn flags(&self, name: &str) -> Option<&[Option<bool>]> {
+        match &self.column(name)?.values {
+            ColumnValues::Flags(cells) => Some(cells),
+            _ => None,
+        }
+    }
+
+    /// A cell of numbers; `None` if column, row or value is not there.
+    pub(crate) fn number(&self, name: &str, row: usize) -> Option<f64> {
+        *self.numbers(name)?.get(row)?
+    }
+
+    /// A cell of texts, same.
+    pub(crate) fn text(&self, name: &str, row: usize) -> Option<String> {
+        self.texts(name)?.get(row)?.clone()
+    }
+
+    /// All of these numbers, or `None` if any is not there.
+    pub(crate) fn tuple<const N: usize>(&self, names: [&str; N], row: usize) -> Option<[f64; N]> {
+        let mut values = [0.0; N];
+        for (value, name) in values.iter_mut().zip(names) {
+            *value = self.number(name, row)?;
+        }
+        Some(values)
+    }
+}
+
+/// A table that was just read, with the line of every row, for the checks of its kind of table.
+pub(crate) struct ReadTable<'a> {
+    file: &'a Path,
+    lines: Vec<u64>,
+    pub table: Table,
+}
+
+impl ReadTable<'_> {
+    /// Whether any of the columns is there.
+    pub fn has_any(&self, columns: &[&str]) -> bool {
+        columns.iter().any(|column| self.table.has(column))
+    }
+
+    /// Requires a column.
+    pub fn require(&self, column: &str, advice: &'static str) -> Result<(), SessionError> {
+        if self.table.has(column) { Ok(()) } else { Err(self.missing(column, advice)) }
+    }
+
+    /// The error for a column that has to be there.
+    pub fn missing(&self, column: &str, advice: &'static str) -> SessionError {
+        SessionError::MissingColumn { file: self.file.to_path_buf(), column: column.to_owned(), advice }
+    }
+
+    /// Requires that in each row the coordinates of a point are all given or all empty.
+    pub fn require_whole_points(&self, names: &[&str]) -> Result<(), SessionError> {
+        for (row, &line) in self.lines.iter().enumerate() {
+            let given: Vec<bool> = names.iter().map(|name| self.table.number(name, row).is_some()).collect();
+            if given.contains(&true)
+                && let Some(absent) = given.iter().position(|given| !given)
+            {
+                let column = names[absent].to_owned();
+                return Err(SessionError::IncompletePoint {
+                    cell: Cell { file: self.file.to_path_buf(), line, column },
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn not_csv(file: &Path, error: &csv::Error) -> SessionError {
+    let line = match error.kind() {
+        csv::ErrorKind::Utf8 { pos: Some(position), .. } => position.line(),
+        _ => error.position().map_or(1, csv::Position::line),
+    };
+    SessionError::NotCsv { file: file.to_path_buf(), line, reason: error.to_string() }
+}
+
+fn read_header(
+    file: &Path,
+    header: &csv::StringRecord,
+    kind: impl Fn(&str) -> Option<ColumnKind>,
+) -> Result<Vec<Column>, SessionError> {
+    if header.iter().all(|name| name.trim().is_empty()) {
+        return Err(SessionError::NoHeader { file: file.to_path_buf() });
+    }
+    if header.len() == 1 && header.iter().any(|name| name.contains([';', '\t'])) {
+        return Err(SessionError::NotCsv {
+            file: file.to_path_buf(),
+            line: 1,
+            reason: "the columns are not separated by commas".to_owned(),
+        });
+    }
+    let mut seen = HashSet::new();
+    let mut columns = Vec::with_capacity(header.len());
+    for name in header.iter().map(str::trim) {
+        if !name.is_empty() && !seen.insert(name.to_owned()) {
+            return Err(SessionError::DuplicateColumn { file: file.to_path_buf(), column: name.to_owned() });
+        }
+        let kind = kind(name).unwrap_or(ColumnKind::Text);
+        columns.push(Column { name: name.to_owned(), values: ColumnValues::new(kind) });
+    }
+    Ok(columns)
+}
+
+fn read_row(
+    file: &Path,
+    line: u64,
+    record: &csv::StringRecord,
+    columns: &mut [Column],
+) -> Result<(), SessionError> {
+    if record.len() != columns.len() {
+        let shorter = record.len().min(columns.len());
+        return Err(SessionError::RowLength {
+            file: file.to_path_buf(),
+            line,
+            column: columns.get(shorter).map_or(format!("number {}", shorter + 1), |c| c.name.clone()),
+            expected: columns.len(),
+            found: record.len(),
+        });
+    }
+    for (column, text) in columns.iter_mut().zip(record) {
+        let name = &column.name;
+        column.values.push(text, || Cell { file: file.to_path_buf(), line, column: name.clone() })?;
+    }
+    Ok(())
+}
+
+/// Collects rows into named columns, for writing.
+pub(crate) struct ColumnBuilder<'a, R> {
+    rows: &'a [R],
+    columns: Vec<Column>,
+}
+
+impl<'a, R> ColumnBuilder<'a, R> {
+    pub fn new(rows: &'a [R]) -> Self {
+        Self { rows, columns: Vec::new() }
+    }
+
+    pub fn number(&mut self, name: impl Into<String>, value: impl Fn(&R) -> Option<f64>) {
+        let values = ColumnValues::Numbers(self.rows.iter().map(value).collect());
+        self.columns.push(Column { name: name.into(), values });
+    }
+
+    pub fn text(&mut self, name: &str, value: impl Fn(&R) -> Option<String>) {
+        let cells = self.rows.iter().map(|row| value(row).filter(|text| !text.is_empty())).collect();
+        self.columns.push(Column { name: name.to_owned(), values: ColumnValues::Texts(cells) });
+    }
+
+    pub fn flag(&mut self, name: &str, value: impl Fn(&R) -> Option<bool>) {
+        let values = ColumnValues::Flags(self.rows.iter().map(value).collect());
+        self.columns.push(Column { name: name.to_owned(), values });
+    }
+
+    /// One column per joint: `prefix_<joint>_suffix`.
+    pub fn joints(&mut self, joints: &[String], naming: JointColumn, values: impl Fn(&R) -> &[Option<f64>]) {
+        for (i, joint) in joints.iter().enumerate() {
+            self.number(naming.name(joint), |row| values(row).get(i).copied().flatten());
+        }
+    }
+
+    pub fn finish(self, required: impl Fn(&str) -> bool) -> Table {
+        Table::from_columns(self.columns, required)
+    }
+}
+
+/// How the columns of one quantity of every joint are called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct JointColumn {
+    prefix: &'static str,
+    suffix: &'static str,
+}
+
+impl JointColumn {
+    pub const COMMANDED: Self = Self { prefix: "cmd_", suffix: "_rad" };
+    pub const ENCODER: Self = Self { prefix: "enc_", suffix: "_rad" };
+    pub const HEAD: Self = Self { prefix: "head_", suffix: "_rad" };
+    pub const TORQUE: Self = Self { prefix: "tau_", suffix: "_nm" };
+    pub const TEMPERATURE: Self = Self { prefix: "temp_", suffix: "_c" };
+    pub const LOAD: Self = Self { prefix: "load_", suffix: "" };
+
+    /// Name of the column of a joint.
+    pub fn name(self, joint: &str) -> String {
+        format!("{}{joint}{}", self.prefix, self.suffix)
+    }
+
+    /// Joint of a column, if the column is one of these.
+    pub fn joint(self, column: &str) -> Option<&str> {
+        column.strip_prefix(self.prefix)?.strip_suffix(self.suffix).filter(|joint| !joint.is_empty())
+    }
+
+    /// Whether the column is that of one of the joints.
+    pub fn is_of(self, column: &str, joints: &[String]) -> bool {
+        self.joint(column).is_some_and(|joint| joints.iter().any(|known| known == joint))
+    }
+
+    /// The cells of a row, in the order of the joints.
+    pub fn row(self, table: &Table, joints: &[String], row: usize) -> Vec<Option<f64>> {
+        joints.iter().map(|joint| table.number(&self.name(joint), row)).collect()
+    }
+}
