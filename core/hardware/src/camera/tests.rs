@@ -82,17 +82,20 @@ fn pairs(source: &mut CameraSource, count: usize) -> Result<Vec<StereoFrame>, So
 #[test]
 fn frames_of_one_moment_are_paired_and_their_difference_is_right_minus_left() {
     let plugged = Arc::new(AtomicBool::new(false));
-    let mut right = NumberCamera::new(&plugged);
-    right.offset = Duration::from_millis(10);
-    let mut source = start(NumberCamera::new(&plugged), right, settings()).expect("two cameras");
-    let found = pairs(&mut source, 8).expect("running cameras");
-    assert_eq!(found.len(), 8);
+    // Far enough apart that a busy machine does not blur the order.
+    let (mut left, mut right) = (NumberCamera::new(&plugged), NumberCamera::new(&plugged));
+    left.period = Duration::from_millis(120);
+    right.period = left.period;
+    right.offset = Duration::from_millis(30);
+    let mut source = start(left, right, settings()).expect("two cameras");
+    let found = pairs(&mut source, 6).expect("running cameras");
+    assert_eq!(found.len(), 6);
     for (seq, pair) in found.iter().enumerate() {
         assert_eq!(pair.stamp.seq, seq as u64);
         assert_eq!(pair.left.get_pixel(0, 0), pair.right.get_pixel(0, 0), "frames of different moments");
         let difference_s = pair.time_difference_s.expect("cameras know it");
         // The scheduler may delay either; the sign and the size must show all the same.
-        assert!((0.001..0.02).contains(&difference_s), "{difference_s}");
+        assert!((0.005..0.06).contains(&difference_s), "{difference_s}");
     }
     assert!(found.windows(2).all(|w| w[0].stamp.captured_at < w[1].stamp.captured_at));
 }
@@ -106,7 +109,7 @@ fn a_slow_caller_gets_the_newest_pair_and_the_others_are_counted() {
     std::thread::sleep(Duration::from_millis(400));
     let second = pairs(&mut source, 1).expect("running cameras");
     let age = second[0].stamp.captured_at.elapsed();
-    assert!(age < Duration::from_millis(120), "an old pair was delivered: {age:?}");
+    assert!(age < Duration::from_millis(250), "an old pair was delivered: {age:?}");
     assert!(second[0].left.get_pixel(0, 0).0[0] > first[0].left.get_pixel(0, 0).0[0] + 5);
     let counters = source.counters();
     assert_eq!(counters.delivered, 2);

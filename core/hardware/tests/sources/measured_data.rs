@@ -1,0 +1,52 @@
+//! Measured pairs, where they are at hand.
+
+use std::path::PathBuf;
+
+use plumbline_hardware::{FolderSource, PairFolder, Replay, StereoSource};
+
+use crate::world::collect;
+
+/// A folder of the measured data, or why there is none.
+fn measured(name: &str) -> Option<PathBuf> {
+    let root = std::env::var_os("PLUMBLINE_DATA").map_or_else(
+        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
+        PathBuf::from,
+    );
+    let folder = root.join(name);
+    if !folder.is_dir() {
+        eprintln!("skipped: {name} is not at hand; set PLUMBLINE_DATA to the folder of measured data");
+        return None;
+    }
+    Some(folder)
+}
+
+#[test]
+fn every_layout_of_the_measured_data_opens() {
+    let expected = [
+        ("nico-chessboard", 31, (640, 480)),
+        ("opencv-fisheye-jy", 34, (1280, 800)),
+        ("opencv-stereo-13", 13, (640, 480)),
+        ("bumblebee2", 11, (640, 480)),
+    ];
+    for (name, count, size) in expected {
+        let Some(path) = measured(name) else { return };
+        let folder = PairFolder::open_one(&path).expect(name);
+        assert_eq!((folder.pairs().len(), folder.image_size()), (count, Some(size)), "{name}");
+        assert!(
+            !folder.reports().iter().any(|r| r.to_string().contains("no partner")),
+            "{:?}",
+            folder.reports()
+        );
+        let mut source = FolderSource::new(folder, Replay::ONCE).expect(name);
+        assert_eq!(collect(&mut source, 100).expect(name).len(), count, "{name}");
+        assert_eq!(source.counters().skipped, 0, "{name}");
+    }
+}
+
+#[test]
+fn scenes_with_pairs_and_single_images_tell_which_are_single() {
+    let Some(path) = measured("nico-scenes") else { return };
+    let folder = PairFolder::open_one(&path.join("images")).expect("pairs");
+    assert_eq!(folder.pairs().len(), 10);
+    assert_eq!(folder.reports().len(), 20, "40 images are 10 pairs and 20 single ones");
+}
