@@ -11,7 +11,7 @@ mod tokens;
 
 pub use apply::{apply, fonts};
 pub use tokens::{DARK, LIGHT, ON_IMAGE, Tokens};
-pub(crate) use tokens::{PIXEL_GRID, RIM, STALE_TINT, readable_on};
+pub(crate) use tokens::{INVALID, PIXEL_GRID, RIM, STALE_TINT, readable_on};
 
 use egui::{Color32, FontId, RichText, TextStyle, Ui};
 
@@ -42,11 +42,11 @@ pub mod size {
 /// What a color stands for. The same meaning has the same color everywhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
-    /// What a sensor reported; the left eye where two eyes are compared.
+    /// What a sensor reported.
     Measured,
-    /// What a model says; the right eye where two eyes are compared.
+    /// What a model says, and what is asked for.
     Predicted,
-    /// Measured minus predicted, or one calibration minus another.
+    /// Measured minus predicted, or one calibration minus another: residuals, errors.
     Difference,
     /// Data that was kept out of the fit.
     HeldOut,

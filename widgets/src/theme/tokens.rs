@@ -58,8 +58,6 @@ pub struct Tokens {
     pub stop_hover: Color32,
     /// Text on the stop button.
     pub on_stop: Color32,
-    /// Pixels without a value, and their hatch.
-    pub invalid: [Color32; 2],
     /// Shadow under popups.
     pub shadow: Color32,
 }
@@ -80,7 +78,7 @@ pub const DARK: Tokens = Tokens {
     grid: rgb(0x22272D),
     text_strong: rgb(0xF4F6F8),
     text: rgb(0xD0D6DC),
-    text_weak: rgb(0x939DA8),
+    text_weak: rgb(0x9BA5AF),
     accent: rgb(0xEDF0F3),
     on_accent: rgb(0x0E1114),
     measured: rgb(0x3FC7F4),
@@ -94,14 +92,13 @@ pub const DARK: Tokens = Tokens {
     stop: rgb(0xD12B1F),
     stop_hover: rgb(0xE5392C),
     on_stop: rgb(0xFFFFFF),
-    invalid: [rgb(0x2A2F35), rgb(0x3A4047)],
     shadow: Color32::from_black_alpha(120),
 };
 
 /// Light theme.
 pub const LIGHT: Tokens = Tokens {
     background: rgb(0xE6E9ED),
-    panel: rgb(0xF6F7F9),
+    panel: rgb(0xF7F8FA),
     raised: rgb(0xE3E7EB),
     raised_hover: rgb(0xD5DAE0),
     selected: rgb(0xD3DAE2),
@@ -110,21 +107,20 @@ pub const LIGHT: Tokens = Tokens {
     grid: rgb(0xE1E5E9),
     text_strong: rgb(0x0B0F13),
     text: rgb(0x272E35),
-    text_weak: rgb(0x59636D),
+    text_weak: rgb(0x545E68),
     accent: rgb(0x171C21),
     on_accent: rgb(0xFFFFFF),
-    measured: rgb(0x2F74C0),
-    predicted: rgb(0xCB7E22),
-    difference: rgb(0x8F1A8C),
-    held_out: rgb(0x22104A),
+    measured: rgb(0x3973BA),
+    predicted: rgb(0xC67D26),
+    difference: rgb(0x890988),
+    held_out: rgb(0x1B063B),
     noise_floor: rgb(0x818B92),
-    accepted: rgb(0x0B6647),
-    warning: rgb(0x966300),
-    danger: rgb(0xB3140F),
+    accepted: rgb(0x085F42),
+    warning: rgb(0x966400),
+    danger: rgb(0xA90000),
     stop: rgb(0xC4201A),
     stop_hover: rgb(0xA81812),
     on_stop: rgb(0xFFFFFF),
-    invalid: [rgb(0xC4C9CE), rgb(0xAFB5BB)],
     shadow: Color32::from_black_alpha(40),
 };
 
@@ -135,6 +131,10 @@ pub const ON_IMAGE: Tokens = DARK;
 
 /// Rim around marks on images, and ground of words on images.
 pub(crate) const RIM: Color32 = Color32::from_black_alpha(170);
+
+/// Pixels of a map that have no value: ground and hatch. Gray is in no color map but the gray
+/// one, where the hatch tells them apart.
+pub(crate) const INVALID: [Color32; 2] = [rgb(0x33383D), rgb(0x4A5057)];
 
 /// Lines between single pixels.
 pub(crate) const PIXEL_GRID: Color32 = Color32::from_gray(128);
