@@ -24,7 +24,8 @@ pub struct VideoSource {
     pairing: PairByTime<RgbImage>,
     replay: Replay,
     pace: Pace,
-    /// Time of the last pair in the recording, for the distance to the next.
+    /// Time of the last pair in the recording, for the distance to the next; `None` if the
+    /// next is due at once.
     last_time_s: Option<f64>,
     /// A pair read ahead and not yet due.
     ahead: Option<TimedPair<RgbImage>>,
@@ -73,13 +74,25 @@ impl VideoSource {
         }
     }
 
-    /// How long after the last pair this one is due.
-    fn distance(&self, time_s: f64) -> Duration {
-        let recorded_hz = match self.last_time_s {
-            Some(last_s) if time_s > last_s => 1.0 / (time_s - last_s),
-            _ => self.videos[0].rate_hz,
-        };
-        self.replay.period(recorded_hz)
+    /// Reads the next pair ahead and sets when it is due; at the end, from the beginning
+    /// again if looping.
+    fn read_ahead(&mut self) -> Result<(), SourceError> {
+        self.check_files()?;
+        let mut pair = self.read_pair()?;
+        if pair.is_none() && self.replay.looping && self.counters.delivered > 0 {
+            self.rewind(0)?;
+            // The first frame follows the last one at the usual distance.
+            self.last_time_s = Some(-1.0 / self.videos[0].rate_hz);
+            pair = self.read_pair()?;
+        }
+        if let Some((left, _)) = &pair
+            && let Some(last_s) = self.last_time_s
+            && left.time_s > last_s
+        {
+            self.pace.advance(self.replay.period(1.0 / (left.time_s - last_s)));
+        }
+        self.ahead = pair;
+        Ok(())
     }
 
     fn rewind(&mut self, index: usize) -> Result<(), SourceError> {
@@ -109,18 +122,12 @@ impl VideoSource {
 impl StereoSource for VideoSource {
     fn next_pair(&mut self) -> Result<Next, SourceError> {
         if self.ahead.is_none() {
-            self.check_files()?;
-            self.ahead = self.read_pair()?;
-            if self.ahead.is_none() && self.replay.looping && self.counters.delivered > 0 {
-                self.rewind(0)?;
-                self.ahead = self.read_pair()?;
-            }
+            self.read_ahead()?;
         }
         if self.ahead.is_some() && !self.pace.is_due() {
             return Ok(Next::NotYet);
         }
         let Some((left, right)) = self.ahead.take() else { return Ok(Next::End) };
-        self.pace.advance(self.distance(left.time_s));
         self.last_time_s = Some(left.time_s);
         let seq = self.counters.delivered;
         self.counters.delivered += 1;
@@ -223,6 +230,8 @@ fn compare([left, right]: &[Video; 2]) -> Result<Vec<Report>, SourceError> {
 struct Video {
     path: PathBuf,
     capture: VideoCapture,
+    /// Which of OpenCV's readers opened it.
+    reader: i32,
     rate_hz: f64,
     frame_count: usize,
     size: (u32, u32),
@@ -250,16 +259,13 @@ impl Video {
         cv::quiet();
         let unreadable =
             "it is not a video, or of a kind that is not read; convert it to MP4 (H.264) or AVI (MJPG)";
-        let capture = VideoCapture::from_file(path, videoio::CAP_ANY)
-            .map_err(|error| problem(&format!("{unreadable} ({})", cv::message(&error))))?;
-        if !capture.is_opened().unwrap_or(false) {
-            return Err(problem(unreadable));
-        }
+        let (capture, reader) = open_capture(path).ok_or_else(|| problem(unreadable))?;
         let rate_hz = property(&capture, videoio::CAP_PROP_FPS).filter(|hz| (0.1..=1000.0).contains(hz));
         let frame_count = property(&capture, videoio::CAP_PROP_FRAME_COUNT).unwrap_or(0.0);
         let mut video = Self {
             path: path.to_path_buf(),
             capture,
+            reader,
             rate_hz: rate_hz.unwrap_or(Replay::USUAL_RATE_HZ),
             frame_count: frame_count as usize,
             size: (0, 0),
@@ -306,7 +312,7 @@ impl Video {
             problem: format!("it cannot be wound to {time_s:.2} s ({})", cv::message(&error)),
         };
         if index < 1.0 {
-            self.capture = VideoCapture::from_file(&self.path, videoio::CAP_ANY).map_err(failed)?;
+            self.capture = VideoCapture::from_file(&self.path, self.reader).map_err(failed)?;
             self.next_index = 0;
         } else {
             self.capture.set(videoio::CAP_PROP_POS_FRAMES, index).map_err(failed)?;
@@ -314,6 +320,15 @@ impl Video {
         }
         Ok(())
     }
+}
+
+/// Opens a file with the first of OpenCV's readers that can. GStreamer is left out: on a
+/// file it cannot play it writes complaints to standard error that nothing silences.
+fn open_capture(path: &Path) -> Option<(VideoCapture, i32)> {
+    [videoio::CAP_FFMPEG, videoio::CAP_OPENCV_MJPEG].into_iter().find_map(|reader| {
+        let capture = VideoCapture::from_file(path, reader).ok()?;
+        capture.is_opened().unwrap_or(false).then_some((capture, reader))
+    })
 }
 
 /// A property that the reader knows: finite and not negative.
