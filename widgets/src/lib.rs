@@ -2,23 +2,42 @@
 //! compute nothing that takes longer than a frame.
 
 pub mod axis;
+pub mod bars;
+pub mod buttons;
 pub mod colormap;
 pub mod compare;
+pub mod coverage;
 pub mod empty;
 pub mod format;
 pub mod ghost;
 pub mod glyph;
 pub mod image_view;
+pub mod key_value;
+pub mod lamp;
+pub mod notifications;
 pub mod overlay;
+pub mod progress;
+pub mod rail;
 pub mod residuals;
+pub mod table_map;
 pub mod texture;
 pub mod theme;
 
+pub use bars::{BarRef, BarsResponse, PairBar, PairBars};
+pub use buttons::{ArmState, choice, primary_button, stop_button, stop_keys, stop_pressed};
 pub use colormap::{ColorScale, Colormap, Orientation, ScaleBar};
+pub use coverage::{Coverage, coverage_view};
 pub use empty::{EmptyState, Message, empty_state};
+pub use format::Quantity;
 pub use ghost::{Ghost, ghost};
 pub use image_view::{Content, ImageTransform, ImageView, ImageViewResponse, ViewState};
+pub use key_value::{KeyValue, big_figure, key_value_grid};
+pub use lamp::{Health, Lamp};
+pub use notifications::{Notification, Notifications, Severity};
 pub use overlay::{Ink, Mark, Overlay, PointShape};
+pub use progress::{ProgressAction, ProgressLine, progress_bar};
+pub use rail::{RailStep, StepState};
 pub use residuals::{arrow_scale, residual_arrows};
+pub use table_map::{Outline, Place, ScalarField, TableMap, TableMapResponse, TableMark, TableScene};
 pub use texture::{Picture, Sampling, TextureCache};
 pub use theme::Role;

@@ -29,7 +29,7 @@ impl From<Color32> for Ink {
 }
 
 impl Ink {
-    fn color(self, tokens: &Tokens) -> Color32 {
+    pub(crate) fn color(self, tokens: &Tokens) -> Color32 {
         match self {
             Self::Role(role) => role.color(tokens),
             Self::Color(color) => color,

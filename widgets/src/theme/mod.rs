@@ -156,3 +156,15 @@ pub(crate) fn font(ui: &Ui, style: &TextStyle) -> FontId {
 pub(crate) fn strong_font(ui: &Ui) -> FontId {
     font(ui, &strong_style(ui))
 }
+
+/// Background of something clickable under the pointer, and its ring with keyboard focus.
+pub(crate) fn paint_hover(ui: &Ui, response: &egui::Response, rect: egui::Rect) {
+    let tokens = tokens(ui);
+    if response.hovered() {
+        ui.painter().rect_filled(rect, 4.0, tokens.raised_hover.gamma_multiply(0.6));
+    }
+    if response.has_focus() {
+        let ring = egui::Stroke::new(1.5, tokens.accent);
+        ui.painter().rect_stroke(rect, 4.0, ring, egui::StrokeKind::Inside);
+    }
+}

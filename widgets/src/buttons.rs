@@ -1,0 +1,129 @@
+//! The buttons that matter: the one primary button of a step, and STOP.
+
+use egui::{
+    Align2, Button, FontId, Key, Modifiers, Response, RichText, Sense, Stroke, StrokeKind, TextStyle, Ui,
+    Vec2, WidgetInfo, vec2,
+};
+
+use crate::theme::{self, size, space};
+
+/// The primary button of a step, named by what it does: "Solve 30 pairs". One per screen.
+/// Where it cannot be pressed now, `why_not` says why and is shown below it.
+pub fn primary_button(ui: &mut Ui, text: &str, why_not: Option<&str>) -> Response {
+    let tokens = theme::tokens(ui);
+    let enabled = why_not.is_none() && ui.is_enabled();
+    let (fill, ink) =
+        if enabled { (tokens.accent, tokens.on_accent) } else { (tokens.raised, tokens.text_weak) };
+    let label = RichText::new(text).text_style(theme::strong_style(ui)).color(ink);
+    ui.vertical(|ui| {
+        ui.spacing_mut().item_spacing.y = space::XS;
+        ui.spacing_mut().button_padding = vec2(space::M, space::S);
+        // Not `add_enabled`: fading would make the text unreadable, and it must say what it is.
+        let response = ui.add_enabled_ui(enabled, |ui| {
+            ui.visuals_mut().disabled_alpha = 1.0;
+            ui.add(Button::new(label).fill(fill).min_size(vec2(120.0, 36.0)))
+        });
+        if let Some(why_not) = why_not {
+            ui.label(theme::small(ui, why_not));
+        }
+        let response = response.inner;
+        if enabled && (response.hovered() || response.has_focus()) {
+            let ring = Stroke::new(2.0, tokens.accent);
+            ui.painter().rect_stroke(response.rect.expand(3.0), 6.0, ring, StrokeKind::Inside);
+        }
+        response
+    })
+    .inner
+}
+
+/// What the arm does right now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArmState {
+    /// Torque on, standing.
+    Held,
+    /// In motion.
+    Moving,
+    /// Torque off: can be moved by hand, and falls.
+    Free,
+    /// No arm is connected.
+    NotConnected,
+}
+
+impl ArmState {
+    /// The state in words.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Held => "arm held",
+            Self::Moving => "arm moving",
+            Self::Free => "arm free",
+            Self::NotConnected => "no arm connected",
+        }
+    }
+}
+
+/// Size of the stop button in points.
+pub const STOP_SIZE: Vec2 = vec2(132.0, 44.0);
+
+/// The stop button. Always enabled, always the same size; it says what the arm does. Pressed
+/// down is enough: it does not wait for the release. Label for tests: `STOP`.
+pub fn stop_button(ui: &mut Ui, arm: ArmState) -> Response {
+    let tokens = theme::tokens(ui);
+    let (rect, mut response) = ui.allocate_exact_size(STOP_SIZE, Sense::click());
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(egui::Role::Button, true, "STOP");
+        info.current_text_value = Some(arm.text().to_owned());
+        info
+    });
+    let pressed = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
+    if pressed {
+        response.mark_changed();
+    }
+    // Drawn without the fading of disabled surroundings: it never greys out.
+    let mut painter = ui.painter().clone();
+    painter.set_opacity(1.0);
+    let hot = response.hovered() || response.has_focus();
+    painter.rect_filled(rect, 6.0, if hot { tokens.stop_hover } else { tokens.stop });
+    if response.has_focus() {
+        painter.rect_stroke(rect, 6.0, Stroke::new(2.0, tokens.on_stop), StrokeKind::Inside);
+    }
+    let heading = FontId::new(size::HEADING, theme::strong_font(ui).family);
+    let small = theme::font(ui, &TextStyle::Small);
+    let center = rect.center();
+    painter.text(center - vec2(0.0, 7.0), Align2::CENTER_CENTER, "STOP", heading, tokens.on_stop);
+    painter.text(center + vec2(0.0, 11.0), Align2::CENTER_CENTER, arm.text(), small, tokens.on_stop);
+    response.on_hover_text("Stops the arm and holds it. Esc and space do the same.")
+}
+
+/// Whether the stop button was pressed: by pointer (on the way down), by keyboard or by a screen
+/// reader.
+pub fn stop_pressed(response: &Response) -> bool {
+    response.clicked() || response.changed()
+}
+
+/// Whether Esc or space was pressed anywhere this frame. Space is left alone while a text is
+/// being edited. The keys are taken away, so that space does not press a focused button too:
+/// call this before anything else is drawn.
+pub fn stop_keys(ctx: &egui::Context) -> bool {
+    let typing = ctx.text_edit_focused();
+    ctx.input_mut(|input| {
+        let escape = input.count_and_consume_key(Modifiers::NONE, Key::Escape) > 0;
+        let space = !typing && input.count_and_consume_key(Modifiers::NONE, Key::Space) > 0;
+        if space {
+            input.events.retain(|event| !matches!(event, egui::Event::Text(text) if text == " "));
+        }
+        escape || space
+    })
+}
+
+/// A choice of a few, side by side. Returns whether it changed.
+pub fn choice<T: PartialEq + Copy>(ui: &mut Ui, label: &str, chosen: &mut T, options: &[(T, &str)]) -> bool {
+    let before = *chosen;
+    let inner = ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for (value, text) in options {
+            ui.selectable_value(chosen, *value, *text);
+        }
+    });
+    inner.response.widget_info(|| WidgetInfo::labeled(egui::Role::RadioGroup, true, label));
+    *chosen != before
+}

@@ -1,0 +1,234 @@
+//! Short messages that pass by, and the list of those that did.
+
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+use egui::{Align2, Area, Context, Frame, Id, Margin, Order, RichText, ScrollArea, Ui, Vec2, vec2};
+
+use crate::format;
+use crate::glyph::{self, Glyph};
+use crate::theme::{self, Tokens, space};
+
+const MOST_KEPT: usize = 200;
+const MOST_TOASTS: usize = 4;
+const WIDTH: f32 = 340.0;
+
+/// How much a message matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// Good to know.
+    Info,
+    /// Something was finished.
+    Done,
+    /// Look at it when you can.
+    Warning,
+    /// Something did not work. Stays until it is dismissed.
+    Failed,
+}
+
+impl Severity {
+    /// How long a message stays on screen; `None` until dismissed.
+    fn lifetime(self) -> Option<Duration> {
+        match self {
+            Self::Info | Self::Done => Some(Duration::from_secs(5)),
+            Self::Warning => Some(Duration::from_secs(12)),
+            Self::Failed => None,
+        }
+    }
+
+    fn sign(self, tokens: &Tokens) -> (Glyph, egui::Color32) {
+        match self {
+            Self::Info => (Glyph::Info, tokens.text),
+            Self::Done => (Glyph::Check, tokens.accepted),
+            Self::Warning => (Glyph::Warning, tokens.warning),
+            Self::Failed => (Glyph::Cross, tokens.warning),
+        }
+    }
+}
+
+/// One message.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Notification {
+    /// Counts up.
+    pub number: u64,
+    /// How much it matters.
+    pub severity: Severity,
+    /// What happened and, if something is to be done, what.
+    pub text: String,
+    /// When.
+    pub at: Instant,
+    dismissed: bool,
+}
+
+impl Notification {
+    fn is_on_screen(&self, now: Instant) -> bool {
+        let age = now.saturating_duration_since(self.at);
+        !self.dismissed && self.severity.lifetime().is_none_or(|lifetime| age < lifetime)
+    }
+}
+
+/// The messages of a run, newest last, at most 200.
+#[derive(Clone, Debug, Default)]
+pub struct Notifications {
+    kept: VecDeque<Notification>,
+    next: u64,
+}
+
+impl Notifications {
+    /// Adds a message. One that repeats the newest replaces it.
+    pub fn push(&mut self, severity: Severity, text: impl Into<String>) {
+        self.push_at(severity, text, Instant::now());
+    }
+
+    /// As [`Self::push`], at a given time.
+    pub fn push_at(&mut self, severity: Severity, text: impl Into<String>, at: Instant) {
+        let text = text.into();
+        if self.kept.back().is_some_and(|last| last.severity == severity && last.text == text) {
+            self.kept.pop_back();
+        }
+        if self.kept.len() == MOST_KEPT {
+            self.kept.pop_front();
+        }
+        self.kept.push_back(Notification { number: self.next, severity, text, at, dismissed: false });
+        self.next += 1;
+    }
+
+    /// All messages, newest first.
+    pub fn history(&self) -> impl Iterator<Item = &Notification> {
+        self.kept.iter().rev()
+    }
+
+    /// Messages on screen at a time, newest last.
+    pub fn on_screen(&self, now: Instant) -> impl Iterator<Item = &Notification> {
+        let shown: Vec<_> = self.kept.iter().filter(|n| n.is_on_screen(now)).collect();
+        let skip = shown.len().saturating_sub(MOST_TOASTS);
+        shown.into_iter().skip(skip)
+    }
+
+    /// Takes a message off the screen; it stays in the history.
+    pub fn dismiss(&mut self, number: u64) {
+        if let Some(found) = self.kept.iter_mut().find(|n| n.number == number) {
+            found.dismissed = true;
+        }
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.kept.clear();
+    }
+
+    /// Draws the messages on screen, stacked upward from the bottom right; `margin` keeps them
+    /// off the window's bottom line.
+    pub fn show_toasts(&mut self, ctx: &Context, margin: Vec2) {
+        let now = Instant::now();
+        let shown: Vec<Notification> = self.on_screen(now).cloned().collect();
+        let mut dismissed = Vec::new();
+        let area = Area::new(Id::unique("notifications")).order(Order::Foreground);
+        area.anchor(Align2::RIGHT_BOTTOM, -margin).interactable(!shown.is_empty()).show(ctx, |ui| {
+            for notification in &shown {
+                if toast(ui, notification) {
+                    dismissed.push(notification.number);
+                }
+            }
+        });
+        for number in dismissed {
+            self.dismiss(number);
+        }
+        let next_end = shown.iter().filter_map(|n| n.severity.lifetime().map(|l| n.at + l)).min();
+        if let Some(end) = next_end {
+            ctx.request_repaint_after(end.saturating_duration_since(now));
+        }
+    }
+
+    /// Draws the list of all messages, newest first.
+    pub fn show_history(&mut self, ui: &mut Ui) {
+        if self.kept.is_empty() {
+            crate::empty::empty_state(ui, "No messages yet", "What the program reports is kept here.", None);
+            return;
+        }
+        let now = Instant::now();
+        ScrollArea::vertical().id_salt("notification history").auto_shrink([false, true]).show(ui, |ui| {
+            for notification in self.history() {
+                ui.horizontal_top(|ui| {
+                    severity_sign(ui, notification.severity);
+                    let age = format::age(now.saturating_duration_since(notification.at));
+                    ui.add_sized(
+                        vec2(72.0, 18.0),
+                        egui::Label::new(theme::small(ui, age)).halign(egui::Align::LEFT),
+                    );
+                    ui.add(egui::Label::new(&notification.text).wrap());
+                });
+            }
+        });
+    }
+}
+
+fn severity_sign(ui: &mut Ui, severity: Severity) {
+    let (rect, _) = ui.allocate_exact_size(vec2(14.0, 18.0), egui::Sense::hover());
+    let (sign, color) = severity.sign(theme::tokens(ui));
+    glyph::paint(ui.painter(), rect.center(), 12.0, sign, color);
+}
+
+/// `true` when dismissed.
+fn toast(ui: &mut Ui, notification: &Notification) -> bool {
+    let tokens = theme::tokens(ui);
+    let frame = Frame::new()
+        .fill(tokens.raised)
+        .corner_radius(6)
+        .inner_margin(Margin::symmetric(12, 10))
+        .shadow(ui.visuals().popup_shadow);
+    let inner = frame.show(ui, |ui| {
+        ui.set_width(WIDTH);
+        ui.horizontal_top(|ui| {
+            severity_sign(ui, notification.severity);
+            let close = 64.0;
+            ui.allocate_ui(vec2(WIDTH - 30.0 - close - space::S, 0.0), |ui| {
+                ui.add(egui::Label::new(RichText::new(&notification.text).color(tokens.text_strong)).wrap());
+            });
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::TOP), |ui| {
+                ui.add(egui::Button::new(theme::small(ui, "Dismiss")).frame(false)).clicked()
+            })
+            .inner
+        })
+        .inner
+    });
+    ui.add_space(space::S);
+    inner.inner
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_leave_the_screen_but_not_the_history() {
+        let start = Instant::now();
+        let mut notifications = Notifications::default();
+        notifications.push_at(Severity::Info, "saved", start);
+        notifications.push_at(Severity::Failed, "camera lost", start);
+        let texts = |n: &Notifications, s: u64| {
+            n.on_screen(start + Duration::from_secs(s)).map(|n| n.text.clone()).collect::<Vec<_>>()
+        };
+        assert_eq!(texts(&notifications, 1), ["saved", "camera lost"]);
+        assert_eq!(texts(&notifications, 3600), ["camera lost"]);
+        let failed = notifications.history().next().expect("newest").number;
+        notifications.dismiss(failed);
+        assert!(texts(&notifications, 3600).is_empty());
+        assert_eq!(notifications.history().count(), 2);
+    }
+
+    #[test]
+    fn repeated_messages_are_kept_once_and_old_ones_go() {
+        let mut notifications = Notifications::default();
+        for _ in 0..5 {
+            notifications.push(Severity::Warning, "frame dropped");
+        }
+        assert_eq!(notifications.history().count(), 1);
+        for i in 0..500 {
+            notifications.push(Severity::Info, format!("pair {i}"));
+        }
+        assert_eq!(notifications.history().count(), MOST_KEPT);
+        assert_eq!(notifications.history().next().map(|n| n.text.as_str()), Some("pair 499"));
+        assert_eq!(notifications.on_screen(Instant::now()).count(), MOST_TOASTS);
+    }
+}

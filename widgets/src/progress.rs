@@ -1,0 +1,157 @@
+//! The bottom line: what is happening, how far, how long, and how to halt it.
+
+use std::time::Duration;
+
+use egui::{Align, Layout, Rect, RichText, Sense, Ui, WidgetInfo, pos2, vec2};
+
+use crate::format;
+use crate::theme::{self, Role, space};
+
+const BAR: egui::Vec2 = vec2(180.0, 6.0);
+
+/// A job under way, or the sentence that says what to do next.
+#[derive(Clone, Copy, Debug)]
+pub struct ProgressLine<'a> {
+    sentence: &'a str,
+    role: Role,
+    job: Option<JobProgress>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct JobProgress {
+    fraction: f64,
+    left: Option<Duration>,
+    pause: Option<Paused>,
+    cancelling: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Paused {
+    No,
+    Yes,
+}
+
+/// What the operator asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProgressAction {
+    /// Halt for now.
+    Pause,
+    /// Go on.
+    Resume,
+    /// Give up.
+    Cancel,
+    /// Show the log.
+    OpenLog,
+}
+
+impl<'a> ProgressLine<'a> {
+    /// A sentence without a job: what to do next.
+    pub fn idle(sentence: &'a str) -> Self {
+        Self { sentence, role: Role::Ink, job: None }
+    }
+
+    /// A sentence that something went wrong, and what to do.
+    pub fn warning(sentence: &'a str) -> Self {
+        Self { sentence, role: Role::Warning, job: None }
+    }
+
+    /// A job: what it does, and how far it is, 0..=1.
+    pub fn job(sentence: &'a str, fraction: f64) -> Self {
+        let job = JobProgress { fraction, left: None, pause: None, cancelling: false };
+        Self { sentence, role: Role::Ink, job: Some(job) }
+    }
+
+    /// How long it will still take, if that is known.
+    pub fn time_left(mut self, left: Option<Duration>) -> Self {
+        if let Some(job) = &mut self.job {
+            job.left = left;
+        }
+        self
+    }
+
+    /// The job can be paused, and whether it is.
+    pub fn pausable(mut self, paused: bool) -> Self {
+        if let Some(job) = &mut self.job {
+            job.pause = Some(if paused { Paused::Yes } else { Paused::No });
+        }
+        self
+    }
+
+    /// Cancel was asked for and has not taken effect yet.
+    pub fn cancelling(mut self, cancelling: bool) -> Self {
+        if let Some(job) = &mut self.job {
+            job.cancelling = cancelling;
+        }
+        self
+    }
+
+    /// Draws the line over the available width.
+    pub fn show(self, ui: &mut Ui) -> Option<ProgressAction> {
+        let mut action = None;
+        ui.horizontal(|ui| {
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if ui.button("Log").clicked() {
+                    action = Some(ProgressAction::OpenLog);
+                }
+                if let Some(job) = self.job {
+                    action = self.controls(ui, job).or(action);
+                }
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    let color = self.role.color(theme::tokens(ui));
+                    ui.add(egui::Label::new(RichText::new(self.sentence).color(color)).truncate());
+                });
+            });
+        });
+        action
+    }
+
+    /// From right to left: cancel, pause, time left, bar.
+    fn controls(&self, ui: &mut Ui, job: JobProgress) -> Option<ProgressAction> {
+        let mut action = None;
+        let cancel = if job.cancelling { "Cancelling…" } else { "Cancel" };
+        if ui.add_enabled(!job.cancelling, egui::Button::new(cancel)).clicked() {
+            action = Some(ProgressAction::Cancel);
+        }
+        if let Some(paused) = job.pause {
+            let (text, wanted) = match paused {
+                Paused::No => ("Pause", ProgressAction::Pause),
+                Paused::Yes => ("Resume", ProgressAction::Resume),
+            };
+            if ui.button(text).clicked() {
+                action = Some(wanted);
+            }
+        }
+        ui.add_space(space::S);
+        let left = match (job.pause, job.left) {
+            (Some(Paused::Yes), _) => "paused".to_owned(),
+            (_, Some(left)) => format::time_left(left),
+            (_, None) => String::new(),
+        };
+        if !left.is_empty() {
+            ui.label(RichText::new(left).color(theme::tokens(ui).text_weak));
+        }
+        ui.label(format::percent(job.fraction));
+        progress_bar(ui, self.sentence, job.fraction, BAR);
+        ui.add_space(space::S);
+        action
+    }
+}
+
+/// A bar alone: `fraction` of 0..=1.
+pub fn progress_bar(ui: &mut Ui, label: &str, fraction: f64, size: egui::Vec2) -> egui::Response {
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    let fraction = if fraction.is_finite() { fraction.clamp(0.0, 1.0) } else { 0.0 };
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(egui::Role::ProgressIndicator, true, format!("Progress: {label}"));
+        info.value = Some(fraction);
+        info
+    });
+    let tokens = theme::tokens(ui);
+    ui.painter().rect_filled(rect, size.y / 2.0, tokens.raised);
+    let end = rect.left() + (rect.width() * fraction as f32).max(size.y);
+    let filled = Rect::from_min_max(rect.min, pos2(end, rect.bottom()));
+    if fraction > 0.0 {
+        ui.painter().rect_filled(filled, size.y / 2.0, tokens.text);
+    }
+    response
+}
