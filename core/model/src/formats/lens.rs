@@ -15,6 +15,9 @@ use crate::stereo::StereoCameras;
 /// Farther apart than this (m) no pair of eyes sits; the file is then in another unit.
 pub const LARGEST_PLAUSIBLE_BASELINE_M: f64 = 1.0;
 
+/// Closer together than this (m) two optical centers are one.
+const SMALLEST_BASELINE_M: f64 = 1e-6;
+
 /// Matrices printed with five digits miss being rotations by less than this.
 const ROTATION_TOLERANCE: f64 = 1e-3;
 
@@ -135,8 +138,7 @@ pub fn rotation(matrix: &Matrix3<f64>, place: &Place) -> Result<UnitQuaternion<f
     } else {
         2.0
     };
-    // Not `>`: a NaN must not pass.
-    if !(deviation <= ROTATION_TOLERANCE) {
+    if deviation.is_nan() || deviation > ROTATION_TOLERANCE {
         return Err(FormatError::NotARotation { place: place.clone(), deviation });
     }
     let nearest = if deviation > 1e-14 { nearest_rotation(matrix) } else { *matrix };
@@ -179,8 +181,7 @@ impl StereoNumbers {
         let unit_m = options.length_unit.map_or(1.0, |unit| unit.meters());
         let translation_m = self.translation * unit_m;
         let baseline_m = translation_m.norm();
-        // Not `<=`: a NaN must not pass.
-        if !(baseline_m > 1e-6) {
+        if baseline_m.is_nan() || baseline_m < SMALLEST_BASELINE_M {
             return Err(FormatError::NoBaseline { place: self.place.clone(), baseline_m });
         }
         if options.length_unit.is_none() && baseline_m > LARGEST_PLAUSIBLE_BASELINE_M {

@@ -258,7 +258,7 @@ fn extra_keys(file: &Path, text: &str) -> Result<toml::Table, FormatError> {
     }
     for (name, keys) in SECTIONS {
         let Some(toml::Value::Table(section)) = table.get_mut(name) else { continue };
-        section.retain(|key, _| !keys.iter().any(|known| *known == &key[..]));
+        section.retain(|key, _| !keys.contains(&key));
         if section.is_empty() {
             table.remove(name);
         }

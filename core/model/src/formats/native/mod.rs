@@ -18,6 +18,8 @@ use crate::calibration::StereoCalibration;
 const FORMAT: &str = "plumbline-stereo-calibration";
 /// Raised when an older program could no longer read the file correctly.
 const VERSION: usize = 1;
+/// Last key of the file. Numbers cut short are still numbers; only this tells a whole file.
+const COMPLETE: &str = "complete";
 
 /// Writes the calibration under a temporary name in the same folder and renames it, after
 /// checking that it reads back as the same calibration. When anything fails, a file that was

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Isometry3, Quaternion, Translation3, UnitQuaternion};
 
-use super::{FORMAT, VERSION};
+use super::{COMPLETE, FORMAT, VERSION};
 use crate::calibration::{
     CalibrationOptions, CornerResidual, Corners, Evidence, FitSummary, PairFit, PairObservation,
     ParameterCovariance, RejectedPair, StereoCalibration,
@@ -10,7 +10,7 @@ use crate::calibration::{
 use crate::camera::{Camera, CameraModel, Fisheye, ModelKind, Pinhole};
 use crate::chessboard::Chessboard;
 use crate::formats::document::Document;
-use crate::formats::error::FormatError;
+use crate::formats::error::{FormatError, Place};
 use crate::formats::node::Field;
 use crate::frame::{Frame, Pose};
 use crate::pixel::{Eye, Pixel};
@@ -45,7 +45,14 @@ fn check_format(root: &Field<'_>) -> Result<(), FormatError> {
             "{VERSION}, the version that this program knows (a newer program may be needed)"
         )));
     }
-    Ok(())
+    match root.find(COMPLETE)? {
+        Some(mark) if mark.flag()? => Ok(()),
+        _ => Err(FormatError::Syntax {
+            place: Place { line: None, ..root.place() },
+            language: "a whole calibration",
+            reason: format!("its last line, \"{COMPLETE}: true\", is missing"),
+        }),
+    }
 }
 
 /// The items of a list, which may be absent.

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{FORMAT, VERSION};
+use super::{COMPLETE, FORMAT, VERSION};
 use crate::calibration::{
     Corners, Evidence, FitSummary, PairFit, PairObservation, ParameterCovariance, RejectedPair,
     StereoCalibration,
@@ -79,8 +79,9 @@ pub(super) fn render(calibration: &StereoCalibration) -> String {
     if let Some(made_from) = &calibration.evidence {
         evidence(&mut lines, made_from);
     }
-    // Last because it is longest.
     lines.list("pairs", &calibration.per_pair, pair_fit);
+    lines.line("# The last line: a file without it was cut off.");
+    lines.value(COMPLETE, "true");
     lines.text
 }
 
