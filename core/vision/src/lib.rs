@@ -5,4 +5,6 @@
 //! no window, no device.
 
 pub mod calibrate;
+pub mod calibration_file;
 pub mod chessboard;
+pub mod opencv_storage;
