@@ -9,6 +9,7 @@ pub mod compare;
 pub mod coverage;
 pub mod empty;
 pub mod format;
+pub mod gallery;
 pub mod ghost;
 pub mod glyph;
 pub mod image_view;

@@ -125,7 +125,7 @@ mod tests {
         let mut grid = CoverageGrid::new([640, 480]);
         for y in 0..48 {
             for x in 0..64 {
-                if !(x > 44 && y > 33) {
+                if !(x > 42 && y > 31) {
                     grid.add([f64::from(x) * 10.0, f64::from(y) * 10.0]);
                 }
             }
