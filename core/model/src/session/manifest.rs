@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 
+use super::document;
 use super::error::SessionError;
-use crate::formats::node::{Field, Node, Value};
-use crate::formats::{FormatError, Place, text_file};
+use crate::formats::node::Field;
+use crate::formats::{FormatError, text_file};
 use crate::frame::{Direction, Point, Robot};
 
 /// Version of the session format.
@@ -93,7 +94,7 @@ impl Manifest {
     }
 
     fn parse(file: &Path, text: &str) -> Result<Self, FormatError> {
-        let node = parse_toml(file, text)?;
+        let node = document::parse(file, text)?;
         let root = Field::root(file, &node);
         let format = root.get("format")?;
         if format.count()? != FORMAT {
@@ -252,7 +253,8 @@ fn chain(field: &Field<'_>) -> Result<Chain, FormatError> {
 
 /// The document without the keys that [`Manifest`] holds.
 fn extra_keys(file: &Path, text: &str) -> Result<toml::Table, FormatError> {
-    let mut table: toml::Table = toml::from_str(text).map_err(|error| syntax(file, text, &error))?;
+    let mut table: toml::Table =
+        toml::from_str(text).map_err(|error| document::syntax(file, text, &error))?;
     for known in ["format", "rig", "rig_file", "started", "operator", "notes"] {
         table.remove(known);
     }
@@ -264,54 +266,4 @@ fn extra_keys(file: &Path, text: &str) -> Result<toml::Table, FormatError> {
         }
     }
     Ok(table)
-}
-
-fn syntax(file: &Path, text: &str, error: &toml::de::Error) -> FormatError {
-    let line = error.span().map(|span| line_of(text, span.start));
-    FormatError::Syntax {
-        place: Place { file: file.to_path_buf(), line, key: String::new() },
-        language: "TOML",
-        reason: error.message().to_owned(),
-    }
-}
-
-fn line_of(text: &str, offset: usize) -> usize {
-    1 + text.bytes().take(offset).filter(|&byte| byte == b'\n').count()
-}
-
-fn parse_toml(file: &Path, text: &str) -> Result<Node, FormatError> {
-    use toml::de::{DeTable, DeValue};
-    fn table(text: &str, entries: &DeTable<'_>) -> Value {
-        Value::Map(
-            entries
-                .iter()
-                .map(|(key, value)| {
-                    let line = line_of(text, key.span().start);
-                    (key.get_ref().to_string(), node(text, line, value.get_ref()))
-                })
-                .collect(),
-        )
-    }
-    fn node(text: &str, line: usize, value: &DeValue<'_>) -> Node {
-        let value = match value {
-            DeValue::String(content) => Value::Text(content.to_string()),
-            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
-                .map_or_else(|_| Value::Text(integer.to_string()), Value::Integer),
-            DeValue::Float(float) => {
-                float.as_str().parse().map_or_else(|_| Value::Text(float.to_string()), Value::Number)
-            }
-            DeValue::Boolean(flag) => Value::Flag(*flag),
-            DeValue::Datetime(datetime) => Value::Text(datetime.to_string()),
-            DeValue::Array(items) => Value::List(
-                items
-                    .iter()
-                    .map(|item| node(text, line_of(text, item.span().start), item.get_ref()))
-                    .collect(),
-            ),
-            DeValue::Table(entries) => table(text, entries),
-        };
-        Node { line, value }
-    }
-    let document = DeTable::parse(text).map_err(|error| syntax(file, text, &error))?;
-    Ok(Node { line: 1, value: table(text, document.get_ref()) })
 }

@@ -11,7 +11,9 @@
 //! log.mcap                          live streams, if recorded
 //! ```
 
+mod document;
 mod error;
+mod joint_columns;
 mod localizations;
 mod manifest;
 mod poses;

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::error::SessionError;
-use super::table::{ColumnBuilder, ColumnKind, JointColumn, Table};
+use super::joint_columns::{ColumnBuilder, JointColumn};
+use super::table::{ColumnKind, Table};
 use crate::frame::{Frame, Point};
 
 /// The fixed frame of an external measuring device; it need not be the robot's.

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::error::SessionError;
-use super::table::{ColumnBuilder, ColumnKind, JointColumn, Table};
+use super::joint_columns::{ColumnBuilder, JointColumn};
+use super::table::{ColumnKind, Table};
 use crate::frame::{Point, Robot};
 use crate::pixel::{Pixel, PixelSpace};
 
