@@ -12,6 +12,7 @@ pub mod formats;
 pub mod frame;
 pub mod image_pair;
 pub mod job;
+pub mod measured_data;
 pub mod pixel;
 pub mod session;
 pub mod stereo;
@@ -25,7 +26,7 @@ pub use calibration::{
 pub use camera::{Camera, CameraModel, Fisheye, ModelKind, Pinhole, ProjectError};
 pub use chessboard::{BoardError, Chessboard, InnerCorners};
 pub use formats::FormatError;
-pub use frame::{Direction, Frame, Point, Pose};
+pub use frame::{Board, LeftCamera, LeftRectified, RightCamera, RightRectified, Robot, Direction, Frame, Point, Pose};
 pub use image_pair::{Stamp, StereoFrame};
 pub use job::{Cancelled, JobContext, Unattended};
 pub use pixel::{Eye, Pixel, PixelSpace, Raw, Rectified};

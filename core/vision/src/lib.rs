@@ -7,4 +7,10 @@
 pub mod calibrate;
 pub mod calibration_file;
 pub mod chessboard;
+pub mod depth;
+pub mod disparity;
+pub mod locate;
+pub mod mat;
 pub mod opencv_storage;
+pub mod rectify;
+pub mod synthetic;

@@ -35,7 +35,7 @@ pub(super) struct Optimizer<'a> {
     damping: f64,
 }
 
-const RELATIVE_IMPROVEMENT: f64 = 1e-9;
+const RELATIVE_IMPROVEMENT: f64 = 1e-12;
 const MOST_DAMPING: f64 = 1e12;
 
 impl<'a> Optimizer<'a> {

@@ -1,7 +1,9 @@
 //! Figures of a solution: residuals, epipolar error, the board's squares measured back.
 
-use nalgebra::{Isometry3, Point3, Vector3};
-use plumbline_model::{Chessboard, CornerResidual, Eye, FitSummary, PairFit, Pose, StereoCameras};
+use nalgebra::{Isometry3, Vector3};
+use plumbline_model::{
+    Chessboard, CornerResidual, Eye, FitSummary, LeftCamera, PairFit, Point, Pose, StereoCameras,
+};
 
 use super::problem::{Corner, Problem, State};
 
@@ -142,15 +144,15 @@ pub(super) fn squares_m(
     let columns = board.inner_columns as usize;
     let mut sides = Vec::new();
     for corners in views {
-        let mut points: Vec<Option<Point3<f64>>> = vec![None; board.corner_count()];
+        let mut points: Vec<Option<Point<LeftCamera>>> = vec![None; board.corner_count()];
         for (left, right) in matched(corners) {
-            points[left.index] = triangulate(cameras, left, right);
+            points[left.index] = cameras.triangulate(left.measured_px.into(), right.measured_px.into());
         }
         for (k, point) in points.iter().enumerate() {
             let Some(point) = point else { continue };
             let mut side_to = |other: usize| {
                 if let Some(Some(other)) = points.get(other) {
-                    sides.push((point - other).norm());
+                    sides.push(point.distance_m(other));
                 }
             };
             if (k + 1) % columns != 0 {
@@ -165,22 +167,6 @@ pub(super) fn squares_m(
         let variance = sides.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / (n - 1.0);
         (mean, variance.sqrt())
     })
-}
-
-/// Midpoint of the shortest connection of the two rays, in the left camera.
-fn triangulate(cameras: &StereoCameras, left: &Corner, right: &Corner) -> Option<Point3<f64>> {
-    let ray_left = cameras.left.unproject(left.measured_px.into()).ok()?;
-    let left_from_right = cameras.right_from_left.isometry.inverse();
-    let ray_right = left_from_right.rotation * cameras.right.unproject(right.measured_px.into()).ok()?;
-    let origin = left_from_right.translation.vector;
-    let cosine = ray_left.dot(&ray_right);
-    let denominator = 1.0 - cosine * cosine;
-    if denominator < 1e-12 {
-        return None;
-    }
-    let (a, b) = (ray_left.dot(&origin), ray_right.dot(&origin));
-    let (s, t) = ((a - cosine * b) / denominator, (cosine * a - b) / denominator);
-    (s > 0.0 && t > 0.0).then(|| Point3::from(0.5 * (ray_left * s + origin + ray_right * t)))
 }
 
 /// Summary of a solved problem; `None` if an eye has no corner.

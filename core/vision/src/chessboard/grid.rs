@@ -28,73 +28,80 @@ const TOLERANCE_STEPS: f64 = 0.3;
 const POLARITY_TOLERANCE_RAD: f32 = 0.6;
 /// Seeds tried before giving up; bounds the time on textured scenes.
 const MOST_SEEDS: usize = 300;
+/// Steps of a row change by no more than this factor from one to the next.
+const MOST_STEP_RATIO: f64 = 1.5;
+/// Grids at least this big are not started again from another of their saddles.
+const WORTH_REMEMBERING: usize = 9;
 /// Length of a side of the buckets for neighbor search, pixels.
 const BUCKET_PX: f64 = 24.0;
 
-/// Saddles by place.
+/// Saddles by place, in square buckets.
 struct Index<'a> {
     saddles: &'a [Saddle],
-    buckets: HashMap<(i32, i32), Vec<usize>>,
+    columns: usize,
+    rows: usize,
+    buckets: Vec<Vec<u32>>,
 }
 
 impl<'a> Index<'a> {
     fn new(saddles: &'a [Saddle]) -> Self {
-        let mut buckets: HashMap<(i32, i32), Vec<usize>> = HashMap::new();
+        let far = saddles.iter().fold(Vector2::zeros(), |far: Vector2<f64>, s| far.sup(&s.at));
+        let (columns, rows) = ((far.x / BUCKET_PX) as usize + 1, (far.y / BUCKET_PX) as usize + 1);
+        let mut buckets = vec![Vec::new(); columns * rows];
         for (i, saddle) in saddles.iter().enumerate() {
-            buckets.entry(bucket(saddle.at)).or_default().push(i);
+            let (x, y) = ((saddle.at.x / BUCKET_PX) as usize, (saddle.at.y / BUCKET_PX) as usize);
+            buckets[y * columns + x].push(i as u32);
         }
-        Self { saddles, buckets }
+        Self { saddles, columns, rows, buckets }
     }
 
     /// Saddles within `radius_px`, unsorted.
     fn within(&self, at: Vector2<f64>, radius_px: f64) -> impl Iterator<Item = usize> + '_ {
-        let reach = Vector2::new(radius_px, radius_px);
-        let ((x0, y0), (x1, y1)) = (bucket(at - reach), bucket(at + reach));
-        (y0..=y1)
-            .flat_map(move |y| (x0..=x1).map(move |x| (x, y)))
-            .filter_map(|key| self.buckets.get(&key))
-            .flatten()
-            .copied()
-            .filter(move |&i| (self.saddles[i].at - at).norm() <= radius_px)
+        let low = |v: f64| ((v - radius_px) / BUCKET_PX).max(0.0) as usize;
+        let high = |v: f64, count: usize| (((v + radius_px) / BUCKET_PX).max(0.0) as usize + 1).min(count);
+        let (xs, ys) = (low(at.x)..high(at.x, self.columns), low(at.y)..high(at.y, self.rows));
+        ys.flat_map(move |y| xs.clone().map(move |x| (x, y)))
+            .flat_map(|(x, y)| &self.buckets[y * self.columns + x])
+            .map(|&i| i as usize)
+            .filter(move |&i| (self.saddles[i].at - at).norm_squared() <= radius_px * radius_px)
     }
 
     fn nearest(&self, at: Vector2<f64>, radius_px: f64, accept: impl Fn(usize) -> bool) -> Option<usize> {
-        let distance = |&i: &usize| (self.saddles[i].at - at).norm();
+        let distance = |&i: &usize| (self.saddles[i].at - at).norm_squared();
         self.within(at, radius_px).filter(|&i| accept(i)).min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
     /// Whether two saddles can be neighbors on a board: opposite polarity, similar contrast.
     fn can_be_neighbors(&self, a: usize, b: usize) -> bool {
+        const MOST_STRENGTH_RATIO: f32 = 2.5;
         let (a, b) = (&self.saddles[a], &self.saddles[b]);
         let turn = (a.axis_rad - b.axis_rad).rem_euclid(PI);
         (turn - FRAC_PI_2).abs() < POLARITY_TOLERANCE_RAD
-            && a.strength < 6.0 * b.strength
-            && b.strength < 6.0 * a.strength
+            && a.strength < MOST_STRENGTH_RATIO * b.strength
+            && b.strength < MOST_STRENGTH_RATIO * a.strength
     }
 }
 
-fn bucket(at: Vector2<f64>) -> (i32, i32) {
-    ((at.x / BUCKET_PX).floor() as i32, (at.y / BUCKET_PX).floor() as i32)
-}
-
-/// The largest grid that can be grown.
-pub(super) fn grow_largest(saddles: &[Saddle]) -> Option<Grid> {
+/// Grows grids from the strongest saddles until `choose` likes one.
+pub(super) fn first_grid<T>(saddles: &[Saddle], choose: impl Fn(&Grid) -> Option<T>) -> Option<T> {
     let index = Index::new(saddles);
-    let mut best: Option<Grid> = None;
     let mut used = vec![false; saddles.len()];
     for seed in 0..saddles.len().min(MOST_SEEDS) {
         if used[seed] {
             continue;
         }
         let Some(grid) = start(&index, seed).map(|grid| grow(&index, grid)) else { continue };
-        for &i in grid.cells.values() {
-            used[i] = true;
+        if let Some(chosen) = choose(&grid) {
+            return Some(chosen);
         }
-        if best.as_ref().is_none_or(|b| grid.cells.len() > b.cells.len()) {
-            best = Some(grid);
+        // What grew into a grid will grow into the same grid again.
+        if grid.cells.len() >= WORTH_REMEMBERING {
+            for &i in grid.cells.values() {
+                used[i] = true;
+            }
         }
     }
-    best
+    None
 }
 
 /// A first square: the seed, two neighbors and the corner opposite to it.
@@ -140,8 +147,12 @@ fn grow(index: &Index<'_>, mut grid: Grid) -> Grid {
                 }
                 let Some((predicted, step)) = predict(index, &grid, cell, direction) else { continue };
                 let from = grid.cells[&cell];
+                let here = index.saddles[from].at;
                 let found = index.nearest(predicted, TOLERANCE_STEPS * step, |i| {
-                    !used.contains(&i) && index.can_be_neighbors(from, i)
+                    let ratio = (index.saddles[i].at - here).norm() / step;
+                    !used.contains(&i)
+                        && index.can_be_neighbors(from, i)
+                        && (1.0 / MOST_STEP_RATIO..MOST_STEP_RATIO).contains(&ratio)
                 });
                 if let Some(i) = found {
                     used.insert(i);
@@ -160,12 +171,11 @@ fn predict(index: &Index<'_>, grid: &Grid, cell: (i32, i32), d: (i32, i32)) -> O
     let at = |c: (i32, i32)| grid.cells.get(&c).map(|&i| index.saddles[i].at);
     let here = at(cell)?;
     if let Some(behind) = at((cell.0 - d.0, cell.1 - d.1)) {
-        let mut step = here - behind;
-        // Follow perspective: steps shrink or grow by a steady factor along a row.
-        if let Some(before) = at((cell.0 - 2 * d.0, cell.1 - 2 * d.1)) {
-            step += 0.7 * (step - (behind - before));
-        }
-        return Some((here + step, step.norm()));
+        let last = here - behind;
+        // Follow perspective: steps shrink or grow steadily along a row.
+        let change = at((cell.0 - 2 * d.0, cell.1 - 2 * d.1)).map(|before| last - (behind - before));
+        let step = last + change.unwrap_or_default() * 0.7;
+        return Some((here + step, last.norm().min(step.norm())));
     }
     let side = (d.1, d.0);
     for sign in [1, -1] {
@@ -198,7 +208,10 @@ impl Grid {
                         && self.stands_out(saddles, &cells, (left, top), (width, height))
                     {
                         let corners = cells.iter().map(|&i| saddles[i].at).collect();
-                        best = Some((weakest, FilledGrid { columns: width, rows: height, corners }));
+                        let filled = FilledGrid { columns: width, rows: height, corners };
+                        if filled.is_smooth() {
+                            best = Some((weakest, filled));
+                        }
                     }
                 }
             }
@@ -273,7 +286,27 @@ impl Grid {
                 corners.push(saddles[*self.cells.get(&(i, j))?].at);
             }
         }
-        Some(FilledGrid { columns: (x.1 - x.0 + 1) as usize, rows: (y.1 - y.0 + 1) as usize, corners })
+        let filled =
+            FilledGrid { columns: (x.1 - x.0 + 1) as usize, rows: (y.1 - y.0 + 1) as usize, corners };
+        filled.is_smooth().then_some(filled)
+    }
+}
+
+impl FilledGrid {
+    /// Whether rows and columns run smoothly, as on a flat board seen through any lens; random
+    /// texture that happened to form a grid does not.
+    fn is_smooth(&self) -> bool {
+        /// Most that a corner may be off the middle between its neighbors, in steps.
+        const MOST_BEND: f64 = 0.12;
+        let at = |i: usize, j: usize| self.corners[j * self.columns + i];
+        let bent = |a: Vector2<f64>, b: Vector2<f64>, c: Vector2<f64>| {
+            ((a + c) * 0.5 - b).norm() > MOST_BEND * (c - a).norm() * 0.5 + 0.5
+        };
+        let rows_bent =
+            (0..self.rows).any(|j| (2..self.columns).any(|i| bent(at(i - 2, j), at(i - 1, j), at(i, j))));
+        let columns_bent =
+            (0..self.columns).any(|i| (2..self.rows).any(|j| bent(at(i, j - 2), at(i, j - 1), at(i, j))));
+        !rows_bent && !columns_bent
     }
 }
 

@@ -3,12 +3,14 @@
 //! Two ways, one result. [`glimpse`] grows a grid from saddle points in a few milliseconds, with
 //! or without a board in view, and is what the live path uses. [`find`] tries that first and
 //! then OpenCV's exhaustive search (without `CALIB_CB_FAST_CHECK`, which loses most fisheye
-//! views), at several scales; it may take a second when there is no board.
+//! views), which may take half a second when there is no board.
 
 mod grid;
 mod order;
 mod refine;
 mod saddle;
+#[cfg(test)]
+mod tests;
 
 use image::GrayImage;
 use image::imageops::{self, FilterType};
@@ -85,10 +87,10 @@ pub fn find(gray: &GrayImage, board: &Chessboard) -> Result<Vec<Pixel<Raw>>, Not
     if gray.width() < 32 || gray.height() < 32 {
         return Err(NotSeen::BadImage(format!("it is only {}x{} pixels", gray.width(), gray.height())));
     }
-    for scale in [1, 2] {
-        if let Some(corners) = search_with_opencv(gray, board, scale)? {
-            return finish(gray, board, board.inner_columns as usize, &corners).ok_or(NotSeen::Nothing);
-        }
+    if let Some(corners) = search_with_opencv(gray, board)? {
+        let (columns, rows) = (board.inner_columns as usize, board.inner_rows as usize);
+        let ordered = order::to_board_order(gray, board, columns, rows, &corners);
+        return ordered.and_then(|corners| refine::refine(gray, board, &corners)).ok_or(NotSeen::Nothing);
     }
     Err(match recognize(gray) {
         Some(seen) if !same_board(seen, board) => NotSeen::OtherBoard {
@@ -114,7 +116,9 @@ pub fn glimpse(gray: &GrayImage, board: &Chessboard) -> Option<Vec<Pixel<Raw>>> 
 /// board size is set wrong.
 pub fn recognize(gray: &GrayImage) -> Option<InnerCorners> {
     const SMALLEST_BOARD: usize = 12;
-    let full = |filled: &grid::FilledGrid| filled.corners.len() >= SMALLEST_BOARD;
+    let full = |filled: &grid::FilledGrid| {
+        filled.corners.len() >= SMALLEST_BOARD && filled.columns.min(filled.rows) >= 3
+    };
     let filled =
         LOOKS.iter().find_map(|look| look.grid(gray, |saddles, grid| grid.filled(saddles).filter(full)))?;
     Some(inner_corners(&filled))
@@ -135,7 +139,7 @@ const LOOKS: [Look; 3] = [
 ];
 
 impl Look {
-    /// Grows the largest grid and hands it to `choose`; corners in pixels of `gray`.
+    /// Hands grids to `choose` until it likes one; corners in pixels of `gray`.
     fn grid(
         &self,
         gray: &GrayImage,
@@ -149,7 +153,7 @@ impl Look {
             gray
         };
         let saddles = saddle::find(image, self.detail);
-        let mut filled = choose(&saddles, &grid::grow_largest(&saddles)?)?;
+        let mut filled = grid::first_grid(&saddles, |grid| choose(&saddles, grid))?;
         if self.half_size {
             for corner in &mut filled.corners {
                 // Pixel centers: half-size pixel i covers full-size pixels 2i and 2i + 1.
@@ -170,40 +174,15 @@ fn same_board(seen: InnerCorners, board: &Chessboard) -> bool {
     seen == InnerCorners { columns: a.max(b), rows: a.min(b) }
 }
 
-/// OpenCV's search on the image enlarged `scale` times.
-fn search_with_opencv(
-    gray: &GrayImage,
-    board: &Chessboard,
-    scale: u32,
-) -> Result<Option<Vec<Vector2<f64>>>, NotSeen> {
+/// OpenCV's search in the image.
+fn search_with_opencv(gray: &GrayImage, board: &Chessboard) -> Result<Option<Vec<Vector2<f64>>>, NotSeen> {
     let refused = |e: opencv::Error| NotSeen::BadImage(e.message);
-    let enlarged;
-    let image = if scale == 1 {
-        gray
-    } else {
-        enlarged =
-            imageops::resize(gray, gray.width() * scale, gray.height() * scale, FilterType::CatmullRom);
-        &enlarged
-    };
-    let mat = Mat::new_rows_cols_with_data(image.height() as i32, image.width() as i32, image.as_raw())
+    let mat = Mat::new_rows_cols_with_data(gray.height() as i32, gray.width() as i32, gray.as_raw())
         .map_err(refused)?;
     let size = Size::new(board.inner_columns as i32, board.inner_rows as i32);
     let flags = opencv::calib3d::CALIB_CB_ADAPTIVE_THRESH | opencv::calib3d::CALIB_CB_NORMALIZE_IMAGE;
     let mut points = CvVector::<Point2f>::new();
     let found = opencv::calib3d::find_chessboard_corners(&mat, size, &mut points, flags).map_err(refused)?;
-    let center = 0.5 * (f64::from(scale) - 1.0);
-    let back = |v: f32| (f64::from(v) - center) / f64::from(scale);
     Ok((found && points.len() == board.corner_count())
-        .then(|| points.iter().map(|p| Vector2::new(back(p.x), back(p.y))).collect()))
-}
-
-fn finish(
-    gray: &GrayImage,
-    board: &Chessboard,
-    columns: usize,
-    corners: &[Vector2<f64>],
-) -> Option<Vec<Pixel<Raw>>> {
-    let rows = corners.len() / columns;
-    let ordered = order::to_board_order(gray, board, columns, rows, corners)?;
-    refine::refine(gray, board, &ordered)
+        .then(|| points.iter().map(|p| Vector2::new(f64::from(p.x), f64::from(p.y))).collect()))
 }

@@ -1,0 +1,138 @@
+//! Least-squares matching of a patch (Gruen 1985): shift along the epipolar curve, its change
+//! across the patch (a slanted surface), brightness gain and offset. The shift comes out to a few
+//! hundredths of a pixel, with its standard deviation.
+
+use nalgebra::{Matrix5, Vector5};
+use plumbline_model::Eye;
+
+use super::epipolar::{EpipolarGeometry, EpipolarRay};
+use super::scene::Scene;
+use super::search::{Step, sign};
+
+/// A refined place along the curve.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Refined {
+    pub disparity_rad: f64,
+    /// Standard deviation from the residual brightness.
+    pub sigma_rad: f64,
+    /// Correlation of the two patches after refinement, −1..1.
+    pub correlation: f64,
+}
+
+/// Least noise of one pixel's brightness, gray levels: quantization and compression.
+const LEAST_NOISE: f64 = 1.5;
+/// Neighboring samples share pixels through interpolation in both images; the covariance of
+/// independent samples is too small by about the number of samples that share one.
+const SHARED_SAMPLES: f64 = 2.0;
+const MOST_ITERATIONS: usize = 15;
+const CONVERGED_PX: f64 = 1e-3;
+/// Refinement that moves further than this has found something else.
+const MOST_MOVE_PX: f64 = 2.5;
+
+/// Refines a candidate with patches of `half_px` to each side; `None` if it does not settle or the
+/// patch leaves the image.
+pub(super) fn refine(
+    geometry: &EpipolarGeometry,
+    scene: &Scene,
+    from: Eye,
+    center: &EpipolarRay,
+    start_rad: f64,
+    half_px: i32,
+) -> Option<Refined> {
+    let other = if from == Eye::Left { Eye::Right } else { Eye::Left };
+    let step = Step::at(geometry, from, center);
+    let samples = samples(geometry, scene, from, center, &step, half_px)?;
+    // Shift in pixels, its change per pixel along and across, gain, offset.
+    let mut p = Vector5::new(0.0, 0.0, 0.0, 1.0, 0.0);
+    let shift = |p: &Vector5<f64>, s: &Sample| p[0] + p[1] * s.along_px + p[2] * s.plane_px;
+    let look = |p: &Vector5<f64>, s: &Sample, extra_px: f64| {
+        let disparity = start_rad + (shift(p, s) + extra_px) * step.along_rad;
+        let ray = EpipolarRay { along_rad: s.ray.along_rad + sign(from) * disparity, ..s.ray };
+        scene.along(geometry, other, 0, &ray).map(f64::from)
+    };
+    for _ in 0..MOST_ITERATIONS {
+        let (mut normal, mut right) = (Matrix5::zeros(), Vector5::zeros());
+        for s in &samples {
+            let (value, before, after) = (look(&p, s, 0.0)?, look(&p, s, -0.5)?, look(&p, s, 0.5)?);
+            let slope = p[3] * (after - before);
+            let jacobian = Vector5::new(slope, slope * s.along_px, slope * s.plane_px, value, 1.0);
+            let residual = s.value - (p[3] * value + p[4]);
+            normal += jacobian * jacobian.transpose() * s.weight;
+            right += jacobian * residual * s.weight;
+        }
+        // Slant and gain are weakly seen on little texture; a hint of regularity keeps them sane.
+        normal[(1, 1)] += 1e2;
+        normal[(2, 2)] += 1e2;
+        let delta = normal.cholesky()?.solve(&right);
+        p += delta;
+        if p[0].abs() > MOST_MOVE_PX || p[1].abs() > 0.8 || p[2].abs() > 1.5 {
+            return None;
+        }
+        if delta[0].abs() < CONVERGED_PX {
+            return judge(&p, &samples, &normal, look).map(|(sigma_px, correlation)| Refined {
+                disparity_rad: start_rad + p[0] * step.along_rad,
+                sigma_rad: sigma_px * step.along_rad,
+                correlation,
+            });
+        }
+    }
+    None
+}
+
+/// One place of the patch.
+struct Sample {
+    ray: EpipolarRay,
+    along_px: f64,
+    plane_px: f64,
+    value: f64,
+    weight: f64,
+}
+
+fn samples(
+    geometry: &EpipolarGeometry,
+    scene: &Scene,
+    eye: Eye,
+    center: &EpipolarRay,
+    step: &Step,
+    half_px: i32,
+) -> Option<Vec<Sample>> {
+    let mut samples = Vec::new();
+    let spread = 0.6 * f64::from(half_px);
+    for j in -half_px..=half_px {
+        for i in -half_px..=half_px {
+            let (along_px, plane_px) = (f64::from(i), f64::from(j));
+            let ray = EpipolarRay {
+                plane_rad: center.plane_rad + plane_px * step.plane_rad,
+                along_rad: center.along_rad + along_px * step.along_rad,
+            };
+            let value = f64::from(scene.along(geometry, eye, 0, &ray)?);
+            let weight = (-0.5 * (along_px.powi(2) + plane_px.powi(2)) / spread.powi(2)).exp();
+            samples.push(Sample { ray, along_px, plane_px, value, weight });
+        }
+    }
+    Some(samples)
+}
+
+/// Standard deviation of the shift (px) and the correlation of the aligned patches.
+fn judge(
+    p: &Vector5<f64>,
+    samples: &[Sample],
+    normal: &Matrix5<f64>,
+    look: impl Fn(&Vector5<f64>, &Sample, f64) -> Option<f64>,
+) -> Option<(f64, f64)> {
+    let total: f64 = samples.iter().map(|s| s.weight).sum();
+    let others: Vec<f64> = samples.iter().map(|s| look(p, s, 0.0)).collect::<Option<_>>()?;
+    let mean = |f: &dyn Fn(usize) -> f64| {
+        samples.iter().enumerate().map(|(i, s)| s.weight * f(i)).sum::<f64>() / total
+    };
+    let (mean_a, mean_b) = (mean(&|i| samples[i].value), mean(&|i| others[i]));
+    let variance_a = mean(&|i| (samples[i].value - mean_a).powi(2));
+    let variance_b = mean(&|i| (others[i] - mean_b).powi(2));
+    let covariance = mean(&|i| (samples[i].value - mean_a) * (others[i] - mean_b));
+    let residual = mean(&|i| (samples[i].value - (p[3] * others[i] + p[4])).powi(2));
+    let noise = residual.max(LEAST_NOISE.powi(2));
+    // Weighted least squares: cov = N⁻¹ (Σ w² J Jᵀ σ²) N⁻¹ ≤ N⁻¹ σ² for weights up to 1.
+    let variance_px = normal.try_inverse()?[(0, 0)] * noise * SHARED_SAMPLES;
+    let correlation = covariance / (variance_a * variance_b).sqrt();
+    (variance_px > 0.0 && correlation.is_finite()).then(|| (variance_px.sqrt(), correlation))
+}
