@@ -1,6 +1,6 @@
 //! OpenCV FileStorage as a calibration.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use opencv::core::{
@@ -57,7 +57,7 @@ const TRANSLATION: &[&str] = &["T", "translation", "translation_vector"];
 
 /// Reads a stereo calibration from one file, or from several that hold its parts.
 pub fn read(files: &[PathBuf], options: &ReadOptions) -> Result<StereoCameras, FormatError> {
-    let storages = Storages { all: files.iter().map(Storage::open).collect::<Result<_, _>>()? };
+    let storages = Storages { all: files.iter().map(|file| Storage::open(file)).collect::<Result<_, _>>()? };
     let left = storages.camera(Eye::Left, options)?;
     let right = storages.camera(Eye::Right, options)?;
     let rotation = storages.matrix(ROTATION)?.sized(3, 3)?;
@@ -94,23 +94,23 @@ struct Matrix {
 }
 
 impl Storage {
-    fn open(file: &PathBuf) -> Result<Self, FormatError> {
+    fn open(file: &Path) -> Result<Self, FormatError> {
         let text = read_text(file)?;
         if !is_opencv_storage(&text) {
             return Err(FormatError::Unrecognized {
-                file: file.clone(),
+                file: file.to_path_buf(),
                 keys: "it is not marked as OpenCV's".to_owned(),
             });
         }
         let refused = |message: &str| {
             let (line, reason) = parser_message(message);
-            let place = Place { file: file.clone(), line, key: String::new() };
+            let place = Place { file: file.to_path_buf(), line, key: String::new() };
             FormatError::Syntax { place, language: "OpenCV storage", reason }
         };
         let storage = FileStorage::new(&text, FileStorage_READ | FileStorage_MEMORY, "")
             .map_err(|error| refused(&error.message))?;
         match storage.is_opened() {
-            Ok(true) => Ok(Self { file: file.clone(), text, storage }),
+            Ok(true) => Ok(Self { file: file.to_path_buf(), text, storage }),
             _ => Err(refused("OpenCV does not accept it")),
         }
     }

@@ -100,13 +100,14 @@ fn every_format_is_recognized_by_its_content() {
         let names: &[&str] =
             if format == CalibrationFormat::RosCameraInfo { &["a.txt", "b.txt"] } else { &["c.txt"] };
         let files: Vec<PathBuf> = names.iter().map(|name| folder.path().join(name)).collect();
-        save(&calibration, &files, format).expect(format.name());
-        let back = load(&files).expect(format.name()).cameras;
-        assert_eq!((back.left, back.right), (eyes.left, eyes.right), "{}", format.name());
+        let name = format.name();
+        save(&calibration, &files, format).expect(name);
+        let back = load(&files).expect(name).cameras;
+        assert_eq!((back.left, back.right), (eyes.left, eyes.right), "{name}");
         let difference = back.right_from_left.translation_m() - eyes.right_from_left.translation_m();
-        assert!(difference.amax() <= 1e-15, "{}: {difference}", format.name());
+        assert!(difference.amax() <= 1e-15, "{name}: {difference}");
         let turned = (back.right_from_left.rotation() - eyes.right_from_left.rotation()).amax();
-        assert!(turned <= 1e-15, "{}: {turned}", format.name());
+        assert!(turned <= 1e-15, "{name}: {turned}");
     }
 }
 
