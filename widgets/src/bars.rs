@@ -122,7 +122,10 @@ impl<'a> PairBars<'a> {
         let largest = self.pairs.iter().map(PairBar::worst).chain(self.threshold).fold(0.0, f64::max);
         let top = axis::round_up(1.05 * self.quantity.on_screen(largest));
         let mut result = BarsResponse { clicked: None, hovered: None };
-        ui.label(theme::small(ui, format!("{}, {}", self.label, self.quantity.unit())));
+        ui.horizontal(|ui| {
+            ui.label(theme::small(ui, format!("{}, {}", self.label, self.quantity.unit())));
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), legend);
+        });
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 0.0;
             let (scale, _) = ui.allocate_exact_size(vec2(AXIS_WIDTH, self.height), Sense::hover());
@@ -261,6 +264,18 @@ fn eye_color(tokens: &Tokens, eye: Eye) -> egui::Color32 {
     match eye {
         Eye::Left => tokens.difference,
         Eye::Right => tokens.difference.lerp_to_gamma(tokens.panel, 0.45),
+    }
+}
+
+/// From right to left.
+fn legend(ui: &mut Ui) {
+    let tokens = theme::tokens(ui);
+    ui.spacing_mut().item_spacing.x = space::XS;
+    for eye in Eye::BOTH.into_iter().rev() {
+        ui.label(theme::small(ui, format!("{eye} eye")));
+        let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
+        ui.painter().rect_filled(rect, 2.0, eye_color(tokens, eye));
+        ui.add_space(space::S);
     }
 }
 

@@ -18,15 +18,15 @@ pub fn primary_button(ui: &mut Ui, text: &str, why_not: Option<&str>) -> Respons
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = space::XS;
         ui.spacing_mut().button_padding = vec2(space::M, space::S);
-        // Not `add_enabled`: fading would make the text unreadable, and it must say what it is.
-        let response = ui.add_enabled_ui(enabled, |ui| {
-            ui.visuals_mut().disabled_alpha = 1.0;
-            ui.add(Button::new(label).fill(fill).min_size(vec2(120.0, 36.0)))
-        });
+        // Not faded while disabled: it must stay readable, because it says what comes next.
+        ui.visuals_mut().disabled_alpha = 1.0;
+        let text_width = ui.painter().layout_no_wrap(text.to_owned(), theme::strong_font(ui), ink).size().x;
+        let size = vec2((text_width + 2.0 * space::M).max(120.0), 36.0);
+        let response =
+            ui.add_enabled_ui(enabled, |ui| ui.add_sized(size, Button::new(label).fill(fill))).inner;
         if let Some(why_not) = why_not {
             ui.label(theme::small(ui, why_not));
         }
-        let response = response.inner;
         if enabled && (response.hovered() || response.has_focus()) {
             let ring = Stroke::new(2.0, tokens.accent);
             ui.painter().rect_stroke(response.rect.expand(3.0), 6.0, ring, StrokeKind::Inside);

@@ -1,9 +1,13 @@
 //! Aligned figures for the inspector: what, how much, in which unit, and what it means.
 
-use egui::{Align, Align2, Grid, Layout, RichText, Sense, TextStyle, Ui, WidgetInfo, vec2};
+use egui::{Align2, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use crate::format::{self, Quantity};
 use crate::theme::{self, Role, space};
+
+const ROW_HEIGHT: f32 = 22.0;
+const UNIT_WIDTH: f32 = 50.0;
+const MOST_WIDTH: f32 = 340.0;
 
 /// One row: a name, a figure, and an explanation on hover.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,36 +62,52 @@ impl KeyValue {
     }
 }
 
-/// Draws rows in three aligned columns. `id` must be unique within the panel. The label of a row
-/// for tests is `"{label}: {value} {unit}"`.
+/// Draws rows in three aligned columns over the available width, at most 340 points: name on the
+/// left, figures ending at the same place, units behind them. Groups of rows below each other
+/// line up. The label of a row for tests is `"{label}: {value} {unit}"`.
 pub fn key_value_grid(ui: &mut Ui, id: &str, rows: &[KeyValue]) {
-    let tokens = theme::tokens(ui);
-    Grid::new(id).num_columns(3).spacing(vec2(space::S, space::XS)).min_row_height(20.0).show(ui, |ui| {
+    ui.push_id(id, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let width = ui.available_width().min(MOST_WIDTH);
         for row in rows {
-            let first =
-                ui.add(egui::Label::new(RichText::new(&row.label).color(tokens.text_weak)).selectable(false));
-            let color = row.role.map_or(tokens.text_strong, |role| role.color(tokens));
-            let second = ui
-                .with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    ui.add(
-                        egui::Label::new(RichText::new(&row.value).color(color))
-                            .wrap_mode(egui::TextWrapMode::Extend),
-                    )
-                })
-                .inner;
-            ui.label(RichText::new(row.unit).color(tokens.text_weak));
-            ui.end_row();
-            let whole = first.rect.union(second.rect);
-            let response = ui.interact(whole, ui.scope_id().with((id, &row.label)), Sense::hover());
-            response.widget_info(|| {
-                let text = format!("{}: {} {}", row.label, row.value, row.unit);
-                WidgetInfo::labeled(egui::Role::Row, true, text.trim())
-            });
-            if let Some(help) = &row.help {
-                response.on_hover_text(help);
-            }
+            show_row(ui, row, width);
         }
     });
+}
+
+fn show_row(ui: &mut Ui, row: &KeyValue, width: f32) {
+    let tokens = theme::tokens(ui);
+    let sense = if row.help.is_some() { Sense::focusable_noninteractive() } else { Sense::hover() };
+    let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), sense);
+    response.widget_info(|| {
+        let text = format!("{}: {} {}", row.label, row.value, row.unit);
+        WidgetInfo::labeled(egui::Role::Row, true, text.trim())
+    });
+    if response.hovered() && row.help.is_some() {
+        theme::paint_hover(ui, &response, rect);
+    }
+    let font = theme::font(ui, &TextStyle::Body);
+    let value_color = row.role.map_or(tokens.text_strong, |role| role.color(tokens));
+    let painter = ui.painter();
+    let end = rect.right() - UNIT_WIDTH;
+    let y = rect.center().y;
+    let value = painter.text(pos2(end, y), Align2::RIGHT_CENTER, &row.value, font.clone(), value_color);
+    painter.text(
+        pos2(end + space::XS + 2.0, y),
+        Align2::LEFT_CENTER,
+        row.unit,
+        font.clone(),
+        tokens.text_weak,
+    );
+    // The name gives way to the figure, never the other way round.
+    let room = (value.left() - rect.left() - space::S).max(0.0);
+    let mut name = egui::text::LayoutJob::simple_singleline(row.label.clone(), font, tokens.text_weak);
+    name.wrap = egui::text::TextWrapping::truncate_at_width(room);
+    let name = painter.layout_job(name);
+    painter.galley(pos2(rect.left(), y - name.size().y / 2.0), name, tokens.text_weak);
+    if let Some(help) = &row.help {
+        response.on_hover_text(help);
+    }
 }
 
 /// The figure that decides, large, with its name below: "0.0955 px", "stereo rms".

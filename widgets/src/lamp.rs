@@ -5,7 +5,7 @@ use egui::{Response, Sense, TextStyle, Ui, WidgetInfo, vec2};
 use crate::glyph::{self, Glyph};
 use crate::theme::{self, Tokens, space};
 
-const GLYPH_SIZE: f32 = 9.0;
+const GLYPH_SIZE: f32 = 10.0;
 
 /// How something is.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -288,7 +288,7 @@ impl Pen<'_> {
         if closed && let Some(first) = points.first().copied() {
             points.push(first);
         }
-        let rim = Stroke::new(stroke.width + 2.0, RIM);
+        let rim = Stroke::new(stroke.width + 1.5, RIM);
         if dashed {
             self.painter.extend(Shape::dashed_line(&points, rim, 7.0, 5.0));
             self.painter.extend(Shape::dashed_line(&points, stroke, 7.0, 5.0));
@@ -334,7 +334,7 @@ pub(crate) fn arrow(painter: &Painter, foot: Pos2, vector: Vec2, stroke: Stroke,
         return;
     }
     let tip = foot + vector;
-    let head = (4.0 * stroke.width).min(0.6 * length);
+    let head = (3.5 * stroke.width).min(0.5 * length);
     let along = vector / length * head;
     let across = along.rot90() * 0.5;
     let rim = rim.map(|color| Stroke::new(stroke.width + 2.0, color));

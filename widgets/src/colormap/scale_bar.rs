@@ -41,11 +41,23 @@ impl<'a> ScaleBar<'a> {
         self
     }
 
+    /// Width of a vertical scale: that of its title, or of its numbers.
+    pub fn width(&self, ui: &Ui) -> f32 {
+        let font = theme::font(ui, &TextStyle::Small);
+        let title = ui.painter().layout_no_wrap(self.title(), font, theme::tokens(ui).text_weak);
+        title.size().x.max(56.0)
+    }
+
+    fn title(&self) -> String {
+        let unit = self.quantity.unit();
+        if unit.is_empty() { self.label.to_owned() } else { format!("{}, {unit}", self.label) }
+    }
+
     /// Draws it along the available width or height.
     pub fn show(self, ui: &mut Ui) -> Response {
         let size = match self.orientation {
             Orientation::Horizontal => vec2(ui.available_width(), THICKNESS + 34.0),
-            Orientation::Vertical => vec2(56.0, ui.available_height()),
+            Orientation::Vertical => vec2(self.width(ui), ui.available_height()),
         };
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
         let [low, high] = self.scale.range.map(|v| self.quantity.text(f64::from(v)));
@@ -61,8 +73,6 @@ impl<'a> ScaleBar<'a> {
         let tokens = theme::tokens(ui);
         let font = theme::font(ui, &TextStyle::Small);
         let painter = ui.painter();
-        let unit = self.quantity.unit().trim();
-        let title = if unit.is_empty() { self.label.to_owned() } else { format!("{}, {unit}", self.label) };
         let (strip, title_at, title_anchor) = match self.orientation {
             Orientation::Horizontal => {
                 let top = rect.top() + 16.0;
@@ -80,7 +90,7 @@ impl<'a> ScaleBar<'a> {
                 (strip, rect.left_top(), Align2::LEFT_TOP)
             }
         };
-        painter.text(title_at, title_anchor, title, font.clone(), tokens.text_weak);
+        painter.text(title_at, title_anchor, self.title(), font.clone(), tokens.text_weak);
         painter.add(self.colors(strip));
         let [low, high] = self.scale.range.map(|v| self.quantity.on_screen(f64::from(v)));
         let room = if self.orientation == Orientation::Horizontal {

@@ -29,9 +29,10 @@ const SPECTRUM: [(f64, f64, f64); 6] = [
     (1.0, 0.60, 0.145),
 ];
 
-/// Oklab of the ends and the middle of the difference map.
+/// Oklab of the difference map at equal steps; the middle is a light gray that stands out from
+/// both themes.
 const DIFFERENCE: [[f64; 3]; 5] =
-    [[0.80, -0.06, -0.10], [0.55, -0.03, -0.11], [0.30, 0.0, 0.0], [0.58, 0.05, 0.11], [0.84, 0.03, 0.14]];
+    [[0.42, -0.02, -0.13], [0.68, -0.03, -0.09], [0.91, 0.0, 0.0], [0.74, 0.05, 0.11], [0.50, 0.06, 0.10]];
 
 pub(super) fn of(map: Colormap) -> &'static Table {
     static TABLES: [OnceLock<Table>; 4] = [const { OnceLock::new() }; 4];

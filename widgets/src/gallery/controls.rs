@@ -38,7 +38,7 @@ pub(super) fn window(ui: &mut Ui, state: &mut GalleryState) {
     egui::CentralPanel::default().show(ui, |ui| {
         ui.add_space(space::S);
         ui.horizontal(|ui| {
-            ui.heading("Eyes");
+            theme::heading(ui, "Eyes");
             ui.add_space(space::M);
             choice(
                 ui,

@@ -73,7 +73,7 @@ pub fn show(ui: &mut Ui, page: &Page, state: &mut GalleryState) {
 
 fn theme_page(ui: &mut Ui, _: &mut GalleryState) {
     let tokens = theme::tokens(ui);
-    ui.heading("The heading of a panel");
+    theme::heading(ui, "The heading of a panel");
     ui.label("Body text: hold the board into both eyes until the outline turns green.");
     ui.label(theme::weak(ui, "Secondary text: 34 of 80, solved 2 h ago."));
     ui.label(theme::small(ui, "Small text: units, axes, hints."));

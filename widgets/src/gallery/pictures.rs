@@ -40,11 +40,11 @@ pub(super) fn linked(ui: &mut Ui, state: &mut GalleryState) {
 
 pub(super) fn deep(ui: &mut Ui, state: &mut GalleryState) {
     if state.deep_view.is_fit() {
-        state.deep_view.look_at([156.0, 100.0], 56.0);
+        state.deep_view.look_at([152.0, 106.0], 56.0);
     }
     let picture = state.textures.get("deep", 1, || crate::texture::color_image(&sample::eye(0.0))).clone();
     let mut corner = Overlay::new();
-    corner.plus(sample::corner_px(1, 0), Role::Measured);
+    corner.plus(sample::corner_px(1, 1), Role::Measured);
     let size = vec2(ui.available_width(), 420.0);
     ImageView::new("Left eye, raw", Content::Picture(&picture))
         .overlay(&corner)

@@ -101,7 +101,7 @@ pub(super) fn table_map(ui: &mut Ui, _: &mut GalleryState) {
 
 pub(super) fn inspector(ui: &mut Ui, _: &mut GalleryState) {
     ui.set_max_width(300.0);
-    ui.heading("Calibration");
+    theme::heading(ui, "Calibration");
     ui.add_space(space::S);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = space::L;

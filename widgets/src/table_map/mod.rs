@@ -81,7 +81,7 @@ impl TableScene {
     /// The table from the torso to 0.7 m forward and 0.5 m to both sides, with nothing on it.
     pub fn new() -> Self {
         Self {
-            x_m: [-0.06, 0.70],
+            x_m: [-0.08, 0.70],
             y_m: [-0.50, 0.50],
             outlines: Vec::new(),
             marks: Vec::new(),
@@ -157,7 +157,7 @@ impl TableTransform {
 }
 
 impl<'a> TableMap<'a> {
-    /// A map that fills the available width and keeps its proportions.
+    /// A map that keeps the proportions of its scene.
     pub fn new(label: &'a str, scene: &'a TableScene) -> Self {
         Self { label, scene, field: None, height: None }
     }
@@ -168,29 +168,29 @@ impl<'a> TableMap<'a> {
         self
     }
 
-    /// Height in points, instead of what the width asks for.
+    /// At most this height in points, instead of all that is available.
     pub fn height(mut self, height: f32) -> Self {
         self.height = Some(height);
         self
     }
 
-    /// Draws it.
+    /// Draws it, as large as the available space allows.
     pub fn show(self, ui: &mut Ui) -> TableMapResponse {
-        let scale_width = if self.field.is_some() { 56.0 + space::M } else { 0.0 };
-        let width = (ui.available_width() - scale_width).max(120.0);
-        let ratio = (self.scene.x_m[1] - self.scene.x_m[0]) / (self.scene.y_m[1] - self.scene.y_m[0]);
-        let height = self.height.unwrap_or_else(|| (f64::from(width) * ratio) as f32).max(80.0);
+        let bar = self.field.map(|(field, scale)| {
+            ScaleBar::new(field.name(), scale, field.quantity(), Orientation::Vertical)
+        });
+        let bar_width = bar.as_ref().map_or(0.0, |bar| bar.width(ui) + space::M);
+        let room = vec2(ui.available_width() - bar_width, self.height.unwrap_or(ui.available_height()));
+        let size = self.size(room);
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = space::M;
-            let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::click());
+            let (rect, response) = ui.allocate_exact_size(size, Sense::click());
             let shown = self.map(ui, rect, response);
-            if let Some((field, scale)) = self.field {
+            if let (Some((field, _)), Some(bar)) = (self.field, bar) {
                 let under_pointer = shown.hover_m.and_then(|at_m| field.at(at_m)).map(|v| v as f32);
-                ui.allocate_ui(vec2(56.0, height), |ui| {
-                    ui.set_min_height(height);
-                    ScaleBar::new(field.name(), scale, field.quantity(), Orientation::Vertical)
-                        .marker(under_pointer)
-                        .show(ui);
+                ui.allocate_ui(vec2(bar_width - space::M, size.y), |ui| {
+                    ui.set_height(size.y);
+                    bar.marker(under_pointer).show(ui)
                 });
             }
             shown
@@ -198,9 +198,18 @@ impl<'a> TableMap<'a> {
         .inner
     }
 
+    /// The largest size with the scene's proportions, axes included, that fits into the room.
+    fn size(&self, room: Vec2) -> Vec2 {
+        let span = |range: [f64; 2]| (range[1] - range[0]).max(1e-6) as f32;
+        let ratio = span(self.scene.x_m) / span(self.scene.y_m);
+        let plot = (room - paint::AXES).max(vec2(120.0, 120.0 * ratio));
+        paint::AXES + vec2(plot.x.min(plot.y / ratio), plot.y.min(plot.x * ratio))
+    }
+
     fn map(&self, ui: &Ui, rect: Rect, response: Response) -> TableMapResponse {
-        let transform = TableTransform::fit(self.scene, rect);
-        let on_map = transform.rect(self.scene).intersect(rect);
+        let plot = Rect::from_min_max(rect.min + paint::TOP_LEFT, rect.max - (paint::AXES - paint::TOP_LEFT));
+        let transform = TableTransform::fit(self.scene, plot);
+        let on_map = transform.rect(self.scene).intersect(plot);
         let at =
             |pos: Option<Pos2>| pos.filter(|pos| on_map.contains(*pos)).map(|pos| transform.to_table(pos));
         let hover_m = at(response.hover_pos());

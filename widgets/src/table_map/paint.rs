@@ -1,7 +1,7 @@
 //! Drawing of the table map.
 
 use egui::{
-    Align2, Color32, FontId, Mesh, Painter, Rect, Response, Shape, Stroke, StrokeKind, TextStyle, Ui,
+    Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Response, Shape, Stroke, StrokeKind, TextStyle, Ui,
     epaint::{EllipseShape, PathShape},
     pos2, vec2,
 };
@@ -9,8 +9,14 @@ use egui::{
 use super::{Outline, Place, ScalarField, TableMark, TableScene, TableTransform, contour};
 use crate::axis;
 use crate::colormap::ColorScale;
+use crate::format;
 use crate::overlay;
 use crate::theme::{self, Tokens, space};
+
+/// Room for the numbers left and below, and for the axis names above.
+pub(super) const AXES: egui::Vec2 = vec2(34.0, 36.0);
+/// The part of it that is left and above.
+pub(super) const TOP_LEFT: egui::Vec2 = vec2(34.0, 18.0);
 
 /// Half width and half depth of the torso, meters; a sign, not a measurement.
 const TORSO_M: [f64; 2] = [0.11, 0.05];
@@ -30,13 +36,13 @@ pub(super) fn map(
     if let Some((field, scale)) = field {
         map.cells(field, scale);
     }
-    map.grid(rect);
+    map.grid(ui.painter(), rect);
     if let Some((field, scale)) = field {
         map.contours(field, scale);
     }
     map.torso();
     for outline in &scene.outlines {
-        map.outline(outline);
+        map.outline(outline, field.is_some());
     }
     for mark in &scene.marks {
         map.mark(mark, scene.vector_scale, field.is_some());
@@ -68,30 +74,25 @@ struct Map<'a> {
 }
 
 impl Map<'_> {
-    /// Lines every 100 mm with their numbers at the edges.
-    fn grid(&self, rect: Rect) {
+    /// Round lines with their numbers left of and below the map.
+    fn grid(&self, outside: &Painter, rect: Rect) {
         let near = self.transform.to_table(rect.right_bottom());
         let far = self.transform.to_table(rect.left_top());
-        let stroke = Stroke::new(1.0, self.tokens.text_weak.gamma_multiply(0.18));
         let weak = self.tokens.text_weak;
+        let stroke = Stroke::new(1.0, weak.gamma_multiply(0.2));
+        let word = |at, anchor, text: String| outside.text(at, anchor, text, self.font.clone(), weak);
         for x in axis::ticks(near[0] * 1e3, far[0] * 1e3, 9) {
             let y = self.transform.to_screen([x * 1e-3, 0.0]).y;
             self.painter.hline(rect.x_range(), y, stroke);
-            if y - rect.top() > 16.0 && rect.bottom() - y > 16.0 {
-                let at = pos2(rect.right() - space::XS, y - 1.0);
-                self.word(at, Align2::RIGHT_BOTTOM, &crate::format::fixed(x, 0), weak);
-            }
+            word(pos2(rect.left() - 6.0, y), Align2::RIGHT_CENTER, format::fixed(x, 0));
         }
         for y in axis::ticks(near[1] * 1e3, far[1] * 1e3, 11) {
             let x = self.transform.to_screen([0.0, y * 1e-3]).x;
             self.painter.vline(x, rect.y_range(), stroke);
-            if x - rect.left() > 16.0 && rect.right() - x > 40.0 {
-                let at = pos2(x, rect.bottom() - 2.0);
-                self.word(at, Align2::CENTER_BOTTOM, &crate::format::fixed(y, 0), weak);
-            }
+            word(pos2(x, rect.bottom() + 3.0), Align2::CENTER_TOP, format::fixed(y, 0));
         }
-        let corner = rect.right_top() + vec2(-space::XS, 2.0);
-        self.word(corner, Align2::RIGHT_TOP, "x ↑, y ←, mm", weak);
+        let names = pos2(rect.left(), rect.top() - 3.0);
+        word(names, Align2::LEFT_BOTTOM, "x ↑ forward, y ← left, mm".to_owned());
     }
 
     /// Smooth colors: one quad per cell with a color per corner; cells with a missing node stay
@@ -122,30 +123,39 @@ impl Map<'_> {
         let quantity = field.quantity();
         let [low, high] = extent.map(|v| quantity.on_screen(v));
         let levels = axis::ticks(low, high, 6);
-        let per_unit = quantity.on_screen(1.0);
         let mut words: Vec<Rect> = Vec::new();
         for (level, text) in levels.iter().zip(axis::labels(&levels)) {
-            let value = level / per_unit;
+            let value = level / quantity.on_screen(1.0);
             let back = scale.color(value as f32).unwrap_or(self.tokens.backdrop);
             let ink = theme::readable_on(back);
-            let segments = contour::segments(field, value);
-            for [a, b] in &segments {
-                let ends = [self.transform.to_screen(*a), self.transform.to_screen(*b)];
-                self.painter.line_segment(ends, Stroke::new(1.0, ink.gamma_multiply(0.55)));
+            let mut lines: Vec<Vec<Pos2>> = contour::lines(field, value)
+                .into_iter()
+                .map(|line| line.into_iter().map(|at_m| self.transform.to_screen(at_m)).collect())
+                .collect();
+            lines.sort_by_key(|line| std::cmp::Reverse(line.len()));
+            for line in &lines {
+                self.painter.line(line.clone(), Stroke::new(1.0, ink.gamma_multiply(0.6)));
             }
-            let place = segments.iter().map(|[a, _]| self.transform.to_screen(*a)).find(|at| {
-                let room = Rect::from_center_size(*at, vec2(44.0, 20.0));
-                self.painter.clip_rect().shrink(12.0).contains_rect(room)
-                    && !words.iter().any(|word| word.intersects(room))
-            });
-            if let Some(at) = place {
-                words.push(Rect::from_center_size(at, vec2(44.0, 20.0)));
-                let galley = self.painter.layout_no_wrap(text, self.font.clone(), ink);
-                let chip = Rect::from_center_size(at, galley.size() + vec2(6.0, 0.0));
+            let galley = self.painter.layout_no_wrap(text, self.font.clone(), ink);
+            let size = galley.size() + vec2(6.0, 0.0);
+            if let Some(chip) = lines.first().and_then(|line| self.room_on(line, size, &words)) {
+                words.push(chip);
                 self.painter.rect_filled(chip, 3.0, back);
                 self.painter.galley(chip.min + vec2(3.0, 0.0), galley, ink);
             }
         }
+    }
+
+    /// A place for a word on a line, as near to its middle as the other words allow.
+    fn room_on(&self, line: &[Pos2], size: egui::Vec2, words: &[Rect]) -> Option<Rect> {
+        let inside = self.painter.clip_rect().shrink(4.0);
+        [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8]
+            .into_iter()
+            .filter_map(|part| line.get((line.len() as f32 * part) as usize))
+            .map(|at| Rect::from_center_size(*at, size))
+            .find(|chip| {
+                inside.contains_rect(*chip) && !words.iter().any(|word| word.expand(4.0).intersects(*chip))
+            })
     }
 
     fn torso(&self) {
@@ -162,7 +172,7 @@ impl Map<'_> {
         self.word(center, Align2::CENTER_CENTER, "torso", self.tokens.text_weak);
     }
 
-    fn outline(&self, outline: &Outline) {
+    fn outline(&self, outline: &Outline, on_field: bool) {
         let mut points: Vec<_> = outline.corners_m.iter().map(|c| self.transform.to_screen(*c)).collect();
         let Some(first) = points.first().copied() else { return };
         let (color, width, dashed) = match outline.place {
@@ -173,7 +183,7 @@ impl Map<'_> {
             Place::View => (self.tokens.text_weak, 1.0, false),
         };
         if outline.place == Place::Touchscreen {
-            let fill = self.tokens.text_strong.gamma_multiply(0.05);
+            let fill = self.tokens.text_strong.gamma_multiply(0.06);
             self.painter.add(PathShape::convex_polygon(points.clone(), fill, Stroke::NONE));
         }
         points.push(first);
@@ -185,7 +195,12 @@ impl Map<'_> {
         }
         let corner = points.iter().copied().reduce(|a, b| if b.x + b.y < a.x + a.y { b } else { a });
         if let Some(corner) = corner.filter(|_| !outline.name.is_empty()) {
-            self.word(corner + vec2(3.0, 1.0), Align2::LEFT_TOP, &outline.name, color);
+            let at = corner + vec2(5.0, 4.0);
+            if on_field {
+                self.chip(at, &outline.name);
+            } else {
+                self.word(at, Align2::LEFT_TOP, &outline.name, color);
+            }
         }
     }
 
@@ -198,14 +213,23 @@ impl Map<'_> {
             let vector = self.transform.vector(vector) * vector_scale as f32;
             overlay::arrow(self.painter, at, vector, Stroke::new(1.5, color), Some(rim));
         }
-        let radius = if mark.vector_m.is_some() { 2.0 } else { 3.5 };
+        let radius = if mark.vector_m.is_some() { 1.5 } else { 3.5 };
         self.painter.circle(at, radius, color, Stroke::new(1.0, rim));
         if !mark.text.is_empty() {
             self.word(at + vec2(6.0, 0.0), Align2::LEFT_CENTER, &mark.text, color);
         }
     }
 
-    fn word(&self, at: egui::Pos2, anchor: Align2, text: &str, color: Color32) {
+    /// A word that can be read on every color.
+    fn chip(&self, at: Pos2, text: &str) {
+        let ink = theme::ON_IMAGE.text_strong;
+        let galley = self.painter.layout_no_wrap(text.to_owned(), self.font.clone(), ink);
+        let rect = Rect::from_min_size(at, galley.size() + vec2(8.0, 2.0));
+        self.painter.rect_filled(rect, 3.0, theme::RIM);
+        self.painter.galley(rect.min + vec2(4.0, 1.0), galley, ink);
+    }
+
+    fn word(&self, at: Pos2, anchor: Align2, text: &str, color: Color32) {
         self.painter.text(at, anchor, text, self.font.clone(), color);
     }
 }

@@ -128,6 +128,12 @@ pub fn strong(ui: &Ui, text: impl Into<String>) -> RichText {
     RichText::new(text).text_style(strong_style(ui)).color(tokens(ui).text_strong)
 }
 
+/// The heading of a panel. One per panel.
+pub fn heading(ui: &mut Ui, text: &str) -> egui::Response {
+    let text = RichText::new(text).heading().color(tokens(ui).text_strong);
+    ui.label(text)
+}
+
 /// Text in the color of secondary information.
 pub fn weak(ui: &Ui, text: impl Into<String>) -> RichText {
     RichText::new(text).color(tokens(ui).text_weak)
