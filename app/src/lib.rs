@@ -1,1 +1,11 @@
-//! app
+//! The program: a window and a command line over the same engine.
+
+mod cli;
+mod panels;
+mod window;
+
+pub use cli::run;
+pub use window::{
+    Action, Backend, LaunchOptions, LogStore, Outbox, Pane, PlumblineWindow, Screen, ScriptStep, ThemeChoice,
+    WindowOptions, WindowSettings, launch, start_log,
+};

@@ -1,0 +1,151 @@
+//! What the command line says about the window.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Args;
+
+use crate::window::renderer::RendererChoice;
+use crate::window::{Action, LaunchOptions, Screen, ScriptStep, ThemeChoice, launch};
+
+#[derive(Debug, Args)]
+pub struct WindowArgs {
+    /// What to open: a folder of pairs (or with `left` and `right` in it), or two folders or two
+    /// videos, left eye first.
+    #[arg(value_name = "PATH", num_args = 0..=2, conflicts_with = "cameras")]
+    paths: Vec<PathBuf>,
+    /// Two USB cameras by number, left eye first: 0,2.
+    #[arg(long, value_name = "LEFT,RIGHT", value_parser = cameras)]
+    cameras: Option<(u32, u32)>,
+    /// What draws the window.
+    #[arg(long, value_enum, default_value_t)]
+    renderer: RendererChoice,
+    /// Colors of the window, in place of the remembered ones.
+    #[arg(long, value_enum)]
+    theme: Option<ThemeChoice>,
+    /// Screen to start with: live, collect, judge or accept.
+    #[arg(long, value_name = "SCREEN", value_parser = screen)]
+    screen: Option<Screen>,
+    /// Size of the window in points: 1280x800.
+    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
+    size: Option<[f32; 2]>,
+    /// Saves a picture of the window once it has come to rest, and closes it.
+    #[arg(long, value_name = "FILE")]
+    screenshot: Option<PathBuf>,
+    /// Folder of the window's settings, in place of the user's configuration folder.
+    #[arg(long, value_name = "DIR", hide_short_help = true)]
+    config_dir: Option<PathBuf>,
+    /// Folder of accepted calibrations, in place of the user's data folder.
+    #[arg(long, value_name = "DIR", hide_short_help = true)]
+    data_dir: Option<PathBuf>,
+    /// Does things without an operator, one after the other, each once the one before is done:
+    /// collect, solve, judge, accept, compare, live, play, next, stop, palette, log, inspector,
+    /// messages, frame-times, pair:N, probe:U,V, wait:SECONDS, picture:FILE, quit.
+    #[arg(long = "do", value_name = "STEPS", value_delimiter = ';', value_parser = step, hide_short_help = true)]
+    script: Vec<ScriptStep>,
+    /// Writes how long the frames took, as JSON, when the window is closed.
+    #[arg(long, value_name = "FILE", hide_short_help = true)]
+    frame_report: Option<PathBuf>,
+}
+
+impl WindowArgs {
+    /// Opens the window.
+    pub fn launch(self) -> anyhow::Result<()> {
+        let mut script = self.script;
+        if let Some(file) = self.screenshot {
+            script.extend([ScriptStep::Picture(file), ScriptStep::Quit]);
+        }
+        launch(LaunchOptions {
+            paths: self.paths,
+            cameras: self.cameras,
+            renderer: self.renderer,
+            theme: self.theme,
+            screen: self.screen,
+            size: self.size,
+            config_dir: self.config_dir,
+            data_dir: self.data_dir,
+            script,
+            frame_report: self.frame_report,
+        })
+    }
+}
+
+fn cameras(text: &str) -> Result<(u32, u32), String> {
+    let numbers = text.split_once(',').and_then(|(l, r)| Some((l.trim().parse().ok()?, r.trim().parse().ok()?)));
+    match numbers {
+        Some((left, right)) if left != right => Ok((left, right)),
+        Some(_) => Err("the two eyes need two different cameras".to_owned()),
+        None => Err("give two camera numbers, left eye first, for example 0,2".to_owned()),
+    }
+}
+
+fn size(text: &str) -> Result<[f32; 2], String> {
+    let sides = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
+    sides
+        .filter(|[w, h]: &[f32; 2]| (200.0..=16384.0).contains(w) && (200.0..=16384.0).contains(h))
+        .ok_or_else(|| "give width and height in points, for example 1280x800".to_owned())
+}
+
+fn screen(text: &str) -> Result<Screen, String> {
+    match text {
+        "live" => Ok(Screen::Live),
+        "eyes" | "collect" => Ok(Screen::Collect),
+        "judge" => Ok(Screen::Judge),
+        "accept" | "compare" => Ok(Screen::Accept),
+        _ => Err("there are the screens live, collect, judge and accept".to_owned()),
+    }
+}
+
+fn step(text: &str) -> Result<ScriptStep, String> {
+    let (name, value) = text.split_once(':').unwrap_or((text, ""));
+    let act = |action| Ok(ScriptStep::Act(action));
+    let seconds = |text: &str| text.parse::<f64>().ok().and_then(|s| Duration::try_from_secs_f64(s).ok());
+    match name.trim() {
+        "collect" => act(Action::CollectRecording),
+        "capture" => act(Action::Capture),
+        "solve" => act(Action::Solve),
+        "accept" => act(Action::Accept),
+        "live" => act(Action::Go(Screen::Live)),
+        "eyes" => act(Action::Go(Screen::Collect)),
+        "judge" => act(Action::Go(Screen::Judge)),
+        "compare" => act(Action::Go(Screen::Accept)),
+        "play" => act(Action::PlayPause),
+        "forward" => act(Action::StepForward),
+        "next" => act(Action::Next),
+        "stop" => act(Action::Stop),
+        "palette" => act(Action::Palette),
+        "log" => act(Action::ToggleLog),
+        "inspector" => act(Action::ToggleInspector),
+        "messages" => act(Action::ToggleNotices),
+        "frame-times" => act(Action::ToggleFrameTimes),
+        "quit" => Ok(ScriptStep::Quit),
+        "pair" => value.parse().map(ScriptStep::ChoosePair).map_err(|_| "pair:N wants a number".to_owned()),
+        "probe" => {
+            let at = value.split_once(',').and_then(|(u, v)| Some([u.parse().ok()?, v.parse().ok()?]));
+            at.map(ScriptStep::Probe).ok_or_else(|| "probe:U,V wants a pixel".to_owned())
+        }
+        "wait" => seconds(value).map(ScriptStep::Wait).ok_or_else(|| "wait:SECONDS wants a number".to_owned()),
+        "picture" if !value.is_empty() => Ok(ScriptStep::Picture(value.into())),
+        other => Err(format!("\"{other}\" is not a step; plumbline --help lists them")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cameras_are_two_different_numbers() {
+        assert_eq!(cameras("0, 2"), Ok((0, 2)));
+        assert!(cameras("1,1").is_err() && cameras("0").is_err() && cameras("a,b").is_err());
+    }
+
+    #[test]
+    fn sizes_and_steps_say_what_they_want() {
+        assert_eq!(size("1280x800"), Ok([1280.0, 800.0]));
+        assert!(size("1280").expect_err("one number").contains("1280x800"));
+        assert_eq!(step("probe:320,240.5"), Ok(ScriptStep::Probe([320.0, 240.5])));
+        assert_eq!(step("wait:1.5"), Ok(ScriptStep::Wait(Duration::from_millis(1500))));
+        assert!(step("dance").is_err());
+    }
+}

@@ -1,0 +1,115 @@
+//! Which board is used, counted in squares as people count, and how to solve.
+
+use egui::{DragValue, Ui};
+use plumbline_engine::EyesCommand;
+use plumbline_engine::view::EyesView;
+use plumbline_model::{Chessboard, ModelKind};
+use plumbline_widgets::buttons::choice;
+use plumbline_widgets::theme::{self, Role, space};
+
+use super::PanelContext;
+use crate::window::Action;
+
+/// The board as it is being typed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoardDraft {
+    /// The board that the engine had when the typing began.
+    from: Chessboard,
+    columns: u32,
+    rows: u32,
+    square_mm: f64,
+}
+
+impl BoardDraft {
+    fn of(board: &Chessboard) -> Self {
+        let (columns, rows) = board.squares();
+        Self { from: *board, columns, rows, square_mm: board.square_m * 1000.0 }
+    }
+
+    fn board(&self) -> Result<Chessboard, String> {
+        Chessboard::from_squares(self.columns, self.rows, self.square_mm / 1000.0)
+            .map_err(|error| error.to_string())
+    }
+}
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    egui::Frame::new().inner_margin(space::M).show(ui, |ui| {
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            board(ui, cx);
+            ui.add_space(space::M);
+            lens(ui, cx);
+        });
+    });
+}
+
+fn board(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let eyes = &cx.view.eyes;
+    let draft = match cx.state.board {
+        Some(draft) if draft.from == eyes.board => draft,
+        _ => BoardDraft::of(&eyes.board),
+    };
+    let mut edited = draft;
+    ui.horizontal(|ui| {
+        number(ui, "Squares across", &mut edited.columns);
+        ui.label("×");
+        number(ui, "Squares down", &mut edited.rows);
+        ui.label("squares of");
+        let drag = DragValue::new(&mut edited.square_mm).range(1.0..=1000.0).speed(0.1).max_decimals(3).suffix(" mm");
+        ui.add(drag).on_hover_text("Measure several squares with a ruler and divide: all lengths rest on it")
+    });
+    match edited.board() {
+        Ok(board) => {
+            let inner = format!("{}×{} inner corners", board.inner_columns, board.inner_rows);
+            ui.label(theme::small(ui, inner));
+            if board != eyes.board || (edited != draft && !eyes.board_chosen) {
+                let (columns, rows) = board.squares();
+                cx.outbox.send(EyesCommand::ChooseBoard { columns, rows, square_m: board.square_m });
+            }
+        }
+        Err(why) => {
+            ui.label(egui::RichText::new(why).color(Role::Warning.color(theme::tokens(ui))));
+        }
+    }
+    // Kept while it cannot be used, so that typing goes on from what was typed.
+    cx.state.board = edited.board().is_err().then_some(edited);
+    seen(ui, eyes);
+    ui.add_space(space::XS);
+    let action = Action::RecognizeBoard;
+    let refusal = action.refusal(cx.view);
+    let button = ui.add_enabled(refusal.is_none(), egui::Button::new(action.label()));
+    let button = button.on_hover_text("Counts the squares of the board in the newest pair");
+    if button.on_disabled_hover_text(refusal.unwrap_or_default()).clicked() {
+        cx.outbox.act(action);
+    }
+}
+
+fn number(ui: &mut Ui, label: &str, value: &mut u32) {
+    let drag = ui.add(DragValue::new(value).range(2..=41).speed(0.05)).on_hover_text(label);
+    drag.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, label));
+}
+
+/// What a search for any board found, when that differs from what is looked for.
+fn seen(ui: &mut Ui, eyes: &EyesView) {
+    let Some(seen) = &eyes.board_seen else { return };
+    let as_chosen = seen.inner_corners.is_some_and(|inner| {
+        (inner.columns, inner.rows) == (eyes.board.inner_columns, eyes.board.inner_rows)
+    });
+    let role = if as_chosen { Role::Accepted } else { Role::Warning };
+    ui.add_space(space::XS);
+    ui.label(egui::RichText::new(&seen.text).color(role.color(theme::tokens(ui))));
+}
+
+fn lens(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let mut options = cx.view.eyes.options.clone();
+    ui.label(theme::strong(ui, "Solve with"));
+    let kinds = [(ModelKind::Fisheye, "Fisheye lens"), (ModelKind::Pinhole, "Pinhole lens")];
+    choice(ui, "Lens model", &mut options.model, &kinds);
+    ui.checkbox(&mut options.leave_out_bad_corners, "Leave out bad corners one by one");
+    let mut cross_validate = options.cross_validation_folds > 0;
+    if ui.checkbox(&mut cross_validate, "Cross-validate: solve again without each fifth of the pairs").changed() {
+        options.cross_validation_folds = if cross_validate { 5 } else { 0 };
+    }
+    if options != cx.view.eyes.options {
+        cx.outbox.send(EyesCommand::ChooseOptions(options));
+    }
+}

@@ -1,0 +1,62 @@
+//! Where the board has been: over both images, in distance and in tilt.
+
+use std::sync::Arc;
+
+use egui::Ui;
+use plumbline_engine::view::CollectedPair;
+use plumbline_model::Eye;
+use plumbline_widgets::coverage::{Coverage, coverage_view};
+use plumbline_widgets::empty::{Message, EmptyState};
+use plumbline_widgets::theme::space;
+
+use super::PanelContext;
+
+/// Counted once per change of the collection, not per frame.
+#[derive(Default)]
+pub struct CountedCoverage {
+    of: Option<Arc<[Arc<CollectedPair>]>>,
+    counted: Option<Coverage>,
+}
+
+impl CountedCoverage {
+    fn of(&mut self, pairs: &Arc<[Arc<CollectedPair>]>) -> Option<&Coverage> {
+        if !self.of.as_ref().is_some_and(|counted| Arc::ptr_eq(counted, pairs)) {
+            self.counted = count(pairs);
+            self.of = Some(Arc::clone(pairs));
+        }
+        self.counted.as_ref()
+    }
+}
+
+/// `None` without pairs.
+fn count(pairs: &[Arc<CollectedPair>]) -> Option<Coverage> {
+    let mut coverage = Coverage::new(pairs.first()?.left_image.dimensions().into());
+    for pair in pairs {
+        for eye in Eye::BOTH {
+            for corner in pair.corners(eye).into_iter().flatten().flatten() {
+                coverage.grid_mut(eye).add([corner.u_px, corner.v_px]);
+            }
+        }
+        if let Some(place) = pair.place {
+            coverage.distance_m.add(place.distance_m);
+            // The angle of two turns about perpendicular axes.
+            let tilt_rad = (place.tilt_up_down_rad.cos() * place.tilt_left_right_rad.cos()).acos();
+            coverage.tilt_rad.add(tilt_rad);
+        }
+    }
+    Some(coverage)
+}
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let Some(coverage) = cx.state.coverage.of(&cx.view.eyes.collected) else {
+        let message = Message::new(
+            "No pairs yet",
+            "Collected pairs show here which parts of both images, which distances and which tilts are still missing.",
+        );
+        EmptyState::empty(message).show(ui);
+        return;
+    };
+    egui::Frame::new().inner_margin(space::M).show(ui, |ui| {
+        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| coverage_view(ui, coverage));
+    });
+}

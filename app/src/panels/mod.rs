@@ -1,0 +1,148 @@
+//! What the tiles show. A panel draws a snapshot and says what the operator asked for; it keeps
+//! nothing but how it is looked at.
+
+mod blend;
+mod board;
+mod comparison;
+mod coverage;
+mod depth;
+mod error_bars;
+mod eye;
+mod figures;
+mod files;
+mod pairs;
+mod picture;
+mod probe;
+mod rectified;
+mod residuals;
+mod source_state;
+mod table;
+mod verdict_line;
+
+pub use board::BoardDraft;
+pub use probe::{ProbeState, probe_readout};
+pub(crate) use picture::key as picture_key;
+pub(crate) use residuals::chosen_fit;
+pub(crate) use source_state::source_age;
+
+use std::sync::Arc;
+
+use egui::Ui;
+use plumbline_engine::view::EyesView;
+use plumbline_engine::{Exported, View};
+use plumbline_model::{Eye, StereoCalibration};
+use plumbline_widgets::colormap::Colormap;
+use plumbline_widgets::image_view::ViewState;
+use plumbline_widgets::texture::TextureCache;
+
+use crate::window::{Outbox, Pane, Screen};
+
+/// How the panels are looked at: kept from frame to frame, never saved.
+pub struct PanelState {
+    /// Pictures by name.
+    pub textures: TextureCache,
+    /// Zoom of the raw eyes.
+    pub raw: [ViewState; 2],
+    /// Zoom of everything that shows the rectified pair, so that all of it moves together.
+    pub rectified: ViewState,
+    /// Zoom of the chosen pair's images.
+    pub chosen: [ViewState; 2],
+    /// The measured point.
+    pub probe: ProbeState,
+    /// How the live views are drawn.
+    pub live: LiveStyle,
+    /// The pair chosen in a list or by a bar.
+    pub chosen_pair: Option<String>,
+    /// The eye chosen with it.
+    pub chosen_eye: Option<Eye>,
+    /// The board as it is being typed.
+    pub board: Option<BoardDraft>,
+    /// Where the board has been.
+    pub coverage: coverage::CountedCoverage,
+    /// The proposal that was shown last.
+    pub proposal_seen: Option<usize>,
+    /// Which calibration is exported while there are two.
+    pub exported: Exported,
+}
+
+impl Default for PanelState {
+    fn default() -> Self {
+        Self {
+            textures: TextureCache::default(),
+            raw: Default::default(),
+            rectified: ViewState::default(),
+            chosen: Default::default(),
+            probe: ProbeState::default(),
+            live: LiveStyle::default(),
+            chosen_pair: None,
+            chosen_eye: None,
+            board: None,
+            coverage: Default::default(),
+            proposal_seen: None,
+            exported: Exported::InUse,
+        }
+    }
+}
+
+/// The calibration that is judged: the proposal, else the one in use.
+pub fn shown_calibration(eyes: &EyesView) -> Option<Arc<StereoCalibration>> {
+    let proposed = eyes.proposal.as_ref().map(|proposal| &proposal.calibration);
+    proposed.or(eyes.in_use.as_ref().map(|in_use| &in_use.calibration)).cloned()
+}
+
+fn shown_calibration_ref(eyes: &EyesView) -> Option<&StereoCalibration> {
+    let proposed = eyes.proposal.as_ref().map(|proposal| &*proposal.calibration);
+    proposed.or(eyes.in_use.as_ref().map(|in_use| &*in_use.calibration))
+}
+
+/// How the live views are drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LiveStyle {
+    /// Lines across the rectified pair.
+    pub epipolar_lines: bool,
+    /// Colors of disparity and depth.
+    pub colormap: Colormap,
+    /// Depths at the ends of the colors, meters; `None` until they are fitted.
+    pub depth_range_m: Option<[f32; 2]>,
+}
+
+impl Default for LiveStyle {
+    fn default() -> Self {
+        Self { epipolar_lines: true, colormap: Colormap::default(), depth_range_m: None }
+    }
+}
+
+/// What a panel has at hand.
+pub struct PanelContext<'a> {
+    /// The snapshot to draw.
+    pub view: &'a View,
+    /// The screen that the panel stands on.
+    pub screen: Screen,
+    /// How it is looked at.
+    pub state: &'a mut PanelState,
+    /// What the operator asks for.
+    pub outbox: &'a mut Outbox,
+}
+
+/// Draws one panel into the available space.
+pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
+    match pane {
+        Pane::LeftEye => eye::show(ui, cx, Eye::Left),
+        Pane::RightEye => eye::show(ui, cx, Eye::Right),
+        Pane::Rectified => rectified::show(ui, cx),
+        Pane::Anaglyph => blend::anaglyph(ui, cx),
+        Pane::Blink => blend::blink(ui, cx),
+        Pane::Disparity => depth::disparity(ui, cx),
+        Pane::Depth => depth::depth(ui, cx),
+        Pane::Board => board::show(ui, cx),
+        Pane::Coverage => coverage::show(ui, cx),
+        Pane::Pairs => pairs::show(ui, cx),
+        Pane::PairErrors => error_bars::show(ui, cx),
+        Pane::Residuals => residuals::show(ui, cx),
+        Pane::Figures => figures::show(ui, cx),
+        Pane::Uncertainty => table::uncertainty(ui, cx),
+        Pane::Difference => table::difference(ui, cx),
+        Pane::Comparison => comparison::show(ui, cx),
+        Pane::Files => files::show(ui, cx),
+    }
+}

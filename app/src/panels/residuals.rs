@@ -1,0 +1,95 @@
+//! The chosen pair: both images with what is left of their errors.
+
+use std::collections::hash_map::DefaultHasher;
+use std::hash::{Hash, Hasher};
+use std::sync::Arc;
+
+use egui::{ColorImage, Ui, vec2};
+use image::GrayImage;
+use plumbline_engine::view::{CollectedPair, EyesView};
+use plumbline_model::{Eye, PairFit};
+use plumbline_widgets::empty::{EmptyState, Message};
+use plumbline_widgets::format;
+use plumbline_widgets::image_view::{Content, ImageView};
+use plumbline_widgets::overlay::Overlay;
+use plumbline_widgets::residuals::{arrow_scale, residual_arrows};
+
+use super::PanelContext;
+
+/// How long a typical arrow is drawn, image pixels.
+const ARROW_PX: f64 = 12.0;
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let Some(fit) = chosen_fit(cx.view, cx.state.chosen_pair.as_deref()) else {
+        let message = Message::new("No pair is chosen", "Click a bar to see the pair with what is left of its errors.");
+        EmptyState::empty(message).show(ui);
+        return;
+    };
+    let scale = arrow_scale(&fit.residuals, ARROW_PX);
+    let pair = collected(&cx.view.eyes, &fit.name);
+    let gap = 2.0;
+    let size = vec2((ui.available_width() - gap) / 2.0, ui.available_height());
+    ui.spacing_mut().item_spacing.x = gap;
+    ui.horizontal(|ui| {
+        for eye in Eye::BOTH {
+            let error_px = if eye == Eye::Left { fit.left_px } else { fit.right_px };
+            let error = error_px.map_or("board not seen".to_owned(), format::px);
+            let label = format!("{}, {eye} eye: {error}, arrows {scale}×", fit.name);
+            let overlay = residual_arrows(&fit.residuals, eye, scale);
+            collected_image(ui, cx, pair.as_deref(), eye, &label, &overlay, size);
+        }
+    });
+}
+
+/// The fit of the chosen pair, or of the worst one while none is chosen.
+pub(crate) fn chosen_fit<'a>(view: &'a plumbline_engine::View, chosen: Option<&str>) -> Option<&'a PairFit> {
+    let fits = &super::shown_calibration_ref(&view.eyes)?.per_pair;
+    let worst = |fit: &PairFit| fit.left_px.unwrap_or(0.0).max(fit.right_px.unwrap_or(0.0));
+    fits.iter()
+        .find(|fit| Some(fit.name.as_str()) == chosen)
+        .or_else(|| fits.iter().max_by(|a, b| worst(a).total_cmp(&worst(b))))
+}
+
+/// A collected pair by its name.
+pub fn collected(eyes: &EyesView, name: &str) -> Option<Arc<CollectedPair>> {
+    eyes.collected.iter().find(|pair| pair.name == name).cloned()
+}
+
+/// One image of a collected pair with marks on it.
+pub fn collected_image(
+    ui: &mut Ui,
+    cx: &mut PanelContext<'_>,
+    pair: Option<&CollectedPair>,
+    eye: Eye,
+    label: &str,
+    overlay: &Overlay,
+    size: egui::Vec2,
+) {
+    let key = if eye == Eye::Left { "chosen left" } else { "chosen right" };
+    let content = match pair {
+        Some(pair) => {
+            let image = pair.image(eye);
+            Content::Picture(cx.state.textures.get(key, identity(image), || gray(image)))
+        }
+        None => Content::Empty(Message::new(
+            "The image is not at hand",
+            "This calibration was read from a file: open its pairs and collect them to see the images.",
+        )),
+    };
+    ImageView::new(label, content).overlay(overlay).size(size).show(ui, &mut cx.state.chosen[eye.index()]);
+}
+
+/// Pictures of collected pairs never change; their place in memory tells them apart while they
+/// are kept, and their content when the place was used again.
+fn identity(image: &Arc<GrayImage>) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    (Arc::as_ptr(image) as usize).hash(&mut hasher);
+    let bytes = image.as_raw();
+    bytes.len().hash(&mut hasher);
+    bytes.iter().step_by(997).for_each(|byte| byte.hash(&mut hasher));
+    hasher.finish()
+}
+
+fn gray(image: &GrayImage) -> ColorImage {
+    ColorImage::from_gray([image.width() as usize, image.height() as usize], image.as_raw())
+}

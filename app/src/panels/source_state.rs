@@ -1,0 +1,64 @@
+//! What stands in place of an image, and how old the one that is shown is.
+
+use std::time::{Duration, Instant};
+
+use plumbline_engine::View;
+use plumbline_engine::view::SourceStatus;
+use plumbline_widgets::empty::Message;
+use plumbline_widgets::format;
+use plumbline_widgets::image_view::Content;
+
+use crate::window::{Action, Outbox};
+
+/// From this age on, the picture of a camera is called old.
+const OLD: Duration = Duration::from_millis(1500);
+
+/// What a view shows while there is no image.
+pub fn without_image(view: &View) -> Content<'_> {
+    match &view.source.status {
+        SourceStatus::None => Content::Empty(
+            Message::new("No images yet", "Open a folder of pairs, two videos or two cameras; or drop files here.")
+                .button("Open a folder of pairs…"),
+        ),
+        SourceStatus::Lost { reason, .. } => {
+            Content::Failed(Message::new("The source is lost", reason).button("Try again"))
+        }
+        SourceStatus::Ended => {
+            Content::Empty(Message::new("The recording has ended", "Step back or seek to see a pair."))
+        }
+        SourceStatus::Opening | SourceStatus::Running | SourceStatus::Paused => {
+            Content::Loading("Waiting for the first pair")
+        }
+    }
+}
+
+/// What the button of [`without_image`] asks for.
+pub fn button_clicked(view: &View, outbox: &mut Outbox) {
+    outbox.act(match view.source.status {
+        SourceStatus::Lost { .. } => Action::RetrySource,
+        _ => Action::OpenFolder,
+    });
+}
+
+/// Age of the newest pair; `None` where it has none (photographs, a recording held still).
+pub fn source_age(view: &View) -> Option<Duration> {
+    let held = view.source.photographs
+        || matches!(view.source.status, SourceStatus::Paused | SourceStatus::Ended);
+    let newest_at = view.live.statistics.source.newest_at?;
+    (!held).then(|| Instant::now().saturating_duration_since(newest_at))
+}
+
+/// Says that the shown picture is old, and why.
+pub fn stale_sentence(view: &View) -> Option<String> {
+    match &view.source.status {
+        SourceStatus::Lost { since, reason, .. } => {
+            let age = Instant::now().saturating_duration_since(*since);
+            Some(format!("Last picture, {}: {reason}", format::age(age)))
+        }
+        SourceStatus::Running => {
+            let age = source_age(view).filter(|age| *age > OLD)?;
+            Some(format!("Last picture, {}: no new one comes.", format::age(age)))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,318 @@
+//! Everything that can be asked for by name: by a button, a shortcut or the command palette.
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+use plumbline_engine::view::SourceStatus;
+use plumbline_engine::{ExportFormat, Exported, View};
+
+use super::steps::Screen;
+
+/// One thing that the operator can do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Stops everything that runs.
+    Stop,
+    /// Does what the bottom line proposes.
+    Next,
+    /// Chooses a folder of pairs (or one with `left` and `right` in it).
+    OpenFolder,
+    /// Chooses two folders, left eye first.
+    OpenTwoFolders,
+    /// Chooses two video files, left eye first.
+    OpenVideos,
+    /// Chooses two USB cameras.
+    OpenCameras,
+    /// Types a path.
+    OpenPath,
+    /// Forgets the source.
+    CloseSource,
+    /// Tries a lost source again at once.
+    RetrySource,
+    /// Plays or holds a recording.
+    PlayPause,
+    /// One pair forward.
+    StepForward,
+    /// One pair back.
+    StepBack,
+    /// Starts over at the end, or not.
+    ToggleLoop,
+    /// Opens a screen.
+    Go(Screen),
+    /// Says which board the newest pair shows.
+    RecognizeBoard,
+    /// Adds the newest pair.
+    Capture,
+    /// Captures without asking, or stops that.
+    ToggleAutoCapture,
+    /// Collects every pair of the recording.
+    CollectRecording,
+    /// Removes the pair added last.
+    DeleteLast,
+    /// Removes all pairs.
+    DeleteAll,
+    /// Takes back the last change of the collection.
+    Undo,
+    /// Solves what is collected.
+    Solve,
+    /// Puts the proposal in use.
+    Accept,
+    /// Forgets the proposal.
+    Discard,
+    /// Reads a calibration file.
+    Import,
+    /// Writes a calibration file.
+    Export(Exported, ExportFormat),
+    /// Asks the running job to stop.
+    CancelJob,
+    /// Saves a picture of the window.
+    SaveWindow,
+    /// Opens the list of everything that can be done.
+    Palette,
+    /// Opens or closes the inspector.
+    ToggleInspector,
+    /// Opens or closes the log.
+    ToggleLog,
+    /// Opens or closes the history of messages.
+    ToggleNotices,
+    /// Dark or light.
+    ToggleTheme,
+    /// Puts the tiles of this screen back.
+    ResetArrangement,
+    /// Puts the tiles of all screens back.
+    ResetAllArrangements,
+    /// Shows how long frames take.
+    ToggleFrameTimes,
+    /// Closes the window.
+    Quit,
+}
+
+/// All actions with a place in the palette, in its order.
+pub const ALL: &[Action] = &[
+    Action::Next,
+    Action::Stop,
+    Action::OpenFolder,
+    Action::OpenTwoFolders,
+    Action::OpenVideos,
+    Action::OpenCameras,
+    Action::OpenPath,
+    Action::CloseSource,
+    Action::RetrySource,
+    Action::PlayPause,
+    Action::StepForward,
+    Action::StepBack,
+    Action::ToggleLoop,
+    Action::Go(Screen::Live),
+    Action::Go(Screen::Collect),
+    Action::Go(Screen::Judge),
+    Action::Go(Screen::Accept),
+    Action::RecognizeBoard,
+    Action::Capture,
+    Action::ToggleAutoCapture,
+    Action::CollectRecording,
+    Action::DeleteLast,
+    Action::DeleteAll,
+    Action::Undo,
+    Action::Solve,
+    Action::Accept,
+    Action::Discard,
+    Action::Import,
+    Action::Export(Exported::InUse, ExportFormat::Plumbline),
+    Action::Export(Exported::InUse, ExportFormat::RosCameraInfo),
+    Action::Export(Exported::InUse, ExportFormat::OpenCv),
+    Action::Export(Exported::InUse, ExportFormat::Kalibr),
+    Action::Export(Exported::InUse, ExportFormat::MrcalCorners),
+    Action::CancelJob,
+    Action::SaveWindow,
+    Action::Palette,
+    Action::ToggleInspector,
+    Action::ToggleLog,
+    Action::ToggleNotices,
+    Action::ToggleTheme,
+    Action::ResetArrangement,
+    Action::ResetAllArrangements,
+    Action::ToggleFrameTimes,
+    Action::Quit,
+];
+
+impl Action {
+    /// What it is called everywhere.
+    pub fn label(self) -> String {
+        match self {
+            Self::Stop => "Stop everything",
+            Self::Next => "Do what comes next",
+            Self::OpenFolder => "Open a folder of pairs…",
+            Self::OpenTwoFolders => "Open two folders…",
+            Self::OpenVideos => "Open two videos…",
+            Self::OpenCameras => "Use USB cameras…",
+            Self::OpenPath => "Open a typed path…",
+            Self::CloseSource => "Close the source",
+            Self::RetrySource => "Try the source again",
+            Self::PlayPause => "Play or pause",
+            Self::StepForward => "One pair forward",
+            Self::StepBack => "One pair back",
+            Self::ToggleLoop => "Loop the recording",
+            Self::Go(Screen::Live) => "Go to Live",
+            Self::Go(Screen::Collect) => "Go to Eyes: collect",
+            Self::Go(Screen::Judge) => "Go to Eyes: judge",
+            Self::Go(Screen::Accept) => "Go to Eyes: accept",
+            Self::RecognizeBoard => "Recognize the board",
+            Self::Capture => "Capture pair",
+            Self::ToggleAutoCapture => "Capture by itself",
+            Self::CollectRecording => "Use all pairs of the recording",
+            Self::DeleteLast => "Delete the last pair",
+            Self::DeleteAll => "Delete all pairs",
+            Self::Undo => "Undo the last change of the pairs",
+            Self::Solve => "Solve the collected pairs",
+            Self::Accept => "Accept calibration",
+            Self::Discard => "Discard the proposal",
+            Self::Import => "Import a calibration…",
+            Self::Export(_, format) => return format!("Export as {}…", format_name(format)),
+            Self::CancelJob => "Cancel the running job",
+            Self::SaveWindow => "Save a picture of the window…",
+            Self::Palette => "All commands",
+            Self::ToggleInspector => "Inspector",
+            Self::ToggleLog => "Log",
+            Self::ToggleNotices => "Messages",
+            Self::ToggleTheme => "Change between dark and light",
+            Self::ResetArrangement => "Reset the tiles of this screen",
+            Self::ResetAllArrangements => "Reset the tiles of all screens",
+            Self::ToggleFrameTimes => "Frame times",
+            Self::Quit => "Quit",
+        }
+        .to_owned()
+    }
+
+    /// Keys that do the same.
+    pub fn shortcut(self) -> Option<KeyboardShortcut> {
+        let plain = |key| Some(KeyboardShortcut::new(Modifiers::NONE, key));
+        let command = |key| Some(KeyboardShortcut::new(Modifiers::COMMAND, key));
+        let shift = |key| Some(KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, key));
+        match self {
+            Self::Stop => plain(Key::Escape),
+            Self::Next => command(Key::Enter),
+            Self::OpenFolder => command(Key::O),
+            Self::OpenVideos => shift(Key::O),
+            Self::OpenPath => command(Key::L),
+            Self::PlayPause => plain(Key::P),
+            Self::StepForward => plain(Key::Period),
+            Self::StepBack => plain(Key::Comma),
+            Self::Go(Screen::Live) => command(Key::Num1),
+            Self::Go(Screen::Collect) => command(Key::Num2),
+            Self::Go(Screen::Judge) => command(Key::Num3),
+            Self::Go(Screen::Accept) => command(Key::Num4),
+            Self::Capture => plain(Key::C),
+            Self::DeleteLast => plain(Key::Backspace),
+            Self::Undo => command(Key::Z),
+            Self::Solve => shift(Key::S),
+            Self::SaveWindow => command(Key::S),
+            Self::Palette => command(Key::K),
+            Self::ToggleInspector => command(Key::I),
+            Self::ToggleLog => command(Key::J),
+            Self::ToggleNotices => command(Key::M),
+            Self::ToggleTheme => command(Key::T),
+            Self::ResetArrangement => command(Key::R),
+            Self::ToggleFrameTimes => plain(Key::F12),
+            Self::Quit => command(Key::Q),
+            _ => None,
+        }
+    }
+
+    /// Further keys.
+    pub fn second_shortcut(self) -> Option<KeyboardShortcut> {
+        match self {
+            Self::Stop => Some(KeyboardShortcut::new(Modifiers::NONE, Key::Space)),
+            Self::Palette => Some(KeyboardShortcut::new(Modifiers::COMMAND, Key::P)),
+            _ => None,
+        }
+    }
+
+    /// Why it cannot be done now; `None` when it can.
+    pub fn refusal(self, view: &View) -> Option<&'static str> {
+        let eyes = &view.eyes;
+        let when = |possible: bool, why| (!possible).then_some(why);
+        match self {
+            Self::CloseSource => when(view.source.status != SourceStatus::None, "no source is open"),
+            Self::RetrySource => {
+                when(matches!(view.source.status, SourceStatus::Lost { .. }), "no source is lost")
+            }
+            Self::PlayPause | Self::StepForward | Self::StepBack | Self::ToggleLoop => {
+                when(view.source.replay.is_some(), "no recording is open")
+            }
+            Self::RecognizeBoard | Self::Capture => when(view.live.raw.is_some(), "there is no image yet"),
+            Self::CollectRecording => when(view.source.replay.is_some(), "no recording is open"),
+            Self::DeleteLast | Self::DeleteAll => when(!eyes.collected.is_empty(), "no pair is collected"),
+            Self::Undo => when(eyes.can_undo, "nothing was changed"),
+            Self::Solve if eyes.solving.is_some() => Some("a solution is being computed"),
+            Self::Solve => when(!eyes.collected.is_empty(), "no pair is collected"),
+            Self::Accept | Self::Discard => when(eyes.proposal.is_some(), "nothing is proposed"),
+            Self::Export(Exported::InUse, _) => when(eyes.in_use.is_some(), "no calibration is in use"),
+            Self::Export(Exported::Proposal, _) => when(eyes.proposal.is_some(), "nothing is proposed"),
+            Self::CancelJob => when(view.running_job().is_some(), "no job is running"),
+            _ => None,
+        }
+    }
+}
+
+/// What people call a file format.
+pub fn format_name(format: ExportFormat) -> &'static str {
+    match format {
+        ExportFormat::Plumbline => "Plumbline file",
+        ExportFormat::RosCameraInfo => "ROS camera_info",
+        ExportFormat::OpenCv => "OpenCV FileStorage",
+        ExportFormat::Kalibr => "Kalibr camchain",
+        ExportFormat::MrcalCorners => "mrcal corners",
+    }
+}
+
+/// Shortcuts as text, for menus and hints.
+pub fn shortcut_text(ctx: &egui::Context, action: Action) -> Option<String> {
+    action.shortcut().map(|shortcut| ctx.format_shortcut(&shortcut))
+}
+
+/// Takes the shortcuts out of this frame's input and returns their actions. While a text is
+/// being typed only those with Ctrl count, so that letters, space and escape reach the text.
+pub fn take_shortcuts(ctx: &egui::Context) -> Vec<Action> {
+    let typing = ctx.text_edit_focused();
+    let mut shortcuts: Vec<(KeyboardShortcut, Action)> = ALL
+        .iter()
+        .flat_map(|&action| {
+            [action.shortcut(), action.second_shortcut()].into_iter().flatten().map(move |keys| (keys, action))
+        })
+        // Undo belongs to the text while one is typed.
+        .filter(|(keys, action)| !typing || (keys.modifiers.command && *action != Action::Undo))
+        .collect();
+    // egui takes Ctrl+Shift+O for Ctrl+O too, so the longer ones come first.
+    shortcuts.sort_by_key(|(keys, _)| !keys.modifiers.shift);
+    let mut taken = Vec::new();
+    for (keys, action) in shortcuts {
+        if ctx.input_mut(|input| input.consume_shortcut(&keys)) {
+            taken.push(action);
+        }
+    }
+    taken
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_actions_share_a_shortcut_or_a_name() {
+        for (i, a) in ALL.iter().enumerate() {
+            for b in &ALL[i + 1..] {
+                assert_ne!(a.label(), b.label());
+                let keys = |x: &Action| [x.shortcut(), x.second_shortcut()].into_iter().flatten().collect::<Vec<_>>();
+                for key in keys(a) {
+                    assert!(!keys(b).contains(&key), "{a:?} and {b:?} share {key:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn without_anything_open_the_reasons_are_said() {
+        let view = View::default();
+        assert_eq!(Action::Solve.refusal(&view), Some("no pair is collected"));
+        assert_eq!(Action::PlayPause.refusal(&view), Some("no recording is open"));
+        assert_eq!(Action::Stop.refusal(&view), None, "stop can always be asked for");
+    }
+}

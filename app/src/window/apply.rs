@@ -1,0 +1,325 @@
+//! Carrying out what was asked for during a frame.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::thread;
+use std::time::Instant;
+
+use plumbline_engine::view::{JobState, SourceStatus};
+use plumbline_engine::{
+    Command, EyesCommand, JobCommand, LiveCommand, NoticeCommand, NoticeLevel, ProbePoint, SourceCommand,
+};
+use plumbline_model::Eye;
+
+use super::actions::Action;
+use super::ask::{Ask, Asked};
+use super::dialogs::{Answer, Question};
+use super::outbox::Outbox;
+use super::script::ScriptStep;
+use super::settings::ThemeChoice;
+use super::steps::{Screen, default_arrangement};
+use super::PlumblineWindow;
+
+/// A message of the window itself.
+pub(super) fn warning(text: impl Into<String>) -> Command {
+    NoticeCommand::Add { level: NoticeLevel::Warning, text: text.into() }.into()
+}
+
+impl PlumblineWindow {
+    pub(super) fn carry_out(&mut self, ctx: &egui::Context, outbox: Outbox) {
+        if outbox.wanted != self.view.live.wanted {
+            self.backend.send(LiveCommand::Want(outbox.wanted).into());
+        }
+        self.panels.probe.follow(outbox.probe, &mut |command| self.backend.send(command.into()));
+        for command in outbox.commands {
+            self.backend.send(command);
+        }
+        for action in outbox.actions {
+            self.act(ctx, action);
+        }
+        if let Some(picture) = outbox.copy {
+            ctx.copy_image(picture.image().as_ref().clone());
+            self.notices.say("The picture is on the clipboard.");
+        }
+        if let Some(picture) = outbox.save {
+            self.pending_picture = Some(Arc::clone(picture.image()));
+            self.ask_for(ctx, Question::SaveView);
+        }
+    }
+
+    pub(super) fn act(&mut self, ctx: &egui::Context, action: Action) {
+        if let Some(why) = action.refusal(&self.view) {
+            self.notices.say(&format!("{}: {why}.", action.label().trim_end_matches('…')));
+            return;
+        }
+        if let Some(command) = self.command_of(action) {
+            self.backend.send(command);
+            return;
+        }
+        match action {
+            Action::Stop => self.stop(),
+            Action::Next => {
+                if let Some(next) = super::guidance::guidance(&self.view, self.settings.screen).next {
+                    self.act(ctx, next.action);
+                }
+            }
+            Action::OpenFolder => self.ask_for(ctx, Question::Folder),
+            Action::OpenTwoFolders => self.ask_for(ctx, Question::TwoFolders),
+            Action::OpenVideos => self.ask_for(ctx, Question::TwoVideos),
+            Action::OpenPath => self.ask = Some(Ask::paths(Question::Folder)),
+            Action::OpenCameras => self.ask = Some(Ask::Cameras { left: 0, right: 1 }),
+            Action::DeleteAll => self.ask = Some(Ask::DeleteAll { count: self.view.eyes.collected.len() }),
+            Action::Import => self.ask_for(ctx, Question::Import),
+            Action::Export(what, format) => self.ask_for(ctx, Question::Export(what, format)),
+            Action::SaveWindow => self.ask_for(ctx, Question::SaveWindow),
+            Action::Go(screen) => self.settings.screen = screen,
+            Action::Palette => self.palette.toggle(),
+            Action::ToggleInspector => self.settings.inspector_open = !self.settings.inspector_open,
+            Action::ToggleLog => self.settings.log_open = !self.settings.log_open,
+            Action::ToggleNotices => self.notices.toggle_history(),
+            Action::ToggleTheme => self.toggle_theme(ctx),
+            Action::ResetArrangement => self.reset_arrangement(self.settings.screen),
+            Action::ResetAllArrangements => Screen::ALL.into_iter().for_each(|s| self.reset_arrangement(s)),
+            Action::ToggleFrameTimes => self.frame_times_open = !self.frame_times_open,
+            Action::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            _ => {}
+        }
+    }
+
+    /// The actions that are nothing but a command to the engine.
+    fn command_of(&self, action: Action) -> Option<Command> {
+        let replay = self.view.source.replay;
+        Some(match action {
+            Action::CloseSource => SourceCommand::Close.into(),
+            Action::RetrySource => SourceCommand::Retry.into(),
+            Action::PlayPause if replay?.playing => SourceCommand::Pause.into(),
+            Action::PlayPause => SourceCommand::Play.into(),
+            Action::StepForward => SourceCommand::Step(1).into(),
+            Action::StepBack => SourceCommand::Step(-1).into(),
+            Action::ToggleLoop => SourceCommand::Loop(!replay?.looping).into(),
+            Action::RecognizeBoard => EyesCommand::RecognizeBoard.into(),
+            Action::Capture => EyesCommand::Capture.into(),
+            Action::ToggleAutoCapture => EyesCommand::AutoCapture(!self.view.eyes.auto_capture).into(),
+            Action::CollectRecording => EyesCommand::CollectRecording.into(),
+            Action::DeleteLast => EyesCommand::DeleteLast.into(),
+            Action::Undo => EyesCommand::Undo.into(),
+            Action::Solve => EyesCommand::Solve.into(),
+            Action::Accept => EyesCommand::Accept.into(),
+            Action::Discard => EyesCommand::Discard.into(),
+            Action::CancelJob => JobCommand::Cancel(self.view.running_job()?.id).into(),
+            _ => return None,
+        })
+    }
+
+    /// No arm is connected in this version: what runs is jobs, replay and automatic capture.
+    fn stop(&mut self) {
+        self.stopped_at = Some(Instant::now());
+        for job in self.view.jobs.iter().filter(|job| job.state.is_running()) {
+            self.backend.send(JobCommand::Cancel(job.id).into());
+        }
+        if self.view.eyes.auto_capture {
+            self.backend.send(EyesCommand::AutoCapture(false).into());
+        }
+        if self.view.source.replay.is_some_and(|replay| replay.playing) {
+            self.backend.send(SourceCommand::Pause.into());
+        }
+    }
+
+    fn toggle_theme(&mut self, ctx: &egui::Context) {
+        let dark = ctx.theme() == egui::Theme::Dark;
+        self.settings.theme = if dark { ThemeChoice::Light } else { ThemeChoice::Dark };
+        ctx.set_theme(self.settings.theme.preference());
+    }
+
+    fn reset_arrangement(&mut self, screen: Screen) {
+        self.settings.arrangements.insert(screen, default_arrangement(screen));
+    }
+
+    fn ask_for(&mut self, ctx: &egui::Context, question: Question) {
+        if let Some(answer) = self.dialogs.ask(question) {
+            self.take_answer(ctx, answer);
+        }
+    }
+
+    pub(super) fn take_answer(&mut self, ctx: &egui::Context, answer: Answer) {
+        match answer {
+            Answer::Cancelled => {}
+            Answer::NoDialog(question) => self.ask = Some(Ask::paths(question)),
+            Answer::Paths(question, mut paths) => match (question, paths.len()) {
+                (_, 0) => {}
+                (Question::Folder, _) => self.backend.send(SourceCommand::OpenPath(paths.remove(0)).into()),
+                (Question::TwoFolders | Question::TwoVideos, 2) => {
+                    let right = paths.remove(1);
+                    self.backend.send(SourceCommand::OpenPaths(paths.remove(0), right).into());
+                }
+                (Question::TwoFolders | Question::TwoVideos, _) => {}
+                (Question::Import, _) => self.backend.send(EyesCommand::Import { files: paths }.into()),
+                (Question::Export(what, format), _) => {
+                    self.backend.send(EyesCommand::Export { what, format, file: paths.remove(0) }.into());
+                }
+                (Question::SaveWindow, _) => self.save_window(ctx, paths.remove(0)),
+                (Question::SaveView, _) => {
+                    if let Some(picture) = self.pending_picture.take() {
+                        save_picture(ctx, &picture, paths.remove(0), |_| {});
+                    }
+                }
+            },
+        }
+    }
+
+    pub(super) fn show_ask(&mut self, ctx: &egui::Context, escape_pressed: bool, outbox: &mut Outbox) {
+        let Some(ask) = &mut self.ask else { return };
+        match ask.show(ctx, escape_pressed) {
+            Asked::Open => {}
+            Asked::Closed => self.ask = None,
+            Asked::Command(command) => {
+                self.ask = None;
+                outbox.send(command);
+            }
+            Asked::Answer(answer) => {
+                self.ask = None;
+                self.take_answer(ctx, answer);
+            }
+        }
+    }
+
+    pub(super) fn do_script_step(&mut self, ctx: &egui::Context, step: ScriptStep) {
+        match step {
+            ScriptStep::Act(action) => self.act(ctx, action),
+            ScriptStep::ChoosePair(index) => {
+                self.panels.chosen_pair = self.view.eyes.collected.get(index).map(|pair| pair.name.clone());
+            }
+            ScriptStep::Probe([u_px, v_px]) => {
+                self.panels.probe.pinned = Some(ProbePoint::Raw { eye: Eye::Left, u_px, v_px });
+            }
+            ScriptStep::Wait(_) => {}
+            ScriptStep::Picture(file) => {
+                self.script.waiting_for_picture.store(true, Ordering::Relaxed);
+                let waiting = Arc::clone(&self.script.waiting_for_picture);
+                let again = ctx.clone();
+                ctx.request_screenshot(move |picture| {
+                    save_picture(&again, &picture, file, move |_| waiting.store(false, Ordering::Relaxed));
+                });
+            }
+            ScriptStep::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+        }
+    }
+
+    fn save_window(&self, ctx: &egui::Context, file: PathBuf) {
+        let again = ctx.clone();
+        ctx.request_screenshot(move |picture| save_picture(&again, &picture, file, |_| {}));
+    }
+
+    /// Opens the screen where the work goes on: judging once there is something to judge.
+    pub(super) fn follow_the_work(&mut self) {
+        let eyes = &self.view.eyes;
+        let now = eyes.proposal.as_ref().map(|proposal| Arc::as_ptr(&proposal.calibration) as usize);
+        if now.is_some() && now != self.panels.proposal_seen && self.settings.screen == Screen::Collect {
+            self.settings.screen = Screen::Judge;
+        }
+        self.panels.proposal_seen = now;
+        if let (Some(spec), SourceStatus::Running) = (&self.view.source.spec, &self.view.source.status) {
+            if self.settings.recent_sources.front() != Some(spec) {
+                self.settings.remember_source(spec);
+            }
+        }
+        self.dismiss_ended_jobs();
+    }
+
+    /// What has ended well is in the messages; only trouble stays in the bottom line.
+    fn dismiss_ended_jobs(&mut self) {
+        self.dismissed.retain(|id| self.view.jobs.iter().any(|job| job.id == *id));
+        for job in self.view.jobs.iter() {
+            let ended_well = matches!(job.state, JobState::Done { .. } | JobState::Cancelled);
+            if ended_well && !self.dismissed.contains(&job.id) {
+                self.dismissed.push(job.id);
+                self.backend.send(JobCommand::Dismiss(job.id).into());
+            }
+        }
+    }
+
+    pub(super) fn save_settings_if_changed(&mut self, ctx: &egui::Context) {
+        self.settings.zoom = ctx.zoom_factor();
+        let size = ctx.input(|input| input.viewport().inner_rect.map(|rect| rect.size()));
+        if let Some(size) = size {
+            self.settings.size = [size.x, size.y];
+        }
+        // Not while something is being dragged: once it is let go.
+        let settled = !ctx.input(|input| input.pointer.any_down());
+        if settled && self.saved != self.settings {
+            self.saved = self.settings.clone();
+            if let Some(file) = self.settings_file.clone() {
+                let settings = self.settings.clone();
+                let write = move || {
+                    if let Err(error) = settings.save(&file) {
+                        log::warn!("the window's settings could not be written to {}: {error}", file.display());
+                    }
+                };
+                on_thread("settings writer", write);
+            }
+        }
+    }
+
+    pub(super) fn save_settings(&mut self) {
+        if let Some(file) = &self.settings_file
+            && let Err(error) = self.settings.save(file)
+        {
+            log::warn!("the window's settings could not be written to {}: {error}", file.display());
+        }
+    }
+
+    pub(super) fn write_frame_report(&self) {
+        let Some(summary) = self.frame_times.summary() else { return };
+        let ms = |duration: std::time::Duration| duration.as_secs_f64() * 1e3;
+        log::info!(
+            "{} frames with {}: half within {:.1} ms, 95 of 100 within {:.1} ms",
+            summary.count,
+            self.renderer,
+            ms(summary.median),
+            ms(summary.percentile_95)
+        );
+        if let Some(file) = &self.frame_report {
+            let report = serde_json::json!({
+                "frames": summary.count,
+                "median_ms": ms(summary.median),
+                "percentile_95_ms": ms(summary.percentile_95),
+                "renderer": self.renderer,
+            });
+            if let Err(error) = std::fs::write(file, report.to_string()) {
+                log::error!("the frame times could not be written to {}: {error}", file.display());
+            }
+        }
+    }
+}
+
+/// Writes a PNG on a thread of its own, then calls `done`.
+pub(super) fn save_picture(
+    ctx: &egui::Context,
+    picture: &egui::ColorImage,
+    file: PathBuf,
+    done: impl FnOnce(bool) + Send + 'static,
+) {
+    let [width, height] = picture.size;
+    let rgba: Vec<u8> = picture.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
+    let ctx = ctx.clone();
+    on_thread("picture writer", move || {
+        let saved = image::RgbaImage::from_raw(width as u32, height as u32, rgba)
+            .ok_or_else(|| "the picture is incomplete".to_owned())
+            .and_then(|image| {
+                image::DynamicImage::from(image).to_rgb8().save(&file).map_err(|error| error.to_string())
+            });
+        match &saved {
+            Ok(()) => log::info!("saved {}", file.display()),
+            Err(error) => log::error!("the picture could not be saved as {}: {error}", file.display()),
+        }
+        done(saved.is_ok());
+        ctx.request_repaint();
+    });
+}
+
+fn on_thread(name: &str, work: impl FnOnce() + Send + 'static) {
+    if let Err(error) = thread::Builder::new().name(name.to_owned()).spawn(work) {
+        log::error!("no thread for the {name}: {error}");
+    }
+}

@@ -1,0 +1,158 @@
+//! Sheets that ask for what a button alone cannot tell: a typed path, camera numbers, whether
+//! to delete everything.
+
+use std::path::PathBuf;
+
+use egui::{Align2, DragValue, TextEdit, Ui, Vec2};
+use plumbline_engine::{Command, EyesCommand, SourceCommand, SourceSpec};
+use plumbline_widgets::theme::{self, space};
+
+use super::dialogs::{Answer, Question};
+use super::sheet::sheet;
+
+/// An open sheet.
+#[derive(Debug)]
+pub enum Ask {
+    /// Paths, typed.
+    Paths {
+        /// What for.
+        question: Question,
+        /// One text per field.
+        typed: Vec<String>,
+    },
+    /// Numbers of two cameras.
+    Cameras {
+        /// Left eye.
+        left: u32,
+        /// Right eye.
+        right: u32,
+    },
+    /// Whether to delete all pairs.
+    DeleteAll {
+        /// How many there are.
+        count: usize,
+    },
+}
+
+/// What a sheet ended with.
+#[derive(Debug)]
+pub enum Asked {
+    /// Goes on.
+    Open,
+    /// Closed without an answer.
+    Closed,
+    /// For the engine.
+    Command(Command),
+    /// Paths for the window to use.
+    Answer(Answer),
+}
+
+impl Ask {
+    /// Asks for typed paths.
+    pub fn paths(question: Question) -> Self {
+        let name = question.suggested_name().to_owned();
+        let typed = question.fields().iter().map(|_| name.clone()).collect();
+        Self::Paths { question, typed }
+    }
+
+    /// Draws the sheet.
+    pub fn show(&mut self, ctx: &egui::Context, escape_pressed: bool) -> Asked {
+        let middle = (Align2::CENTER_CENTER, Vec2::ZERO);
+        let shown = sheet(ctx, "ask", middle, 440.0, escape_pressed, |ui| match self {
+            Self::Paths { question, typed } => paths(ui, *question, typed),
+            Self::Cameras { left, right } => cameras(ui, left, right),
+            Self::DeleteAll { count } => delete_all(ui, *count),
+        });
+        match shown.inner {
+            Asked::Open if shown.close => Asked::Closed,
+            asked => asked,
+        }
+    }
+}
+
+fn paths(ui: &mut Ui, question: Question, typed: &mut [String]) -> Asked {
+    title(ui, question.title(), "Type or paste the path; or drop the files on the window.");
+    let nothing_typed = typed.iter().all(|text| text == question.suggested_name());
+    let mut entered = false;
+    for (i, (field, text)) in question.fields().iter().zip(typed.iter_mut()).enumerate() {
+        let label = ui.label(theme::weak(ui, *field));
+        let edit = ui.add(TextEdit::singleline(text).desired_width(f32::INFINITY)).labelled_by(label.id);
+        if i == 0 && nothing_typed && ui.memory(|memory| memory.focused().is_none()) {
+            edit.request_focus();
+        }
+        entered |= edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+    }
+    let filled = typed.iter().take(question.required()).all(|text| !text.trim().is_empty());
+    let verb = if matches!(question, Question::Export(..) | Question::SaveWindow | Question::SaveView) {
+        "Save"
+    } else {
+        "Open"
+    };
+    match buttons(ui, verb, filled) {
+        Some(false) => Asked::Closed,
+        Some(true) => answer(question, typed),
+        None if entered && filled => answer(question, typed),
+        None => Asked::Open,
+    }
+}
+
+fn answer(question: Question, typed: &[String]) -> Asked {
+    let paths = typed.iter().map(|t| t.trim()).filter(|t| !t.is_empty()).map(expand_home).collect();
+    Asked::Answer(Answer::Paths(question, paths))
+}
+
+/// `~/pairs` as a shell would read it.
+fn expand_home(text: &str) -> PathBuf {
+    let home = || directories::BaseDirs::new().map(|dirs| dirs.home_dir().to_owned());
+    match text.strip_prefix("~/").zip(home()) {
+        Some((rest, home)) => home.join(rest),
+        None => PathBuf::from(text),
+    }
+}
+
+fn cameras(ui: &mut Ui, left: &mut u32, right: &mut u32) -> Asked {
+    title(ui, "Use USB cameras", "Numbers as the system counts them: 0 is the first camera.");
+    egui::Grid::new("cameras").num_columns(2).spacing([space::M, space::S]).show(ui, |ui| {
+        for (name, number) in [("Left eye", &mut *left), ("Right eye", &mut *right)] {
+            let label = ui.label(name);
+            ui.add(DragValue::new(number).range(0..=63)).labelled_by(label.id);
+            ui.end_row();
+        }
+    });
+    if left == right {
+        ui.label(theme::weak(ui, "The two eyes need two different cameras."));
+    }
+    match buttons(ui, "Use these cameras", left != right) {
+        Some(true) => {
+            Asked::Command(SourceCommand::Open(SourceSpec::Cameras { left: *left, right: *right }).into())
+        }
+        Some(false) => Asked::Closed,
+        None => Asked::Open,
+    }
+}
+
+fn delete_all(ui: &mut Ui, count: usize) -> Asked {
+    title(ui, &format!("Delete all {count} pairs?"), "You can take it back with Undo.");
+    match buttons(ui, "Delete all pairs", true) {
+        Some(true) => Asked::Command(EyesCommand::DeleteAll.into()),
+        Some(false) => Asked::Closed,
+        None => Asked::Open,
+    }
+}
+
+fn title(ui: &mut Ui, title: &str, hint: &str) {
+    ui.heading(title);
+    ui.label(theme::weak(ui, hint));
+    ui.add_space(space::S);
+}
+
+/// `Some(true)` when the work was asked for, `Some(false)` when it was called off.
+fn buttons(ui: &mut Ui, verb: &str, enabled: bool) -> Option<bool> {
+    ui.add_space(space::S);
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        let done = ui.add_enabled(enabled, super::primary_button(ui, verb)).clicked();
+        let cancelled = ui.button("Cancel").clicked();
+        if done { Some(true) } else { cancelled.then_some(false) }
+    })
+    .inner
+}

@@ -1,0 +1,179 @@
+//! Questions for files and folders. The desktop's dialog runs on a thread of its own; where the
+//! desktop has none (no portal, no zenity), the path is typed instead.
+
+use std::path::PathBuf;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crossbeam_channel::{Receiver, Sender, bounded};
+use plumbline_engine::{ExportFormat, Exported};
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Question {
+    /// A folder of pairs.
+    Folder,
+    /// Two folders, left eye first.
+    TwoFolders,
+    /// Two video files, left eye first.
+    TwoVideos,
+    /// Calibration files to read.
+    Import,
+    /// Where a calibration is written.
+    Export(Exported, ExportFormat),
+    /// Where a picture of the window is saved.
+    SaveWindow,
+    /// Where a picture of one view is saved.
+    SaveView,
+}
+
+/// How a question ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// These paths, as many as were asked for.
+    Paths(Question, Vec<PathBuf>),
+    /// Nothing was chosen.
+    Cancelled,
+    /// The desktop showed no dialog.
+    NoDialog(Question),
+}
+
+/// A dialog that closes sooner than this was never shown.
+const SHOWN_AT_LEAST: Duration = Duration::from_millis(400);
+
+impl Question {
+    /// Title of its dialog.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Folder => "Open a folder of pairs",
+            Self::TwoFolders => "Open two folders: left eye, right eye",
+            Self::TwoVideos => "Open two videos: left eye, right eye",
+            Self::Import => "Import a calibration",
+            Self::Export(..) => "Export the calibration",
+            Self::SaveWindow => "Save a picture of the window",
+            Self::SaveView => "Save a picture of the view",
+        }
+    }
+
+    /// Names of the paths that are asked for.
+    pub fn fields(self) -> &'static [&'static str] {
+        match self {
+            Self::Folder => &["Folder"],
+            Self::TwoFolders => &["Left folder", "Right folder"],
+            Self::TwoVideos => &["Left video", "Right video"],
+            Self::Import => &["File", "Right eye's file, if there are two"],
+            Self::Export(..) | Self::SaveWindow | Self::SaveView => &["File"],
+        }
+    }
+
+    /// How many of the fields have to be filled.
+    pub fn required(self) -> usize {
+        if self == Self::Import { 1 } else { self.fields().len() }
+    }
+
+    /// What the name of a new file starts as.
+    pub fn suggested_name(self) -> &'static str {
+        match self {
+            Self::Export(_, ExportFormat::Plumbline) => "rig-cameras.yaml",
+            Self::Export(_, ExportFormat::RosCameraInfo) => "nico_left.yaml",
+            Self::Export(_, ExportFormat::OpenCv) => "stereo-opencv.yml",
+            Self::Export(_, ExportFormat::Kalibr) => "camchain.yaml",
+            Self::Export(_, ExportFormat::MrcalCorners) => "corners.vnl",
+            Self::SaveWindow => "plumbline.png",
+            Self::SaveView => "view.png",
+            _ => "",
+        }
+    }
+
+    /// Asks the desktop; blocks, so not for the window's thread.
+    fn ask(self) -> Option<Vec<PathBuf>> {
+        let dialog = || rfd::FileDialog::new().set_title(self.title());
+        let titled = |title: &str| rfd::FileDialog::new().set_title(title);
+        let video = |title: &str| titled(title).add_filter("Videos", &["mp4", "avi", "mkv", "mov", "webm", "m4v"]);
+        match self {
+            Self::Folder => dialog().pick_folder().map(|folder| vec![folder]),
+            Self::TwoFolders => {
+                let left = titled("Folder of the left eye").pick_folder()?;
+                let right = titled("Folder of the right eye").pick_folder()?;
+                Some(vec![left, right])
+            }
+            Self::TwoVideos => {
+                let left = video("Video of the left eye").pick_file()?;
+                let right = video("Video of the right eye").pick_file()?;
+                Some(vec![left, right])
+            }
+            Self::Import => dialog().add_filter("Calibrations", &["yaml", "yml", "xml"]).pick_files(),
+            Self::Export(..) | Self::SaveWindow | Self::SaveView => {
+                dialog().set_file_name(self.suggested_name()).save_file().map(|file| vec![file])
+            }
+        }
+    }
+}
+
+/// At most one question is open at a time.
+#[derive(Debug)]
+pub struct Dialogs {
+    native: bool,
+    wake: egui::Context,
+    pending: Option<Receiver<Answer>>,
+}
+
+impl Dialogs {
+    /// `native` false always asks for typed paths (tests, screenshots).
+    pub fn new(native: bool, wake: egui::Context) -> Self {
+        Self { native, wake, pending: None }
+    }
+
+    /// Asks. An answer that comes at once means that there will be no dialog.
+    pub fn ask(&mut self, question: Question) -> Option<Answer> {
+        if !self.native {
+            return Some(Answer::NoDialog(question));
+        }
+        if self.pending.is_some() {
+            return None;
+        }
+        let (sender, receiver) = bounded(1);
+        let wake = self.wake.clone();
+        let thread = thread::Builder::new()
+            .name("file dialog".to_owned())
+            .spawn(move || answer_on_thread(question, &sender, &wake));
+        match thread {
+            Ok(_detached) => {
+                self.pending = Some(receiver);
+                None
+            }
+            Err(error) => {
+                log::error!("no thread for the file dialog: {error}");
+                Some(Answer::NoDialog(question))
+            }
+        }
+    }
+
+    /// The answer, once it is there.
+    pub fn poll(&mut self) -> Option<Answer> {
+        let answer = self.pending.as_ref()?.try_recv();
+        match answer {
+            Ok(answer) => {
+                self.pending = None;
+                Some(answer)
+            }
+            Err(crossbeam_channel::TryRecvError::Empty) => None,
+            Err(crossbeam_channel::TryRecvError::Disconnected) => {
+                self.pending = None;
+                Some(Answer::Cancelled)
+            }
+        }
+    }
+}
+
+fn answer_on_thread(question: Question, sender: &Sender<Answer>, wake: &egui::Context) {
+    let started = Instant::now();
+    let answer = match question.ask() {
+        Some(paths) => Answer::Paths(question, paths),
+        None if started.elapsed() < SHOWN_AT_LEAST => Answer::NoDialog(question),
+        None => Answer::Cancelled,
+    };
+    // The window may be gone by now; then nobody needs the answer.
+    let _ = sender.send(answer);
+    wake.request_repaint();
+}

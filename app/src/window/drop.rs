@@ -1,0 +1,98 @@
+//! Files and folders dropped on the window.
+
+use std::path::{Path, PathBuf};
+
+use egui::{Align2, Context, LayerId, Order, Stroke, StrokeKind, TextStyle};
+use plumbline_engine::{Command, EyesCommand, SourceCommand};
+use plumbline_widgets::theme::{self, space};
+
+/// What the dropped paths are taken for; an error says what could be dropped instead.
+pub fn command_for(paths: &[PathBuf]) -> Result<Command, String> {
+    match paths {
+        [] => Err("Nothing that can be opened was dropped.".to_owned()),
+        paths if paths.iter().all(|path| is_calibration(path)) && paths.len() <= 2 => {
+            Ok(EyesCommand::Import { files: ordered(paths) }.into())
+        }
+        [path] => Ok(SourceCommand::OpenPath(path.clone()).into()),
+        [_, _] => {
+            let ordered = ordered(paths);
+            Ok(SourceCommand::OpenPaths(ordered[0].clone(), ordered[1].clone()).into())
+        }
+        more => Err(format!(
+            "{} things were dropped at once: drop one folder of pairs, or the two folders or videos of the two eyes.",
+            more.len()
+        )),
+    }
+}
+
+/// What will happen, while the files are still held over the window.
+pub fn preview(paths: &[PathBuf]) -> String {
+    match command_for(paths) {
+        Ok(Command::Eyes(_)) => "Drop to read this calibration as a proposal".to_owned(),
+        Ok(Command::Source(SourceCommand::OpenPath(path))) => {
+            format!("Drop to open {} as the source", name(&path))
+        }
+        Ok(Command::Source(SourceCommand::OpenPaths(left, right))) => {
+            format!("Drop to open {} as the left eye and {} as the right eye", name(&left), name(&right))
+        }
+        Ok(_) => "Drop to open".to_owned(),
+        Err(why) => why,
+    }
+}
+
+/// Draws the preview over the whole window.
+pub fn paint_preview(ctx: &Context, text: &str) {
+    let painter = ctx.layer_painter(LayerId::new(Order::Tooltip, egui::Id::unique("drop preview")));
+    let tokens = theme::tokens_of(ctx);
+    let rect = ctx.content_rect();
+    painter.rect_filled(rect, 0.0, tokens.background.gamma_multiply(0.85));
+    let frame = rect.shrink(space::L);
+    painter.rect_stroke(frame, 8.0, Stroke::new(2.0, tokens.accent), StrokeKind::Inside);
+    let font = TextStyle::Heading.resolve(&ctx.global_style());
+    painter.text(rect.center(), Align2::CENTER_CENTER, text, font, tokens.text_strong);
+}
+
+fn is_calibration(path: &Path) -> bool {
+    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_lowercase();
+    matches!(extension.as_str(), "yaml" | "yml" | "xml")
+}
+
+/// Left eye first, as far as the names tell; file managers give no useful order.
+fn ordered(paths: &[PathBuf]) -> Vec<PathBuf> {
+    let mut ordered = paths.to_vec();
+    let says_right = |path: &Path| name(path).to_lowercase().contains("right");
+    ordered.sort_by_key(|path| (says_right(path), path.clone()));
+    ordered
+}
+
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn paths(names: &[&str]) -> Vec<PathBuf> {
+        names.iter().map(PathBuf::from).collect()
+    }
+
+    #[test]
+    fn two_videos_are_opened_left_eye_first() {
+        let command = command_for(&paths(&["a/right.mp4", "a/left.mp4"])).expect("two videos");
+        assert_eq!(command, SourceCommand::OpenPaths("a/left.mp4".into(), "a/right.mp4".into()).into());
+    }
+
+    #[test]
+    fn a_calibration_file_is_proposed_not_opened() {
+        let command = command_for(&paths(&["rig-cameras.yaml"])).expect("a calibration");
+        assert_eq!(command, EyesCommand::Import { files: paths(&["rig-cameras.yaml"]) }.into());
+    }
+
+    #[test]
+    fn too_many_say_what_to_drop() {
+        let why = command_for(&paths(&["1.png", "2.png", "3.png"])).expect_err("three files");
+        assert!(why.contains("one folder"), "{why}");
+        assert_eq!(preview(&paths(&["1.png", "2.png", "3.png"])), why);
+    }
+}

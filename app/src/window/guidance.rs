@@ -1,0 +1,240 @@
+//! What is happening and what to do next, in one sentence and one button.
+
+use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
+use plumbline_engine::View;
+
+use super::actions::Action;
+use super::steps::Screen;
+
+/// The bottom line.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Guidance {
+    /// What is happening and what to do next.
+    pub sentence: String,
+    /// Whether it needs attention.
+    pub warning: bool,
+    /// The one button.
+    pub next: Option<NextButton>,
+}
+
+/// The one button of a screen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NextButton {
+    /// Named by what it does.
+    pub label: String,
+    /// What it does.
+    pub action: Action,
+}
+
+/// Fewest pairs that are worth solving without asking for more.
+pub const ENOUGH_PAIRS: usize = 10;
+
+/// The bottom line of a screen.
+pub fn guidance(view: &View, screen: Screen) -> Guidance {
+    match screen {
+        Screen::Live => live(view),
+        Screen::Collect => collect(view),
+        Screen::Judge => judge(&view.eyes),
+        Screen::Accept => accept(&view.eyes),
+    }
+}
+
+fn say(sentence: impl Into<String>) -> Guidance {
+    Guidance { sentence: sentence.into(), warning: false, next: None }
+}
+
+impl Guidance {
+    fn then(mut self, label: impl Into<String>, action: Action) -> Self {
+        self.next = Some(NextButton { label: label.into(), action });
+        self
+    }
+
+    fn warn(mut self) -> Self {
+        self.warning = true;
+        self
+    }
+}
+
+/// What is wrong or not yet there with the source; `None` when it delivers.
+fn source_trouble(view: &View) -> Option<Guidance> {
+    match &view.source.status {
+        SourceStatus::None => Some(
+            say("No images yet: open a folder of pairs, or drop one on the window.")
+                .then("Open a folder of pairs…", Action::OpenFolder),
+        ),
+        SourceStatus::Opening => Some(say("Opening the source.")),
+        SourceStatus::Lost { reason, .. } => {
+            Some(say(reason.clone()).warn().then("Try again", Action::RetrySource))
+        }
+        SourceStatus::Running | SourceStatus::Paused | SourceStatus::Ended => None,
+    }
+}
+
+fn live(view: &View) -> Guidance {
+    if let Some(guidance) = source_trouble(view) {
+        return guidance;
+    }
+    if view.eyes.in_use.is_none() {
+        return say("The eyes are not calibrated, so nothing can be measured yet.")
+            .then("Calibrate the eyes", Action::Go(Screen::Collect));
+    }
+    match view.source.replay {
+        Some(replay) if !replay.playing => say("Held still. Point at an image to read where things are.")
+            .then("Play", Action::PlayPause),
+        _ => say("Point at an image to read where things are; click to keep the point."),
+    }
+}
+
+fn collect(view: &View) -> Guidance {
+    let eyes = &view.eyes;
+    let count = eyes.collected.len() - dropped(eyes);
+    if let Some(proposal) = eyes.proposal.as_ref().filter(|p| p.stale.is_none()) {
+        return say(format!("Solved. {}", verdict(proposal).sentence))
+            .then("Judge the result", Action::Go(Screen::Judge));
+    }
+    if let Some(seen) = eyes.board_seen.as_ref().filter(|_| eyes.collected.is_empty()) {
+        if seen.inner_corners.is_some() && !eyes.board_chosen {
+            return say(seen.text.clone()).then(collect_label(view), collect_action(view));
+        }
+    }
+    if eyes.collected.is_empty() {
+        if let Some(guidance) = source_trouble(view) {
+            return guidance;
+        }
+        let (columns, rows) = eyes.board.squares();
+        let square_mm = eyes.board.square_m * 1000.0;
+        return say(format!("The board is {columns}×{rows} squares of {square_mm} mm: check that, then collect."))
+            .then(collect_label(view), collect_action(view));
+    }
+    let enough = count >= ENOUGH_PAIRS && eyes.ghost.is_none();
+    if enough || view.source.replay.is_some() || view.source.status == SourceStatus::None {
+        let said = if count < ENOUGH_PAIRS {
+            format!("{count} pairs are few; {ENOUGH_PAIRS} or more are better.")
+        } else {
+            format!("{count} pairs collected.")
+        };
+        return say(said).then(format!("Solve {count} pairs"), Action::Solve);
+    }
+    let wanted = eyes.ghost.as_ref().map_or_else(String::new, |g| format!(" Next: {}.", g.reason));
+    say(format!("{count} pairs collected. {}{wanted}", hint_sentence(eyes))).then("Capture pair", Action::Capture)
+}
+
+fn collect_label(view: &View) -> String {
+    match view.source.replay {
+        Some(replay) if view.source.photographs => format!("Use all {} pairs of this folder", replay.length),
+        Some(_) => "Use all pairs of this recording".to_owned(),
+        None => "Capture pair".to_owned(),
+    }
+}
+
+fn collect_action(view: &View) -> Action {
+    if view.source.replay.is_some() { Action::CollectRecording } else { Action::Capture }
+}
+
+fn hint_sentence(eyes: &EyesView) -> String {
+    match &eyes.hint {
+        None => String::new(),
+        Some(hint) => hint_text(hint),
+    }
+}
+
+/// What capturing waits for, as a sentence.
+pub fn hint_text(hint: &CaptureHint) -> String {
+    match hint {
+        CaptureHint::NotSeen { eyes } => match eyes.as_slice() {
+            [eye] => format!("The {eye} eye does not see the board."),
+            _ => "Neither eye sees the board.".to_owned(),
+        },
+        CaptureHint::Moving { .. } => "Hold the board still.".to_owned(),
+        CaptureHint::Blurred { .. } => "The image is blurred: more light, or hold it still.".to_owned(),
+        CaptureHint::NothingNew => "The board has been here: move it to the outline.".to_owned(),
+        CaptureHint::Ready => "Ready to capture.".to_owned(),
+        CaptureHint::Captured { pair } => format!("Captured {pair}."),
+    }
+}
+
+fn judge(eyes: &EyesView) -> Guidance {
+    let count = eyes.collected.len() - dropped(eyes);
+    let Some(proposal) = &eyes.proposal else {
+        return match (&eyes.in_use, count) {
+            (Some(_), _) => say("Nothing is proposed; the calibration in use is shown.")
+                .then("Collect pairs", Action::Go(Screen::Collect)),
+            (None, 0) => say("There is nothing to judge yet: collect pairs first.")
+                .then("Collect pairs", Action::Go(Screen::Collect)),
+            (None, n) => say(format!("{n} pairs wait to be solved.")).then(format!("Solve {n} pairs"), Action::Solve),
+        };
+    };
+    if let Some(why) = &proposal.stale {
+        return say(why.clone()).then(format!("Solve {count} pairs again"), Action::Solve);
+    }
+    let verdict = verdict(proposal);
+    if !verdict.good {
+        return say(verdict.sentence).warn().then("Collect more pairs", Action::Go(Screen::Collect));
+    }
+    if eyes.in_use.is_some() {
+        say(verdict.sentence).then("Compare with the one in use", Action::Go(Screen::Accept))
+    } else {
+        say(verdict.sentence).then("Accept calibration", Action::Accept)
+    }
+}
+
+fn accept(eyes: &EyesView) -> Guidance {
+    match (&eyes.proposal, &eyes.in_use) {
+        (Some(proposal), _) if proposal.stale.is_some() => {
+            say(proposal.stale.clone().unwrap_or_default()).then("Solve again", Action::Solve)
+        }
+        (Some(proposal), _) => {
+            let verdict = verdict(proposal);
+            if verdict.good {
+                say(verdict.sentence).then("Accept calibration", Action::Accept)
+            } else {
+                say(verdict.sentence).warn().then("Accept it all the same", Action::Accept)
+            }
+        }
+        (None, Some(_)) => {
+            say("The calibration is in use.").then("Look at the eyes", Action::Go(Screen::Live))
+        }
+        (None, None) => {
+            say("No calibration is in use yet.").then("Collect pairs", Action::Go(Screen::Collect))
+        }
+    }
+}
+
+/// Pairs among the collected ones that the next solution leaves out.
+pub fn dropped(eyes: &EyesView) -> usize {
+    eyes.collected.iter().filter(|pair| eyes.dropped.contains(&pair.name)).count()
+}
+
+/// Whether to accept a proposal, in words for an operator.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// Nothing speaks against it.
+    pub good: bool,
+    /// "Good: …" or "Do not accept: …".
+    pub sentence: String,
+}
+
+/// The verdict on a proposal.
+pub fn verdict(proposal: &Proposal) -> Verdict {
+    if let Some(doubt) = proposal.doubts.first() {
+        let more = match proposal.doubts.len() - 1 {
+            0 => String::new(),
+            1 => " One more doubt is listed.".to_owned(),
+            n => format!(" {n} more doubts are listed."),
+        };
+        return Verdict { good: false, sentence: format!("Do not accept: {doubt}{more}") };
+    }
+    let sentence = match &proposal.calibration.summary {
+        Some(summary) => {
+            let pairs = proposal.calibration.per_pair.len();
+            let error_px = summary.cross_validated_px.unwrap_or(summary.rms_stereo_px);
+            let kind = if summary.cross_validated_px.is_some() { "on unseen pairs" } else { "on its own pairs" };
+            format!(
+                "Good: {pairs} pairs agree to {error_px:.3} px {kind}, and the board's squares measure {:.2} mm.",
+                summary.square_mean_m * 1000.0
+            )
+        }
+        None => "Good as far as the file tells: it says nothing about how it was made.".to_owned(),
+    };
+    Verdict { good: true, sentence }
+}

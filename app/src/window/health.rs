@@ -1,0 +1,191 @@
+//! The top line: where the images come from, how everything is, and STOP.
+
+use std::time::Duration;
+
+use egui::{Align, Button, DragValue, Layout, Panel, Popup, Ui};
+use jiff::Timestamp;
+use plumbline_engine::view::{SourceStatus, StepState};
+use plumbline_engine::{EyesCommand, View};
+use plumbline_widgets::buttons::{ArmState, stop_button, stop_pressed};
+use plumbline_widgets::format::{self, Quantity};
+use plumbline_widgets::key_value::{KeyValue, key_value_grid};
+use plumbline_widgets::lamp::{Health, Lamp};
+use plumbline_widgets::theme::{self, space};
+
+use super::actions::{Action, shortcut_text};
+use super::outbox::Outbox;
+use super::steps::Screen;
+use super::{PlumblineWindow, source_menu};
+use crate::panels::source_age;
+
+/// A live picture older than this is worth a warning.
+const OLD: Duration = Duration::from_millis(500);
+/// Lenses move while the cameras get warm; after this long they have settled.
+const WARM_AFTER_MINUTES: f64 = 20.0;
+
+pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let margin = egui::Margin { left: 16, right: 8, top: 6, bottom: 6 };
+    let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(margin);
+    Panel::top("health").frame(frame).show_separator_line(false).show(ui, |ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let stop = stop_button(ui, ArmState::NotConnected);
+            if stop_pressed(&stop) {
+                outbox.act(Action::Stop);
+            }
+            ui.add_space(space::S);
+            view_menu(window, ui, outbox);
+            messages_button(window, ui, outbox);
+            commands_button(ui, outbox);
+            ui.with_layout(Layout::left_to_right(Align::Center).with_main_wrap(true), |ui| {
+                ui.spacing_mut().item_spacing.x = space::XS;
+                ui.heading("Plumbline");
+                ui.add_space(space::S);
+                source_menu::show(&window.view, &window.settings.recent_sources, ui, outbox);
+                eyes_lamps(&window.view, ui, outbox);
+                calibration_lamp(&window.view, ui, outbox);
+                clock_lamp(window, ui, outbox);
+            });
+        });
+    });
+}
+
+fn commands_button(ui: &mut Ui, outbox: &mut Outbox) {
+    let keys = shortcut_text(ui.ctx(), Action::Palette).unwrap_or_default();
+    let button = Button::new("Commands").shortcut_text(keys);
+    if ui.add(button).on_hover_text("Everything that can be done, by name").clicked() {
+        outbox.act(Action::Palette);
+    }
+}
+
+fn messages_button(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let unread = window.notices.unread();
+    let text = if unread == 0 { "Messages".to_owned() } else { format!("Messages ({unread})") };
+    if ui.button(text).on_hover_text("What was said before").clicked() {
+        outbox.act(Action::ToggleNotices);
+    }
+}
+
+fn view_menu(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let dark = ui.visuals().dark_mode;
+    let response = ui.button("View");
+    Popup::menu(&response).show(|ui| {
+        ui.set_min_width(260.0);
+        let mut entry = |ui: &mut Ui, text: &str, action: Action| {
+            let button = Button::new(text).shortcut_text(shortcut_text(ui.ctx(), action).unwrap_or_default());
+            if ui.add(button).clicked() {
+                outbox.act(action);
+                ui.close();
+            }
+        };
+        entry(ui, if dark { "Light theme" } else { "Dark theme" }, Action::ToggleTheme);
+        let inspector = if window.settings.inspector_open { "Hide inspector" } else { "Show inspector" };
+        entry(ui, inspector, Action::ToggleInspector);
+        entry(ui, if window.settings.log_open { "Hide log" } else { "Show log" }, Action::ToggleLog);
+        ui.separator();
+        entry(ui, "Reset the tiles of this screen", Action::ResetArrangement);
+        entry(ui, "Reset the tiles of all screens", Action::ResetAllArrangements);
+        ui.separator();
+        entry(ui, "Save a picture of the window…", Action::SaveWindow);
+        entry(ui, "Frame times", Action::ToggleFrameTimes);
+        entry(ui, "Quit", Action::Quit);
+    });
+}
+
+fn eyes_lamps(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+    let statistics = &view.live.statistics;
+    let rate = statistics.source.per_second.map(format::hertz);
+    let (value, health, reason): (String, Health, Option<String>) = match &view.source.status {
+        SourceStatus::None => ("no source".to_owned(), Health::Off, None),
+        SourceStatus::Opening => ("opening".to_owned(), Health::Working(0.5), None),
+        SourceStatus::Running => (rate.unwrap_or_else(|| "starting".to_owned()), Health::Good, None),
+        SourceStatus::Paused => ("held still".to_owned(), Health::Good, None),
+        SourceStatus::Ended => ("ended".to_owned(), Health::Good, None),
+        SourceStatus::Lost { reason, attempts, .. } => {
+            let tried = format!("{reason}\nTried again {}.", format::count(*attempts as usize, "time"));
+            ("lost".to_owned(), Health::Failed, Some(tried))
+        }
+    };
+    let lamp = Lamp::new("Eyes", &value, health).reason(reason.as_deref()).show(ui);
+    Popup::menu(&lamp).width(300.0).show(|ui| eyes_details(view, ui, outbox));
+
+    if let Some(age) = source_age(view) {
+        let old = age > OLD;
+        let value = if age < Duration::from_secs(10) { format::ms(age.as_secs_f64()) } else { format::age(age) };
+        let reason = old.then_some("No new pair has come: look at the cameras and their cables.");
+        let health = if old { Health::Warning } else { Health::Good };
+        Lamp::new("Age", &value, health).reason(reason).show(ui);
+    }
+}
+
+fn eyes_details(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+    let statistics = &view.live.statistics;
+    ui.label(theme::strong(ui, if view.source.description.is_empty() { "No source" } else { &view.source.description }));
+    let stage = |name: &str, stage: &plumbline_engine::view::StageStatistics| {
+        let rate = stage.per_second.map_or(format::NONE.to_owned(), format::hertz);
+        let busy = stage.busy.map_or(format::NONE.to_owned(), |busy| format::ms(busy.as_secs_f64()));
+        KeyValue::text(name, format!("{rate}, {busy} each, {} skipped", stage.skipped))
+    };
+    let rows = [
+        stage("Pairs", &statistics.source),
+        stage("Rectify and match", &statistics.rectify),
+        stage("Find the board", &statistics.corners),
+        KeyValue::optional("Right after left", Quantity::Time, statistics.time_difference_s)
+            .help("Capture time of the right image minus that of the left"),
+    ];
+    key_value_grid(ui, "eyes details", &rows);
+    if view.source.status != SourceStatus::None && ui.button("Close the source").clicked() {
+        outbox.act(Action::CloseSource);
+        ui.close();
+    }
+}
+
+fn calibration_lamp(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+    let Some(in_use) = &view.eyes.in_use else {
+        let reason = Some("Nothing can be measured without one: go to step 1, Eyes.");
+        if Lamp::new("Calibration", "none", Health::Off).reason(reason).show(ui).clicked() {
+            outbox.act(Action::Go(Screen::Collect));
+        }
+        return;
+    };
+    let made = in_use.calibration.evidence.as_ref().map_or(in_use.accepted, |evidence| evidence.created);
+    let age = Timestamp::now().duration_since(made);
+    let value = format::age(Duration::try_from(age).unwrap_or_default());
+    let (health, reason) = match &view.eyes.step {
+        StepState::Stale { why } => (Health::Warning, Some(why.as_str())),
+        _ => (Health::Good, None),
+    };
+    if Lamp::new("Calibration", &value, health).reason(reason).show(ui).clicked() {
+        outbox.act(Action::Go(Screen::Accept));
+    }
+}
+
+fn clock_lamp(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let since_start = window.started.elapsed();
+    let minutes_on = window.view.eyes.minutes_since_on;
+    let live = window.view.source.replay.is_none() && window.view.source.status == SourceStatus::Running;
+    let minutes = minutes_on.unwrap_or(since_start.as_secs_f64() / 60.0);
+    let warming = live && minutes < WARM_AFTER_MINUTES;
+    let health =
+        if warming { Health::Working((minutes / WARM_AFTER_MINUTES) as f32) } else { Health::Good };
+    let reason = warming
+        .then_some("Lenses move while cameras get warm: calibrate after about 20 minutes, and again if unsure.");
+    let (name, value) = match minutes_on {
+        Some(minutes) => ("Cameras on", format::clock(Duration::from_secs_f64((minutes * 60.0).max(0.0)))),
+        None => ("Since start", format::clock(since_start)),
+    };
+    let lamp = Lamp::new(name, &value, health).reason(reason).show(ui);
+    Popup::menu(&lamp).width(300.0).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
+        ui.label("How long the cameras were on when the pairs were taken is kept with the calibration.");
+        ui.horizontal(|ui| {
+            let label = ui.label("Cameras on for");
+            let mut minutes = minutes_on.unwrap_or(0.0);
+            let drag = DragValue::new(&mut minutes).range(0.0..=10_000.0).max_decimals(0).suffix(" min");
+            if ui.add(drag).labelled_by(label.id).changed() {
+                outbox.send(EyesCommand::MinutesSinceOn(Some(minutes)));
+            }
+            if minutes_on.is_some() && ui.button("Not known").clicked() {
+                outbox.send(EyesCommand::MinutesSinceOn(None));
+            }
+        });
+    });
+}

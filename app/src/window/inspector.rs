@@ -1,0 +1,269 @@
+//! The inspector: what is known about the thing that is looked at or chosen.
+
+use egui::{Panel, ScrollArea, Slider, Ui};
+use plumbline_engine::view::{AimView, SourceStatus};
+use plumbline_engine::{AimChoice, EyesCommand, HeadPose, LiveCommand, View};
+use plumbline_model::{Eye, PairFit};
+use plumbline_widgets::buttons::choice;
+use plumbline_widgets::colormap::Colormap;
+use plumbline_widgets::format::{self, Quantity};
+use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
+use plumbline_widgets::theme::{self, Role, group_heading, space};
+
+use super::outbox::Outbox;
+use super::steps::Screen;
+use super::{PlumblineWindow, hint_text};
+use crate::panels::{PanelState, chosen_fit, probe_readout};
+
+pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let margin = egui::Margin::symmetric(space::M as i8, space::S as i8);
+    let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(margin);
+    let panel = Panel::right("inspector").frame(frame).default_size(248.0).size_range(200.0..=420.0);
+    let (view, screen) = (std::sync::Arc::clone(&window.view), window.settings.screen);
+    let state = &mut window.panels;
+    panel.show_separator_line(false).show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| match screen {
+            Screen::Live => live(ui, &view, state, outbox),
+            Screen::Collect => collecting(ui, &view, state, outbox),
+            Screen::Judge => judged_pair(ui, &view, state, outbox),
+            Screen::Accept => provenance(ui, &view),
+        });
+    });
+}
+
+fn live(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {
+    group_heading(ui, "Measured point");
+    probe_readout(ui, view.live.probe.as_ref());
+    if state.probe.pinned.is_some() && ui.button("Let the point go").clicked() {
+        state.probe.pinned = None;
+    }
+    group_heading(ui, "Picture");
+    let maps = [(Colormap::Viridis, "Viridis"), (Colormap::Spectrum, "Spectrum"), (Colormap::Gray, "Gray")];
+    choice(ui, "Colors of depth", &mut state.live.colormap, &maps);
+    ui.checkbox(&mut state.live.epipolar_lines, "Epipolar lines");
+    if ui.button("Fit colors to what is seen").clicked() {
+        state.live.depth_range_m = None;
+    }
+    if let Some(aim) = &view.live.aim {
+        group_heading(ui, "Aim of the rectified pair");
+        aim_controls(ui, aim, outbox);
+        head_controls(ui, view.live.head, outbox);
+    }
+    source(ui, view);
+}
+
+fn aim_controls(ui: &mut Ui, aim: &AimView, outbox: &mut Outbox) {
+    let by_hand = AimChoice::Manual {
+        pitch_rad: aim.pitch_rad,
+        horizontal_field_of_view_rad: aim.field_of_view_rad.0,
+    };
+    let mut manual = aim.choice != AimChoice::Table;
+    if choice(ui, "Aim", &mut manual, &[(false, "At the table"), (true, "By hand")]) {
+        outbox.send(LiveCommand::Aim(if manual { by_hand } else { AimChoice::Table }));
+    }
+    let mut pitch_deg = aim.pitch_rad.to_degrees();
+    let mut width_deg = aim.field_of_view_rad.0.to_degrees();
+    if manual {
+        let down = ui.add(Slider::new(&mut pitch_deg, -90.0..=90.0).suffix("°").text("down").max_decimals(1));
+        let wide = ui.add(Slider::new(&mut width_deg, 20.0..=150.0).suffix("°").text("wide").max_decimals(1));
+        if down.changed() || wide.changed() {
+            outbox.send(LiveCommand::Aim(AimChoice::Manual {
+                pitch_rad: pitch_deg.to_radians(),
+                horizontal_field_of_view_rad: width_deg.to_radians(),
+            }));
+        }
+    }
+    let (width, height) = aim.size_px;
+    key_value_grid(
+        ui,
+        "aim",
+        &[
+            KeyValue::quantity("Down", Quantity::Angle, aim.pitch_rad),
+            KeyValue::quantity("Wide", Quantity::Angle, aim.field_of_view_rad.0),
+            KeyValue::text("Size", format!("{width}×{height}")).unit("px"),
+            KeyValue::quantity("Focal length", Quantity::Pixels, aim.focal_px)
+                .help("Pixels per radian at the middle of the rectified images"),
+        ],
+    );
+}
+
+fn head_controls(ui: &mut Ui, head: HeadPose, outbox: &mut Outbox) {
+    let mut left_deg = head.head_z_rad.to_degrees();
+    let mut up_deg = head.head_y_rad.to_degrees();
+    ui.add_space(space::XS);
+    ui.label(theme::small(ui, "Head")).on_hover_text("Where the head looked: it places the eyes over the table");
+    let left = ui.add(Slider::new(&mut left_deg, -90.0..=90.0).suffix("°").text("left").max_decimals(1));
+    let up = ui.add(Slider::new(&mut up_deg, -50.0..=25.0).suffix("°").text("up").max_decimals(1));
+    if left.changed() || up.changed() {
+        let head = HeadPose { head_z_rad: left_deg.to_radians(), head_y_rad: up_deg.to_radians() };
+        outbox.send(LiveCommand::Head(head));
+    }
+}
+
+fn source(ui: &mut Ui, view: &View) {
+    if view.source.status == SourceStatus::None {
+        return;
+    }
+    group_heading(ui, "Source");
+    ui.label(&view.source.description);
+    let mut rows = Vec::new();
+    if let Some(frame) = &view.live.raw {
+        if let Some(name) = &frame.name {
+            rows.push(KeyValue::text("Pair", name));
+        }
+        rows.push(KeyValue::text("Size", format!("{}×{}", frame.left.width(), frame.left.height())).unit("px"));
+    }
+    let statistics = &view.live.statistics;
+    rows.push(KeyValue::optional("Rate", Quantity::Rate, statistics.source.per_second));
+    rows.push(
+        KeyValue::optional("Right after left", Quantity::Time, statistics.time_difference_s)
+            .help("Capture time of the right image minus that of the left"),
+    );
+    rows.push(KeyValue::text("Skipped", statistics.rectify.skipped.to_string()).help("Pairs that came faster than they could be rectified and matched"));
+    let latency = statistics.rectify.latency.map(|latency| latency.as_secs_f64());
+    rows.push(KeyValue::optional("Delay of depth", Quantity::Time, latency));
+    if let Some(disparity) = &view.live.disparity {
+        rows.push(KeyValue::quantity("Depth found", Quantity::Ratio, disparity.valid_fraction));
+    }
+    key_value_grid(ui, "source", &rows);
+}
+
+fn collecting(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {
+    let eyes = &view.eyes;
+    group_heading(ui, "Next pair");
+    if let Some(hint) = &eyes.hint {
+        ui.label(hint_text(hint));
+    }
+    match &eyes.ghost {
+        Some(ghost) => {
+            ui.label(format!("Hold the board {}.", ghost.reason));
+            let place = ghost.place;
+            key_value_grid(
+                ui,
+                "ghost",
+                &[
+                    KeyValue::quantity("Distance", Quantity::Depth, place.distance_m),
+                    KeyValue::quantity("Tilt up or down", Quantity::Angle, place.tilt_up_down_rad),
+                    KeyValue::quantity("Tilt left or right", Quantity::Angle, place.tilt_left_right_rad),
+                ],
+            );
+        }
+        None if eyes.collected.is_empty() => {
+            ui.label(theme::weak(ui, "The outline in both eyes will show where to hold the board."));
+        }
+        None => {
+            ui.label(theme::weak(ui, "No place is missing any more."));
+        }
+    }
+    let chosen = state.chosen_pair.clone();
+    let Some(pair) = chosen.and_then(|name| eyes.collected.iter().find(|pair| pair.name == name)) else {
+        return;
+    };
+    group_heading(ui, &format!("Pair {}", pair.name));
+    let count = |eye: Eye| pair.corners(eye).map_or(0, |corners| corners.iter().flatten().count());
+    let mut rows = vec![
+        KeyValue::text("Corners left", count(Eye::Left).to_string()),
+        KeyValue::text("Corners right", count(Eye::Right).to_string()),
+    ];
+    if let Some(place) = pair.place {
+        rows.push(KeyValue::quantity("Distance", Quantity::Depth, place.distance_m));
+        rows.push(KeyValue::quantity("Tilt up or down", Quantity::Angle, place.tilt_up_down_rad));
+        rows.push(KeyValue::quantity("Tilt left or right", Quantity::Angle, place.tilt_left_right_rad));
+    }
+    key_value_grid(ui, "pair", &rows);
+    ui.add_space(space::S);
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("Show the live picture").clicked() {
+            state.chosen_pair = None;
+        }
+        if ui.button("Delete this pair").clicked() {
+            outbox.send(EyesCommand::Delete { pair: pair.name.clone() });
+        }
+    });
+}
+
+fn judged_pair(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {
+    let Some(fit) = chosen_fit(view, state.chosen_pair.as_deref()) else {
+        group_heading(ui, "Pair");
+        ui.label(theme::weak(ui, "Click a bar to see a pair here."));
+        return;
+    };
+    let worst = state.chosen_pair.as_deref() != Some(fit.name.as_str());
+    group_heading(ui, &format!("Pair {}{}", fit.name, if worst { " (the worst)" } else { "" }));
+    let error = fit.left_px.unwrap_or(0.0).max(fit.right_px.unwrap_or(0.0));
+    big_figure(ui, "worse eye", &format::px(error), Role::Ink);
+    ui.add_space(space::S);
+    key_value_grid(ui, "fit", &fit_rows(fit));
+    left_out(ui, fit);
+    ui.add_space(space::S);
+    drop_or_restore(ui, view, fit, outbox);
+}
+
+fn fit_rows(fit: &PairFit) -> [KeyValue; 5] {
+    let distance_m = fit.left_from_board.translation_m().norm();
+    [
+        KeyValue::optional("Left eye", Quantity::Pixels, fit.left_px),
+        KeyValue::optional("Right eye", Quantity::Pixels, fit.right_px),
+        KeyValue::optional("Epipolar", Quantity::Pixels, fit.epipolar_px)
+            .help("Distance of matched corners from each other's epipolar line"),
+        KeyValue::quantity("Distance", Quantity::Depth, distance_m),
+        KeyValue::text("Corners", fit.residuals.len().to_string()),
+    ]
+}
+
+fn left_out(ui: &mut Ui, fit: &PairFit) {
+    let mut corners = fit.residuals.iter().filter(|corner| corner.left_out).peekable();
+    if corners.peek().is_none() {
+        return;
+    }
+    ui.add_space(space::XS);
+    ui.label(theme::small(ui, "Bad corners, left out of the fit"));
+    for corner in corners {
+        ui.label(format!("corner {}, {} eye: {} off", corner.corner + 1, corner.eye, format::px(corner.norm_px())));
+    }
+}
+
+fn drop_or_restore(ui: &mut Ui, view: &View, fit: &PairFit, outbox: &mut Outbox) {
+    let collected = view.eyes.collected.iter().any(|pair| pair.name == fit.name);
+    if !collected {
+        return;
+    }
+    if view.eyes.dropped.contains(&fit.name) {
+        if ui.button(format!("Restore pair {}", fit.name)).clicked() {
+            outbox.send(EyesCommand::RestorePair { pair: fit.name.clone() });
+        }
+    } else if ui.button(format!("Drop pair {}", fit.name)).clicked() {
+        outbox.send(EyesCommand::DropPair { pair: fit.name.clone() });
+    }
+}
+
+fn provenance(ui: &mut Ui, view: &View) {
+    group_heading(ui, "How it was made");
+    let eyes = &view.eyes;
+    let proposed = eyes.proposal.as_ref().map(|proposal| &proposal.calibration);
+    let Some(calibration) = proposed.or(eyes.in_use.as_ref().map(|in_use| &in_use.calibration)) else {
+        ui.label(theme::weak(ui, "There is no calibration yet."));
+        return;
+    };
+    let Some(evidence) = &calibration.evidence else {
+        ui.label("The file says nothing about how it was made.");
+        return;
+    };
+    let created = evidence.created.to_zoned(jiff::tz::TimeZone::system()).strftime("%Y-%m-%d %H:%M").to_string();
+    let minutes = evidence.minutes_since_on.map_or("not known".to_owned(), |minutes| format!("{minutes:.0} min"));
+    key_value_grid(
+        ui,
+        "evidence",
+        &[
+            KeyValue::text("Solved", created),
+            KeyValue::text("Cameras on for", minutes),
+            KeyValue::text("Pairs offered", evidence.observations.len().to_string()),
+            KeyValue::text("Pairs dropped", evidence.dropped_pairs.len().to_string()),
+        ],
+    );
+    for text in [evidence.board.to_string(), evidence.source.clone(), evidence.software.clone()] {
+        if !text.is_empty() {
+            ui.label(theme::weak(ui, text));
+        }
+    }
+}

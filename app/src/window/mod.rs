@@ -1,0 +1,251 @@
+//! The window: its frame, and what holds the panels together.
+//!
+//! Once per frame it takes the engine's newest view, draws it, and hands over what the operator
+//! asked for. It computes nothing, opens no file and waits for nothing.
+
+mod actions;
+mod apply;
+mod ask;
+mod backend;
+mod dialogs;
+mod drop;
+mod frame_time;
+mod frame_times_overlay;
+mod guidance;
+mod health;
+mod inspector;
+mod launch;
+mod log_lines;
+mod log_panel;
+mod notices;
+mod outbox;
+mod palette;
+mod rail;
+pub mod renderer;
+mod script;
+mod settings;
+mod sheet;
+mod source_menu;
+mod status_line;
+mod steps;
+mod tiles;
+mod transport;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use plumbline_engine::{JobId, View};
+
+pub use actions::{Action, format_name};
+pub use backend::Backend;
+pub use guidance::{Verdict, hint_text, verdict};
+pub use launch::{LaunchOptions, launch};
+pub use log_lines::{LogStore, start as start_log};
+pub use outbox::Outbox;
+pub use script::ScriptStep;
+pub use settings::{ThemeChoice, WindowSettings};
+pub use steps::{Pane, Screen};
+
+use crate::panels::PanelState;
+use ask::Ask;
+use dialogs::Dialogs;
+use frame_time::FrameTimes;
+use log_panel::LogPanel;
+use notices::NoticeList;
+use palette::Palette;
+use script::Script;
+
+/// What the window is made with.
+pub struct WindowOptions {
+    /// What it remembers.
+    pub settings: WindowSettings,
+    /// Where that is kept; `None` forgets it.
+    pub settings_file: Option<PathBuf>,
+    /// Whether the desktop's file dialogs are used.
+    pub native_dialogs: bool,
+    /// The program's log.
+    pub log: Arc<LogStore>,
+    /// Things to do without an operator, for pictures and measurements.
+    pub script: Vec<ScriptStep>,
+    /// Where the frame times are written at exit, as JSON.
+    pub frame_report: Option<PathBuf>,
+    /// Said in the frame times overlay and in the report.
+    pub renderer: String,
+}
+
+impl Default for WindowOptions {
+    fn default() -> Self {
+        Self {
+            settings: WindowSettings::default(),
+            settings_file: None,
+            native_dialogs: false,
+            log: Arc::default(),
+            script: Vec::new(),
+            frame_report: None,
+            renderer: "none".to_owned(),
+        }
+    }
+}
+
+/// The window.
+pub struct PlumblineWindow {
+    backend: Box<dyn Backend>,
+    view: Arc<View>,
+    settings: WindowSettings,
+    saved: WindowSettings,
+    settings_file: Option<PathBuf>,
+    panels: PanelState,
+    dialogs: Dialogs,
+    ask: Option<Ask>,
+    palette: Palette,
+    notices: NoticeList,
+    log: LogPanel,
+    frame_times: FrameTimes,
+    frame_times_open: bool,
+    frame_report: Option<PathBuf>,
+    renderer: String,
+    script: Script,
+    started: Instant,
+    stopped_at: Option<Instant>,
+    pending_picture: Option<Arc<egui::ColorImage>>,
+    dismissed: Vec<JobId>,
+}
+
+impl PlumblineWindow {
+    /// A window over a running engine.
+    pub fn new(ctx: &egui::Context, backend: Box<dyn Backend>, options: WindowOptions) -> Self {
+        plumbline_widgets::theme::apply(ctx, options.settings.theme.preference());
+        ctx.set_zoom_factor(options.settings.zoom);
+        let view = backend.view();
+        Self {
+            backend,
+            view,
+            saved: options.settings.clone(),
+            settings: options.settings,
+            settings_file: options.settings_file,
+            panels: PanelState::default(),
+            dialogs: Dialogs::new(options.native_dialogs, ctx.clone()),
+            ask: None,
+            palette: Palette::default(),
+            notices: NoticeList::default(),
+            log: LogPanel::new(options.log),
+            frame_times: FrameTimes::default(),
+            frame_times_open: false,
+            frame_report: options.frame_report,
+            renderer: options.renderer,
+            script: Script::new(options.script),
+            started: Instant::now(),
+            stopped_at: None,
+            pending_picture: None,
+            dismissed: Vec::new(),
+        }
+    }
+
+    /// The snapshot that the last frame drew.
+    pub fn view(&self) -> &Arc<View> {
+        &self.view
+    }
+
+    fn before_frame(&mut self, ctx: &egui::Context) {
+        self.view = self.backend.view();
+        if let Some(answer) = self.dialogs.poll() {
+            self.take_answer(ctx, answer);
+        }
+        self.notices.take(&self.view.notices);
+        self.log.refresh(self.settings.log_open);
+        self.follow_the_work();
+        let next = self.script.next(&self.view, ctx);
+        if let Some(step) = next {
+            self.do_script_step(ctx, step);
+        }
+        // Ages and clocks move on although nothing else does.
+        ctx.request_repaint_after(Duration::from_secs(1));
+    }
+
+    fn draw(&mut self, ui: &mut egui::Ui) {
+        let ctx = ui.ctx().clone();
+        let escape_pressed = ctx.input(|input| input.key_pressed(egui::Key::Escape));
+        let mut outbox = Outbox::default();
+        for action in actions::take_shortcuts(&ctx) {
+            outbox.act(action);
+        }
+        self.draw_frame(ui, &mut outbox);
+        self.draw_sheets(&ctx, escape_pressed, &mut outbox);
+        self.take_drops(&ctx, &mut outbox);
+        self.carry_out(&ctx, outbox);
+        self.save_settings_if_changed(&ctx);
+    }
+
+    fn draw_frame(&mut self, ui: &mut egui::Ui, outbox: &mut Outbox) {
+        health::show(self, ui, outbox);
+        status_line::show(self, ui, outbox);
+        if self.settings.log_open {
+            self.log.show(ui);
+        }
+        rail::show(self, ui, outbox);
+        if self.settings.inspector_open {
+            inspector::show(self, ui, outbox);
+        }
+        if self.view.source.replay.is_some() {
+            transport::show(&self.view, ui, outbox);
+        }
+        tiles::show(self, ui, outbox);
+    }
+
+    fn draw_sheets(&mut self, ctx: &egui::Context, escape_pressed: bool, outbox: &mut Outbox) {
+        if let Some(action) = self.palette.show(ctx, &self.view, escape_pressed) {
+            outbox.act(action);
+        }
+        self.notices.show_new(ctx);
+        self.notices.show_history(ctx, escape_pressed, outbox);
+        self.show_ask(ctx, escape_pressed, outbox);
+        if self.frame_times_open {
+            frame_times_overlay::show(ctx, &self.frame_times, &self.renderer);
+        }
+    }
+
+    fn take_drops(&mut self, ctx: &egui::Context, outbox: &mut Outbox) {
+        let (hovered, dropped) = ctx.input(|input| {
+            let hovered: Vec<PathBuf> =
+                input.raw.hovered_files.iter().filter_map(|file| file.path.clone()).collect();
+            let dropped: Vec<PathBuf> =
+                input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect();
+            (hovered, dropped)
+        });
+        if !hovered.is_empty() {
+            drop::paint_preview(ctx, &drop::preview(&hovered));
+        }
+        if !dropped.is_empty() {
+            match drop::command_for(&dropped) {
+                Ok(command) => outbox.send(command),
+                Err(why) => outbox.send(apply::warning(why)),
+            }
+        }
+    }
+}
+
+impl eframe::App for PlumblineWindow {
+    fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
+        if let Some(seconds) = frame.info().cpu_usage {
+            self.frame_times.add(Duration::from_secs_f32(seconds.max(0.0)));
+        }
+        self.before_frame(ctx);
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.draw(ui);
+    }
+
+    fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
+        self.save_settings();
+        self.write_frame_report();
+    }
+}
+
+/// The one button that stands out.
+pub(crate) fn primary_button<'a>(ui: &egui::Ui, text: impl Into<String>) -> egui::Button<'a> {
+    let tokens = plumbline_widgets::theme::tokens(ui);
+    let style = plumbline_widgets::theme::strong_style(ui);
+    egui::Button::new(egui::RichText::new(text).text_style(style).color(tokens.on_accent)).fill(tokens.accent)
+}

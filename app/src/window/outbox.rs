@@ -1,0 +1,48 @@
+//! What the panels ask for during a frame. Panels change nothing themselves: all of it is
+//! carried out after the frame, in one place.
+
+use plumbline_engine::{Command, ExportFormat, Exported, ProbePoint, Products};
+use plumbline_widgets::texture::Picture;
+
+use super::actions::Action;
+
+/// Collected while a frame is drawn.
+#[derive(Default)]
+pub struct Outbox {
+    /// For the engine.
+    pub commands: Vec<Command>,
+    /// For the window.
+    pub actions: Vec<Action>,
+    /// Live products that somebody looks at in this frame.
+    pub wanted: Products,
+    /// The point under the mouse, if it is over an image that can be measured.
+    pub probe: Option<ProbePoint>,
+    /// A picture to be saved (asks where to).
+    pub save: Option<Picture>,
+    /// A picture to be put on the clipboard.
+    pub copy: Option<Picture>,
+}
+
+impl Outbox {
+    /// Hands a command to the engine.
+    pub fn send(&mut self, command: impl Into<Command>) {
+        self.commands.push(command.into());
+    }
+
+    /// Asks the window for something.
+    pub fn act(&mut self, action: Action) {
+        self.actions.push(action);
+    }
+
+    /// Asks for a calibration to be written.
+    pub fn export(&mut self, what: Exported, format: ExportFormat) {
+        self.act(Action::Export(what, format));
+    }
+
+    /// Says that a live product is looked at.
+    pub fn want(&mut self, products: Products) {
+        self.wanted.rectified |= products.rectified;
+        self.wanted.disparity |= products.disparity;
+        self.wanted.corners |= products.corners;
+    }
+}

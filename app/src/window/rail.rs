@@ -1,0 +1,148 @@
+//! The rail: the steps in the order of work, and how far each one is.
+
+use egui::{Panel, TextStyle, Ui};
+use plumbline_engine::view::{EyesView, JobState, StepState as EngineStep};
+use plumbline_engine::View;
+use plumbline_widgets::format;
+use plumbline_widgets::rail::{RailStep, StepState};
+use plumbline_widgets::theme::{self, space};
+
+use super::actions::Action;
+use super::guidance::dropped;
+use super::outbox::Outbox;
+use super::steps::Screen;
+use super::PlumblineWindow;
+
+const WIDTH: f32 = 168.0;
+
+pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let screen = window.settings.screen;
+    let view = &window.view;
+    let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(space::S);
+    Panel::left("rail").frame(frame).resizable(false).exact_size(WIDTH).show_separator_line(false).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        if RailStep::new("Live", StepState::Always).selected(screen == Screen::Live).show(ui).clicked() {
+            outbox.act(Action::Go(Screen::Live));
+        }
+        let step = RailStep::new("Eyes", eyes_state(view)).number(1).selected(false).show(ui);
+        if step.clicked() {
+            outbox.act(Action::Go(eyes_screen(&view.eyes)));
+        }
+        for part in Part::ALL {
+            part_row(ui, view, part, screen, outbox);
+        }
+    });
+}
+
+/// The order of work within the step "Eyes".
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    Board,
+    Collect,
+    Solve,
+    Judge,
+    Compare,
+    Accept,
+}
+
+impl Part {
+    const ALL: [Self; 6] = [Self::Board, Self::Collect, Self::Solve, Self::Judge, Self::Compare, Self::Accept];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Board => "Board",
+            Self::Collect => "Collect",
+            Self::Solve => "Solve",
+            Self::Judge => "Judge",
+            Self::Compare => "Compare",
+            Self::Accept => "Accept",
+        }
+    }
+
+    fn screen(self) -> Screen {
+        match self {
+            Self::Board | Self::Collect | Self::Solve => Screen::Collect,
+            Self::Judge => Screen::Judge,
+            Self::Compare | Self::Accept => Screen::Accept,
+        }
+    }
+
+    /// How far it is, in a word or a number.
+    fn value(self, eyes: &EyesView) -> String {
+        let fresh = eyes.proposal.as_ref().filter(|proposal| proposal.stale.is_none());
+        match self {
+            Self::Board => {
+                let (columns, rows) = eyes.board.squares();
+                format!("{columns}×{rows}, {}", format::mm(eyes.board.square_m))
+            }
+            Self::Collect if eyes.collected.is_empty() => String::new(),
+            Self::Collect => format::count(eyes.collected.len() - dropped(eyes), "pair"),
+            Self::Solve if eyes.solving.is_some() => "running".to_owned(),
+            Self::Solve if eyes.proposal.is_some() && fresh.is_none() => "again".to_owned(),
+            Self::Solve | Self::Judge => fresh
+                .and_then(|proposal| proposal.calibration.summary.as_ref())
+                .map(|summary| match self {
+                    Self::Solve => format::px(summary.rms_stereo_px),
+                    _ => summary.cross_validated_px.map_or_else(String::new, format::px),
+                })
+                .unwrap_or_default(),
+            Self::Compare => fresh
+                .and_then(|proposal| proposal.difference.as_ref()?.median_m())
+                .map_or_else(String::new, format::mm),
+            Self::Accept if eyes.proposal.is_some() => "open".to_owned(),
+            Self::Accept if eyes.in_use.is_some() => "in use".to_owned(),
+            Self::Accept => String::new(),
+        }
+    }
+}
+
+fn part_row(ui: &mut Ui, view: &View, part: Part, screen: Screen, outbox: &mut Outbox) {
+    let tokens = theme::tokens(ui);
+    let here = part.screen() == screen;
+    let (rect, response) =
+        ui.allocate_exact_size(egui::vec2(ui.available_width(), 24.0), egui::Sense::click());
+    let value = part.value(&view.eyes);
+    response.widget_info(|| {
+        let mut info = egui::WidgetInfo::selected(egui::Role::Tab, true, here, part.name());
+        info.current_text_value = Some(value.clone());
+        info
+    });
+    if response.hovered() {
+        ui.painter().rect_filled(rect, 4.0, tokens.raised);
+    }
+    if here {
+        let line = egui::Rect::from_min_size(rect.left_top() + egui::vec2(14.0, 4.0), egui::vec2(2.0, 16.0));
+        ui.painter().rect_filled(line, 1.0, tokens.text_strong);
+    }
+    let y = rect.center().y;
+    let body = TextStyle::Body.resolve(ui.style());
+    let small = TextStyle::Small.resolve(ui.style());
+    let color = if here { tokens.text_strong } else { tokens.text };
+    ui.painter().text(egui::pos2(rect.left() + 28.0, y), egui::Align2::LEFT_CENTER, part.name(), body, color);
+    ui.painter().text(egui::pos2(rect.right() - 8.0, y), egui::Align2::RIGHT_CENTER, value, small, tokens.text_weak);
+    if response.clicked() {
+        outbox.act(Action::Go(part.screen()));
+    }
+}
+
+/// Where clicking the step leads: to where the work is.
+fn eyes_screen(eyes: &EyesView) -> Screen {
+    match &eyes.proposal {
+        Some(_) => Screen::Judge,
+        None if eyes.in_use.is_some() && eyes.collected.is_empty() => Screen::Accept,
+        None => Screen::Collect,
+    }
+}
+
+fn eyes_state(view: &View) -> StepState<'_> {
+    let solving = view.eyes.solving.and_then(|id| view.jobs.iter().find(|job| job.id == id));
+    if let Some(JobState::Running { fraction, .. }) = solving.map(|job| &job.state) {
+        return StepState::Running(*fraction as f32);
+    }
+    match &view.eyes.step {
+        EngineStep::NotDone => StepState::NotDone,
+        EngineStep::Running => StepState::Running(0.5),
+        EngineStep::Done => StepState::Done,
+        EngineStep::Stale { why } => StepState::Stale(why),
+    }
+}

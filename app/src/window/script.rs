@@ -1,0 +1,76 @@
+//! Doing things in the window without an operator: pictures for the documentation and
+//! measurements are made by commands, not by hand.
+
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use plumbline_engine::View;
+use plumbline_engine::view::SourceStatus;
+
+use super::actions::Action;
+
+/// One thing to do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ScriptStep {
+    /// As if its button were pressed.
+    Act(Action),
+    /// Chooses the pair with this place in the list.
+    ChoosePair(usize),
+    /// Keeps measuring at this pixel of the raw left image.
+    Probe([f64; 2]),
+    /// Lets time pass.
+    Wait(Duration),
+    /// Saves a picture of the window.
+    Picture(PathBuf),
+    /// Closes the window.
+    Quit,
+}
+
+/// The steps that are left.
+#[derive(Debug)]
+pub(super) struct Script {
+    steps: VecDeque<ScriptStep>,
+    not_before: Instant,
+    quiet_since: Option<Instant>,
+    pub(super) waiting_for_picture: Arc<AtomicBool>,
+}
+
+/// How long nothing may be running before the next step is taken.
+const QUIET: Duration = Duration::from_millis(700);
+
+impl Script {
+    pub(super) fn new(steps: Vec<ScriptStep>) -> Self {
+        let steps = steps.into();
+        Self { steps, not_before: Instant::now(), quiet_since: None, waiting_for_picture: Arc::default() }
+    }
+
+    /// The next step, once everything before it has come to rest.
+    pub(super) fn next(&mut self, view: &View, ctx: &egui::Context) -> Option<ScriptStep> {
+        self.steps.front()?;
+        ctx.request_repaint_after(Duration::from_millis(50));
+        let now = Instant::now();
+        let busy = view.running_job().is_some()
+            || view.source.status == SourceStatus::Opening
+            || self.waiting_for_picture.load(Ordering::Relaxed)
+            || now < self.not_before;
+        if busy {
+            self.quiet_since = None;
+            return None;
+        }
+        if now.duration_since(*self.quiet_since.get_or_insert(now)) < QUIET {
+            return None;
+        }
+        self.quiet_since = None;
+        let step = self.steps.pop_front();
+        match step {
+            Some(ScriptStep::Wait(time)) => {
+                self.not_before = now + time;
+                None
+            }
+            step => step,
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! What the window remembers from one start to the next.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use egui_tiles::Tree;
+use plumbline_engine::SourceSpec;
+use serde::{Deserialize, Serialize};
+
+use super::steps::{Pane, Screen, default_arrangement};
+
+/// Dark, light, or as the desktop says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum ThemeChoice {
+    /// As the desktop says.
+    System,
+    /// Light on dark.
+    #[default]
+    Dark,
+    /// Dark on light.
+    Light,
+}
+
+impl ThemeChoice {
+    /// For egui.
+    pub fn preference(self) -> egui::ThemePreference {
+        match self {
+            Self::System => egui::ThemePreference::System,
+            Self::Dark => egui::ThemePreference::Dark,
+            Self::Light => egui::ThemePreference::Light,
+        }
+    }
+}
+
+/// Everything that is kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct WindowSettings {
+    /// Colors.
+    pub theme: ThemeChoice,
+    /// The screen that was open.
+    pub screen: Screen,
+    /// Tiles per screen, as the operator arranged them.
+    pub arrangements: BTreeMap<Screen, Tree<Pane>>,
+    /// Whether the inspector is open.
+    pub inspector_open: bool,
+    /// Whether the log is open.
+    pub log_open: bool,
+    /// Inner size of the window, points.
+    pub size: [f32; 2],
+    /// Scale of everything on screen.
+    pub zoom: f32,
+    /// Sources opened before, newest first.
+    pub recent_sources: VecDeque<SourceSpec>,
+}
+
+impl Default for WindowSettings {
+    fn default() -> Self {
+        Self {
+            theme: ThemeChoice::default(),
+            screen: Screen::default(),
+            arrangements: BTreeMap::new(),
+            inspector_open: true,
+            log_open: false,
+            size: [1440.0, 900.0],
+            zoom: 1.0,
+            recent_sources: VecDeque::new(),
+        }
+    }
+}
+
+impl WindowSettings {
+    /// How many sources are remembered.
+    pub const RECENT_SOURCES: usize = 8;
+
+    /// Tiles of a screen; the default ones until they are changed.
+    pub fn arrangement(&mut self, screen: Screen) -> &mut Tree<Pane> {
+        self.arrangements.entry(screen).or_insert_with(|| default_arrangement(screen))
+    }
+
+    /// Puts a source first among the recent ones.
+    pub fn remember_source(&mut self, spec: &SourceSpec) {
+        self.recent_sources.retain(|known| known != spec);
+        self.recent_sources.push_front(spec.clone());
+        self.recent_sources.truncate(Self::RECENT_SOURCES);
+    }
+
+    /// Reads the file; a missing file gives the defaults.
+    pub fn load(file: &Path) -> Result<Self, SettingsError> {
+        let text = match std::fs::read_to_string(file) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Self::default()),
+            Err(error) => return Err(SettingsError::Read { file: file.to_owned(), error }),
+        };
+        serde_json::from_str(&text).map_err(|error| SettingsError::Parse { file: file.to_owned(), error })
+    }
+
+    /// Writes the file under another name first, so that a crash leaves the old one.
+    pub fn save(&self, file: &Path) -> std::io::Result<()> {
+        if let Some(folder) = file.parent() {
+            std::fs::create_dir_all(folder)?;
+        }
+        let new = file.with_extension("json.new");
+        let mut out = std::fs::File::create(&new)?;
+        out.write_all(&serde_json::to_vec_pretty(self)?)?;
+        out.sync_all()?;
+        std::fs::rename(new, file)
+    }
+}
+
+/// The settings could not be read; the defaults are used.
+#[derive(Debug, thiserror::Error)]
+pub enum SettingsError {
+    /// Not readable.
+    #[error("The window's settings in {} cannot be read ({error}); it starts with the default layout.", file.display())]
+    Read {
+        /// Which file.
+        file: PathBuf,
+        /// What the system said.
+        error: std::io::Error,
+    },
+    /// Not what was expected.
+    #[error(
+        "The window's settings in {} are not from this version ({error}); it starts with the default layout.",
+        file.display()
+    )]
+    Parse {
+        /// Which file.
+        file: PathBuf,
+        /// Where and what.
+        error: serde_json::Error,
+    },
+}
+
+/// Where the settings are kept: `folder` if given, else the user's configuration folder.
+pub fn settings_file(folder: Option<&Path>) -> Option<PathBuf> {
+    let folder = match folder {
+        Some(folder) => folder.to_owned(),
+        None => directories::ProjectDirs::from("", "", "plumbline")?.config_dir().to_owned(),
+    };
+    Some(folder.join("window.json"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_survive_a_restart() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = folder.path().join("deeper").join("window.json");
+        let mut settings = WindowSettings { theme: ThemeChoice::Light, ..Default::default() };
+        settings.arrangement(Screen::Judge);
+        settings.remember_source(&SourceSpec::Cameras { left: 0, right: 2 });
+        settings.save(&file).expect("a folder that can be written");
+        assert_eq!(WindowSettings::load(&file).expect("what was written can be read"), settings);
+    }
+
+    #[test]
+    fn a_missing_file_is_the_first_start_and_a_broken_one_is_said() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = folder.path().join("window.json");
+        assert_eq!(WindowSettings::load(&file).expect("defaults"), WindowSettings::default());
+        std::fs::write(&file, "{\"screen\": \"moon\"}").expect("a folder that can be written");
+        let message = WindowSettings::load(&file).expect_err("no such screen").to_string();
+        assert!(message.contains("window.json") && message.contains("default layout"), "{message}");
+    }
+
+    #[test]
+    fn recent_sources_are_few_and_the_newest_comes_first() {
+        let mut settings = WindowSettings::default();
+        for right in 0..20 {
+            settings.remember_source(&SourceSpec::Cameras { left: 0, right });
+        }
+        settings.remember_source(&SourceSpec::Cameras { left: 0, right: 17 });
+        assert_eq!(settings.recent_sources.len(), WindowSettings::RECENT_SOURCES);
+        assert_eq!(settings.recent_sources[0], SourceSpec::Cameras { left: 0, right: 17 });
+        assert_eq!(settings.recent_sources[1], SourceSpec::Cameras { left: 0, right: 19 });
+    }
+}

@@ -1,0 +1,79 @@
+//! The bottom line: what is happening and what to do next, with the one button that does it.
+
+use egui::{Align, Layout, Panel, Ui};
+use plumbline_engine::view::{JobState, JobView};
+use plumbline_engine::{JobCommand, View};
+use plumbline_widgets::buttons::primary_button;
+use plumbline_widgets::progress::{ProgressAction, ProgressLine};
+use plumbline_widgets::theme::space;
+
+use super::actions::{Action, shortcut_text};
+use super::guidance::{Guidance, guidance};
+use super::outbox::Outbox;
+use super::PlumblineWindow;
+
+const HEIGHT: f32 = 52.0;
+
+pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let margin = egui::Margin { left: 16, right: 8, top: 8, bottom: 8 };
+    let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(margin);
+    let bottom = Panel::bottom("bottom line").frame(frame).exact_size(HEIGHT).show_separator_line(false);
+    bottom.show(ui, |ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| contents(window, ui, outbox));
+    });
+}
+
+fn contents(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let view = &window.view;
+    if let Some(job) = view.running_job() {
+        return running(job, ui, outbox);
+    }
+    let guidance = guidance(view, window.settings.screen);
+    next_button(view, &guidance, ui, outbox);
+    if let Some((job, reason)) = failed_job(view) {
+        if ui.button("Dismiss").clicked() {
+            outbox.send(JobCommand::Dismiss(job.id));
+        }
+        line(ProgressLine::warning(&format!("{}: {reason}", job.title)), ui, outbox);
+    } else if guidance.warning {
+        line(ProgressLine::warning(&guidance.sentence), ui, outbox);
+    } else {
+        line(ProgressLine::idle(&guidance.sentence), ui, outbox);
+    }
+}
+
+fn running(job: &JobView, ui: &mut Ui, outbox: &mut Outbox) {
+    let JobState::Running { fraction, doing, remaining, cancelling } = &job.state else { return };
+    let sentence = format!("{}: {doing}", job.title);
+    let progress = ProgressLine::job(&sentence, *fraction).time_left(*remaining).cancelling(*cancelling);
+    if line(progress, ui, outbox) == Some(ProgressAction::Cancel) {
+        outbox.send(JobCommand::Cancel(job.id));
+    }
+}
+
+fn line(progress: ProgressLine<'_>, ui: &mut Ui, outbox: &mut Outbox) -> Option<ProgressAction> {
+    let action = ui.with_layout(Layout::left_to_right(Align::Center), |ui| progress.show(ui)).inner;
+    if action == Some(ProgressAction::OpenLog) {
+        outbox.act(Action::ToggleLog);
+    }
+    action
+}
+
+fn next_button(view: &View, guidance: &Guidance, ui: &mut Ui, outbox: &mut Outbox) {
+    let Some(next) = &guidance.next else { return };
+    let refusal = next.action.refusal(view);
+    let keys = shortcut_text(ui.ctx(), Action::Next).unwrap_or_default();
+    let button = ui.add_enabled_ui(refusal.is_none(), |ui| primary_button(ui, &next.label, None)).inner;
+    if button.on_hover_text(format!("{keys} does the same")).clicked() {
+        outbox.act(next.action);
+    }
+    ui.add_space(space::S);
+}
+
+fn failed_job(view: &View) -> Option<(&JobView, &str)> {
+    view.jobs.iter().rev().find_map(|job| match &job.state {
+        JobState::Failed { reason } => Some((job, reason.as_str())),
+        JobState::Panicked { message } => Some((job, message.as_str())),
+        _ => None,
+    })
+}

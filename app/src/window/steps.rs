@@ -1,0 +1,202 @@
+//! The steps of the work, the arrangement of tiles that each one opens, and the panes in them.
+
+use egui_tiles::{Container, Linear, LinearDir, TileId, Tiles, Tree};
+use serde::{Deserialize, Serialize};
+
+/// A screen: one arrangement of tiles, kept as the operator leaves it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Screen {
+    /// Looking at the eyes.
+    #[default]
+    Live,
+    /// Calibrating the eyes: choosing the board, collecting pairs, solving.
+    Collect,
+    /// Calibrating the eyes: judging what was solved.
+    Judge,
+    /// Calibrating the eyes: comparing with what is in use, accepting, files.
+    Accept,
+}
+
+impl Screen {
+    /// All of them, in the order of work.
+    pub const ALL: [Self; 4] = [Self::Live, Self::Collect, Self::Judge, Self::Accept];
+
+    /// Whether it belongs to the step "Eyes".
+    pub fn is_eyes(self) -> bool {
+        self != Self::Live
+    }
+}
+
+/// What a tile shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Pane {
+    /// The left eye as its camera delivers it.
+    LeftEye,
+    /// The right eye.
+    RightEye,
+    /// The aimed pair with its epipolar lines.
+    Rectified,
+    /// The aimed pair in red and cyan.
+    Anaglyph,
+    /// The aimed pair in turns.
+    Blink,
+    /// Disparity as colors.
+    Disparity,
+    /// Distance as colors.
+    Depth,
+    /// Which board, and the lens model.
+    Board,
+    /// Where the board has been.
+    Coverage,
+    /// The collected pairs.
+    Pairs,
+    /// Error of every pair and eye.
+    PairErrors,
+    /// The chosen pair with what is left of its errors.
+    Residuals,
+    /// The verdict and its figures.
+    Figures,
+    /// How well places on the table are known.
+    Uncertainty,
+    /// How far places on the table move against the calibration in use.
+    Difference,
+    /// Both calibrations side by side.
+    Comparison,
+    /// Reading and writing calibration files; earlier calibrations.
+    Files,
+}
+
+impl Pane {
+    /// Its title.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::LeftEye => "Left eye",
+            Self::RightEye => "Right eye",
+            Self::Rectified => "Rectified pair",
+            Self::Anaglyph => "Anaglyph",
+            Self::Blink => "Blink",
+            Self::Disparity => "Disparity",
+            Self::Depth => "Depth",
+            Self::Board => "Board",
+            Self::Coverage => "Coverage",
+            Self::Pairs => "Pairs",
+            Self::PairErrors => "Error per pair",
+            Self::Residuals => "Residuals",
+            Self::Figures => "Verdict",
+            Self::Uncertainty => "Uncertainty at the table",
+            Self::Difference => "Difference at the table",
+            Self::Comparison => "Comparison",
+            Self::Files => "Files",
+        }
+    }
+}
+
+/// The arrangement that a screen starts with.
+pub fn default_arrangement(screen: Screen) -> Tree<Pane> {
+    let mut tiles = Tiles::default();
+    let root = match screen {
+        Screen::Live => live(&mut tiles),
+        Screen::Collect => collect(&mut tiles),
+        Screen::Judge => judge(&mut tiles),
+        Screen::Accept => accept(&mut tiles),
+    };
+    Tree::new(egui::Id::unique(("tiles", screen)), root, tiles)
+}
+
+fn live(tiles: &mut Tiles<Pane>) -> TileId {
+    let left = tabs(tiles, &[Pane::LeftEye]);
+    let right = tabs(tiles, &[Pane::RightEye]);
+    let rectified = tabs(tiles, &[Pane::Rectified, Pane::Anaglyph, Pane::Blink]);
+    let depth = tabs(tiles, &[Pane::Depth, Pane::Disparity]);
+    let top = row(tiles, &[(left, 1.0), (right, 1.0)]);
+    let bottom = row(tiles, &[(rectified, 1.0), (depth, 1.0)]);
+    column(tiles, &[(top, 1.0), (bottom, 1.0)])
+}
+
+fn collect(tiles: &mut Tiles<Pane>) -> TileId {
+    let left = tabs(tiles, &[Pane::LeftEye]);
+    let right = tabs(tiles, &[Pane::RightEye]);
+    let board = tabs(tiles, &[Pane::Board]);
+    let coverage = tabs(tiles, &[Pane::Coverage]);
+    let pairs = tabs(tiles, &[Pane::Pairs]);
+    let top = row(tiles, &[(left, 1.0), (right, 1.0)]);
+    let bottom = row(tiles, &[(board, 0.9), (coverage, 1.3), (pairs, 0.9)]);
+    column(tiles, &[(top, 1.15), (bottom, 1.0)])
+}
+
+fn judge(tiles: &mut Tiles<Pane>) -> TileId {
+    let figures = tabs(tiles, &[Pane::Figures]);
+    let errors = tabs(tiles, &[Pane::PairErrors]);
+    let residuals = tabs(tiles, &[Pane::Residuals]);
+    let uncertainty = tabs(tiles, &[Pane::Uncertainty]);
+    let left = column(tiles, &[(figures, 1.35), (uncertainty, 1.0)]);
+    let right = column(tiles, &[(errors, 1.0), (residuals, 1.25)]);
+    row(tiles, &[(left, 1.0), (right, 1.55)])
+}
+
+fn accept(tiles: &mut Tiles<Pane>) -> TileId {
+    let comparison = tabs(tiles, &[Pane::Comparison]);
+    let difference = tabs(tiles, &[Pane::Difference]);
+    let uncertainty = tabs(tiles, &[Pane::Uncertainty]);
+    let files = tabs(tiles, &[Pane::Files]);
+    let left = column(tiles, &[(comparison, 1.0), (files, 1.0)]);
+    let right = column(tiles, &[(difference, 1.0), (uncertainty, 1.0)]);
+    row(tiles, &[(left, 1.0), (right, 1.2)])
+}
+
+fn tabs(tiles: &mut Tiles<Pane>, panes: &[Pane]) -> TileId {
+    let children = panes.iter().map(|&pane| tiles.insert_pane(pane)).collect();
+    tiles.insert_tab_tile(children)
+}
+
+fn row(tiles: &mut Tiles<Pane>, children: &[(TileId, f32)]) -> TileId {
+    linear(tiles, LinearDir::Horizontal, children)
+}
+
+fn column(tiles: &mut Tiles<Pane>, children: &[(TileId, f32)]) -> TileId {
+    linear(tiles, LinearDir::Vertical, children)
+}
+
+fn linear(tiles: &mut Tiles<Pane>, direction: LinearDir, children: &[(TileId, f32)]) -> TileId {
+    let mut container = Linear::new(direction, children.iter().map(|(id, _)| *id).collect());
+    for (id, share) in children {
+        container.shares.set_share(*id, *share);
+    }
+    tiles.insert_container(Container::Linear(container))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_arrangement_survives_being_saved() {
+        for screen in Screen::ALL {
+            let tree = default_arrangement(screen);
+            let text = serde_json::to_string(&tree).expect("trees are plain data");
+            let back: Tree<Pane> = serde_json::from_str(&text).expect("what was written can be read");
+            assert_eq!(back, tree);
+        }
+    }
+
+    #[test]
+    fn no_pane_stands_twice_on_a_screen() {
+        for screen in Screen::ALL {
+            let tree = default_arrangement(screen);
+            let mut panes: Vec<Pane> = tree
+                .tiles
+                .tiles()
+                .filter_map(|tile| match tile {
+                    egui_tiles::Tile::Pane(pane) => Some(*pane),
+                    egui_tiles::Tile::Container(_) => None,
+                })
+                .collect();
+            let count = panes.len();
+            panes.sort();
+            panes.dedup();
+            assert_eq!(panes.len(), count, "{screen:?}");
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! The tiles of a screen: docking, and the bar above each one.
+
+use egui::{CentralPanel, Color32, Frame, Stroke, Ui, Visuals, WidgetText};
+use egui_tiles::{Behavior, SimplificationOptions, TabState, TileId, Tiles, UiResponse};
+use plumbline_engine::View;
+use plumbline_widgets::theme;
+
+use super::outbox::Outbox;
+use super::steps::{Pane, Screen};
+use super::PlumblineWindow;
+use crate::panels::{self, PanelContext, PanelState, picture_key};
+
+pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let screen = window.settings.screen;
+    let background = theme::tokens(ui).background;
+    CentralPanel::no_frame().frame(Frame::new().fill(background)).show(ui, |ui| {
+        let tree = window.settings.arrangement(screen);
+        let mut behavior =
+            PaneBehavior { view: &window.view, screen, state: &mut window.panels, outbox };
+        tree.ui(&mut behavior, ui);
+    });
+}
+
+struct PaneBehavior<'a> {
+    view: &'a View,
+    screen: Screen,
+    state: &'a mut PanelState,
+    outbox: &'a mut Outbox,
+}
+
+impl Behavior<Pane> for PaneBehavior<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _tile_id: TileId, pane: &mut Pane) -> UiResponse {
+        let fill = theme::tokens(ui).panel;
+        ui.painter().rect_filled(ui.max_rect(), 0.0, fill);
+        let mut context =
+            PanelContext { view: self.view, screen: self.screen, state: self.state, outbox: self.outbox };
+        ui.push_id(*pane, |ui| panels::show(ui, *pane, &mut context));
+        UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
+        pane.title().into()
+    }
+
+    /// Saving and copying of what the tile shows.
+    fn top_bar_right_ui(
+        &mut self,
+        tiles: &Tiles<Pane>,
+        ui: &mut Ui,
+        _tile_id: TileId,
+        tabs: &egui_tiles::Tabs,
+        _scroll_offset: &mut f32,
+    ) {
+        let pane = tabs.active.and_then(|active| tiles.get_pane(&active));
+        let Some((pane, key)) = pane.and_then(|pane| Some((pane, picture_key(*pane)?))) else { return };
+        let Some(picture) = self.state.textures.last(key).cloned() else { return };
+        ui.spacing_mut().item_spacing.x = 2.0;
+        ui.add_space(theme::space::XS);
+        for (text, slot) in [("Save…", &mut self.outbox.save), ("Copy", &mut self.outbox.copy)] {
+            let button = ui.add(egui::Button::new(theme::small(ui, text)).frame(false));
+            button.widget_info(|| {
+                let label = format!("{} {}", text.trim_end_matches('…'), pane.title());
+                egui::WidgetInfo::labeled(egui::Role::Button, true, label)
+            });
+            if button.on_hover_text("The picture alone, in its own pixels").clicked() {
+                *slot = Some(picture.clone());
+            }
+        }
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+    }
+
+    fn gap_width(&self, _style: &egui::Style) -> f32 {
+        4.0
+    }
+
+    fn min_size(&self) -> f32 {
+        96.0
+    }
+
+    fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
+        28.0
+    }
+
+    fn tab_title_spacing(&self, _visuals: &Visuals) -> f32 {
+        12.0
+    }
+
+    fn tab_bar_color(&self, visuals: &Visuals) -> Color32 {
+        visuals.panel_fill
+    }
+
+    fn tab_bg_color(&self, _: &Visuals, _: &Tiles<Pane>, _: TileId, _: &TabState) -> Color32 {
+        Color32::TRANSPARENT
+    }
+
+    fn tab_outline_stroke(&self, _: &Visuals, _: &Tiles<Pane>, _: TileId, _: &TabState) -> Stroke {
+        Stroke::NONE
+    }
+
+    fn tab_bar_hline_stroke(&self, _visuals: &Visuals) -> Stroke {
+        Stroke::NONE
+    }
+
+    fn tab_text_color(&self, visuals: &Visuals, _: &Tiles<Pane>, _: TileId, state: &TabState) -> Color32 {
+        if state.active { visuals.strong_text_color() } else { visuals.weak_text_color() }
+    }
+
+    fn resize_stroke(&self, style: &egui::Style, state: egui_tiles::ResizeState) -> Stroke {
+        match state {
+            egui_tiles::ResizeState::Idle => Stroke::NONE,
+            _ => Stroke::new(2.0, style.visuals.weak_text_color()),
+        }
+    }
+}
