@@ -3,10 +3,9 @@
 
 use std::path::PathBuf;
 
+use plumbline_hardware::SourceSpec;
 use plumbline_model::{CalibrationOptions, Eye};
 use serde::{Deserialize, Serialize};
-
-use crate::source_spec::SourceSpec;
 
 /// Anything that the window (or a script) can ask of the engine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,11 +29,8 @@ pub enum Command {
 pub enum SourceCommand {
     /// Opens a source in place of the present one.
     Open(SourceSpec),
-    /// Looks at a path (a folder of pairs, a folder with `left` and `right`, one of two video
-    /// files) and opens what it finds there.
-    OpenPath(PathBuf),
-    /// Looks at two paths, left eye first (two folders or two videos).
-    OpenPaths(PathBuf, PathBuf),
+    /// Opens what these paths mean: a folder of pairs, two folders, two videos, or image files.
+    OpenPaths(Vec<PathBuf>),
     /// Stops delivering and forgets the source.
     Close,
     /// Tries a lost source again at once.
@@ -51,6 +47,8 @@ pub enum SourceCommand {
     Loop(bool),
     /// Pairs per second at which a recording is played.
     PairsPerSecond(f64),
+    /// Looks which cameras this machine has, see [`crate::view::SourceView::cameras`].
+    ListCameras,
 }
 
 /// What is computed live.
@@ -190,6 +188,9 @@ pub enum EyesCommand {
     Import {
         /// One file, or one per eye (left first) for ROS camera_info.
         files: Vec<PathBuf>,
+        /// Unit of lengths in files of other programs.
+        #[serde(default)]
+        length: FileLength,
     },
     /// Writes a calibration to a file.
     Export {
@@ -208,6 +209,24 @@ pub enum EyesCommand {
     ProposeEarlier {
         /// Its id in [`crate::view::EyesView::earlier`].
         id: String,
+    },
+}
+
+/// Unit of lengths in a calibration file of another program.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FileLength {
+    /// Meters; refused when that puts the eyes implausibly far apart.
+    #[default]
+    AsPrescribed,
+    /// Meters, however far apart that puts the eyes.
+    Meters,
+    /// Millimeters, as many OpenCV scripts use.
+    Millimeters,
+    /// Sides of the board's squares.
+    Squares {
+        /// Side of a square, meters.
+        side_m: f64,
     },
 }
 

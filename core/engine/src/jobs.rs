@@ -139,6 +139,11 @@ impl<T> JobHandle<T> {
         self.outcome.try_recv().ok()
     }
 
+    /// Waits for the end, but not longer than this.
+    pub fn wait_at_most(&self, time: Duration) -> Option<Outcome<T>> {
+        self.outcome.recv_timeout(time).ok()
+    }
+
     /// Waits for the end (tests and the command line).
     pub fn wait(&self) -> Outcome<T> {
         self.outcome.recv().unwrap_or(Outcome::Cancelled)
@@ -167,20 +172,39 @@ impl<T> JobHandle<T> {
     }
 }
 
+/// A part of a longer job: its progress from 0 to 1 is that of the whole from `begin` to `end`.
+pub struct Part<'a> {
+    /// The longer job.
+    pub whole: &'a dyn JobContext,
+    /// Where the part begins.
+    pub begin: f64,
+    /// Where it ends.
+    pub end: f64,
+}
+
+impl JobContext for Part<'_> {
+    fn checkpoint(&self) -> Result<(), Cancelled> {
+        self.whole.checkpoint()
+    }
+
+    fn report(&self, fraction: f64, doing: &str) {
+        self.whole.report(self.begin + fraction * (self.end - self.begin), doing);
+    }
+}
+
 fn outcome_of<T>(result: std::thread::Result<Result<T, JobError>>) -> Outcome<T> {
     match result {
         Ok(Ok(result)) => Outcome::Done(result),
         Ok(Err(JobError::Cancelled(_))) => Outcome::Cancelled,
         Ok(Err(JobError::Failed(reason))) => Outcome::Failed(reason),
-        Err(panic) => {
-            let message = panic
-                .downcast_ref::<&str>()
-                .map(|text| (*text).to_owned())
-                .or_else(|| panic.downcast_ref::<String>().cloned())
-                .unwrap_or_else(|| "no message".to_owned());
-            Outcome::Panicked(message)
-        }
+        Err(panic) => Outcome::Panicked(panic_message(panic.as_ref())),
     }
+}
+
+/// What a panic said.
+pub(crate) fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "no message".to_owned())
 }
 
 fn remaining(elapsed: Duration, fraction: f64) -> Option<Duration> {

@@ -1,25 +1,38 @@
 //! The application minus the window: state, commands, live pipeline, jobs.
 
+mod bell;
 pub mod command;
+mod context;
+pub mod doctor;
 pub mod engine;
 pub mod eyes;
+mod job_list;
 pub mod jobs;
 pub mod journal;
+mod live;
 pub mod notice;
 pub mod settings;
 pub mod slot;
-mod source_spec;
+mod source;
+pub mod stages;
+pub mod state;
 pub mod statistics;
+mod text;
 pub mod view;
+pub mod work;
 
 pub use command::{
-    AimChoice, Command, ExportFormat, Exported, EyesCommand, HeadPose, JobCommand, JobId, LiveCommand,
-    NoticeCommand, ProbePoint, Products, SourceCommand,
+    AimChoice, Command, ExportFormat, Exported, EyesCommand, FileLength, HeadPose, JobCommand, JobId,
+    LiveCommand, NoticeCommand, ProbePoint, Products, SourceCommand,
 };
+pub use context::Action;
 pub use engine::{Engine, Wake};
+pub use live::Skipped;
 pub use notice::{Notice, NoticeLevel};
+pub use plumbline_hardware::{CameraDevice, SourceSpec};
+pub use plumbline_vision::disparity::{DisparityMap, Origin as DisparityOrigin};
 pub use settings::EngineSettings;
-pub use source_spec::SourceSpec;
+pub use source::Control;
 pub use view::View;
 
 /// Program and version, as written into results.

@@ -29,8 +29,10 @@ pub struct Notice {
     pub level: NoticeLevel,
     /// What happened and, if something is wrong, what to do.
     pub text: String,
-    /// When, UTC.
+    /// When, the last time, UTC.
     pub at: Timestamp,
+    /// How often it was said in a row.
+    pub times: u32,
 }
 
 /// The newest messages, oldest first.
@@ -38,15 +40,24 @@ pub struct Notice {
 pub struct Notices {
     newest: VecDeque<Notice>,
     count: u64,
+    /// What the window shows, until something changes.
+    view: Option<Arc<[Notice]>>,
 }
 
 impl Notices {
     /// How many messages are kept.
     pub const KEPT: usize = 500;
 
-    /// Adds a message; the oldest one goes when there are too many.
+    /// Adds a message; the oldest one goes when there are too many. What was said last is not
+    /// said again, only counted.
     pub fn add(&mut self, level: NoticeLevel, text: impl Into<String>) {
         let text = text.into();
+        self.view = None;
+        if let Some(last) = self.newest.back_mut().filter(|last| last.level == level && last.text == text) {
+            last.at = Timestamp::now();
+            last.times += 1;
+            return;
+        }
         match level {
             NoticeLevel::Info | NoticeLevel::Success => log::info!("{text}"),
             NoticeLevel::Warning => log::warn!("{text}"),
@@ -56,17 +67,18 @@ impl Notices {
             self.newest.pop_front();
         }
         self.count += 1;
-        self.newest.push_back(Notice { number: self.count, level, text, at: Timestamp::now() });
+        self.newest.push_back(Notice { number: self.count, level, text, at: Timestamp::now(), times: 1 });
     }
 
     /// Empties the history; numbers go on counting.
     pub fn clear(&mut self) {
         self.newest.clear();
+        self.view = None;
     }
 
     /// What the window shows, oldest first.
-    pub fn view(&self) -> Arc<[Notice]> {
-        self.newest.iter().cloned().collect()
+    pub fn view(&mut self) -> Arc<[Notice]> {
+        self.view.get_or_insert_with(|| self.newest.iter().cloned().collect()).clone()
     }
 }
 
@@ -84,5 +96,16 @@ mod tests {
         assert_eq!(view.len(), Notices::KEPT);
         assert_eq!(view[0].text, "message 3");
         assert_eq!(view[view.len() - 1].number, Notices::KEPT as u64 + 3);
+    }
+
+    #[test]
+    fn what_is_said_again_and_again_takes_one_line() {
+        let mut notices = Notices::default();
+        for _ in 0..40 {
+            notices.add(NoticeLevel::Error, "the same");
+        }
+        notices.add(NoticeLevel::Warning, "the same");
+        let times: Vec<u32> = notices.view().iter().map(|notice| notice.times).collect();
+        assert_eq!(times, [40, 1]);
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::source_spec::SourceSpec;
+use plumbline_hardware::SourceSpec;
 
 /// What the engine needs to know before it starts.
 #[derive(Clone, Debug, Default)]

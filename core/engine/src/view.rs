@@ -15,7 +15,7 @@ pub use eyes::{
 };
 pub use live::{
     AimView, CornersView, DisparityView, LiveView, ProbeReading, ProbeView, RectifiedView, ReplayView,
-    SourceStatus, SourceView, StageStatistics, Statistics,
+    SourceCounters, SourceStatus, SourceView, StageStatistics, Statistics,
 };
 pub use map::TableMap;
 

@@ -165,6 +165,36 @@ impl AimedPair {
         Ok(axes.pair(cameras, lens_px(cameras), [center(size_px.0), center(size_px.1)], size_px))
     }
 
+    /// Turned about the baseline by hand: `down_rad` below where the lenses look on average, with
+    /// a field of view of `across_rad` from the left edge to the right one. May be coarser than
+    /// the lens: whoever turns by hand sees what he gets.
+    ///
+    /// # Errors
+    /// [`AimError::TooWide`] when the view would reach beside the eyes.
+    pub fn turned_down(
+        cameras: &StereoCameras,
+        down_rad: f64,
+        across_rad: f64,
+        size_px: (u32, u32),
+    ) -> Result<Self, AimError> {
+        check_size(size_px)?;
+        // Also catches NaN.
+        if !(across_rad > 0.01 && across_rad < 2.8 && down_rad.abs() < std::f64::consts::PI) {
+            return Err(AimError::TooWide { span_deg: across_rad.to_degrees() });
+        }
+        let axes = Axes::level(cameras)?.turned(down_rad);
+        let f_px = 0.5 * (f64::from(size_px.0) - 1.0) / (0.5 * across_rad).tan();
+        Ok(axes.pair(cameras, f_px, [center(size_px.0), center(size_px.1)], size_px))
+    }
+
+    /// How far the views are turned about the baseline, below where the lenses look on average.
+    pub fn down_rad(&self) -> f64 {
+        let mean_axis = Vector3::z() + self.cameras.right_from_left.inverse().rotation() * Vector3::z();
+        let ahead = self.left_rectified_from_left.rotation() * mean_axis;
+        // Looking down puts what is straight ahead into the upper rows.
+        -ahead.y.atan2(ahead.z)
+    }
+
     /// Where both views show a point.
     ///
     /// # Errors

@@ -1,9 +1,11 @@
 //! What a calibration means on the table: its uncertainty, its difference to the one in use,
 //! and what speaks against it.
 
-use plumbline_model::{Cancelled, JobContext, Point, StereoCalibration, StereoCameras, Workspace};
+use plumbline_model::{
+    Cancelled, JobContext, LeftCamera, Point, StereoCalibration, StereoCameras, Workspace,
+};
 
-use super::geometry::{depth_per_px_m, point_sigma_m, project_both, triangulate};
+use super::geometry::{depth_per_px_m, point_sigma_m, project_both};
 use crate::view::TableMap;
 
 /// Distance for which the depth of one pixel is stated, meters.
@@ -56,15 +58,12 @@ pub fn uncertainty_map(calibration: &StereoCalibration, workspace: &Workspace) -
 /// two pixels.
 pub fn difference_map(after: &StereoCameras, before: &StereoCameras, workspace: &Workspace) -> TableMap {
     over_table(workspace, |point_in_left| {
-        let pixels = project_both(before, point_in_left)?;
-        Some(triangulate(after, pixels)?.distance_m(&point_in_left))
+        let [left, right] = project_both(before, point_in_left)?;
+        Some(after.triangulate(left, right)?.distance_m(&point_in_left))
     })
 }
 
-fn over_table(
-    workspace: &Workspace,
-    value: impl Fn(Point<plumbline_model::frame::LeftCamera>) -> Option<f64>,
-) -> TableMap {
+fn over_table(workspace: &Workspace, value: impl Fn(Point<LeftCamera>) -> Option<f64>) -> TableMap {
     let left_from_robot = workspace.robot_from_left.inverse();
     let ([x0, x1], [y0, y1]) = (workspace.x_range_m, workspace.y_range_m);
     TableMap::fill(NODES.0, NODES.1, (x0, x1), (y0, y1), workspace.table_height_m, |x, y, z| {

@@ -43,6 +43,8 @@ pub enum CollectError {
 /// What can be taken back.
 #[derive(Clone, Debug)]
 struct Content {
+    /// Different for every content there ever was.
+    revision: u64,
     board: Chessboard,
     size_px: Option<[(u32, u32); 2]>,
     pairs: Vec<Arc<CollectedPair>>,
@@ -54,14 +56,15 @@ struct Content {
 pub struct Collection {
     now: Content,
     before: Vec<Content>,
+    revisions: u64,
     captured: u32,
 }
 
 impl Collection {
     /// No pairs yet.
     pub fn new(board: Chessboard) -> Self {
-        let now = Content { board, size_px: None, pairs: Vec::new(), dropped: BTreeSet::new() };
-        Self { now, before: Vec::new(), captured: 0 }
+        let now = Content { revision: 0, board, size_px: None, pairs: Vec::new(), dropped: BTreeSet::new() };
+        Self { now, before: Vec::new(), revisions: 0, captured: 0 }
     }
 
     /// The board that the corners belong to.
@@ -82,6 +85,11 @@ impl Collection {
     /// Size (width, height) of the images of both eyes; `None` while empty.
     pub fn sizes_px(&self) -> Option<[(u32, u32); 2]> {
         self.now.size_px
+    }
+
+    /// Number of the present content; undo brings the number back too.
+    pub fn revision(&self) -> u64 {
+        self.now.revision
     }
 
     /// Whether there is a change to take back.
@@ -153,7 +161,8 @@ impl Collection {
     ) {
         self.remember();
         let pairs = pairs.into_iter().map(Arc::new).collect();
-        self.now = Content { board, size_px: Some(sizes_px), pairs, dropped };
+        let revision = self.now.revision;
+        self.now = Content { revision, board, size_px: Some(sizes_px), pairs, dropped };
     }
 
     /// Changes the board. Corners of another board are of no use, so the pairs go (and come
@@ -238,6 +247,8 @@ impl Collection {
             self.before.remove(0);
         }
         self.before.push(self.now.clone());
+        self.revisions += 1;
+        self.now.revision = self.revisions;
     }
 
     fn exists(&self, name: &str) -> Result<(), CollectError> {

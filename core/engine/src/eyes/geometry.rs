@@ -1,10 +1,8 @@
-//! Where two pixels say that a point is, and how surely.
+//! How surely two pixels say where a point is.
 
-use nalgebra::{DMatrix, DVector, Matrix3, Matrix3x2, Vector3};
-use plumbline_model::frame::LeftCamera;
-use plumbline_model::{
-    Camera, CameraModel, Eye, ParameterCovariance, Pixel, Point, Pose, Raw, StereoCameras,
-};
+use nalgebra::{Matrix3, Matrix3x2, Vector3};
+use plumbline_model::{Eye, LeftCamera, ParameterCovariance, Pixel, Point, Raw, StereoCameras};
+use plumbline_vision::locate::from_calibration;
 
 /// Where both raw images show a point; `None` where an eye does not see it.
 pub fn project_both(cameras: &StereoCameras, point_in_left: Point<LeftCamera>) -> Option<[Pixel<Raw>; 2]> {
@@ -13,24 +11,6 @@ pub fn project_both(cameras: &StereoCameras, point_in_left: Point<LeftCamera>) -
     let right = cameras.right.project(&in_right.coords.coords).ok()?;
     (left.is_inside(cameras.left.size_px()) && right.is_inside(cameras.right.size_px()))
         .then_some([left, right])
-}
-
-/// The point nearest to both rays: the middle of their shortest connection. `None` when the rays
-/// are parallel or meet behind an eye.
-pub fn triangulate(cameras: &StereoCameras, [left, right]: [Pixel<Raw>; 2]) -> Option<Point<LeftCamera>> {
-    let left_from_right = cameras.right_from_left.inverse();
-    let a = cameras.left.unproject(left).ok()?;
-    let b = left_from_right.rotation() * cameras.right.unproject(right).ok()?;
-    let base = left_from_right.translation_m();
-    let cross = a.cross(&b);
-    let sine_squared = cross.norm_squared();
-    if sine_squared < 1e-14 {
-        return None;
-    }
-    let along_a = base.cross(&b).dot(&cross) / sine_squared;
-    let along_b = base.cross(&a).dot(&cross) / sine_squared;
-    (along_a > 0.0 && along_b > 0.0)
-        .then(|| Point::from(nalgebra::Point3::from(0.5 * (a * along_a + base + b * along_b))))
 }
 
 /// Change of distance, straight ahead at `distance_m`, that moves the right image of a point by
@@ -65,7 +45,7 @@ pub fn point_sigma_m(
         sum += by_pixel * by_pixel.transpose() * match_sigma_px.powi(2);
     }
     if let Some(covariance) = covariance {
-        sum += parameter_part(cameras, covariance, pixels)?;
+        sum += from_calibration(cameras, covariance, pixels[0], pixels[1])?;
     }
     let largest = sum.symmetric_eigenvalues().max();
     (largest.is_finite() && largest >= 0.0).then(|| largest.sqrt())
@@ -81,91 +61,25 @@ fn by_pixel(cameras: &StereoCameras, pixels: [Pixel<Raw>; 2], eye: Eye) -> Optio
             let mut vector = shifted[eye.index()].vector();
             vector[axis] += sign * STEP_PX;
             shifted[eye.index()] = vector.into();
-            triangulate(cameras, shifted).map(|point| point.coords.coords)
+            cameras.triangulate(shifted[0], shifted[1]).map(|point| point.coords.coords)
         };
         jacobian.set_column(axis, &((shifted(1.0)? - shifted(-1.0)?) / (2.0 * STEP_PX)));
     }
     Some(jacobian)
 }
 
-/// Part of a point's covariance that comes from the calibration.
-fn parameter_part(
-    cameras: &StereoCameras,
-    covariance: &ParameterCovariance,
-    pixels: [Pixel<Raw>; 2],
-) -> Option<Matrix3<f64>> {
-    let count = covariance.matrix.nrows();
-    let mut jacobian = DMatrix::<f64>::zeros(3, count);
-    for parameter in 0..count {
-        // A tenth of its own deviation: small against any curvature, large against rounding.
-        let step = (0.1 * covariance.matrix[(parameter, parameter)].max(0.0).sqrt()).max(1e-12);
-        let shifted = |sign: f64| {
-            let mut change = DVector::zeros(count);
-            change[parameter] = sign * step;
-            let point = triangulate(&changed(cameras, &change)?, pixels)?;
-            Some(point.coords.coords)
-        };
-        jacobian.set_column(parameter, &((shifted(1.0)? - shifted(-1.0)?) / (2.0 * step)));
-    }
-    let part = &jacobian * &covariance.matrix * jacobian.transpose();
-    Some(Matrix3::from_iterator(part.iter().copied()))
-}
-
-/// Cameras with changed parameters, in the order of [`ParameterCovariance`].
-fn changed(cameras: &StereoCameras, change: &DVector<f64>) -> Option<StereoCameras> {
-    let (left, right) = (cameras.left.model.kind(), cameras.right.model.kind());
-    let (of_left, of_right) = (left.parameter_count(), right.parameter_count());
-    if change.len() != of_left + of_right + 6 {
-        return None;
-    }
-    let lens = |camera: &Camera, change: &[f64]| {
-        let parameters: Vec<f64> = camera.model.parameters().iter().zip(change).map(|(p, d)| p + d).collect();
-        Camera { model: CameraModel::from_parameters(camera.model.kind(), &parameters), ..*camera }
-    };
-    let pose = &change.as_slice()[of_left + of_right..];
-    let turn = nalgebra::UnitQuaternion::from_scaled_axis(Vector3::from_column_slice(&pose[..3]));
-    let mut isometry = cameras.right_from_left.isometry;
-    isometry.rotation = turn * isometry.rotation;
-    isometry.translation.vector += Vector3::from_column_slice(&pose[3..]);
-    Some(StereoCameras {
-        left: lens(&cameras.left, &change.as_slice()[..of_left]),
-        right: lens(&cameras.right, &change.as_slice()[of_left..of_left + of_right]),
-        right_from_left: Pose::new(isometry),
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::eyes::place::nominal_cameras;
-    use plumbline_model::ModelKind;
+    use nalgebra::DMatrix;
+    use plumbline_model::{ModelKind, Pose};
 
     fn cameras() -> StereoCameras {
         let mut cameras = nominal_cameras((640, 480), ModelKind::Fisheye);
         cameras.right_from_left =
             Pose::from_rotation_vector(Vector3::new(0.01, -0.03, 0.02), Vector3::new(-0.07, 0.001, 0.002));
         cameras
-    }
-
-    #[test]
-    fn a_point_seen_by_both_eyes_is_found_again() {
-        for (x, y, z) in [(0.0, 0.0, 0.3), (0.3, -0.2, 0.4), (-0.4, 0.2, 0.5)] {
-            let point = Point::<LeftCamera>::new(x, y, z);
-            let pixels = project_both(&cameras(), point).expect("seen");
-            let found = triangulate(&cameras(), pixels).expect("in front");
-            assert!(found.distance_m(&point) < 1e-9, "{found:?}");
-        }
-    }
-
-    #[test]
-    fn rays_that_do_not_meet_in_front_have_no_point() {
-        let same = Pixel::new(320.0, 240.0);
-        let mut parallel = nominal_cameras((640, 480), ModelKind::Fisheye);
-        assert!(triangulate(&parallel, [same, same]).is_none(), "parallel");
-        parallel.right_from_left =
-            Pose::from_rotation_vector(Vector3::zeros(), Vector3::new(-0.07, 0.0, 0.0));
-        let diverging = [Pixel::new(300.0, 240.0), Pixel::new(340.0, 240.0)];
-        assert!(triangulate(&parallel, diverging).is_none(), "behind");
     }
 
     #[test]
@@ -189,7 +103,7 @@ mod tests {
                 Pixel::new(pixels[0].u_px + sign(0), pixels[0].v_px + sign(1)),
                 Pixel::new(pixels[1].u_px + sign(2), pixels[1].v_px + sign(3)),
             ];
-            let error = triangulate(&cameras, noisy).expect("in front").coords - point.coords;
+            let error = cameras.triangulate(noisy[0], noisy[1]).expect("in front").coords - point.coords;
             sum += error * error.transpose() / 16.0;
         }
         let spread_m = sum.symmetric_eigenvalues().max().sqrt();

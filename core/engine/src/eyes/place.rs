@@ -235,7 +235,10 @@ mod tests {
         let truth = pose_at(&board(), &Point3::new(0.15, 0.1, 0.4), 0.45, 0.0).expect("a pose");
         let found = rough_pose(&nominal, &board(), &seen(&true_lens(), &truth)).expect("found");
         let place = place_of(&board(), &found).expect("a place");
-        assert!((place.distance_m / Vector3::<f64>::new(0.15, 0.1, 0.4).norm() - 1.0).abs() < 0.1, "{place:?}");
+        assert!(
+            (place.distance_m / Vector3::<f64>::new(0.15, 0.1, 0.4).norm() - 1.0).abs() < 0.1,
+            "{place:?}"
+        );
         assert!((place.tilt_up_down_rad - 0.45).abs() < 0.2, "{place:?}");
     }
 

@@ -26,6 +26,13 @@ pub fn edge_width_px(image: &GrayImage, board: &Chessboard, corners: &Corners) -
     widths.get(widths.len() / 2).copied()
 }
 
+/// The wider of both eyes' edges; `None` when neither can tell.
+pub fn of_both(board: &Chessboard, images: [&GrayImage; 2], corners: [Option<&Corners>; 2]) -> Option<f64> {
+    let widths =
+        images.into_iter().zip(corners).filter_map(|(image, corners)| edge_width_px(image, board, corners?));
+    widths.reduce(f64::max)
+}
+
 /// Width of the edge that runs from one corner to the next, measured across its middle.
 fn width_between(image: &GrayImage, from: nalgebra::Vector2<f64>, to: nalgebra::Vector2<f64>) -> Option<f64> {
     let along = to - from;

@@ -4,14 +4,15 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use image::RgbImage;
+use plumbline_hardware::{CameraDevice, SourceSpec};
 use plumbline_model::frame::{LeftCamera, Robot};
 use plumbline_model::{Eye, Pixel, Point, Raw, Rectified, Stamp, StereoFrame};
+use plumbline_vision::disparity::DisparityMap;
 
 use crate::command::{AimChoice, HeadPose, ProbePoint, Products};
-use crate::source_spec::SourceSpec;
 
 /// Where the images come from and how it is doing.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct SourceView {
     /// What was opened last.
     pub spec: Option<SourceSpec>,
@@ -23,6 +24,28 @@ pub struct SourceView {
     pub replay: Option<ReplayView>,
     /// Whether its pairs are single photographs rather than a stream in time.
     pub photographs: bool,
+    /// Width and height of its images, as far as known before the first pair.
+    pub image_size_px: Option<(u32, u32)>,
+    /// Where pairs went.
+    pub counters: SourceCounters,
+    /// Cameras of this machine; `None` until asked for with
+    /// [`crate::command::SourceCommand::ListCameras`].
+    pub cameras: Option<Arc<[CameraDevice]>>,
+}
+
+/// Where pairs of the source went since it was opened.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SourceCounters {
+    /// Pairs delivered.
+    pub delivered: u64,
+    /// Pairs that could not be used because one of their images is bad.
+    pub unusable: u64,
+    /// Live pairs replaced by a newer one before anybody asked for them.
+    pub superseded: u64,
+    /// Left frames without a partner of the same time.
+    pub unpaired_left: u64,
+    /// Right frames without a partner of the same time.
+    pub unpaired_right: u64,
 }
 
 /// How a source is doing.
@@ -61,8 +84,8 @@ pub struct ReplayView {
     pub playing: bool,
     /// Whether it starts over at the end.
     pub looping: bool,
-    /// Pairs per second.
-    pub pairs_per_second: f64,
+    /// Pairs per second it aims at; `None` if as fast as possible.
+    pub pairs_per_second: Option<f64>,
 }
 
 /// Live images. Each product carries its own stamp; those of one stamp belong together.
@@ -115,10 +138,14 @@ pub struct DisparityView {
     pub focal_px: f64,
     /// Distance of the two eyes, meters.
     pub baseline_m: f64,
-    /// Share of pixels that have a disparity.
+    /// Share of pixels that have a disparity, measured or filled in.
     pub valid_fraction: f64,
+    /// Share of pixels on whose disparity both views agree.
+    pub measured_fraction: f64,
     /// Smallest and largest disparity that was searched, pixels.
     pub search_px: (f64, f64),
+    /// The same values with their origin: measured or filled in.
+    pub map: Arc<DisparityMap>,
 }
 
 impl DisparityView {

@@ -226,3 +226,18 @@ fn no_disparity_is_no_point() {
     let behind = pair.left_rectified_from_left.inverse() * Point::new(0.0, 0.0, -1.0);
     assert!(matches!(pair.project(behind), Err(ProjectError::Behind { .. })));
 }
+
+#[test]
+fn turning_by_hand_gives_the_angle_and_the_field_of_view_asked_for() {
+    let cameras = nico();
+    for (down_rad, across_rad) in [(0.0, 1.0), (0.6, 1.6), (-0.3, 2.4)] {
+        let pair = AimedPair::turned_down(&cameras, down_rad, across_rad, (401, 201)).expect("possible");
+        assert!((pair.down_rad() - down_rad).abs() < 1e-12);
+        let edge =
+            |u_px| pair.point(Pixel::new(u_px, 100.0), 1.0).and_then(|p| p.direction()).expect("a direction");
+        assert!((edge(0.0).angle_rad(&edge(400.0)) - across_rad).abs() < 1e-9);
+    }
+    let aimed = AimedPair::at_workspace(&cameras, &Workspace::default(), DEFAULT_SIZE_PX).expect("possible");
+    assert!(aimed.down_rad() > 0.0, "the table is below");
+    assert!(AimedPair::turned_down(&cameras, 0.0, 3.0, (401, 201)).is_err());
+}

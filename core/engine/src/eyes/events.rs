@@ -1,0 +1,225 @@
+//! What happens while calibrating the eyes: the overlay sees a board, work ends.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use image::GrayImage;
+use plumbline_model::{Chessboard, Corners, StereoFrame};
+
+use super::assess::{Assessment, STATED_AT_M};
+use super::collection::Collection;
+use super::state::EyesState;
+use super::work::{Captured, Collected, EyesResult, Opened, Restored, Solved};
+use super::{auto_capture, coverage};
+use crate::command::JobId;
+use crate::context::Context;
+use crate::notice::NoticeLevel;
+use crate::view::{BoardSeen, CaptureHint, CollectedPair, Origin, Proposal};
+
+/// That a pair was captured is shown for this long.
+const SHOW_CAPTURED: Duration = Duration::from_millis(1200);
+
+/// What the overlay saw in one pair.
+#[derive(Clone, Debug)]
+pub struct Look {
+    /// The pair.
+    pub frame: StereoFrame,
+    /// The board that was looked for.
+    pub board: Chessboard,
+    /// Corners in the left eye.
+    pub left: Option<Corners>,
+    /// Corners in the right eye.
+    pub right: Option<Corners>,
+    /// Gray levels of both images.
+    pub gray: [Arc<GrayImage>; 2],
+    /// Median width of the board's edges, the wider of both eyes, pixels.
+    pub edge_width_px: Option<f64>,
+    /// Which board is seen instead, looked for now and then.
+    pub other_board: Option<BoardSeen>,
+}
+
+impl EyesState {
+    /// Takes a look at what the overlay saw: says what capturing waits for, and captures if
+    /// that is switched on.
+    pub fn look(&mut self, look: Look, context: &mut Context<'_>) {
+        if look.board != *self.board() {
+            return;
+        }
+        let size_px = look.frame.left.dimensions();
+        self.set_image_size(size_px);
+        self.refresh();
+        if look.left.is_some() || look.right.is_some() {
+            self.board_seen = None;
+        } else if look.other_board.is_some() {
+            self.board_seen.clone_from(&look.other_board);
+        }
+        let hint = self.judge(&look, size_px, context);
+        if hint == CaptureHint::Ready && self.auto_capture && self.busy.capturing.is_none() {
+            self.capture_look(look, context);
+            return;
+        }
+        let captured_lately = self
+            .captured_at
+            .is_some_and(|at| look.frame.stamp.captured_at.saturating_duration_since(at) < SHOW_CAPTURED);
+        let still_shown = matches!(self.hint, Some(CaptureHint::Captured { .. })) && captured_lately;
+        if !(still_shown && hint == CaptureHint::NothingNew) {
+            self.hint = Some(hint);
+        }
+    }
+
+    fn judge(&mut self, look: &Look, size_px: (u32, u32), context: &Context<'_>) -> CaptureHint {
+        let known = look.frame.name.as_ref().is_some_and(|name| self.collection.contains(name));
+        let both = look.left.as_ref().zip(look.right.as_ref());
+        let novelty = both.filter(|_| !known).map(|(left, right)| {
+            let place = self.place(&pair_of(look, String::new()), size_px);
+            coverage::novelty(self.coverage(), self.board(), size_px, [left, right], place.as_ref())
+        });
+        self.auto.look(auto_capture::Look {
+            at: look.frame.stamp.captured_at,
+            width_px: size_px.0,
+            left: look.left.as_ref(),
+            right: look.right.as_ref(),
+            edge_width_px: look.edge_width_px,
+            novelty,
+            photograph: context.source.photographs,
+        })
+    }
+
+    fn capture_look(&mut self, look: Look, context: &mut Context<'_>) {
+        let name = look.frame.name.clone().unwrap_or_else(|| self.collection.next_name());
+        let sizes_px = [look.frame.left.dimensions(), look.frame.right.dimensions()];
+        self.captured_at = Some(look.frame.stamp.captured_at);
+        self.add(pair_of(&look, name), sizes_px, context);
+    }
+
+    fn add(&mut self, pair: CollectedPair, sizes_px: [(u32, u32); 2], context: &mut Context<'_>) {
+        let name = pair.name.clone();
+        let place = self.place(&pair, sizes_px[0]);
+        match self.collection.add(CollectedPair { place, ..pair }, sizes_px) {
+            Ok(()) => {
+                self.board_chosen = true;
+                self.board_seen = None;
+                self.hint = Some(CaptureHint::Captured { pair: name.clone() });
+                let count = self.collection.pairs().len();
+                context.notices.add(NoticeLevel::Success, format!("Captured {name}: {count} pairs."));
+            }
+            Err(error) => {
+                // Saying it once per look would flood the operator.
+                self.auto_capture = false;
+                context.refuse(error);
+            }
+        }
+        self.refresh();
+    }
+
+    /// Work has ended with a result.
+    pub fn work_done(&mut self, id: JobId, result: EyesResult, context: &mut Context<'_>) {
+        self.busy.forget(id);
+        match result {
+            EyesResult::Captured(captured) => self.captured(captured, context),
+            EyesResult::Recognized(seen) => self.board_seen = Some(seen),
+            EyesResult::Collected(collected) => self.collected(collected, context),
+            EyesResult::Solved(solved) => self.solved(*solved),
+            EyesResult::Opened(opened) => self.opened(*opened),
+            EyesResult::Accepted(accepted) => {
+                let same = |proposal: &Arc<Proposal>| {
+                    Arc::ptr_eq(&proposal.calibration, &accepted.in_use.calibration)
+                };
+                // A newer proposal that came meanwhile still waits for a decision.
+                if self.proposal.as_ref().is_some_and(same) {
+                    (self.proposal, self.solved_from) = (None, None);
+                }
+                self.in_use = Some(Arc::new(accepted.in_use));
+                self.earlier = accepted.earlier.into();
+            }
+            EyesResult::Exported(_) => {}
+            EyesResult::Restored(restored) => self.restored(*restored, context),
+        }
+        self.refresh();
+    }
+
+    /// Work has ended without a result; nothing was changed.
+    pub fn work_ended(&mut self, id: JobId) {
+        self.busy.forget(id);
+    }
+
+    fn captured(&mut self, captured: Captured, context: &mut Context<'_>) {
+        if captured.board == *self.board() {
+            self.captured_at = Some(captured.captured_at);
+            self.add(captured.pair, captured.sizes_px, context);
+        } else {
+            context.refuse("The board was changed while the pair was searched. Capture it again.");
+        }
+    }
+
+    fn collected(&mut self, collected: Collected, context: &mut Context<'_>) {
+        self.not_collected = collected.not_collected.into();
+        if collected.board != *self.board() {
+            return context
+                .refuse("The board was changed while the recording was searched. Collect it again.");
+        }
+        let Some(sizes_px) = collected.sizes_px else { return };
+        let placed = |pair: CollectedPair| CollectedPair { place: self.place(&pair, sizes_px[0]), ..pair };
+        let pairs = collected.pairs.into_iter().map(placed).collect();
+        match self.collection.add_all(pairs, sizes_px) {
+            Ok(_) => self.board_chosen = true,
+            Err(error) => context.refuse(error),
+        }
+    }
+
+    fn solved(&mut self, solved: Solved) {
+        self.solved_from = Some((solved.revision, solved.options));
+        self.proposal = Some(Arc::new(proposal(solved.calibration, Origin::Solved, solved.assessment)));
+    }
+
+    fn opened(&mut self, opened: Opened) {
+        self.solved_from = None;
+        self.proposal = Some(Arc::new(proposal(opened.calibration, opened.origin, opened.assessment)));
+    }
+
+    fn restored(&mut self, restored: Restored, context: &mut Context<'_>) {
+        for problem in restored.problems {
+            context.notices.add(NoticeLevel::Warning, problem);
+        }
+        if self.in_use.is_none() {
+            self.in_use = restored.in_use.map(Arc::new);
+            if let Some(evidence) = self.in_use().and_then(|in_use| in_use.evidence.as_ref())
+                && !self.board_chosen
+                && self.collection.pairs().is_empty()
+            {
+                // The laboratory has this board; asking again would be a nuisance.
+                self.collection = Collection::new(evidence.board);
+            }
+        }
+        self.earlier = restored.earlier.into();
+    }
+}
+
+fn pair_of(look: &Look, name: String) -> CollectedPair {
+    let [left_image, right_image] = look.gray.clone().map(Some);
+    CollectedPair {
+        name,
+        left: look.left.clone(),
+        right: look.right.clone(),
+        left_image,
+        right_image,
+        place: None,
+    }
+}
+
+fn proposal(
+    calibration: Arc<plumbline_model::StereoCalibration>,
+    origin: Origin,
+    assessment: Assessment,
+) -> Proposal {
+    Proposal {
+        calibration,
+        origin,
+        difference: assessment.difference,
+        uncertainty: Some(assessment.uncertainty),
+        stated_at_m: STATED_AT_M,
+        depth_per_px_m: assessment.depth_per_px_m,
+        doubts: assessment.doubts,
+        stale: None,
+    }
+}

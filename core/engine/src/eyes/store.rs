@@ -1,0 +1,212 @@
+//! Accepted calibrations on disk. Each stays in a file of its own for ever; a small file says
+//! which one is in use. Every write goes to a temporary name first.
+
+use std::path::{Path, PathBuf};
+
+use jiff::Timestamp;
+use plumbline_model::formats::native;
+use plumbline_model::{FormatError, StereoCalibration};
+use serde::{Deserialize, Serialize};
+
+use crate::view::EarlierCalibration;
+
+/// Accepted calibrations in a folder.
+#[derive(Clone, Debug)]
+pub struct Store {
+    folder: PathBuf,
+}
+
+/// Why something accepted cannot be kept or found.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// The file system says no.
+    #[error(
+        "{path} cannot be used ({error}). Check that the disk is connected, has free space and can be written; the calibration in use stays."
+    )]
+    Io {
+        /// What was tried to use.
+        path: PathBuf,
+        /// What the system says.
+        error: std::io::Error,
+    },
+    /// The calibration's own file.
+    #[error("{0}")]
+    Calibration(#[from] FormatError),
+    /// There is none of that id.
+    #[error("There is no accepted calibration {0}; choose one from the list.")]
+    NoSuchCalibration(String),
+}
+
+/// What is written beside each calibration, so that a list needs not read them all.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Entry {
+    /// Name of its files.
+    #[serde(skip)]
+    pub id: String,
+    /// When it was accepted.
+    pub accepted: Timestamp,
+    /// For people.
+    pub description: String,
+}
+
+const IN_USE: &str = "in-use.txt";
+const CALIBRATION: &str = "yaml";
+const ENTRY: &str = "toml";
+
+impl Store {
+    /// In this folder, which is made when something is accepted.
+    pub fn new(folder: PathBuf) -> Self {
+        Self { folder }
+    }
+
+    /// Keeps a calibration and makes it the one in use.
+    pub fn accept(&self, calibration: &StereoCalibration) -> Result<Entry, StoreError> {
+        std::fs::create_dir_all(&self.folder).map_err(self.io())?;
+        let accepted = Timestamp::now();
+        let id = self.free_id(accepted);
+        let entry = Entry { id: id.clone(), accepted, description: describe(calibration) };
+        native::write(calibration, &self.file(&id, CALIBRATION))?;
+        let text = toml::to_string(&entry).unwrap_or_default();
+        self.write_atomically(&self.file(&id, ENTRY), &text)?;
+        self.write_atomically(&self.folder.join(IN_USE), &id)?;
+        Ok(entry)
+    }
+
+    /// All that were accepted, newest first.
+    pub fn list(&self) -> Result<Vec<EarlierCalibration>, StoreError> {
+        let listing = match std::fs::read_dir(&self.folder) {
+            Ok(listing) => listing,
+            // Nothing was ever accepted.
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+            Err(error) => return Err(self.io()(error)),
+        };
+        let in_use = std::fs::read_to_string(self.folder.join(IN_USE)).unwrap_or_default();
+        let mut found: Vec<EarlierCalibration> = listing
+            .flatten()
+            .map(|entry| entry.path())
+            .filter(|path| path.extension().is_some_and(|extension| extension == CALIBRATION))
+            .filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned()))
+            .map(|id| {
+                let entry = self.entry(&id);
+                let in_use = id == in_use.trim();
+                EarlierCalibration { id, accepted: entry.accepted, description: entry.description, in_use }
+            })
+            .collect();
+        // Ids begin with the time, so they decide where two were accepted in the same moment.
+        found.sort_by(|a, b| (b.accepted, &b.id).cmp(&(a.accepted, &a.id)));
+        Ok(found)
+    }
+
+    /// Reads one.
+    pub fn load(&self, id: &str) -> Result<(StereoCalibration, Timestamp), StoreError> {
+        let file = self.file(id, CALIBRATION);
+        // An id from a journal may be anything; it must not lead out of the folder.
+        if file.parent() != Some(&self.folder) || !file.is_file() {
+            return Err(StoreError::NoSuchCalibration(id.to_owned()));
+        }
+        Ok((native::read(&file)?, self.entry(id).accepted))
+    }
+
+    fn file(&self, id: &str, extension: &str) -> PathBuf {
+        self.folder.join(format!("{id}.{extension}"))
+    }
+
+    fn free_id(&self, accepted: Timestamp) -> String {
+        let time = accepted.strftime("%Y-%m-%dT%H-%M-%SZ").to_string();
+        let taken = |id: &String| self.file(id, CALIBRATION).exists();
+        std::iter::once(time.clone())
+            .chain((2..).map(|n| format!("{time}_{n:03}")))
+            .find(|id| !taken(id))
+            .unwrap_or(time)
+    }
+
+    /// What is written beside a calibration; from its file if that was lost.
+    fn entry(&self, id: &str) -> Entry {
+        let text = std::fs::read_to_string(self.file(id, ENTRY)).unwrap_or_default();
+        match toml::from_str::<Entry>(&text) {
+            Ok(entry) => Entry { id: id.to_owned(), ..entry },
+            Err(_) => {
+                let changed = std::fs::metadata(self.file(id, CALIBRATION)).and_then(|data| data.modified());
+                let accepted =
+                    changed.ok().and_then(|time| Timestamp::try_from(time).ok()).unwrap_or_default();
+                Entry { id: id.to_owned(), accepted, description: id.to_owned() }
+            }
+        }
+    }
+
+    fn write_atomically(&self, path: &Path, text: &str) -> Result<(), StoreError> {
+        let temporary = path.with_extension("tmp");
+        let write = || -> std::io::Result<()> {
+            use std::io::Write;
+            let mut file = std::fs::File::create(&temporary)?;
+            file.write_all(text.as_bytes())?;
+            file.sync_all()?;
+            std::fs::rename(&temporary, path)
+        };
+        write().map_err(|error| StoreError::Io { path: path.to_owned(), error })
+    }
+
+    fn io(&self) -> impl FnOnce(std::io::Error) -> StoreError {
+        let path = self.folder.clone();
+        move |error| StoreError::Io { path, error }
+    }
+}
+
+/// For the list: "30 pairs, 0.094 px".
+pub fn describe(calibration: &StereoCalibration) -> String {
+    let baseline = format!("eyes {:.2} mm apart", calibration.cameras.baseline_m() * 1000.0);
+    match &calibration.summary {
+        Some(summary) => {
+            format!("{} pairs, {:.3} px, {baseline}", calibration.per_pair.len(), summary.rms_stereo_px)
+        }
+        None => baseline,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::eyes::place::nominal_cameras;
+    use plumbline_model::ModelKind;
+
+    fn calibration(width_px: u32) -> StereoCalibration {
+        StereoCalibration::bare(nominal_cameras((width_px, 480), ModelKind::Fisheye))
+    }
+
+    #[test]
+    fn what_was_accepted_stays_and_the_last_one_is_in_use() {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let store = Store::new(folder.path().join("calibrations"));
+        assert_eq!(store.list().expect("an empty list"), []);
+        let ids: Vec<String> =
+            [640, 800, 1280].map(|width_px| store.accept(&calibration(width_px)).expect("kept").id).to_vec();
+        let list = store.list().expect("a list");
+        let newest_first: Vec<&String> = ids.iter().rev().collect();
+        assert_eq!(list.iter().map(|entry| &entry.id).collect::<Vec<_>>(), newest_first);
+        assert_eq!(list.iter().map(|entry| entry.in_use).collect::<Vec<_>>(), [true, false, false]);
+        let (first, _) = store.load(&ids[0]).expect("still there");
+        assert_eq!(first.cameras, calibration(640).cameras);
+    }
+
+    #[test]
+    fn a_calibration_that_cannot_be_written_leaves_everything_as_it_was() {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let store = Store::new(folder.path().to_path_buf());
+        let id = store.accept(&calibration(640)).expect("kept").id;
+        let mut broken = calibration(640);
+        broken.cameras.left = plumbline_model::Camera { width_px: 0, ..broken.cameras.left };
+        assert!(store.accept(&broken).is_err(), "it would not read back");
+        let list = store.list().expect("a list");
+        assert_eq!(list.len(), 1);
+        assert!(list[0].in_use && list[0].id == id);
+    }
+
+    #[test]
+    fn an_id_does_not_lead_out_of_the_folder() {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let inside = folder.path().join("inside");
+        Store::new(inside.clone()).accept(&calibration(640)).expect("kept");
+        native::write(&calibration(640), &folder.path().join("outside.yaml")).expect("writable");
+        assert!(matches!(Store::new(inside).load("../outside"), Err(StoreError::NoSuchCalibration(_))));
+    }
+}

@@ -1,0 +1,119 @@
+//! The long parts of calibrating the eyes.
+
+mod accept;
+mod capture;
+mod export;
+mod open;
+mod recording;
+mod restore;
+mod solve;
+
+use plumbline_model::JobContext;
+
+use crate::jobs::JobError;
+
+pub use accept::{Accept, Accepted};
+pub use capture::{Capture, Captured, Recognize, board_seen, find_in_both, glimpse_in_both, gray};
+pub use export::Export;
+pub use open::{Open, OpenWhat, Opened};
+pub use recording::{CollectRecording, Collected, collect_folder};
+pub use restore::{Restore, Restored};
+pub use solve::{Solve, Solved};
+
+use crate::view::BoardSeen;
+
+/// Something to do beside the window.
+#[derive(Clone, Debug)]
+pub enum EyesWork {
+    /// Find the board in the newest pair.
+    Capture(Capture),
+    /// Say which board the newest pair shows.
+    Recognize(Recognize),
+    /// Find the board in all pairs of a recording.
+    CollectRecording(CollectRecording),
+    /// Solve the collected pairs.
+    Solve(Box<Solve>),
+    /// Read a calibration as a proposal.
+    Open(Open),
+    /// Keep a calibration and make it the one in use.
+    Accept(Box<Accept>),
+    /// Write a calibration to a file.
+    Export(Box<Export>),
+    /// Read what was accepted before.
+    Restore(Restore),
+}
+
+/// What came out.
+#[derive(Clone, Debug)]
+pub enum EyesResult {
+    /// A pair in which both eyes see the board.
+    Captured(Captured),
+    /// The board that is seen.
+    Recognized(BoardSeen),
+    /// Pairs of a recording.
+    Collected(Collected),
+    /// A calibration solved from pairs.
+    Solved(Box<Solved>),
+    /// A calibration read from a file.
+    Opened(Box<Opened>),
+    /// A calibration that is kept.
+    Accepted(Box<Accepted>),
+    /// Files that were written.
+    Exported(Vec<std::path::PathBuf>),
+    /// What was accepted before.
+    Restored(Box<Restored>),
+}
+
+impl EyesWork {
+    /// What it does, for people.
+    pub fn title(&self) -> String {
+        match self {
+            Self::Capture(_) => "Capture pair".to_owned(),
+            Self::Recognize(_) => "Look which board is seen".to_owned(),
+            Self::CollectRecording(_) => "Collect the pairs of the recording".to_owned(),
+            Self::Solve(solve) => format!("Solve {} pairs", solve.pair_count()),
+            Self::Open(open) => open.title(),
+            Self::Accept(_) => "Accept calibration".to_owned(),
+            Self::Export(export) => format!("Write {}", export.file.display()),
+            Self::Restore(_) => "Read the calibration in use".to_owned(),
+        }
+    }
+
+    /// Whether it is over so soon that it needs no line when it is done.
+    pub fn is_quiet(&self) -> bool {
+        matches!(self, Self::Capture(_) | Self::Recognize(_) | Self::Restore(_) | Self::Accept(_))
+    }
+
+    /// Does it.
+    pub fn run(self, context: &dyn JobContext) -> Result<EyesResult, JobError> {
+        Ok(match self {
+            Self::Capture(work) => EyesResult::Captured(work.run()?),
+            Self::Recognize(work) => EyesResult::Recognized(work.run()),
+            Self::CollectRecording(work) => EyesResult::Collected(work.run(context)?),
+            Self::Solve(work) => EyesResult::Solved(Box::new(work.run(context)?)),
+            Self::Open(work) => EyesResult::Opened(Box::new(work.run(context)?)),
+            Self::Accept(work) => EyesResult::Accepted(Box::new(work.run()?)),
+            Self::Export(work) => EyesResult::Exported(work.run()?),
+            Self::Restore(work) => EyesResult::Restored(Box::new(work.run(context)?)),
+        })
+    }
+}
+
+impl EyesResult {
+    /// The result in a sentence.
+    pub fn summary(&self) -> String {
+        match self {
+            Self::Captured(captured) => format!("Captured {}.", captured.pair.name),
+            Self::Recognized(seen) => seen.text.clone(),
+            Self::Collected(collected) => collected.summary(),
+            Self::Solved(solved) => solved.summary(),
+            Self::Opened(opened) => format!("Read {}.", opened.what()),
+            Self::Accepted(_) => "The calibration is in use.".to_owned(),
+            Self::Exported(files) => {
+                let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
+                format!("Wrote {}.", names.join(" and "))
+            }
+            Self::Restored(_) => "Read the calibration in use.".to_owned(),
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Reads what was accepted before, when the program starts.
+
+use plumbline_model::{JobContext, Workspace};
+
+use super::accept::in_use;
+use crate::eyes::assess::assess;
+use crate::eyes::store::Store;
+use crate::jobs::JobError;
+use crate::view::{AcceptedCalibration, EarlierCalibration};
+
+/// Read what was accepted before.
+#[derive(Clone, Debug)]
+pub struct Restore {
+    /// Where it is kept.
+    pub store: Store,
+    /// Where the eyes are over the table.
+    pub workspace: Workspace,
+}
+
+/// What was accepted before.
+#[derive(Clone, Debug)]
+pub struct Restored {
+    /// The one in use; `None` when none was ever accepted.
+    pub in_use: Option<AcceptedCalibration>,
+    /// All that are kept, newest first.
+    pub earlier: Vec<EarlierCalibration>,
+    /// What could not be read, in sentences.
+    pub problems: Vec<String>,
+}
+
+impl Restore {
+    /// Reads the one that was in use; if its file is damaged, the newest that is not.
+    pub fn run(self, context: &dyn JobContext) -> Result<Restored, JobError> {
+        let mut earlier = self.store.list().map_err(JobError::failed)?;
+        let mut problems = Vec::new();
+        let wished = earlier.iter().find(|entry| entry.in_use).map(|entry| entry.id.clone());
+        let others = earlier.iter().map(|entry| entry.id.clone());
+        let mut found = None;
+        for id in wished.iter().cloned().chain(others.filter(|id| Some(id) != wished.as_ref())) {
+            match self.store.load(&id) {
+                Ok((calibration, accepted)) => {
+                    let assessment = assess(&calibration, None, &self.workspace, context)?;
+                    found = Some(in_use(id, accepted, calibration, assessment));
+                    break;
+                }
+                Err(error) => problems.push(error.to_string()),
+            }
+        }
+        if let Some(found) = &found {
+            for entry in &mut earlier {
+                entry.in_use = entry.id == found.id;
+            }
+            if !problems.is_empty() {
+                problems.push(format!("The calibration accepted at {} is used instead.", found.accepted));
+            }
+        }
+        Ok(Restored { in_use: found, earlier, problems })
+    }
+}

@@ -1,0 +1,365 @@
+//! What is computed live, for whom, and what came of it last.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use plumbline_model::aim::DEFAULT_SIZE_PX;
+use plumbline_model::camera::ModelKind;
+use plumbline_model::workspace::robot_from_left;
+use plumbline_model::{AimError, AimedPair, StereoCalibration, StereoFrame, Workspace};
+
+use crate::command::{AimChoice, HeadPose, LiveCommand, ProbePoint, Products};
+use crate::context::Context;
+use crate::eyes::Look;
+use crate::stages::{LiveSetup, ProbeInput, ProbeOutput, RectifyInput, RectifyOutput, Timed, other_size};
+use crate::statistics::StageClock;
+use crate::text::sentence;
+use crate::view::{AimView, CornersView, DisparityView, LiveView, ProbeView, RectifiedView, Statistics};
+
+/// Disparities beyond the nearest corner of the workspace that are searched too.
+const SEARCH_MARGIN: f64 = 1.15;
+/// Least and most that is searched, pixels.
+const SEARCH_LIMITS_PX: (u32, u32) = (32, 256);
+/// Searched where the workspace does not say how near things come.
+const SEARCH_USUAL_PX: u32 = 128;
+
+/// The live side of the state.
+#[derive(Clone, Debug)]
+pub struct LiveState {
+    wanted: Products,
+    aim: AimChoice,
+    head: HeadPose,
+    calibration: Option<Arc<StereoCalibration>>,
+    generation: u64,
+    /// Or a sentence that says why there is none.
+    setup: Result<Arc<LiveSetup>, String>,
+    probe_asked: Option<ProbePoint>,
+    raw: Option<StereoFrame>,
+    rectified: Option<RectifiedView>,
+    disparity: Option<DisparityView>,
+    corners: Option<CornersView>,
+    probe: Option<ProbeView>,
+    failed: Option<String>,
+    clocks: Clocks,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Clocks {
+    source: StageClock,
+    rectify: StageClock,
+    corners: StageClock,
+    probe: StageClock,
+}
+
+/// Pairs skipped in front of each stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Skipped {
+    /// Between source and engine.
+    pub source: u64,
+    /// In front of rectification.
+    pub rectify: u64,
+    /// In front of the chessboard search.
+    pub corners: u64,
+    /// In front of measuring.
+    pub probe: u64,
+}
+
+impl Default for LiveState {
+    fn default() -> Self {
+        Self {
+            wanted: Products::default(),
+            aim: AimChoice::default(),
+            head: HeadPose::default(),
+            calibration: None,
+            generation: 0,
+            setup: Err(NO_CALIBRATION.to_owned()),
+            probe_asked: None,
+            raw: None,
+            rectified: None,
+            disparity: None,
+            corners: None,
+            probe: None,
+            failed: None,
+            clocks: Clocks::default(),
+        }
+    }
+}
+
+const NO_CALIBRATION: &str =
+    "The eyes are not calibrated yet. Go to step 1, Eyes, or read a calibration file there.";
+
+impl LiveState {
+    /// Applies a command.
+    pub fn apply(&mut self, command: LiveCommand, context: &mut Context<'_>) {
+        match command {
+            LiveCommand::Want(wanted) => self.want(wanted),
+            LiveCommand::Probe(point) => {
+                self.probe_asked = Some(point);
+                if let Some(probe) = &mut self.probe {
+                    probe.asked = point;
+                }
+            }
+            LiveCommand::StopProbe => (self.probe_asked, self.probe) = (None, None),
+            LiveCommand::Aim(aim) => {
+                let before = std::mem::replace(&mut self.aim, aim);
+                self.set_up();
+                if let (Err(reason), Some(_)) = (&self.setup, &self.calibration) {
+                    context.refuse(reason);
+                    self.aim = before;
+                    self.set_up();
+                }
+            }
+            LiveCommand::Head(head) => {
+                if head.head_z_rad.is_finite() && head.head_y_rad.is_finite() {
+                    self.head = head;
+                    self.set_up();
+                } else {
+                    context.refuse("The angles of the head must be numbers.");
+                }
+            }
+        }
+    }
+
+    fn want(&mut self, wanted: Products) {
+        self.wanted = wanted;
+        if !wanted.rectified && !wanted.disparity {
+            self.rectified = None;
+        }
+        if !wanted.disparity {
+            self.disparity = None;
+        }
+        if !wanted.corners {
+            self.corners = None;
+        }
+    }
+
+    /// Takes over the calibration in use; does nothing if it is the one already known.
+    pub fn set_calibration(&mut self, calibration: Option<&Arc<StereoCalibration>>) {
+        let same = match (&self.calibration, calibration) {
+            (Some(known), Some(new)) => Arc::ptr_eq(known, new),
+            (None, None) => true,
+            _ => false,
+        };
+        if !same {
+            self.calibration = calibration.cloned();
+            self.set_up();
+        }
+    }
+
+    /// The part of the table that the eyes look at, and from where.
+    pub fn workspace(&self) -> Workspace {
+        Workspace {
+            robot_from_left: robot_from_left(self.head.head_z_rad, self.head.head_y_rad),
+            ..Workspace::default()
+        }
+    }
+
+    /// Newest pair.
+    pub fn newest(&self) -> Option<&StereoFrame> {
+        self.raw.as_ref()
+    }
+
+    /// A pair has come from the source.
+    pub fn frame(&mut self, frame: StereoFrame, now: Instant) {
+        self.clocks.source.note(now, frame.stamp.captured_at, std::time::Duration::ZERO);
+        self.raw = Some(frame);
+    }
+
+    /// The source was closed or another one opened: what is shown belongs to no source any more.
+    pub fn clear(&mut self) {
+        self.raw = None;
+        self.clear_products();
+        self.corners = None;
+        self.clocks = Clocks::default();
+    }
+
+    /// What rectification is to do with the newest pair, if anything.
+    pub fn rectify_input(&self) -> Option<RectifyInput> {
+        if !(self.wanted.rectified || self.wanted.disparity) {
+            return None;
+        }
+        let (frame, setup) = self.fitting()?;
+        Some(RectifyInput { frame, setup, disparity: self.wanted.disparity })
+    }
+
+    /// What measuring is to do with the newest pair, if anything.
+    pub fn probe_input(&self) -> Option<ProbeInput> {
+        let (frame, setup) = self.fitting()?;
+        Some(ProbeInput { frame, point: self.probe_asked?, setup })
+    }
+
+    /// The newest pair if the chessboard is to be looked for.
+    pub fn corners_frame(&self) -> Option<StereoFrame> {
+        self.raw.clone().filter(|_| self.wanted.corners)
+    }
+
+    /// The newest pair and the setup, if they fit each other.
+    fn fitting(&self) -> Option<(StereoFrame, Arc<LiveSetup>)> {
+        let (frame, setup) = (self.raw.clone()?, self.setup.clone().ok()?);
+        self.misfit().is_none().then_some((frame, setup))
+    }
+
+    /// Why the newest pair does not fit the calibration.
+    fn misfit(&self) -> Option<String> {
+        let (frame, setup) = (self.raw.as_ref()?, self.setup.as_ref().ok()?);
+        let cameras = &setup.pair.cameras;
+        [(&frame.left, cameras.left.size_px()), (&frame.right, cameras.right.size_px())]
+            .into_iter()
+            .find(|(image, calibrated)| image.dimensions() != *calibrated)
+            .map(|(image, calibrated)| other_size(image.dimensions(), calibrated))
+    }
+
+    /// Rectification has something. What belongs to an older setup is not shown.
+    pub fn rectified(&mut self, output: Timed<RectifyOutput>, now: Instant) {
+        if output.result.generation != self.generation || !(self.wanted.rectified || self.wanted.disparity) {
+            return;
+        }
+        self.clocks.rectify.note(now, output.stamp.captured_at, output.busy);
+        match output.result.products {
+            Ok((rectified, disparity)) => {
+                self.rectified = Some(rectified);
+                if self.wanted.disparity && disparity.is_some() {
+                    self.disparity = disparity;
+                }
+                self.failed = None;
+            }
+            Err(reason) => {
+                (self.rectified, self.disparity) = (None, None);
+                self.failed = Some(reason);
+            }
+        }
+    }
+
+    /// The chessboard search has something.
+    pub fn corners(&mut self, output: &Timed<Look>, now: Instant) {
+        self.clocks.corners.note(now, output.stamp.captured_at, output.busy);
+        if self.wanted.corners {
+            let shown = |corners: &Option<plumbline_model::Corners>| {
+                corners.as_ref().map(|corners| corners.iter().flatten().copied().collect())
+            };
+            let look = &output.result;
+            self.corners =
+                Some(CornersView { stamp: output.stamp, left: shown(&look.left), right: shown(&look.right) });
+        }
+    }
+
+    /// Measuring has something.
+    pub fn probed(&mut self, output: Timed<ProbeOutput>, now: Instant) {
+        let ProbeOutput { point, generation, reading } = output.result;
+        if generation != self.generation || self.probe_asked.is_none() {
+            return;
+        }
+        self.clocks.probe.note(now, output.stamp.captured_at, output.busy);
+        self.probe = Some(ProbeView { asked: point, stamp: Some(output.stamp), reading });
+    }
+
+    /// What the window shows.
+    pub fn view(&mut self, skipped: Skipped, now: Instant) -> LiveView {
+        self.clocks.source.set_skipped(skipped.source);
+        self.clocks.rectify.set_skipped(skipped.rectify);
+        self.clocks.corners.set_skipped(skipped.corners);
+        self.clocks.probe.set_skipped(skipped.probe);
+        let statistics = Statistics {
+            source: self.clocks.source.figures(now),
+            rectify: self.clocks.rectify.figures(now),
+            corners: self.clocks.corners.figures(now),
+            probe: self.clocks.probe.figures(now),
+            time_difference_s: self.raw.as_ref().and_then(|frame| frame.time_difference_s),
+        };
+        let no_setup = self.setup.as_ref().err().cloned();
+        let no_rectified_because = no_setup.or_else(|| self.misfit()).or_else(|| self.failed.clone());
+        LiveView {
+            wanted: self.wanted,
+            raw: self.raw.clone(),
+            rectified: self.rectified.clone(),
+            disparity: self.disparity.clone(),
+            corners: self.corners.clone(),
+            probe: self.probe_view(no_rectified_because.as_deref()),
+            aim: self.setup.as_ref().ok().map(|setup| aim_view(self.aim, &setup.pair)),
+            no_rectified_because,
+            head: self.head,
+            statistics,
+        }
+    }
+
+    fn probe_view(&self, nothing_because: Option<&str>) -> Option<ProbeView> {
+        let asked = self.probe_asked?;
+        match (nothing_because, &self.probe) {
+            (Some(reason), _) => Some(ProbeView { asked, stamp: None, reading: Err(reason.to_owned()) }),
+            (None, probe) => probe.clone(),
+        }
+    }
+
+    /// Makes a new setup from calibration, aim and head.
+    fn set_up(&mut self) {
+        self.generation += 1;
+        self.clear_products();
+        self.setup = match &self.calibration {
+            None => Err(NO_CALIBRATION.to_owned()),
+            Some(calibration) => {
+                let workspace = self.workspace();
+                aimed(self.aim, calibration, &workspace)
+                    .map(|pair| {
+                        Arc::new(LiveSetup {
+                            generation: self.generation,
+                            calibration: calibration.clone(),
+                            max_disparity_px: max_disparity_px(&pair, &workspace),
+                            pair,
+                            robot_from_left: workspace.robot_from_left,
+                        })
+                    })
+                    .map_err(|error| sentence(&error.to_string()))
+            }
+        };
+    }
+
+    fn clear_products(&mut self) {
+        (self.rectified, self.disparity, self.failed) = (None, None, None);
+        self.probe = None;
+    }
+}
+
+fn aimed(
+    aim: AimChoice,
+    calibration: &StereoCalibration,
+    workspace: &Workspace,
+) -> Result<AimedPair, AimError> {
+    let cameras = &calibration.cameras;
+    match aim {
+        AimChoice::Table => AimedPair::suited(cameras, workspace),
+        AimChoice::Manual { pitch_rad, horizontal_field_of_view_rad } => {
+            let size_px = match cameras.left.model.kind() {
+                ModelKind::Fisheye => DEFAULT_SIZE_PX,
+                ModelKind::Pinhole => cameras.left.size_px(),
+            };
+            AimedPair::turned_down(cameras, pitch_rad, horizontal_field_of_view_rad, size_px)
+        }
+    }
+}
+
+/// The disparity of the nearest thing that can be on the table.
+fn max_disparity_px(pair: &AimedPair, workspace: &Workspace) -> u32 {
+    let nearest = workspace
+        .corners_in_left(workspace.headroom_m)
+        .into_iter()
+        .filter_map(|corner| pair.project(corner).ok())
+        .map(|(left, right)| left.u_px - right.u_px)
+        .reduce(f64::max);
+    let (least, most) = SEARCH_LIMITS_PX;
+    match (pair.cameras.left.model.kind(), nearest) {
+        (ModelKind::Fisheye, Some(nearest_px)) => ((nearest_px * SEARCH_MARGIN) as u32).clamp(least, most),
+        _ => SEARCH_USUAL_PX,
+    }
+}
+
+fn aim_view(choice: AimChoice, pair: &AimedPair) -> AimView {
+    let across = |pixels: u32| 2.0 * (0.5 * (f64::from(pixels) - 1.0) / pair.f_px).atan();
+    AimView {
+        choice,
+        pitch_rad: pair.down_rad(),
+        size_px: pair.size_px(),
+        focal_px: pair.f_px,
+        field_of_view_rad: (across(pair.width_px), across(pair.height_px)),
+        baseline_m: pair.baseline_m,
+    }
+}

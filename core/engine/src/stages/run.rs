@@ -1,0 +1,159 @@
+//! A stage on a thread of its own: newest input in, newest output out.
+
+use std::panic::AssertUnwindSafe;
+use std::thread::JoinHandle;
+use std::time::Instant;
+
+use plumbline_model::Stamp;
+
+use super::Timed;
+use crate::bell::Bell;
+use crate::jobs::panic_message;
+use crate::slot::{Putter, Taker, newest_value_slot};
+
+/// The two ends of a stage's thread. Ends when dropped.
+pub struct StageThread<I, O> {
+    input: Option<Putter<I>>,
+    output: Taker<Result<Timed<O>, StagePanic>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// A stage met a defect of this program. It goes on with the next input, from scratch.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StagePanic {
+    /// Name of the stage.
+    pub stage: String,
+    /// What the program said.
+    pub message: String,
+}
+
+/// Runs what `make` makes on a thread of this name. `stamp` tells the stamp of an input.
+pub fn run_stage<I, O, P>(
+    name: &str,
+    bell: Bell,
+    stamp: impl Fn(&I) -> Stamp + Send + 'static,
+    make: impl Fn() -> P + Send + 'static,
+) -> std::io::Result<StageThread<I, O>>
+where
+    I: Send + 'static,
+    O: Send + 'static,
+    P: FnMut(I) -> O,
+{
+    let (input, inputs) = newest_value_slot::<I>();
+    let (outputs, output) = newest_value_slot();
+    let stage = name.to_owned();
+    let work = move || {
+        let mut process = make();
+        while let Some(input) = inputs.take() {
+            let (begun, stamp) = (Instant::now(), stamp(&input));
+            let result = std::panic::catch_unwind(AssertUnwindSafe(|| process(input)));
+            let output = match result {
+                Ok(result) => Ok(Timed { stamp, busy: begun.elapsed(), result }),
+                Err(panic) => {
+                    // What it kept may be half changed.
+                    process = make();
+                    Err(StagePanic { stage: stage.clone(), message: panic_message(panic.as_ref()) })
+                }
+            };
+            if !outputs.put(output) {
+                return;
+            }
+            bell.ring();
+        }
+    };
+    let thread = std::thread::Builder::new().name(name.to_owned()).spawn(work)?;
+    Ok(StageThread { input: Some(input), output, thread: Some(thread) })
+}
+
+impl<I, O> StageThread<I, O> {
+    /// Hands over an input; one that was not begun yet is replaced and counted as skipped.
+    pub fn put(&self, input: I) {
+        if let Some(slot) = &self.input {
+            slot.put(input);
+        }
+    }
+
+    /// The newest output that was not taken yet.
+    pub fn take(&self) -> Option<Result<Timed<O>, StagePanic>> {
+        self.output.try_take()
+    }
+
+    /// Inputs that were replaced before the stage could begin.
+    pub fn skipped(&self) -> u64 {
+        self.input.as_ref().map_or(0, Putter::skipped)
+    }
+}
+
+impl<I, O> Drop for StageThread<I, O> {
+    fn drop(&mut self) {
+        self.input = None;
+        if let Some(thread) = self.thread.take() {
+            // A panic of the thread itself has been reported by the panic.
+            let _ = thread.join();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    fn stamp(seq: &u64) -> Stamp {
+        Stamp { seq: *seq, captured_at: Instant::now() }
+    }
+
+    #[test]
+    fn a_slow_stage_gets_the_newest_input_and_its_output_keeps_the_stamp() {
+        let (bell, heard) = Bell::new();
+        let (begun, begins) = crossbeam_channel::bounded::<()>(0);
+        let (go, wait) = crossbeam_channel::bounded::<()>(0);
+        let make = move || {
+            let (begun, wait) = (begun.clone(), wait.clone());
+            move |seq: u64| {
+                let _ = begun.send(());
+                let _ = wait.recv();
+                seq * 10
+            }
+        };
+        let stage = run_stage("test stage", bell, stamp, make).expect("a thread");
+        let next = |expected: Option<(u64, u64)>| {
+            go.send(()).expect("running");
+            heard.recv_timeout(Duration::from_secs(10)).expect("rung");
+            let output = stage.take().and_then(Result::ok);
+            assert_eq!(output.map(|output| (output.stamp.seq, output.result)), expected);
+        };
+        stage.put(1);
+        begins.recv().expect("begun");
+        for seq in 2..=5 {
+            stage.put(seq);
+        }
+        next(Some((1, 10)));
+        begins.recv().expect("begun");
+        next(Some((5, 50)));
+        assert_eq!(stage.skipped(), 3);
+        drop((go, begins));
+    }
+
+    #[test]
+    fn a_stage_that_panics_says_so_and_goes_on_from_scratch() {
+        let (bell, heard) = Bell::new();
+        let make = || {
+            let mut sum = 0;
+            move |seq: u64| {
+                assert!(seq != 2, "two is too much");
+                sum += seq;
+                sum
+            }
+        };
+        let stage = run_stage("fragile", bell, stamp, make).expect("a thread");
+        let mut outputs = Vec::new();
+        for seq in [1, 2, 3] {
+            stage.put(seq);
+            heard.recv_timeout(Duration::from_secs(10)).expect("rung");
+            outputs.push(stage.take().expect("an output").map(|output| output.result));
+        }
+        let panic = StagePanic { stage: "fragile".into(), message: "two is too much".into() };
+        assert_eq!(outputs, [Ok(1), Err(panic), Ok(3)]);
+    }
+}

@@ -1,0 +1,62 @@
+//! Work that takes longer than a frame, as data: an immutable snapshot of what it needs, and
+//! what comes out.
+
+use plumbline_hardware::{CameraDevice, camera_devices};
+use plumbline_model::JobContext;
+
+use crate::eyes::work::{EyesResult, EyesWork};
+use crate::jobs::JobError;
+
+/// Something to do beside the window.
+#[derive(Clone, Debug)]
+pub enum Work {
+    /// Looks which cameras this machine has.
+    ListCameras,
+    /// Part of calibrating the eyes.
+    Eyes(EyesWork),
+}
+
+/// What came out.
+#[derive(Clone, Debug)]
+pub enum WorkResult {
+    /// Cameras of this machine.
+    Cameras(Vec<CameraDevice>),
+    /// Part of calibrating the eyes.
+    Eyes(EyesResult),
+}
+
+impl Work {
+    /// What it does, for people.
+    pub fn title(&self) -> String {
+        match self {
+            Self::ListCameras => "Look for cameras".to_owned(),
+            Self::Eyes(work) => work.title(),
+        }
+    }
+
+    /// Whether it is over so soon that it needs no line when it is done.
+    pub fn is_quiet(&self) -> bool {
+        match self {
+            Self::ListCameras => true,
+            Self::Eyes(work) => work.is_quiet(),
+        }
+    }
+
+    /// Does it, on the thread of the caller.
+    pub fn run(self, context: &dyn JobContext) -> Result<WorkResult, JobError> {
+        match self {
+            Self::ListCameras => Ok(WorkResult::Cameras(camera_devices())),
+            Self::Eyes(work) => work.run(context).map(WorkResult::Eyes),
+        }
+    }
+}
+
+impl WorkResult {
+    /// The result in a sentence.
+    pub fn summary(&self) -> String {
+        match self {
+            Self::Cameras(cameras) => format!("{} cameras", cameras.len()),
+            Self::Eyes(result) => result.summary(),
+        }
+    }
+}
