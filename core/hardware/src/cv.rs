@@ -4,6 +4,28 @@ use image::RgbImage;
 use opencv::core::{CV_8U, Mat, MatTraitConst, MatTraitConstManual};
 use opencv::imgproc;
 
+/// The OpenCV that this program is linked to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OpenCvInfo {
+    /// For example `4.6.0`.
+    pub version: String,
+    /// Threads it uses at most.
+    pub threads: i32,
+    /// Instruction sets it was built for and, marked with `*`, those it chooses at run time;
+    /// those this processor lacks are marked with `?`.
+    pub instructions: String,
+}
+
+/// Asks OpenCV who it is. The error says what is wrong with it.
+pub fn opencv_info() -> Result<OpenCvInfo, String> {
+    let failed = |error: opencv::Error| format!("OpenCV does not answer ({})", message(&error));
+    Ok(OpenCvInfo {
+        version: opencv::core::get_version_string().map_err(failed)?,
+        threads: opencv::core::get_num_threads().map_err(failed)?,
+        instructions: opencv::core::get_cpu_features_line().map_err(failed)?,
+    })
+}
+
 /// OpenCV's own message, without its file and line.
 pub(crate) fn message(error: &opencv::Error) -> String {
     error.message.trim().to_owned()
@@ -46,6 +68,13 @@ pub(crate) fn rgb_image(mat: &Mat) -> Result<RgbImage, String> {
 mod tests {
     use super::*;
     use opencv::core::{Scalar, Vec3b};
+
+    #[test]
+    fn opencv_says_who_it_is() {
+        let info = opencv_info().expect("it is linked");
+        assert!(info.version.starts_with("4."), "{info:?}");
+        assert!(info.threads >= 1, "{info:?}");
+    }
 
     #[test]
     fn channels_are_put_in_order() {

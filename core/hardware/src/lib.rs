@@ -6,7 +6,8 @@
 //!   [`open`] opens it, [`Retrying`] keeps it open when it disappears and comes back.
 //! - [`PairFolder`] gives random access to a folder of pairs, for jobs that want all of them.
 //! - [`load_image`] reads one image file into 8-bit RGB and says what is wrong with a bad one.
-//! - [`camera_devices`] and [`probe_camera`] tell which cameras this machine has.
+//! - [`camera_devices`] and [`probe_camera`] tell which cameras this machine has, [`opencv_info`]
+//!   which OpenCV.
 
 pub mod camera;
 mod cv;
@@ -26,6 +27,7 @@ mod spec;
 mod video;
 
 pub use camera::{CameraDevice, CameraProbe, CameraSettings, camera_devices, probe_camera};
+pub use cv::{OpenCvInfo, opencv_info};
 pub use error::{PairProblem, SourceError};
 pub use folder::{LoadedPair, PairFiles, PairFolder};
 pub use folder_source::FolderSource;
