@@ -61,10 +61,12 @@ impl EyeThread {
 
     /// Why this eye delivers no more, if so.
     pub(super) fn gone(&self, silence_limit: Duration) -> Option<String> {
+        // Asked first: a thread that ends in an orderly way leaves its reason before.
+        let has_ended = self.handle.as_ref().is_some_and(JoinHandle::is_finished);
         if let Some(reason) = lock(&self.inbox.gone).clone() {
             return Some(reason);
         }
-        if self.handle.as_ref().is_some_and(JoinHandle::is_finished) {
+        if has_ended {
             return Some("stopped because its thread failed; this is a defect of the program".to_owned());
         }
         let silent_for = lock(&self.inbox.last_frame_at).elapsed();

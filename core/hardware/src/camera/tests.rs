@@ -213,7 +213,12 @@ fn camera_threads_have_names() {
         CameraSource::start("names".to_owned(), cameras.map(|c| c as Box<dyn EyeCamera>), settings())
             .expect("a source");
     pairs(&mut source, 1).expect_err("both end at once");
+    let known = || names.each_ref().map(|name| name.lock().expect("a lock").clone());
+    let deadline = Instant::now() + Duration::from_secs(10);
+    while known().contains(&None) && Instant::now() < deadline {
+        std::thread::sleep(Duration::from_millis(1));
+    }
     drop(source);
-    let names = names.map(|name| name.lock().expect("a lock").clone());
+    let names = known();
     assert_eq!(names, [Some("left camera".to_owned()), Some("right camera".to_owned())]);
 }
