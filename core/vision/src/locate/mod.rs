@@ -24,7 +24,7 @@ use plumbline_model::{
 };
 
 use epipolar::{EpipolarGeometry, EpipolarRay};
-use refine::{Refined, refine};
+use refine::{Refined, Start, refine};
 use scene::Scene;
 use search::{Step, candidates, sign};
 
@@ -91,6 +91,8 @@ pub struct Located {
 pub struct Locator {
     geometry: EpipolarGeometry,
     covariance: Option<ParameterCovariance>,
+    /// How well a place of these images can be matched at best, raw pixels.
+    image_sigma_px: f64,
 }
 
 /// The rig has both eyes in one place.
@@ -105,9 +107,11 @@ const FINAL_HALF_PX: i32 = 6;
 /// A match that does not correlate at least this well is none.
 const LEAST_CORRELATION: f64 = 0.8;
 /// The best candidate must beat the next one by this much, in (1 − correlation).
-const AMBIGUITY_RATIO: f64 = 0.8;
+const AMBIGUITY_RATIO: f64 = 0.65;
 /// Looking back must come within this of the start, raw pixels.
 const CONFIRMED_PX: f64 = 1.0;
+/// Used for a calibration that does not say how well it fits, raw pixels.
+const UNKNOWN_IMAGE_SIGMA_PX: f64 = 0.05;
 /// A match known no better than this along the curve is no match, raw pixels.
 const WORST_SIGMA_PX: f64 = 0.5;
 
@@ -115,7 +119,11 @@ impl Locator {
     /// For this calibration; without a covariance the uncertainty is that of the match alone.
     pub fn new(calibration: &StereoCalibration) -> Result<Self, NoBaseline> {
         let geometry = EpipolarGeometry::new(&calibration.cameras).ok_or(NoBaseline)?;
-        Ok(Self { geometry, covariance: calibration.covariance.clone() })
+        // Lens blur, color mosaic and compression move every feature a little, and leave no trace in
+        // the residual brightness. The calibration has measured it: its residual per corner is two
+        // placements of one axis each, which is what a match consists of.
+        let image_sigma_px = calibration.summary.as_ref().map_or(UNKNOWN_IMAGE_SIGMA_PX, |s| s.rms_stereo_px);
+        Ok(Self { geometry, covariance: calibration.covariance.clone(), image_sigma_px })
     }
 
     /// Finds the places at some pixels of the left image, each by itself.
@@ -134,8 +142,10 @@ impl Locator {
             return Err(NotLocated::OutsideImage);
         }
         let ray = self.geometry.ray(Eye::Left, pixel).map_err(|_| NotLocated::OutsideLens)?;
-        let matched = self.best_match(scene, Eye::Left, &ray)?;
-        let sigma_px = matched.sigma_rad / Step::at(&self.geometry, Eye::Left, &ray).along_rad;
+        let mut matched = self.best_match(scene, Eye::Left, &ray)?;
+        let px_rad = Step::at(&self.geometry, Eye::Left, &ray).along_rad;
+        let sigma_px = (matched.sigma_rad / px_rad).hypot(self.image_sigma_px);
+        matched.sigma_rad = sigma_px * px_rad;
         if sigma_px > WORST_SIGMA_PX {
             return Err(NotLocated::NoTexture);
         }
@@ -150,9 +160,12 @@ impl Locator {
         let step = Step::at(&self.geometry, from, ray).along_rad;
         let mut refined: Vec<(Refined, f64)> = Vec::new();
         for candidate in &candidates {
-            let Some(wide) =
-                refine(&self.geometry, scene, from, ray, candidate.disparity_rad, CHOOSE_HALF_PX)
-            else {
+            let start = Start {
+                disparity_rad: candidate.disparity_rad,
+                stretch: candidate.stretch,
+                shear: candidate.shear,
+            };
+            let Some(wide) = refine(&self.geometry, scene, from, ray, start, CHOOSE_HALF_PX) else {
                 continue;
             };
             let known = refined.iter().any(|(r, _)| (r.disparity_rad - wide.disparity_rad).abs() < step);
@@ -169,7 +182,8 @@ impl Locator {
         if refined.get(1).is_some_and(|(_, second)| 1.0 - score > AMBIGUITY_RATIO * (1.0 - second)) {
             return Err(NotLocated::Ambiguous);
         }
-        Ok(refine(&self.geometry, scene, from, ray, best.disparity_rad, FINAL_HALF_PX).unwrap_or(best))
+        let start = Start { disparity_rad: best.disparity_rad, stretch: best.stretch, shear: best.shear };
+        Ok(refine(&self.geometry, scene, from, ray, start, FINAL_HALF_PX).unwrap_or(best))
     }
 
     /// Looks from right to left and compares with where it started.

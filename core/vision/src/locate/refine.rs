@@ -17,6 +17,10 @@ pub(super) struct Refined {
     pub sigma_rad: f64,
     /// Correlation of the two patches after refinement, −1..1.
     pub correlation: f64,
+    /// Size along the curve in this eye relative to the other.
+    pub stretch: f64,
+    /// Change of disparity across epipolar planes, pixels per pixel.
+    pub shear: f64,
 }
 
 /// Least noise of one pixel's brightness, gray levels: quantization and compression.
@@ -29,6 +33,16 @@ const CONVERGED_PX: f64 = 1e-3;
 /// Refinement that moves further than this has found something else.
 const MOST_MOVE_PX: f64 = 2.5;
 
+/// Where refinement starts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Start {
+    pub disparity_rad: f64,
+    /// See [`super::search::Candidate::stretch`].
+    pub stretch: f64,
+    /// See [`super::search::Candidate::shear`].
+    pub shear: f64,
+}
+
 /// Refines a candidate with patches of `half_px` to each side; `None` if it does not settle or the
 /// patch leaves the image.
 pub(super) fn refine(
@@ -36,14 +50,16 @@ pub(super) fn refine(
     scene: &Scene,
     from: Eye,
     center: &EpipolarRay,
-    start_rad: f64,
+    start: Start,
     half_px: i32,
 ) -> Option<Refined> {
     let other = if from == Eye::Left { Eye::Right } else { Eye::Left };
     let step = Step::at(geometry, from, center);
     let samples = samples(geometry, scene, from, center, &step, half_px)?;
     // Shift in pixels, its change per pixel along and across, gain, offset.
-    let mut p = Vector5::new(0.0, 0.0, 0.0, 1.0, 0.0);
+    let Start { disparity_rad: start_rad, stretch, shear } = start;
+    let slant = sign(from) * (1.0 / stretch - 1.0);
+    let mut p = Vector5::new(0.0, slant, shear, 1.0, 0.0);
     let shift = |p: &Vector5<f64>, s: &Sample| p[0] + p[1] * s.along_px + p[2] * s.plane_px;
     let look = |p: &Vector5<f64>, s: &Sample, extra_px: f64| {
         let disparity = start_rad + (shift(p, s) + extra_px) * step.along_rad;
@@ -73,6 +89,8 @@ pub(super) fn refine(
                 disparity_rad: start_rad + p[0] * step.along_rad,
                 sigma_rad: sigma_px * step.along_rad,
                 correlation,
+                stretch: 1.0 / (1.0 + sign(from) * p[1]),
+                shear: p[2],
             });
         }
     }

@@ -29,6 +29,24 @@ pub(super) struct Candidate {
     pub disparity_rad: f64,
     /// Mean correlation over the patch sizes, −1..1.
     pub correlation: f32,
+    /// Size of the thing along the curve in this eye, relative to the other: slanted surfaces look
+    /// longer to one eye than to the other.
+    pub stretch: f64,
+    /// Change of disparity across epipolar planes, pixels per pixel: a table seen from above is
+    /// nearer in its lower part.
+    pub shear: f64,
+}
+
+/// Stretches tried. Between them the correlation stays high enough to see the peak.
+const STRETCHES: [f64; 3] = [1.0, 0.7, 1.4];
+/// Shears tried.
+const SHEARS: [f64; 3] = [0.0, 0.4, -0.4];
+
+/// What a slanted surface does to a patch.
+#[derive(Clone, Copy, Debug)]
+struct Slant {
+    stretch: f64,
+    shear: f64,
 }
 
 /// Size of a step of one raw pixel, as an angle; and across planes.
@@ -69,42 +87,63 @@ pub(super) fn candidates(
     let first_rad = -BEYOND_INFINITY_PX * step.along_rad;
     let disparity = |k: usize| first_rad + k as f64 * fine_rad;
 
-    let mut sum = vec![0.0f32; count];
-    let mut sizes = vec![0u8; count];
-    for level in 0..LEVELS {
-        let patch = Patch::new(geometry, scene, from, level, center, &step);
-        let Some(patch) = patch else {
-            if level == 0 {
+    let strips: Vec<Strip> = (0..LEVELS)
+        .map(|level| Strip::new(geometry, scene, from, level, center, &step, first_rad, count))
+        .collect();
+    let mut score: Vec<Option<(f32, Slant)>> = vec![None; count];
+    for stretch in STRETCHES {
+        let patches: [Option<Patch>; LEVELS] =
+            std::array::from_fn(|level| Patch::new(geometry, scene, from, level, center, &step, stretch));
+        if patches[0].is_none() {
+            if stretch == 1.0 {
                 return Err(NotLocated::AtTheRim);
             }
             continue;
-        };
-        let strip = Strip::new(geometry, scene, from, level, center, &step, first_rad, count);
-        for k in 0..count {
-            if let Some(correlation) = strip.correlate(&patch, k) {
-                sum[k] += correlation;
-                sizes[k] += 1;
+        }
+        for shear in SHEARS {
+            for (k, best) in score.iter_mut().enumerate() {
+                let correlation = mean_correlation(&patches, &strips, k, shear);
+                if let Some(correlation) = correlation.filter(|c| best.is_none_or(|(b, _)| *c > b)) {
+                    *best = Some((correlation, Slant { stretch, shear }));
+                }
             }
         }
     }
-    // A place counts when at least the finest patch and one larger one could be compared.
-    let score: Vec<Option<f32>> =
-        sum.iter().zip(&sizes).map(|(s, n)| (*n >= 2).then(|| s / f32::from(*n))).collect();
     if score.iter().all(Option::is_none) {
         return Err(NotLocated::OtherEyeCannotSee);
     }
     let mut peaks: Vec<Candidate> = (0..count)
         .filter_map(|k| {
-            let here = score[k]?;
-            let lower = |other: Option<&Option<f32>>| other.copied().flatten().is_none_or(|o| o <= here);
+            let (here, Slant { stretch, shear }) = score[k]?;
+            let lower = |other: Option<&Option<(f32, Slant)>>| {
+                other.copied().flatten().is_none_or(|(o, _)| o <= here)
+            };
             let is_peak = lower(k.checked_sub(1).and_then(|i| score.get(i))) && lower(score.get(k + 1));
-            (is_peak && here > LEAST_CORRELATION)
-                .then(|| Candidate { disparity_rad: disparity(k), correlation: here })
+            (is_peak && here > LEAST_CORRELATION).then(|| Candidate {
+                disparity_rad: disparity(k),
+                correlation: here,
+                stretch,
+                shear,
+            })
         })
         .collect();
     peaks.sort_by(|a, b| b.correlation.total_cmp(&a.correlation));
     peaks.truncate(MOST_CANDIDATES);
     if peaks.is_empty() { Err(NotLocated::NothingAlike) } else { Ok(peaks) }
+}
+
+/// Mean over the patch sizes; `None` unless the finest patch and a larger one can be compared.
+fn mean_correlation(
+    patches: &[Option<Patch>; LEVELS],
+    strips: &[Strip],
+    k: usize,
+    shear: f64,
+) -> Option<f32> {
+    let finest = strips[0].correlate(patches[0].as_ref()?, k, shear)?;
+    let larger = patches.iter().zip(strips).skip(1);
+    let larger: Vec<f32> =
+        larger.filter_map(|(patch, strip)| strip.correlate(patch.as_ref()?, k, shear)).collect();
+    (!larger.is_empty()).then(|| (finest + larger.iter().sum::<f32>()) / (1 + larger.len()) as f32)
 }
 
 /// Brightness around the place itself, mean removed, unit length.
@@ -120,6 +159,7 @@ impl Patch {
         level: usize,
         center: &EpipolarRay,
         step: &Step,
+        stretch: f64,
     ) -> Option<Self> {
         let stride = f64::from(1i32 << level);
         let mut values = [[0.0f32; SIDE]; SIDE];
@@ -127,7 +167,8 @@ impl Patch {
             for (i, value) in row.iter_mut().enumerate() {
                 let ray = EpipolarRay {
                     plane_rad: center.plane_rad + f64::from(j as i32 - HALF) * stride * step.plane_rad,
-                    along_rad: center.along_rad + f64::from(i as i32 - HALF) * stride * step.along_rad,
+                    along_rad: center.along_rad
+                        + f64::from(i as i32 - HALF) * stride * stretch * step.along_rad,
                 };
                 *value = scene.along(geometry, eye, level, &ray)?;
             }
@@ -192,11 +233,13 @@ impl Strip {
     }
 
     /// Correlation with the patch at step `k`; `None` where the other eye does not see all of it.
-    fn correlate(&self, patch: &Patch, k: usize) -> Option<f32> {
+    fn correlate(&self, patch: &Patch, k: usize, shear: f64) -> Option<f32> {
         let middle = self.first_column + self.direction * k as i64;
-        let first = usize::try_from(middle - i64::from(HALF) * self.stride as i64).ok()?;
+        let leftmost = middle - i64::from(HALF) * self.stride as i64;
         let (mut sum, mut squares, mut product) = (0.0f32, 0.0f32, 0.0f32);
-        for (row, values) in self.rows.iter().zip(&patch.values) {
+        for (j, (row, values)) in (-HALF..=HALF).zip(self.rows.iter().zip(&patch.values)) {
+            let shift = (f64::from(j) * shear * self.stride as f64).round() as i64 * self.direction;
+            let first = usize::try_from(leftmost + shift).ok()?;
             for (i, value) in values.iter().enumerate() {
                 let other = (*row.get(first + i * self.stride)?)?;
                 sum += other;
