@@ -7,9 +7,14 @@ pub fn ticks(low: f64, high: f64, most: usize) -> Vec<f64> {
         Some(step) => step,
         None => return Vec::new(),
     };
-    let first = (low / step - 1e-9).ceil() as i64;
-    let last = (high / step + 1e-9).floor() as i64;
+    let [first, last] = inside(low, high, step).map(|i| i as i64);
     (first..=last).map(|i| i as f64 * step).collect()
+}
+
+/// First and last multiple of the step inside the range. Ends that went through `f32` count as
+/// the round numbers that they were.
+fn inside(low: f64, high: f64, step: f64) -> [f64; 2] {
+    [(low / step - 1e-5).ceil(), (high / step + 1e-5).floor()]
 }
 
 /// The smallest round step that gives at most `most` ticks.
@@ -20,7 +25,10 @@ fn step(low: f64, high: f64, most: usize) -> Option<f64> {
     }
     let rough = span / most as f64;
     let power = 10f64.powf(rough.log10().floor());
-    let fits = |step: f64| (high / step + 1e-9).floor() - (low / step - 1e-9).ceil() + 1.0 <= most as f64;
+    let fits = |step: f64| {
+        let [first, last] = inside(low, high, step);
+        last - first + 1.0 <= most as f64
+    };
     [1.0, 2.0, 5.0, 10.0, 20.0].into_iter().map(|factor| factor * power).find(|step| fits(*step))
 }
 
@@ -54,11 +62,12 @@ mod tests {
     fn ticks_are_round_inside_and_few() {
         assert_eq!(ticks(0.0, 0.31, 4), [0.0, 0.1, 0.2, 0.30000000000000004]);
         assert_eq!(ticks(-7.0, 12.0, 5), [-5.0, 0.0, 5.0, 10.0]);
+        assert_eq!(ticks(0.0, f64::from(0.005f32) * 1e3, 6).len(), 6);
         for (low, high) in [(0.0, 1.0), (0.2, 0.6), (-3e-4, 9e-4), (0.0, 12_345.0)] {
             for most in 2..9 {
                 let found = ticks(low, high, most);
                 assert!(found.len() <= most && !found.is_empty(), "{low}..{high}, {most}: {found:?}");
-                assert!(found.iter().all(|t| (low - 1e-9..=high + 1e-9).contains(t)));
+                assert!(found.iter().all(|t| (low - 1e-5..=high + 1e-5).contains(t)));
             }
         }
     }

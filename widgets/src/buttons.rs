@@ -64,23 +64,36 @@ impl ArmState {
 /// Size of the stop button in points.
 pub const STOP_SIZE: Vec2 = vec2(132.0, 44.0);
 
-/// The stop button. Always enabled, always the same size; it says what the arm does. Pressed
-/// down is enough: it does not wait for the release. Label for tests: `STOP`.
+/// The stop button. Always enabled, even where its surroundings are disabled, and always the
+/// same size; it says what the arm does. Pressed down is enough: it does not wait for the
+/// release (see [`stop_pressed`]). Label for tests: `STOP`.
 pub fn stop_button(ui: &mut Ui, arm: ArmState) -> Response {
-    let tokens = theme::tokens(ui);
-    let (rect, mut response) = ui.allocate_exact_size(STOP_SIZE, Sense::click());
+    let (rect, _) = ui.allocate_exact_size(STOP_SIZE, Sense::hover());
+    // A `Ui` of its own: one that was disabled cannot be enabled again, and this button has to
+    // work and look the same whatever the rest of the window does.
+    let id = ui.unique_id().with("stop");
+    let builder = egui::UiBuilder::new()
+        .layer_id(ui.layer_id())
+        .max_rect(rect)
+        .style(ui.style().clone())
+        .accessibility_parent(ui.unique_id());
+    let own = Ui::new(ui.ctx().clone(), id, builder);
+    let mut response = own.interact(rect, id.with("button"), Sense::click());
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(egui::Role::Button, true, "STOP");
         info.current_text_value = Some(arm.text().to_owned());
         info
     });
-    let pressed = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
-    if pressed {
+    if response.is_pointer_button_down_on() && own.input(|input| input.pointer.primary_pressed()) {
         response.mark_changed();
     }
-    // Drawn without the fading of disabled surroundings: it never greys out.
-    let mut painter = ui.painter().clone();
-    painter.set_opacity(1.0);
+    paint_stop(&own, rect, &response, arm);
+    response.on_hover_text("Stops the arm and holds it. Esc and space do the same.")
+}
+
+fn paint_stop(ui: &Ui, rect: egui::Rect, response: &Response, arm: ArmState) {
+    let tokens = theme::tokens(ui);
+    let painter = ui.painter();
     let hot = response.hovered() || response.has_focus();
     painter.rect_filled(rect, 6.0, if hot { tokens.stop_hover } else { tokens.stop });
     if response.has_focus() {
@@ -91,7 +104,6 @@ pub fn stop_button(ui: &mut Ui, arm: ArmState) -> Response {
     let center = rect.center();
     painter.text(center - vec2(0.0, 7.0), Align2::CENTER_CENTER, "STOP", heading, tokens.on_stop);
     painter.text(center + vec2(0.0, 11.0), Align2::CENTER_CENTER, arm.text(), small, tokens.on_stop);
-    response.on_hover_text("Stops the arm and holds it. Esc and space do the same.")
 }
 
 /// Whether the stop button was pressed: by pointer (on the way down), by keyboard or by a screen

@@ -7,6 +7,7 @@ use crate::theme::{self, Role, space};
 
 const ROW_HEIGHT: f32 = 22.0;
 const UNIT_WIDTH: f32 = 50.0;
+const UNIT_GAP: f32 = 6.0;
 const MOST_WIDTH: f32 = 340.0;
 
 /// One row: a name, a figure, and an explanation on hover.
@@ -77,34 +78,32 @@ pub fn key_value_grid(ui: &mut Ui, id: &str, rows: &[KeyValue]) {
 
 fn show_row(ui: &mut Ui, row: &KeyValue, width: f32) {
     let tokens = theme::tokens(ui);
+    let font = theme::font(ui, &TextStyle::Body);
+    let value_color = row.role.map_or(tokens.text_strong, |role| role.color(tokens));
+    let layout = |text: &str, color| ui.painter().layout_no_wrap(text.to_owned(), font.clone(), color);
+    let name = layout(&row.label, tokens.text_weak);
+    let value = layout(&row.value, value_color);
+    let unit = layout(row.unit, tokens.text_weak);
+    // Where both do not fit beside each other, the name gets a line of its own.
+    let stacked = name.size().x + space::S + value.size().x + UNIT_WIDTH > width;
+    let height = if stacked { ROW_HEIGHT + name.size().y } else { ROW_HEIGHT };
+
     let sense = if row.help.is_some() { Sense::focusable_noninteractive() } else { Sense::hover() };
-    let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), sense);
+    let (rect, response) = ui.allocate_exact_size(vec2(width, height), sense);
     response.widget_info(|| {
         let text = format!("{}: {} {}", row.label, row.value, row.unit);
         WidgetInfo::labeled(egui::Role::Row, true, text.trim())
     });
-    if response.hovered() && row.help.is_some() {
+    if row.help.is_some() {
         theme::paint_hover(ui, &response, rect);
     }
-    let font = theme::font(ui, &TextStyle::Body);
-    let value_color = row.role.map_or(tokens.text_strong, |role| role.color(tokens));
     let painter = ui.painter();
+    let line = |galley: &egui::Galley, bottom: f32| bottom - (ROW_HEIGHT + galley.size().y) / 2.0;
+    let name_bottom = if stacked { rect.bottom() - name.size().y } else { rect.bottom() };
     let end = rect.right() - UNIT_WIDTH;
-    let y = rect.center().y;
-    let value = painter.text(pos2(end, y), Align2::RIGHT_CENTER, &row.value, font.clone(), value_color);
-    painter.text(
-        pos2(end + space::XS + 2.0, y),
-        Align2::LEFT_CENTER,
-        row.unit,
-        font.clone(),
-        tokens.text_weak,
-    );
-    // The name gives way to the figure, never the other way round.
-    let room = (value.left() - rect.left() - space::S).max(0.0);
-    let mut name = egui::text::LayoutJob::simple_singleline(row.label.clone(), font, tokens.text_weak);
-    name.wrap = egui::text::TextWrapping::truncate_at_width(room);
-    let name = painter.layout_job(name);
-    painter.galley(pos2(rect.left(), y - name.size().y / 2.0), name, tokens.text_weak);
+    painter.galley(pos2(rect.left(), line(&name, name_bottom)), name, tokens.text_weak);
+    painter.galley(pos2(end - value.size().x, line(&value, rect.bottom())), value, value_color);
+    painter.galley(pos2(end + UNIT_GAP, line(&unit, rect.bottom())), unit, tokens.text_weak);
     if let Some(help) = &row.help {
         response.on_hover_text(help);
     }

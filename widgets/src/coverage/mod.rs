@@ -138,7 +138,6 @@ fn heat_map(ui: &mut Ui, grid: &CoverageGrid, eye: Eye, width: f32) {
     response.widget_info(|| {
         WidgetInfo::labeled(egui::Role::Image, true, format!("Coverage of the {eye} image: {share}"))
     });
-    ui.painter().rect_filled(rect, 0.0, theme::tokens(ui).backdrop);
     let [columns, rows] = grid.cells();
     let cell = vec2(rect.width() / columns as f32, rect.height() / rows as f32);
     for row in 0..rows {

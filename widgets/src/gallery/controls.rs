@@ -50,7 +50,7 @@ pub(super) fn window(ui: &mut Ui, state: &mut GalleryState) {
         ui.add_space(space::S);
         pictures::linked(ui, state);
         ui.add_space(space::M);
-        tables::bars(ui, state);
+        tables::bars_of_height(ui, state, 120.0);
         ui.add_space(space::S);
         primary_button(ui, "Solve 30 pairs", None);
     });

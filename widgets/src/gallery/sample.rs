@@ -47,7 +47,7 @@ fn board_square(u: f64, v: f64) -> Option<bool> {
 pub(super) fn corner_px(column: usize, row: usize) -> [f64; 2] {
     let (a, b) = (16.0 * (column as f64 + 1.0), 16.0 * (row as f64 + 1.0));
     let determinant = 0.97 * 0.97 + 0.12 * 0.10;
-    [120.0 + (0.97 * a - 0.12 * b) / determinant - 0.5, 70.0 + (0.10 * a + 0.97 * b) / determinant - 0.5]
+    [120.0 + (0.97 * a - 0.12 * b) / determinant, 70.0 + (0.10 * a + 0.97 * b) / determinant - 0.5]
 }
 
 pub(super) fn residuals() -> Vec<CornerResidual> {

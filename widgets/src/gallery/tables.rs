@@ -13,11 +13,16 @@ use crate::table_map::{Outline, Place, ScalarField, TableMap, TableMark, TableSc
 use crate::theme::{self, Role, space};
 
 pub(super) fn bars(ui: &mut Ui, state: &mut GalleryState) {
+    bars_of_height(ui, state, 180.0);
+}
+
+pub(super) fn bars_of_height(ui: &mut Ui, state: &mut GalleryState, height: f32) {
     ui.checkbox(&mut state.sorted, "Worst first");
     let pairs = sample::pairs();
     let response = PairBars::new("Error per pair", &pairs)
         .threshold(Some(0.15))
         .sorted(state.sorted)
+        .height(height)
         .selected(state.selected_pair)
         .show(ui);
     if let Some(bar) = response.clicked {
@@ -100,10 +105,10 @@ pub(super) fn table_map(ui: &mut Ui, _: &mut GalleryState) {
 }
 
 pub(super) fn inspector(ui: &mut Ui, _: &mut GalleryState) {
-    ui.set_max_width(300.0);
+    ui.set_max_width(ui.available_width().min(300.0));
     theme::heading(ui, "Calibration");
     ui.add_space(space::S);
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = space::L;
         big_figure(ui, "stereo rms", &Quantity::Pixels.text(0.0955), Role::Ink);
         big_figure(ui, "at 450 mm", &Quantity::LengthPerPixel.text(0.00301), Role::Ink);

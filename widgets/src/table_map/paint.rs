@@ -37,12 +37,11 @@ pub(super) fn map(
         map.cells(field, scale);
     }
     map.grid(ui.painter(), rect);
-    if let Some((field, scale)) = field {
-        map.contours(field, scale);
-    }
     map.torso();
-    for outline in &scene.outlines {
-        map.outline(outline, field.is_some());
+    let names: Vec<Rect> =
+        scene.outlines.iter().filter_map(|outline| map.outline(outline, field.is_some())).collect();
+    if let Some((field, scale)) = field {
+        map.contours(field, scale, names);
     }
     for mark in &scene.marks {
         map.mark(mark, scene.vector_scale, field.is_some());
@@ -59,10 +58,10 @@ pub(super) fn frame(ui: &Ui, rect: Rect, response: &Response, readout: Option<&s
     if let Some(text) = readout {
         let font = theme::font(ui, &TextStyle::Small);
         let galley = ui.painter().layout_no_wrap(text.to_owned(), font, tokens.text_strong);
-        let at = rect.left_top() + vec2(space::S, space::S);
-        let chip = Rect::from_min_size(at, galley.size() + vec2(12.0, 6.0));
+        let corner = rect.left_bottom() + vec2(space::XS, -space::XS);
+        let chip = Align2::LEFT_BOTTOM.anchor_size(corner, galley.size() + vec2(12.0, 6.0));
         ui.painter().rect_filled(chip, 4.0, tokens.panel);
-        ui.painter().galley(at + vec2(6.0, 3.0), galley, tokens.text_strong);
+        ui.painter().galley(chip.min + vec2(6.0, 3.0), galley, tokens.text_strong);
     }
 }
 
@@ -81,14 +80,18 @@ impl Map<'_> {
         let weak = self.tokens.text_weak;
         let stroke = Stroke::new(1.0, weak.gamma_multiply(0.2));
         let word = |at, anchor, text: String| outside.text(at, anchor, text, self.font.clone(), weak);
-        for x in axis::ticks(near[0] * 1e3, far[0] * 1e3, 9) {
+        let most = |length: f32, each: f32| ((length / each) as usize).clamp(2, 11);
+        for x in axis::ticks(near[0] * 1e3, far[0] * 1e3, most(rect.height(), 26.0)) {
             let y = self.transform.to_screen([x * 1e-3, 0.0]).y;
             self.painter.hline(rect.x_range(), y, stroke);
             word(pos2(rect.left() - 6.0, y), Align2::RIGHT_CENTER, format::fixed(x, 0));
         }
-        for y in axis::ticks(near[1] * 1e3, far[1] * 1e3, 11) {
+        for y in axis::ticks(near[1] * 1e3, far[1] * 1e3, most(rect.width(), 32.0)) {
             let x = self.transform.to_screen([0.0, y * 1e-3]).x;
             self.painter.vline(x, rect.y_range(), stroke);
+            if rect.right() - x < 14.0 {
+                continue; // its number would run into what stands beside the map
+            }
             word(pos2(x, rect.bottom() + 3.0), Align2::CENTER_TOP, format::fixed(y, 0));
         }
         let names = pos2(rect.left(), rect.top() - 3.0);
@@ -118,12 +121,12 @@ impl Map<'_> {
         self.painter.add(mesh);
     }
 
-    fn contours(&self, field: &ScalarField, scale: ColorScale) {
+    /// Lines with their values; `taken` is where words stand already.
+    fn contours(&self, field: &ScalarField, scale: ColorScale, mut taken: Vec<Rect>) {
         let Some(extent) = field.extent() else { return };
         let quantity = field.quantity();
         let [low, high] = extent.map(|v| quantity.on_screen(v));
         let levels = axis::ticks(low, high, 6);
-        let mut words: Vec<Rect> = Vec::new();
         for (level, text) in levels.iter().zip(axis::labels(&levels)) {
             let value = level / quantity.on_screen(1.0);
             let back = scale.color(value as f32).unwrap_or(self.tokens.backdrop);
@@ -138,8 +141,9 @@ impl Map<'_> {
             }
             let galley = self.painter.layout_no_wrap(text, self.font.clone(), ink);
             let size = galley.size() + vec2(6.0, 0.0);
-            if let Some(chip) = lines.first().and_then(|line| self.room_on(line, size, &words)) {
-                words.push(chip);
+            // A value is written once, on its longest line.
+            if let Some(chip) = lines.first().and_then(|line| self.room_on(line, size, &taken)) {
+                taken.push(chip);
                 self.painter.rect_filled(chip, 3.0, back);
                 self.painter.galley(chip.min + vec2(3.0, 0.0), galley, ink);
             }
@@ -147,14 +151,14 @@ impl Map<'_> {
     }
 
     /// A place for a word on a line, as near to its middle as the other words allow.
-    fn room_on(&self, line: &[Pos2], size: egui::Vec2, words: &[Rect]) -> Option<Rect> {
+    fn room_on(&self, line: &[Pos2], size: egui::Vec2, taken: &[Rect]) -> Option<Rect> {
         let inside = self.painter.clip_rect().shrink(4.0);
         [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8]
             .into_iter()
             .filter_map(|part| line.get((line.len() as f32 * part) as usize))
             .map(|at| Rect::from_center_size(*at, size))
             .find(|chip| {
-                inside.contains_rect(*chip) && !words.iter().any(|word| word.expand(4.0).intersects(*chip))
+                inside.contains_rect(*chip) && !taken.iter().any(|word| word.expand(4.0).intersects(*chip))
             })
     }
 
@@ -172,9 +176,10 @@ impl Map<'_> {
         self.word(center, Align2::CENTER_CENTER, "torso", self.tokens.text_weak);
     }
 
-    fn outline(&self, outline: &Outline, on_field: bool) {
+    /// Returns where its name stands.
+    fn outline(&self, outline: &Outline, on_field: bool) -> Option<Rect> {
         let mut points: Vec<_> = outline.corners_m.iter().map(|c| self.transform.to_screen(*c)).collect();
-        let Some(first) = points.first().copied() else { return };
+        let first = points.first().copied()?;
         let (color, width, dashed) = match outline.place {
             Place::Patch => (self.tokens.text, 1.0, false),
             Place::Touchscreen => (self.tokens.text_strong, 1.5, false),
@@ -194,14 +199,12 @@ impl Map<'_> {
             self.painter.line(points.clone(), stroke);
         }
         let corner = points.iter().copied().reduce(|a, b| if b.x + b.y < a.x + a.y { b } else { a });
-        if let Some(corner) = corner.filter(|_| !outline.name.is_empty()) {
-            let at = corner + vec2(5.0, 4.0);
-            if on_field {
-                self.chip(at, &outline.name);
-            } else {
-                self.word(at, Align2::LEFT_TOP, &outline.name, color);
-            }
-        }
+        let at = corner.filter(|_| !outline.name.is_empty())? + vec2(5.0, 4.0);
+        Some(if on_field {
+            self.chip(at, &outline.name)
+        } else {
+            self.word(at, Align2::LEFT_TOP, &outline.name, color)
+        })
     }
 
     fn mark(&self, mark: &TableMark, vector_scale: f64, on_field: bool) {
@@ -221,15 +224,16 @@ impl Map<'_> {
     }
 
     /// A word that can be read on every color.
-    fn chip(&self, at: Pos2, text: &str) {
+    fn chip(&self, at: Pos2, text: &str) -> Rect {
         let ink = theme::ON_IMAGE.text_strong;
         let galley = self.painter.layout_no_wrap(text.to_owned(), self.font.clone(), ink);
         let rect = Rect::from_min_size(at, galley.size() + vec2(8.0, 2.0));
         self.painter.rect_filled(rect, 3.0, theme::RIM);
         self.painter.galley(rect.min + vec2(4.0, 1.0), galley, ink);
+        rect
     }
 
-    fn word(&self, at: Pos2, anchor: Align2, text: &str, color: Color32) {
-        self.painter.text(at, anchor, text, self.font.clone(), color);
+    fn word(&self, at: Pos2, anchor: Align2, text: &str, color: Color32) -> Rect {
+        self.painter.text(at, anchor, text, self.font.clone(), color)
     }
 }
