@@ -71,7 +71,8 @@ impl WindowArgs {
 }
 
 fn cameras(text: &str) -> Result<(u32, u32), String> {
-    let numbers = text.split_once(',').and_then(|(l, r)| Some((l.trim().parse().ok()?, r.trim().parse().ok()?)));
+    let numbers =
+        text.split_once(',').and_then(|(l, r)| Some((l.trim().parse().ok()?, r.trim().parse().ok()?)));
     match numbers {
         Some((left, right)) if left != right => Ok((left, right)),
         Some(_) => Err("the two eyes need two different cameras".to_owned()),
@@ -124,7 +125,9 @@ fn step(text: &str) -> Result<ScriptStep, String> {
             let at = value.split_once(',').and_then(|(u, v)| Some([u.parse().ok()?, v.parse().ok()?]));
             at.map(ScriptStep::Probe).ok_or_else(|| "probe:U,V wants a pixel".to_owned())
         }
-        "wait" => seconds(value).map(ScriptStep::Wait).ok_or_else(|| "wait:SECONDS wants a number".to_owned()),
+        "wait" => {
+            seconds(value).map(ScriptStep::Wait).ok_or_else(|| "wait:SECONDS wants a number".to_owned())
+        }
         "picture" if !value.is_empty() => Ok(ScriptStep::Picture(value.into())),
         other => Err(format!("\"{other}\" is not a step; plumbline --help lists them")),
     }

@@ -33,7 +33,7 @@ impl BoardDraft {
 }
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    egui::Frame::new().inner_margin(space::M).show(ui, |ui| {
+    super::padded(ui, |ui| {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             board(ui, cx);
             ui.add_space(space::M);
@@ -49,13 +49,20 @@ fn board(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         _ => BoardDraft::of(&eyes.board),
     };
     let mut edited = draft;
-    ui.horizontal(|ui| {
-        number(ui, "Squares across", &mut edited.columns);
-        ui.label("×");
-        number(ui, "Squares down", &mut edited.rows);
-        ui.label("squares of");
-        let drag = DragValue::new(&mut edited.square_mm).range(1.0..=1000.0).speed(0.1).max_decimals(3).suffix(" mm");
-        ui.add(drag).on_hover_text("Measure several squares with a ruler and divide: all lengths rest on it")
+    egui::Grid::new("board").num_columns(2).spacing([space::S, space::S]).show(ui, |ui| {
+        ui.label("Squares");
+        ui.horizontal(|ui| {
+            number(ui, "Squares across", &mut edited.columns);
+            ui.label("×");
+            number(ui, "Squares down", &mut edited.rows);
+        });
+        ui.end_row();
+        ui.label("Side of one");
+        let side = DragValue::new(&mut edited.square_mm).range(1.0..=1000.0).speed(0.1).suffix(" mm");
+        let side = ui.add(side.max_decimals(3).min_decimals(0));
+        side.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Side of a square"));
+        side.on_hover_text("Measure several squares with a ruler and divide: all lengths rest on it");
+        ui.end_row();
     });
     match edited.board() {
         Ok(board) => {
@@ -104,9 +111,11 @@ fn lens(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.label(theme::strong(ui, "Solve with"));
     let kinds = [(ModelKind::Fisheye, "Fisheye lens"), (ModelKind::Pinhole, "Pinhole lens")];
     choice(ui, "Lens model", &mut options.model, &kinds);
-    ui.checkbox(&mut options.leave_out_bad_corners, "Leave out bad corners one by one");
+    ui.checkbox(&mut options.leave_out_bad_corners, "Leave out bad corners")
+        .on_hover_text("Single corners that were found wrongly are left out; the pair stays");
     let mut cross_validate = options.cross_validation_folds > 0;
-    if ui.checkbox(&mut cross_validate, "Cross-validate: solve again without each fifth of the pairs").changed() {
+    let hover = "Solves again without each fifth of the pairs, and tells the error on those";
+    if ui.checkbox(&mut cross_validate, "Cross-validate").on_hover_text(hover).changed() {
         options.cross_validation_folds = if cross_validate { 5 } else { 0 };
     }
     if options != cx.view.eyes.options {

@@ -1,6 +1,6 @@
 //! The proposal and the calibration in use, figure by figure.
 
-use egui::{Align, Grid, Label, Layout, RichText, ScrollArea, Ui};
+use egui::{Align2, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
 use plumbline_engine::view::Origin;
 use plumbline_model::StereoCalibration;
 use plumbline_widgets::empty::{EmptyState, Message};
@@ -13,19 +13,23 @@ use crate::window::{Action, Screen, verdict};
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let eyes = &cx.view.eyes;
     if eyes.proposal.is_none() && eyes.in_use.is_none() {
-        let message = Message::new("No calibration yet", "Collect pairs of the board and solve them, or import a file.");
+        let message = Message::new(
+            "No calibration yet",
+            "Collect pairs of the board and solve them, or import a file.",
+        );
         if EmptyState::empty(message.button("Collect pairs")).show(ui) {
             cx.outbox.act(Action::Go(Screen::Collect));
         }
         return;
     }
-    egui::Frame::new().inner_margin(space::M).show(ui, |ui| {
+    super::padded(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             if let Some(proposal) = eyes.proposal.as_ref().filter(|proposal| proposal.stale.is_none()) {
                 super::verdict_line::show(ui, &verdict(proposal));
                 ui.add_space(space::S);
             }
-            let proposed = eyes.proposal.as_ref().map(|p| (&*p.calibration, origin_text(&p.origin), p.depth_per_px_m));
+            let proposed =
+                eyes.proposal.as_ref().map(|p| (&*p.calibration, origin_text(&p.origin), p.depth_per_px_m));
             let in_use = eyes.in_use.as_ref().map(|a| {
                 let accepted = format::age(age_of(a.accepted));
                 (&*a.calibration, format!("accepted {accepted}"), a.depth_per_px_m)
@@ -65,38 +69,39 @@ fn columns(ui: &mut Ui, proposed: Column<'_>, in_use: Column<'_>) {
         move |calibration: &StereoCalibration| calibration.summary.as_ref().and_then(pick)
     };
     let origin = |column: &Column<'_>| column.as_ref().map_or_else(none, |(_, text, _)| text.clone());
-    let per_px = |column: &Column<'_>| {
-        column.as_ref().and_then(|(.., per_px)| *per_px).map_or_else(none, format::mm)
+    let per_px =
+        |column: &Column<'_>| column.as_ref().and_then(|(.., per_px)| *per_px).map_or_else(none, format::mm);
+    row(ui, "", "Proposal", "In use", true);
+    row(ui, "Where from", &origin(&proposed), &origin(&in_use), false);
+    let mut figure = |name: &str, text: &dyn Fn(&StereoCalibration) -> Option<String>| {
+        row(ui, name, &of(&proposed, text), &of(&in_use, text), false);
     };
-    Grid::new("comparison").num_columns(3).spacing([space::L, space::XS]).min_row_height(22.0).show(ui, |ui| {
-        ui.label("");
-        right(ui, theme::strong(ui, "Proposal"));
-        right(ui, theme::strong(ui, "In use"));
-        ui.end_row();
-        row(ui, "Where from", origin(&proposed), origin(&in_use));
-        let mut figure = |name: &str, text: &dyn Fn(&StereoCalibration) -> Option<String>| {
-            row(ui, name, of(&proposed, text), of(&in_use, text));
-        };
-        figure("Pairs", &|c| (!c.per_pair.is_empty()).then(|| c.per_pair.len().to_string()));
-        figure("On unseen pairs", &summary(|s| s.cross_validated_px.map(format::px)));
-        figure("Stereo rms", &summary(|s| Some(format::px(s.rms_stereo_px))));
-        figure("Epipolar", &summary(|s| Some(format::px(s.epipolar_px))));
-        figure("Squares measured back", &summary(|s| Some(format::mm_with(s.square_mean_m, s.square_sd_m))));
-        figure("Baseline", &|c| Some(format::mm(c.cameras.baseline_m())));
-        figure("Focal length left", &|c| Some(format::px(c.cameras.left.model.focal_px().0)));
-        figure("Focal length right", &|c| Some(format::px(c.cameras.right.model.focal_px().0)));
-        row(ui, "One pixel in depth", per_px(&proposed), per_px(&in_use));
+    figure("Pairs", &|c| (!c.per_pair.is_empty()).then(|| c.per_pair.len().to_string()));
+    figure("On unseen pairs", &summary(|s| s.cross_validated_px.map(format::px)));
+    figure("Stereo rms", &summary(|s| Some(format::px(s.rms_stereo_px))));
+    figure("Epipolar", &summary(|s| Some(format::px(s.epipolar_px))));
+    figure("Squares", &summary(|s| Some(format::mm_with(s.square_mean_m, s.square_sd_m))));
+    figure("Baseline", &|c| Some(format::mm(c.cameras.baseline_m())));
+    figure("Focal length left", &|c| Some(format::px(c.cameras.left.model.focal_px().0)));
+    figure("Focal length right", &|c| Some(format::px(c.cameras.right.model.focal_px().0)));
+    row(ui, "One pixel in depth", &per_px(&proposed), &per_px(&in_use), false);
+}
+
+/// One line of three columns, the figures aligned at their right ends.
+fn row(ui: &mut Ui, name: &str, proposed: &str, in_use: &str, heading: bool) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 22.0), Sense::hover());
+    response.widget_info(|| {
+        WidgetInfo::labeled(egui::Role::Row, true, format!("{name}: proposal {proposed}, in use {in_use}"))
     });
-}
-
-fn row(ui: &mut Ui, name: &str, proposed: String, in_use: String) {
-    ui.label(theme::weak(ui, name));
     let tokens = theme::tokens(ui);
-    right(ui, RichText::new(proposed).color(tokens.text_strong));
-    right(ui, RichText::new(in_use).color(tokens.text));
-    ui.end_row();
-}
-
-fn right(ui: &mut Ui, text: RichText) {
-    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.add(Label::new(text).extend()));
+    let style = if heading { theme::strong_style(ui) } else { TextStyle::Body };
+    let text = |ui: &Ui, text: &str, x: f32, anchor: Align2, color| {
+        let font = style.resolve(ui.style());
+        ui.painter().text(egui::pos2(x, rect.center().y), anchor, text, font, color);
+    };
+    let figures = (rect.width() - 120.0) / 2.0;
+    text(ui, name, rect.left(), Align2::LEFT_CENTER, tokens.text_weak);
+    text(ui, proposed, rect.right() - figures, Align2::RIGHT_CENTER, tokens.text_strong);
+    let in_use_color = if heading { tokens.text_strong } else { tokens.text };
+    text(ui, in_use, rect.right(), Align2::RIGHT_CENTER, in_use_color);
 }

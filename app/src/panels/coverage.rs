@@ -6,8 +6,7 @@ use egui::Ui;
 use plumbline_engine::view::CollectedPair;
 use plumbline_model::Eye;
 use plumbline_widgets::coverage::{Coverage, coverage_view};
-use plumbline_widgets::empty::{Message, EmptyState};
-use plumbline_widgets::theme::space;
+use plumbline_widgets::empty::{EmptyState, Message};
 
 use super::PanelContext;
 
@@ -19,9 +18,13 @@ pub struct CountedCoverage {
 }
 
 impl CountedCoverage {
-    fn of(&mut self, pairs: &Arc<[Arc<CollectedPair>]>) -> Option<&Coverage> {
+    fn of(
+        &mut self,
+        pairs: &Arc<[Arc<CollectedPair>]>,
+        image_size_px: Option<(u32, u32)>,
+    ) -> Option<&Coverage> {
         if !self.of.as_ref().is_some_and(|counted| Arc::ptr_eq(counted, pairs)) {
-            self.counted = count(pairs);
+            self.counted = count(pairs, image_size_px);
             self.of = Some(Arc::clone(pairs));
         }
         self.counted.as_ref()
@@ -29,8 +32,9 @@ impl CountedCoverage {
 }
 
 /// `None` without pairs.
-fn count(pairs: &[Arc<CollectedPair>]) -> Option<Coverage> {
-    let mut coverage = Coverage::new(pairs.first()?.left_image.dimensions().into());
+fn count(pairs: &[Arc<CollectedPair>], image_size_px: Option<(u32, u32)>) -> Option<Coverage> {
+    pairs.first()?;
+    let mut coverage = Coverage::new(image_size_px?.into());
     for pair in pairs {
         for eye in Eye::BOTH {
             for corner in pair.corners(eye).into_iter().flatten().flatten() {
@@ -48,7 +52,10 @@ fn count(pairs: &[Arc<CollectedPair>]) -> Option<Coverage> {
 }
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    let Some(coverage) = cx.state.coverage.of(&cx.view.eyes.collected) else {
+    // The images themselves know best; pairs from a file have none.
+    let from_pairs = cx.view.eyes.collected.iter().find_map(|pair| pair.left_image.as_ref());
+    let image_size_px = from_pairs.map(|image| image.dimensions()).or(cx.view.source.image_size_px);
+    let Some(coverage) = cx.state.coverage.of(&cx.view.eyes.collected, image_size_px) else {
         let message = Message::new(
             "No pairs yet",
             "Collected pairs show here which parts of both images, which distances and which tilts are still missing.",
@@ -56,7 +63,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         EmptyState::empty(message).show(ui);
         return;
     };
-    egui::Frame::new().inner_margin(space::M).show(ui, |ui| {
+    super::padded(ui, |ui| {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| coverage_view(ui, coverage));
     });
 }

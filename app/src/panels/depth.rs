@@ -1,8 +1,8 @@
 //! Disparity and depth as colors, with their scale.
 
 use egui::{Ui, vec2};
-use plumbline_engine::view::DisparityView;
 use plumbline_engine::Products;
+use plumbline_engine::view::DisparityView;
 use plumbline_model::Eye;
 use plumbline_widgets::colormap::{ColorScale, Orientation, ScaleBar, colorize, colorize_with};
 use plumbline_widgets::format::{self, Quantity};
@@ -20,11 +20,14 @@ pub fn disparity(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let range = [values.search_px.0 as f32, values.search_px.1 as f32];
     let scale = ColorScale::new(cx.state.live.colormap, range);
     let text = |u: usize, v: usize| values.disparity_px(u as u32, v as u32).map(format::px);
-    let look = Look { key: "disparity", label: "Disparity of the left eye", scale_label: "Disparity", quantity: Quantity::Pixels };
+    let look = Look {
+        key: "disparity",
+        label: "Disparity of the left eye",
+        scale_label: "Disparity",
+        quantity: Quantity::Pixels,
+    };
     let value = |u: u32, v: u32| values.disparity_px(u, v);
-    draw(ui, cx, values, scale, &look, &text, &value, &|| {
-        colorize(&values.values_px, size(values), &scale)
-    });
+    draw(ui, cx, values, scale, &look, &text, &value, &|| colorize(&values.values_px, size(values), &scale));
 }
 
 pub fn depth(ui: &mut Ui, cx: &mut PanelContext<'_>) {
@@ -33,10 +36,16 @@ pub fn depth(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let reach = (values.focal_px * values.baseline_m) as f32;
     let depth_m = |disparity: f32| if disparity > 0.0 { reach / disparity } else { f32::NAN };
     // Fitted once and then kept: colors that change their meaning by themselves cannot be learnt.
-    let range_m = *cx.state.live.depth_range_m.get_or_insert_with(|| fitted_range_m(&values.values_px, depth_m));
+    let range_m =
+        *cx.state.live.depth_range_m.get_or_insert_with(|| fitted_range_m(&values.values_px, depth_m));
     let scale = ColorScale::new(cx.state.live.colormap, range_m).reversed();
     let text = |u: usize, v: usize| values.depth_m(u as u32, v as u32).map(format::meters);
-    let look = Look { key: "depth", label: "Depth seen by the left eye", scale_label: "Depth", quantity: Quantity::Depth };
+    let look = Look {
+        key: "depth",
+        label: "Depth seen by the left eye",
+        scale_label: "Depth",
+        quantity: Quantity::Depth,
+    };
     let value = |u: u32, v: u32| values.depth_m(u, v);
     draw(ui, cx, values, scale, &look, &text, &value, &|| {
         colorize_with(&values.values_px, size(values), &scale, |disparity| depth_m(*disparity))

@@ -6,7 +6,7 @@ use plumbline_engine::view::EyesView;
 use plumbline_model::StereoCalibration;
 use plumbline_widgets::bars::{PairBar, PairBars};
 use plumbline_widgets::empty::{EmptyState, Message};
-use plumbline_widgets::theme::{self, space};
+use plumbline_widgets::theme;
 
 use super::PanelContext;
 
@@ -21,10 +21,10 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     };
     let bars = bars(&calibration, &cx.view.eyes);
     let chosen = cx.state.chosen_pair.as_ref().and_then(|name| bars.iter().position(|bar| bar.name == *name));
-    egui::Frame::new().inner_margin(egui::Margin::symmetric(space::S as i8, space::XS as i8)).show(ui, |ui| {
+    super::padded(ui, |ui| {
         let footer = if cx.view.eyes.dropped.is_empty() { 0.0 } else { 32.0 };
         let height = (ui.available_height() - 34.0 - footer).clamp(80.0, 400.0);
-        let shown = PairBars::new("Error per pair, left and right eye", &bars)
+        let shown = PairBars::new("Rms of the corners", &bars)
             .threshold(threshold(&bars))
             .selected(chosen)
             .height(height)

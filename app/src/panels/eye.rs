@@ -30,7 +30,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
         let image = if eye == Eye::Left { &frame.left } else { &frame.right };
         cx.state.textures.rgb(picture::eye_key(eye), picture::seq(&frame.stamp), image)
     });
-    let content = picture.map_or_else(|| source_state::without_image(view), Content::Picture);
+    let content = picture.map_or_else(|| source_state::without_image(view, eye), Content::Picture);
     let shown = ImageView::new(label, content)
         .caption(false)
         .overlay(&overlay)
@@ -102,11 +102,13 @@ fn board_marks(cx: &PanelContext<'_>, eye: Eye) -> Overlay {
         overlay.append(ghost(&outline_px, Ghost::Wanted, ""));
     }
     let newest = cx.view.live.raw.as_ref().map(|frame| frame.stamp);
-    let seen = cx.view.live.corners.as_ref().filter(|corners| {
-        // Corners of an older pair would lie beside the board of a moving picture; of
-        // photographs there is only this one.
-        newest.is_some_and(|stamp| stamp.seq.saturating_sub(corners.stamp.seq) <= 3)
-    });
+    // Corners of a pair just before still lie about right in a moving picture, but not in the
+    // next photograph.
+    let behind = if cx.view.source.photographs { 0 } else { 3 };
+    let seen =
+        cx.view.live.corners.as_ref().filter(|corners| {
+            newest.is_some_and(|stamp| stamp.seq.saturating_sub(corners.stamp.seq) <= behind)
+        });
     if let Some(corners) = seen.and_then(|seen| seen.corners(eye)) {
         let role = match eyes.hint {
             Some(CaptureHint::Ready | CaptureHint::Captured { .. }) => Role::Accepted,
@@ -124,7 +126,13 @@ pub fn corner_marks(corners: &[Pixel<Raw>], columns: usize, role: Role) -> Overl
     for row in corners.chunks(columns.max(1)) {
         let points_px: Vec<[f64; 2]> = row.iter().map(at).collect();
         if points_px.len() > 1 {
-            overlay.push(Mark::Line { points_px, closed: false, dashed: false, width_pt: 1.0, ink: role.into() });
+            overlay.push(Mark::Line {
+                points_px,
+                closed: false,
+                dashed: false,
+                width_pt: 1.0,
+                ink: role.into(),
+            });
         }
     }
     for (i, corner) in corners.iter().enumerate() {

@@ -20,7 +20,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         }
         return;
     };
-    egui::Frame::new().inner_margin(space::M).show(ui, |ui| {
+    super::padded(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             match &eyes.proposal {
                 Some(proposal) => proposal_verdict(ui, proposal),
@@ -53,7 +53,6 @@ fn figures(ui: &mut Ui, eyes: &EyesView, calibration: &StereoCalibration) {
             ui.spacing_mut().item_spacing.x = space::L;
             let unseen = summary.cross_validated_px.map_or(format::NONE.to_owned(), format::px);
             big_figure(ui, "on unseen pairs", &unseen, Role::Ink);
-            big_figure(ui, "stereo rms", &format::px(summary.rms_stereo_px), Role::Ink);
             big_figure(ui, "epipolar", &format::px(summary.epipolar_px), Role::Ink);
         });
         ui.add_space(space::S);
@@ -69,8 +68,12 @@ fn figures(ui: &mut Ui, eyes: &EyesView, calibration: &StereoCalibration) {
     }
     rows.push(KeyValue::quantity("Baseline", Quantity::Length, calibration.cameras.baseline_m()));
     rows.push(
-        KeyValue::optional(format!("One pixel at {}", format::meters(stated_at_m)), Quantity::Length, depth_per_px_m)
-            .help("Change of distance, straight ahead, that moves the match by one pixel"),
+        KeyValue::optional(
+            format!("One pixel at {}", format::meters(stated_at_m)),
+            Quantity::Length,
+            depth_per_px_m,
+        )
+        .help("Change of distance, straight ahead, that moves the match by one pixel"),
     );
     rows.push(KeyValue::text("Pairs", calibration.per_pair.len().to_string()));
     let left_out = calibration.left_out_corners().count();
@@ -79,13 +82,20 @@ fn figures(ui: &mut Ui, eyes: &EyesView, calibration: &StereoCalibration) {
     rejected(ui, calibration);
 }
 
-fn summary_rows(summary: &FitSummary, eyes: &EyesView) -> [KeyValue; 3] {
+fn summary_rows(summary: &FitSummary, eyes: &EyesView) -> [KeyValue; 4] {
     let nominal_mm = format::mm(eyes.board.square_m);
     [
+        KeyValue::quantity("Stereo rms", Quantity::Pixels, summary.rms_stereo_px)
+            .help("Over the corners of both eyes, on the pairs that were fitted"),
         KeyValue::quantity("Left eye", Quantity::Pixels, summary.rms_left_px),
         KeyValue::quantity("Right eye", Quantity::Pixels, summary.rms_right_px),
-        KeyValue::uncertain("Squares measured back", Quantity::Length, summary.square_mean_m, summary.square_sd_m)
-            .help(format!("The board's squares as both eyes see them, with their spread; they are {nominal_mm}")),
+        KeyValue::uncertain(
+            "Squares measured back",
+            Quantity::Length,
+            summary.square_mean_m,
+            summary.square_sd_m,
+        )
+        .help(format!("The board's squares as both eyes see them, with their spread; they are {nominal_mm}")),
     ]
 }
 
@@ -93,7 +103,14 @@ fn left_out_names(calibration: &StereoCalibration) -> String {
     let mut lines: Vec<String> = calibration
         .left_out_corners()
         .take(12)
-        .map(|(pair, corner)| format!("{pair}, {} eye, corner {}: {}", corner.eye, corner.corner + 1, format::px(corner.norm_px())))
+        .map(|(pair, corner)| {
+            format!(
+                "{pair}, {} eye, corner {}: {}",
+                corner.eye,
+                corner.corner + 1,
+                format::px(corner.norm_px())
+            )
+        })
         .collect();
     if lines.is_empty() {
         lines.push("Every corner fits.".to_owned());

@@ -1,7 +1,7 @@
 //! Reading and writing calibration files, and the calibrations accepted before.
 
 use egui::{Button, ScrollArea, Ui};
-use plumbline_engine::{EyesCommand, ExportFormat, Exported};
+use plumbline_engine::{ExportFormat, Exported, EyesCommand};
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
@@ -18,7 +18,7 @@ const FORMATS: [ExportFormat; 5] = [
 ];
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    egui::Frame::new().inner_margin(space::M).show(ui, |ui| {
+    super::padded(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             export(ui, cx);
             ui.add_space(space::M);
@@ -55,7 +55,10 @@ fn export(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 
 fn import(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.label(theme::strong(ui, "Import"));
-    ui.label(theme::small(ui, "Plumbline, ROS camera_info (both eyes' files), OpenCV, Kalibr. It becomes a proposal."));
+    ui.label(theme::small(
+        ui,
+        "Plumbline, ROS camera_info (both eyes' files), OpenCV, Kalibr. It becomes a proposal.",
+    ));
     if ui.button("Import a calibration…").clicked() {
         cx.outbox.act(Action::Import);
     }

@@ -16,14 +16,16 @@ mod probe;
 mod rectified;
 mod residuals;
 mod source_state;
+mod start;
 mod table;
 mod verdict_line;
 
 pub use board::BoardDraft;
-pub use probe::{ProbeState, probe_readout};
 pub(crate) use picture::key as picture_key;
+pub use probe::{ProbeState, probe_readout};
 pub(crate) use residuals::chosen_fit;
 pub(crate) use source_state::source_age;
+pub(crate) use start::show as show_start;
 
 use std::sync::Arc;
 
@@ -53,6 +55,8 @@ pub struct PanelState {
     pub live: LiveStyle,
     /// The pair chosen in a list or by a bar.
     pub chosen_pair: Option<String>,
+    /// The pair and its fit that the residuals were last fitted to.
+    pub residuals_of: Option<String>,
     /// The eye chosen with it.
     pub chosen_eye: Option<Eye>,
     /// The board as it is being typed.
@@ -75,6 +79,7 @@ impl Default for PanelState {
             probe: ProbeState::default(),
             live: LiveStyle::default(),
             chosen_pair: None,
+            residuals_of: None,
             chosen_eye: None,
             board: None,
             coverage: Default::default(),
@@ -122,6 +127,13 @@ pub struct PanelContext<'a> {
     pub state: &'a mut PanelState,
     /// What the operator asks for.
     pub outbox: &'a mut Outbox,
+}
+
+/// Room around the content of a panel that is not a picture; its left edge is that of the
+/// tile's title.
+fn padded<R>(ui: &mut Ui, contents: impl FnOnce(&mut Ui) -> R) -> R {
+    let margin = egui::Margin { left: 12, right: 12, top: 4, bottom: 8 };
+    egui::Frame::new().inner_margin(margin).show(ui, contents).inner
 }
 
 /// Draws one panel into the available space.

@@ -15,7 +15,7 @@ const ROW: f32 = 24.0;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     cx.outbox.want(Products { corners: true, ..Products::default() });
-    egui::Frame::new().inner_margin(egui::Margin::symmetric(space::M as i8, space::S as i8)).show(ui, |ui| {
+    super::padded(ui, |ui| {
         controls(ui, cx);
         ui.add_space(space::S);
         let eyes = &cx.view.eyes;
@@ -136,7 +136,8 @@ fn describe(pair: &CollectedPair, dropped: bool) -> String {
 fn not_taken_row(ui: &mut Ui, name: &str, why: &str) {
     ui.horizontal(|ui| {
         ui.set_min_height(ROW);
-        let text = egui::RichText::new(format!("{name}: {why}")).color(Role::Warning.color(theme::tokens(ui)));
+        let text =
+            egui::RichText::new(format!("{name}: {why}")).color(Role::Warning.color(theme::tokens(ui)));
         ui.add(egui::Label::new(text).truncate()).on_hover_text(why);
     });
 }

@@ -13,6 +13,7 @@ use plumbline_widgets::theme::Role;
 use super::{PanelContext, picture, source_state};
 use crate::window::{Action, Outbox, Screen};
 
+const PAIR: &str = "Rectified pair";
 /// Distance of the lines, pixels.
 const LINES_EVERY_PX: usize = 40;
 
@@ -20,7 +21,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     cx.outbox.want(Products { rectified: true, ..Products::default() });
     let view = cx.view;
     let Some(rectified) = &view.live.rectified else {
-        return show_missing(ui, cx, "Rectified pair");
+        return show_missing(ui, cx, PAIR);
     };
     let stale = source_state::stale_sentence(view);
     let gap = 2.0;
@@ -87,23 +88,26 @@ pub fn probe_mark(view: &View, eye: Eye) -> Overlay {
 /// What stands in a panel that needs the rectified pair while there is none.
 pub fn show_missing(ui: &mut Ui, cx: &mut PanelContext<'_>, label: &str) {
     let view = cx.view;
-    let (content, calibrate) = missing(view);
+    let (content, calibrate) = missing(view, label == PAIR);
     let clicked = ImageView::new(label, content).show(ui, &mut cx.state.rectified).button_clicked;
     if clicked {
         press(view, calibrate, cx.outbox);
     }
 }
 
-fn missing(view: &View) -> (Content<'_>, bool) {
+fn missing(view: &View, first: bool) -> (Content<'_>, bool) {
+    // The button stands once on the screen.
+    let eye = if first { Eye::Left } else { Eye::Right };
     if view.eyes.in_use.is_none() {
         let message = Message::new(
             "The eyes are not calibrated",
             "Distances need a calibration: collect pairs of a chessboard and solve them, or import a file.",
         );
-        return (Content::Empty(message.button("Calibrate the eyes")), true);
+        let message = if first { message.button("Calibrate the eyes") } else { message };
+        return (Content::Empty(message), true);
     }
     if view.live.raw.is_none() {
-        return (source_state::without_image(view), false);
+        return (source_state::without_image(view, eye), false);
     }
     match &view.live.no_rectified_because {
         Some(why) => (Content::Failed(Message::new("The pair cannot be rectified", why)), false),

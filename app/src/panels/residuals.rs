@@ -10,8 +10,8 @@ use plumbline_engine::view::{CollectedPair, EyesView};
 use plumbline_model::{Eye, PairFit};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
-use plumbline_widgets::image_view::{Content, ImageView};
-use plumbline_widgets::overlay::Overlay;
+use plumbline_widgets::image_view::{Content, ImageView, ViewState};
+use plumbline_widgets::overlay::{Overlay, bounds_px};
 use plumbline_widgets::residuals::{arrow_scale, residual_arrows};
 
 use super::PanelContext;
@@ -21,12 +21,18 @@ const ARROW_PX: f64 = 12.0;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let Some(fit) = chosen_fit(cx.view, cx.state.chosen_pair.as_deref()) else {
-        let message = Message::new("No pair is chosen", "Click a bar to see the pair with what is left of its errors.");
+        let message =
+            Message::new("No pair is chosen", "Click a bar to see the pair with what is left of its errors.");
         EmptyState::empty(message).show(ui);
         return;
     };
     let scale = arrow_scale(&fit.residuals, ARROW_PX);
     let pair = collected(&cx.view.eyes, &fit.name);
+    let key = format!("{}{}", fit.name, fit.residuals.len());
+    let look = cx.state.residuals_of.as_ref() != Some(&key);
+    if look {
+        cx.state.residuals_of = Some(key);
+    }
     let gap = 2.0;
     let size = vec2((ui.available_width() - gap) / 2.0, ui.available_height());
     ui.spacing_mut().item_spacing.x = gap;
@@ -34,11 +40,29 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         for eye in Eye::BOTH {
             let error_px = if eye == Eye::Left { fit.left_px } else { fit.right_px };
             let error = error_px.map_or("board not seen".to_owned(), format::px);
-            let label = format!("{}, {eye} eye: {error}, arrows {scale}×", fit.name);
+            let label = format!("{eye} eye {error}, arrows {scale}×");
+            if look {
+                look_at_board(&mut cx.state.chosen[eye.index()], fit, eye, size);
+            }
             let overlay = residual_arrows(&fit.residuals, eye, scale);
             collected_image(ui, cx, pair.as_deref(), eye, &label, &overlay, size);
         }
     });
+}
+
+/// Fills the view with the board, where the arrows are; a double click shows the whole image.
+fn look_at_board(view: &mut ViewState, fit: &PairFit, eye: Eye, size: egui::Vec2) {
+    let corners: Vec<[f64; 2]> =
+        fit.residuals.iter().filter(|r| r.eye == eye).map(|r| [r.measured.u_px, r.measured.v_px]).collect();
+    match bounds_px(&corners) {
+        Some(bounds) => {
+            let room = 1.35;
+            let zoom = (size.x / bounds.width().max(1.0)).min(size.y / bounds.height().max(1.0)) / room;
+            let center = bounds.center();
+            view.look_at([f64::from(center.x), f64::from(center.y)], f64::from(zoom));
+        }
+        None => view.fit(),
+    }
 }
 
 /// The fit of the chosen pair, or of the worst one while none is chosen.
@@ -66,14 +90,11 @@ pub fn collected_image(
     size: egui::Vec2,
 ) {
     let key = if eye == Eye::Left { "chosen left" } else { "chosen right" };
-    let content = match pair {
-        Some(pair) => {
-            let image = pair.image(eye);
-            Content::Picture(cx.state.textures.get(key, identity(image), || gray(image)))
-        }
+    let content = match pair.and_then(|pair| pair.image(eye)) {
+        Some(image) => Content::Picture(cx.state.textures.get(key, identity(image), || gray(image))),
         None => Content::Empty(Message::new(
             "The image is not at hand",
-            "This calibration was read from a file: open its pairs and collect them to see the images.",
+            "Only its corners are known, from a file: open the pairs and collect them to see the images.",
         )),
     };
     ImageView::new(label, content).overlay(overlay).size(size).show(ui, &mut cx.state.chosen[eye.index()]);

@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use plumbline_engine::View;
 use plumbline_engine::view::SourceStatus;
+use plumbline_model::Eye;
 use plumbline_widgets::empty::Message;
 use plumbline_widgets::format;
 use plumbline_widgets::image_view::Content;
@@ -13,12 +14,24 @@ use crate::window::{Action, Outbox};
 /// From this age on, the picture of a camera is called old.
 const OLD: Duration = Duration::from_millis(1500);
 
-/// What a view shows while there is no image.
-pub fn without_image(view: &View) -> Content<'_> {
+/// What a view shows while there is no image. Only the left eye's view offers to do something
+/// about it: the same button twice side by side helps nobody.
+pub fn without_image(view: &View, eye: Eye) -> Content<'_> {
+    match without_image_of_left(view) {
+        Content::Empty(message) if eye == Eye::Right => Content::Empty(Message { button: None, ..message }),
+        Content::Failed(message) if eye == Eye::Right => Content::Failed(Message { button: None, ..message }),
+        content => content,
+    }
+}
+
+fn without_image_of_left(view: &View) -> Content<'_> {
     match &view.source.status {
         SourceStatus::None => Content::Empty(
-            Message::new("No images yet", "Open a folder of pairs, two videos or two cameras; or drop files here.")
-                .button("Open a folder of pairs…"),
+            Message::new(
+                "No images yet",
+                "Open a folder of pairs, two videos or two cameras; or drop files here.",
+            )
+            .button("Open a folder of pairs…"),
         ),
         SourceStatus::Lost { reason, .. } => {
             Content::Failed(Message::new("The source is lost", reason).button("Try again"))
@@ -42,8 +55,8 @@ pub fn button_clicked(view: &View, outbox: &mut Outbox) {
 
 /// Age of the newest pair; `None` where it has none (photographs, a recording held still).
 pub fn source_age(view: &View) -> Option<Duration> {
-    let held = view.source.photographs
-        || matches!(view.source.status, SourceStatus::Paused | SourceStatus::Ended);
+    let held =
+        view.source.photographs || matches!(view.source.status, SourceStatus::Paused | SourceStatus::Ended);
     let newest_at = view.live.statistics.source.newest_at?;
     (!held).then(|| Instant::now().saturating_duration_since(newest_at))
 }

@@ -7,7 +7,7 @@ use plumbline_widgets::colormap::{ColorScale, Colormap};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::table_map::{self, Outline, Place, ScalarField, TableScene};
-use plumbline_widgets::theme::{self, space};
+use plumbline_widgets::theme;
 
 use super::PanelContext;
 use crate::window::{Action, Screen};
@@ -24,7 +24,12 @@ pub fn uncertainty(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             "Not known",
             "The file says nothing about how well its numbers are known: solve from pairs to get this map.",
         ),
-        None => message(ui, cx, "Nothing solved yet", "Collect pairs and solve them to see how well places are known."),
+        None => message(
+            ui,
+            cx,
+            "Nothing solved yet",
+            "Collect pairs and solve them to see how well places are known.",
+        ),
     }
 }
 
@@ -35,10 +40,20 @@ pub fn difference(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             Some(map) => {
                 draw(ui, "Difference", map, "How far a point moves if the proposal is accepted", 2.0);
             }
-            None => message(ui, cx, "No difference to show", "The two calibrations see no part of the table in common."),
+            None => message(
+                ui,
+                cx,
+                "No difference to show",
+                "The two calibrations see no part of the table in common.",
+            ),
         },
         (None, Some(_)) => {
-            message(ui, cx, "Nothing is proposed", "Solve or import a calibration to compare it with the one in use.");
+            message(
+                ui,
+                cx,
+                "Nothing is proposed",
+                "Solve or import a calibration to compare it with the one in use.",
+            );
         }
         (_, None) => message(ui, cx, "Nothing to compare with", "This will be the first calibration in use."),
     }
@@ -55,10 +70,14 @@ fn message(ui: &mut Ui, cx: &mut PanelContext<'_>, title: &str, what_to_do: &str
 
 /// Colors from zero to at least `least_mm`, so that a good map does not look dramatic.
 fn draw(ui: &mut Ui, name: &str, map: &TableMap, meaning: &str, least_mm: f64) {
-    egui::Frame::new().inner_margin(space::S).show(ui, |ui| {
+    super::padded(ui, |ui| {
         let figures = match (map.median_m(), map.greatest_m()) {
             (Some(median), Some(most)) => {
-                format!("{meaning}: half of the table within {}, all within {}.", format::mm(median), format::mm(most))
+                format!(
+                    "{meaning}: half of the table within {}, all within {}.",
+                    format::mm(median),
+                    format::mm(most)
+                )
             }
             _ => format!("{meaning}: both eyes see no part of the table."),
         };
@@ -96,7 +115,8 @@ mod tests {
 
     #[test]
     fn the_map_is_not_turned_or_mirrored_on_its_way_to_the_screen() {
-        let map = TableMap::fill(5, 9, (0.2, 0.6), (-0.4, 0.4), 0.05, |x, y, _| (y > -0.3).then_some(x + 10.0 * y));
+        let map =
+            TableMap::fill(5, 9, (0.2, 0.6), (-0.4, 0.4), 0.05, |x, y, _| (y > -0.3).then_some(x + 10.0 * y));
         let field = field("test", &map);
         let value = field.at([0.3, 0.2]).expect("inside");
         assert!((value - 2.3).abs() < 1e-9, "{value}");

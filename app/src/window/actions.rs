@@ -275,7 +275,10 @@ pub fn take_shortcuts(ctx: &egui::Context) -> Vec<Action> {
     let mut shortcuts: Vec<(KeyboardShortcut, Action)> = ALL
         .iter()
         .flat_map(|&action| {
-            [action.shortcut(), action.second_shortcut()].into_iter().flatten().map(move |keys| (keys, action))
+            [action.shortcut(), action.second_shortcut()]
+                .into_iter()
+                .flatten()
+                .map(move |keys| (keys, action))
         })
         // Undo belongs to the text while one is typed.
         .filter(|(keys, action)| !typing || (keys.modifiers.command && *action != Action::Undo))
@@ -300,7 +303,9 @@ mod tests {
         for (i, a) in ALL.iter().enumerate() {
             for b in &ALL[i + 1..] {
                 assert_ne!(a.label(), b.label());
-                let keys = |x: &Action| [x.shortcut(), x.second_shortcut()].into_iter().flatten().collect::<Vec<_>>();
+                let keys = |x: &Action| {
+                    [x.shortcut(), x.second_shortcut()].into_iter().flatten().collect::<Vec<_>>()
+                };
                 for key in keys(a) {
                     assert!(!keys(b).contains(&key), "{a:?} and {b:?} share {key:?}");
                 }

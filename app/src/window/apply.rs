@@ -8,10 +8,12 @@ use std::time::Instant;
 
 use plumbline_engine::view::{JobState, SourceStatus};
 use plumbline_engine::{
-    Command, EyesCommand, JobCommand, LiveCommand, NoticeCommand, NoticeLevel, ProbePoint, SourceCommand,
+    Command, EyesCommand, FileLength, JobCommand, LiveCommand, NoticeCommand, NoticeLevel, ProbePoint,
+    SourceCommand,
 };
 use plumbline_model::Eye;
 
+use super::PlumblineWindow;
 use super::actions::Action;
 use super::ask::{Ask, Asked};
 use super::dialogs::{Answer, Question};
@@ -19,7 +21,6 @@ use super::outbox::Outbox;
 use super::script::ScriptStep;
 use super::settings::ThemeChoice;
 use super::steps::{Screen, default_arrangement};
-use super::PlumblineWindow;
 
 /// A message of the window itself.
 pub(super) fn warning(text: impl Into<String>) -> Command {
@@ -28,7 +29,8 @@ pub(super) fn warning(text: impl Into<String>) -> Command {
 
 impl PlumblineWindow {
     pub(super) fn carry_out(&mut self, ctx: &egui::Context, outbox: Outbox) {
-        if outbox.wanted != self.view.live.wanted {
+        if self.wanted != Some(outbox.wanted) {
+            self.wanted = Some(outbox.wanted);
             self.backend.send(LiveCommand::Want(outbox.wanted).into());
         }
         self.panels.probe.follow(outbox.probe, &mut |command| self.backend.send(command.into()));
@@ -68,7 +70,10 @@ impl PlumblineWindow {
             Action::OpenTwoFolders => self.ask_for(ctx, Question::TwoFolders),
             Action::OpenVideos => self.ask_for(ctx, Question::TwoVideos),
             Action::OpenPath => self.ask = Some(Ask::paths(Question::Folder)),
-            Action::OpenCameras => self.ask = Some(Ask::Cameras { left: 0, right: 1 }),
+            Action::OpenCameras => {
+                self.backend.send(SourceCommand::ListCameras.into());
+                self.ask = Some(Ask::Cameras { left: 0, right: 1 });
+            }
             Action::DeleteAll => self.ask = Some(Ask::DeleteAll { count: self.view.eyes.collected.len() }),
             Action::Import => self.ask_for(ctx, Question::Import),
             Action::Export(what, format) => self.ask_for(ctx, Question::Export(what, format)),
@@ -148,13 +153,15 @@ impl PlumblineWindow {
             Answer::NoDialog(question) => self.ask = Some(Ask::paths(question)),
             Answer::Paths(question, mut paths) => match (question, paths.len()) {
                 (_, 0) => {}
-                (Question::Folder, _) => self.backend.send(SourceCommand::OpenPath(paths.remove(0)).into()),
+                (Question::Folder, _) => self.backend.send(SourceCommand::OpenPaths(paths).into()),
                 (Question::TwoFolders | Question::TwoVideos, 2) => {
-                    let right = paths.remove(1);
-                    self.backend.send(SourceCommand::OpenPaths(paths.remove(0), right).into());
+                    self.backend.send(SourceCommand::OpenPaths(paths).into());
                 }
                 (Question::TwoFolders | Question::TwoVideos, _) => {}
-                (Question::Import, _) => self.backend.send(EyesCommand::Import { files: paths }.into()),
+                (Question::Import, _) => {
+                    let import = EyesCommand::Import { files: paths, length: FileLength::AsPrescribed };
+                    self.backend.send(import.into());
+                }
                 (Question::Export(what, format), _) => {
                     self.backend.send(EyesCommand::Export { what, format, file: paths.remove(0) }.into());
                 }
@@ -170,7 +177,7 @@ impl PlumblineWindow {
 
     pub(super) fn show_ask(&mut self, ctx: &egui::Context, escape_pressed: bool, outbox: &mut Outbox) {
         let Some(ask) = &mut self.ask else { return };
-        match ask.show(ctx, escape_pressed) {
+        match ask.show(ctx, &self.view, escape_pressed) {
             Asked::Open => {}
             Asked::Closed => self.ask = None,
             Asked::Command(command) => {
@@ -253,7 +260,10 @@ impl PlumblineWindow {
                 let settings = self.settings.clone();
                 let write = move || {
                     if let Err(error) = settings.save(&file) {
-                        log::warn!("the window's settings could not be written to {}: {error}", file.display());
+                        log::warn!(
+                            "the window's settings could not be written to {}: {error}",
+                            file.display()
+                        );
                     }
                 };
                 on_thread("settings writer", write);

@@ -4,7 +4,8 @@
 use std::path::PathBuf;
 
 use egui::{Align2, DragValue, TextEdit, Ui, Vec2};
-use plumbline_engine::{Command, EyesCommand, SourceCommand, SourceSpec};
+use plumbline_engine::{CameraDevice, Command, EyesCommand, SourceCommand, SourceSpec, View};
+use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
 use super::dialogs::{Answer, Question};
@@ -56,11 +57,11 @@ impl Ask {
     }
 
     /// Draws the sheet.
-    pub fn show(&mut self, ctx: &egui::Context, escape_pressed: bool) -> Asked {
+    pub fn show(&mut self, ctx: &egui::Context, view: &View, escape_pressed: bool) -> Asked {
         let middle = (Align2::CENTER_CENTER, Vec2::ZERO);
         let shown = sheet(ctx, "ask", middle, 440.0, escape_pressed, |ui| match self {
             Self::Paths { question, typed } => paths(ui, *question, typed),
-            Self::Cameras { left, right } => cameras(ui, left, right),
+            Self::Cameras { left, right } => cameras(ui, view, left, right),
             Self::DeleteAll { count } => delete_all(ui, *count),
         });
         match shown.inner {
@@ -110,12 +111,36 @@ fn expand_home(text: &str) -> PathBuf {
     }
 }
 
-fn cameras(ui: &mut Ui, left: &mut u32, right: &mut u32) -> Asked {
+fn cameras(ui: &mut Ui, view: &View, left: &mut u32, right: &mut u32) -> Asked {
     title(ui, "Use USB cameras", "Numbers as the system counts them: 0 is the first camera.");
+    let devices: Vec<&CameraDevice> = view
+        .source
+        .cameras
+        .iter()
+        .flat_map(|all| all.iter())
+        .filter(|device| device.delivers_images)
+        .collect();
+    match (&view.source.cameras, devices.is_empty()) {
+        (None, _) => ui.label(theme::weak(ui, "Looking for cameras.")),
+        (Some(_), true) => ui.label(theme::weak(ui, "No camera is found: plug both eyes in.")),
+        (Some(_), false) => {
+            ui.label(theme::weak(ui, format!("Found: {}.", format::count(devices.len(), "camera"))))
+        }
+    };
+    ui.add_space(space::S);
     egui::Grid::new("cameras").num_columns(2).spacing([space::M, space::S]).show(ui, |ui| {
         for (name, number) in [("Left eye", &mut *left), ("Right eye", &mut *right)] {
             let label = ui.label(name);
-            ui.add(DragValue::new(number).range(0..=63)).labelled_by(label.id);
+            if devices.is_empty() {
+                ui.add(DragValue::new(number).range(0..=63)).labelled_by(label.id);
+            } else {
+                let shown = device_text(&devices, *number);
+                egui::ComboBox::from_id_salt(name).width(260.0).selected_text(shown).show_ui(ui, |ui| {
+                    for device in &devices {
+                        ui.selectable_value(number, device.number, device_text(&devices, device.number));
+                    }
+                });
+            }
             ui.end_row();
         }
     });
@@ -123,12 +148,17 @@ fn cameras(ui: &mut Ui, left: &mut u32, right: &mut u32) -> Asked {
         ui.label(theme::weak(ui, "The two eyes need two different cameras."));
     }
     match buttons(ui, "Use these cameras", left != right) {
-        Some(true) => {
-            Asked::Command(SourceCommand::Open(SourceSpec::Cameras { left: *left, right: *right }).into())
-        }
+        Some(true) => Asked::Command(
+            SourceCommand::Open(SourceSpec::Cameras { left_index: *left, right_index: *right }).into(),
+        ),
         Some(false) => Asked::Closed,
         None => Asked::Open,
     }
+}
+
+fn device_text(devices: &[&CameraDevice], number: u32) -> String {
+    let device = devices.iter().find(|device| device.number == number);
+    device.map_or_else(|| format!("{number}: not found"), |device| format!("{number}: {}", device.name))
 }
 
 fn delete_all(ui: &mut Ui, count: usize) -> Asked {

@@ -89,7 +89,8 @@ impl Question {
     fn ask(self) -> Option<Vec<PathBuf>> {
         let dialog = || rfd::FileDialog::new().set_title(self.title());
         let titled = |title: &str| rfd::FileDialog::new().set_title(title);
-        let video = |title: &str| titled(title).add_filter("Videos", &["mp4", "avi", "mkv", "mov", "webm", "m4v"]);
+        let video =
+            |title: &str| titled(title).add_filter("Videos", &["mp4", "avi", "mkv", "mov", "webm", "m4v"]);
         match self {
             Self::Folder => dialog().pick_folder().map(|folder| vec![folder]),
             Self::TwoFolders => {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use egui::{Align2, Context, LayerId, Order, Stroke, StrokeKind, TextStyle};
-use plumbline_engine::{Command, EyesCommand, SourceCommand};
+use plumbline_engine::{Command, EyesCommand, FileLength, SourceCommand};
 use plumbline_widgets::theme::{self, space};
 
 /// What the dropped paths are taken for; an error says what could be dropped instead.
@@ -11,17 +11,9 @@ pub fn command_for(paths: &[PathBuf]) -> Result<Command, String> {
     match paths {
         [] => Err("Nothing that can be opened was dropped.".to_owned()),
         paths if paths.iter().all(|path| is_calibration(path)) && paths.len() <= 2 => {
-            Ok(EyesCommand::Import { files: ordered(paths) }.into())
+            Ok(EyesCommand::Import { files: ordered(paths), length: FileLength::AsPrescribed }.into())
         }
-        [path] => Ok(SourceCommand::OpenPath(path.clone()).into()),
-        [_, _] => {
-            let ordered = ordered(paths);
-            Ok(SourceCommand::OpenPaths(ordered[0].clone(), ordered[1].clone()).into())
-        }
-        more => Err(format!(
-            "{} things were dropped at once: drop one folder of pairs, or the two folders or videos of the two eyes.",
-            more.len()
-        )),
+        paths => Ok(SourceCommand::OpenPaths(ordered(paths)).into()),
     }
 }
 
@@ -29,12 +21,13 @@ pub fn command_for(paths: &[PathBuf]) -> Result<Command, String> {
 pub fn preview(paths: &[PathBuf]) -> String {
     match command_for(paths) {
         Ok(Command::Eyes(_)) => "Drop to read this calibration as a proposal".to_owned(),
-        Ok(Command::Source(SourceCommand::OpenPath(path))) => {
-            format!("Drop to open {} as the source", name(&path))
-        }
-        Ok(Command::Source(SourceCommand::OpenPaths(left, right))) => {
-            format!("Drop to open {} as the left eye and {} as the right eye", name(&left), name(&right))
-        }
+        Ok(Command::Source(SourceCommand::OpenPaths(paths))) => match paths.as_slice() {
+            [path] => format!("Drop to open {} as the source", name(path)),
+            [left, right] => {
+                format!("Drop to open {} as the left eye and {} as the right eye", name(left), name(right))
+            }
+            more => format!("Drop to open {} files as pairs", more.len()),
+        },
         Ok(_) => "Drop to open".to_owned(),
         Err(why) => why,
     }
@@ -80,19 +73,22 @@ mod tests {
     #[test]
     fn two_videos_are_opened_left_eye_first() {
         let command = command_for(&paths(&["a/right.mp4", "a/left.mp4"])).expect("two videos");
-        assert_eq!(command, SourceCommand::OpenPaths("a/left.mp4".into(), "a/right.mp4".into()).into());
+        assert_eq!(command, SourceCommand::OpenPaths(paths(&["a/left.mp4", "a/right.mp4"])).into());
     }
 
     #[test]
     fn a_calibration_file_is_proposed_not_opened() {
         let command = command_for(&paths(&["rig-cameras.yaml"])).expect("a calibration");
-        assert_eq!(command, EyesCommand::Import { files: paths(&["rig-cameras.yaml"]) }.into());
+        assert_eq!(
+            command,
+            EyesCommand::Import { files: paths(&["rig-cameras.yaml"]), length: FileLength::AsPrescribed }
+                .into()
+        );
     }
 
     #[test]
-    fn too_many_say_what_to_drop() {
-        let why = command_for(&paths(&["1.png", "2.png", "3.png"])).expect_err("three files");
-        assert!(why.contains("one folder"), "{why}");
-        assert_eq!(preview(&paths(&["1.png", "2.png", "3.png"])), why);
+    fn the_preview_says_which_eye_is_which() {
+        let text = preview(&paths(&["b/right", "b/left"]));
+        assert_eq!(text, "Drop to open left as the left eye and right as the right eye");
     }
 }

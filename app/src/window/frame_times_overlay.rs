@@ -23,7 +23,10 @@ pub(super) fn show(ctx: &Context, times: &FrameTimes, renderer: &str) {
                     summary.count
                 ));
             }
-            ui.label(theme::small(ui, format!("{} frames in the last second; {renderer}", times.per_second())));
+            ui.label(theme::small(
+                ui,
+                format!("{} frames in the last second; {renderer}", times.per_second()),
+            ));
             bars(ui, times);
         });
     });

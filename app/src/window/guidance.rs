@@ -1,7 +1,8 @@
 //! What is happening and what to do next, in one sentence and one button.
 
-use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
 use plumbline_engine::View;
+use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
+use plumbline_widgets::format;
 
 use super::actions::Action;
 use super::steps::Screen;
@@ -79,8 +80,9 @@ fn live(view: &View) -> Guidance {
             .then("Calibrate the eyes", Action::Go(Screen::Collect));
     }
     match view.source.replay {
-        Some(replay) if !replay.playing => say("Held still. Point at an image to read where things are.")
-            .then("Play", Action::PlayPause),
+        Some(replay) if !replay.playing => {
+            say("Held still. Point at an image to read where things are.").then("Play", Action::PlayPause)
+        }
         _ => say("Point at an image to read where things are; click to keep the point."),
     }
 }
@@ -103,20 +105,23 @@ fn collect(view: &View) -> Guidance {
         }
         let (columns, rows) = eyes.board.squares();
         let square_mm = eyes.board.square_m * 1000.0;
-        return say(format!("The board is {columns}×{rows} squares of {square_mm} mm: check that, then collect."))
-            .then(collect_label(view), collect_action(view));
+        return say(format!(
+            "The board is {columns}×{rows} squares of {square_mm} mm: check that, then collect."
+        ))
+        .then(collect_label(view), collect_action(view));
     }
     let enough = count >= ENOUGH_PAIRS && eyes.ghost.is_none();
     if enough || view.source.replay.is_some() || view.source.status == SourceStatus::None {
         let said = if count < ENOUGH_PAIRS {
             format!("{count} pairs are few; {ENOUGH_PAIRS} or more are better.")
         } else {
-            format!("{count} pairs collected.")
+            format!("{count} pairs collected. Next: solve them.")
         };
         return say(said).then(format!("Solve {count} pairs"), Action::Solve);
     }
     let wanted = eyes.ghost.as_ref().map_or_else(String::new, |g| format!(" Next: {}.", g.reason));
-    say(format!("{count} pairs collected. {}{wanted}", hint_sentence(eyes))).then("Capture pair", Action::Capture)
+    say(format!("{count} pairs collected. {}{wanted}", hint_sentence(eyes)))
+        .then("Capture pair", Action::Capture)
 }
 
 fn collect_label(view: &View) -> String {
@@ -161,7 +166,9 @@ fn judge(eyes: &EyesView) -> Guidance {
                 .then("Collect pairs", Action::Go(Screen::Collect)),
             (None, 0) => say("There is nothing to judge yet: collect pairs first.")
                 .then("Collect pairs", Action::Go(Screen::Collect)),
-            (None, n) => say(format!("{n} pairs wait to be solved.")).then(format!("Solve {n} pairs"), Action::Solve),
+            (None, n) => {
+                say(format!("{n} pairs wait to be solved.")).then(format!("Solve {n} pairs"), Action::Solve)
+            }
         };
     };
     if let Some(why) = &proposal.stale {
@@ -172,9 +179,11 @@ fn judge(eyes: &EyesView) -> Guidance {
         return say(verdict.sentence).warn().then("Collect more pairs", Action::Go(Screen::Collect));
     }
     if eyes.in_use.is_some() {
-        say(verdict.sentence).then("Compare with the one in use", Action::Go(Screen::Accept))
+        say("Nothing speaks against this calibration. Next: see what it would change.")
+            .then("Compare with the one in use", Action::Go(Screen::Accept))
     } else {
-        say(verdict.sentence).then("Accept calibration", Action::Accept)
+        say("Nothing speaks against this calibration. Look at single pairs, or accept it.")
+            .then("Accept calibration", Action::Accept)
     }
 }
 
@@ -186,7 +195,14 @@ fn accept(eyes: &EyesView) -> Guidance {
         (Some(proposal), _) => {
             let verdict = verdict(proposal);
             if verdict.good {
-                say(verdict.sentence).then("Accept calibration", Action::Accept)
+                let changes = proposal.difference.as_ref().and_then(|map| map.greatest_m());
+                let said = match changes {
+                    Some(most_m) => {
+                        format!("Accepting moves points on the table by up to {}.", format::mm(most_m))
+                    }
+                    None => "Accepting puts this calibration in use.".to_owned(),
+                };
+                say(said).then("Accept calibration", Action::Accept)
             } else {
                 say(verdict.sentence).warn().then("Accept it all the same", Action::Accept)
             }
@@ -228,7 +244,8 @@ pub fn verdict(proposal: &Proposal) -> Verdict {
         Some(summary) => {
             let pairs = proposal.calibration.per_pair.len();
             let error_px = summary.cross_validated_px.unwrap_or(summary.rms_stereo_px);
-            let kind = if summary.cross_validated_px.is_some() { "on unseen pairs" } else { "on its own pairs" };
+            let kind =
+                if summary.cross_validated_px.is_some() { "on unseen pairs" } else { "on its own pairs" };
             format!(
                 "Good: {pairs} pairs agree to {error_px:.3} px {kind}, and the board's squares measure {:.2} mm.",
                 summary.square_mean_m * 1000.0

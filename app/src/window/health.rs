@@ -110,7 +110,8 @@ fn eyes_lamps(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
 
     if let Some(age) = source_age(view) {
         let old = age > OLD;
-        let value = if age < Duration::from_secs(10) { format::ms(age.as_secs_f64()) } else { format::age(age) };
+        let value =
+            if age < Duration::from_secs(10) { format::ms(age.as_secs_f64()) } else { format::age(age) };
         let reason = old.then_some("No new pair has come: look at the cameras and their cables.");
         let health = if old { Health::Warning } else { Health::Good };
         Lamp::new("Age", &value, health).reason(reason).show(ui);
@@ -119,7 +120,10 @@ fn eyes_lamps(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
 
 fn eyes_details(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
     let statistics = &view.live.statistics;
-    ui.label(theme::strong(ui, if view.source.description.is_empty() { "No source" } else { &view.source.description }));
+    ui.label(theme::strong(
+        ui,
+        if view.source.description.is_empty() { "No source" } else { &view.source.description },
+    ));
     let stage = |name: &str, stage: &plumbline_engine::view::StageStatistics| {
         let rate = stage.per_second.map_or(format::NONE.to_owned(), format::hertz);
         let busy = stage.busy.map_or(format::NONE.to_owned(), |busy| format::ms(busy.as_secs_f64()));
@@ -165,27 +169,29 @@ fn clock_lamp(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let live = window.view.source.replay.is_none() && window.view.source.status == SourceStatus::Running;
     let minutes = minutes_on.unwrap_or(since_start.as_secs_f64() / 60.0);
     let warming = live && minutes < WARM_AFTER_MINUTES;
-    let health =
-        if warming { Health::Working((minutes / WARM_AFTER_MINUTES) as f32) } else { Health::Good };
-    let reason = warming
-        .then_some("Lenses move while cameras get warm: calibrate after about 20 minutes, and again if unsure.");
+    let health = if warming { Health::Working((minutes / WARM_AFTER_MINUTES) as f32) } else { Health::Good };
+    let reason = warming.then_some(
+        "Lenses move while cameras get warm: calibrate after about 20 minutes, and again if unsure.",
+    );
     let (name, value) = match minutes_on {
         Some(minutes) => ("Cameras on", format::clock(Duration::from_secs_f64((minutes * 60.0).max(0.0)))),
         None => ("Since start", format::clock(since_start)),
     };
     let lamp = Lamp::new(name, &value, health).reason(reason).show(ui);
-    Popup::menu(&lamp).width(300.0).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(|ui| {
-        ui.label("How long the cameras were on when the pairs were taken is kept with the calibration.");
-        ui.horizontal(|ui| {
-            let label = ui.label("Cameras on for");
-            let mut minutes = minutes_on.unwrap_or(0.0);
-            let drag = DragValue::new(&mut minutes).range(0.0..=10_000.0).max_decimals(0).suffix(" min");
-            if ui.add(drag).labelled_by(label.id).changed() {
-                outbox.send(EyesCommand::MinutesSinceOn(Some(minutes)));
-            }
-            if minutes_on.is_some() && ui.button("Not known").clicked() {
-                outbox.send(EyesCommand::MinutesSinceOn(None));
-            }
-        });
-    });
+    Popup::menu(&lamp).width(300.0).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(
+        |ui| {
+            ui.label("How long the cameras were on when the pairs were taken is kept with the calibration.");
+            ui.horizontal(|ui| {
+                let label = ui.label("Cameras on for");
+                let mut minutes = minutes_on.unwrap_or(0.0);
+                let drag = DragValue::new(&mut minutes).range(0.0..=10_000.0).max_decimals(0).suffix(" min");
+                if ui.add(drag).labelled_by(label.id).changed() {
+                    outbox.send(EyesCommand::MinutesSinceOn(Some(minutes)));
+                }
+                if minutes_on.is_some() && ui.button("Not known").clicked() {
+                    outbox.send(EyesCommand::MinutesSinceOn(None));
+                }
+            });
+        },
+    );
 }

@@ -53,10 +53,8 @@ fn live(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {
 }
 
 fn aim_controls(ui: &mut Ui, aim: &AimView, outbox: &mut Outbox) {
-    let by_hand = AimChoice::Manual {
-        pitch_rad: aim.pitch_rad,
-        horizontal_field_of_view_rad: aim.field_of_view_rad.0,
-    };
+    let by_hand =
+        AimChoice::Manual { pitch_rad: aim.pitch_rad, horizontal_field_of_view_rad: aim.field_of_view_rad.0 };
     let mut manual = aim.choice != AimChoice::Table;
     if choice(ui, "Aim", &mut manual, &[(false, "At the table"), (true, "By hand")]) {
         outbox.send(LiveCommand::Aim(if manual { by_hand } else { AimChoice::Table }));
@@ -91,7 +89,8 @@ fn head_controls(ui: &mut Ui, head: HeadPose, outbox: &mut Outbox) {
     let mut left_deg = head.head_z_rad.to_degrees();
     let mut up_deg = head.head_y_rad.to_degrees();
     ui.add_space(space::XS);
-    ui.label(theme::small(ui, "Head")).on_hover_text("Where the head looked: it places the eyes over the table");
+    ui.label(theme::small(ui, "Head"))
+        .on_hover_text("Where the head looked: it places the eyes over the table");
     let left = ui.add(Slider::new(&mut left_deg, -90.0..=90.0).suffix("°").text("left").max_decimals(1));
     let up = ui.add(Slider::new(&mut up_deg, -50.0..=25.0).suffix("°").text("up").max_decimals(1));
     if left.changed() || up.changed() {
@@ -111,7 +110,9 @@ fn source(ui: &mut Ui, view: &View) {
         if let Some(name) = &frame.name {
             rows.push(KeyValue::text("Pair", name));
         }
-        rows.push(KeyValue::text("Size", format!("{}×{}", frame.left.width(), frame.left.height())).unit("px"));
+        rows.push(
+            KeyValue::text("Size", format!("{}×{}", frame.left.width(), frame.left.height())).unit("px"),
+        );
     }
     let statistics = &view.live.statistics;
     rows.push(KeyValue::optional("Rate", Quantity::Rate, statistics.source.per_second));
@@ -119,7 +120,10 @@ fn source(ui: &mut Ui, view: &View) {
         KeyValue::optional("Right after left", Quantity::Time, statistics.time_difference_s)
             .help("Capture time of the right image minus that of the left"),
     );
-    rows.push(KeyValue::text("Skipped", statistics.rectify.skipped.to_string()).help("Pairs that came faster than they could be rectified and matched"));
+    rows.push(
+        KeyValue::text("Skipped", statistics.rectify.skipped.to_string())
+            .help("Pairs that came faster than they could be rectified and matched"),
+    );
     let latency = statistics.rectify.latency.map(|latency| latency.as_secs_f64());
     rows.push(KeyValue::optional("Delay of depth", Quantity::Time, latency));
     if let Some(disparity) = &view.live.disparity {
@@ -219,7 +223,12 @@ fn left_out(ui: &mut Ui, fit: &PairFit) {
     ui.add_space(space::XS);
     ui.label(theme::small(ui, "Bad corners, left out of the fit"));
     for corner in corners {
-        ui.label(format!("corner {}, {} eye: {} off", corner.corner + 1, corner.eye, format::px(corner.norm_px())));
+        ui.label(format!(
+            "corner {}, {} eye: {} off",
+            corner.corner + 1,
+            corner.eye,
+            format::px(corner.norm_px())
+        ));
     }
 }
 
@@ -249,14 +258,17 @@ fn provenance(ui: &mut Ui, view: &View) {
         ui.label("The file says nothing about how it was made.");
         return;
     };
-    let created = evidence.created.to_zoned(jiff::tz::TimeZone::system()).strftime("%Y-%m-%d %H:%M").to_string();
-    let minutes = evidence.minutes_since_on.map_or("not known".to_owned(), |minutes| format!("{minutes:.0} min"));
+    let created = evidence.created.to_zoned(jiff::tz::TimeZone::system());
+    let (date, time) = (created.strftime("%Y-%m-%d").to_string(), created.strftime("%H:%M").to_string());
+    let minutes =
+        evidence.minutes_since_on.map_or("not known".to_owned(), |minutes| format!("{minutes:.0} min"));
     key_value_grid(
         ui,
         "evidence",
         &[
-            KeyValue::text("Solved", created),
-            KeyValue::text("Cameras on for", minutes),
+            KeyValue::text("Solved on", date),
+            KeyValue::text("At", time),
+            KeyValue::text("Cameras on", minutes).help("For how long, when the pairs were taken"),
             KeyValue::text("Pairs offered", evidence.observations.len().to_string()),
             KeyValue::text("Pairs dropped", evidence.dropped_pairs.len().to_string()),
         ],

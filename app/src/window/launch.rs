@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use plumbline_engine::{Command, Engine, EngineSettings, SourceCommand, SourceSpec};
+use plumbline_engine::{Engine, EngineSettings, SourceCommand, SourceSpec};
 
 use super::renderer::{self, RendererChoice};
 use super::settings::{ThemeChoice, WindowSettings, settings_file};
@@ -86,16 +86,12 @@ pub fn launch(options: LaunchOptions) -> anyhow::Result<()> {
 
 fn start_engine(ctx: &egui::Context, options: &LaunchOptions) -> Engine {
     let wake = ctx.clone();
-    let source = options.cameras.map(|(left, right)| SourceSpec::Cameras { left, right });
+    let source =
+        options.cameras.map(|(left, right)| SourceSpec::Cameras { left_index: left, right_index: right });
     let settings = EngineSettings { data_dir: options.data_dir.clone(), source };
     let engine = Engine::start(settings, Arc::new(move || wake.request_repaint()));
-    let open: Option<Command> = match options.paths.as_slice() {
-        [path] => Some(SourceCommand::OpenPath(path.clone()).into()),
-        [left, right, ..] => Some(SourceCommand::OpenPaths(left.clone(), right.clone()).into()),
-        [] => None,
-    };
-    if let Some(command) = open {
-        engine.send(command);
+    if !options.paths.is_empty() {
+        engine.send(SourceCommand::OpenPaths(options.paths.clone()));
     }
     engine
 }

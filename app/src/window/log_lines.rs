@@ -88,10 +88,11 @@ impl Log for Logger {
         if !is_wanted(record.metadata()) {
             return;
         }
-        if record.level() <= self.to_stderr {
+        if record.level() <= self.to_stderr && record.target().starts_with("plumbline") {
             use std::io::Write as _;
             // A closed terminal is no reason to stop.
-            let _ = writeln!(std::io::stderr(), "{}: {}", record.level().as_str().to_lowercase(), record.args());
+            let _ =
+                writeln!(std::io::stderr(), "{}: {}", record.level().as_str().to_lowercase(), record.args());
         }
         self.store.add(record);
     }

@@ -32,12 +32,15 @@ impl LogPanel {
     pub(super) fn show(&mut self, ui: &mut Ui) {
         let frame = egui::Frame::side_top_panel(ui.style())
             .inner_margin(egui::Margin::symmetric(space::M as i8, space::S as i8));
-        Panel::bottom("log").frame(frame).resizable(true).default_size(190.0).min_size(110.0).show(ui, |ui| {
-            let chosen: Vec<Arc<LogLine>> = self.chosen().cloned().collect();
-            self.controls(ui, &chosen);
-            ui.add_space(space::XS);
-            lines(ui, &chosen);
-        });
+        Panel::bottom("log").frame(frame).resizable(true).default_size(190.0).min_size(110.0).show(
+            ui,
+            |ui| {
+                let chosen: Vec<Arc<LogLine>> = self.chosen().cloned().collect();
+                self.controls(ui, &chosen);
+                ui.add_space(space::XS);
+                lines(ui, &chosen);
+            },
+        );
     }
 
     fn chosen(&self) -> impl Iterator<Item = &Arc<LogLine>> {
@@ -51,14 +54,18 @@ impl LogPanel {
         ui.horizontal(|ui| {
             ui.label(theme::strong(ui, "Log"));
             ui.add_space(space::S);
-            for (level, name) in
-                [(Level::Error, "Errors"), (Level::Warn, "Warnings"), (Level::Info, "Info"), (Level::Debug, "All")]
-            {
+            for (level, name) in [
+                (Level::Error, "Errors"),
+                (Level::Warn, "Warnings"),
+                (Level::Info, "Info"),
+                (Level::Debug, "All"),
+            ] {
                 ui.selectable_value(&mut self.level, level, name);
             }
             ui.add_space(space::S);
             let edit = TextEdit::singleline(&mut self.filter).hint_text("Filter").desired_width(200.0);
-            ui.add(edit).widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Filter the log"));
+            ui.add(edit)
+                .widget_info(|| egui::WidgetInfo::labeled(egui::Role::TextInput, true, "Filter the log"));
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.button("Copy log").clicked() {
                     let text: Vec<String> = chosen.iter().map(|line| line.text()).collect();
@@ -73,16 +80,21 @@ impl LogPanel {
 fn lines(ui: &mut Ui, chosen: &[Arc<LogLine>]) {
     let row_height = ui.text_style_height(&TextStyle::Monospace);
     let tokens = theme::tokens(ui);
-    ScrollArea::both().auto_shrink(false).stick_to_bottom(true).show_rows(ui, row_height, chosen.len(), |ui, rows| {
-        for line in &chosen[rows] {
-            let color = match line.level {
-                Level::Error | Level::Warn => Role::Warning.color(tokens),
-                Level::Info => tokens.text,
-                Level::Debug | Level::Trace => tokens.text_weak,
-            };
-            ui.add(egui::Label::new(RichText::new(line.text()).monospace().color(color)).extend());
-        }
-    });
+    ScrollArea::both().auto_shrink(false).stick_to_bottom(true).show_rows(
+        ui,
+        row_height,
+        chosen.len(),
+        |ui, rows| {
+            for line in &chosen[rows] {
+                let color = match line.level {
+                    Level::Error | Level::Warn => Role::Warning.color(tokens),
+                    Level::Info => tokens.text,
+                    Level::Debug | Level::Trace => tokens.text_weak,
+                };
+                ui.add(egui::Label::new(RichText::new(line.text()).monospace().color(color)).extend());
+            }
+        },
+    );
     if chosen.is_empty() {
         ui.label(theme::weak(ui, "No line of this level matches the filter."));
     }

@@ -35,7 +35,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use plumbline_engine::{JobId, View};
+use plumbline_engine::{JobId, Products, View};
 
 pub use actions::{Action, format_name};
 pub use backend::Backend;
@@ -45,6 +45,7 @@ pub use log_lines::{LogStore, start as start_log};
 pub use outbox::Outbox;
 pub use script::ScriptStep;
 pub use settings::{ThemeChoice, WindowSettings};
+pub(crate) use source_menu::short_name as source_name;
 pub use steps::{Pane, Screen};
 
 use crate::panels::PanelState;
@@ -110,6 +111,7 @@ pub struct PlumblineWindow {
     stopped_at: Option<Instant>,
     pending_picture: Option<Arc<egui::ColorImage>>,
     dismissed: Vec<JobId>,
+    wanted: Option<Products>,
 }
 
 impl PlumblineWindow {
@@ -139,6 +141,7 @@ impl PlumblineWindow {
             stopped_at: None,
             pending_picture: None,
             dismissed: Vec::new(),
+            wanted: None,
         }
     }
 

@@ -107,7 +107,8 @@ mod tests {
         list.take(&first);
         list.take(&first);
         assert_eq!((list.shown.history().count(), list.unread()), (2, 1));
-        let later: Arc<[Notice]> = Arc::from([notice(2, NoticeLevel::Error), notice(3, NoticeLevel::Warning)]);
+        let later: Arc<[Notice]> =
+            Arc::from([notice(2, NoticeLevel::Error), notice(3, NoticeLevel::Warning)]);
         list.take(&later);
         assert_eq!((list.shown.history().count(), list.unread()), (3, 2));
         list.toggle_history();

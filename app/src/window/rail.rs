@@ -1,37 +1,40 @@
 //! The rail: the steps in the order of work, and how far each one is.
 
 use egui::{Panel, TextStyle, Ui};
-use plumbline_engine::view::{EyesView, JobState, StepState as EngineStep};
 use plumbline_engine::View;
+use plumbline_engine::view::{EyesView, JobState, StepState as EngineStep};
 use plumbline_widgets::format;
 use plumbline_widgets::rail::{RailStep, StepState};
 use plumbline_widgets::theme::{self, space};
 
+use super::PlumblineWindow;
 use super::actions::Action;
 use super::guidance::dropped;
 use super::outbox::Outbox;
 use super::steps::Screen;
-use super::PlumblineWindow;
 
-const WIDTH: f32 = 168.0;
+const WIDTH: f32 = 176.0;
 
 pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let screen = window.settings.screen;
     let view = &window.view;
     let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(space::S);
-    Panel::left("rail").frame(frame).resizable(false).exact_size(WIDTH).show_separator_line(false).show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = 2.0;
-        if RailStep::new("Live", StepState::Always).selected(screen == Screen::Live).show(ui).clicked() {
-            outbox.act(Action::Go(Screen::Live));
-        }
-        let step = RailStep::new("Eyes", eyes_state(view)).number(1).selected(false).show(ui);
-        if step.clicked() {
-            outbox.act(Action::Go(eyes_screen(&view.eyes)));
-        }
-        for part in Part::ALL {
-            part_row(ui, view, part, screen, outbox);
-        }
-    });
+    Panel::left("rail").frame(frame).resizable(false).exact_size(WIDTH).show_separator_line(false).show(
+        ui,
+        |ui| {
+            ui.spacing_mut().item_spacing.y = 2.0;
+            if RailStep::new("Live", StepState::Always).selected(screen == Screen::Live).show(ui).clicked() {
+                outbox.act(Action::Go(Screen::Live));
+            }
+            let step = RailStep::new("Eyes", eyes_state(view)).number(1).selected(screen.is_eyes()).show(ui);
+            if step.clicked() {
+                outbox.act(Action::Go(eyes_screen(&view.eyes)));
+            }
+            for part in Part::ALL {
+                part_row(ui, view, part, screen, outbox);
+            }
+        },
+    );
 }
 
 /// The order of work within the step "Eyes".
@@ -46,7 +49,8 @@ enum Part {
 }
 
 impl Part {
-    const ALL: [Self; 6] = [Self::Board, Self::Collect, Self::Solve, Self::Judge, Self::Compare, Self::Accept];
+    const ALL: [Self; 6] =
+        [Self::Board, Self::Collect, Self::Solve, Self::Judge, Self::Compare, Self::Accept];
 
     fn name(self) -> &'static str {
         match self {
@@ -73,7 +77,7 @@ impl Part {
         match self {
             Self::Board => {
                 let (columns, rows) = eyes.board.squares();
-                format!("{columns}×{rows}, {}", format::mm(eyes.board.square_m))
+                format!("{columns}×{rows}, {} mm", eyes.board.square_m * 1000.0)
             }
             Self::Collect if eyes.collected.is_empty() => String::new(),
             Self::Collect => format::count(eyes.collected.len() - dropped(eyes), "pair"),
@@ -111,15 +115,21 @@ fn part_row(ui: &mut Ui, view: &View, part: Part, screen: Screen, outbox: &mut O
         ui.painter().rect_filled(rect, 4.0, tokens.raised);
     }
     if here {
-        let line = egui::Rect::from_min_size(rect.left_top() + egui::vec2(14.0, 4.0), egui::vec2(2.0, 16.0));
-        ui.painter().rect_filled(line, 1.0, tokens.text_strong);
+        let line = egui::Rect::from_min_size(rect.left_top() + egui::vec2(15.0, -1.0), egui::vec2(2.0, 26.0));
+        ui.painter().rect_filled(line, 0.0, tokens.text_strong);
     }
     let y = rect.center().y;
     let body = TextStyle::Body.resolve(ui.style());
     let small = TextStyle::Small.resolve(ui.style());
     let color = if here { tokens.text_strong } else { tokens.text };
     ui.painter().text(egui::pos2(rect.left() + 28.0, y), egui::Align2::LEFT_CENTER, part.name(), body, color);
-    ui.painter().text(egui::pos2(rect.right() - 8.0, y), egui::Align2::RIGHT_CENTER, value, small, tokens.text_weak);
+    ui.painter().text(
+        egui::pos2(rect.right() - 8.0, y),
+        egui::Align2::RIGHT_CENTER,
+        value,
+        small,
+        tokens.text_weak,
+    );
     if response.clicked() {
         outbox.act(Action::Go(part.screen()));
     }

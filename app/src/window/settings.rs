@@ -153,7 +153,7 @@ mod tests {
         let file = folder.path().join("deeper").join("window.json");
         let mut settings = WindowSettings { theme: ThemeChoice::Light, ..Default::default() };
         settings.arrangement(Screen::Judge);
-        settings.remember_source(&SourceSpec::Cameras { left: 0, right: 2 });
+        settings.remember_source(&SourceSpec::Cameras { left_index: 0, right_index: 2 });
         settings.save(&file).expect("a folder that can be written");
         assert_eq!(WindowSettings::load(&file).expect("what was written can be read"), settings);
     }
@@ -171,12 +171,12 @@ mod tests {
     #[test]
     fn recent_sources_are_few_and_the_newest_comes_first() {
         let mut settings = WindowSettings::default();
-        for right in 0..20 {
-            settings.remember_source(&SourceSpec::Cameras { left: 0, right });
+        for right_index in 0..20 {
+            settings.remember_source(&SourceSpec::Cameras { left_index: 0, right_index });
         }
-        settings.remember_source(&SourceSpec::Cameras { left: 0, right: 17 });
+        settings.remember_source(&SourceSpec::Cameras { left_index: 0, right_index: 17 });
         assert_eq!(settings.recent_sources.len(), WindowSettings::RECENT_SOURCES);
-        assert_eq!(settings.recent_sources[0], SourceSpec::Cameras { left: 0, right: 17 });
-        assert_eq!(settings.recent_sources[1], SourceSpec::Cameras { left: 0, right: 19 });
+        assert_eq!(settings.recent_sources[0], SourceSpec::Cameras { left_index: 0, right_index: 17 });
+        assert_eq!(settings.recent_sources[1], SourceSpec::Cameras { left_index: 0, right_index: 19 });
     }
 }

@@ -27,8 +27,15 @@ pub(super) fn show(view: &View, recent: &VecDeque<SourceSpec>, ui: &mut Ui, outb
     };
     Popup::menu(&response).show(|ui| {
         ui.set_min_width(280.0);
-        for action in [Action::OpenFolder, Action::OpenTwoFolders, Action::OpenVideos, Action::OpenCameras, Action::OpenPath] {
-            let button = Button::new(action.label()).shortcut_text(shortcut_text(ui.ctx(), action).unwrap_or_default());
+        for action in [
+            Action::OpenFolder,
+            Action::OpenTwoFolders,
+            Action::OpenVideos,
+            Action::OpenCameras,
+            Action::OpenPath,
+        ] {
+            let button = Button::new(action.label())
+                .shortcut_text(shortcut_text(ui.ctx(), action).unwrap_or_default());
             if ui.add(button).clicked() {
                 outbox.act(action);
                 ui.close();
@@ -63,7 +70,7 @@ fn shortened(name: &str) -> String {
 }
 
 /// The last parts of the paths.
-pub(super) fn short_name(spec: &SourceSpec) -> String {
+pub(crate) fn short_name(spec: &SourceSpec) -> String {
     let last = |path: &Path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
     match spec {
         SourceSpec::Folder(folder) => last(folder),
@@ -73,7 +80,7 @@ pub(super) fn short_name(spec: &SourceSpec) -> String {
             _ => format!("{} and {}", last(left), last(right)),
         },
         SourceSpec::Videos { left, right } => format!("{} and {}", last(left), last(right)),
-        SourceSpec::Cameras { left, right } => format!("cameras {left} and {right}"),
+        SourceSpec::Cameras { left_index, right_index } => format!("cameras {left_index} and {right_index}"),
     }
 }
 

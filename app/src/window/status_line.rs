@@ -3,14 +3,13 @@
 use egui::{Align, Layout, Panel, Ui};
 use plumbline_engine::view::{JobState, JobView};
 use plumbline_engine::{JobCommand, View};
-use plumbline_widgets::buttons::primary_button;
 use plumbline_widgets::progress::{ProgressAction, ProgressLine};
 use plumbline_widgets::theme::space;
 
 use super::actions::{Action, shortcut_text};
 use super::guidance::{Guidance, guidance};
 use super::outbox::Outbox;
-use super::PlumblineWindow;
+use super::{PlumblineWindow, primary_button};
 
 const HEIGHT: f32 = 52.0;
 
@@ -63,10 +62,14 @@ fn next_button(view: &View, guidance: &Guidance, ui: &mut Ui, outbox: &mut Outbo
     let Some(next) = &guidance.next else { return };
     let refusal = next.action.refusal(view);
     let keys = shortcut_text(ui.ctx(), Action::Next).unwrap_or_default();
-    let button = ui.add_enabled_ui(refusal.is_none(), |ui| primary_button(ui, &next.label, None)).inner;
-    if button.on_hover_text(format!("{keys} does the same")).clicked() {
+    let button = primary_button(ui, &next.label).min_size(egui::vec2(120.0, 36.0));
+    ui.spacing_mut().button_padding.x = space::M;
+    let button = ui.add_enabled(refusal.is_none(), button);
+    let button = button.on_hover_text(format!("{keys} does the same"));
+    if button.on_disabled_hover_text(refusal.unwrap_or_default()).clicked() {
         outbox.act(next.action);
     }
+    ui.reset_style();
     ui.add_space(space::S);
 }
 

@@ -123,7 +123,7 @@ fn collect(tiles: &mut Tiles<Pane>) -> TileId {
     let pairs = tabs(tiles, &[Pane::Pairs]);
     let top = row(tiles, &[(left, 1.0), (right, 1.0)]);
     let bottom = row(tiles, &[(board, 0.9), (coverage, 1.3), (pairs, 0.9)]);
-    column(tiles, &[(top, 1.15), (bottom, 1.0)])
+    column(tiles, &[(top, 1.0), (bottom, 1.1)])
 }
 
 fn judge(tiles: &mut Tiles<Pane>) -> TileId {

@@ -3,20 +3,23 @@
 use egui::{CentralPanel, Color32, Frame, Stroke, Ui, Visuals, WidgetText};
 use egui_tiles::{Behavior, SimplificationOptions, TabState, TileId, Tiles, UiResponse};
 use plumbline_engine::View;
+use plumbline_engine::view::SourceStatus;
 use plumbline_widgets::theme;
 
+use super::PlumblineWindow;
 use super::outbox::Outbox;
 use super::steps::{Pane, Screen};
-use super::PlumblineWindow;
 use crate::panels::{self, PanelContext, PanelState, picture_key};
 
 pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let screen = window.settings.screen;
     let background = theme::tokens(ui).background;
     CentralPanel::no_frame().frame(Frame::new().fill(background)).show(ui, |ui| {
+        if screen == Screen::Live && window.view.source.status == SourceStatus::None {
+            return panels::show_start(ui, &window.settings.recent_sources, outbox);
+        }
         let tree = window.settings.arrangement(screen);
-        let mut behavior =
-            PaneBehavior { view: &window.view, screen, state: &mut window.panels, outbox };
+        let mut behavior = PaneBehavior { view: &window.view, screen, state: &mut window.panels, outbox };
         tree.ui(&mut behavior, ui);
     });
 }
@@ -54,8 +57,8 @@ impl Behavior<Pane> for PaneBehavior<'_> {
         let pane = tabs.active.and_then(|active| tiles.get_pane(&active));
         let Some((pane, key)) = pane.and_then(|pane| Some((pane, picture_key(*pane)?))) else { return };
         let Some(picture) = self.state.textures.last(key).cloned() else { return };
-        ui.spacing_mut().item_spacing.x = 2.0;
-        ui.add_space(theme::space::XS);
+        ui.spacing_mut().item_spacing.x = 0.0;
+        ui.spacing_mut().button_padding.x = theme::space::S;
         for (text, slot) in [("Save…", &mut self.outbox.save), ("Copy", &mut self.outbox.copy)] {
             let button = ui.add(egui::Button::new(theme::small(ui, text)).frame(false));
             button.widget_info(|| {

@@ -19,7 +19,8 @@ pub(super) fn show(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
 
 fn contents(ui: &mut Ui, view: &View, replay: ReplayView, outbox: &mut Outbox) {
     let mut button = |ui: &mut Ui, text: &str, action: Action| {
-        let hint = shortcut_text(ui.ctx(), action).map_or(action.label(), |keys| format!("{}   {keys}", action.label()));
+        let hint = shortcut_text(ui.ctx(), action)
+            .map_or(action.label(), |keys| format!("{}   {keys}", action.label()));
         if ui.add(Button::new(text)).on_hover_text(hint).clicked() {
             outbox.act(action);
         }
@@ -48,7 +49,7 @@ fn contents(ui: &mut Ui, view: &View, replay: ReplayView, outbox: &mut Outbox) {
         if ui.checkbox(&mut looping, "Loop").changed() {
             outbox.send(SourceCommand::Loop(looping));
         }
-        let mut rate = replay.pairs_per_second;
+        let mut rate = replay.pairs_per_second.unwrap_or(30.0);
         let drag = DragValue::new(&mut rate).range(0.2..=120.0).speed(0.2).max_decimals(1).suffix(" pairs/s");
         let drag = ui.add(drag).on_hover_text("Speed: drag, or click to type");
         drag.widget_info(|| egui::WidgetInfo::drag_value(true, rate));
