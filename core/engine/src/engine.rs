@@ -92,6 +92,3 @@ impl Drop for Engine {
         }
     }
 }
-
-#[cfg(test)]
-mod tests;

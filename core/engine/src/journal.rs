@@ -211,7 +211,7 @@ mod tests {
     fn what_was_noted_is_read_back() {
         let folder = tempfile::tempdir().expect("temporary folder");
         let commands = [
-            entry(0.5, SourceCommand::OpenPath("pairs".into())),
+            entry(0.5, SourceCommand::OpenPaths(vec!["pairs".into()])),
             entry(1.0, EyesCommand::ChooseBoard { columns: 9, rows: 6, square_m: 0.03 }),
             entry(1.5, EyesCommand::Capture),
             entry(2.0, EyesCommand::DropPair { pair: "frame_09.png".into() }),

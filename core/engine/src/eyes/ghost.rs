@@ -26,8 +26,11 @@ const PER_SIDE: usize = 12;
 
 /// The most useful place; `None` when no place would add anything.
 pub fn suggest(cameras: &StereoCameras, board: &Chessboard, coverage: &Coverage) -> Option<GhostBoard> {
+    // The first place is an easy one; what is hard comes when the operator knows the game.
+    let begun = coverage.by_tilt.iter().any(|&pairs| pairs > 0);
     let mut best: Option<(usize, Candidate)> = None;
-    for candidate in candidates(cameras, board) {
+    for candidate in candidates(cameras, board).filter(|candidate| begun || candidate.is_easy(cameras, board))
+    {
         let novelty = candidate.novelty(cameras, board, coverage);
         let worth = novelty.cells
             + usize::from(novelty.distance) * WORTH_OF_DISTANCE
@@ -73,6 +76,15 @@ fn candidates<'a>(cameras: &'a StereoCameras, board: &'a Chessboard) -> impl Ite
 }
 
 impl Candidate {
+    /// Facing the eyes in the middle of the image, not too near: where anybody would begin.
+    fn is_easy(&self, cameras: &StereoCameras, board: &Chessboard) -> bool {
+        let (width, height) = cameras.left.size_px();
+        let middle = Pixel::new(0.5 * (f64::from(width) - 1.0), 0.5 * (f64::from(height) - 1.0));
+        coverage::tilt_bin(&self.place) == 0
+            && coverage::distance_bin(board, &self.place) == 1
+            && self.middle.distance_px(&middle) < 0.1 * f64::from(width)
+    }
+
     fn novelty(&self, cameras: &StereoCameras, board: &Chessboard, coverage: &Coverage) -> Novelty {
         let corners = |eye| -> Corners {
             board
