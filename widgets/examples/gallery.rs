@@ -32,7 +32,10 @@ impl eframe::App for Gallery {
 fn main() -> eframe::Result {
     eframe::run_native(
         "Plumbline widgets",
-        eframe::NativeOptions::default(),
+        eframe::NativeOptions {
+            viewport: egui::ViewportBuilder::default().with_inner_size([1480.0, 900.0]),
+            ..Default::default()
+        },
         Box::new(|cc| {
             theme::apply(&cc.egui_ctx, egui::ThemePreference::System);
             Ok(Box::new(Gallery::default()))

@@ -56,16 +56,20 @@ pub(super) fn window(ui: &mut Ui, state: &mut GalleryState) {
     });
 }
 
+/// STOP takes its place first, so that nothing can push it out of the window.
 fn top(ui: &mut Ui, state: &mut GalleryState) {
     ui.add_space(space::XS);
     ui.horizontal(|ui| {
-        ui.label(theme::strong(ui, "Plumbline"));
-        ui.add_space(space::S);
-        lamps(ui, state);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             if stop_pressed(&stop_button(ui, ArmState::Held)) {
                 state.last = "stop".to_owned();
             }
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                ui.shrink_clip_rect(ui.max_rect());
+                ui.label(theme::strong(ui, "Plumbline"));
+                ui.add_space(space::S);
+                lamps(ui, state);
+            });
         });
     });
     ui.add_space(space::XS);
