@@ -11,6 +11,7 @@ pub mod jobs;
 pub mod journal;
 mod live;
 pub mod notice;
+pub mod offline;
 pub mod settings;
 pub mod slot;
 mod source;

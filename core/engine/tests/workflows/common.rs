@@ -62,8 +62,8 @@ pub fn board_pairs() -> &'static [StereoFrame] {
     PAIRS.get_or_init(|| {
         let pair = |(i, &(x, y, z, up_down, left_right)): (usize, &(f64, f64, f64, f64, f64))| {
             let pose = pose_at(&board(), &Point3::new(x, y, z), up_down, left_right).expect("a pose");
-            let plane = Plane { left_from_plane: pose.isometry, texture: chessboard_texture(&board()) };
-            frame(&Scene { planes: vec![plane], background: 110.0 }, &format!("{i:02}.png"), i as u64)
+            let plane = Plane::new(pose.isometry, chessboard_texture(&board()));
+            frame(&Scene { planes: vec![plane], background: 110.0, ..Scene::default() }, &format!("{i:02}.png"), i as u64)
         };
         PLACES.iter().enumerate().map(pair).collect()
     })
@@ -72,8 +72,8 @@ pub fn board_pairs() -> &'static [StereoFrame] {
 /// A granite wall 0.4 m ahead of the left eye, across its axis.
 pub fn wall_pair() -> StereoFrame {
     let left_from_plane = nalgebra::Isometry3::translation(0.0, 0.0, WALL_M);
-    let plane = Plane { left_from_plane, texture: granite_texture(0.006, 5) };
-    frame(&Scene { planes: vec![plane], background: 0.0 }, "wall.png", 99)
+    let plane = Plane::new(left_from_plane, granite_texture(0.006, 5));
+    frame(&Scene { planes: vec![plane], background: 0.0, ..Scene::default() }, "wall.png", 99)
 }
 
 pub const WALL_M: f64 = 0.4;

@@ -5,4 +5,5 @@
 mod common;
 mod eyes;
 mod journal;
+mod offline;
 mod threads;

@@ -1,0 +1,19 @@
+//! What the window does with recorded data, without a window: for scripts and for checks.
+//!
+//! Every function takes its arguments as a struct, reports progress to a [`JobContext`] and
+//! gives a report whose serialized keys are those of the command line's JSON.
+//!
+//! [`JobContext`]: plumbline_model::JobContext
+
+mod calibrate;
+mod check;
+mod disparity;
+mod error;
+mod locate;
+mod pairs;
+
+pub use calibrate::{CalibrateArgs, CalibrateReport, LeftOutCorner, PairErrors, Rejected, calibrate_stereo};
+pub use check::{CheckArgs, CheckReport, check};
+pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};
+pub use error::OfflineError;
+pub use locate::{LocateArgs, LocateReport, LocatedPoint, locate};

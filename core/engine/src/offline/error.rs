@@ -1,0 +1,111 @@
+//! Why work on recorded data could not be done.
+
+use std::path::{Path, PathBuf};
+
+use plumbline_hardware::{ImageProblem, SourceError};
+use plumbline_model::{AimError, BoardError, Cancelled, FormatError};
+use plumbline_vision::calibrate::SolveError;
+use plumbline_vision::disparity::DisparityError;
+use plumbline_vision::locate::NoBaseline;
+use plumbline_vision::rectify::RectifyError;
+
+/// Why work on recorded data could not be done, and what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum OfflineError {
+    /// Stopped on request.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The board cannot be used.
+    #[error(transparent)]
+    Board(#[from] BoardError),
+    /// The pairs cannot be read.
+    #[error(transparent)]
+    Source(#[from] SourceError),
+    /// An image cannot be read.
+    #[error(transparent)]
+    Image(#[from] ImageProblem),
+    /// The pairs cannot be solved.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// A calibration file cannot be read or written.
+    #[error(transparent)]
+    Format(#[from] FormatError),
+    /// The views cannot be aimed.
+    #[error(transparent)]
+    Aim(#[from] AimError),
+    /// The images cannot be rectified.
+    #[error(transparent)]
+    Rectify(#[from] RectifyError),
+    /// No disparity can be computed.
+    #[error(transparent)]
+    Disparity(#[from] DisparityError),
+    /// No point can be located.
+    #[error(transparent)]
+    NoBaseline(#[from] NoBaseline),
+    /// The board was never seen.
+    #[error(
+        "in none of the {pairs} pairs do both eyes see the board of {board}. {example} Check --board, which counts inner corners: one less than squares each way"
+    )]
+    BoardNeverSeen {
+        /// Pairs that were searched.
+        pairs: usize,
+        /// The board.
+        board: String,
+        /// What was seen in one of them.
+        example: String,
+    },
+    /// A file that was to be left out is not there.
+    #[error("there is no pair with the file {0} to leave out: check --exclude")]
+    NothingToExclude(String),
+    /// The calibration is for other images.
+    #[error(
+        "the images are {images} px but the calibration is for {calibrated} px: give the calibration of these cameras at this size"
+    )]
+    OtherSize {
+        /// Size of the images.
+        images: String,
+        /// Size that was calibrated.
+        calibrated: String,
+    },
+    /// A table cannot be read.
+    #[error(
+        "{file}, line {line}: {reason}. The file needs the header u_px,v_px and one pixel of the raw left image per line, for example 321.5,240"
+    )]
+    Table {
+        /// The file.
+        file: PathBuf,
+        /// From 1.
+        line: usize,
+        /// What is wrong.
+        reason: String,
+    },
+    /// Left and right image of a pair differ in size.
+    #[error("the left image is {left} px and the right one {right} px: give the two images of one pair")]
+    EyesDiffer {
+        /// Size of the left image.
+        left: String,
+        /// Size of the right image.
+        right: String,
+    },
+    /// A file cannot be read or written.
+    #[error("{}: {error}. Check the path, the permissions and the free space", .path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        error: std::io::Error,
+    },
+}
+
+impl OfflineError {
+    /// For `map_err` of file operations.
+    pub(super) fn io(path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |error| Self::Io { path, error }
+    }
+}
+
+/// Width × height, for messages.
+pub(super) fn size_text((width, height): (u32, u32)) -> String {
+    format!("{width}x{height}")
+}
