@@ -1,0 +1,237 @@
+//! Our live pipeline against the one published for this robot, timed in turns on the same
+//! pair, with the same number of threads.
+//!
+//! The published one rectifies the whole fisheye view to 640×480 px at a focal length of only
+//! 35 px, matches with OpenCV's three-way semi-global matcher over 192 disparities in both
+//! directions, smooths with the weighted-least-squares filter and reprojects.
+
+use std::time::Instant;
+
+use image::GrayImage;
+use opencv::calib3d::{
+    StereoMatcherTrait, StereoSGBM, StereoSGBM_MODE_SGBM_3WAY, fisheye_init_undistort_rectify_map,
+    fisheye_stereo_rectify, reproject_image_to_3d,
+};
+use opencv::core::{BORDER_CONSTANT, CV_16SC2, CV_32F, Mat, MatTraitConst, Ptr, Rect, Scalar, Size};
+use opencv::imgproc::{INTER_LINEAR, remap};
+use opencv::prelude::{DisparityFilterTrait, DisparityWLSFilterTrait};
+use opencv::ximgproc::{DisparityWLSFilter, create_disparity_wls_filter, create_right_matcher};
+use plumbline_model::aim::{AimError, AimedPair, DISPARITY_STEP_PX};
+use plumbline_model::{CameraModel, Eye, StereoCameras};
+
+use super::{DisparityError, Matcher, Settings};
+use crate::depth::{PointMap, SizeMismatch};
+use crate::mat;
+use crate::rectify::{Pair, Rectifier, RectifyError};
+
+/// Depth at which the steps are compared, meters: the far edge of the table.
+pub const COMPARED_AT_M: f64 = 0.6;
+
+/// Figures of one comparison.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct ComparisonReport {
+    /// Rectification, disparity and 3D of one pair by us, median, milliseconds.
+    pub ours_ms: f64,
+    /// Same by the published pipeline, milliseconds.
+    pub published_ms: f64,
+    /// Ours divided by published.
+    pub ratio: f64,
+    /// Depth of 1/16 px at [`COMPARED_AT_M`] in our view, meters.
+    pub depth_step_ours_m: f64,
+    /// Same in the published view, meters.
+    pub depth_step_published_m: f64,
+    /// Part of our view whose disparity was measured, 0..=1.
+    pub measured_fraction: f64,
+    /// Repetitions that the medians are over.
+    pub rounds: usize,
+    /// Threads that both were allowed.
+    pub threads: usize,
+}
+
+/// Why the comparison could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ComparisonError {
+    /// The published pipeline works on fisheye eyes only.
+    #[error("the published pipeline is for fisheye eyes: compare with a fisheye calibration")]
+    NotFisheye,
+    /// See [`AimError`].
+    #[error(transparent)]
+    Aim(#[from] AimError),
+    /// See [`RectifyError`].
+    #[error(transparent)]
+    Rectify(#[from] RectifyError),
+    /// See [`DisparityError`].
+    #[error(transparent)]
+    Disparity(#[from] DisparityError),
+    /// See [`SizeMismatch`].
+    #[error(transparent)]
+    Depth(#[from] SizeMismatch),
+    /// OpenCV refused.
+    #[error("OpenCV could not run the published pipeline: {0}")]
+    OpenCv(#[from] opencv::Error),
+}
+
+/// Our live pipeline from a raw gray pair to points.
+pub struct LivePipeline {
+    rectifier: Rectifier,
+    matcher: Matcher,
+}
+
+impl LivePipeline {
+    /// For an aimed pair, searching up to `nearest_m` along its axis.
+    pub fn new(pair: &AimedPair, nearest_m: f64) -> Result<Self, ComparisonError> {
+        let settings = Settings::live(pair.disparity_at(nearest_m).ceil() as u32);
+        Ok(Self { rectifier: Rectifier::new(pair)?, matcher: Matcher::new(settings)? })
+    }
+
+    /// Rectifies, matches and places one raw gray pair; also the part that was measured.
+    pub fn run(&mut self, left: &GrayImage, right: &GrayImage) -> Result<(PointMap, f64), ComparisonError> {
+        let views = self.rectifier.rectify_gray(left, right)?;
+        let map = self.matcher.compute(&views.left, &views.right, Some(self.rectifier.masks()))?;
+        Ok((PointMap::new(&map, self.rectifier.aimed())?, map.measured_fraction()))
+    }
+}
+
+/// The published pipeline.
+pub struct PublishedPipeline {
+    maps: Pair<[Mat; 2]>,
+    q: Mat,
+    left: Ptr<StereoSGBM>,
+    right: Ptr<opencv::calib3d::StereoMatcher>,
+    filter: Ptr<DisparityWLSFilter>,
+    f_px: f64,
+    baseline_m: f64,
+}
+
+impl PublishedPipeline {
+    /// Its rectification (balance 0, field of view scaled by 0.6) and its matcher.
+    pub fn new(cameras: &StereoCameras) -> Result<Self, ComparisonError> {
+        let size = Size::new(cameras.left.width_px as i32, cameras.left.height_px as i32);
+        let (k_left, d_left) = intrinsics(cameras, Eye::Left)?;
+        let (k_right, d_right) = intrinsics(cameras, Eye::Right)?;
+        let rotation = cameras.right_from_left.rotation();
+        // Column-major memory of the transpose is row-major memory of the matrix.
+        let r = Mat::from_slice(rotation.transpose().as_slice())?.reshape(1, 3)?.try_clone()?;
+        let t = Mat::from_slice(cameras.right_from_left.translation_m().as_slice())?
+            .reshape(1, 3)?
+            .try_clone()?;
+        let [mut r1, mut r2, mut p1, mut p2, mut q] = std::array::from_fn(|_| Mat::default());
+        fisheye_stereo_rectify(
+            &k_left, &d_left, &k_right, &d_right, size, &r, &t, &mut r1, &mut r2, &mut p1, &mut p2, &mut q,
+            0, size, 0.0, 0.6,
+        )?;
+        let maps = |k: &Mat, d: &Mat, r: &Mat, p: &Mat| -> Result<[Mat; 2], opencv::Error> {
+            let [mut whole, mut fraction] = [Mat::default(), Mat::default()];
+            fisheye_init_undistort_rectify_map(k, d, r, p, size, CV_16SC2, &mut whole, &mut fraction)?;
+            Ok([whole, fraction])
+        };
+        let maps =
+            Pair { left: maps(&k_left, &d_left, &r1, &p1)?, right: maps(&k_right, &d_right, &r2, &p2)? };
+        let sgbm = || StereoSGBM::create(0, 192, 5, 600, 2400, 1, 0, 15, 200, 2, StereoSGBM_MODE_SGBM_3WAY);
+        let left = sgbm()?;
+        let right = create_right_matcher(sgbm()?.into())?;
+        let mut filter = create_disparity_wls_filter(sgbm()?.into())?;
+        filter.set_lambda(8000.0)?;
+        filter.set_sigma_color(1.5)?;
+        let f_px = *p1.at_2d::<f64>(0, 0)?;
+        Ok(Self { maps, q, left, right, filter, f_px, baseline_m: cameras.baseline_m() })
+    }
+
+    /// Rectifies, matches, filters and places one raw gray pair: x, y, z per pixel.
+    pub fn run(&mut self, left: &GrayImage, right: &GrayImage) -> Result<Mat, opencv::Error> {
+        let view = |image: &GrayImage, [whole, fraction]: &[Mat; 2]| -> Result<Mat, opencv::Error> {
+            let mut view = Mat::default();
+            remap(
+                &mat::gray(image)?,
+                &mut view,
+                whole,
+                fraction,
+                INTER_LINEAR,
+                BORDER_CONSTANT,
+                Scalar::default(),
+            )?;
+            Ok(view)
+        };
+        let (left, right) = (view(left, &self.maps.left)?, view(right, &self.maps.right)?);
+        let [mut left_disparity, mut right_disparity, mut filtered, mut scaled, mut points] =
+            std::array::from_fn(|_| Mat::default());
+        self.left.compute(&left, &right, &mut left_disparity)?;
+        self.right.compute(&right, &left, &mut right_disparity)?;
+        let everywhere = Rect::default();
+        self.filter.filter(&left_disparity, &left, &mut filtered, &right_disparity, everywhere, &right)?;
+        filtered.convert_to(&mut scaled, CV_32F, 1.0 / 16.0, 0.0)?;
+        reproject_image_to_3d(&scaled, &mut points, &self.q, false, -1)?;
+        Ok(points)
+    }
+
+    /// Depth (meters) of one step of 1/16 px at depth `range_m`.
+    pub fn depth_step_m(&self, range_m: f64) -> f64 {
+        range_m * range_m * DISPARITY_STEP_PX / (self.f_px * self.baseline_m)
+    }
+}
+
+/// Times both pipelines in turns on one raw gray pair, `rounds` times each after one unmeasured
+/// round, with as many OpenCV threads as the rayon pool has. `pair` is our aimed pair, in which
+/// depths from `nearest_m` on are searched.
+pub fn compare_with_published(
+    left: &GrayImage,
+    right: &GrayImage,
+    pair: &AimedPair,
+    nearest_m: f64,
+    rounds: usize,
+) -> Result<ComparisonReport, ComparisonError> {
+    let threads = rayon::current_num_threads();
+    let threads_before = opencv::core::get_num_threads()?;
+    opencv::core::set_num_threads(threads as i32)?;
+    let report = compare(left, right, pair, nearest_m, rounds.max(1), threads);
+    opencv::core::set_num_threads(threads_before)?;
+    report
+}
+
+fn compare(
+    left: &GrayImage,
+    right: &GrayImage,
+    pair: &AimedPair,
+    nearest_m: f64,
+    rounds: usize,
+    threads: usize,
+) -> Result<ComparisonReport, ComparisonError> {
+    let mut ours = LivePipeline::new(pair, nearest_m)?;
+    let mut published = PublishedPipeline::new(&pair.cameras)?;
+    let (_, measured_fraction) = ours.run(left, right)?;
+    published.run(left, right)?;
+    let (mut ours_ms, mut published_ms) = (Vec::new(), Vec::new());
+    for _ in 0..rounds {
+        let start = Instant::now();
+        std::hint::black_box(ours.run(left, right)?);
+        ours_ms.push(start.elapsed().as_secs_f64() * 1e3);
+        let start = Instant::now();
+        std::hint::black_box(published.run(left, right)?);
+        published_ms.push(start.elapsed().as_secs_f64() * 1e3);
+    }
+    let (ours_ms, published_ms) = (median(&mut ours_ms), median(&mut published_ms));
+    Ok(ComparisonReport {
+        ours_ms,
+        published_ms,
+        ratio: ours_ms / published_ms,
+        depth_step_ours_m: pair.depth_step_m(COMPARED_AT_M),
+        depth_step_published_m: published.depth_step_m(COMPARED_AT_M),
+        measured_fraction,
+        rounds,
+        threads,
+    })
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// Camera matrix and distortion as OpenCV wants them.
+fn intrinsics(cameras: &StereoCameras, eye: Eye) -> Result<(Mat, Mat), ComparisonError> {
+    let CameraModel::Fisheye(m) = cameras.camera(eye).model else { return Err(ComparisonError::NotFisheye) };
+    let k = [m.fx_px, m.skew_px, m.cx_px, 0.0, m.fy_px, m.cy_px, 0.0, 0.0, 1.0];
+    let k = Mat::from_slice(&k)?.reshape(1, 3)?.try_clone()?;
+    let d = Mat::from_slice(&m.k)?.reshape(1, 4)?.try_clone()?;
+    Ok((k, d))
+}
