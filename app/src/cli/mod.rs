@@ -1,21 +1,28 @@
 //! The command line: the window without a verb, the work on recorded data with one.
 
+mod bench;
+mod calibrate;
+mod common;
+mod disparity;
+mod doctor;
+mod locate;
 mod output;
 mod window_args;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{Args, CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
+use output::Output;
 use window_args::WindowArgs;
 
 /// See, measure and calibrate with the stereo eyes of NICO.
 ///
 /// Without a command the window opens, on a source if one is given: a folder of pairs, two
 /// folders, two videos, or two cameras. The commands do on recorded data what the window does,
-/// for scripts.
+/// for scripts and checks.
 #[derive(Debug, Parser)]
-#[command(name = "plumbline", version, args_conflicts_with_subcommands = true)]
+#[command(name = "plumbline", version, args_conflicts_with_subcommands = true, after_help = AFTER_HELP)]
 struct Arguments {
     #[command(subcommand)]
     verb: Option<Verb>,
@@ -23,14 +30,96 @@ struct Arguments {
     window: WindowArgs,
 }
 
+const AFTER_HELP: &str = "Exit status of the commands: 0 done; 1 the work could not be done, and the message \
+                          says why and what to do; 2 wrong usage.";
+
 #[derive(Debug, Subcommand)]
-enum Verb {}
+enum Verb {
+    /// Calibrates the eyes from chessboard pairs, or judges a calibration.
+    #[command(subcommand)]
+    Calibrate(Calibrate),
+    /// Says where in space points of the left image are.
+    Locate(WithJson<locate::Locate>),
+    /// Computes the disparity of a pair.
+    Disparity(WithJson<disparity::Disparity>),
+    /// Says what works on this machine: libraries, graphics, cameras, serial ports, folders.
+    Doctor(WithJson<doctor::Doctor>),
+    /// Measures accuracy and speed on the reference data, beside published figures.
+    Bench(WithJson<bench::Bench>),
+}
+
+#[derive(Debug, Subcommand)]
+enum Calibrate {
+    /// Chessboard pairs to a stereo calibration; no initial guess is needed.
+    Stereo(WithJson<calibrate::Stereo>),
+    /// Judges a calibration on pairs that it has not seen.
+    Check(WithJson<calibrate::Check>),
+}
+
+#[derive(Debug, Args)]
+struct WithJson<A: Args> {
+    #[command(flatten)]
+    arguments: A,
+    /// Prints one JSON object on standard output and nothing else there. Lengths are in the unit
+    /// that the key names. Where the work could not be done, its only key is `error`.
+    #[arg(long)]
+    json: bool,
+}
+
+impl<A: Args> WithJson<A> {
+    fn run(self, verb: impl FnOnce(A, &Output) -> anyhow::Result<()>) -> ExitCode {
+        let output = Output::new(self.json);
+        let result = verb(self.arguments, &output);
+        output.finish(result)
+    }
+}
 
 /// Runs the program with the arguments it was started with.
 pub fn run() -> ExitCode {
-    let arguments = Arguments::parse();
+    let matches = Arguments::command().get_matches();
+    let arguments = match Arguments::from_arg_matches(&matches) {
+        Ok(arguments) => arguments,
+        Err(error) => error.exit(),
+    };
     match arguments.verb {
         None => output::finish_window(arguments.window.launch()),
-        Some(_verb) => ExitCode::SUCCESS,
+        Some(verb) => {
+            crate::window::start_log(log::LevelFilter::Warn);
+            match verb {
+                Verb::Calibrate(Calibrate::Stereo(verb)) => verb.run(calibrate::stereo),
+                Verb::Calibrate(Calibrate::Check(verb)) => verb.run(calibrate::check),
+                Verb::Locate(verb) => verb.run(locate::run),
+                Verb::Disparity(verb) => verb.run(disparity::run),
+                Verb::Doctor(verb) => verb.run(doctor::run),
+                Verb::Bench(verb) => verb.run(bench::run),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_description_of_the_command_line_holds_together() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn paths_open_the_window_and_verbs_do_not() {
+        let arguments = Arguments::try_parse_from(["plumbline", "left", "right"]).expect("two paths");
+        assert!(arguments.verb.is_none());
+        let check = ["plumbline", "doctor", "--json"];
+        assert!(matches!(Arguments::try_parse_from(check).expect("a verb").verb, Some(Verb::Doctor(_))));
+    }
+
+    #[test]
+    fn wrong_usage_is_told_apart_from_failed_work() {
+        let error = Arguments::try_parse_from(["plumbline", "calibrate", "stereo", "--board", "8by5"]);
+        assert_eq!(error.expect_err("not a board").exit_code(), 2);
+        let both =
+            ["plumbline", "disparity", "--left", "l", "--right", "r", "--max-disparity", "64", "--out", "o"];
+        assert!(Arguments::try_parse_from(both).is_err(), "neither a calibration nor --rectified");
     }
 }

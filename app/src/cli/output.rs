@@ -1,8 +1,83 @@
 //! How a verb ends: one JSON object or a few lines on standard output, everything else on
 //! standard error, and the exit status.
 
-use std::io::Write as _;
+use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
+use std::sync::Mutex;
+
+use plumbline_model::{Cancelled, JobContext};
+use serde::Serialize;
+
+/// Where a verb says things.
+pub struct Output {
+    json: bool,
+    progress: Mutex<Progress>,
+}
+
+#[derive(Default)]
+struct Progress {
+    percent: Option<i64>,
+    doing: String,
+}
+
+impl Output {
+    /// `json`: one object on standard output and nothing else.
+    pub fn new(json: bool) -> Self {
+        Self { json, progress: Mutex::default() }
+    }
+
+    /// Prints a result: the object itself, or what people want to know of it.
+    pub fn result<R: Serialize>(&self, report: &R, people: impl FnOnce(&R) -> String) -> anyhow::Result<()> {
+        let text = if self.json { serde_json::to_string_pretty(report)? } else { people(report) };
+        let mut out = std::io::stdout().lock();
+        match writeln!(out, "{}", text.trim_end()) {
+            // Whoever read the result has what they wanted (`| head`).
+            Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+            result => Ok(result?),
+        }
+    }
+
+    /// The exit status, after saying what went wrong.
+    pub fn finish(&self, result: anyhow::Result<()>) -> ExitCode {
+        match result {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                if self.json {
+                    let object = serde_json::json!({ "error": format!("{error:#}") });
+                    let _ = writeln!(std::io::stdout(), "{object}");
+                }
+                failed(&error)
+            }
+        }
+    }
+}
+
+impl JobContext for Output {
+    fn checkpoint(&self) -> Result<(), Cancelled> {
+        Ok(())
+    }
+
+    /// A line that is overwritten on a terminal; elsewhere a line whenever the work changes.
+    fn report(&self, fraction: f64, doing: &str) {
+        let mut progress = self.progress.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let percent = (fraction * 100.0) as i64;
+        let terminal = std::io::stderr().is_terminal();
+        let mut err = std::io::stderr().lock();
+        // Nobody is harmed when nobody reads the progress.
+        if terminal && (progress.percent != Some(percent) || progress.doing != doing) {
+            let _ = write!(err, "\r\x1b[K{percent:3} % {doing}");
+            if percent >= 100 {
+                let _ = write!(err, "\r\x1b[K");
+            }
+            let _ = err.flush();
+        } else if !terminal && progress.percent.is_none_or(|shown| percent >= shown + 25) {
+            let _ = writeln!(err, "{percent:3} % {doing}");
+        } else {
+            return;
+        }
+        *progress = Progress { percent: Some(percent), doing: doing.to_owned() };
+    }
+}
 
 /// The window was closed, or could not be opened.
 pub fn finish_window(result: anyhow::Result<()>) -> ExitCode {
@@ -13,7 +88,7 @@ pub fn finish_window(result: anyhow::Result<()>) -> ExitCode {
 }
 
 /// Says why the work could not be done.
-pub fn failed(error: &anyhow::Error) -> ExitCode {
+fn failed(error: &anyhow::Error) -> ExitCode {
     say(&format!("plumbline: {error:#}"));
     ExitCode::from(1)
 }

@@ -1,8 +1,8 @@
 //! Disparity and depth as colors, with their scale.
 
-use egui::{Ui, vec2};
-use plumbline_engine::Products;
+use egui::{Color32, ColorImage, Ui, vec2};
 use plumbline_engine::view::DisparityView;
+use plumbline_engine::{DisparityOrigin, Products};
 use plumbline_model::Eye;
 use plumbline_widgets::colormap::{ColorScale, Orientation, ScaleBar, colorize, colorize_with};
 use plumbline_widgets::format::{self, Quantity};
@@ -19,7 +19,10 @@ pub fn disparity(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let Some(values) = &cx.view.live.disparity else { return show_missing(ui, cx, "Disparity") };
     let range = [values.search_px.0 as f32, values.search_px.1 as f32];
     let scale = ColorScale::new(cx.state.live.colormap, range);
-    let text = |u: usize, v: usize| values.disparity_px(u as u32, v as u32).map(format::px);
+    let text = |u: usize, v: usize| {
+        let text = format::px(values.disparity_px(u as u32, v as u32)?);
+        Some(with_origin(values, u, v, text))
+    };
     let look = Look {
         key: "disparity",
         label: "Disparity of the left eye",
@@ -35,11 +38,14 @@ pub fn depth(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let Some(values) = &cx.view.live.disparity else { return show_missing(ui, cx, "Depth") };
     let reach = (values.focal_px * values.baseline_m) as f32;
     let depth_m = |disparity: f32| if disparity > 0.0 { reach / disparity } else { f32::NAN };
-    // Fitted once and then kept: colors that change their meaning by themselves cannot be learnt.
+    // Fitted when asked and then kept: colors that change their meaning by themselves cannot be learnt.
     let range_m =
         *cx.state.live.depth_range_m.get_or_insert_with(|| fitted_range_m(&values.values_px, depth_m));
     let scale = ColorScale::new(cx.state.live.colormap, range_m).reversed();
-    let text = |u: usize, v: usize| values.depth_m(u as u32, v as u32).map(format::meters);
+    let text = |u: usize, v: usize| {
+        let text = format::meters(values.depth_m(u as u32, v as u32)?);
+        Some(with_origin(values, u, v, text))
+    };
     let look = Look {
         key: "depth",
         label: "Depth seen by the left eye",
@@ -48,8 +54,29 @@ pub fn depth(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     };
     let value = |u: u32, v: u32| values.depth_m(u, v);
     draw(ui, cx, values, scale, &look, &text, &value, &|| {
-        colorize_with(&values.values_px, size(values), &scale, |disparity| depth_m(*disparity))
+        let colors = colorize_with(&values.values_px, size(values), &scale, |disparity| depth_m(*disparity));
+        dim_filled(colors, values)
     });
+}
+
+/// Places that were guessed from their surroundings are good to look at, not to measure.
+fn dim_filled(mut colors: ColorImage, values: &DisparityView) -> ColorImage {
+    let width = colors.size[0].max(1);
+    for (i, pixel) in colors.pixels.iter_mut().enumerate() {
+        let (u, v) = ((i % width) as u32, (i / width) as u32);
+        if values.map.origin(u, v) == Some(DisparityOrigin::Filled) {
+            *pixel = pixel.lerp_to_gamma(Color32::from_gray(40), 0.7);
+        }
+    }
+    colors
+}
+
+/// A value under the pointer, and whether it was measured.
+fn with_origin(values: &DisparityView, u: usize, v: usize, text: String) -> String {
+    match values.map.origin(u as u32, v as u32) {
+        Some(DisparityOrigin::Filled) => format!("{text}, filled in"),
+        _ => text,
+    }
 }
 
 /// Round depths around what is seen, meters.
@@ -85,7 +112,7 @@ fn draw(
     look: &Look,
     text: &dyn Fn(usize, usize) -> Option<String>,
     value: &dyn Fn(u32, u32) -> Option<f64>,
-    make: &dyn Fn() -> egui::ColorImage,
+    make: &dyn Fn() -> ColorImage,
 ) {
     let range_bits = scale.range.map(f32::to_bits);
     let seq = picture::seq_with(&values.stamp, (range_bits, scale.map));

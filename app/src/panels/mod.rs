@@ -107,13 +107,13 @@ pub struct LiveStyle {
     pub epipolar_lines: bool,
     /// Colors of disparity and depth.
     pub colormap: Colormap,
-    /// Depths at the ends of the colors, meters; `None` until they are fitted.
+    /// Depths at the ends of the colors, meters; `None` fits them to the next picture.
     pub depth_range_m: Option<[f32; 2]>,
 }
 
 impl Default for LiveStyle {
     fn default() -> Self {
-        Self { epipolar_lines: true, colormap: Colormap::default(), depth_range_m: None }
+        Self { epipolar_lines: true, colormap: Colormap::default(), depth_range_m: Some([0.2, 1.0]) }
     }
 }
 

@@ -265,7 +265,9 @@ pub fn format_name(format: ExportFormat) -> &'static str {
 
 /// Shortcuts as text, for menus and hints.
 pub fn shortcut_text(ctx: &egui::Context, action: Action) -> Option<String> {
-    action.shortcut().map(|shortcut| ctx.format_shortcut(&shortcut))
+    let text = ctx.format_shortcut(&action.shortcut()?);
+    // As it is printed on the keys.
+    Some(text.replace("Escape", "Esc").replace("Period", ".").replace("Comma", ","))
 }
 
 /// Takes the shortcuts out of this frame's input and returns their actions. While a text is

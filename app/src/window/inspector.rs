@@ -59,12 +59,13 @@ fn aim_controls(ui: &mut Ui, aim: &AimView, outbox: &mut Outbox) {
     if choice(ui, "Aim", &mut manual, &[(false, "At the table"), (true, "By hand")]) {
         outbox.send(LiveCommand::Aim(if manual { by_hand } else { AimChoice::Table }));
     }
-    let mut pitch_deg = aim.pitch_rad.to_degrees();
-    let mut width_deg = aim.field_of_view_rad.0.to_degrees();
     if manual {
+        let (mut pitch_deg, mut width_deg) =
+            (aim.pitch_rad.to_degrees(), aim.field_of_view_rad.0.to_degrees());
+        let before = [pitch_deg, width_deg];
         let down = ui.add(Slider::new(&mut pitch_deg, -90.0..=90.0).suffix("°").text("down").max_decimals(1));
         let wide = ui.add(Slider::new(&mut width_deg, 20.0..=150.0).suffix("°").text("wide").max_decimals(1));
-        if down.changed() || wide.changed() {
+        if moved(&(down | wide), before, [pitch_deg, width_deg]) {
             outbox.send(LiveCommand::Aim(AimChoice::Manual {
                 pitch_rad: pitch_deg.to_radians(),
                 horizontal_field_of_view_rad: width_deg.to_radians(),
@@ -85,15 +86,22 @@ fn aim_controls(ui: &mut Ui, aim: &AimView, outbox: &mut Outbox) {
     );
 }
 
+/// Whether the operator moved a slider. A slider also rounds what it is given, which is no wish.
+fn moved(sliders: &egui::Response, before_deg: [f64; 2], after_deg: [f64; 2]) -> bool {
+    let by_deg = (before_deg[0] - after_deg[0]).abs().max((before_deg[1] - after_deg[1]).abs());
+    sliders.changed() && by_deg > 0.051
+}
+
 fn head_controls(ui: &mut Ui, head: HeadPose, outbox: &mut Outbox) {
     let mut left_deg = head.head_z_rad.to_degrees();
     let mut up_deg = head.head_y_rad.to_degrees();
+    let before = [left_deg, up_deg];
     ui.add_space(space::XS);
     ui.label(theme::small(ui, "Head"))
         .on_hover_text("Where the head looked: it places the eyes over the table");
     let left = ui.add(Slider::new(&mut left_deg, -90.0..=90.0).suffix("°").text("left").max_decimals(1));
     let up = ui.add(Slider::new(&mut up_deg, -50.0..=25.0).suffix("°").text("up").max_decimals(1));
-    if left.changed() || up.changed() {
+    if moved(&(left | up), before, [left_deg, up_deg]) {
         let head = HeadPose { head_z_rad: left_deg.to_radians(), head_y_rad: up_deg.to_radians() };
         outbox.send(LiveCommand::Head(head));
     }

@@ -10,6 +10,9 @@ use plumbline_widgets::theme::space;
 use super::outbox::Outbox;
 use super::sheet::sheet;
 
+/// More new messages than this are not all put on screen.
+const MOST_AT_ONCE: usize = 2;
+
 /// The engine's messages and the window's own.
 #[derive(Default)]
 pub(super) struct NoticeList {
@@ -23,13 +26,26 @@ impl NoticeList {
     /// Adds the engine's messages that are new.
     pub(super) fn take(&mut self, notices: &Arc<[Notice]>) {
         let first_new = notices.partition_point(|notice| notice.number <= self.newest);
-        for notice in &notices[first_new..] {
+        let new = &notices[first_new..];
+        for notice in new {
             self.newest = notice.number;
             let severity = severity(notice.level);
             if matches!(severity, Severity::Warning | Severity::Failed) {
                 self.unread += 1;
             }
             self.shown.push(severity, notice.text.as_str());
+        }
+        if new.len() > MOST_AT_ONCE {
+            self.summarize(new.len());
+        }
+    }
+
+    /// Many messages at once would cover the work: the first stays on screen, and the button of
+    /// the top line counts the others.
+    fn summarize(&mut self, count: usize) {
+        let newest: Vec<u64> = self.shown.history().take(count).map(|message| message.number).collect();
+        for number in &newest[..newest.len().saturating_sub(1)] {
+            self.shown.dismiss(*number);
         }
     }
 

@@ -39,8 +39,10 @@ pub struct Chosen {
 
 /// Looks for adapters; takes about 0.1 s. None found is an empty list, never an error.
 pub fn adapters() -> Vec<Adapter> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     // Only Vulkan: OpenGL adapters need the display that eframe opens later.
+    let mut wanted = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    wanted.backends = wgpu::Backends::VULKAN;
+    let instance = wgpu::Instance::new(wanted);
     let found = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
     found
         .iter()

@@ -123,7 +123,7 @@ fn collect(tiles: &mut Tiles<Pane>) -> TileId {
     let pairs = tabs(tiles, &[Pane::Pairs]);
     let top = row(tiles, &[(left, 1.0), (right, 1.0)]);
     let bottom = row(tiles, &[(board, 0.9), (coverage, 1.3), (pairs, 0.9)]);
-    column(tiles, &[(top, 1.0), (bottom, 1.1)])
+    column(tiles, &[(top, 1.0), (bottom, 1.2)])
 }
 
 fn judge(tiles: &mut Tiles<Pane>) -> TileId {
@@ -131,7 +131,7 @@ fn judge(tiles: &mut Tiles<Pane>) -> TileId {
     let errors = tabs(tiles, &[Pane::PairErrors]);
     let residuals = tabs(tiles, &[Pane::Residuals]);
     let uncertainty = tabs(tiles, &[Pane::Uncertainty]);
-    let left = column(tiles, &[(figures, 1.35), (uncertainty, 1.0)]);
+    let left = column(tiles, &[(figures, 1.55), (uncertainty, 1.0)]);
     let right = column(tiles, &[(errors, 1.0), (residuals, 1.25)]);
     row(tiles, &[(left, 1.0), (right, 1.55)])
 }

@@ -57,8 +57,8 @@ impl Behavior<Pane> for PaneBehavior<'_> {
         let pane = tabs.active.and_then(|active| tiles.get_pane(&active));
         let Some((pane, key)) = pane.and_then(|pane| Some((pane, picture_key(*pane)?))) else { return };
         let Some(picture) = self.state.textures.last(key).cloned() else { return };
-        ui.spacing_mut().item_spacing.x = 0.0;
-        ui.spacing_mut().button_padding.x = theme::space::S;
+        ui.spacing_mut().item_spacing.x = theme::space::S + 2.0;
+        ui.add_space(0.0);
         for (text, slot) in [("Save…", &mut self.outbox.save), ("Copy", &mut self.outbox.copy)] {
             let button = ui.add(egui::Button::new(theme::small(ui, text)).frame(false));
             button.widget_info(|| {
