@@ -63,7 +63,11 @@ pub fn board_pairs() -> &'static [StereoFrame] {
         let pair = |(i, &(x, y, z, up_down, left_right)): (usize, &(f64, f64, f64, f64, f64))| {
             let pose = pose_at(&board(), &Point3::new(x, y, z), up_down, left_right).expect("a pose");
             let plane = Plane::new(pose.isometry, chessboard_texture(&board()));
-            frame(&Scene { planes: vec![plane], background: 110.0, ..Scene::default() }, &format!("{i:02}.png"), i as u64)
+            frame(
+                &Scene { planes: vec![plane], background: 110.0, ..Scene::default() },
+                &format!("{i:02}.png"),
+                i as u64,
+            )
         };
         PLACES.iter().enumerate().map(pair).collect()
     })

@@ -26,10 +26,9 @@ fn poses() -> Vec<Isometry3<f64>> {
 }
 
 fn scene(left_from_board: Isometry3<f64>, board: &Chessboard) -> Scene {
-    let wall =
-        Plane { left_from_plane: Isometry3::translation(0.0, 0.0, 1.5), texture: granite_texture(0.02, 11) };
-    let board = Plane { left_from_plane: left_from_board, texture: chessboard_texture(board) };
-    Scene { planes: vec![wall, board], background: 0.0 }
+    let wall = Plane::new(Isometry3::translation(0.0, 0.0, 1.5), granite_texture(0.02, 11));
+    let board = Plane::new(left_from_board, chessboard_texture(board));
+    Scene { planes: vec![wall, board], background: 0.0, ..Scene::default() }
 }
 
 fn render(left_from_board: Isometry3<f64>, board: &Chessboard, eye: Eye, eyes: &StereoCameras) -> GrayImage {

@@ -9,8 +9,8 @@ use crate::synthetic::{Noise, Plane, Scene, chessboard_texture, granite_texture,
 /// A granite table, 0.45 m away and tilted like NICO's.
 fn table() -> (Scene, Isometry3<f64>) {
     let left_from_plane = Isometry3::new(Vector3::new(0.0, 0.1, 0.45), Vector3::new(-0.9, 0.0, 0.1));
-    let plane = Plane { left_from_plane, texture: granite_texture(0.008, 3) };
-    (Scene { planes: vec![plane], background: 0.0 }, left_from_plane)
+    let plane = Plane::new(left_from_plane, granite_texture(0.008, 3));
+    (Scene { planes: vec![plane], background: 0.0, ..Scene::default() }, left_from_plane)
 }
 
 fn pixels(count: usize) -> Vec<Pixel<Raw>> {
@@ -58,7 +58,7 @@ fn places_on_a_textured_table_are_found_within_their_stated_uncertainty() {
 #[test]
 fn a_uniform_wall_is_not_found_and_says_why() {
     let eyes = nico_like_eyes();
-    let scene = Scene { planes: Vec::new(), background: 128.0 };
+    let scene = Scene { planes: Vec::new(), background: 128.0, ..Scene::default() };
     let (left, right) = scene.render_pair(&eyes, 1.0, 2);
     let locator = Locator::new(&StereoCalibration::bare(eyes)).expect("has a baseline");
     for result in locator.locate(&left, &right, &pixels(10)) {
@@ -72,8 +72,8 @@ fn what_only_the_left_eye_sees_is_not_found() {
     let (scene, _) = table();
     let left = scene.render(&eyes, Eye::Left, 2.0, 1);
     let left_from_plane = Isometry3::new(Vector3::new(0.0, 0.1, 0.45), Vector3::new(-0.9, 0.0, 0.1));
-    let plane = Plane { left_from_plane, texture: granite_texture(0.008, 99) };
-    let other = Scene { planes: vec![plane], background: 0.0 };
+    let plane = Plane::new(left_from_plane, granite_texture(0.008, 99));
+    let other = Scene { planes: vec![plane], background: 0.0, ..Scene::default() };
     let right = other.render(&eyes, Eye::Right, 2.0, 1);
     let locator = Locator::new(&StereoCalibration::bare(eyes)).expect("has a baseline");
     let pixels = pixels(60);
@@ -84,13 +84,14 @@ fn what_only_the_left_eye_sees_is_not_found() {
 #[test]
 fn endless_repetition_is_called_ambiguous() {
     let eyes = nico_like_eyes();
-    let stripes = Plane {
-        left_from_plane: Isometry3::translation(0.0, 0.0, 0.4),
-        texture: Box::new(|x, y| {
+    let stripes = Plane::new(
+        Isometry3::translation(0.0, 0.0, 0.4),
+        Box::new(|x, y| {
             Some(if ((x / 0.012).floor() + (y / 0.012).floor()) % 2.0 == 0.0 { 60.0 } else { 200.0 })
         }),
-    };
-    let (left, right) = Scene { planes: vec![stripes], background: 0.0 }.render_pair(&eyes, 1.0, 5);
+    );
+    let (left, right) =
+        Scene { planes: vec![stripes], background: 0.0, ..Scene::default() }.render_pair(&eyes, 1.0, 5);
     let locator = Locator::new(&StereoCalibration::bare(eyes)).expect("has a baseline");
     let results = locator.locate(&left, &right, &pixels(20));
     let ambiguous = results.iter().filter(|r| matches!(r, Err(NotLocated::Ambiguous))).count();
@@ -121,13 +122,10 @@ fn corners_of_a_board_are_told_apart() {
     let left_from_board = Isometry3::new(Vector3::new(-0.1, -0.06, 0.3), Vector3::new(0.2, -0.3, 0.1));
     let scene = Scene {
         planes: vec![
-            Plane { left_from_plane: left_from_board, texture: chessboard_texture(&board) },
-            Plane {
-                left_from_plane: Isometry3::translation(0.0, 0.0, 1.2),
-                texture: granite_texture(0.05, 8),
-            },
+            Plane::new(left_from_board, chessboard_texture(&board)),
+            Plane::new(Isometry3::translation(0.0, 0.0, 1.2), granite_texture(0.05, 8)),
         ],
-        background: 0.0,
+        ..Scene::default()
     };
     let (left, right) = scene.render_pair(&eyes, 1.5, 4);
     let locator = Locator::new(&StereoCalibration::bare(eyes)).expect("has a baseline");
