@@ -60,8 +60,18 @@ pub struct Scene {
     pub background: f64,
 }
 
-/// Sub-samples per pixel, each way.
-const SUBSAMPLES: u32 = 2;
+/// Places within a pixel that are averaged: one in each eighth of the rows and of the columns, so
+/// that an edge along either crosses them one by one.
+const SUBSAMPLES: [[f64; 2]; 8] = [
+    [-0.4375, -0.0625],
+    [-0.3125, 0.3125],
+    [-0.1875, -0.3125],
+    [-0.0625, 0.1875],
+    [0.0625, -0.4375],
+    [0.1875, 0.4375],
+    [0.3125, -0.1875],
+    [0.4375, 0.0625],
+];
 /// Bright and dark print, gray levels: paper and ink under lamps are neither 255 nor 0.
 const PAPER: f64 = 215.0;
 const INK: f64 = 35.0;
@@ -143,17 +153,14 @@ impl Scene {
 impl View<'_> {
     fn pixel(&self, u: f64, v: f64) -> [f64; 3] {
         let mut sum = Vector3::zeros();
-        for j in 0..SUBSAMPLES {
-            for i in 0..SUBSAMPLES {
-                let offset = |k: u32| (f64::from(k) + 0.5) / f64::from(SUBSAMPLES) - 0.5;
-                if let Ok(ray) = self.camera.unproject(Pixel::new(u + offset(i), v + offset(j)))
-                    && ray.z > LENS_EDGE_RAD.cos()
-                {
-                    sum += self.along(&ray);
-                }
+        for [du, dv] in SUBSAMPLES {
+            if let Ok(ray) = self.camera.unproject(Pixel::new(u + du, v + dv))
+                && ray.z > LENS_EDGE_RAD.cos()
+            {
+                sum += self.along(&ray);
             }
         }
-        (sum / f64::from(SUBSAMPLES * SUBSAMPLES)).into()
+        (sum / SUBSAMPLES.len() as f64).into()
     }
 
     /// Color of whatever a ray meets first.
