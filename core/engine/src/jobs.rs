@@ -2,7 +2,7 @@
 
 use std::panic::AssertUnwindSafe;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::Receiver;
@@ -169,6 +169,19 @@ impl<T> JobHandle<T> {
     /// Time since it started.
     pub fn elapsed(&self, now: Instant) -> Duration {
         now.saturating_duration_since(self.started)
+    }
+}
+
+/// Does parallel work on workers that only jobs use.
+pub fn on_job_workers<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    static WORKERS: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
+    let workers = WORKERS.get_or_init(|| {
+        let named = rayon::ThreadPoolBuilder::new().thread_name(|i| format!("job worker {i}"));
+        named.build().map_err(|error| log::warn!("jobs share the workers of the live view: {error}")).ok()
+    });
+    match workers {
+        Some(workers) => workers.install(work),
+        None => work(),
     }
 }
 

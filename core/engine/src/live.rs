@@ -6,7 +6,7 @@ use std::time::Instant;
 use plumbline_model::aim::DEFAULT_SIZE_PX;
 use plumbline_model::camera::ModelKind;
 use plumbline_model::workspace::robot_from_left;
-use plumbline_model::{AimError, AimedPair, StereoCalibration, StereoFrame, Workspace};
+use plumbline_model::{AimError, AimedPair, StereoCalibration, StereoCameras, StereoFrame, Workspace};
 
 use crate::command::{AimChoice, HeadPose, LiveCommand, ProbePoint, Products};
 use crate::context::Context;
@@ -298,7 +298,7 @@ impl LiveState {
             None => Err(NO_CALIBRATION.to_owned()),
             Some(calibration) => {
                 let workspace = self.workspace();
-                aimed(self.aim, calibration, &workspace)
+                aimed(self.aim, &calibration.cameras, &workspace)
                     .map(|pair| {
                         Arc::new(LiveSetup {
                             generation: self.generation,
@@ -319,14 +319,20 @@ impl LiveState {
     }
 }
 
-fn aimed(
+/// The virtual pair for a choice.
+pub(crate) fn aimed(
     aim: AimChoice,
-    calibration: &StereoCalibration,
+    cameras: &StereoCameras,
     workspace: &Workspace,
 ) -> Result<AimedPair, AimError> {
-    let cameras = &calibration.cameras;
     match aim {
-        AimChoice::Table => AimedPair::suited(cameras, workspace),
+        AimChoice::Table => match AimedPair::suited(cameras, workspace) {
+            // A finer lens than NICO's gets a larger view.
+            Err(AimError::Coarse { needed_width_px, needed_height_px, .. }) => {
+                AimedPair::at_workspace(cameras, workspace, (needed_width_px, needed_height_px))
+            }
+            aimed => aimed,
+        },
         AimChoice::Manual { pitch_rad, horizontal_field_of_view_rad } => {
             let size_px = match cameras.left.model.kind() {
                 ModelKind::Fisheye => DEFAULT_SIZE_PX,

@@ -11,9 +11,11 @@ mod disparity;
 mod error;
 mod locate;
 mod pairs;
+mod sample;
 
 pub use calibrate::{CalibrateArgs, CalibrateReport, LeftOutCorner, PairErrors, Rejected, calibrate_stereo};
 pub use check::{CheckArgs, CheckReport, check};
 pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};
 pub use error::OfflineError;
 pub use locate::{LocateArgs, LocateReport, LocatedPoint, locate};
+pub use sample::{SampleArgs, SampleReport, write_sample};

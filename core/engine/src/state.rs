@@ -29,6 +29,8 @@ pub struct State {
     jobs: JobList,
     notices: Notices,
     actions: Vec<Action>,
+    /// Which source, counted, the newest pair is of.
+    shown_of: u64,
     revision: u64,
 }
 
@@ -38,12 +40,13 @@ impl State {
         let live = LiveState::default();
         let store = Store::new(data_dir.join("calibrations"));
         let mut state = Self {
-            eyes: EyesState::new(store.clone(), live.workspace()),
+            eyes: EyesState::new(store.clone(), data_dir.join("sessions"), live.workspace()),
             live,
             source: SourceState::default(),
             jobs: JobList::default(),
             notices: Notices::default(),
             actions: Vec::new(),
+            shown_of: 0,
             revision: 0,
         };
         let workspace = state.live.workspace();
@@ -89,14 +92,20 @@ impl State {
     }
 
     /// A pair has come from the source.
-    pub fn frame(&mut self, frame: StereoFrame, now: Instant) {
+    ///
+    /// `opened` counts the sources opened; a pair of an earlier source comes too late.
+    pub fn frame(&mut self, opened: u64, frame: StereoFrame, now: Instant) {
+        if opened < self.source.view().opened {
+            return;
+        }
+        self.shown_of = opened;
         self.eyes.set_image_size(frame.left.dimensions());
         self.live.frame(frame, now);
     }
 
     /// The source says how it is doing.
     pub fn source_changed(&mut self, view: SourceView) {
-        if view.spec != self.source.view().spec {
+        if view.opened != self.source.view().opened && view.opened != self.shown_of {
             self.live.clear();
         }
         self.source.update(view);

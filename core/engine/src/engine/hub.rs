@@ -16,7 +16,7 @@ use crate::bell::Bell;
 use crate::command::{Command, JobId, ProbePoint, SourceCommand};
 use crate::context::Action;
 use crate::eyes::Look;
-use crate::jobs::{JobHandle, panic_message};
+use crate::jobs::{JobHandle, on_job_workers, panic_message};
 use crate::journal::{Entry, Journal};
 use crate::live::Skipped;
 use crate::notice::{Notice, NoticeLevel};
@@ -80,8 +80,8 @@ struct Hub<'a> {
 /// The threads of the live side.
 struct Pipeline {
     source: SourceThread,
-    frames: Taker<StereoFrame>,
-    frames_in: Putter<StereoFrame>,
+    frames: Taker<(u64, StereoFrame)>,
+    frames_in: Putter<(u64, StereoFrame)>,
     views: Taker<SourceView>,
     notes: Receiver<Note>,
     rectify: StageThread<RectifyInput, RectifyOutput>,
@@ -214,8 +214,15 @@ impl<'a> Hub<'a> {
                 Action::Start(id, work) => {
                     let bell = self.bell.clone();
                     let title = work.title();
-                    let job =
-                        JobHandle::start(id, title, move || bell.ring(), move |context| work.run(context));
+                    let job = JobHandle::start(
+                        id,
+                        title,
+                        move || bell.ring(),
+                        move |context| {
+                            // Its own workers: the live stages must not wait behind a search of all pairs.
+                            on_job_workers(move || work.run(context))
+                        },
+                    );
                     self.jobs.insert(id, job);
                 }
                 Action::Cancel(id) => {
@@ -310,8 +317,8 @@ impl Pipeline {
             state.source_note(note);
             any = true;
         }
-        if let Some(frame) = self.frames.try_take() {
-            state.frame(frame, now);
+        if let Some((opened, frame)) = self.frames.try_take() {
+            state.frame(opened, frame, now);
             any = true;
         }
         if let Some(output) = self.rectify.take() {

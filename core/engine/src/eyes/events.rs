@@ -9,12 +9,13 @@ use plumbline_model::{Chessboard, Corners, StereoFrame};
 use super::assess::{Assessment, STATED_AT_M};
 use super::collection::Collection;
 use super::state::EyesState;
-use super::work::{Captured, Collected, EyesResult, Opened, Restored, Solved};
+use super::work::{Captured, Collected, EyesResult, EyesWork, Keep, Opened, Restored, Solved};
 use super::{auto_capture, coverage};
 use crate::command::JobId;
 use crate::context::Context;
 use crate::notice::NoticeLevel;
 use crate::view::{BoardSeen, CaptureHint, CollectedPair, Origin, Proposal};
+use crate::work::Work;
 
 /// That a pair was captured is shown for this long.
 const SHOW_CAPTURED: Duration = Duration::from_millis(1200);
@@ -89,10 +90,16 @@ impl EyesState {
         let name = look.frame.name.clone().unwrap_or_else(|| self.collection.next_name());
         let sizes_px = [look.frame.left.dimensions(), look.frame.right.dimensions()];
         self.captured_at = Some(look.frame.stamp.captured_at);
-        self.add(pair_of(&look, name), sizes_px, context);
+        self.add(pair_of(&look, name), &look.frame, sizes_px, context);
     }
 
-    fn add(&mut self, pair: CollectedPair, sizes_px: [(u32, u32); 2], context: &mut Context<'_>) {
+    fn add(
+        &mut self,
+        pair: CollectedPair,
+        frame: &StereoFrame,
+        sizes_px: [(u32, u32); 2],
+        context: &mut Context<'_>,
+    ) {
         let name = pair.name.clone();
         let place = self.place(&pair, sizes_px[0]);
         match self.collection.add(CollectedPair { place, ..pair }, sizes_px) {
@@ -100,6 +107,7 @@ impl EyesState {
                 self.board_chosen = true;
                 self.board_seen = None;
                 self.hint = Some(CaptureHint::Captured { pair: name.clone() });
+                self.keep(&name, frame, context);
                 let count = self.collection.pairs().len();
                 context.notices.add(NoticeLevel::Success, format!("Captured {name}: {count} pairs."));
             }
@@ -112,12 +120,27 @@ impl EyesState {
         self.refresh();
     }
 
+    /// Pairs of cameras exist nowhere else, so they are written down; recordings are on disk already.
+    fn keep(&mut self, name: &str, frame: &StereoFrame, context: &mut Context<'_>) {
+        if frame.name.is_some() {
+            return;
+        }
+        let (folder, started) = self.session.get_or_insert_with(|| {
+            let started = jiff::Timestamp::now();
+            (self.sessions.join(format!("{}_eyes", started.strftime("%Y-%m-%dT%H-%M-%S"))), started)
+        });
+        let (folder, started) = (folder.clone(), *started);
+        let work = Keep { frame: frame.clone(), name: name.to_owned(), folder, started };
+        context.start(Work::Eyes(EyesWork::Keep(work)));
+    }
+
     /// Work has ended with a result.
     pub fn work_done(&mut self, id: JobId, result: EyesResult, context: &mut Context<'_>) {
         self.busy.forget(id);
         match result {
             EyesResult::Captured(captured) => self.captured(captured, context),
             EyesResult::Recognized(seen) => self.board_seen = Some(seen),
+            EyesResult::Kept(_) => {}
             EyesResult::Collected(collected) => self.collected(collected, context),
             EyesResult::Solved(solved) => self.solved(*solved),
             EyesResult::Opened(opened) => self.opened(*opened),
@@ -145,8 +168,8 @@ impl EyesState {
 
     fn captured(&mut self, captured: Captured, context: &mut Context<'_>) {
         if captured.board == *self.board() {
-            self.captured_at = Some(captured.captured_at);
-            self.add(captured.pair, captured.sizes_px, context);
+            self.captured_at = Some(captured.frame.stamp.captured_at);
+            self.add(captured.pair, &captured.frame, captured.sizes_px, context);
         } else {
             context.refuse("The board was changed while the pair was searched. Capture it again.");
         }

@@ -1,5 +1,6 @@
 //! What is known while the eyes are being calibrated, and what the window shows of it.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -20,6 +21,10 @@ use crate::view::{
 #[derive(Clone, Debug)]
 pub struct EyesState {
     pub(super) store: Store,
+    /// Where captured pairs are kept, one folder per session.
+    pub(super) sessions: PathBuf,
+    /// The present session and when it began.
+    pub(super) session: Option<(PathBuf, jiff::Timestamp)>,
     pub(super) workspace: Workspace,
     pub(super) collection: Collection,
     pub(super) board_chosen: bool,
@@ -82,11 +87,13 @@ struct Derived {
 }
 
 impl EyesState {
-    /// Nothing collected, nothing in use.
-    pub fn new(store: Store, workspace: Workspace) -> Self {
+    /// Nothing collected, nothing in use. Captured pairs are kept in a folder of `sessions`.
+    pub fn new(store: Store, sessions: PathBuf, workspace: Workspace) -> Self {
         let board = default_board();
         Self {
             store,
+            sessions,
+            session: None,
             workspace,
             collection: Collection::new(board),
             board_chosen: false,

@@ -3,6 +3,7 @@
 mod accept;
 mod capture;
 mod export;
+mod keep;
 mod open;
 mod recording;
 mod restore;
@@ -15,6 +16,7 @@ use crate::jobs::JobError;
 pub use accept::{Accept, Accepted};
 pub use capture::{Capture, Captured, Recognize, board_seen, find_in_both, glimpse_in_both, gray};
 pub use export::Export;
+pub use keep::Keep;
 pub use open::{Open, OpenWhat, Opened};
 pub use recording::{CollectRecording, Collected, collect_folder};
 pub use restore::{Restore, Restored};
@@ -29,6 +31,8 @@ pub enum EyesWork {
     Capture(Capture),
     /// Say which board the newest pair shows.
     Recognize(Recognize),
+    /// Keep a captured pair on disk.
+    Keep(Keep),
     /// Find the board in all pairs of a recording.
     CollectRecording(CollectRecording),
     /// Solve the collected pairs.
@@ -50,6 +54,8 @@ pub enum EyesResult {
     Captured(Captured),
     /// The board that is seen.
     Recognized(BoardSeen),
+    /// A captured pair was written to this session.
+    Kept(std::path::PathBuf),
     /// Pairs of a recording.
     Collected(Collected),
     /// A calibration solved from pairs.
@@ -70,6 +76,7 @@ impl EyesWork {
         match self {
             Self::Capture(_) => "Capture pair".to_owned(),
             Self::Recognize(_) => "Look which board is seen".to_owned(),
+            Self::Keep(_) => "Keep the captured pair".to_owned(),
             Self::CollectRecording(_) => "Collect the pairs of the recording".to_owned(),
             Self::Solve(solve) => format!("Solve {} pairs", solve.pair_count()),
             Self::Open(open) => open.title(),
@@ -81,7 +88,12 @@ impl EyesWork {
 
     /// Whether it is over so soon that it needs no line when it is done.
     pub fn is_quiet(&self) -> bool {
-        matches!(self, Self::Capture(_) | Self::Recognize(_) | Self::Restore(_) | Self::Accept(_))
+        match self {
+            Self::Capture(_) | Self::Recognize(_) | Self::Keep(_) | Self::Restore(_) | Self::Accept(_) => {
+                true
+            }
+            Self::CollectRecording(_) | Self::Solve(_) | Self::Open(_) | Self::Export(_) => false,
+        }
     }
 
     /// Does it.
@@ -89,6 +101,7 @@ impl EyesWork {
         Ok(match self {
             Self::Capture(work) => EyesResult::Captured(work.run()?),
             Self::Recognize(work) => EyesResult::Recognized(work.run()),
+            Self::Keep(work) => EyesResult::Kept(work.run()?),
             Self::CollectRecording(work) => EyesResult::Collected(work.run(context)?),
             Self::Solve(work) => EyesResult::Solved(Box::new(work.run(context)?)),
             Self::Open(work) => EyesResult::Opened(Box::new(work.run(context)?)),
@@ -105,6 +118,7 @@ impl EyesResult {
         match self {
             Self::Captured(captured) => format!("Captured {}.", captured.pair.name),
             Self::Recognized(seen) => seen.text.clone(),
+            Self::Kept(folder) => format!("Captured pairs are kept in {}.", folder.display()),
             Self::Collected(collected) => collected.summary(),
             Self::Solved(solved) => solved.summary(),
             Self::Opened(opened) => format!("Read {}.", opened.what()),

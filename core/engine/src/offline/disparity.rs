@@ -4,7 +4,7 @@ use std::io::BufWriter;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use plumbline_model::{AimedPair, JobContext, Workspace};
+use plumbline_model::{JobContext, Workspace};
 use plumbline_vision::calibration_file;
 use plumbline_vision::disparity::{Matcher, Settings, write_pfm};
 use plumbline_vision::rectify::Rectifier;
@@ -14,6 +14,8 @@ use super::OfflineError;
 use super::error::size_text;
 use super::locate::read_image;
 use super::pairs::check_sizes;
+use crate::command::AimChoice;
+use crate::live::aimed;
 
 /// What to match.
 #[derive(Clone, Debug)]
@@ -81,7 +83,7 @@ pub fn disparity(args: &DisparityArgs, context: &dyn JobContext) -> Result<Dispa
     } else {
         let cameras = calibration_file::load(&args.cameras)?.cameras;
         check_sizes(&cameras, [left.dimensions(), right.dimensions()])?;
-        Some(Rectifier::new(&AimedPair::suited(&cameras, &Workspace::default())?)?)
+        Some(Rectifier::new(&aimed(AimChoice::Table, &cameras, &Workspace::default())?)?)
     };
     context.checkpoint()?;
     context.report(0.2, "matching");

@@ -94,6 +94,7 @@ pub struct Player {
     shown: Option<u64>,
     replay: Replay,
     next_seq: u64,
+    opened: u64,
 }
 
 impl Default for Player {
@@ -115,6 +116,7 @@ impl Player {
             shown: None,
             replay: Replay::default(),
             next_seq: 0,
+            opened: 0,
         }
     }
 
@@ -126,6 +128,7 @@ impl Player {
             Control::Close => {
                 self.source = None;
                 self.shown = None;
+                self.opened += 1;
                 Ok(())
             }
             Control::Retry => {
@@ -182,10 +185,18 @@ impl Player {
         (polled, notes)
     }
 
+    /// Counts sources opened and closed.
+    pub fn opened(&self) -> u64 {
+        self.opened
+    }
+
     /// How the source is doing.
     pub fn view(&mut self) -> SourceView {
         let (playing, ended, shown, looping) = (self.playing, self.ended, self.shown, self.replay.looping);
-        let Some((spec, source)) = &mut self.source else { return SourceView::default() };
+        let opened = self.opened;
+        let Some((spec, source)) = &mut self.source else {
+            return SourceView { opened, ..SourceView::default() };
+        };
         let status = match source.status() {
             Presence::Lost(lost) => {
                 SourceStatus::Lost { reason: lost.reason, since: lost.since, attempts: lost.attempts }
@@ -197,6 +208,7 @@ impl Player {
         let description = source.describe();
         let counters = source.counters();
         SourceView {
+            opened,
             spec: Some(spec.clone()),
             description: description.title,
             status,
@@ -235,6 +247,7 @@ impl Player {
         }
         let source = (self.opener)(&spec, &SourceOptions { replay, ..SourceOptions::default() })?;
         self.source = Some((spec, source));
+        self.opened += 1;
         (self.playing, self.ended, self.show_one) = (true, false, false);
         (self.shown, self.stepping_back_to, self.replay) = (None, None, replay);
         Ok(())

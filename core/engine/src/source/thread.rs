@@ -15,8 +15,8 @@ const WAITING: usize = 64;
 
 /// Where the thread puts what it has.
 pub struct Wires {
-    /// Newest pair.
-    pub frames: Putter<StereoFrame>,
+    /// Newest pair and which source, counted, it is of.
+    pub frames: Putter<(u64, StereoFrame)>,
     /// Newest state.
     pub views: Putter<SourceView>,
     /// Messages for the operator.
@@ -66,7 +66,7 @@ fn run(mut player: Player, controls: &Receiver<Control>, wires: &Wires) {
         let (polled, mut notes) = player.poll();
         let wait = match polled {
             Polled::Frame(frame) => {
-                if !wires.frames.put(frame) {
+                if !wires.frames.put((player.opened(), frame)) {
                     return;
                 }
                 wires.bell.ring();

@@ -14,6 +14,8 @@ use crate::command::{AimChoice, HeadPose, ProbePoint, Products};
 /// Where the images come from and how it is doing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SourceView {
+    /// Counts sources opened and closed; tells pairs of different sources apart.
+    pub opened: u64,
     /// What was opened last.
     pub spec: Option<SourceSpec>,
     /// For people: "30 pairs in nico-chessboard".
@@ -259,6 +261,6 @@ pub struct StageStatistics {
     pub latency: Option<Duration>,
     /// When the newest result came.
     pub newest_at: Option<Instant>,
-    /// Pairs that were skipped because a newer one came first, since the source was opened.
+    /// Pairs that were skipped because a newer one came first, since the program was started.
     pub skipped: u64,
 }

@@ -164,7 +164,7 @@ impl Desk {
         let mut pair = pair.clone();
         pair.stamp = Stamp { seq: self.seq, captured_at: Instant::now() };
         self.seq += 1;
-        self.state.frame(pair, Instant::now());
+        self.state.frame(0, pair, Instant::now());
         self.react();
     }
 

@@ -328,3 +328,44 @@ fn nothing_unwanted_is_computed_and_nothing_old_is_shown() {
     let still = desk.view().live.rectified.as_ref().expect("shown").left.clone();
     assert!(std::sync::Arc::ptr_eq(&shown, &still));
 }
+
+#[test]
+fn pairs_of_cameras_are_kept_on_disk_and_those_of_a_recording_are_not_copied() {
+    let folder = folder();
+    let sessions = folder.path().join("sessions");
+    let mut desk = Desk::new(folder.path());
+    desk.apply(choose_board());
+    desk.show(&board_pairs()[0]);
+    desk.apply(EyesCommand::Capture);
+    assert!(!sessions.exists());
+    for pair in &board_pairs()[1..3] {
+        let mut live = pair.clone();
+        live.name = None;
+        desk.show(&live);
+        desk.apply(EyesCommand::Capture);
+    }
+    let session = std::fs::read_dir(&sessions).expect("made").next().expect("one").expect("readable").path();
+    let kept = plumbline_model::Session::read(&session).expect("a session");
+    let names: Vec<&str> = kept.stereo.pairs.iter().map(|pair| pair.name.as_str()).collect();
+    assert_eq!(names, ["capture 001.png", "capture 002.png"]);
+    assert_eq!(desk.view().eyes.collected.len(), 3);
+}
+
+#[test]
+fn a_pair_of_a_closed_source_comes_too_late() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    let view = |opened| plumbline_engine::view::SourceView { opened, ..Default::default() };
+    let now = std::time::Instant::now;
+    desk.state.source_changed(view(1));
+    desk.state.frame(1, board_pairs()[0].clone(), now());
+    assert!(desk.view().live.raw.is_some());
+    desk.state.source_changed(view(2));
+    assert!(desk.view().live.raw.is_none(), "what was shown belongs to no source any more");
+    desk.state.frame(1, board_pairs()[0].clone(), now());
+    assert!(desk.view().live.raw.is_none());
+    // A pair of the next source may overtake the news of its opening.
+    desk.state.frame(3, board_pairs()[1].clone(), now());
+    desk.state.source_changed(view(3));
+    assert!(desk.view().live.raw.is_some());
+}

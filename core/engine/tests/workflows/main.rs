@@ -5,5 +5,6 @@
 mod common;
 mod eyes;
 mod journal;
+mod measured;
 mod offline;
 mod threads;

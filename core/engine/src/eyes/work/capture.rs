@@ -29,8 +29,8 @@ pub struct Captured {
     pub sizes_px: [(u32, u32); 2],
     /// The board looked for.
     pub board: Chessboard,
-    /// When the pair was captured.
-    pub captured_at: std::time::Instant,
+    /// The images as they came.
+    pub frame: StereoFrame,
 }
 
 impl Capture {
@@ -42,7 +42,7 @@ impl Capture {
             pair,
             sizes_px: [size(&self.frame.left), size(&self.frame.right)],
             board: self.board,
-            captured_at: self.frame.stamp.captured_at,
+            frame: self.frame,
         })
     }
 }
