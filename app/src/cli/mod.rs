@@ -7,6 +7,7 @@ mod disparity;
 mod doctor;
 mod locate;
 mod output;
+mod sample;
 mod window_args;
 
 use std::process::ExitCode;
@@ -44,6 +45,8 @@ enum Verb {
     Disparity(WithJson<disparity::Disparity>),
     /// Says what works on this machine: libraries, graphics, cameras, serial ports, folders.
     Doctor(WithJson<doctor::Doctor>),
+    /// Writes pairs of a made-up lab, to try the program without a camera.
+    Sample(WithJson<sample::Sample>),
     /// Measures accuracy and speed on the reference data, beside published figures.
     Bench(WithJson<bench::Bench>),
 }
@@ -91,6 +94,7 @@ pub fn run() -> ExitCode {
                 Verb::Locate(verb) => verb.run(locate::run),
                 Verb::Disparity(verb) => verb.run(disparity::run),
                 Verb::Doctor(verb) => verb.run(doctor::run),
+                Verb::Sample(verb) => verb.run(sample::run),
                 Verb::Bench(verb) => verb.run(bench::run),
             }
         }
