@@ -34,7 +34,8 @@ pub struct Context<'a> {
 
 impl Context<'_> {
     /// Starts work beside the window.
-    pub fn start(&mut self, work: Work) -> JobId {
+    pub fn start(&mut self, work: impl Into<Work>) -> JobId {
+        let work = work.into();
         let id = self.jobs.add(work.title(), work.is_quiet());
         self.actions.push(Action::Start(id, work));
         id

@@ -51,7 +51,7 @@ impl State {
         };
         let workspace = state.live.workspace();
         state.with_eyes(|_, context| {
-            context.start(Work::Eyes(EyesWork::Restore(Restore { store, workspace })));
+            context.start(EyesWork::Restore(Restore { store, workspace }));
         });
         state
     }
@@ -198,7 +198,7 @@ impl State {
     fn work_done(&mut self, id: JobId, result: WorkResult) {
         match result {
             WorkResult::Cameras(cameras) => self.source.set_cameras(cameras),
-            WorkResult::Eyes(result) => self.with_eyes(|eyes, context| eyes.work_done(id, result, context)),
+            WorkResult::Eyes(result) => self.with_eyes(|eyes, context| eyes.work_done(id, *result, context)),
         }
     }
 

@@ -13,7 +13,13 @@ pub enum Work {
     /// Looks which cameras this machine has.
     ListCameras,
     /// Part of calibrating the eyes.
-    Eyes(EyesWork),
+    Eyes(Box<EyesWork>),
+}
+
+impl From<EyesWork> for Work {
+    fn from(work: EyesWork) -> Self {
+        Self::Eyes(Box::new(work))
+    }
 }
 
 /// What came out.
@@ -22,7 +28,7 @@ pub enum WorkResult {
     /// Cameras of this machine.
     Cameras(Vec<CameraDevice>),
     /// Part of calibrating the eyes.
-    Eyes(EyesResult),
+    Eyes(Box<EyesResult>),
 }
 
 impl Work {
@@ -46,7 +52,7 @@ impl Work {
     pub fn run(self, context: &dyn JobContext) -> Result<WorkResult, JobError> {
         match self {
             Self::ListCameras => Ok(WorkResult::Cameras(camera_devices())),
-            Self::Eyes(work) => work.run(context).map(WorkResult::Eyes),
+            Self::Eyes(work) => work.run(context).map(Box::new).map(WorkResult::Eyes),
         }
     }
 }

@@ -44,7 +44,9 @@ const CLOSING: Duration = Duration::from_secs(2);
 
 /// Runs until the window drops its end of the commands.
 pub fn run(settings: EngineSettings, commands: &Receiver<Command>, shared: &Shared) {
-    let result = std::panic::catch_unwind(AssertUnwindSafe(|| Hub::start(settings, shared).run(commands)));
+    let result = std::panic::catch_unwind(AssertUnwindSafe(|| {
+        Hub::start(settings, shared).map(|hub| hub.run(commands))
+    }));
     let message = match result {
         Ok(Ok(())) => return,
         Ok(Err(error)) => format!(
@@ -70,7 +72,7 @@ struct Hub<'a> {
     journal: Option<Journal>,
     started: Instant,
     jobs: BTreeMap<JobId, JobHandle<WorkResult>>,
-    pipeline: std::io::Result<Pipeline>,
+    pipeline: Pipeline,
     bell: Bell,
     rung: Receiver<()>,
     published: Instant,
@@ -99,7 +101,7 @@ struct Fed {
 }
 
 impl<'a> Hub<'a> {
-    fn start(settings: EngineSettings, shared: &'a Shared) -> Self {
+    fn start(settings: EngineSettings, shared: &'a Shared) -> std::io::Result<Self> {
         let (bell, rung) = Bell::new();
         let (data_dir, problem) = data_dir(settings.data_dir);
         let mut state = State::new(&data_dir);
@@ -119,7 +121,7 @@ impl<'a> Hub<'a> {
             journal,
             started: Instant::now(),
             jobs: BTreeMap::new(),
-            pipeline: Pipeline::start(&bell),
+            pipeline: Pipeline::start(&bell)?,
             bell,
             rung,
             published: Instant::now(),
@@ -128,13 +130,10 @@ impl<'a> Hub<'a> {
         if let Some(spec) = settings.source {
             hub.apply(SourceCommand::Open(spec).into());
         }
-        hub
+        Ok(hub)
     }
 
-    fn run(mut self, commands: &Receiver<Command>) -> std::io::Result<()> {
-        if let Err(error) = self.pipeline {
-            return Err(error);
-        }
+    fn run(mut self, commands: &Receiver<Command>) {
         loop {
             self.act();
             self.feed();
@@ -154,7 +153,6 @@ impl<'a> Hub<'a> {
             self.collect();
         }
         self.close();
-        Ok(())
     }
 
     fn apply(&mut self, command: Command) {
@@ -173,30 +171,19 @@ impl<'a> Hub<'a> {
     /// Takes in what threads and jobs have brought.
     fn collect(&mut self) {
         let now = Instant::now();
-        if let Ok(pipeline) = &self.pipeline {
-            self.changed |= pipeline.collect(&mut self.state, now);
-        }
-        let ended: Vec<JobId> = self
-            .jobs
-            .iter()
-            .filter_map(|(id, job)| {
-                self.changed = true;
-                let outcome = job.take_outcome();
-                match outcome {
-                    Some(outcome) => {
-                        self.state.work_ended(*id, outcome, job.elapsed(now));
-                        Some(*id)
-                    }
-                    None => {
-                        self.state.work_progress(job.view(now));
-                        None
-                    }
-                }
-            })
-            .collect();
-        for id in ended {
-            self.jobs.remove(&id);
-        }
+        self.changed |= self.pipeline.collect(&mut self.state, now);
+        self.changed |= !self.jobs.is_empty();
+        let Self { jobs, state, .. } = self;
+        jobs.retain(|id, job| match job.take_outcome() {
+            Some(outcome) => {
+                state.work_ended(*id, outcome, job.elapsed(now));
+                false
+            }
+            None => {
+                state.work_progress(job.view(now));
+                true
+            }
+        });
     }
 
     /// Does what the state asks of the outer world.
@@ -205,8 +192,7 @@ impl<'a> Hub<'a> {
             self.changed = true;
             match action {
                 Action::Source(control) => {
-                    let taken = self.pipeline.as_ref().is_ok_and(|pipeline| pipeline.source.control(control));
-                    if !taken {
+                    if !self.pipeline.source.control(control) {
                         let text = "The source does not answer yet; wait until it is open.";
                         self.state.notify(NoticeLevel::Warning, text);
                     }
@@ -235,9 +221,7 @@ impl<'a> Hub<'a> {
     }
 
     fn feed(&mut self) {
-        if let Ok(pipeline) = &mut self.pipeline {
-            pipeline.feed(&self.state);
-        }
+        self.pipeline.feed(&self.state);
     }
 
     fn publish(&mut self) {
@@ -245,7 +229,7 @@ impl<'a> Hub<'a> {
         if !self.changed || now.duration_since(self.published) < PUBLISH_EVERY {
             return;
         }
-        let skipped = self.pipeline.as_ref().map(Pipeline::skipped).unwrap_or_default();
+        let skipped = self.pipeline.skipped();
         let lost = self.shared.lost_commands.load(Ordering::Relaxed);
         self.shared.publish(self.state.view(skipped, lost, now));
         (self.published, self.changed) = (now, false);

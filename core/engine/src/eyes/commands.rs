@@ -12,7 +12,6 @@ use crate::command::{ExportFormat, Exported, EyesCommand};
 use crate::context::Context;
 use crate::notice::NoticeLevel;
 use crate::view::CollectedPair;
-use crate::work::Work;
 
 impl EyesState {
     /// Applies a command.
@@ -74,7 +73,7 @@ impl EyesState {
         match context.newest {
             Some(frame) => {
                 let work = Recognize { frame: frame.clone(), board: *self.board() };
-                context.start(Work::Eyes(EyesWork::Recognize(work)));
+                context.start(EyesWork::Recognize(work));
             }
             None => context.refuse(NO_IMAGE),
         }
@@ -90,7 +89,7 @@ impl EyesState {
         }
         let name = frame.name.clone().unwrap_or_else(|| self.collection.next_name());
         let work = Capture { frame: frame.clone(), name, board: *self.board() };
-        self.busy.capturing = Some(context.start(Work::Eyes(EyesWork::Capture(work))));
+        self.busy.capturing = Some(context.start(EyesWork::Capture(work)));
     }
 
     fn collect_recording(&mut self, context: &mut Context<'_>) {
@@ -111,7 +110,7 @@ impl EyesState {
         let known: BTreeSet<String> = self.collection.pairs().iter().map(|pair| pair.name.clone()).collect();
         let rough_cameras = self.rough_cameras(self.size_px().unwrap_or((640, 480)));
         let work = CollectRecording { source, board: *self.board(), known, rough_cameras };
-        self.busy.collecting = Some(context.start(Work::Eyes(EyesWork::CollectRecording(work))));
+        self.busy.collecting = Some(context.start(EyesWork::CollectRecording(work)));
     }
 
     fn edit(
@@ -141,7 +140,7 @@ impl EyesState {
             workspace: self.workspace,
             revision: self.collection.revision(),
         };
-        self.busy.solving = Some(context.start(Work::Eyes(EyesWork::Solve(Box::new(work)))));
+        self.busy.solving = Some(context.start(EyesWork::Solve(work)));
     }
 
     fn accept(&mut self, context: &mut Context<'_>) {
@@ -159,7 +158,7 @@ impl EyesState {
             depth_per_px_m: proposal.depth_per_px_m,
             store: self.store.clone(),
         };
-        self.busy.accepting = Some(context.start(Work::Eyes(EyesWork::Accept(Box::new(work)))));
+        self.busy.accepting = Some(context.start(EyesWork::Accept(work)));
     }
 
     fn open(&mut self, what: OpenWhat, context: &mut Context<'_>) {
@@ -168,7 +167,7 @@ impl EyesState {
         }
         let (store, in_use) = (self.store.clone(), self.in_use().cloned());
         let work = Open { what, store, in_use, workspace: self.workspace };
-        self.busy.opening = Some(context.start(Work::Eyes(EyesWork::Open(work))));
+        self.busy.opening = Some(context.start(EyesWork::Open(work)));
     }
 
     /// Takes the pairs of the proposal, or else of the calibration in use, to solve them again.
@@ -216,7 +215,7 @@ impl EyesState {
         match calibration {
             Some(calibration) => {
                 let work = Export { calibration, format, file };
-                context.start(Work::Eyes(EyesWork::Export(Box::new(work))));
+                context.start(EyesWork::Export(work));
             }
             None => context.refuse("There is no calibration to write. Solve and accept one first."),
         }

@@ -15,7 +15,6 @@ use crate::command::JobId;
 use crate::context::Context;
 use crate::notice::NoticeLevel;
 use crate::view::{BoardSeen, CaptureHint, CollectedPair, Origin, Proposal};
-use crate::work::Work;
 
 /// That a pair was captured is shown for this long.
 const SHOW_CAPTURED: Duration = Duration::from_millis(1200);
@@ -131,7 +130,7 @@ impl EyesState {
         });
         let (folder, started) = (folder.clone(), *started);
         let work = Keep { frame: frame.clone(), name: name.to_owned(), folder, started };
-        context.start(Work::Eyes(EyesWork::Keep(work)));
+        context.start(EyesWork::Keep(work));
     }
 
     /// Work has ended with a result.
@@ -142,8 +141,8 @@ impl EyesState {
             EyesResult::Recognized(seen) => self.board_seen = Some(seen),
             EyesResult::Kept(_) => {}
             EyesResult::Collected(collected) => self.collected(collected, context),
-            EyesResult::Solved(solved) => self.solved(*solved),
-            EyesResult::Opened(opened) => self.opened(*opened),
+            EyesResult::Solved(solved) => self.solved(solved),
+            EyesResult::Opened(opened) => self.opened(opened),
             EyesResult::Accepted(accepted) => {
                 let same = |proposal: &Arc<Proposal>| {
                     Arc::ptr_eq(&proposal.calibration, &accepted.in_use.calibration)
@@ -156,7 +155,7 @@ impl EyesState {
                 self.earlier = accepted.earlier.into();
             }
             EyesResult::Exported(_) => {}
-            EyesResult::Restored(restored) => self.restored(*restored, context),
+            EyesResult::Restored(restored) => self.restored(restored, context),
         }
         self.refresh();
     }

@@ -76,11 +76,19 @@ impl Busy {
     }
 }
 
+/// What everything derived depends on.
+#[derive(Clone, Debug, PartialEq)]
+struct DerivedFrom {
+    revision: u64,
+    size_px: Option<(u32, u32)>,
+    in_use: Option<String>,
+}
+
 /// Computed from the rest; recomputed only when that changes.
 #[derive(Clone, Debug)]
 struct Derived {
     /// Of what this was computed.
-    of: Option<(u64, Option<(u32, u32)>, Option<String>)>,
+    of: Option<DerivedFrom>,
     coverage: Arc<Coverage>,
     ghost: Option<Arc<GhostBoard>>,
     collected: Arc<[Arc<CollectedPair>]>,
@@ -169,7 +177,7 @@ impl EyesState {
         self.mark_stale();
         let size_px = self.size_px();
         let in_use = self.in_use.as_ref().map(|in_use| in_use.id.clone());
-        let of = (self.collection.revision(), size_px, in_use);
+        let of = DerivedFrom { revision: self.collection.revision(), size_px, in_use };
         if self.derived.of.as_ref() == Some(&of) {
             return;
         }

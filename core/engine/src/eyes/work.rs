@@ -36,13 +36,13 @@ pub enum EyesWork {
     /// Find the board in all pairs of a recording.
     CollectRecording(CollectRecording),
     /// Solve the collected pairs.
-    Solve(Box<Solve>),
+    Solve(Solve),
     /// Read a calibration as a proposal.
     Open(Open),
     /// Keep a calibration and make it the one in use.
-    Accept(Box<Accept>),
+    Accept(Accept),
     /// Write a calibration to a file.
-    Export(Box<Export>),
+    Export(Export),
     /// Read what was accepted before.
     Restore(Restore),
 }
@@ -59,15 +59,15 @@ pub enum EyesResult {
     /// Pairs of a recording.
     Collected(Collected),
     /// A calibration solved from pairs.
-    Solved(Box<Solved>),
+    Solved(Solved),
     /// A calibration read from a file.
-    Opened(Box<Opened>),
+    Opened(Opened),
     /// A calibration that is kept.
-    Accepted(Box<Accepted>),
+    Accepted(Accepted),
     /// Files that were written.
     Exported(Vec<std::path::PathBuf>),
     /// What was accepted before.
-    Restored(Box<Restored>),
+    Restored(Restored),
 }
 
 impl EyesWork {
@@ -103,11 +103,11 @@ impl EyesWork {
             Self::Recognize(work) => EyesResult::Recognized(work.run()),
             Self::Keep(work) => EyesResult::Kept(work.run()?),
             Self::CollectRecording(work) => EyesResult::Collected(work.run(context)?),
-            Self::Solve(work) => EyesResult::Solved(Box::new(work.run(context)?)),
-            Self::Open(work) => EyesResult::Opened(Box::new(work.run(context)?)),
-            Self::Accept(work) => EyesResult::Accepted(Box::new(work.run()?)),
+            Self::Solve(work) => EyesResult::Solved(work.run(context)?),
+            Self::Open(work) => EyesResult::Opened(work.run(context)?),
+            Self::Accept(work) => EyesResult::Accepted(work.run()?),
             Self::Export(work) => EyesResult::Exported(work.run()?),
-            Self::Restore(work) => EyesResult::Restored(Box::new(work.run(context)?)),
+            Self::Restore(work) => EyesResult::Restored(work.run(context)?),
         })
     }
 }

@@ -1,6 +1,6 @@
 //! The engine as its users meet it: whole workflows, with and without its threads, on synthetic
 //! images.
-#![allow(missing_docs)]
+#![allow(missing_docs, clippy::print_stdout)]
 
 mod common;
 mod eyes;

@@ -100,7 +100,7 @@ pub fn collect_folder(
     context: &dyn JobContext,
 ) -> Result<Collected, Cancelled> {
     let done = AtomicUsize::new(0);
-    let found: Vec<Result<(CollectedPair, [(u32, u32); 2]), (String, String)>> = wanted
+    let found: Vec<Found> = wanted
         .par_iter()
         .map(|files| {
             context.checkpoint()?;
@@ -125,6 +125,7 @@ pub fn collect_folder(
     Ok(collected)
 }
 
+/// The pair and the sizes of its images, or the pair's name and a reason.
 type Found = Result<(CollectedPair, [(u32, u32); 2]), (String, String)>;
 
 fn find_in_files(folder: &PairFolder, files: &PairFiles, board: &Chessboard) -> Found {
