@@ -18,6 +18,7 @@ mod map;
 mod paths;
 mod pfm;
 mod refine;
+mod search;
 mod select;
 mod smooth;
 
@@ -26,9 +27,12 @@ use image::GrayImage;
 use crate::rectify::Pair;
 pub use map::{DisparityMap, Origin};
 pub use pfm::{PfmError, read_pfm, write_pfm};
+use search::{Mirrored, Search, Views};
 
 /// Largest disparity that can be searched for, pixels.
 pub const MAX_DISPARITY_PX: u32 = 1023;
+/// Most candidates (pixels times disparities) compared at once; twice as many bytes are needed.
+const MOST_CANDIDATES: u64 = 1 << 31;
 /// Patches with fewer pixels than this are not trusted.
 const SPECK_PIXELS: u32 = 60;
 /// Neighbors in a patch differ by at most this much, pixels.
@@ -37,9 +41,10 @@ const SPECK_STEP_PX: f32 = 1.0;
 /// How much time a disparity map may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Quality {
-    /// For a live view: one refinement.
+    /// For a live view: the right view's choice is read from the left view's matching costs.
     Live,
-    /// For results: everything.
+    /// For results: the right view is matched in its own right. Takes twice the time and finds
+    /// a quarter more of the wrong matches.
     #[default]
     Full,
 }
@@ -94,6 +99,18 @@ pub enum DisparityError {
         /// Height of the left view.
         left_height_px: u32,
     },
+    /// More memory than a laptop has to spare.
+    #[error(
+        "comparing views of {width_px}x{height_px} px over {max_disparity_px} px of disparity needs more than 4 GB: make the views smaller or the range shorter"
+    )]
+    Memory {
+        /// Width of the views.
+        width_px: u32,
+        /// Height of the views.
+        height_px: u32,
+        /// Range asked for.
+        max_disparity_px: u32,
+    },
     /// No pixels, or fewer than a window needs.
     #[error("a view of {width_px}x{height_px} px is too small to be matched: it needs at least 16x16")]
     Small {
@@ -107,11 +124,8 @@ pub enum DisparityError {
 /// Finds disparities; keeps its working memory between calls.
 pub struct Matcher {
     settings: Settings,
-    left: census::Census,
-    right: census::Census,
-    costs: cost::CostVolume,
-    partial: Vec<u8>,
-    raw: Vec<f32>,
+    search: Search,
+    found: Vec<f32>,
     refiner: refine::Refiner,
 }
 
@@ -127,23 +141,6 @@ impl Settings {
     }
 }
 
-impl Block {
-    fn window(self) -> census::Window {
-        let (half_width, half_height) = match self {
-            Self::Small => (2, 2),
-            Self::Medium => (3, 2),
-            Self::Large => (4, 3),
-        };
-        census::Window { half_width, half_height }
-    }
-
-    /// What changes of disparity cost, in proportion to the number of bits compared.
-    fn penalties(self) -> paths::Penalties {
-        let bits = self.window().bits() as f32;
-        paths::Penalties { small: (bits * 8.0 / 62.0) as u8, large: (bits * 60.0 / 62.0) as u8 }
-    }
-}
-
 impl Matcher {
     /// A matcher with these settings.
     ///
@@ -153,15 +150,8 @@ impl Matcher {
         if !(1..=MAX_DISPARITY_PX).contains(&settings.max_disparity_px) {
             return Err(DisparityError::Range { asked_px: settings.max_disparity_px });
         }
-        Ok(Self {
-            settings,
-            left: census::Census::default(),
-            right: census::Census::default(),
-            costs: cost::CostVolume::default(),
-            partial: Vec::new(),
-            raw: Vec::new(),
-            refiner: refine::Refiner::default(),
-        })
+        let (search, refiner) = (Search::default(), refine::Refiner::default());
+        Ok(Self { settings, search, found: Vec::new(), refiner })
     }
 
     /// The settings.
@@ -180,10 +170,18 @@ impl Matcher {
         masks: Option<&Pair<GrayImage>>,
     ) -> Result<DisparityMap, DisparityError> {
         check(left, right, masks)?;
-        let (width, height) = (left.width() as usize, left.height() as usize);
-        self.match_views(left, right, masks);
-        let mut disparities = vec![select::UNKNOWN; width * height];
-        smooth::median(&self.raw, width, &mut disparities);
+        self.check_memory(left.dimensions())?;
+        let width = left.width() as usize;
+        let disparity_count = self.settings.max_disparity_px as usize + 1;
+        self.search.run(Views { left, right, masks }, self.settings.block, disparity_count, &mut self.found);
+        if self.settings.quality == Quality::Full {
+            let mirrored = Mirrored::of(left, right, masks);
+            let mut seen_from_right = Vec::new();
+            self.search.run(mirrored.views(), self.settings.block, disparity_count, &mut seen_from_right);
+            search::keep_mutual(&mut self.found, &seen_from_right, width);
+        }
+        let mut disparities = vec![select::UNKNOWN; self.found.len()];
+        smooth::median(&self.found, width, &mut disparities);
         smooth::remove_specks(&mut disparities, width, SPECK_PIXELS, SPECK_STEP_PX);
         self.refiner.refine(left, right, &mut disparities);
         let filled =
@@ -191,32 +189,13 @@ impl Matcher {
         Ok(DisparityMap::new(left.width(), left.height(), disparities, filled))
     }
 
-    /// Checked whole-pixel matches, with a first guess of the fraction, into `self.raw`.
-    fn match_views(&mut self, left: &GrayImage, right: &GrayImage, masks: Option<&Pair<GrayImage>>) {
-        let (width, height) = (left.width() as usize, left.height() as usize);
-        let window = self.settings.block.window();
-        self.left.compute(left, window, census::Columns::Forward);
-        self.right.compute(right, window, census::Columns::Mirrored);
-        let right_mirrored = masks.map(|masks| image::imageops::flip_horizontal(&masks.right));
-        let usable = masks.zip(right_mirrored.as_ref()).map(|(masks, right_mirrored)| cost::Usable {
-            left: masks.left.as_raw(),
-            right_mirrored: right_mirrored.as_raw(),
-        });
-        self.costs.reshape(width, height, self.settings.max_disparity_px as usize + 1);
-        self.costs.compute(&self.left, &self.right, window.bits(), usable.as_ref());
-        self.raw.resize(width * height, select::UNKNOWN);
-        let (upper, lower) = self.raw.split_at_mut(height / 2 * width);
-        let lanes = self.costs.lanes;
-        let mut upper = select::Selector::new(0, width, lanes, upper);
-        let mut lower = select::Selector::new(height / 2, width, lanes, lower);
-        let penalties = self.settings.block.penalties();
-        paths::aggregate(&self.costs, penalties, &mut self.partial, &mut upper, &mut lower);
-        if let Some(masks) = masks {
-            for (d, usable) in self.raw.iter_mut().zip(masks.left.as_raw()) {
-                if *usable == 0 {
-                    *d = select::UNKNOWN;
-                }
-            }
+    fn check_memory(&self, (width_px, height_px): (u32, u32)) -> Result<(), DisparityError> {
+        let max_disparity_px = self.settings.max_disparity_px;
+        let candidates = u64::from(width_px) * u64::from(height_px) * (u64::from(max_disparity_px) + 1);
+        if candidates <= MOST_CANDIDATES {
+            Ok(())
+        } else {
+            Err(DisparityError::Memory { width_px, height_px, max_disparity_px })
         }
     }
 }

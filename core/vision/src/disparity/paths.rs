@@ -19,13 +19,13 @@ use fearless_simd::{Level, Simd, dispatch, u8x32};
 
 use super::cost::{CostVolume, LANES, MOST_GROUPS};
 
-/// What changes of disparity cost, in census bits.
-#[derive(Clone, Copy, Debug)]
+/// What changes of disparity between neighbors cost, in census bits.
 pub(super) struct Penalties {
-    /// Between neighbors that differ by one.
+    /// Of one step.
     pub small: u8,
-    /// Between neighbors that differ by more. At most 63, so that four paths fit a byte.
-    pub large: u8,
+    /// Of more, by how much the gray values of the neighbors differ: edges of objects tend to
+    /// be edges of the image too. At most 63, so that the sum over four paths fits a byte.
+    pub large: [u8; 256],
 }
 
 /// Paths followed per sweep.
@@ -39,33 +39,36 @@ pub(super) trait RowSink: Send {
     fn row<S: Simd>(&mut self, simd: S, y: usize, totals: &[u16]);
 }
 
-/// Runs both sweeps over `costs`. `partial` is working memory. Each sink gets its half of the
-/// rows: `upper` those above the middle (from the middle upwards), `lower` the others.
+/// Runs both sweeps over `costs`. `grays` is the left view, row by row; `partial` is working
+/// memory. Each sink gets its half of the rows: `upper` those above the middle (from the middle
+/// upwards), `lower` the others.
 pub(super) fn aggregate(
     costs: &CostVolume,
-    penalties: Penalties,
+    grays: &[u8],
+    penalties: &Penalties,
     partial: &mut Vec<u8>,
     upper: &mut impl RowSink,
     lower: &mut impl RowSink,
 ) {
     // The inner loop over groups is unrolled for small numbers of them.
     match costs.lanes / LANES {
-        1 => aggregate_groups::<1>(costs, penalties, partial, upper, lower),
-        2 => aggregate_groups::<2>(costs, penalties, partial, upper, lower),
-        3 => aggregate_groups::<3>(costs, penalties, partial, upper, lower),
-        4 => aggregate_groups::<4>(costs, penalties, partial, upper, lower),
-        8 => aggregate_groups::<8>(costs, penalties, partial, upper, lower),
-        16 => aggregate_groups::<16>(costs, penalties, partial, upper, lower),
+        1 => aggregate_groups::<1>(costs, grays, penalties, partial, upper, lower),
+        2 => aggregate_groups::<2>(costs, grays, penalties, partial, upper, lower),
+        3 => aggregate_groups::<3>(costs, grays, penalties, partial, upper, lower),
+        4 => aggregate_groups::<4>(costs, grays, penalties, partial, upper, lower),
+        8 => aggregate_groups::<8>(costs, grays, penalties, partial, upper, lower),
+        16 => aggregate_groups::<16>(costs, grays, penalties, partial, upper, lower),
         groups => {
             assert_eq!(groups, MOST_GROUPS, "the cost volume stores a number of groups from the list");
-            aggregate_groups::<MOST_GROUPS>(costs, penalties, partial, upper, lower);
+            aggregate_groups::<MOST_GROUPS>(costs, grays, penalties, partial, upper, lower);
         }
     }
 }
 
 fn aggregate_groups<const GROUPS: usize>(
     costs: &CostVolume,
-    penalties: Penalties,
+    grays: &[u8],
+    penalties: &Penalties,
     partial: &mut Vec<u8>,
     upper: &mut impl RowSink,
     lower: &mut impl RowSink,
@@ -73,8 +76,8 @@ fn aggregate_groups<const GROUPS: usize>(
     let (height, middle) = (costs.height, costs.height / 2);
     partial.resize(costs.bytes.len(), 0);
     let (above, below) = partial.split_at_mut(middle * costs.row_len());
-    let mut down = Sweep::<GROUPS>::new(costs, penalties, true);
-    let mut up = Sweep::<GROUPS>::new(costs, penalties, false);
+    let mut down = Sweep::<GROUPS>::new(costs, grays, penalties, true);
+    let mut up = Sweep::<GROUPS>::new(costs, grays, penalties, false);
     rayon::join(|| down.keep(0..middle, above), || up.keep(middle..height, below));
     let (above, below) = (&*above, &*below);
     rayon::join(|| down.finish(middle..height, below, lower), || up.finish(0..middle, above, upper));
@@ -109,11 +112,14 @@ struct PathRow {
 /// One direction through the image.
 struct Sweep<'a, const GROUPS: usize> {
     costs: &'a CostVolume,
-    penalties: Penalties,
+    grays: &'a [u8],
+    penalties: &'a Penalties,
     downward: bool,
     level: Level,
     before: PathRow,
     current: PathRow,
+    /// Per pixel of the row, what a large change costs on each path.
+    large: Vec<[u8; PATHS]>,
 }
 
 impl<'a, const GROUPS: usize> Sweep<'a, GROUPS> {
@@ -122,12 +128,21 @@ impl<'a, const GROUPS: usize> Sweep<'a, GROUPS> {
     /// Bytes of all paths at one pixel.
     const PIXEL: usize = PATHS * Self::STRIDE;
 
-    fn new(costs: &'a CostVolume, penalties: Penalties, downward: bool) -> Self {
+    fn new(costs: &'a CostVolume, grays: &'a [u8], penalties: &'a Penalties, downward: bool) -> Self {
         let row = || PathRow {
             bytes: vec![0; (costs.width + 2) * Self::PIXEL],
             least: vec![[0; PATHS]; costs.width + 2],
         };
-        Self { costs, penalties, downward, level: Level::new(), before: row(), current: row() }
+        Self {
+            costs,
+            grays,
+            penalties,
+            downward,
+            level: Level::new(),
+            before: row(),
+            current: row(),
+            large: vec![[0; PATHS]; costs.width],
+        }
     }
 
     /// Follows the paths through `rows` and keeps their sums in `block`, which starts there.
@@ -167,63 +182,100 @@ impl<'a, const GROUPS: usize> Sweep<'a, GROUPS> {
         if self.downward { rows.start + step } else { rows.end - 1 - step }
     }
 
+    /// Column number `step` of a row in the direction of the sweep.
+    #[inline(always)]
+    fn column(&self, step: usize) -> usize {
+        if self.downward { step } else { self.costs.width - 1 - step }
+    }
+
+    /// Looks up what large changes cost in row `y`. A path that begins there has nothing to
+    /// change from: then it does not matter what it finds.
+    fn look_up_penalties(&mut self, y: usize) {
+        let (width, last) = (self.costs.width, self.costs.height - 1);
+        let y_before = if self.downward { y.saturating_sub(1) } else { (y + 1).min(last) };
+        let own_row = &self.grays[y * width..][..width];
+        let row_before = &self.grays[y_before * width..][..width];
+        for step in 0..width {
+            let behind = self.column(step.saturating_sub(1));
+            let x = self.column(step);
+            let ahead = self.column((step + 1).min(width - 1));
+            let from = [row_before[behind], row_before[x], row_before[ahead], own_row[behind]];
+            for (large, from) in self.large[step].iter_mut().zip(from) {
+                *large = self.penalties.large[usize::from(own_row[x].abs_diff(from))];
+            }
+        }
+    }
+
     /// Follows the four paths of this sweep through row `y`; `sums` gets by how much they
     /// exceed the pixels' own costs.
     #[inline(always)]
     fn follow<S: Simd>(&mut self, simd: S, y: usize, sums: &mut [u8]) {
         let (width, lanes) = (self.costs.width, GROUPS * LANES);
+        self.look_up_penalties(y);
         std::mem::swap(&mut self.before, &mut self.current);
+        let downward = self.downward;
         let (before, current) = (&self.before, &mut self.current);
         let costs = self.costs.row(y);
         let (stride, pixel) = (Self::STRIDE, Self::PIXEL);
         for step in 0..width {
-            let x = if self.downward { step } else { width - 1 - step };
+            let x = if downward { step } else { width - 1 - step };
             // Places are counted in the direction of the sweep; place 0 lies outside, this
             // pixel is at place `step + 1`.
             let [least_before, least] = &mut current.least[step..step + 2] else { return };
             let [behind, same, ahead] = &before.least[step..step + 3] else { return };
             let beside = &before.bytes[step * pixel..][..3 * pixel];
             let (last, out) = current.bytes[step * pixel..][..2 * pixel].split_at_mut(pixel);
-            let from = [
-                &beside[..stride],
-                &beside[pixel + stride..][..stride],
-                &beside[2 * pixel + 2 * stride..][..stride],
-                &last[3 * stride..][..stride],
-            ];
-            let from_least = [behind[0], same[1], ahead[2], least_before[3]];
+            let incoming = Incoming {
+                costs: [
+                    &beside[..stride],
+                    &beside[pixel + stride..][..stride],
+                    &beside[2 * pixel + 2 * stride..][..stride],
+                    &last[3 * stride..][..stride],
+                ],
+                least: [behind[0], same[1], ahead[2], least_before[3]],
+                large: self.large[step],
+            };
             let costs = groups::<GROUPS>(&costs[x * lanes..][..lanes]);
             let sums = groups_mut::<GROUPS>(&mut sums[x * lanes..][..lanes]);
-            *least = extend(simd, self.penalties, from, from_least, costs, out, sums);
+            *least = extend(simd, self.penalties.small, &incoming, costs, out, sums);
         }
     }
 }
 
-/// Extends the paths into one pixel: `from` are their costs at the pixels they come from
-/// and `least` the smallest of each. Returns the new smallest.
+/// The paths into a pixel, at the pixels that they come from.
+struct Incoming<'a> {
+    /// Costs, with sentinels.
+    costs: [&'a [u8]; PATHS],
+    /// The smallest of each.
+    least: [u8; PATHS],
+    /// What a large change costs on the way.
+    large: [u8; PATHS],
+}
+
+/// Extends the paths into one pixel. Returns the new smallest costs.
 #[inline(always)]
 fn extend<S: Simd, const GROUPS: usize>(
     simd: S,
-    penalties: Penalties,
-    from: [&[u8]; PATHS],
-    least: [u8; PATHS],
+    small: u8,
+    incoming: &Incoming<'_>,
     costs: &[[u8; LANES]; GROUPS],
     out: &mut [u8],
     sums: &mut [[u8; LANES]; GROUPS],
 ) -> [u8; PATHS] {
     let stride = GROUPS * LANES + 2;
-    let small = u8x32::splat(simd, penalties.small);
+    let small = u8x32::splat(simd, small);
     let zero = u8x32::splat(simd, 0);
     let mut smallest = [0; PATHS];
     for path in 0..PATHS {
-        let lower = groups::<GROUPS>(from[path]);
-        let same = groups::<GROUPS>(&from[path][1..]);
-        let upper = groups::<GROUPS>(&from[path][2..]);
+        let lower = groups::<GROUPS>(incoming.costs[path]);
+        let same = groups::<GROUPS>(&incoming.costs[path][1..]);
+        let upper = groups::<GROUPS>(&incoming.costs[path][2..]);
         let out = &mut out[path * stride..][..stride];
         out[0] = SENTINEL;
         out[stride - 1] = SENTINEL;
         let out = groups_mut::<GROUPS>(&mut out[1..]);
-        let large = u8x32::splat(simd, penalties.large);
-        let floor = u8x32::splat(simd, least[path]);
+        let large = u8x32::splat(simd, incoming.large[path]);
+        let floor = u8x32::splat(simd, incoming.least[path]);
         let mut best = u8x32::splat(simd, u8::MAX);
         for group in 0..GROUPS {
             let load = |groups: &[[u8; LANES]; GROUPS]| u8x32::from_slice(simd, &groups[group]);
