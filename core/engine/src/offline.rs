@@ -5,6 +5,7 @@
 //!
 //! [`JobContext`]: plumbline_model::JobContext
 
+mod bench;
 mod calibrate;
 mod check;
 mod disparity;
@@ -13,6 +14,7 @@ mod locate;
 mod pairs;
 mod sample;
 
+pub use bench::{BenchReport, Figure, Peer, bench};
 pub use calibrate::{CalibrateArgs, CalibrateReport, LeftOutCorner, PairErrors, Rejected, calibrate_stereo};
 pub use check::{CheckArgs, CheckReport, check};
 pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};

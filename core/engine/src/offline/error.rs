@@ -39,6 +39,9 @@ pub enum OfflineError {
     /// No disparity can be computed.
     #[error(transparent)]
     Disparity(#[from] DisparityError),
+    /// The published pipeline could not be run beside ours.
+    #[error("the comparison with the published pipeline failed: {0}")]
+    Comparison(String),
     /// No point can be located.
     #[error(transparent)]
     NoBaseline(#[from] NoBaseline),

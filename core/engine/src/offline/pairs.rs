@@ -38,7 +38,8 @@ pub fn find_board(
     context: &dyn JobContext,
 ) -> Result<BoardPairs, OfflineError> {
     let board = Chessboard::new(inner.columns, inner.rows, square_m)?;
-    let folder = PairFolder::open_two(left, right)?;
+    // One folder that holds both eyes (left01.jpg, right01.jpg) may be named twice.
+    let folder = if left == right { PairFolder::open_one(left)? } else { PairFolder::open_two(left, right)? };
     let (excluded, wanted) = split(folder.pairs(), exclude)?;
     let collected = collect_folder(&folder, &wanted, &board, context)?;
     let notes = folder.reports().iter().map(|report| sentence(&report.to_string())).collect();
