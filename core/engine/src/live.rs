@@ -188,9 +188,9 @@ impl LiveState {
         Some(ProbeInput { frame, point: self.probe_asked?, setup })
     }
 
-    /// The newest pair if the chessboard is to be looked for.
-    pub fn corners_frame(&self) -> Option<StereoFrame> {
-        self.raw.clone().filter(|_| self.wanted.corners)
+    /// Whether somebody looks at the chessboard's corners.
+    pub fn wants_corners(&self) -> bool {
+        self.wanted.corners
     }
 
     /// The newest pair and the setup, if they fit each other.

@@ -18,7 +18,7 @@ use crate::notice::{NoticeLevel, Notices};
 use crate::source::{Note, SourceState};
 use crate::stages::{CornersInput, ProbeInput, ProbeOutput, RectifyInput, RectifyOutput, StagePanic, Timed};
 use crate::view::{JobState, JobView, SourceView, View};
-use crate::work::{Work, WorkResult};
+use crate::work::WorkResult;
 
 /// Everything the engine knows.
 #[derive(Clone, Debug)]
@@ -153,7 +153,9 @@ impl State {
 
     /// What the chessboard search is to do with the newest pair, if anything.
     pub fn corners_input(&self) -> Option<CornersInput> {
-        Some(CornersInput { frame: self.live.corners_frame()?, board: *self.eyes.board() })
+        let wanted = self.live.wants_corners() || self.eyes.auto_capture();
+        let frame = self.live.newest().filter(|_| wanted)?.clone();
+        Some(CornersInput { frame, board: *self.eyes.board() })
     }
 
     /// A job says how far it is.

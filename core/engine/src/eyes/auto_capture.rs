@@ -98,7 +98,7 @@ mod tests {
     use super::*;
     use plumbline_model::Pixel;
 
-    const NEW: Novelty = Novelty { cells: 9, distance: true, tilt: true };
+    const NEW: Novelty = Novelty { cells: 9, distance: true, tilt: true, elsewhere: true };
 
     fn corners(shift_px: f64) -> Corners {
         (0..6).map(|i| Some(Pixel::new(f64::from(i) * 10.0 + shift_px, 50.0))).collect()

@@ -24,7 +24,7 @@ impl EyesState {
             EyesCommand::ChooseOptions(options) => self.options = options,
             EyesCommand::MinutesSinceOn(minutes) => self.set_minutes(minutes, context),
             EyesCommand::Capture => self.capture(context),
-            EyesCommand::AutoCapture(on) => self.auto_capture = on,
+            EyesCommand::AutoCapture(on) => self.set_auto_capture(on, context),
             EyesCommand::CollectRecording => self.collect_recording(context),
             EyesCommand::DeleteLast => self.edit(context, |pairs| pairs.delete_last().map(drop)),
             EyesCommand::Delete { pair } => self.edit(context, |pairs| pairs.delete(&pair)),
@@ -90,6 +90,14 @@ impl EyesState {
         let name = frame.name.clone().unwrap_or_else(|| self.collection.next_name());
         let work = Capture { frame: frame.clone(), name, board: *self.board() };
         self.busy.capturing = Some(context.start(EyesWork::Capture(work)));
+    }
+
+    fn set_auto_capture(&mut self, on: bool, context: &mut Context<'_>) {
+        self.auto_capture = on;
+        // A picture that stands still is looked at only once: it may be worth capturing now.
+        if let Some(look) = self.last_look.take().filter(|_| on) {
+            self.look(look, context);
+        }
     }
 
     fn collect_recording(&mut self, context: &mut Context<'_>) {

@@ -13,6 +13,10 @@ const DISTANCE_EDGES_DIAGONALS: [f64; 3] = [1.0, 1.75, 3.0];
 const FACING_RAD: f64 = 0.26;
 /// A pair is new when it reaches this many cells, over both eyes, that no pair has reached.
 const NEW_CELLS: usize = 3;
+/// A board that has moved by more than this share of the image's width is elsewhere.
+const ELSEWHERE: f64 = 0.1;
+/// So is one whose distance differs by more than this factor.
+const OTHER_DISTANCE: f64 = 1.3;
 
 /// Coverage by these pairs of images of this size.
 pub fn coverage<'a>(
@@ -44,12 +48,14 @@ pub struct Novelty {
     pub distance: bool,
     /// Whether no pair was tilted like this.
     pub tilt: bool,
+    /// Whether every pair was clearly somewhere else; see [`is_elsewhere`].
+    pub elsewhere: bool,
 }
 
 impl Novelty {
     /// Whether the pair is worth taking.
     pub fn is_new(&self) -> bool {
-        self.cells >= NEW_CELLS || self.distance || self.tilt
+        self.cells >= NEW_CELLS || self.distance || self.tilt || self.elsewhere
     }
 }
 
@@ -72,7 +78,37 @@ pub fn novelty(
         cells: new_cells(&coverage.left, eyes[0]) + new_cells(&coverage.right, eyes[1]),
         distance: place.is_some_and(|place| coverage.by_distance[distance_bin(board, place)] == 0),
         tilt: place.is_some_and(|place| coverage.by_tilt[tilt_bin(place)] == 0),
+        elsewhere: false,
     }
+}
+
+/// Whether a board is clearly in another place than in every one of these pairs: elsewhere in
+/// the left image, nearer or further, or tilted otherwise.
+pub fn is_elsewhere<'a>(
+    size_px: (u32, u32),
+    left: &Corners,
+    place: Option<&BoardPlace>,
+    pairs: impl IntoIterator<Item = &'a CollectedPair>,
+) -> bool {
+    let allowed_px = ELSEWHERE * f64::from(size_px.0);
+    pairs.into_iter().all(|pair| {
+        let moved_px = pair.left.as_ref().and_then(|other| Some((middle(left)? - middle(other)?).norm()));
+        let moved = moved_px.is_none_or(|moved_px| moved_px > allowed_px);
+        let turned = place.zip(pair.place.as_ref()).is_some_and(|(a, b)| {
+            let ratio = (a.distance_m / b.distance_m).ln().abs();
+            let up_down = (a.tilt_up_down_rad - b.tilt_up_down_rad).abs();
+            let left_right = (a.tilt_left_right_rad - b.tilt_left_right_rad).abs();
+            ratio > OTHER_DISTANCE.ln() || up_down.max(left_right) > FACING_RAD
+        });
+        moved || turned
+    })
+}
+
+/// Mean of the measured corners, pixels.
+fn middle(corners: &Corners) -> Option<nalgebra::Vector2<f64>> {
+    let seen = corners.iter().flatten().count();
+    let sum: nalgebra::Vector2<f64> = corners.iter().flatten().map(|corner| corner.vector()).sum();
+    (seen > 0).then(|| sum / seen as f64)
 }
 
 /// No pairs yet.
@@ -162,13 +198,30 @@ mod tests {
         let one = pair(&[(10.0, 10.0), (100.0, 10.0), (10.0, 100.0)], place(0.2, 0.4, 0.0));
         let eyes = [one.left.as_ref().expect("left"), one.right.as_ref().expect("right")];
         let before = novelty(&empty(&board()), &board(), SIZE_PX, eyes, one.place.as_ref());
-        assert_eq!(before, Novelty { cells: 6, distance: true, tilt: true });
+        assert_eq!(before, Novelty { cells: 6, distance: true, tilt: true, elsewhere: false });
         let coverage = coverage(&board(), SIZE_PX, [&one]);
         let after = novelty(&coverage, &board(), SIZE_PX, eyes, one.place.as_ref());
         assert_eq!(after, Novelty::default());
         assert!(!after.is_new());
         let further = novelty(&coverage, &board(), SIZE_PX, eyes, Some(&place(2.0, 0.4, 0.0)));
         assert!(further.is_new() && further.distance && !further.tilt);
+    }
+
+    #[test]
+    fn a_board_is_elsewhere_when_it_moved_turned_or_came_nearer() {
+        let corners = [(100.0, 100.0), (140.0, 100.0), (120.0, 140.0)];
+        let one = pair(&corners, place(0.4, 0.0, 0.0));
+        let shifted = |by: f64| pair(&corners.map(|(u, v)| (u + by, v)), place(0.4, 0.0, 0.0));
+        let elsewhere = |other: &CollectedPair| {
+            is_elsewhere(SIZE_PX, other.left.as_ref().expect("left"), other.place.as_ref(), [&one])
+        };
+        assert!(!elsewhere(&shifted(50.0)) && elsewhere(&shifted(80.0)));
+        for (other, expected) in
+            [((0.45, 0.0, 0.0), false), ((0.6, 0.0, 0.0), true), ((0.4, 0.1, -0.4), true)]
+        {
+            assert_eq!(elsewhere(&pair(&corners, place(other.0, other.1, other.2))), expected, "{other:?}");
+        }
+        assert!(is_elsewhere(SIZE_PX, one.left.as_ref().expect("left"), None, []), "nothing is collected");
     }
 
     #[test]

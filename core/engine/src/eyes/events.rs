@@ -8,6 +8,7 @@ use plumbline_model::{Chessboard, Corners, StereoFrame};
 
 use super::assess::{Assessment, STATED_AT_M};
 use super::collection::Collection;
+use super::coverage::Novelty;
 use super::state::EyesState;
 use super::work::{Captured, Collected, EyesResult, EyesWork, Keep, Opened, Restored, Solved};
 use super::{auto_capture, coverage};
@@ -53,6 +54,7 @@ impl EyesState {
         } else if look.other_board.is_some() {
             self.board_seen.clone_from(&look.other_board);
         }
+        self.last_look = Some(look.clone());
         let hint = self.judge(&look, size_px, context);
         if hint == CaptureHint::Ready && self.auto_capture && self.busy.capturing.is_none() {
             self.capture_look(look, context);
@@ -72,7 +74,11 @@ impl EyesState {
         let both = look.left.as_ref().zip(look.right.as_ref());
         let novelty = both.filter(|_| !known).map(|(left, right)| {
             let place = self.place(&pair_of(look, String::new()), size_px);
-            coverage::novelty(self.coverage(), self.board(), size_px, [left, right], place.as_ref())
+            let pairs = self.collection.pairs().iter().map(Arc::as_ref);
+            let elsewhere = coverage::is_elsewhere(size_px, left, place.as_ref(), pairs);
+            let covered = self.coverage();
+            let novelty = coverage::novelty(covered, self.board(), size_px, [left, right], place.as_ref());
+            Novelty { elsewhere, ..novelty }
         });
         self.auto.look(auto_capture::Look {
             at: look.frame.stamp.captured_at,
@@ -89,16 +95,20 @@ impl EyesState {
         let name = look.frame.name.clone().unwrap_or_else(|| self.collection.next_name());
         let sizes_px = [look.frame.left.dimensions(), look.frame.right.dimensions()];
         self.captured_at = Some(look.frame.stamp.captured_at);
-        self.add(pair_of(&look, name), &look.frame, sizes_px, context);
+        if !self.add(pair_of(&look, name), &look.frame, sizes_px, context) {
+            // Saying it once per look would flood the operator.
+            self.auto_capture = false;
+        }
     }
 
+    /// Adds a pair; whether it is collected now.
     fn add(
         &mut self,
         pair: CollectedPair,
         frame: &StereoFrame,
         sizes_px: [(u32, u32); 2],
         context: &mut Context<'_>,
-    ) {
+    ) -> bool {
         let name = pair.name.clone();
         let place = self.place(&pair, sizes_px[0]);
         match self.collection.add(CollectedPair { place, ..pair }, sizes_px) {
@@ -110,13 +120,10 @@ impl EyesState {
                 let count = self.collection.pairs().len();
                 context.notices.add(NoticeLevel::Success, format!("Captured {name}: {count} pairs."));
             }
-            Err(error) => {
-                // Saying it once per look would flood the operator.
-                self.auto_capture = false;
-                context.refuse(error);
-            }
+            Err(error) => context.refuse(error),
         }
         self.refresh();
+        self.collection.contains(&name)
     }
 
     /// Pairs of cameras exist nowhere else, so they are written down; recordings are on disk already.

@@ -8,6 +8,7 @@ use plumbline_model::{CalibrationOptions, Chessboard, StereoCalibration, StereoC
 
 use super::auto_capture::AutoCapture;
 use super::collection::Collection;
+use super::events::Look;
 use super::place::{nominal_cameras, place_of, rough_pose};
 use super::store::Store;
 use super::{coverage, default_board, ghost};
@@ -32,6 +33,8 @@ pub struct EyesState {
     pub(super) minutes_since_on: Option<f64>,
     pub(super) auto_capture: bool,
     pub(super) auto: AutoCapture,
+    /// The newest look, for when capturing is switched on.
+    pub(super) last_look: Option<Look>,
     pub(super) hint: Option<CaptureHint>,
     pub(super) captured_at: Option<Instant>,
     pub(super) board_seen: Option<BoardSeen>,
@@ -109,6 +112,7 @@ impl EyesState {
             minutes_since_on: None,
             auto_capture: false,
             auto: AutoCapture::default(),
+            last_look: None,
             hint: None,
             captured_at: None,
             board_seen: None,
@@ -131,6 +135,11 @@ impl EyesState {
     /// The board looked for.
     pub fn board(&self) -> &Chessboard {
         self.collection.board()
+    }
+
+    /// Whether pairs are captured without asking, for which the board must be looked for.
+    pub fn auto_capture(&self) -> bool {
+        self.auto_capture
     }
 
     /// The calibration in use.

@@ -79,6 +79,8 @@ fn capturing_by_itself_takes_what_is_new_and_nothing_twice() {
     assert!(desk.view().eyes.ghost.is_some(), "somewhere to begin");
 
     desk.apply(EyesCommand::AutoCapture(true));
+    assert_eq!(desk.view().eyes.collected.len(), 1, "what stands there is captured at once");
+    desk.apply(LiveCommand::Want(Products::default()));
     for pair in board_pairs().iter().chain(board_pairs()) {
         desk.show(pair);
     }

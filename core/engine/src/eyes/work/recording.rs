@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::capture::{find_in_both, glimpse_in_both, gray, size};
 use crate::eyes::auto_capture::{AutoCapture, Look};
-use crate::eyes::coverage;
+use crate::eyes::coverage::{self, Novelty};
 use crate::eyes::place::{place_of, rough_pose};
 use crate::eyes::sharpness::of_both;
 use crate::jobs::JobError;
@@ -169,7 +169,9 @@ impl<'a> VideoSearch<'a> {
         let size_px = size(&frame.left);
         let novelty = left.as_ref().zip(right.as_ref()).map(|(left, right)| {
             let covered = coverage::coverage(board, size_px, &self.collected.pairs);
-            coverage::novelty(&covered, board, size_px, [left, right], place.as_ref())
+            let elsewhere = coverage::is_elsewhere(size_px, left, place.as_ref(), &self.collected.pairs);
+            let novelty = coverage::novelty(&covered, board, size_px, [left, right], place.as_ref());
+            Novelty { elsewhere, ..novelty }
         });
         let edge_width_px = of_both(board, [&images[0], &images[1]], [left.as_ref(), right.as_ref()]);
         let hint = self.auto.look(Look {
