@@ -27,6 +27,18 @@ use crate::rectify::{Pair, Rectifier, RectifyError};
 /// Depth at which the steps are compared, meters: the far edge of the table.
 pub const COMPARED_AT_M: f64 = 0.6;
 
+/// Focal length of the published rectified views, pixels.
+const PUBLISHED_F_PX: f64 = 35.0524;
+/// Column of their axes, left and right.
+const PUBLISHED_CX_PX: [f64; 2] = [300.237, 246.677];
+/// Row of their axes.
+const PUBLISHED_CY_PX: f64 = 233.738;
+
+/// Rows of numbers as OpenCV wants them.
+fn matrix<const ROWS: usize>(rows: &[[f64; 4]; ROWS]) -> Result<Mat, opencv::Error> {
+    Mat::from_slice(rows.as_flattened())?.reshape(1, ROWS as i32)?.try_clone()
+}
+
 /// Figures of one comparison.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct ComparisonReport {
@@ -115,11 +127,39 @@ impl PublishedPipeline {
         let t = Mat::from_slice(cameras.right_from_left.translation_m().as_slice())?
             .reshape(1, 3)?
             .try_clone()?;
-        let [mut r1, mut r2, mut p1, mut p2, mut q] = std::array::from_fn(|_| Mat::default());
+        let [mut r1, mut r2, mut unused_p1, mut unused_p2, mut unused_q] =
+            std::array::from_fn(|_| Mat::default());
         fisheye_stereo_rectify(
-            &k_left, &d_left, &k_right, &d_right, size, &r, &t, &mut r1, &mut r2, &mut p1, &mut p2, &mut q,
-            0, size, 0.0, 0.6,
+            &k_left,
+            &d_left,
+            &k_right,
+            &d_right,
+            size,
+            &r,
+            &t,
+            &mut r1,
+            &mut r2,
+            &mut unused_p1,
+            &mut unused_p2,
+            &mut unused_q,
+            0,
+            size,
+            0.0,
+            0.6,
         )?;
+        // The projection is the published one: what OpenCV proposes for a lens that sees 90° off
+        // its axis differs from version to version, down to a focal length of one pixel.
+        let (f, cy) = (PUBLISHED_F_PX, PUBLISHED_CY_PX);
+        let [cx_left, cx_right] = PUBLISHED_CX_PX;
+        let baseline_m = cameras.baseline_m();
+        let p = |cx: f64, shift: f64| matrix(&[[f, 0.0, cx, shift], [0.0, f, cy, 0.0], [0.0, 0.0, 1.0, 0.0]]);
+        let (p1, p2) = (p(cx_left, 0.0)?, p(cx_right, -f * baseline_m)?);
+        let q = matrix(&[
+            [1.0, 0.0, 0.0, -cx_left],
+            [0.0, 1.0, 0.0, -cy],
+            [0.0, 0.0, 0.0, f],
+            [0.0, 0.0, 1.0 / baseline_m, -(cx_left - cx_right) / baseline_m],
+        ])?;
         let maps = |k: &Mat, d: &Mat, r: &Mat, p: &Mat| -> Result<[Mat; 2], opencv::Error> {
             let [mut whole, mut fraction] = [Mat::default(), Mat::default()];
             fisheye_init_undistort_rectify_map(k, d, r, p, size, CV_16SC2, &mut whole, &mut fraction)?;
@@ -133,8 +173,7 @@ impl PublishedPipeline {
         let mut filter = create_disparity_wls_filter(sgbm()?.into())?;
         filter.set_lambda(8000.0)?;
         filter.set_sigma_color(1.5)?;
-        let f_px = *p1.at_2d::<f64>(0, 0)?;
-        Ok(Self { maps, q, left, right, filter, f_px, baseline_m: cameras.baseline_m() })
+        Ok(Self { maps, q, left, right, filter, f_px: f, baseline_m })
     }
 
     /// Rectifies, matches, filters and places one raw gray pair: x, y, z per pixel.
