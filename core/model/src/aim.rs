@@ -26,7 +26,7 @@ pub const DISPARITY_STEP_PX: f64 = 1.0 / 16.0;
 /// Size of the aimed views unless asked otherwise (width, height), pixels. For NICO it shows
 /// the table at 153 px/rad, which is what the lenses resolve (more would only be blown up, and
 /// take longer), from the robot's lap to the far wall.
-pub const DEFAULT_SIZE_PX: (u32, u32) = (496, 272);
+pub const DEFAULT_SIZE_PX: (u32, u32) = (496, 240);
 
 /// Part of the view left free around the workspace, on each side.
 const MARGIN: f64 = 0.01;

@@ -152,9 +152,10 @@ pub enum ProbeFailure {
 const HALF_WINDOW_PX: u32 = 3;
 /// Neighbors that differ by more belong to another surface, pixels.
 const SAME_SURFACE_PX: f64 = 1.0;
-/// Part of the error that neighbors share, because they are matched with overlapping windows;
-/// found on the table of real scenes, whose disparities should lie on a plane. Pixels.
-const SHARED_SIGMA_PX: f64 = 0.10;
+/// Part of the error that neighbors share, because they are matched with overlapping windows
+/// and seen through the same part of the lens; found on the table in real images, whose
+/// disparities should lie on a plane. Pixels.
+const SHARED_SIGMA_PX: f64 = 0.15;
 
 /// The place that the left view shows at `pixel` (the nearest whole pixel is taken).
 pub fn probe(map: &DisparityMap, pair: &AimedPair, pixel: Pixel<Rectified>) -> Result<Probe, ProbeFailure> {

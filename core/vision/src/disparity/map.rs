@@ -5,8 +5,9 @@
 pub enum Origin {
     /// Both views agree on it.
     Measured,
-    /// Guessed from the surroundings, because the other view does not show this place or the
-    /// views disagree. Good for looking at, not for measuring.
+    /// Guessed from the surroundings, because the other view does not show this place, the
+    /// views disagree, or the surface is too bare to be matched. Good for looking at, not for
+    /// measuring.
     Filled,
 }
 
@@ -32,8 +33,10 @@ impl DisparityMap {
     /// From measured disparities in pixels, row by row; what is not finite counts as none.
     /// `None` when their number does not fit the size.
     pub fn from_measured(width_px: u32, height_px: u32, disparities_px: Vec<f32>) -> Option<Self> {
-        let filled = vec![false; disparities_px.len()];
         let fits = disparities_px.len() == width_px as usize * height_px as usize;
+        let known = |d: f32| if d.is_finite() { d } else { f32::INFINITY };
+        let disparities_px: Vec<f32> = disparities_px.into_iter().map(known).collect();
+        let filled = vec![false; disparities_px.len()];
         fits.then(|| Self::new(width_px, height_px, disparities_px, filled))
     }
 

@@ -6,9 +6,11 @@
 //! rayon pool has, except for the aggregation, which uses two.
 //!
 //! Assumes that both views show a point on the same row (see the epipolar error of the
-//! calibration: half a pixel is too much) and that surfaces look alike from both eyes. Broken
-//! on bare, shiny and repetitive surfaces: there the two views disagree, and the pixel is
-//! reported as filled in, not as measured.
+//! calibration: half a pixel is too much) and that surfaces look alike from both eyes. On bare
+//! surfaces, and where only one eye sees, disparities come from the surroundings and are
+//! reported as filled in, not as measured. Broken by mirrors, which are measured at the depth
+//! of what they show, and by patterns that repeat along the rows, which may be taken for one
+//! another.
 
 pub mod bench;
 mod census;
@@ -34,7 +36,7 @@ pub const MAX_DISPARITY_PX: u32 = 1023;
 /// Most candidates (pixels times disparities) compared at once; twice as many bytes are needed.
 const MOST_CANDIDATES: u64 = 1 << 31;
 /// Patches with fewer pixels than this are not trusted.
-const SPECK_PIXELS: u32 = 60;
+const SPECK_PIXELS: usize = 60;
 /// Neighbors in a patch differ by at most this much, pixels.
 const SPECK_STEP_PX: f32 = 1.0;
 
@@ -183,9 +185,10 @@ impl Matcher {
         let mut disparities = vec![select::UNKNOWN; self.found.len()];
         smooth::median(&self.found, width, &mut disparities);
         smooth::remove_specks(&mut disparities, width, SPECK_PIXELS, SPECK_STEP_PX);
-        self.refiner.refine(left, right, &mut disparities);
-        let filled =
+        let bare = self.refiner.refine(left, right, &mut disparities);
+        let mut filled =
             fill::fill(&mut disparities, width, |i| masks.is_none_or(|masks| masks.left.as_raw()[i] > 0));
+        filled.iter_mut().zip(bare).for_each(|(filled, bare)| *filled |= bare);
         Ok(DisparityMap::new(left.width(), left.height(), disparities, filled))
     }
 

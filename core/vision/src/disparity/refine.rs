@@ -22,8 +22,11 @@ const HALF_WINDOW: usize = 3;
 const SAME_SURFACE_PX: f32 = 1.0;
 /// A larger correction means that the window does not show one surface, pixels.
 const LARGEST_CORRECTION_PX: f32 = 0.75;
-/// Noise of the gray values: below this contrast, the disparity stays as it was.
+/// Noise of the gray values.
 const NOISE: f32 = 2.0;
+/// What is on the surface has to fix its place along the row to this standard deviation, given
+/// the noise; otherwise it is too bare to be matched, pixels.
+const LARGEST_SIGMA_PX: f32 = 0.5;
 /// Pixels handled at a time.
 const LANES: usize = 8;
 /// What is summed over a window: gradient², gradient × difference, gradient, difference, and
@@ -39,8 +42,9 @@ pub(super) struct Refiner {
 }
 
 impl Refiner {
-    /// Improves the known disparities in place.
-    pub fn refine(&mut self, left: &GrayImage, right: &GrayImage, disparities: &mut [f32]) {
+    /// Improves the known disparities in place. Tells for each pixel whether its surface is too
+    /// bare to be matched, so that its disparity came from its surroundings.
+    pub fn refine(&mut self, left: &GrayImage, right: &GrayImage, disparities: &mut [f32]) -> Vec<bool> {
         let (level, width) = (Level::new(), left.width() as usize);
         self.smooth.resize(disparities.len(), UNKNOWN);
         self.along_rows.resize(disparities.len() * SUMS, 0.0);
@@ -55,13 +59,19 @@ impl Refiner {
             },
         );
         let along_rows = &self.along_rows;
-        disparities.par_chunks_exact_mut(width).enumerate().for_each_init(
-            || vec![0.0; width * SUMS],
-            |sums, (y, disparities)| {
-                dispatch!(level, _simd => sum_across(along_rows, y, sums));
-                correct(disparities, &smooth[y * width..][..width], sums);
-            },
-        );
+        let mut bare = vec![false; disparities.len()];
+        disparities
+            .par_chunks_exact_mut(width)
+            .zip(bare.par_chunks_exact_mut(width))
+            .enumerate()
+            .for_each_init(
+                || vec![0.0; width * SUMS],
+                |sums, (y, (disparities, bare))| {
+                    dispatch!(level, _simd => sum_across(along_rows, y, sums));
+                    correct(disparities, bare, &smooth[y * width..][..width], sums);
+                },
+            );
+        bare
     }
 }
 
@@ -70,8 +80,10 @@ fn padded(width: usize) -> usize {
     width + 2 * HALF_WINDOW
 }
 
-/// Least-squares shift, with the mean difference in brightness taken out.
-fn correct(disparities: &mut [f32], smooth: &[f32], sums: &[f32]) {
+/// Adds the least-squares shift, with the mean difference in brightness taken out.
+fn correct(disparities: &mut [f32], bare: &mut [bool], smooth: &[f32], sums: &[f32]) {
+    // Both views are noisy.
+    let least_contrast = 2.0 * (NOISE / LARGEST_SIGMA_PX).powi(2);
     let width = disparities.len();
     for (x, (d, smooth)) in disparities.iter_mut().zip(smooth).enumerate() {
         if *d < UNKNOWN {
@@ -81,6 +93,7 @@ fn correct(disparities: &mut [f32], smooth: &[f32], sums: &[f32]) {
             // Also false when there is nothing in the window.
             let usable = delta.abs() <= LARGEST_CORRECTION_PX;
             *d = if usable { (smooth + delta).max(0.0) } else { *smooth };
+            bare[x] = !(contrast >= least_contrast);
         }
     }
 }

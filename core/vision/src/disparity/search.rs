@@ -91,14 +91,24 @@ impl Search {
         self.costs.compute(&self.left, &self.right, window.bits(), usable.as_ref());
         found.resize(width * height, UNKNOWN);
         let (upper, lower) = found.split_at_mut(height / 2 * width);
-        let mut upper = Selector::new(0, width, self.costs.lanes, upper);
-        let mut lower = Selector::new(height / 2, width, self.costs.lanes, lower);
+        let mut upper = Selector::new(&self.costs, 0, upper);
+        let mut lower = Selector::new(&self.costs, height / 2, lower);
         aggregate(&self.costs, left.as_raw(), &block.penalties(), &mut self.partial, &mut upper, &mut lower);
         if let Some(masks) = masks {
-            for (d, usable) in found.iter_mut().zip(masks.left.as_raw()) {
-                if *usable == 0 {
-                    *d = UNKNOWN;
-                }
+            drop_masked(found, masks, width);
+        }
+    }
+}
+
+/// Makes disparities unknown that belong to, or lead to, a masked pixel: the smoothness of
+/// their surroundings alone has led to them.
+fn drop_masked(found: &mut [f32], masks: &Pair<GrayImage>, width: usize) {
+    let rows = masks.left.as_raw().chunks_exact(width).zip(masks.right.as_raw().chunks_exact(width));
+    for (row, (left, right)) in found.chunks_exact_mut(width).zip(rows) {
+        for (x, d) in row.iter_mut().enumerate().filter(|(_, d)| **d < UNKNOWN) {
+            let seen_by_right = x.checked_sub(d.round() as usize).is_some_and(|x| right[x] > 0);
+            if left[x] == 0 || !seen_by_right {
+                *d = UNKNOWN;
             }
         }
     }

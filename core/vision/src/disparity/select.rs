@@ -4,6 +4,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Simd, u16x16};
 
+use super::cost::CostVolume;
 use super::paths::RowSink;
 
 /// Totals handled at a time.
@@ -15,11 +16,13 @@ pub(super) const UNKNOWN: f32 = f32::INFINITY;
 /// Writes the disparities of a block of rows.
 pub(super) struct Selector<'a> {
     /// First row of the block.
-    pub first_row: usize,
-    pub width: usize,
-    pub lanes: usize,
+    first_row: usize,
+    width: usize,
+    lanes: usize,
+    /// Number of lanes that are disparities; the others only fill up.
+    candidates: usize,
     /// Disparities of the block, [`UNKNOWN`] where the two views disagree.
-    pub disparities: &'a mut [f32],
+    disparities: &'a mut [f32],
     right: RightChoice,
     chosen: Vec<u16>,
     fraction: Vec<f32>,
@@ -31,16 +34,25 @@ struct RightChoice {
     disparity: Vec<u16>,
 }
 
+/// A choice is clear when every other candidate costs more than it by this part of it. On a bare
+/// surface all cost the same, on a repetitive one several do.
+const CLEAR_PART: u16 = 20;
+/// Instead of a choice that is not clear; no disparity is that large.
+const AMBIGUOUS: u16 = u16::MAX;
+
 /// The two choices of a match may differ by this much, pixels.
 const TOLERANCE: u16 = 1;
 
 impl<'a> Selector<'a> {
-    pub fn new(first_row: usize, width: usize, lanes: usize, disparities: &'a mut [f32]) -> Self {
+    /// For the rows from `first_row` on, as many as `disparities` has room for.
+    pub fn new(costs: &CostVolume, first_row: usize, disparities: &'a mut [f32]) -> Self {
+        let (width, lanes) = (costs.width, costs.lanes);
         let right = RightChoice { total: vec![0; width + lanes], disparity: vec![0; width + lanes] };
         Self {
             first_row,
             width,
             lanes,
+            candidates: costs.disparities,
             disparities,
             right,
             chosen: vec![0; width],
@@ -69,8 +81,11 @@ impl RowSink for Selector<'_> {
         self.right.total.fill(u16::MAX);
         for (x, totals) in totals.chunks_exact(self.lanes).enumerate() {
             let chosen = cheapest(simd, totals);
-            self.chosen[x] = chosen;
-            self.fraction[x] = vertex(totals, usize::from(chosen));
+            let least = totals[usize::from(chosen)];
+            let rival = cheapest_apart(simd, totals, chosen);
+            let clear = rival > least + least / CLEAR_PART;
+            self.chosen[x] = if clear { chosen } else { AMBIGUOUS };
+            self.fraction[x] = vertex(&totals[..self.candidates], usize::from(chosen));
             self.right.offer(simd, self.width - 1 - x, totals);
         }
         self.check(y);
@@ -113,6 +128,20 @@ fn cheapest<S: Simd>(simd: S, totals: &[u16]) -> u16 {
     // Of the places that hold the smallest total, the first.
     let smallest = u16x16::splat(simd, least_of(least));
     least_of(least.simd_eq(smallest).select(place, u16x16::splat(simd, u16::MAX)))
+}
+
+/// Smallest total more than one disparity away from the chosen one.
+#[inline(always)]
+fn cheapest_apart<S: Simd>(simd: S, totals: &[u16], chosen: u16) -> u16 {
+    let mut least = u16x16::splat(simd, u16::MAX);
+    let mut place = u16x16::from_fn(simd, |i| (i as u16).wrapping_sub(chosen.wrapping_sub(1)));
+    let three = u16x16::splat(simd, 3);
+    for group in totals.chunks_exact(HALF) {
+        let near = place.simd_lt(three);
+        least = near.select(least, least.min(u16x16::from_slice(simd, group)));
+        place += HALF as u16;
+    }
+    least_of(least)
 }
 
 /// Smallest of a group.

@@ -1,5 +1,7 @@
 //! Repairs of a disparity image: single wrong pixels, and patches too small to be trusted.
 
+use std::ops::Range;
+
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, Simd, dispatch, f32x8};
 use rayon::prelude::*;
@@ -7,7 +9,7 @@ use rayon::prelude::*;
 use super::select::UNKNOWN;
 
 /// Pixels handled at a time.
-const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 
 /// Writes to `out` the median of each known disparity's 3×3 neighborhood; the outermost pixels
 /// and those with mostly unknown neighbors stay as they are.
@@ -67,87 +69,88 @@ pub(super) const MEDIAN_NETWORK: [(usize, usize); 19] = [
 
 /// Makes patches of fewer than `least_pixels` connected pixels unknown; neighbors (above,
 /// below, beside) are connected when they differ by at most `step_px`.
-pub(super) fn remove_specks(disparities: &mut [f32], width: usize, least_pixels: u32, step_px: f32) {
+pub(super) fn remove_specks(disparities: &mut [f32], width: usize, least_pixels: usize, step_px: f32) {
+    let rows: Vec<Vec<Range<usize>>> =
+        disparities.par_chunks_exact(width).map(|row| connected_runs(row, step_px)).collect();
+    // Runs are numbered from the top on.
+    let mut first = Vec::with_capacity(rows.len());
     let mut patches = Patches::default();
-    // Runs of connected pixels along each row; run of every pixel.
-    let mut run_of = vec![0u32; disparities.len()];
-    for (row, runs) in disparities.chunks_exact(width).zip(run_of.chunks_exact_mut(width)) {
-        let mut before = UNKNOWN;
-        for (d, run) in row.iter().zip(runs) {
-            if *d < UNKNOWN {
-                let connected = (d - before).abs() <= step_px;
-                *run = if connected { patches.grow() } else { patches.begin() };
+    for runs in &rows {
+        first.push(patches.parent.len());
+        runs.iter().for_each(|run| patches.begin(run.len()));
+    }
+    for (y, pair) in rows.windows(2).enumerate() {
+        let [above, below] = [y, y + 1].map(|y| &disparities[y * width..][..width]);
+        let touch = |x: usize| (above[x] - below[x]).abs() <= step_px;
+        let (mut a, mut b) = (0, 0);
+        while let (Some(upper), Some(lower)) = (pair[0].get(a), pair[1].get(b)) {
+            if (upper.start.max(lower.start)..upper.end.min(lower.end)).any(touch) {
+                patches.join(first[y] + a, first[y + 1] + b);
             }
-            before = *d;
+            if upper.end < lower.end { a += 1 } else { b += 1 }
         }
     }
-    for y in 1..disparities.len() / width {
-        let (above, below) = ((y - 1) * width, y * width);
-        let mut joined = (u32::MAX, u32::MAX);
-        for x in 0..width {
-            let (a, b) = (disparities[above + x], disparities[below + x]);
-            let runs = (run_of[above + x], run_of[below + x]);
-            if a < UNKNOWN && b < UNKNOWN && runs != joined && (a - b).abs() <= step_px {
-                patches.join(runs.0, runs.1);
-                joined = runs;
+    let keep = patches.of_at_least(least_pixels);
+    disparities.par_chunks_exact_mut(width).zip(rows).zip(first).for_each(|((row, runs), first)| {
+        for (run, keep) in runs.into_iter().zip(&keep[first..]) {
+            if !keep {
+                row[run].fill(UNKNOWN);
             }
         }
-    }
-    let keep = patches.large(least_pixels);
-    for (d, run) in disparities.iter_mut().zip(run_of) {
-        if *d < UNKNOWN && !keep[run as usize] {
-            *d = UNKNOWN;
+    });
+}
+
+/// Longest runs of known disparities without a larger step than `step_px`.
+fn connected_runs(row: &[f32], step_px: f32) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    let mut before = UNKNOWN;
+    for (x, d) in row.iter().enumerate().filter(|(_, d)| **d < UNKNOWN) {
+        match runs.last_mut() {
+            Some(run) if run.end == x && (d - before).abs() <= step_px => run.end += 1,
+            _ => runs.push(x..x + 1),
         }
+        before = *d;
     }
+    runs
 }
 
 /// Sets of runs that touch (union–find).
 #[derive(Default)]
 struct Patches {
-    parent: Vec<u32>,
-    pixels: Vec<u32>,
+    parent: Vec<usize>,
+    pixels: Vec<usize>,
 }
 
 impl Patches {
-    /// A new run of one pixel.
-    fn begin(&mut self) -> u32 {
-        let run = self.parent.len() as u32;
-        self.parent.push(run);
-        self.pixels.push(1);
-        run
+    /// A patch of one run.
+    fn begin(&mut self, pixels: usize) {
+        self.parent.push(self.parent.len());
+        self.pixels.push(pixels);
     }
 
-    /// One more pixel in the newest run.
-    fn grow(&mut self) -> u32 {
-        let run = self.pixels.len() - 1;
-        self.pixels[run] += 1;
-        run as u32
-    }
-
-    fn root(&mut self, mut run: u32) -> u32 {
-        while self.parent[run as usize] != run {
-            let above = self.parent[self.parent[run as usize] as usize];
-            self.parent[run as usize] = above;
-            run = above;
+    fn root(&mut self, mut run: usize) -> usize {
+        while self.parent[run] != run {
+            self.parent[run] = self.parent[self.parent[run]];
+            run = self.parent[run];
         }
         run
     }
 
-    fn join(&mut self, a: u32, b: u32) {
+    fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         if a != b {
             let (low, high) = (a.min(b), a.max(b));
-            self.parent[high as usize] = low;
-            self.pixels[low as usize] += self.pixels[high as usize];
+            self.parent[high] = low;
+            self.pixels[low] += self.pixels[high];
         }
     }
 
     /// For each run, whether its patch has at least that many pixels.
-    fn large(&mut self, least_pixels: u32) -> Vec<bool> {
-        (0..self.parent.len() as u32)
+    fn of_at_least(&mut self, least_pixels: usize) -> Vec<bool> {
+        (0..self.parent.len())
             .map(|run| {
                 let root = self.root(run);
-                self.pixels[root as usize] >= least_pixels
+                self.pixels[root] >= least_pixels
             })
             .collect()
     }
