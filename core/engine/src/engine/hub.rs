@@ -35,6 +35,8 @@ use crate::work::WorkResult;
 const PUBLISH_EVERY: Duration = Duration::from_millis(12);
 /// While jobs run their elapsed time is shown at least this often.
 const JOB_TICK: Duration = Duration::from_millis(250);
+/// A point that stays is measured anew at most this often; a new one at once.
+const PROBE_EVERY: Duration = Duration::from_millis(100);
 /// Without anything to do the hub looks around this often.
 const IDLE: Duration = Duration::from_secs(5);
 /// Messages of the source that may wait.
@@ -98,6 +100,9 @@ struct Fed {
     rectify: Option<(u64, u64, bool)>,
     corners: Option<(u64, Chessboard)>,
     probe: Option<(u64, u64, ProbePoint)>,
+    probed_at: Option<Instant>,
+    /// A newer pair waits for its time.
+    probe_waits: bool,
 }
 
 impl<'a> Hub<'a> {
@@ -238,6 +243,8 @@ impl<'a> Hub<'a> {
     fn wait(&self) -> Duration {
         if self.changed {
             PUBLISH_EVERY.saturating_sub(self.published.elapsed())
+        } else if self.pipeline.fed.probe_waits {
+            PROBE_EVERY
         } else if self.jobs.is_empty() {
             IDLE
         } else {
@@ -346,7 +353,14 @@ impl Pipeline {
         }
         if let Some(input) = state.probe_input() {
             let key = (input.frame.stamp.seq, input.setup.generation, input.point);
-            if self.fed.probe.replace(key) != Some(key) {
+            let fed = &mut self.fed;
+            let same_point =
+                fed.probe.is_some_and(|(_, generation, point)| (generation, point) == (key.1, key.2));
+            let lately = fed.probed_at.is_some_and(|at| at.elapsed() < PROBE_EVERY);
+            let is_new = fed.probe != Some(key);
+            fed.probe_waits = is_new && same_point && lately;
+            if is_new && !fed.probe_waits {
+                (fed.probe, fed.probed_at) = (Some(key), Some(Instant::now()));
                 self.probe.put(input);
             }
         }

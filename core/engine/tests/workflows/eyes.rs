@@ -371,3 +371,19 @@ fn a_pair_of_a_closed_source_comes_too_late() {
     desk.state.source_changed(view(3));
     assert!(desk.view().live.raw.is_some());
 }
+
+#[test]
+fn what_cannot_be_kept_stays_a_proposal() {
+    let folder = folder();
+    let file = folder.path().join("file");
+    std::fs::write(&file, "in the way").expect("written");
+    let mut desk = collected(&file);
+    assert!(desk.view().notices[0].text.contains("cannot be used"), "{:?}", desk.view().notices[0]);
+    desk.apply(EyesCommand::Solve);
+    desk.apply(EyesCommand::Accept);
+    let view = desk.view();
+    assert!(view.eyes.proposal.is_some() && view.eyes.in_use.is_none());
+    let notice = view.notices.last().expect("a reason");
+    assert_eq!(notice.level, NoticeLevel::Error);
+    assert!(notice.text.contains("free space"), "{}", notice.text);
+}

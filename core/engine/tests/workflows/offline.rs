@@ -121,7 +121,8 @@ fn calibrate_check_locate_disparity() {
 fn bad_input_is_told_with_what_to_do() {
     let folder = folder();
     let good = args(folder.path(), &[]);
-    let fails = |args: &CalibrateArgs| calibrate_stereo(args, &Unattended).err().map(|error| error.to_string());
+    let fails =
+        |args: &CalibrateArgs| calibrate_stereo(args, &Unattended).err().map(|error| error.to_string());
 
     let empty = folder.path().join("empty");
     std::fs::create_dir(&empty).expect("made");
