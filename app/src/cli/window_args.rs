@@ -40,7 +40,7 @@ pub struct WindowArgs {
     data_dir: Option<PathBuf>,
     /// Does things without an operator, one after the other, each once the one before is done:
     /// collect, solve, judge, accept, compare, live, play, next, stop, palette, log, inspector,
-    /// messages, frame-times, pair:N, probe:U,V, wait:SECONDS, picture:FILE, quit.
+    /// messages, frame-times, pair:N, probe:U,V, rate:HZ, wait:SECONDS, picture:FILE, quit.
     #[arg(long = "do", value_name = "STEPS", value_delimiter = ';', value_parser = step, hide_short_help = true)]
     script: Vec<ScriptStep>,
     /// Writes how long the frames took, as JSON, when the window is closed.
@@ -124,6 +124,9 @@ fn step(text: &str) -> Result<ScriptStep, String> {
         "probe" => {
             let at = value.split_once(',').and_then(|(u, v)| Some([u.parse().ok()?, v.parse().ok()?]));
             at.map(ScriptStep::Probe).ok_or_else(|| "probe:U,V wants a pixel".to_owned())
+        }
+        "rate" => {
+            value.parse().map(ScriptStep::PairsPerSecond).map_err(|_| "rate:HZ wants a number".to_owned())
         }
         "wait" => {
             seconds(value).map(ScriptStep::Wait).ok_or_else(|| "wait:SECONDS wants a number".to_owned())

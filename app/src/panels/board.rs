@@ -8,7 +8,7 @@ use plumbline_widgets::buttons::choice;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::PanelContext;
-use crate::window::Action;
+use crate::window::{Action, other_board};
 
 /// The board as it is being typed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,6 +80,11 @@ fn board(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     // Kept while it cannot be used, so that typing goes on from what was typed.
     cx.state.board = edited.board().is_err().then_some(edited);
     seen(ui, eyes);
+    if let Some((columns, rows)) = other_board(eyes)
+        && ui.button(format!("Use {columns}×{rows} squares")).clicked()
+    {
+        cx.outbox.act(Action::UseSeenBoard);
+    }
     ui.add_space(space::XS);
     let action = Action::RecognizeBoard;
     let refusal = action.refusal(cx.view);
@@ -98,9 +103,7 @@ fn number(ui: &mut Ui, label: &str, value: &mut u32) {
 /// What a search for any board found, when that differs from what is looked for.
 fn seen(ui: &mut Ui, eyes: &EyesView) {
     let Some(seen) = &eyes.board_seen else { return };
-    let as_chosen = seen.inner_corners.is_some_and(|inner| {
-        (inner.columns, inner.rows) == (eyes.board.inner_columns, eyes.board.inner_rows)
-    });
+    let as_chosen = seen.inner_corners.is_some() && other_board(eyes).is_none();
     let role = if as_chosen { Role::Accepted } else { Role::Warning };
     ui.add_space(space::XS);
     ui.label(egui::RichText::new(&seen.text).color(role.color(theme::tokens(ui))));

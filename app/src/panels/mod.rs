@@ -90,7 +90,7 @@ impl Default for PanelState {
 }
 
 /// The calibration that is judged: the proposal, else the one in use.
-pub fn shown_calibration(eyes: &EyesView) -> Option<Arc<StereoCalibration>> {
+pub(crate) fn shown_calibration(eyes: &EyesView) -> Option<Arc<StereoCalibration>> {
     let proposed = eyes.proposal.as_ref().map(|proposal| &proposal.calibration);
     proposed.or(eyes.in_use.as_ref().map(|in_use| &in_use.calibration)).cloned()
 }

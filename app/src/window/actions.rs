@@ -39,6 +39,8 @@ pub enum Action {
     Go(Screen),
     /// Says which board the newest pair shows.
     RecognizeBoard,
+    /// Takes the board that was recognized.
+    UseSeenBoard,
     /// Adds the newest pair.
     Capture,
     /// Captures without asking, or stops that.
@@ -105,6 +107,7 @@ pub const ALL: &[Action] = &[
     Action::Go(Screen::Judge),
     Action::Go(Screen::Accept),
     Action::RecognizeBoard,
+    Action::UseSeenBoard,
     Action::Capture,
     Action::ToggleAutoCapture,
     Action::CollectRecording,
@@ -155,6 +158,7 @@ impl Action {
             Self::Go(Screen::Judge) => "Go to Eyes: judge",
             Self::Go(Screen::Accept) => "Go to Eyes: accept",
             Self::RecognizeBoard => "Recognize the board",
+            Self::UseSeenBoard => "Use the recognized board",
             Self::Capture => "Capture pair",
             Self::ToggleAutoCapture => "Capture by itself",
             Self::CollectRecording => "Use all pairs of the recording",
@@ -238,6 +242,10 @@ impl Action {
                 when(view.source.replay.is_some(), "no recording is open")
             }
             Self::RecognizeBoard | Self::Capture => when(view.live.raw.is_some(), "there is no image yet"),
+            Self::UseSeenBoard => when(
+                eyes.board_seen.as_ref().is_some_and(|s| s.inner_corners.is_some()),
+                "no board was recognized",
+            ),
             Self::CollectRecording => when(view.source.replay.is_some(), "no recording is open"),
             Self::DeleteLast | Self::DeleteAll => when(!eyes.collected.is_empty(), "no pair is collected"),
             Self::Undo => when(eyes.can_undo, "nothing was changed"),

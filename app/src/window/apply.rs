@@ -104,6 +104,12 @@ impl PlumblineWindow {
             Action::StepBack => SourceCommand::Step(-1).into(),
             Action::ToggleLoop => SourceCommand::Loop(!replay?.looping).into(),
             Action::RecognizeBoard => EyesCommand::RecognizeBoard.into(),
+            Action::UseSeenBoard => {
+                let eyes = &self.view.eyes;
+                let seen = eyes.board_seen.as_ref()?.inner_corners?;
+                let (columns, rows) = (seen.columns + 1, seen.rows + 1);
+                EyesCommand::ChooseBoard { columns, rows, square_m: eyes.board.square_m }.into()
+            }
             Action::Capture => EyesCommand::Capture.into(),
             Action::ToggleAutoCapture => EyesCommand::AutoCapture(!self.view.eyes.auto_capture).into(),
             Action::CollectRecording => EyesCommand::CollectRecording.into(),
@@ -200,6 +206,7 @@ impl PlumblineWindow {
             ScriptStep::Probe([u_px, v_px]) => {
                 self.panels.probe.pinned = Some(ProbePoint::Raw { eye: Eye::Left, u_px, v_px });
             }
+            ScriptStep::PairsPerSecond(rate) => self.backend.send(SourceCommand::PairsPerSecond(rate).into()),
             ScriptStep::Wait(_) => {}
             ScriptStep::Picture(file) => {
                 self.script.waiting_for_picture.store(true, Ordering::Relaxed);

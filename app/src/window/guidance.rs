@@ -94,10 +94,11 @@ fn collect(view: &View) -> Guidance {
         return say(format!("Solved. {}", verdict(proposal).sentence))
             .then("Judge the result", Action::Go(Screen::Judge));
     }
-    if let Some(seen) = eyes.board_seen.as_ref().filter(|_| eyes.collected.is_empty()) {
-        if seen.inner_corners.is_some() && !eyes.board_chosen {
-            return say(seen.text.clone()).then(collect_label(view), collect_action(view));
-        }
+    if let Some(seen) = eyes.board_seen.as_ref().filter(|_| eyes.collected.is_empty())
+        && let Some((columns, rows)) = other_board(eyes)
+    {
+        let label = format!("Use {columns}×{rows} squares");
+        return say(seen.text.clone()).warn().then(label, Action::UseSeenBoard);
     }
     if eyes.collected.is_empty() {
         if let Some(guidance) = source_trouble(view) {
@@ -122,6 +123,13 @@ fn collect(view: &View) -> Guidance {
     let wanted = eyes.ghost.as_ref().map_or_else(String::new, |g| format!(" Next: {}.", g.reason));
     say(format!("{count} pairs collected. {}{wanted}", hint_sentence(eyes)))
         .then("Capture pair", Action::Capture)
+}
+
+/// Squares of the board that was recognized, if it is not the chosen one.
+pub fn other_board(eyes: &EyesView) -> Option<(u32, u32)> {
+    let seen = eyes.board_seen.as_ref()?.inner_corners?;
+    let chosen = (eyes.board.inner_columns, eyes.board.inner_rows);
+    ((seen.columns, seen.rows) != chosen).then_some((seen.columns + 1, seen.rows + 1))
 }
 
 fn collect_label(view: &View) -> String {

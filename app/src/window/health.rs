@@ -6,7 +6,7 @@ use egui::{Align, Button, DragValue, Layout, Panel, Popup, Ui};
 use jiff::Timestamp;
 use plumbline_engine::view::{SourceStatus, StepState};
 use plumbline_engine::{EyesCommand, View};
-use plumbline_widgets::buttons::{ArmState, stop_button, stop_pressed};
+use plumbline_widgets::buttons::{ArmState, STOP_SIZE, stop_button, stop_pressed};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::lamp::{Health, Lamp};
@@ -18,16 +18,24 @@ use super::steps::Screen;
 use super::{PlumblineWindow, source_menu};
 use crate::panels::source_age;
 
+/// Below this width, points, the lamps take a row of their own.
+const NARROW: f32 = 1180.0;
+const LAMPS_HEIGHT: f32 = 30.0;
 /// A live picture older than this is worth a warning.
 const OLD: Duration = Duration::from_millis(500);
 /// Lenses move while the cameras get warm; after this long they have settled.
 const WARM_AFTER_MINUTES: f64 = 20.0;
 
 pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let narrow = ui.available_width() < NARROW;
     let margin = egui::Margin { left: 16, right: 8, top: 6, bottom: 6 };
     let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(margin);
-    Panel::top("health").frame(frame).show_separator_line(false).show(ui, |ui| {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+    let height = STOP_SIZE.y + 12.0 + if narrow { LAMPS_HEIGHT } else { 0.0 };
+    let top = Panel::top("health").frame(frame).exact_size(height).show_separator_line(false);
+    top.show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let first_row = egui::vec2(ui.available_width(), STOP_SIZE.y);
+        ui.allocate_ui_with_layout(first_row, Layout::right_to_left(Align::Center), |ui| {
             let stop = stop_button(ui, ArmState::NotConnected);
             if stop_pressed(&stop) {
                 outbox.act(Action::Stop);
@@ -36,17 +44,26 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
             view_menu(window, ui, outbox);
             messages_button(window, ui, outbox);
             commands_button(ui, outbox);
-            ui.with_layout(Layout::left_to_right(Align::Center).with_main_wrap(true), |ui| {
-                ui.spacing_mut().item_spacing.x = space::XS;
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.heading("Plumbline");
                 ui.add_space(space::S);
                 source_menu::show(&window.view, &window.settings.recent_sources, ui, outbox);
-                eyes_lamps(&window.view, ui, outbox);
-                calibration_lamp(&window.view, ui, outbox);
-                clock_lamp(window, ui, outbox);
+                if !narrow {
+                    lamps(window, ui, outbox);
+                }
             });
         });
+        if narrow {
+            ui.horizontal(|ui| lamps(window, ui, outbox));
+        }
     });
+}
+
+fn lamps(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    ui.spacing_mut().item_spacing.x = space::XS;
+    eyes_lamps(&window.view, ui, outbox);
+    calibration_lamp(&window.view, ui, outbox);
+    clock_lamp(window, ui, outbox);
 }
 
 fn commands_button(ui: &mut Ui, outbox: &mut Outbox) {

@@ -39,7 +39,7 @@ use plumbline_engine::{JobId, Products, View};
 
 pub use actions::{Action, format_name};
 pub use backend::Backend;
-pub use guidance::{Verdict, hint_text, verdict};
+pub use guidance::{Verdict, hint_text, other_board, verdict};
 pub use launch::{LaunchOptions, launch};
 pub use log_lines::{LogStore, start as start_log};
 pub use outbox::Outbox;

@@ -113,7 +113,7 @@ mod tests {
     use super::*;
 
     fn notice(number: u64, level: NoticeLevel) -> Notice {
-        Notice { number, level, text: format!("message {number}"), at: jiff::Timestamp::UNIX_EPOCH }
+        Notice { number, level, text: format!("message {number}"), at: jiff::Timestamp::UNIX_EPOCH, times: 1 }
     }
 
     #[test]

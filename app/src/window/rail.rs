@@ -12,6 +12,7 @@ use super::actions::Action;
 use super::guidance::dropped;
 use super::outbox::Outbox;
 use super::steps::Screen;
+use crate::panels::shown_calibration;
 
 const WIDTH: f32 = 176.0;
 
@@ -83,13 +84,12 @@ impl Part {
             Self::Collect => format::count(eyes.collected.len() - dropped(eyes), "pair"),
             Self::Solve if eyes.solving.is_some() => "running".to_owned(),
             Self::Solve if eyes.proposal.is_some() && fresh.is_none() => "again".to_owned(),
-            Self::Solve | Self::Judge => fresh
+            Self::Solve => fresh
                 .and_then(|proposal| proposal.calibration.summary.as_ref())
-                .map(|summary| match self {
-                    Self::Solve => format::px(summary.rms_stereo_px),
-                    _ => summary.cross_validated_px.map_or_else(String::new, format::px),
-                })
-                .unwrap_or_default(),
+                .map_or_else(String::new, |summary| format::px(summary.rms_stereo_px)),
+            Self::Judge => shown_calibration(eyes)
+                .and_then(|calibration| calibration.summary.as_ref()?.cross_validated_px)
+                .map_or_else(String::new, format::px),
             Self::Compare => fresh
                 .and_then(|proposal| proposal.difference.as_ref()?.median_m())
                 .map_or_else(String::new, format::mm),

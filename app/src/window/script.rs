@@ -21,6 +21,8 @@ pub enum ScriptStep {
     ChoosePair(usize),
     /// Keeps measuring at this pixel of the raw left image.
     Probe([f64; 2]),
+    /// Plays at so many pairs per second.
+    PairsPerSecond(f64),
     /// Lets time pass.
     Wait(Duration),
     /// Saves a picture of the window.

@@ -1,0 +1,78 @@
+//! A window without an engine: it draws what the test made up and notes what was asked for.
+
+use std::sync::{Arc, Mutex};
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use plumbline::{Backend, PlumblineWindow, ScriptStep, WindowOptions, WindowSettings};
+use plumbline_engine::{Command, View};
+
+/// What the test can see and change from outside.
+#[derive(Clone, Default)]
+pub struct Fake {
+    view: Arc<Mutex<Arc<View>>>,
+    sent: Arc<Mutex<Vec<Command>>>,
+}
+
+impl Backend for Fake {
+    fn view(&self) -> Arc<View> {
+        self.view.lock().expect("no test panics with the lock").clone()
+    }
+
+    fn send(&self, command: Command) {
+        self.sent.lock().expect("no test panics with the lock").push(command);
+    }
+}
+
+impl Fake {
+    pub fn over(view: View) -> Self {
+        let fake = Self::default();
+        *fake.view.lock().expect("fresh") = Arc::new(view);
+        fake
+    }
+
+    /// What was asked for since the last call, without what the window asks for by itself.
+    pub fn take_sent(&self) -> Vec<Command> {
+        let mut sent = self.sent.lock().expect("no test panics with the lock");
+        let all = std::mem::take(&mut *sent);
+        all.into_iter().filter(|command| !matches!(command, Command::Live(_))).collect()
+    }
+
+    pub fn window(&self, settings: WindowSettings) -> Harness<'static, PlumblineWindow> {
+        self.window_of_size(settings, [1280.0, 800.0])
+    }
+
+    pub fn window_of_size(
+        &self,
+        settings: WindowSettings,
+        size: [f32; 2],
+    ) -> Harness<'static, PlumblineWindow> {
+        let backend = self.clone();
+        let options =
+            WindowOptions { settings, script: Vec::<ScriptStep>::new(), ..WindowOptions::default() };
+        let mut harness = Harness::builder()
+            .with_size(size)
+            .build_eframe(|creation| PlumblineWindow::new(&creation.egui_ctx, Box::new(backend), options));
+        // The first frames only measure.
+        harness.run_steps(3);
+        self.take_sent();
+        harness
+    }
+}
+
+/// Clicks what has this label; the first one if there are several.
+pub fn click(harness: &mut Harness<'_, PlumblineWindow>, label: &str) {
+    let found = harness.get_all_by_label(label).next();
+    found.unwrap_or_else(|| panic!("nothing is called {label:?}")).click();
+    harness.run_steps(3);
+}
+
+/// Whether something has this label.
+pub fn shows(harness: &Harness<'_, PlumblineWindow>, label: &str) -> bool {
+    harness.query_all_by_label(label).next().is_some()
+}
+
+/// Whether something has this text in its label.
+pub fn says(harness: &Harness<'_, PlumblineWindow>, text: &str) -> bool {
+    harness.query_all_by_label_contains(text).next().is_some()
+}

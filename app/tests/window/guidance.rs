@@ -1,0 +1,86 @@
+//! The bottom line: the one button of every state asks for what it says.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use plumbline::{Screen, WindowSettings};
+use plumbline_engine::view::{EyesView, JobState, JobView, ReplayView, SourceStatus, SourceView};
+use plumbline_engine::{Command, EyesCommand, JobCommand, JobId, SourceCommand, View};
+
+use crate::fake::{Fake, click, says, shows};
+
+fn on(screen: Screen) -> WindowSettings {
+    WindowSettings { screen, ..WindowSettings::default() }
+}
+
+fn folder_of(length: u64) -> Arc<SourceView> {
+    let replay =
+        ReplayView { position: Some(0), length, playing: true, looping: true, pairs_per_second: Some(4.0) };
+    Arc::new(SourceView {
+        description: format!("{length} pairs in board"),
+        status: SourceStatus::Running,
+        replay: Some(replay),
+        photographs: true,
+        ..SourceView::default()
+    })
+}
+
+#[test]
+fn a_folder_of_pairs_is_collected_with_one_click() {
+    let fake = Fake::over(View { source: folder_of(30), ..View::default() });
+    let mut window = fake.window(on(Screen::Collect));
+    click(&mut window, "Use all 30 pairs of this folder");
+    assert_eq!(fake.take_sent(), [Command::from(EyesCommand::CollectRecording)]);
+}
+
+#[test]
+fn an_uncalibrated_view_leads_to_the_calibration() {
+    let fake = Fake::over(View { source: folder_of(30), ..View::default() });
+    let mut window = fake.window(on(Screen::Live));
+    assert!(says(&window, "nothing can be measured yet"));
+    click(&mut window, "Calibrate the eyes");
+    assert!(shows(&window, "Use all 30 pairs of this folder"));
+}
+
+#[test]
+fn a_lost_source_says_why_and_can_be_tried_again() {
+    let reason = "The left camera was unplugged: plug it in again.".to_owned();
+    let status = SourceStatus::Lost { reason: reason.clone(), since: Instant::now(), attempts: 2 };
+    let source = Arc::new(SourceView { status, ..SourceView::default() });
+    let fake = Fake::over(View { source, ..View::default() });
+    let mut window = fake.window(on(Screen::Live));
+    assert!(says(&window, &reason));
+    click(&mut window, "Try again");
+    assert_eq!(fake.take_sent(), [Command::from(SourceCommand::Retry)]);
+}
+
+#[test]
+fn a_failed_job_stays_until_it_is_dismissed_and_a_done_one_does_not() {
+    let job = |id, state| JobView {
+        id: JobId(id),
+        title: "Solve 3 pairs".to_owned(),
+        state,
+        elapsed: std::time::Duration::from_secs(1),
+    };
+    let failed = job(1, JobState::Failed { reason: "three pairs are too few: collect more".to_owned() });
+    let done = job(2, JobState::Done { summary: "solved".to_owned() });
+    let fake = Fake::over(View { jobs: Arc::from([failed, done]), ..View::default() });
+    let mut window = fake.window(on(Screen::Collect));
+    assert!(says(&window, "three pairs are too few"));
+    click(&mut window, "Dismiss");
+    assert_eq!(fake.take_sent(), [Command::from(JobCommand::Dismiss(JobId(1)))]);
+}
+
+#[test]
+fn empty_screens_say_how_to_fill_them() {
+    for (screen, words) in [
+        (Screen::Live, "Where do the images come from?"),
+        (Screen::Collect, "No pairs yet"),
+        (Screen::Judge, "Nothing to judge yet"),
+        (Screen::Accept, "No calibration yet"),
+    ] {
+        let fake = Fake::over(View { eyes: Arc::new(EyesView::default()), ..View::default() });
+        let window = fake.window(on(screen));
+        assert!(shows(&window, words), "{screen:?}");
+    }
+}

@@ -1,0 +1,131 @@
+//! STOP: always there, always works, whatever is open.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use plumbline::{Screen, WindowSettings};
+use plumbline_engine::view::{EyesView, JobState, JobView, ReplayView, SourceStatus, SourceView};
+use plumbline_engine::{Command, EyesCommand, JobCommand, JobId, SourceCommand, View};
+
+use crate::fake::{Fake, click};
+
+/// A job, a playing recording and automatic capture: all that can run.
+fn everything_runs() -> View {
+    let replay = ReplayView {
+        position: Some(3),
+        length: 30,
+        playing: true,
+        looping: true,
+        pairs_per_second: Some(4.0),
+    };
+    let job = JobView {
+        id: JobId(7),
+        title: "Solve 30 pairs".to_owned(),
+        state: JobState::Running {
+            fraction: 0.4,
+            doing: "iteration 3".to_owned(),
+            remaining: Some(Duration::from_secs(2)),
+            cancelling: false,
+        },
+        elapsed: Duration::from_secs(1),
+    };
+    View {
+        source: Arc::new(SourceView {
+            status: SourceStatus::Running,
+            replay: Some(replay),
+            ..SourceView::default()
+        }),
+        eyes: Arc::new(EyesView { auto_capture: true, ..EyesView::default() }),
+        jobs: Arc::from([job]),
+        ..View::default()
+    }
+}
+
+fn stopped() -> [Command; 3] {
+    [JobCommand::Cancel(JobId(7)).into(), EyesCommand::AutoCapture(false).into(), SourceCommand::Pause.into()]
+}
+
+#[test]
+fn the_button_stops_everything_that_runs() {
+    let fake = Fake::over(everything_runs());
+    let mut window = fake.window(WindowSettings::default());
+    click(&mut window, "STOP");
+    // Once when it is pressed down, and once more when it is let go.
+    let sent = fake.take_sent();
+    assert!(sent.starts_with(&stopped()), "{sent:?}");
+}
+
+#[test]
+fn escape_and_space_stop_on_every_screen() {
+    for screen in Screen::ALL {
+        let fake = Fake::over(everything_runs());
+        let mut window = fake.window(WindowSettings { screen, ..WindowSettings::default() });
+        for key in [Key::Escape, Key::Space] {
+            window.key_press(key);
+            window.run_steps(2);
+            assert_eq!(fake.take_sent(), stopped(), "{key:?} on {screen:?}");
+        }
+    }
+}
+
+#[test]
+fn space_stops_and_does_not_press_the_button_that_has_the_focus() {
+    let fake = Fake::over(everything_runs());
+    let mut window = fake.window(WindowSettings::default());
+    window.get_by_label("Forward").focus();
+    window.run_steps(2);
+    window.key_press(Key::Space);
+    window.run_steps(2);
+    assert_eq!(fake.take_sent(), stopped());
+}
+
+#[test]
+fn nothing_ever_covers_the_button() {
+    let open: [(&str, Option<Key>); 6] = [
+        ("", None),
+        ("palette", Some(Key::K)),
+        ("path", Some(Key::L)),
+        ("messages", Some(Key::M)),
+        ("log", Some(Key::J)),
+        ("frame times", Some(Key::F12)),
+    ];
+    for size in [[1280.0, 800.0], [960.0, 600.0], [3840.0, 2160.0]] {
+        for (what, key) in open {
+            let fake = Fake::over(everything_runs());
+            let mut window = fake.window_of_size(WindowSettings::default(), size);
+            if let Some(key) = key {
+                let modifiers = if key == Key::F12 { Modifiers::NONE } else { Modifiers::COMMAND };
+                window.key_press_modifiers(modifiers, key);
+                window.run_steps(3);
+            }
+            let rect = window.get_by_label("STOP").rect();
+            let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, size.into());
+            assert!(screen.contains_rect(rect), "STOP is at {rect} of {size:?} with {what}");
+            // With the pointer, as a hand does it: whatever lies on top gets the click.
+            let center = rect.center();
+            window.hover_at(center);
+            window.run_steps(1);
+            for pressed in [true, false] {
+                window.event(egui::Event::PointerButton {
+                    pos: center,
+                    button: egui::PointerButton::Primary,
+                    pressed,
+                    modifiers: Modifiers::NONE,
+                });
+                window.run_steps(1);
+            }
+            let sent = fake.take_sent();
+            assert!(sent.starts_with(&stopped()), "with {what} open at {size:?}: {sent:?}");
+        }
+    }
+}
+
+#[test]
+fn it_says_that_no_arm_is_connected() {
+    let fake = Fake::over(View::default());
+    let window = fake.window(WindowSettings::default());
+    let value = window.get_by_label("STOP").accesskit_node().value();
+    assert_eq!(value.as_deref(), Some("no arm connected"));
+}
