@@ -1,7 +1,5 @@
 //! Disparity on made-up views whose truth is known, and on published ones.
 
-use std::sync::OnceLock;
-
 use image::{GrayImage, Luma};
 use plumbline_vision::disparity::{
     Block, DisparityError, DisparityMap, Matcher, Origin, Quality, Settings, read_pfm, write_pfm,
@@ -275,23 +273,6 @@ fn damaged_pfm_files_say_what_is_wrong() {
     assert!(message(b"Pf\n2 2\n-1\nabc").contains("cut off"));
 }
 
-/// Where published test data lies, if this machine has it.
-fn data() -> Option<&'static std::path::Path> {
-    static PLACE: OnceLock<Option<std::path::PathBuf>> = OnceLock::new();
-    PLACE
-        .get_or_init(|| {
-            let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
-            let place =
-                std::env::var_os("PLUMBLINE_DATA").map_or_else(|| beside.into(), std::path::PathBuf::from);
-            let place = place.join("disparity");
-            if !place.is_dir() {
-                eprintln!("skipped: no published disparity data in {}", place.display());
-            }
-            place.is_dir().then_some(place)
-        })
-        .as_deref()
-}
-
 /// Numbers of a `.npz` file with one array of 32-bit floats.
 fn read_npz(path: &std::path::Path) -> Vec<f32> {
     let bytes = std::fs::read(path).expect("readable");
@@ -318,7 +299,10 @@ fn bad_fraction(map: &DisparityMap, truth: &[f32]) -> f64 {
 
 #[test]
 fn published_pairs_are_matched_better_than_by_the_usual_matcher() {
-    let Some(data) = data() else { return };
+    let data = match plumbline_model::measured_data::folder("disparity") {
+        Ok(data) => data,
+        Err(reason) => return eprintln!("{reason}"),
+    };
     let gray = |name: String| image::open(data.join(name)).expect("image").to_luma8();
     let quarter = |name: &str| -> Vec<f32> {
         let known = |v: &u8| if *v == 0 { f32::INFINITY } else { f32::from(*v) / 4.0 };

@@ -12,7 +12,7 @@ use plumbline_model::{
     CalibrationOptions, Chessboard, JobContext, StereoCalibration, Unattended, measured_data,
 };
 use plumbline_vision::calibrate;
-use plumbline_vision::disparity::bench::{ComparisonReport, compare_with_published};
+use plumbline_vision::disparity::bench::{ComparisonReport, NEAREST_M, compare_with_published};
 use serde::Serialize;
 
 use super::OfflineError;
@@ -204,9 +204,6 @@ fn bumblebee(folder: &Path) -> Result<Vec<Figure>, OfflineError> {
             .peer("OpenCV", 0.067),
     ])
 }
-
-/// Nearest depth searched: a hand held close to the eyes, meters.
-const NEAREST_M: f64 = 0.15;
 
 /// Rectification, disparity and 3D of one real pair, timed in turns with the published pipeline.
 fn pipeline() -> Result<Vec<Figure>, OfflineError> {

@@ -194,6 +194,27 @@ fn a_view_coarser_than_the_lens_is_refused_and_the_size_it_names_works() {
 }
 
 #[test]
+fn turning_down_moves_the_view_down_and_nothing_else() {
+    let level = AimedPair::turned_down(&nico(), 0.0, 1.2, (640, 480)).expect("aimable");
+    for down_rad in [-0.4, 0.0, 0.3, 0.8] {
+        let pair = AimedPair::turned_down(&nico(), down_rad, 1.2, (640, 480)).expect("aimable");
+        assert!((pair.down_rad() - down_rad).abs() < 1e-12);
+        // What the turned view shows in its middle, the level one shows lower by that angle.
+        let middle = pair.point(Pixel::new(319.5, 239.5), 20.0).expect("positive disparity");
+        let (left, right) = level.project(middle).expect("in front");
+        let lower_rad = ((left.v_px - level.cy_px) / level.f_px).atan();
+        assert!((lower_rad - down_rad).abs() < 1e-9, "{lower_rad} {down_rad}");
+        assert!((left.v_px - right.v_px).abs() < 1e-9);
+        let across_rad = 2.0 * (319.5 / pair.f_px).atan();
+        assert!((across_rad - 1.2).abs() < 1e-12);
+    }
+    for (down_rad, across_rad) in [(0.0, 3.0), (0.0, f64::NAN), (f64::NAN, 1.0), (4.0, 1.0)] {
+        let result = AimedPair::turned_down(&nico(), down_rad, across_rad, (640, 480));
+        assert!(matches!(result, Err(AimError::TooWide { .. })), "{result:?}");
+    }
+}
+
+#[test]
 fn pairs_that_see_no_depth_are_refused() {
     let mut together = nico();
     together.right_from_left = Pose::identity();
@@ -210,8 +231,7 @@ fn pairs_that_see_no_depth_are_refused() {
 
 #[test]
 fn a_workspace_around_the_eyes_is_refused() {
-    let mut workspace = Workspace::default();
-    workspace.x_range_m = [-3.0, 3.0];
+    let workspace = Workspace { x_range_m: [-3.0, 3.0], ..Workspace::default() };
     let result = AimedPair::at_workspace(&nico(), &workspace, DEFAULT_SIZE_PX);
     assert!(matches!(result, Err(AimError::TooWide { .. })), "{result:?}");
 }

@@ -27,6 +27,10 @@ use crate::rectify::{Pair, Rectifier, RectifyError};
 /// Depth at which the steps are compared, meters: the far edge of the table.
 pub const COMPARED_AT_M: f64 = 0.6;
 
+/// Nearest depth along the axis that the live pipeline searches, meters. The nearest things on
+/// the table that the robot works on (headroom included) are at 0.2 m.
+pub const NEAREST_M: f64 = 0.17;
+
 /// Focal length of the published rectified views, pixels.
 const PUBLISHED_F_PX: f64 = 35.0524;
 /// Column of their axes, left and right.

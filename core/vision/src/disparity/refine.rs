@@ -93,7 +93,8 @@ fn correct(disparities: &mut [f32], bare: &mut [bool], smooth: &[f32], sums: &[f
             // Also false when there is nothing in the window.
             let usable = delta.abs() <= LARGEST_CORRECTION_PX;
             *d = if usable { (smooth + delta).max(0.0) } else { *smooth };
-            bare[x] = !(contrast >= least_contrast);
+            // Not a number when there is nothing in the window.
+            bare[x] = contrast.is_nan() || contrast < least_contrast;
         }
     }
 }
