@@ -1,7 +1,7 @@
 //! The inspector: what is known about the thing that is looked at or chosen.
 
 use egui::{Panel, ScrollArea, Slider, Ui};
-use plumbline_engine::view::{AimView, SourceStatus};
+use plumbline_engine::view::{AimView, BoardPlace, SourceStatus};
 use plumbline_engine::{AimChoice, EyesCommand, HeadPose, LiveCommand, View};
 use plumbline_model::{Eye, PairFit};
 use plumbline_widgets::buttons::choice;
@@ -149,16 +149,7 @@ fn collecting(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Out
     match &eyes.ghost {
         Some(ghost) => {
             ui.label(format!("Hold the board {}.", ghost.reason));
-            let place = ghost.place;
-            key_value_grid(
-                ui,
-                "ghost",
-                &[
-                    KeyValue::quantity("Distance", Quantity::Depth, place.distance_m),
-                    KeyValue::quantity("Tilt up or down", Quantity::Angle, place.tilt_up_down_rad),
-                    KeyValue::quantity("Tilt left or right", Quantity::Angle, place.tilt_left_right_rad),
-                ],
-            );
+            key_value_grid(ui, "ghost", &place_rows(&ghost.place));
         }
         None if eyes.collected.is_empty() => {
             ui.label(theme::weak(ui, "The outline in both eyes will show where to hold the board."));
@@ -178,9 +169,7 @@ fn collecting(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Out
         KeyValue::text("Corners right", count(Eye::Right).to_string()),
     ];
     if let Some(place) = pair.place {
-        rows.push(KeyValue::quantity("Distance", Quantity::Depth, place.distance_m));
-        rows.push(KeyValue::quantity("Tilt up or down", Quantity::Angle, place.tilt_up_down_rad));
-        rows.push(KeyValue::quantity("Tilt left or right", Quantity::Angle, place.tilt_left_right_rad));
+        rows.extend(place_rows(&place));
     }
     key_value_grid(ui, "pair", &rows);
     ui.add_space(space::S);
@@ -192,6 +181,16 @@ fn collecting(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Out
             outbox.send(EyesCommand::Delete { pair: pair.name.clone() });
         }
     });
+}
+
+/// Where a board is, in whole millimeters and degrees: a hand holds it no better.
+fn place_rows(place: &BoardPlace) -> [KeyValue; 3] {
+    let degrees = |angle_rad: f64| format::fixed(angle_rad.to_degrees(), 0);
+    [
+        KeyValue::text("Distance", format::fixed(place.distance_m * 1000.0, 0)).unit("mm"),
+        KeyValue::text("Top away by", degrees(place.tilt_up_down_rad)).unit("°"),
+        KeyValue::text("Left away by", degrees(place.tilt_left_right_rad)).unit("°"),
+    ]
 }
 
 fn judged_pair(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {

@@ -1,0 +1,84 @@
+//! The whole way of an operator, by clicks in a window over the real engine: open a folder of
+//! pairs, use them all, solve, accept, look at depth. The pairs are rendered for the test, so
+//! the true geometry is known.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use plumbline::{PlumblineWindow, WindowOptions};
+use plumbline_engine::offline::{SampleArgs, write_sample};
+use plumbline_engine::{Engine, EngineSettings};
+use plumbline_model::Unattended;
+
+type Window = Harness<'static, PlumblineWindow>;
+
+const PAIRS: usize = 12;
+const PATIENCE: Duration = Duration::from_secs(120);
+
+fn window(data_dir: &Path) -> Window {
+    let data_dir = Some(data_dir.to_owned());
+    Harness::builder().with_size([1280.0, 800.0]).build_eframe(|creation| {
+        let engine = Engine::start(EngineSettings { data_dir, source: None }, Arc::new(|| {}));
+        PlumblineWindow::new(&creation.egui_ctx, Box::new(engine), WindowOptions::default())
+    })
+}
+
+/// Draws frames until something holds.
+fn until(window: &mut Window, what: &str, holds: impl Fn(&Window) -> bool) {
+    let start = Instant::now();
+    loop {
+        window.step();
+        if holds(window) {
+            return;
+        }
+        if start.elapsed() > PATIENCE {
+            let view = window.state().view();
+            panic!("waited in vain for {what}; jobs {:?}, messages {:?}", view.jobs, view.notices);
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+fn click_once_there(window: &mut Window, label: &str) {
+    until(window, label, |window| window.query_all_by_label(label).next().is_some());
+    window.get_all_by_label(label).next().expect("just seen").click();
+    window.run_steps(3);
+}
+
+#[test]
+fn from_a_folder_of_pairs_to_depth() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let args = SampleArgs { out: folder.path().join("sample"), pairs: PAIRS, seed: 1 };
+    let sample = write_sample(&args, &Unattended).expect("a folder that can be written");
+    let mut window = window(&folder.path().join("data"));
+
+    click_once_there(&mut window, "Open a folder of pairs…");
+    let typed = sample.board.to_str().expect("a path in letters").to_owned();
+    window.event(egui::Event::Text(typed));
+    window.run_steps(2);
+    click_once_there(&mut window, "Open");
+
+    click_once_there(&mut window, "Calibrate the eyes");
+    click_once_there(&mut window, &format!("Use all {PAIRS} pairs of this folder"));
+    click_once_there(&mut window, &format!("Solve {PAIRS} pairs"));
+
+    // The result opens by itself, with a verdict in words.
+    until(&mut window, "the verdict", |window| window.query_all_by_label_contains("Good:").next().is_some());
+    let proposal = window.state().view().eyes.proposal.clone().expect("a verdict is on a proposal");
+    let summary = proposal.calibration.summary.clone().expect("a solution has figures");
+    assert!(summary.rms_stereo_px < 0.3, "{summary:?}");
+    let baseline_m = proposal.calibration.cameras.baseline_m();
+    assert!((baseline_m - 0.0699).abs() < 0.5e-3, "the rendered eyes are 69.9 mm apart, not {baseline_m} m");
+
+    click_once_there(&mut window, "Accept calibration");
+    until(&mut window, "the calibration in use", |window| window.state().view().eyes.in_use.is_some());
+    assert!(window.state().view().eyes.proposal.is_none());
+
+    click_once_there(&mut window, "Live");
+    until(&mut window, "depth", |window| window.state().view().live.disparity.is_some());
+    let rectified = window.query_all_by_label("Left").next().is_some();
+    assert!(rectified, "the rectified pair is drawn");
+}
