@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use egui::Ui;
+use image::GrayImage;
 use plumbline_engine::view::CollectedPair;
 use plumbline_model::Eye;
 use plumbline_widgets::coverage::{Coverage, coverage_view};
@@ -31,10 +32,30 @@ impl CountedCoverage {
     }
 }
 
+/// So many images tell what the lens shows.
+const LOOKED_AT: usize = 12;
+/// Outside the image circle of a fisheye a camera delivers less than this, gray levels.
+const DARK: u8 = 20;
+
+/// Whether the image is not black at a place.
+fn is_lit(image: &GrayImage, [u_px, v_px]: [f64; 2]) -> bool {
+    let (u, v) = (u_px.max(0.0) as u32, v_px.max(0.0) as u32);
+    u < image.width() && v < image.height() && image.get_pixel(u, v)[0] >= DARK
+}
+
 /// `None` without pairs.
 fn count(pairs: &[Arc<CollectedPair>], image_size_px: Option<(u32, u32)>) -> Option<Coverage> {
     pairs.first()?;
     let mut coverage = Coverage::new(image_size_px?.into());
+    for eye in Eye::BOTH {
+        let images: Vec<&GrayImage> =
+            pairs.iter().filter_map(|pair| pair.image(eye)).map(Arc::as_ref).take(LOOKED_AT).collect();
+        if !images.is_empty() {
+            let grid = coverage.grid_mut(eye);
+            *grid =
+                grid.clone().with_reachable(|center_px| images.iter().any(|image| is_lit(image, center_px)));
+        }
+    }
     for pair in pairs {
         for eye in Eye::BOTH {
             for corner in pair.corners(eye).into_iter().flatten().flatten() {
