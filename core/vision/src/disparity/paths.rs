@@ -307,6 +307,11 @@ fn groups_mut<const GROUPS: usize>(bytes: &mut [u8]) -> &mut [[u8; LANES]; GROUP
 #[inline(always)]
 fn least_of<S: Simd>(group: u8x32<S>) -> u8 {
     let (low, high) = group.split();
-    let half = low.min(high);
-    half.iter().fold(u8::MAX, |least, lane| least.min(*lane))
+    // Halves against each other until one is left; a fold is not always compiled well.
+    let mut least = low.min(high);
+    least = least.min(least.slide::<8>(least));
+    least = least.min(least.slide::<4>(least));
+    least = least.min(least.slide::<2>(least));
+    least = least.min(least.slide::<1>(least));
+    least[0]
 }

@@ -148,7 +148,12 @@ fn cheapest_apart<S: Simd>(simd: S, totals: &[u16], chosen: u16) -> u16 {
 #[inline(always)]
 fn least_of<S: Simd>(group: u16x16<S>) -> u16 {
     let (low, high) = group.split();
-    low.min(high).iter().fold(u16::MAX, |least, lane| least.min(*lane))
+    // Halves against each other until one is left; a fold is not always compiled well.
+    let mut least = low.min(high);
+    least = least.min(least.slide::<4>(least));
+    least = least.min(least.slide::<2>(least));
+    least = least.min(least.slide::<1>(least));
+    least[0]
 }
 
 /// Offset (pixels, −0.5..=0.5) of the tip of a V through the chosen total and its neighbors.
