@@ -33,6 +33,14 @@ impl Default for FrameTimes {
     }
 }
 
+/// Processor time that this thread has used so far; `None` where the system does not tell.
+/// Time on the clock would count the waiting for a busy machine as well.
+pub fn thread_processor_time() -> Option<Duration> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let nanoseconds = text.split_whitespace().next()?.parse().ok()?;
+    Some(Duration::from_nanos(nanoseconds))
+}
+
 impl FrameTimes {
     /// Adds a frame that ended now.
     pub fn add(&mut self, cpu: Duration) {

@@ -103,6 +103,7 @@ pub struct PlumblineWindow {
     notices: NoticeList,
     log: LogPanel,
     frame_times: FrameTimes,
+    processor_time_before: Option<Duration>,
     frame_times_open: bool,
     frame_report: Option<PathBuf>,
     renderer: String,
@@ -133,6 +134,7 @@ impl PlumblineWindow {
             notices: NoticeList::default(),
             log: LogPanel::new(options.log),
             frame_times: FrameTimes::default(),
+            processor_time_before: None,
             frame_times_open: false,
             frame_report: options.frame_report,
             renderer: options.renderer,
@@ -164,6 +166,20 @@ impl PlumblineWindow {
         }
         // Ages and clocks move on although nothing else does.
         ctx.request_repaint_after(Duration::from_secs(1));
+    }
+
+    /// What the last frame took: everything that this thread did since the one before.
+    fn measure_frame(&mut self, clock_s: Option<f32>) {
+        let used = frame_time::thread_processor_time();
+        let took = match (used, self.processor_time_before) {
+            (Some(now), Some(before)) => now.checked_sub(before),
+            (Some(_), None) => None,
+            (None, _) => clock_s.map(|seconds| Duration::from_secs_f32(seconds.max(0.0))),
+        };
+        self.processor_time_before = used;
+        if let Some(took) = took {
+            self.frame_times.add(took);
+        }
     }
 
     fn draw(&mut self, ui: &mut egui::Ui) {
@@ -230,9 +246,7 @@ impl PlumblineWindow {
 
 impl eframe::App for PlumblineWindow {
     fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
-        if let Some(seconds) = frame.info().cpu_usage {
-            self.frame_times.add(Duration::from_secs_f32(seconds.max(0.0)));
-        }
+        self.measure_frame(frame.info().cpu_usage);
         self.before_frame(ctx);
     }
 
