@@ -21,6 +21,9 @@ const WORTH_OF_DISTANCE: usize = 6;
 const WORTH_OF_TILT: usize = 8;
 /// Free border of the image, as a share of its width: a board that touches it is often lost.
 const BORDER: f64 = 0.03;
+/// Nothing is asked for further off the optical axis, radians (83°): the image of a fisheye ends
+/// in a circle whose radius nobody has measured yet, and near its rim a board is all slant.
+const MOST_OFF_AXIS_RAD: f64 = 1.45;
 /// Points along each side of the drawn outline.
 const PER_SIDE: usize = 12;
 
@@ -155,7 +158,8 @@ fn project(cameras: &StereoCameras, eye: Eye, point_in_left: Point<LeftCamera>) 
         Eye::Left => point_in_left.coords.coords,
         Eye::Right => (cameras.right_from_left * point_in_left).coords.coords,
     };
-    cameras.camera(eye).project(&in_eye).ok()
+    let off_axis_rad = in_eye.x.hypot(in_eye.y).atan2(in_eye.z);
+    if off_axis_rad > MOST_OFF_AXIS_RAD { None } else { cameras.camera(eye).project(&in_eye).ok() }
 }
 
 #[cfg(test)]
