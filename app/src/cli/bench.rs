@@ -2,8 +2,10 @@
 
 use clap::Args;
 use plumbline_engine::offline::{self, BenchReport, Figure};
+use plumbline_model::measured_data;
 
-use super::output::Output;
+use super::bench_window;
+use super::output::{Output, say};
 
 /// Arguments of `bench`.
 #[derive(Debug, Args)]
@@ -11,7 +13,11 @@ pub struct Bench {}
 
 /// Measures.
 pub fn run(_arguments: Bench, output: &Output) -> anyhow::Result<()> {
-    let report = offline::bench(output)?;
+    let mut report = offline::bench(output)?;
+    match measured_data::folder("nico-chessboard") {
+        Ok(pairs) => report.figures.extend(bench_window::figures(&pairs)),
+        Err(why) => say(&format!("the window is not measured: {why}")),
+    }
     output.result(&report, text)
 }
 

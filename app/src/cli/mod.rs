@@ -1,6 +1,7 @@
 //! The command line: the window without a verb, the work on recorded data with one.
 
 mod bench;
+mod bench_window;
 mod calibrate;
 mod common;
 mod disparity;

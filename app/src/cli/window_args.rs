@@ -40,7 +40,7 @@ pub struct WindowArgs {
     data_dir: Option<PathBuf>,
     /// Does things without an operator, one after the other, each once the one before is done:
     /// collect, solve, judge, accept, compare, live, play, next, stop, palette, log, inspector,
-    /// messages, frame-times, pair:N, probe:U,V, rate:HZ, wait:SECONDS, picture:FILE, quit.
+    /// messages, frame-times, pair:N, probe:U,V, rate:HZ, wait:SECONDS, measure, picture:FILE, quit.
     #[arg(long = "do", value_name = "STEPS", value_delimiter = ';', value_parser = step, hide_short_help = true)]
     script: Vec<ScriptStep>,
     /// Writes how long the frames took, as JSON, when the window is closed.
@@ -119,6 +119,7 @@ fn step(text: &str) -> Result<ScriptStep, String> {
         "inspector" => act(Action::ToggleInspector),
         "messages" => act(Action::ToggleNotices),
         "frame-times" => act(Action::ToggleFrameTimes),
+        "measure" => Ok(ScriptStep::Measure),
         "quit" => Ok(ScriptStep::Quit),
         "pair" => value.parse().map(ScriptStep::ChoosePair).map_err(|_| "pair:N wants a number".to_owned()),
         "probe" => {

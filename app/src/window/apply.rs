@@ -17,6 +17,7 @@ use super::PlumblineWindow;
 use super::actions::Action;
 use super::ask::{Ask, Asked};
 use super::dialogs::{Answer, Question};
+use super::frame_time::{FrameTimes, resident_mb};
 use super::outbox::Outbox;
 use super::script::ScriptStep;
 use super::settings::ThemeChoice;
@@ -207,6 +208,10 @@ impl PlumblineWindow {
                 self.panels.probe.pinned = Some(ProbePoint::Raw { eye: Eye::Left, u_px, v_px });
             }
             ScriptStep::PairsPerSecond(rate) => self.backend.send(SourceCommand::PairsPerSecond(rate).into()),
+            ScriptStep::Measure => {
+                self.frame_times = FrameTimes::default();
+                self.resident_before_mb = resident_mb();
+            }
             ScriptStep::Wait(_) => {}
             ScriptStep::Picture(file) => {
                 self.script.waiting_for_picture.store(true, Ordering::Relaxed);
@@ -302,6 +307,8 @@ impl PlumblineWindow {
                 "median_ms": ms(summary.median),
                 "percentile_95_ms": ms(summary.percentile_95),
                 "renderer": self.renderer,
+                "resident_before_mb": self.resident_before_mb,
+                "resident_mb": resident_mb(),
             });
             if let Err(error) = std::fs::write(file, report.to_string()) {
                 log::error!("the frame times could not be written to {}: {error}", file.display());

@@ -41,6 +41,14 @@ pub fn thread_processor_time() -> Option<Duration> {
     Some(Duration::from_nanos(nanoseconds))
 }
 
+/// Memory of the program that is in use now, megabytes; `None` where the system does not tell.
+pub fn resident_mb() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    let kilobytes: f64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(kilobytes / 1000.0)
+}
+
 impl FrameTimes {
     /// Adds a frame that ended now.
     pub fn add(&mut self, cpu: Duration) {

@@ -21,6 +21,8 @@ pub enum ScriptStep {
     ChoosePair(usize),
     /// Keeps measuring at this pixel of the raw left image.
     Probe([f64; 2]),
+    /// Forgets the frame times so far.
+    Measure,
     /// Plays at so many pairs per second.
     PairsPerSecond(f64),
     /// Lets time pass.
