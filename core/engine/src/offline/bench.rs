@@ -13,6 +13,7 @@ use plumbline_model::{
 };
 use plumbline_vision::calibrate;
 use plumbline_vision::disparity::bench::{ComparisonReport, NEAREST_M, compare_with_published};
+use plumbline_vision::disparity::{Matcher, Settings};
 use serde::Serialize;
 
 use super::OfflineError;
@@ -102,6 +103,11 @@ pub fn bench(context: &dyn JobContext) -> Result<BenchReport, OfflineError> {
             Ok(folder) => figures.extend(measure(&folder)?),
             Err(reason) => figures.push(Figure::missing(*name, reason)),
         }
+    }
+    for (name, opencv) in [("teddy", 0.1865), ("cones", 0.2107)] {
+        context.checkpoint()?;
+        context.report(0.75, &format!("matching {name}"));
+        figures.push(bad_disparities(name, opencv)?);
     }
     context.checkpoint()?;
     context.report(0.8, "timing the live pipeline against the published one");
@@ -203,6 +209,29 @@ fn bumblebee(folder: &Path) -> Result<Vec<Figure>, OfflineError> {
             .at_most(0.2)
             .peer("OpenCV", 0.067),
     ])
+}
+
+/// Part of all pixels with known disparity whose result is missing or more than 2 px off, on a
+/// Middlebury pair of 2003 (`disp2.png` holds four times the disparity, 0 where it is unknown).
+fn bad_disparities(name: &str, opencv: f64) -> Result<Figure, OfflineError> {
+    let what = format!("disparity, {name}: pixels missing or more than 2 px off");
+    let folder = match measured_data::folder(&format!("disparity/{name}")) {
+        Ok(folder) => folder,
+        Err(reason) => return Ok(Figure::missing(what, reason)),
+    };
+    let gray = |file: &str| image::open(folder.join(file)).map(|image| image.into_luma8());
+    let (Ok(left), Ok(right), Ok(truth)) = (gray("im2.png"), gray("im6.png"), gray("disp2.png")) else {
+        return Ok(Figure::missing(what, "its images cannot be read"));
+    };
+    let map = Matcher::new(Settings::full(64))?.compute(&left, &right, None)?;
+    let (mut known, mut bad) = (0u32, 0u32);
+    for (x, y, pixel) in truth.enumerate_pixels().filter(|(.., pixel)| pixel[0] > 0) {
+        let truth_px = f32::from(pixel[0]) / 4.0;
+        known += 1;
+        bad += u32::from(map.get(x, y).is_none_or(|found| (found - truth_px).abs() > 2.0));
+    }
+    let fraction = f64::from(bad) / f64::from(known.max(1));
+    Ok(Figure::new(what, fraction, "").at_most(opencv).peer("OpenCV SGBM", opencv))
 }
 
 /// Rectification, disparity and 3D of one real pair, timed in turns with the published pipeline.
