@@ -19,7 +19,7 @@ use opencv::ximgproc::{DisparityWLSFilter, create_disparity_wls_filter, create_r
 use plumbline_model::aim::{AimError, AimedPair, DISPARITY_STEP_PX};
 use plumbline_model::{CameraModel, Eye, StereoCameras};
 
-use super::{DisparityError, Matcher, Settings};
+use super::{DisparityError, DisparityMap, Matcher, Settings};
 use crate::depth::{PointMap, SizeMismatch};
 use crate::mat;
 use crate::rectify::{Pair, Rectifier, RectifyError};
@@ -100,11 +100,16 @@ impl LivePipeline {
         Ok(Self { rectifier: Rectifier::new(pair)?, matcher: Matcher::new(settings)? })
     }
 
-    /// Rectifies, matches and places one raw gray pair; also the part that was measured.
-    pub fn run(&mut self, left: &GrayImage, right: &GrayImage) -> Result<(PointMap, f64), ComparisonError> {
+    /// Rectifies, matches and places one raw gray pair.
+    pub fn run(
+        &mut self,
+        left: &GrayImage,
+        right: &GrayImage,
+    ) -> Result<(DisparityMap, PointMap), ComparisonError> {
         let views = self.rectifier.rectify_gray(left, right)?;
         let map = self.matcher.compute(&views.left, &views.right, Some(self.rectifier.masks()))?;
-        Ok((PointMap::new(&map, self.rectifier.aimed())?, map.measured_fraction()))
+        let points = PointMap::new(&map, self.rectifier.aimed())?;
+        Ok((map, points))
     }
 }
 
@@ -241,7 +246,7 @@ fn compare(
 ) -> Result<ComparisonReport, ComparisonError> {
     let mut ours = LivePipeline::new(pair, nearest_m)?;
     let mut published = PublishedPipeline::new(&pair.cameras)?;
-    let (_, measured_fraction) = ours.run(left, right)?;
+    let measured_fraction = ours.run(left, right)?.0.measured_fraction();
     published.run(left, right)?;
     let (mut ours_ms, mut published_ms) = (Vec::new(), Vec::new());
     for _ in 0..rounds {

@@ -173,6 +173,8 @@ impl Matcher {
     ) -> Result<DisparityMap, DisparityError> {
         check(left, right, masks)?;
         self.check_memory(left.dimensions())?;
+        // Masks that hide nothing only take time.
+        let masks = masks.filter(|masks| masks.left.contains(&0) || masks.right.contains(&0));
         let width = left.width() as usize;
         let disparity_count = self.settings.max_disparity_px as usize + 1;
         self.search.run(Views { left, right, masks }, self.settings.block, disparity_count, &mut self.found);
