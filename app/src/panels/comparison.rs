@@ -30,10 +30,10 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             }
             let proposed =
                 eyes.proposal.as_ref().map(|p| (&*p.calibration, origin_text(&p.origin), p.depth_per_px_m));
-            let in_use = eyes.in_use.as_ref().map(|a| {
-                let accepted = format::age(age_of(a.accepted));
-                (&*a.calibration, format!("accepted {accepted}"), a.depth_per_px_m)
-            });
+            let in_use = eyes
+                .in_use
+                .as_ref()
+                .map(|a| (&*a.calibration, format::age(age_of(a.accepted)), a.depth_per_px_m));
             columns(ui, proposed, in_use);
             if eyes.proposal.is_some() {
                 ui.add_space(space::M);
@@ -51,9 +51,9 @@ fn age_of(at: jiff::Timestamp) -> std::time::Duration {
 
 fn origin_text(origin: &Origin) -> String {
     match origin {
-        Origin::Solved => "solved just now".to_owned(),
-        Origin::Imported { file } => format!("from {file}"),
-        Origin::Earlier { accepted } => format!("accepted {}", format::age(age_of(*accepted))),
+        Origin::Solved => "just solved".to_owned(),
+        Origin::Imported { file } => file.clone(),
+        Origin::Earlier { accepted } => format::age(age_of(*accepted)),
     }
 }
 
@@ -71,8 +71,9 @@ fn columns(ui: &mut Ui, proposed: Column<'_>, in_use: Column<'_>) {
     let origin = |column: &Column<'_>| column.as_ref().map_or_else(none, |(_, text, _)| text.clone());
     let per_px =
         |column: &Column<'_>| column.as_ref().and_then(|(.., per_px)| *per_px).map_or_else(none, format::mm);
+    ui.spacing_mut().item_spacing.y = 0.0;
     row(ui, "", "Proposal", "In use", true);
-    row(ui, "Where from", &origin(&proposed), &origin(&in_use), false);
+    row(ui, "Made", &origin(&proposed), &origin(&in_use), false);
     let mut figure = |name: &str, text: &dyn Fn(&StereoCalibration) -> Option<String>| {
         row(ui, name, &of(&proposed, text), &of(&in_use, text), false);
     };
@@ -89,7 +90,7 @@ fn columns(ui: &mut Ui, proposed: Column<'_>, in_use: Column<'_>) {
 
 /// One line of three columns, the figures aligned at their right ends.
 fn row(ui: &mut Ui, name: &str, proposed: &str, in_use: &str, heading: bool) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 22.0), Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 24.0), Sense::hover());
     response.widget_info(|| {
         WidgetInfo::labeled(egui::Role::Row, true, format!("{name}: proposal {proposed}, in use {in_use}"))
     });

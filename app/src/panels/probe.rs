@@ -7,6 +7,8 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
 use plumbline_widgets::theme::{self, Role, space};
 
+use crate::window::capitalized;
+
 /// Which point is measured: the one that was clicked, else the one under the mouse.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ProbeState {
@@ -64,7 +66,7 @@ pub fn probe_readout(ui: &mut Ui, probe: Option<&ProbeView>) {
     match &probe.reading {
         Err(why) => {
             ui.label(RichText::new("Not measured").color(Role::Warning.color(theme::tokens(ui))));
-            ui.label(why);
+            ui.label(capitalized(why));
         }
         Ok(reading) => {
             let range_m = reading.point_in_left.range_m();

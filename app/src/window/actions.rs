@@ -1,6 +1,5 @@
 //! Everything that can be asked for by name: by a button, a shortcut or the command palette.
 
-use egui::{Key, KeyboardShortcut, Modifiers};
 use plumbline_engine::view::SourceStatus;
 use plumbline_engine::{ExportFormat, Exported, View};
 
@@ -185,50 +184,6 @@ impl Action {
         .to_owned()
     }
 
-    /// Keys that do the same.
-    pub fn shortcut(self) -> Option<KeyboardShortcut> {
-        let plain = |key| Some(KeyboardShortcut::new(Modifiers::NONE, key));
-        let command = |key| Some(KeyboardShortcut::new(Modifiers::COMMAND, key));
-        let shift = |key| Some(KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, key));
-        match self {
-            Self::Stop => plain(Key::Escape),
-            Self::Next => command(Key::Enter),
-            Self::OpenFolder => command(Key::O),
-            Self::OpenVideos => shift(Key::O),
-            Self::OpenPath => command(Key::L),
-            Self::PlayPause => plain(Key::P),
-            Self::StepForward => plain(Key::Period),
-            Self::StepBack => plain(Key::Comma),
-            Self::Go(Screen::Live) => command(Key::Num1),
-            Self::Go(Screen::Collect) => command(Key::Num2),
-            Self::Go(Screen::Judge) => command(Key::Num3),
-            Self::Go(Screen::Accept) => command(Key::Num4),
-            Self::Capture => plain(Key::C),
-            Self::DeleteLast => plain(Key::Backspace),
-            Self::Undo => command(Key::Z),
-            Self::Solve => shift(Key::S),
-            Self::SaveWindow => command(Key::S),
-            Self::Palette => command(Key::K),
-            Self::ToggleInspector => command(Key::I),
-            Self::ToggleLog => command(Key::J),
-            Self::ToggleNotices => command(Key::M),
-            Self::ToggleTheme => command(Key::T),
-            Self::ResetArrangement => command(Key::R),
-            Self::ToggleFrameTimes => plain(Key::F12),
-            Self::Quit => command(Key::Q),
-            _ => None,
-        }
-    }
-
-    /// Further keys.
-    pub fn second_shortcut(self) -> Option<KeyboardShortcut> {
-        match self {
-            Self::Stop => Some(KeyboardShortcut::new(Modifiers::NONE, Key::Space)),
-            Self::Palette => Some(KeyboardShortcut::new(Modifiers::COMMAND, Key::P)),
-            _ => None,
-        }
-    }
-
     /// Why it cannot be done now; `None` when it can.
     pub fn refusal(self, view: &View) -> Option<&'static str> {
         let eyes = &view.eyes;
@@ -271,57 +226,9 @@ pub fn format_name(format: ExportFormat) -> &'static str {
     }
 }
 
-/// Shortcuts as text, for menus and hints.
-pub fn shortcut_text(ctx: &egui::Context, action: Action) -> Option<String> {
-    let text = ctx.format_shortcut(&action.shortcut()?);
-    // As it is printed on the keys.
-    Some(text.replace("Escape", "Esc").replace("Period", ".").replace("Comma", ","))
-}
-
-/// Takes the shortcuts out of this frame's input and returns their actions. While a text is
-/// being typed only those with Ctrl count, so that letters, space and escape reach the text.
-pub fn take_shortcuts(ctx: &egui::Context) -> Vec<Action> {
-    let typing = ctx.text_edit_focused();
-    let mut shortcuts: Vec<(KeyboardShortcut, Action)> = ALL
-        .iter()
-        .flat_map(|&action| {
-            [action.shortcut(), action.second_shortcut()]
-                .into_iter()
-                .flatten()
-                .map(move |keys| (keys, action))
-        })
-        // Undo belongs to the text while one is typed.
-        .filter(|(keys, action)| !typing || (keys.modifiers.command && *action != Action::Undo))
-        .collect();
-    // egui takes Ctrl+Shift+O for Ctrl+O too, so the longer ones come first.
-    shortcuts.sort_by_key(|(keys, _)| !keys.modifiers.shift);
-    let mut taken = Vec::new();
-    for (keys, action) in shortcuts {
-        if ctx.input_mut(|input| input.consume_shortcut(&keys)) {
-            taken.push(action);
-        }
-    }
-    taken
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn no_two_actions_share_a_shortcut_or_a_name() {
-        for (i, a) in ALL.iter().enumerate() {
-            for b in &ALL[i + 1..] {
-                assert_ne!(a.label(), b.label());
-                let keys = |x: &Action| {
-                    [x.shortcut(), x.second_shortcut()].into_iter().flatten().collect::<Vec<_>>()
-                };
-                for key in keys(a) {
-                    assert!(!keys(b).contains(&key), "{a:?} and {b:?} share {key:?}");
-                }
-            }
-        }
-    }
 
     #[test]
     fn without_anything_open_the_reasons_are_said() {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use egui::{Align2, Context, LayerId, Order, Stroke, StrokeKind, TextStyle};
 use plumbline_engine::{Command, EyesCommand, FileLength, SourceCommand};
+use plumbline_widgets::buttons::STOP_SIZE;
 use plumbline_widgets::theme::{self, space};
 
 /// What the dropped paths are taken for; an error says what could be dropped instead.
@@ -37,7 +38,8 @@ pub fn preview(paths: &[PathBuf]) -> String {
 pub fn paint_preview(ctx: &Context, text: &str) {
     let painter = ctx.layer_painter(LayerId::new(Order::Tooltip, egui::Id::unique("drop preview")));
     let tokens = theme::tokens_of(ctx);
-    let rect = ctx.content_rect();
+    // Below the top line: nothing may cover STOP.
+    let rect = ctx.content_rect().with_min_y(ctx.content_rect().top() + STOP_SIZE.y + 12.0);
     painter.rect_filled(rect, 0.0, tokens.background.gamma_multiply(0.85));
     let frame = rect.shrink(space::L);
     painter.rect_stroke(frame, 8.0, Stroke::new(2.0, tokens.accent), StrokeKind::Inside);

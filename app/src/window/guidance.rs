@@ -41,7 +41,13 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
 }
 
 fn say(sentence: impl Into<String>) -> Guidance {
-    Guidance { sentence: sentence.into(), warning: false, next: None }
+    Guidance { sentence: capitalized(&sentence.into()), warning: false, next: None }
+}
+
+/// Reasons of errors begin small, because they often follow a colon.
+pub fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 impl Guidance {

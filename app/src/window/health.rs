@@ -12,8 +12,9 @@ use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::lamp::{Health, Lamp};
 use plumbline_widgets::theme::{self, space};
 
-use super::actions::{Action, shortcut_text};
+use super::actions::Action;
 use super::outbox::Outbox;
+use super::shortcuts::shortcut_text;
 use super::steps::Screen;
 use super::{PlumblineWindow, source_menu};
 use crate::panels::source_age;

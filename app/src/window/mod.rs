@@ -22,9 +22,11 @@ mod outbox;
 mod palette;
 mod rail;
 pub mod renderer;
+mod saving;
 mod script;
 mod settings;
 mod sheet;
+mod shortcuts;
 mod source_menu;
 mod status_line;
 mod steps;
@@ -39,7 +41,7 @@ use plumbline_engine::{JobId, Products, View};
 
 pub use actions::{Action, format_name};
 pub use backend::Backend;
-pub use guidance::{Verdict, hint_text, other_board, verdict};
+pub use guidance::{Verdict, capitalized, hint_text, other_board, verdict};
 pub use launch::{LaunchOptions, launch};
 pub use log_lines::{LogStore, start as start_log};
 pub use outbox::Outbox;
@@ -188,7 +190,7 @@ impl PlumblineWindow {
         let ctx = ui.ctx().clone();
         let escape_pressed = ctx.input(|input| input.key_pressed(egui::Key::Escape));
         let mut outbox = Outbox::default();
-        for action in actions::take_shortcuts(&ctx) {
+        for action in shortcuts::take_shortcuts(&ctx) {
             outbox.act(action);
         }
         self.draw_frame(ui, &mut outbox);

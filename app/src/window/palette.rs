@@ -4,8 +4,9 @@ use egui::{Key, Modifiers, ScrollArea, TextEdit, Ui};
 use plumbline_engine::View;
 use plumbline_widgets::theme::{self, space};
 
-use super::actions::{ALL, Action, shortcut_text};
+use super::actions::{ALL, Action};
 use super::sheet::sheet;
+use super::shortcuts::shortcut_text;
 
 /// Open or closed, and what was typed.
 #[derive(Debug, Default)]

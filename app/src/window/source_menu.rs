@@ -8,8 +8,9 @@ use plumbline_engine::view::SourceStatus;
 use plumbline_engine::{SourceCommand, SourceSpec, View};
 use plumbline_widgets::theme;
 
-use super::actions::{Action, shortcut_text};
+use super::actions::Action;
 use super::outbox::Outbox;
+use super::shortcuts::shortcut_text;
 
 /// Longest name on the button, characters.
 const LONGEST: usize = 28;

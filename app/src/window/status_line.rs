@@ -6,9 +6,10 @@ use plumbline_engine::{JobCommand, View};
 use plumbline_widgets::progress::{ProgressAction, ProgressLine};
 use plumbline_widgets::theme::space;
 
-use super::actions::{Action, shortcut_text};
+use super::actions::Action;
 use super::guidance::{Guidance, guidance};
 use super::outbox::Outbox;
+use super::shortcuts::shortcut_text;
 use super::{PlumblineWindow, primary_button};
 
 const HEIGHT: f32 = 52.0;
