@@ -238,10 +238,10 @@ impl PlumblineWindow {
             self.settings.screen = Screen::Judge;
         }
         self.panels.proposal_seen = now;
-        if let (Some(spec), SourceStatus::Running) = (&self.view.source.spec, &self.view.source.status) {
-            if self.settings.recent_sources.front() != Some(spec) {
-                self.settings.remember_source(spec);
-            }
+        if let (Some(spec), SourceStatus::Running) = (&self.view.source.spec, &self.view.source.status)
+            && self.settings.recent_sources.front() != Some(spec)
+        {
+            self.settings.remember_source(spec);
         }
         self.dismiss_ended_jobs();
     }

@@ -91,7 +91,9 @@ fn start_engine(ctx: &egui::Context, options: &LaunchOptions) -> Engine {
     let settings = EngineSettings { data_dir: options.data_dir.clone(), source };
     let engine = Engine::start(settings, Arc::new(move || wake.request_repaint()));
     if !options.paths.is_empty() {
-        engine.send(SourceCommand::OpenPaths(options.paths.clone()));
+        // Remembered sources have to be found from another folder too.
+        let absolute = |path: &PathBuf| std::path::absolute(path).unwrap_or_else(|_| path.clone());
+        engine.send(SourceCommand::OpenPaths(options.paths.iter().map(absolute).collect()));
     }
     engine
 }
