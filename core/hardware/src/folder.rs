@@ -119,7 +119,12 @@ impl PairFolder {
             });
         }
         for (eye, files) in [(Eye::Left, left), (Eye::Right, right)] {
-            reports.extend(files.iter().map(|path| Report::Unpaired { eye, file: shown_name(path) }));
+            if !files.is_empty() {
+                reports.push(Report::Unpaired {
+                    eye,
+                    files: files.iter().map(|path| shown_name(path)).collect(),
+                });
+            }
         }
         pairs.sort_by(|a, b| natural_order(&a.name, &b.name));
         Ok(Self {

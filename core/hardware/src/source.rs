@@ -126,13 +126,13 @@ impl Counters {
 /// Something the operator should know about a source that goes on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Report {
-    /// A file of one eye has no partner in the other.
-    #[error("{file} has no partner: there is no {} image of that name, so it is left out", other(.eye))]
+    /// Files of one eye have no partner in the other.
+    #[error("{}", unpaired(*.eye, .files))]
     Unpaired {
-        /// The eye that has the file.
+        /// The eye that has the files.
         eye: Eye,
-        /// Its file name.
-        file: String,
+        /// Their names, at least one.
+        files: Vec<String>,
     },
     /// An image file of a kind that is not read, or whose name tells no eye.
     #[error("{file} is left out: {reason}")]
@@ -173,6 +173,23 @@ pub enum Report {
         /// How long it was gone.
         after: Duration,
     },
+}
+
+/// One sentence, however many files it is about.
+fn unpaired(eye: Eye, files: &[String]) -> String {
+    /// So many are named.
+    const NAMED: usize = 3;
+    let partner = other(&eye);
+    if let [file] = files {
+        return format!("{file} has no partner: there is no {partner} image of that name, so it is left out");
+    }
+    let named = files.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", ");
+    let more = files.len().saturating_sub(NAMED);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!(
+        "{} {eye} images have no {partner} image of the same name and are left out: {named}{more}",
+        files.len()
+    )
 }
 
 /// The eye that is not `eye`.

@@ -50,7 +50,7 @@ pub enum SolveError {
     },
     /// The board was held in one place.
     #[error(
-        "the board was seen in only {distinct} different places: move it over the whole image, near and far, and tilt it"
+        "the board was held in only {distinct} different place(s), at least {FEWEST_POSES} are needed: move it over the whole image, near and far, and tilt it"
     )]
     AllViewsAlike {
         /// Poses that differ from each other.
