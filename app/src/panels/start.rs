@@ -23,7 +23,7 @@ pub fn show(ui: &mut Ui, recent: &VecDeque<SourceSpec>, outbox: &mut Outbox) {
     let rect = ui.available_rect_before_wrap();
     ui.painter().rect_filled(rect, 0.0, theme::tokens(ui).background);
     let rows = WAYS.len() + recent.len().min(4);
-    let height = 150.0 + rows as f32 * 36.0;
+    let height = 176.0 + rows as f32 * 36.0;
     let size = vec2(WIDTH.min(rect.width() - 2.0 * space::L), height.min(rect.height()));
     let middle = egui::Rect::from_center_size(rect.center(), size);
     let layout = Layout::top_down(Align::Min);
@@ -45,6 +45,10 @@ fn contents(ui: &mut Ui, recent: &VecDeque<SourceSpec>, outbox: &mut Outbox) {
     }
     ui.add_space(space::M);
     ui.label(theme::weak(ui, "Or drop a folder, two videos or a calibration file anywhere on the window."));
+    ui.label(theme::weak(
+        ui,
+        "Without a robot: plumbline sample --out FOLDER renders pairs of a made-up lab.",
+    ));
     if recent.is_empty() {
         return;
     }

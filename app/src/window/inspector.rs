@@ -116,7 +116,7 @@ fn source(ui: &mut Ui, view: &View) {
     let mut rows = Vec::new();
     if let Some(frame) = &view.live.raw {
         if let Some(name) = &frame.name {
-            rows.push(KeyValue::text("Pair", name));
+            ui.add(egui::Label::new(theme::weak(ui, name)).truncate());
         }
         rows.push(
             KeyValue::text("Size", format!("{}×{}", frame.left.width(), frame.left.height())).unit("px"),

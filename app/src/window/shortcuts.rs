@@ -1,6 +1,6 @@
 //! Keys that do the same as buttons.
 
-use egui::{Key, KeyboardShortcut, Modifiers};
+use egui::{Event, Key, KeyboardShortcut, Modifiers};
 
 use super::actions::{ALL, Action};
 use super::steps::Screen;
@@ -58,12 +58,31 @@ pub fn shortcut_text(ctx: &egui::Context, action: Action) -> Option<String> {
     Some(text.replace("Escape", "Esc").replace("Period", ".").replace("Comma", ","))
 }
 
+/// Whether Esc or space was pressed, with whatever other keys are held. Esc counts while a text
+/// is typed as well: who presses it in alarm must not be asked where the cursor is. Space is
+/// taken away, so that it does not press the button that has the focus too.
+fn take_stop_keys(ctx: &egui::Context, typing: bool) -> bool {
+    ctx.input_mut(|input| {
+        let escape = input.key_pressed(Key::Escape);
+        let space = !typing && input.key_pressed(Key::Space);
+        if space {
+            input.events.retain(|event| !matches!(event, Event::Key { key: Key::Space, .. }));
+        }
+        escape || space
+    })
+}
+
 /// Takes the shortcuts out of this frame's input and returns their actions. While a text is
-/// being typed only those with Ctrl count, so that letters, space and escape reach the text.
+/// being typed only those with Ctrl count (and Esc), so that letters and space reach the text.
 pub fn take_shortcuts(ctx: &egui::Context) -> Vec<Action> {
     let typing = ctx.text_edit_focused();
+    let mut taken = Vec::new();
+    if take_stop_keys(ctx, typing) {
+        taken.push(Action::Stop);
+    }
     let mut shortcuts: Vec<(KeyboardShortcut, Action)> = ALL
         .iter()
+        .filter(|action| **action != Action::Stop)
         .flat_map(|&action| {
             [action.shortcut(), action.second_shortcut()]
                 .into_iter()
@@ -75,7 +94,6 @@ pub fn take_shortcuts(ctx: &egui::Context) -> Vec<Action> {
         .collect();
     // egui takes Ctrl+Shift+O for Ctrl+O too, so the longer ones come first.
     shortcuts.sort_by_key(|(keys, _)| !keys.modifiers.shift);
-    let mut taken = Vec::new();
     for (keys, action) in shortcuts {
         if ctx.input_mut(|input| input.consume_shortcut(&keys)) {
             taken.push(action);

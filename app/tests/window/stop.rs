@@ -82,6 +82,19 @@ fn space_stops_and_does_not_press_the_button_that_has_the_focus() {
 }
 
 #[test]
+fn escape_stops_while_a_text_is_typed_and_with_other_keys_held() {
+    for modifiers in [Modifiers::NONE, Modifiers::SHIFT, Modifiers::COMMAND] {
+        let fake = Fake::over(everything_runs());
+        let mut window = fake.window(WindowSettings::default());
+        window.key_press_modifiers(Modifiers::COMMAND, Key::K);
+        window.run_steps(3);
+        window.key_press_modifiers(modifiers, Key::Escape);
+        window.run_steps(2);
+        assert_eq!(fake.take_sent(), stopped(), "{modifiers:?}");
+    }
+}
+
+#[test]
 fn nothing_ever_covers_the_button() {
     let open: [(&str, Option<Key>); 6] = [
         ("", None),
