@@ -113,8 +113,12 @@ mod tests {
 
     #[test]
     fn paths_open_the_window_and_verbs_do_not() {
-        let arguments = Arguments::try_parse_from(["plumbline", "left", "right"]).expect("two paths");
+        // Tests run in the package's folder.
+        let arguments = Arguments::try_parse_from(["plumbline", "src", "tests"]).expect("two paths");
         assert!(arguments.verb.is_none());
+        let mistyped =
+            Arguments::try_parse_from(["plumbline", "calibarte"]).expect_err("neither path nor verb");
+        assert_eq!(mistyped.exit_code(), 2);
         let check = ["plumbline", "doctor", "--json"];
         assert!(matches!(Arguments::try_parse_from(check).expect("a verb").verb, Some(Verb::Doctor(_))));
     }

@@ -12,7 +12,7 @@ use crate::window::{Action, LaunchOptions, Screen, ScriptStep, ThemeChoice, laun
 pub struct WindowArgs {
     /// What to open: a folder of pairs (or with `left` and `right` in it), or two folders or two
     /// videos, left eye first.
-    #[arg(value_name = "PATH", num_args = 0..=2, conflicts_with = "cameras")]
+    #[arg(value_name = "PATH", num_args = 0..=2, conflicts_with = "cameras", value_parser = existing)]
     paths: Vec<PathBuf>,
     /// Two USB cameras by number, left eye first: 0,2.
     #[arg(long, value_name = "LEFT,RIGHT", value_parser = cameras)]
@@ -68,6 +68,15 @@ impl WindowArgs {
             frame_report: self.frame_report,
         })
     }
+}
+
+/// A mistyped verb looks like a source; better said here than in an empty window.
+fn existing(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    if path.exists() {
+        return Ok(path);
+    }
+    Err("there is no such file or folder, and no command of that name: see --help".to_owned())
 }
 
 fn cameras(text: &str) -> Result<(u32, u32), String> {

@@ -102,6 +102,7 @@ fn native_options(settings: &WindowSettings, renderer: eframe::Renderer) -> efra
     let viewport = egui::ViewportBuilder::default()
         .with_title("Plumbline")
         .with_app_id("plumbline")
+        .with_icon(super::icon::icon())
         .with_inner_size(settings.size)
         .with_min_inner_size([960.0, 600.0])
         .with_drag_and_drop(true);

@@ -13,6 +13,7 @@ mod frame_time;
 mod frame_times_overlay;
 mod guidance;
 mod health;
+mod icon;
 mod inspector;
 mod launch;
 mod log_lines;

@@ -53,7 +53,7 @@ fn contents(ui: &mut Ui, view: &View, replay: ReplayView, outbox: &mut Outbox) {
         let mut rate = replay.pairs_per_second.unwrap_or(30.0);
         let drag = DragValue::new(&mut rate).range(0.2..=120.0).speed(0.2).max_decimals(1).suffix(" pairs/s");
         let drag = ui.add(drag).on_hover_text("Speed: drag, or click to type");
-        drag.widget_info(|| egui::WidgetInfo::drag_value(true, rate));
+        drag.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, "Pairs per second"));
         if drag.changed() {
             outbox.send(SourceCommand::PairsPerSecond(rate));
         }
