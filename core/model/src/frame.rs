@@ -35,6 +35,12 @@ frames! {
     /// Chessboard: x along its columns, y along its rows, z into the board; origin at the
     /// first inner corner.
     Board = "board";
+    /// A link of the robot, told apart at run time.
+    Link = "link";
+    /// The tip of a kinematic chain, told apart at run time.
+    Tip = "tip";
+    /// The robot's head, as its description places it.
+    Head = "head";
 }
 
 /// A point whose coordinates are known in frame `F`, in meters.

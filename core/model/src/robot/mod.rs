@@ -1,0 +1,29 @@
+//! The robot: its description (links, joints, shapes), where everything is at given joint
+//! angles, and the rig file that ties it to servos, eyes, table and touchscreen.
+//!
+//! - [`Description`] is read from URDF and checked; [`Posture`] holds one angle per movable joint.
+//! - [`Description::forward`] places every link; [`Chain`] places one tip and differentiates it.
+//! - [`Rig`] is a robot on its table: servo ids and ratios, eye mounts, poses, touchscreen. All
+//!   numbers of a robot live in `assets/robots`, none in code.
+
+mod chain;
+mod description;
+mod error;
+mod posture;
+mod rig;
+mod rig_file;
+#[cfg(test)]
+mod tests;
+mod urdf;
+
+pub use chain::Chain;
+pub use description::{
+    Description, Inertia, Joint, JointIndex, JointKind, Limits, Link, LinkIndex, LinkPoses, Mimic, Shape,
+    Visual,
+};
+pub use error::{DescriptionError, RigError};
+pub use posture::Posture;
+pub use rig::{
+    Arm, Board, Bus, CoupledLimit, Direction as ServoDirection, EyeMount, Gate, NamedPose, Rig, Servo,
+    TableTop, TipName,
+};
