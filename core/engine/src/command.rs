@@ -1,11 +1,15 @@
 //! What the operator can ask for: one enum per workflow, serializable, so that a journal of
 //! commands is a replay.
 
+mod robot;
+
 use std::path::PathBuf;
 
 use plumbline_hardware::SourceSpec;
 use plumbline_model::{CalibrationOptions, Eye};
 use serde::{Deserialize, Serialize};
+
+pub use robot::{Destination, JOG_DEADLINE_MS, JogRates, MountCommand, RobotCommand, TwinCommand};
 
 /// Anything that the window (or a script) can ask of the engine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,6 +21,12 @@ pub enum Command {
     Live(LiveCommand),
     /// Calibrating the eyes.
     Eyes(EyesCommand),
+    /// The robot: connecting and moving it.
+    Robot(RobotCommand),
+    /// The twin's table, clock and faults.
+    Twin(TwinCommand),
+    /// Calibrating how the eyes sit in the head.
+    Mount(MountCommand),
     /// Long work that is running.
     Job(JobCommand),
     /// Messages to the operator.
@@ -294,4 +304,7 @@ macro_rules! into_command {
         })*
     };
 }
-into_command!(Source: SourceCommand, Live: LiveCommand, Eyes: EyesCommand, Job: JobCommand, Notice: NoticeCommand);
+into_command!(
+    Source: SourceCommand, Live: LiveCommand, Eyes: EyesCommand, Robot: RobotCommand, Twin: TwinCommand,
+    Mount: MountCommand, Job: JobCommand, Notice: NoticeCommand
+);

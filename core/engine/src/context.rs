@@ -5,6 +5,7 @@ use plumbline_model::StereoFrame;
 use crate::command::JobId;
 use crate::job_list::JobList;
 use crate::notice::{NoticeLevel, Notices};
+use crate::robot::RobotControl;
 use crate::source::Control;
 use crate::view::SourceView;
 use crate::work::Work;
@@ -14,6 +15,8 @@ use crate::work::Work;
 pub enum Action {
     /// Hand this to the source thread.
     Source(Control),
+    /// Hand this to the robot's thread.
+    Robot(RobotControl),
     /// Start this work; it ends with [`crate::state::State::work_ended`].
     Start(JobId, Work),
     /// Ask this work to stop.

@@ -9,6 +9,7 @@ use std::thread::JoinHandle;
 use crossbeam_channel::{Sender, TrySendError};
 
 use crate::command::Command;
+use crate::robot::Switches;
 use crate::settings::EngineSettings;
 use crate::view::View;
 
@@ -31,6 +32,7 @@ struct Shared {
     view: Mutex<Arc<View>>,
     lost_commands: AtomicU64,
     wake: Wake,
+    switches: Switches,
 }
 
 impl Shared {
@@ -54,7 +56,7 @@ impl Engine {
     /// be written, a source that cannot be opened) is said in the view.
     pub fn start(settings: EngineSettings, wake: Wake) -> Self {
         let (commands, received) = crossbeam_channel::bounded(WAITING);
-        let shared = Arc::new(Shared { view: Mutex::default(), lost_commands: AtomicU64::new(0), wake });
+        let shared = Arc::new(Shared { view: Mutex::default(), lost_commands: AtomicU64::new(0), wake, switches: Switches::default() });
         let for_hub = shared.clone();
         let hub = std::thread::Builder::new()
             .name("engine".into())
@@ -75,6 +77,17 @@ impl Engine {
             self.shared.lost_commands.fetch_add(1, Ordering::Relaxed);
             log::error!("the engine does not keep up; lost {command:?}");
         }
+    }
+
+    /// Whatever moves holds, and nothing moves until the operator releases it. Passes every queue:
+    /// the joint bus reads it in every cycle.
+    pub fn stop(&self) {
+        self.shared.switches.stop();
+    }
+
+    /// To be called with every frame of the window: without it the arm holds.
+    pub fn heartbeat(&self) {
+        self.shared.switches.heartbeat();
     }
 
     /// The newest snapshot.

@@ -14,6 +14,7 @@ pub mod notice;
 pub mod offline;
 pub mod settings;
 pub mod slot;
+pub mod robot;
 mod source;
 pub mod stages;
 pub mod state;
@@ -23,8 +24,9 @@ pub mod view;
 pub mod work;
 
 pub use command::{
-    AimChoice, Command, ExportFormat, Exported, EyesCommand, FileLength, HeadPose, JobCommand, JobId,
-    LiveCommand, NoticeCommand, ProbePoint, Products, SourceCommand,
+    AimChoice, Command, Destination, ExportFormat, Exported, EyesCommand, FileLength, HeadPose, JOG_DEADLINE_MS,
+    JobCommand, JobId, JogRates, LiveCommand, MountCommand, NoticeCommand, ProbePoint, Products, RobotCommand,
+    SourceCommand, TwinCommand,
 };
 pub use context::Action;
 pub use engine::{Engine, Wake};

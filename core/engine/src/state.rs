@@ -17,7 +17,7 @@ use crate::live::{LiveState, Skipped};
 use crate::notice::{NoticeLevel, Notices};
 use crate::source::{Note, SourceState};
 use crate::stages::{CornersInput, ProbeInput, ProbeOutput, RectifyInput, RectifyOutput, StagePanic, Timed};
-use crate::view::{JobState, JobView, SourceView, View};
+use crate::view::{JobState, JobView, RobotView, SourceView, TwinView, View};
 use crate::work::WorkResult;
 
 /// Everything the engine knows.
@@ -26,6 +26,8 @@ pub struct State {
     source: SourceState,
     live: LiveState,
     eyes: EyesState,
+    robot: Arc<RobotView>,
+    twin: Arc<TwinView>,
     jobs: JobList,
     notices: Notices,
     actions: Vec<Action>,
@@ -43,6 +45,8 @@ impl State {
             eyes: EyesState::new(store.clone(), data_dir.join("sessions"), live.workspace()),
             live,
             source: SourceState::default(),
+            robot: Arc::default(),
+            twin: Arc::default(),
             jobs: JobList::default(),
             notices: Notices::default(),
             actions: Vec::new(),
@@ -69,6 +73,9 @@ impl State {
             }
             Command::Live(command) => self.apply_live(command),
             Command::Eyes(command) => self.with_eyes(|eyes, context| eyes.apply(command, context)),
+            Command::Robot(command) => self.actions.push(Action::Robot(command.into())),
+            Command::Twin(command) => self.actions.push(Action::Robot(command.into())),
+            Command::Mount(_) => {}
             Command::Job(JobCommand::Cancel(id)) if self.jobs.is_running(id) => {
                 self.actions.push(Action::Cancel(id));
             }
@@ -227,6 +234,9 @@ impl State {
             source: self.source.view().clone(),
             live: Arc::new(self.live.view(skipped, now)),
             eyes: Arc::new(self.eyes.view()),
+            robot: self.robot.clone(),
+            twin: self.twin.clone(),
+            mount: Arc::default(),
             jobs: self.jobs.view(),
             notices: self.notices.view(),
             lost_commands,

@@ -5,6 +5,9 @@
 mod eyes;
 mod live;
 mod map;
+mod mount;
+mod robot;
+mod twin;
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -18,6 +21,11 @@ pub use live::{
     SourceCounters, SourceStatus, SourceView, StageStatistics, Statistics,
 };
 pub use map::TableMap;
+pub use mount::{HeadViewSummary, MountSummary, MountView};
+pub use robot::{
+    BusView, Connection, JointSample, JointView, MotionState, PathCheck, PortView, PoseView, Preview, RobotView, TipPlace,
+};
+pub use twin::{FaultView, ToyView, TwinView};
 
 use crate::command::JobId;
 use crate::notice::Notice;
@@ -33,6 +41,12 @@ pub struct View {
     pub live: Arc<LiveView>,
     /// Calibrating the eyes.
     pub eyes: Arc<EyesView>,
+    /// The robot.
+    pub robot: Arc<RobotView>,
+    /// The twin.
+    pub twin: Arc<TwinView>,
+    /// Calibrating how the eyes sit in the head.
+    pub mount: Arc<MountView>,
     /// Long work, oldest first: what is running and what has ended and was not dismissed.
     pub jobs: Arc<[JobView]>,
     /// Messages, oldest first.

@@ -196,6 +196,7 @@ impl<'a> Hub<'a> {
         for action in self.state.take_actions() {
             self.changed = true;
             match action {
+                Action::Robot(_control) => {}
                 Action::Source(control) => {
                     if !self.pipeline.source.control(control) {
                         let text = "The source does not answer yet; wait until it is open.";

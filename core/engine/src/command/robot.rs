@@ -1,0 +1,201 @@
+//! Commands about the robot, the twin, and the mount of the eyes.
+
+use std::path::PathBuf;
+
+use plumbline_model::robot::{JointIndex, Posture};
+use serde::{Deserialize, Serialize};
+
+/// The robot: connecting it, and moving it. STOP is not here: it does not queue, see
+/// [`crate::Engine::stop`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RobotCommand {
+    /// Starts the twin and connects to its servos.
+    ConnectTwin {
+        /// Name of a scenario, see [`crate::view::TwinView::scenarios`].
+        scenario: String,
+    },
+    /// Connects to the servos at a serial port. Nothing moves and no torque is switched.
+    ConnectPort {
+        /// Path of the port.
+        path: PathBuf,
+    },
+    /// Lets the connection go. The arm holds.
+    Disconnect,
+    /// Looks which serial ports there are.
+    ListPorts,
+    /// Asks the bus anew who is there.
+    Scan,
+    /// Switches the torque of some joints on (they hold where they are) or off (they sink).
+    Torque {
+        /// Which; empty means all.
+        joints: Vec<JointIndex>,
+        /// On or off.
+        on: bool,
+    },
+    /// Shows a move without running it.
+    Preview(Destination),
+    /// Forgets the preview.
+    ClearPreview,
+    /// Runs the move that is shown.
+    RunPreview,
+    /// Moves a tip steadily; to be sent again at least every [`JOG_DEADLINE_MS`] while the key is
+    /// held, and stops by itself without.
+    Jog(JogRates),
+    /// Stops jogging at once.
+    EndJog,
+    /// Which tip jogging and Cartesian targets speak of.
+    ChooseTip {
+        /// A link of the description.
+        link: String,
+    },
+    /// Share of the usual speed for moves and jogging, 0–2.
+    Speed(f64),
+    /// Releases a latched STOP. Nothing moves by that.
+    ReleaseStop,
+    /// Saves the present posture of some joints under a name.
+    SavePose {
+        /// Name for people.
+        title: String,
+        /// Which; empty means all.
+        joints: Vec<JointIndex>,
+    },
+    /// Deletes one of the operator's own poses.
+    DeletePose {
+        /// Its short name.
+        name: String,
+    },
+    /// Forgets the refusal that is shown.
+    DismissRefusal,
+}
+
+/// A jog command is valid for this long.
+pub const JOG_DEADLINE_MS: u64 = 200;
+
+/// Where a move goes. Joints that are not spoken of stay.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Destination {
+    /// One joint to an angle (rad).
+    Joint {
+        /// Which.
+        joint: JointIndex,
+        /// Where to.
+        angle_rad: f64,
+    },
+    /// A pose of the library.
+    Pose {
+        /// Its short name.
+        name: String,
+    },
+    /// All joints.
+    Posture(Posture),
+    /// The chosen tip to a place, its direction free.
+    TipPosition {
+        /// Robot frame, m.
+        point_m: [f64; 3],
+    },
+    /// The chosen tip to a place, pointing down, turned about the vertical.
+    TipPositionYaw {
+        /// Robot frame, m.
+        point_m: [f64; 3],
+        /// Turn about the vertical, rad.
+        yaw_rad: f64,
+    },
+    /// The head looks at a point.
+    LookAt {
+        /// Robot frame, m.
+        point_m: [f64; 3],
+    },
+}
+
+/// How fast a tip is jogged, robot frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct JogRates {
+    /// m/s.
+    pub velocity_m_s: [f64; 3],
+    /// About the vertical, rad/s.
+    pub yaw_rad_s: f64,
+}
+
+/// The twin: what stands on its table, its clock, its faults.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TwinCommand {
+    /// Puts a toy on the table.
+    PlaceToy {
+        /// Its name.
+        toy: String,
+        /// Robot frame, m.
+        x_m: f64,
+        /// Robot frame, m.
+        y_m: f64,
+    },
+    /// Puts a toy away.
+    RemoveToy {
+        /// Its name.
+        toy: String,
+    },
+    /// Holds the chessboard at one of the places made for calibrating the eyes.
+    HoldBoard {
+        /// 0 to [`crate::view::TwinView::board_places`] − 1.
+        place: usize,
+    },
+    /// Lays the chessboard flat on the table.
+    LayBoard {
+        /// Center, robot frame, m.
+        x_m: f64,
+        /// Center, robot frame, m.
+        y_m: f64,
+        /// Turn about the vertical, rad.
+        yaw_rad: f64,
+    },
+    /// Shows the board at all places one after the other, each for a moment, so that pairs can be
+    /// captured by themselves.
+    TourBoard(bool),
+    /// Puts the chessboard away.
+    HideBoard,
+    /// Lets the clock of the eyes' warming up run ahead.
+    AdvanceWarmUp {
+        /// Minutes.
+        minutes: f64,
+    },
+    /// Switches the eyes off and on: they are cold again.
+    CoolEyes,
+    /// Switches a fault on or off.
+    Fault {
+        /// Its short name, see [`crate::view::TwinView::faults`].
+        name: String,
+        /// On or off.
+        on: bool,
+    },
+    /// Puts everything back as it was at the start; the scenario stays.
+    Reset,
+}
+
+/// Calibrating how the eyes sit in the head, in the order of work.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MountCommand {
+    /// Plans head poses from which the board, where it lies now, is well seen.
+    Plan,
+    /// Turns the head to all planned poses and takes a view at each. Moves the head only.
+    Tour,
+    /// Takes a view where the head stands.
+    Capture,
+    /// Removes a view.
+    Delete {
+        /// Its name.
+        view: String,
+    },
+    /// Removes all views.
+    DeleteAll,
+    /// Solves; gives a proposal.
+    Solve,
+    /// Makes the proposal the mount in use.
+    Accept,
+    /// Forgets the proposal.
+    Discard,
+    /// Goes back to the nominal mount.
+    UseNominal,
+}

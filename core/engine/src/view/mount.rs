@@ -1,0 +1,64 @@
+//! Calibrating how the eyes sit in the head.
+
+use std::sync::Arc;
+
+use plumbline_model::frame::{Head, LeftCamera, Pose};
+
+use super::StepState;
+
+/// Calibrating how the eyes sit in the head.
+#[derive(Clone, Debug, Default)]
+pub struct MountView {
+    /// For the rail.
+    pub step: StepState,
+    /// Views collected so far.
+    pub views: Arc<[HeadViewSummary]>,
+    /// Planned head poses (pan, tilt; rad) that are still to be seen.
+    pub planned: Arc<[(f64, f64)]>,
+    /// What to do next, a sentence.
+    pub next: String,
+    /// A solution that waits to be accepted.
+    pub proposal: Option<MountSummary>,
+    /// The one in use; `None`: nominal.
+    pub in_use: Option<MountSummary>,
+}
+
+/// A collected view.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeadViewSummary {
+    /// Its name.
+    pub name: String,
+    /// Head angles, rad.
+    pub pan_rad: f64,
+    /// Positive looks up, rad.
+    pub tilt_rad: f64,
+    /// Corners seen by the left and the right eye.
+    pub corners: (usize, usize),
+    /// Residual in the proposal, px.
+    pub rms_px: Option<f64>,
+}
+
+/// A solved mount.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MountSummary {
+    /// Place of the left eye in the head.
+    pub head_from_left: Pose<Head, LeftCamera>,
+    /// Its difference to the nominal place, axes of the head, m.
+    pub moved_m: [f64; 3],
+    /// Its difference in direction to the nominal one (rotation vector, axes of the head), rad.
+    pub turned_rad: [f64; 3],
+    /// Standard deviations of `moved_m`.
+    pub moved_sd_m: [f64; 3],
+    /// Standard deviations of `turned_rad`.
+    pub turned_sd_rad: [f64; 3],
+    /// Residual, px.
+    pub rms_px: f64,
+    /// Views used.
+    pub views: usize,
+    /// Views left out: name and reason.
+    pub rejected: Vec<(String, String)>,
+    /// Which directions could not be seen and what would show them; empty when all could.
+    pub not_seen: Vec<String>,
+    /// When it was solved.
+    pub at: jiff::Timestamp,
+}
