@@ -11,6 +11,7 @@
 
 pub mod camera;
 mod cv;
+pub mod dynamixel;
 mod error;
 mod eye_name;
 mod folder;

@@ -1,0 +1,199 @@
+//! Which servos are on a bus, and whether they are the expected ones.
+
+use std::fmt;
+use std::time::{Duration, Instant};
+
+use super::bus::Bus;
+use super::control_table::ControlTable;
+use super::error::BusError;
+use super::fault::FaultKind;
+use super::instruction::{Instruction, LARGEST_ID};
+
+/// A servo or board that answered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FoundServo {
+    /// Id.
+    pub id: u8,
+    /// Model number, as it tells.
+    pub model_number: u16,
+    /// Version of its firmware.
+    pub firmware: u8,
+}
+
+impl FoundServo {
+    /// Name of its model, if it is known.
+    pub fn model(&self) -> Option<&'static str> {
+        ControlTable::of_number(self.model_number).map(|table| table.model.as_str())
+    }
+}
+
+impl fmt::Display for FoundServo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.model() {
+            Some(model) => write!(f, "{} ({model}, firmware {})", self.id, self.firmware),
+            None => {
+                write!(f, "{} (unknown model {}, firmware {})", self.id, self.model_number, self.firmware)
+            }
+        }
+    }
+}
+
+/// A servo that should be there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExpectedServo {
+    /// Id.
+    pub id: u8,
+    /// Model, as control tables are called.
+    pub model: String,
+    /// Its name for people.
+    pub title: String,
+}
+
+/// A servo of another model than expected.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WrongModel {
+    /// What was expected.
+    pub expected: ExpectedServo,
+    /// What is there.
+    pub found: FoundServo,
+}
+
+/// What a scan found.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct BusScan {
+    /// All that answered, by id.
+    pub found: Vec<FoundServo>,
+    /// Expected and silent.
+    pub missing: Vec<ExpectedServo>,
+    /// Answered and not expected.
+    pub unexpected: Vec<FoundServo>,
+    /// Expected, but something else has its id.
+    pub wrong_model: Vec<WrongModel>,
+    /// Ids that answer twice at a time or never without a collision: probably two servos each.
+    pub duplicates_suspected: Vec<u8>,
+}
+
+impl BusScan {
+    /// Whether everything expected is there, once, and of the right model.
+    pub fn is_complete(&self) -> bool {
+        self.missing.is_empty() && self.wrong_model.is_empty() && self.duplicates_suspected.is_empty()
+    }
+
+    /// What is wrong and what to do, a sentence each.
+    pub fn problems(&self) -> Vec<String> {
+        let mut problems = vec![];
+        for id in &self.duplicates_suspected {
+            problems.push(format!(
+                "two servos seem to have the id {id}: connect one of them alone and give it another id"
+            ));
+        }
+        if !self.missing.is_empty() {
+            let names: Vec<String> =
+                self.missing.iter().map(|s| format!("{} (id {})", s.title, s.id)).collect();
+            problems.push(format!(
+                "no answer from {}: check their cables and power, they stay out of use until then",
+                names.join(", ")
+            ));
+        }
+        for wrong in &self.wrong_model {
+            problems.push(format!(
+                "{} (id {}) should be a {} but is {}: correct the rig file or exchange the servo",
+                wrong.expected.title, wrong.expected.id, wrong.expected.model, wrong.found
+            ));
+        }
+        for found in &self.unexpected {
+            problems.push(format!("servo {found} is not in the rig file: it is left alone"));
+        }
+        problems
+    }
+}
+
+/// Which ids are asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ScanRange {
+    /// Those expected: fast.
+    Expected,
+    /// All there can be: takes seconds.
+    All,
+}
+
+/// Registers 0 to 2: model number and firmware.
+const IDENTITY_BYTES: u16 = 3;
+const ATTEMPTS: u32 = 3;
+
+/// What one id answered.
+enum Answer {
+    Silent,
+    Found(FoundServo),
+    Collision,
+}
+
+impl Bus {
+    /// Asks who is there. Only reads.
+    ///
+    /// # Errors
+    /// When the port is gone.
+    pub fn scan(&mut self, expected: &[ExpectedServo], range: ScanRange) -> Result<BusScan, BusError> {
+        let mut scan = BusScan::default();
+        let ids: Vec<u8> = match range {
+            ScanRange::Expected => expected.iter().map(|servo| servo.id).collect(),
+            ScanRange::All => (0..=LARGEST_ID).collect(),
+        };
+        for id in ids {
+            let expected = expected.iter().find(|servo| servo.id == id);
+            match self.identify(id, expected.is_some())? {
+                Answer::Silent => scan.missing.extend(expected.cloned()),
+                Answer::Collision => scan.duplicates_suspected.push(id),
+                Answer::Found(found) => {
+                    match expected {
+                        None => scan.unexpected.push(found.clone()),
+                        Some(expected) if !is_model(&found, &expected.model) => {
+                            scan.wrong_model
+                                .push(WrongModel { expected: expected.clone(), found: found.clone() });
+                        }
+                        Some(_) => {}
+                    }
+                    scan.found.push(found);
+                }
+            }
+        }
+        Ok(scan)
+    }
+
+    /// Reads the model of an id. Two servos with one id answer at once: their bytes collide, or
+    /// come twice.
+    fn identify(&mut self, id: u8, expected: bool) -> Result<Answer, BusError> {
+        let mut broken = 0;
+        let instruction = Instruction::Read { address: 0, length: IDENTITY_BYTES };
+        let attempts = if expected { ATTEMPTS } else { 1 };
+        let mut attempt = 0;
+        while attempt < attempts {
+            attempt += 1;
+            let deadline = Instant::now() + Duration::from_millis(50);
+            let length = Some(usize::from(IDENTITY_BYTES));
+            match self.ask_once(id, &instruction, length, deadline)? {
+                Ok(status) => {
+                    if self.another_answer(id)? {
+                        return Ok(Answer::Collision);
+                    }
+                    let model_number = u16::from_le_bytes([status.data[0], status.data[1]]);
+                    return Ok(Answer::Found(FoundServo { id, model_number, firmware: status.data[2] }));
+                }
+                Err(FaultKind::Missing | FaultKind::Late | FaultKind::WrongId) => {}
+                // A single broken answer is noise; nothing but broken ones are two servos.
+                Err(FaultKind::Cut | FaultKind::Garbled | FaultKind::Checksum | FaultKind::Refused) => {
+                    broken += 1
+                }
+            }
+            // Something is there: worth asking again though it was not expected.
+            if broken == 1 && !expected && attempt == 1 {
+                return self.identify(id, true);
+            }
+        }
+        Ok(if broken >= 2 { Answer::Collision } else { Answer::Silent })
+    }
+}
+
+fn is_model(found: &FoundServo, model: &str) -> bool {
+    ControlTable::of_model(model).is_some_and(|table| table.number == found.model_number)
+}
