@@ -81,6 +81,7 @@ pub(crate) fn short_name(spec: &SourceSpec) -> String {
             _ => format!("{} and {}", last(left), last(right)),
         },
         SourceSpec::Videos { left, right } => format!("{} and {}", last(left), last(right)),
+        SourceSpec::Twin => "the twin's eyes".to_owned(),
         SourceSpec::Cameras { left_index, right_index } => format!("cameras {left_index} and {right_index}"),
     }
 }
@@ -91,7 +92,7 @@ fn long_name(spec: &SourceSpec) -> String {
         SourceSpec::Folders { left, right } | SourceSpec::Videos { left, right } => {
             format!("left: {}\nright: {}", left.display(), right.display())
         }
-        SourceSpec::Cameras { .. } => short_name(spec),
+        SourceSpec::Cameras { .. } | SourceSpec::Twin => short_name(spec),
     }
 }
 

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use plumbline_model::aim::DEFAULT_SIZE_PX;
 use plumbline_model::camera::ModelKind;
+use plumbline_model::robot::Rig;
 use plumbline_model::workspace::robot_from_left;
 use plumbline_model::{AimError, AimedPair, StereoCalibration, StereoCameras, StereoFrame, Workspace};
 
@@ -20,6 +21,8 @@ use crate::view::{AimView, CornersView, DisparityView, LiveView, ProbeView, Rect
 const SEARCH_MARGIN: f64 = 1.15;
 /// Least and most that is searched, pixels.
 const SEARCH_LIMITS_PX: (u32, u32) = (32, 256);
+/// Turns of the head from which the virtual pair is aimed anew, rad.
+const AIM_ANEW_RAD: f64 = 0.02;
 /// Searched where the workspace does not say how near things come.
 const SEARCH_USUAL_PX: u32 = 128;
 
@@ -29,7 +32,13 @@ pub struct LiveState {
     wanted: Products,
     aim: AimChoice,
     head: HeadPose,
+    /// The head angles that the present setup was aimed for.
+    aimed_for: HeadPose,
+    /// Where the eyes sit; `None` before a rig is known.
+    rig: Option<Arc<Rig>>,
     calibration: Option<Arc<StereoCalibration>>,
+    /// Lenses as the rig file has them, for eyes that nobody has calibrated yet.
+    nominal: Option<Arc<StereoCalibration>>,
     generation: u64,
     /// Or a sentence that says why there is none.
     setup: Result<Arc<LiveSetup>, String>,
@@ -70,7 +79,10 @@ impl Default for LiveState {
             wanted: Products::default(),
             aim: AimChoice::default(),
             head: HeadPose::default(),
+            aimed_for: HeadPose::default(),
+            rig: None,
             calibration: None,
+            nominal: None,
             generation: 0,
             setup: Err(NO_CALIBRATION.to_owned()),
             probe_asked: None,
@@ -111,8 +123,7 @@ impl LiveState {
             }
             LiveCommand::Head(head) => {
                 if head.head_z_rad.is_finite() && head.head_y_rad.is_finite() {
-                    self.head = head;
-                    self.set_up();
+                    self.set_head(head);
                 } else {
                     context.refuse("The angles of the head must be numbers.");
                 }
@@ -146,10 +157,48 @@ impl LiveState {
         }
     }
 
+    /// The head has turned. A small turn only moves the eyes; a larger one aims the virtual pair
+    /// anew.
+    pub fn set_head(&mut self, head: HeadPose) {
+        self.head = head;
+        let turned_rad = (head.head_z_rad - self.aimed_for.head_z_rad)
+            .abs()
+            .max((head.head_y_rad - self.aimed_for.head_y_rad).abs());
+        if turned_rad > AIM_ANEW_RAD {
+            self.set_up();
+            return;
+        }
+        let robot_from_left = self.workspace().robot_from_left;
+        if let Ok(setup) = &mut self.setup {
+            Arc::make_mut(setup).robot_from_left = robot_from_left;
+        }
+    }
+
+    /// Where the eyes sit in which head.
+    pub fn set_rig(&mut self, rig: Arc<Rig>) {
+        self.rig = Some(rig);
+        self.set_up();
+    }
+
+    /// Lenses to use as long as nobody has calibrated these eyes.
+    pub fn set_nominal(&mut self, nominal: Option<Arc<StereoCalibration>>) {
+        if self.nominal != nominal {
+            self.nominal = nominal;
+            self.set_up();
+        }
+    }
+
     /// The part of the table that the eyes look at, and from where.
     pub fn workspace(&self) -> Workspace {
+        let HeadPose { head_z_rad, head_y_rad } = self.head;
+        let Some(rig) = &self.rig else {
+            let robot_from_left = robot_from_left(head_z_rad, head_y_rad);
+            return Workspace { robot_from_left, ..Workspace::default() };
+        };
+        let posture = rig.home().with(&[rig.eyes.pan, rig.eyes.tilt], &[head_z_rad, head_y_rad]);
         Workspace {
-            robot_from_left: robot_from_left(self.head.head_z_rad, self.head.head_y_rad),
+            robot_from_left: rig.robot_from_left(&posture),
+            table_height_m: rig.table.height_m,
             ..Workspace::default()
         }
     }
@@ -278,6 +327,7 @@ impl LiveState {
             aim: self.setup.as_ref().ok().map(|setup| aim_view(self.aim, &setup.pair)),
             no_rectified_because,
             head: self.head,
+            nominal_lenses: self.calibration.is_none() && self.nominal.is_some(),
             statistics,
         }
     }
@@ -294,11 +344,19 @@ impl LiveState {
     fn set_up(&mut self) {
         self.generation += 1;
         self.clear_products();
-        self.setup = match &self.calibration {
+        self.aimed_for = self.head;
+        self.setup = match self.calibration.as_ref().or(self.nominal.as_ref()) {
             None => Err(NO_CALIBRATION.to_owned()),
             Some(calibration) => {
                 let workspace = self.workspace();
                 aimed(self.aim, &calibration.cameras, &workspace)
+                    // A head that looks away from the table still shows what is in front of it.
+                    .or_else(|error| match (&self.rig, self.aim) {
+                        (Some(_), AimChoice::Table) => {
+                            AimedPair::turned_down(&calibration.cameras, 0.0, 2.0, DEFAULT_SIZE_PX)
+                        }
+                        _ => Err(error),
+                    })
                     .map(|pair| {
                         Arc::new(LiveSetup {
                             generation: self.generation,

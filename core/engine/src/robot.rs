@@ -1,5 +1,8 @@
 //! The robot's side of the engine: a thread that connects, previews, jogs and moves.
 
+mod jog;
+mod poses;
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;

@@ -91,6 +91,9 @@ pub enum SourceError {
         /// What was given instead.
         found: String,
     },
+    /// The twin's eyes, which exist only while the twin runs.
+    #[error("the twin is not running, so it has no eyes: connect to the twin first")]
+    TwinNotRunning,
     /// Two folders or files whose names do not say which eye they are.
     #[error(
         "the names {first} and {second} do not say which is the left eye: name them left and right, or open each by its own button"

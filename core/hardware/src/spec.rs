@@ -37,6 +37,8 @@ pub enum SourceSpec {
         /// Video of the right eye.
         right: PathBuf,
     },
+    /// The eyes of the simulated robot, which the program itself provides.
+    Twin,
     /// Two cameras, by their number N in /dev/videoN.
     Cameras {
         /// Number of the left camera.
@@ -67,6 +69,7 @@ pub fn open(spec: &SourceSpec, options: &SourceOptions) -> Result<Box<dyn Stereo
             Box::new(FolderSource::new(PairFolder::open_one(folder)?, options.replay)?)
         }
         SourceSpec::Videos { left, right } => Box::new(VideoSource::open(left, right, options.replay)?),
+        SourceSpec::Twin => return Err(SourceError::TwinNotRunning),
         SourceSpec::Cameras { left_index, right_index } => {
             Box::new(CameraSource::open(*left_index, *right_index, options.cameras)?)
         }

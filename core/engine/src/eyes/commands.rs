@@ -110,6 +110,11 @@ impl EyesState {
                     "Cameras are no recording. Capture single pairs, or switch on capturing by itself.",
                 );
             }
+            Some(SourceSpec::Twin) => {
+                return context.refuse(
+                    "The twin's eyes are no recording. Switch on capturing by itself and let the board be shown at all places.",
+                );
+            }
             Some(recording) => recording.clone(),
             None => {
                 return context.refuse("No recording is open. Open a folder of pairs or two videos first.");

@@ -109,6 +109,9 @@ pub struct LiveView {
     pub aim: Option<AimView>,
     /// Why there is no rectified pair although it is wanted, and what to do.
     pub no_rectified_because: Option<String>,
+    /// Whether rectification rests on the lens data of the rig file because these eyes were not
+    /// calibrated yet.
+    pub nominal_lenses: bool,
     /// Where the head is taken to look.
     pub head: HeadPose,
     /// Rates, ages, drops.

@@ -57,7 +57,7 @@ impl CollectRecording {
             SourceSpec::Folder(folder) => PairFolder::open_one(folder),
             SourceSpec::Folders { left, right } => PairFolder::open_two(left, right),
             SourceSpec::Videos { .. } => return self.search_video(context),
-            SourceSpec::Cameras { .. } => {
+            SourceSpec::Cameras { .. } | SourceSpec::Twin => {
                 return Err(JobError::failed(
                     "Cameras are no recording. Capture single pairs, or switch on capturing by itself.",
                 ));
