@@ -138,7 +138,9 @@ pub struct HeadPose {
 impl Default for HeadPose {
     /// As it works on the table.
     fn default() -> Self {
-        Self { head_z_rad: 0.0, head_y_rad: plumbline_model::workspace::WORKING_HEAD_Y_RAD }
+        let rig = crate::live::default_rig();
+        let home = rig.home();
+        Self { head_z_rad: home[rig.eyes.pan], head_y_rad: home[rig.eyes.tilt] }
     }
 }
 

@@ -6,7 +6,6 @@ use std::time::Instant;
 use plumbline_model::aim::DEFAULT_SIZE_PX;
 use plumbline_model::camera::ModelKind;
 use plumbline_model::robot::Rig;
-use plumbline_model::workspace::robot_from_left;
 use plumbline_model::{AimError, AimedPair, StereoCalibration, StereoCameras, StereoFrame, Workspace};
 
 use crate::command::{AimChoice, HeadPose, LiveCommand, ProbePoint, Products};
@@ -34,8 +33,8 @@ pub struct LiveState {
     head: HeadPose,
     /// The head angles that the present setup was aimed for.
     aimed_for: HeadPose,
-    /// Where the eyes sit; `None` before a rig is known.
-    rig: Option<Arc<Rig>>,
+    /// Where the eyes sit.
+    rig: Arc<Rig>,
     calibration: Option<Arc<StereoCalibration>>,
     /// Lenses as the rig file has them, for eyes that nobody has calibrated yet.
     nominal: Option<Arc<StereoCalibration>>,
@@ -80,7 +79,7 @@ impl Default for LiveState {
             aim: AimChoice::default(),
             head: HeadPose::default(),
             aimed_for: HeadPose::default(),
-            rig: None,
+            rig: default_rig(),
             calibration: None,
             nominal: None,
             generation: 0,
@@ -176,7 +175,7 @@ impl LiveState {
 
     /// Where the eyes sit in which head.
     pub fn set_rig(&mut self, rig: Arc<Rig>) {
-        self.rig = Some(rig);
+        self.rig = rig;
         self.set_up();
     }
 
@@ -191,16 +190,9 @@ impl LiveState {
     /// The part of the table that the eyes look at, and from where.
     pub fn workspace(&self) -> Workspace {
         let HeadPose { head_z_rad, head_y_rad } = self.head;
-        let Some(rig) = &self.rig else {
-            let robot_from_left = robot_from_left(head_z_rad, head_y_rad);
-            return Workspace { robot_from_left, ..Workspace::default() };
-        };
-        let posture = rig.home().with(&[rig.eyes.pan, rig.eyes.tilt], &[head_z_rad, head_y_rad]);
-        Workspace {
-            robot_from_left: rig.robot_from_left(&posture),
-            table_height_m: rig.table.height_m,
-            ..Workspace::default()
-        }
+        let posture =
+            self.rig.home().with(&[self.rig.eyes.pan, self.rig.eyes.tilt], &[head_z_rad, head_y_rad]);
+        self.rig.workspace(&posture)
     }
 
     /// Newest pair.
@@ -351,11 +343,11 @@ impl LiveState {
                 let workspace = self.workspace();
                 aimed(self.aim, &calibration.cameras, &workspace)
                     // A head that looks away from the table still shows what is in front of it.
-                    .or_else(|error| match (&self.rig, self.aim) {
-                        (Some(_), AimChoice::Table) => {
+                    .or_else(|error| match (self.aim, error) {
+                        (AimChoice::Table, AimError::TooWide { .. }) => {
                             AimedPair::turned_down(&calibration.cameras, 0.0, 2.0, DEFAULT_SIZE_PX)
                         }
-                        _ => Err(error),
+                        (_, error) => Err(error),
                     })
                     .map(|pair| {
                         Arc::new(LiveSetup {
@@ -375,6 +367,11 @@ impl LiveState {
         (self.rectified, self.disparity, self.failed) = (None, None, None);
         self.probe = None;
     }
+}
+
+/// The rig that is used unless another one is chosen.
+pub(crate) fn default_rig() -> Arc<Rig> {
+    Arc::new(Rig::built_in("nico").expect("the rig that comes with the program is tested"))
 }
 
 /// The virtual pair for a choice.

@@ -1,22 +1,13 @@
-//! Where the eyes are over the table: the nominal geometry of NICO's head and the patch of
-//! table that the robot works on.
+//! What the eyes have to see, and from where: the patch of table that the robot works on.
 //!
-//! Assumes a head built as drawn: nobody has measured yet how the eyes sit in it (that is the
-//! camera-mount calibration), so directions may be off by some degrees. Good enough to aim a
-//! view; not good enough to report positions in the robot's frame as measured.
+//! Assumes a head built as drawn unless its mount was calibrated, so directions may be off by
+//! some degrees. Good enough to aim a view; not good enough to report positions in the robot's
+//! frame as measured.
 
-use nalgebra::{Matrix3, Vector3};
+use std::sync::OnceLock;
 
 use crate::frame::{LeftCamera, Point, Pose, Robot};
-
-/// Origin of the joint `head_z` (turns about +z) in the torso, meters.
-const HEAD_Z_ORIGIN_M: [f64; 3] = [-0.025, 0.0, 0.23];
-/// Origin of the joint `head_y` (turns about −y: positive looks up) above `head_z`, meters.
-const HEAD_Y_ORIGIN_M: [f64; 3] = [0.0, 0.0, 0.105];
-/// Optical center of the left eye in the head, meters.
-const LEFT_EYE_IN_HEAD_M: [f64; 3] = [0.08, 0.035, 0.095];
-/// `head_y` while the robot works on the table: 30° down, radians.
-pub const WORKING_HEAD_Y_RAD: f64 = -std::f64::consts::FRAC_PI_6;
+use crate::robot::Rig;
 
 /// The part of the table that the eyes have to see, and from where they see it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,15 +25,13 @@ pub struct Workspace {
 }
 
 impl Default for Workspace {
-    /// The head at work over the published table: 0.2 to 0.6 m ahead, 0.45 m to either side.
+    /// That of the rig that comes with the program, its head at work over the table.
     fn default() -> Self {
-        Self {
-            robot_from_left: robot_from_left(0.0, WORKING_HEAD_Y_RAD),
-            table_height_m: 0.054,
-            x_range_m: [0.2, 0.6],
-            y_range_m: [-0.45, 0.45],
-            headroom_m: 0.15,
-        }
+        static USUAL: OnceLock<Workspace> = OnceLock::new();
+        *USUAL.get_or_init(|| {
+            let rig = Rig::built_in("nico").expect("the rig that comes with the program is tested");
+            rig.workspace(&rig.home())
+        })
     }
 }
 
@@ -56,24 +45,14 @@ impl Workspace {
     }
 }
 
-/// Place of the left eye for the two head angles (rad; `head_y_rad` positive looks up),
-/// from the nominal dimensions of the head.
-pub fn robot_from_left(head_z_rad: f64, head_y_rad: f64) -> Pose<Robot, LeftCamera> {
-    // The three links between torso and eye have no frames of their own: nobody else needs them.
-    let turn = |rotation_rad: Vector3<f64>, origin_m: [f64; 3]| {
-        Pose::<Robot, Robot>::from_rotation_vector(rotation_rad, Vector3::from(origin_m))
-    };
-    let torso_from_neck = turn(Vector3::z() * head_z_rad, HEAD_Z_ORIGIN_M);
-    let neck_from_head = turn(-Vector3::y() * head_y_rad, HEAD_Y_ORIGIN_M);
-    // The optical axis is the head's x, image right is its −y, image down its −z.
-    let axes = Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
-    let head_from_left = Pose::<Robot, LeftCamera>::from_matrix(&axes, Vector3::from(LEFT_EYE_IN_HEAD_M));
-    torso_from_neck * neck_from_head * head_from_left
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn robot_from_left(head_z_rad: f64, head_y_rad: f64) -> Pose<Robot, LeftCamera> {
+        let rig = Rig::built_in("nico").expect("the rig that comes with the program");
+        rig.robot_from_left(&rig.home().with(&[rig.eyes.pan, rig.eyes.tilt], &[head_z_rad, head_y_rad]))
+    }
 
     #[test]
     fn a_level_head_looks_forward() {
@@ -90,7 +69,7 @@ mod tests {
             let pose = robot_from_left(z, y);
             (pose * Point::new(0.0, 0.0, 1.0)).coords - (pose * Point::new(0.0, 0.0, 0.0)).coords
         };
-        assert!((axis(0.0, WORKING_HEAD_Y_RAD).z + 0.5).abs() < 1e-12);
+        assert!((axis(0.0, -std::f64::consts::FRAC_PI_6).z + 0.5).abs() < 1e-12);
         assert!((axis(0.3, 0.0).y - 0.3f64.sin()).abs() < 1e-12);
     }
 

@@ -11,6 +11,7 @@ use super::posture::Posture;
 use crate::frame::{Head, LeftCamera, Point, Pose, Robot};
 use crate::session::Touchscreen;
 use crate::stereo::StereoCameras;
+use crate::workspace::Workspace;
 
 /// A robot on its table. Another rig is another file, see `assets/robots`.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +34,8 @@ pub struct Rig {
     pub eyes: EyeMount,
     /// The table.
     pub table: TableTop,
+    /// The patch of the table that is worked on.
+    pub work_patch: WorkPatch,
     /// The touchscreen, nominal.
     pub touchscreen: Touchscreen,
     /// Arms with their joints, hands and tips.
@@ -188,6 +191,17 @@ pub struct TableTop {
     pub y_range_m: [f64; 2],
 }
 
+/// The patch of the table that the robot works on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorkPatch {
+    /// Nearest and farthest x, m.
+    pub x_range_m: [f64; 2],
+    /// Rightmost and leftmost y, m.
+    pub y_range_m: [f64; 2],
+    /// Height above the table that objects and hands take up, m.
+    pub headroom_m: f64,
+}
+
 /// An arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
@@ -308,6 +322,17 @@ impl Rig {
     pub fn robot_from_left(&self, posture: &Posture) -> Pose<Robot, LeftCamera> {
         let link = self.description.forward(posture).of(self.eyes.link).isometry;
         Pose::<Robot, Head>::new(link) * self.eyes.head_from_left
+    }
+
+    /// What the eyes have to see, and from where, in a posture.
+    pub fn workspace(&self, posture: &Posture) -> Workspace {
+        Workspace {
+            robot_from_left: self.robot_from_left(posture),
+            table_height_m: self.table.height_m,
+            x_range_m: self.work_patch.x_range_m,
+            y_range_m: self.work_patch.y_range_m,
+            headroom_m: self.work_patch.headroom_m,
+        }
     }
 
     /// Angles of the head (pan, tilt; rad) at which the left eye looks at a point of the robot

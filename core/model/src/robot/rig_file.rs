@@ -11,6 +11,7 @@ use super::description::{Description, JointIndex, Limits};
 use super::error::{DescriptionError, RigError};
 use super::rig::{
     Arm, Board, Bus, CoupledLimit, Direction, EyeMount, Gate, NamedPose, Rig, Servo, TableTop, TipName,
+    WorkPatch,
 };
 use crate::camera::{Camera, CameraModel, Fisheye};
 use crate::frame::{Direction as Axis, Point, Pose};
@@ -42,6 +43,7 @@ struct File {
     coupled_limit: Vec<CoupledPart>,
     eyes: EyesPart,
     table: TablePart,
+    workspace: WorkspacePart,
     touchscreen: ScreenPart,
     arm: Vec<ArmPart>,
     #[serde(default)]
@@ -126,6 +128,14 @@ struct TablePart {
     height_m: f64,
     x_range_m: [f64; 2],
     y_range_m: [f64; 2],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WorkspacePart {
+    x_range_m: [f64; 2],
+    y_range_m: [f64; 2],
+    headroom_m: f64,
 }
 
 #[derive(Deserialize)]
@@ -252,6 +262,7 @@ impl Reader<'_> {
             coupled_limits: parts.coupled_limit.iter().map(|p| self.coupled(p)).collect::<Result<_, _>>()?,
             eyes: self.eyes(&parts.eyes)?,
             table: self.table(&parts.table)?,
+            work_patch: self.work_patch(&parts.workspace)?,
             touchscreen: self.screen(&parts.touchscreen)?,
             arms: parts.arm.iter().map(|part| self.arm(part)).collect::<Result<_, _>>()?,
             poses: parts.pose.iter().map(|part| self.pose(part)).collect::<Result<_, _>>()?,
@@ -419,6 +430,17 @@ impl Reader<'_> {
             return Err(self.value("table", "ranges go from the smaller to the larger value".to_owned()));
         }
         Ok(TableTop { height_m: part.height_m, x_range_m: part.x_range_m, y_range_m: part.y_range_m })
+    }
+
+    fn work_patch(&self, part: &WorkspacePart) -> Result<WorkPatch, RigError> {
+        self.finite("workspace", &[part.headroom_m])?;
+        self.finite("workspace", &[part.x_range_m, part.y_range_m].concat())?;
+        let rising = part.x_range_m[0] < part.x_range_m[1] && part.y_range_m[0] < part.y_range_m[1];
+        if !rising || part.headroom_m <= 0.0 {
+            let what = "ranges go from the smaller to the larger value, and the headroom is positive";
+            return Err(self.value("workspace", what.to_owned()));
+        }
+        Ok(WorkPatch { x_range_m: part.x_range_m, y_range_m: part.y_range_m, headroom_m: part.headroom_m })
     }
 
     fn screen(&self, part: &ScreenPart) -> Result<Touchscreen, RigError> {

@@ -98,16 +98,6 @@ fn the_jacobian_is_the_derivative_of_the_place() {
 }
 
 #[test]
-fn the_nominal_eye_is_where_the_workspace_has_it() {
-    let rig = nico();
-    let rest = rig.description.rest();
-    let posture = rest.with(&[rig.eyes.pan, rig.eyes.tilt], &[0.3, -0.4]);
-    let by_rig = rig.robot_from_left(&posture);
-    let by_hand = crate::workspace::robot_from_left(0.3, -0.4);
-    assert!((by_rig.isometry.to_homogeneous() - by_hand.isometry.to_homogeneous()).norm() < 1e-12);
-}
-
-#[test]
 fn looking_at_a_point_puts_it_on_the_optical_axis() {
     let rig = nico();
     let point = crate::Point::new(0.4, -0.15, 0.06);
