@@ -85,6 +85,16 @@ impl Chain {
         &self.limits
     }
 
+    /// Before each joint what lies between the joint before and it, and its axis.
+    pub(super) fn segments(&self) -> impl ExactSizeIterator<Item = (&Isometry3<f64>, &Unit<Vector3<f64>>)> {
+        self.segments.iter().map(|segment| (&segment.before, &segment.axis))
+    }
+
+    /// From the last joint's turned frame to the tip.
+    pub(super) fn last_joint_from_tip(&self) -> &Isometry3<f64> {
+        &self.last
+    }
+
     /// Number of joints.
     pub fn len(&self) -> usize {
         self.joints.len()

@@ -9,6 +9,7 @@
 mod chain;
 mod description;
 mod error;
+pub mod ik;
 mod posture;
 mod rig;
 mod rig_file;
@@ -25,5 +26,5 @@ pub use error::{DescriptionError, RigError};
 pub use posture::Posture;
 pub use rig::{
     Arm, Board, Bus, CoupledLimit, Direction as ServoDirection, EyeMount, Gate, NamedPose, Rig, Servo,
-    TableTop, TipName,
+    TableTop, TipName, WorkPatch,
 };
