@@ -2,6 +2,7 @@
 
 mod controls;
 mod pictures;
+mod robot;
 mod sample;
 mod tables;
 
@@ -10,8 +11,12 @@ use egui::{ScrollArea, Ui};
 use crate::format::Quantity;
 use crate::image_view::ViewState;
 use crate::notifications::Notifications;
+use crate::scene3d::SceneCamera;
 use crate::texture::TextureCache;
 use crate::theme::{self, space};
+
+#[cfg(test)]
+pub(crate) use robot::robot_scene;
 
 /// What the pages keep between frames.
 #[derive(Default)]
@@ -34,6 +39,14 @@ pub struct GalleryState {
     pub step: usize,
     /// Selected option of the choice.
     pub option: usize,
+    /// Camera of the scene.
+    pub camera: SceneCamera,
+    /// Cameras of the page with several scenes.
+    pub other_cameras: [SceneCamera; 4],
+    /// Whether those of the lower row have been put in their places.
+    pub places_chosen: [bool; 2],
+    /// How often the scene was drawn.
+    pub renders: u64,
     /// The last thing that was done, in words.
     pub last: String,
 }
@@ -47,7 +60,7 @@ pub struct Page {
 }
 
 /// All pages.
-pub const PAGES: [Page; 14] = [
+pub const PAGES: [Page; 16] = [
     Page { name: "Window", draw: controls::window },
     Page { name: "Theme", draw: theme_page },
     Page { name: "Image views", draw: pictures::linked },
@@ -59,6 +72,8 @@ pub const PAGES: [Page; 14] = [
     Page { name: "Bars", draw: tables::bars },
     Page { name: "Coverage", draw: tables::coverage },
     Page { name: "Table map", draw: tables::table_map },
+    Page { name: "Scene", draw: robot::scene },
+    Page { name: "Scene states", draw: robot::scene_states },
     Page { name: "Inspector", draw: tables::inspector },
     Page { name: "Buttons and progress", draw: controls::buttons },
     Page { name: "Notifications", draw: controls::notifications },
