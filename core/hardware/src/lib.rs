@@ -17,6 +17,7 @@ mod eye_name;
 mod folder;
 mod folder_source;
 mod image_file;
+pub mod joints;
 mod jpeg;
 mod memory;
 mod natural_order;

@@ -84,6 +84,12 @@ pub enum BusError {
     /// The stop was pressed while waiting.
     #[error("interrupted by the stop")]
     Interrupted,
+    /// The operating system refused a thread.
+    #[error("no thread could be started ({detail}): close other programs and connect again")]
+    NoThread {
+        /// What the system says.
+        detail: String,
+    },
     /// Nobody answers.
     #[error(
         "no servo answers on {port}: switch the robot's power on, and check the cable and the rate of {baud} bits per second"

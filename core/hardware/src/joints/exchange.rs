@@ -1,0 +1,298 @@
+//! One cycle's conversation with all servos: goals out, readings in, within a deadline.
+
+use std::time::{Duration, Instant};
+
+use super::reading::JointReading;
+use super::refusal::Refusal;
+use super::servo_unit::{Measured, ServoUnit};
+use crate::dynamixel::{BulkItem, Bus, BusError, Item, Status};
+
+/// Cycles without an answer after which a servo no longer takes part.
+const GIVE_UP: u32 = 12;
+/// A servo that was given up is asked again every so many cycles.
+const ASK_AGAIN: u64 = 32;
+/// Cycles with an answer to a single read but none to the bulk read after which it is read singly.
+const NO_BULK: u32 = 30;
+
+/// A servo, what is known of it, and how it answers.
+#[derive(Clone, Debug)]
+pub(super) struct Slot {
+    pub unit: ServoUnit,
+    pub reading: JointReading,
+    /// Cycles in a row without an answer.
+    pub missed: u32,
+    /// What it complained about last.
+    pub complaint: Option<String>,
+    /// Whether the torque was switched on by us and is off now.
+    pub torque_lost: bool,
+    reads_singly: bool,
+    no_bulk: u32,
+}
+
+impl Slot {
+    pub fn new(unit: ServoUnit) -> Self {
+        let reading = JointReading::new(unit.servo.joint, unit.id());
+        let reads_singly = !unit.table.bulk_read;
+        Self { unit, reading, missed: 0, complaint: None, torque_lost: false, reads_singly, no_bulk: 0 }
+    }
+
+    /// Whether it takes part in every cycle.
+    pub fn in_use(&self) -> bool {
+        self.missed < GIVE_UP
+    }
+
+    pub fn holds_torque(&self) -> bool {
+        self.reading.torque_on == Some(true)
+    }
+
+    fn take(&mut self, status: &Status) {
+        let now = Instant::now();
+        let Measured { angle_rad, speed_rad_s, load, voltage_v, temperature_c } =
+            self.unit.measured(&status.data);
+        let reading = &mut self.reading;
+        reading.angle_rad = angle_rad;
+        reading.speed_rad_s = speed_rad_s;
+        reading.load = load;
+        reading.voltage_v = voltage_v;
+        reading.temperature_c = temperature_c;
+        reading.read_at = Some(now);
+        self.missed = 0;
+        self.complaint = (!status.error.is_none()).then(|| status.error.to_string());
+    }
+}
+
+/// All servos of a rig on a bus.
+#[derive(Debug)]
+pub(super) struct Exchange {
+    pub bus: Bus,
+    pub slots: Vec<Slot>,
+    /// Largest speed of a joint, rad/s; servos are told a little more.
+    pub speed_rad_s: f64,
+    turn: u64,
+}
+
+/// A servo may catch up with its goal at this much more than the largest planned speed.
+const CATCH_UP: f64 = 1.25;
+
+impl Exchange {
+    pub fn new(bus: Bus, units: Vec<ServoUnit>, speed_rad_s: f64) -> Self {
+        Self { bus, slots: units.into_iter().map(Slot::new).collect(), speed_rad_s, turn: 0 }
+    }
+
+    /// Sends goals (rad of the joint) to servos that have torque; a goal would switch the torque of
+    /// the others on. One packet for all servos whose goals lie at the same address.
+    pub fn send_goals(
+        &mut self,
+        goal_rad: impl Fn(usize, &Slot) -> Option<f64>,
+    ) -> Result<Option<Refusal>, BusError> {
+        let mut refusal = None;
+        let mut packets: Vec<(u16, u16, Vec<(u8, Vec<u8>)>)> = vec![];
+        for (i, slot) in self.slots.iter_mut().enumerate() {
+            if !slot.holds_torque() || !slot.in_use() {
+                continue;
+            }
+            let (Some(goal_rad), Some(address)) = (goal_rad(i, slot), slot.unit.goal_address()) else {
+                continue;
+            };
+            let bytes = match slot.unit.goal_bytes(goal_rad, self.speed_rad_s * CATCH_UP) {
+                Ok(bytes) => bytes,
+                Err(error) => {
+                    refusal = Some(error);
+                    continue;
+                }
+            };
+            slot.reading.goal_rad = Some(goal_rad);
+            let length = bytes.len() as u16;
+            match packets.iter_mut().find(|(a, l, _)| (*a, *l) == (address, length)) {
+                Some((_, _, data)) => data.push((slot.unit.id(), bytes)),
+                None => packets.push((address, length, vec![(slot.unit.id(), bytes)])),
+            }
+        }
+        for (address, length, data) in packets {
+            self.bus.sync_write(address, length, data)?;
+        }
+        Ok(refusal)
+    }
+
+    /// Reads every servo in use once, repeats what failed until `deadline`, and asks one servo for
+    /// what changes slowly. Returns whether all answered.
+    pub fn read_all(&mut self, deadline: Instant) -> Result<bool, BusError> {
+        self.turn += 1;
+        let mut open = vec![];
+        let bulk: Vec<usize> = (0..self.slots.len()).filter(|i| self.in_bulk(*i)).collect();
+        let items: Vec<BulkItem> = bulk.iter().map(|i| self.item(*i)).collect();
+        for (i, answer) in bulk.iter().zip(self.bus.bulk_read(&items, deadline)?) {
+            match answer {
+                Ok(status) => {
+                    self.slots[*i].take(&status);
+                    self.slots[*i].no_bulk = 0;
+                }
+                Err(_) => open.push(*i),
+            }
+        }
+        for i in 0..self.slots.len() {
+            if (self.slots[i].in_use() && self.slots[i].reads_singly) || self.asked_again(i) {
+                self.read_one(i, deadline, &mut open)?;
+            }
+        }
+        for _ in 1..self.bus.timing().attempts {
+            for i in std::mem::take(&mut open) {
+                if Instant::now() >= deadline || !self.slots[i].in_use() {
+                    open.push(i);
+                    continue;
+                }
+                self.bus.count_retry();
+                if self.read_one(i, deadline, &mut open)? && !self.slots[i].reads_singly {
+                    self.slots[i].no_bulk += 1;
+                    self.slots[i].reads_singly = self.slots[i].no_bulk >= NO_BULK;
+                }
+            }
+        }
+        for i in &open {
+            self.slots[*i].missed = self.slots[*i].missed.saturating_add(1);
+        }
+        if Instant::now() < deadline {
+            self.read_slow()?;
+        }
+        Ok(open.iter().all(|i| !self.slots[*i].in_use()))
+    }
+
+    fn in_bulk(&self, i: usize) -> bool {
+        self.slots[i].in_use() && !self.slots[i].reads_singly
+    }
+
+    fn asked_again(&self, i: usize) -> bool {
+        !self.slots[i].in_use() && (self.turn + i as u64).is_multiple_of(ASK_AGAIN)
+    }
+
+    fn item(&self, i: usize) -> BulkItem {
+        let unit = &self.slots[i].unit;
+        BulkItem { id: unit.id(), address: unit.block.0, length: unit.block.1 }
+    }
+
+    fn read_one(&mut self, i: usize, deadline: Instant, open: &mut Vec<usize>) -> Result<bool, BusError> {
+        let BulkItem { id, address, length } = self.item(i);
+        let instruction = crate::dynamixel::Instruction::Read { address, length };
+        match self.bus.ask_once(id, &instruction, Some(usize::from(length)), deadline)? {
+            Ok(status) => {
+                self.slots[i].take(&status);
+                Ok(true)
+            }
+            Err(_) => {
+                open.push(i);
+                Ok(false)
+            }
+        }
+    }
+
+    /// Torque and current of one servo per cycle, round and round.
+    fn read_slow(&mut self) -> Result<(), BusError> {
+        let n = self.slots.len() as u64;
+        if n == 0 {
+            return Ok(());
+        }
+        let i = (self.turn / 2 % n) as usize;
+        if !self.slots[i].in_use() {
+            return Ok(());
+        }
+        let item = if self.turn.is_multiple_of(2) { Item::TorqueEnable } else { Item::PresentCurrent };
+        let Some(register) = self.slots[i].unit.table.register(item).copied() else { return Ok(()) };
+        let id = self.slots[i].unit.id();
+        let instruction =
+            crate::dynamixel::Instruction::Read { address: register.address, length: register.size };
+        let soon = Instant::now() + Duration::from_millis(10);
+        let answer = self.bus.ask_once(id, &instruction, Some(usize::from(register.size)), soon)?;
+        let Some(raw) = answer.ok().and_then(|status| register.in_data(register.address, &status.data))
+        else {
+            return Ok(());
+        };
+        let slot = &mut self.slots[i];
+        if item == Item::PresentCurrent {
+            slot.reading.current_a = Some(register.si(raw));
+        } else {
+            let on = raw != 0;
+            slot.torque_lost |= slot.reading.torque_on == Some(true) && !on;
+            slot.reading.torque_on = Some(on);
+        }
+        Ok(())
+    }
+
+    /// Reads the torque of every servo in use, at the beginning.
+    pub fn read_torques(&mut self) -> Result<(), BusError> {
+        for slot in &mut self.slots {
+            let Some(register) = slot.unit.table.register(Item::TorqueEnable).filter(|_| slot.missed == 0)
+            else {
+                continue;
+            };
+            match self.bus.read(slot.unit.id(), register.address, register.size) {
+                Ok(status) => slot.reading.torque_on = status.data.first().map(|on| *on != 0),
+                Err(BusError::Servo { .. }) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes servos answer after `delay_s` where they wait longer. They take it only without torque.
+    pub fn shorten_return_delays(&mut self, delay_s: f64) -> Result<(), BusError> {
+        for slot in &mut self.slots {
+            let Some(register) = slot.unit.table.register(Item::ReturnDelayTime) else { continue };
+            if slot.missed > 0 || slot.reading.torque_on != Some(false) {
+                continue;
+            }
+            let Some(raw) = register.raw(delay_s) else { continue };
+            let id = slot.unit.id();
+            let outcome = self.bus.read(id, register.address, register.size).and_then(|status| match status
+                .data
+                .first()
+            {
+                Some(now) if u16::from(*now) > raw => {
+                    self.bus.write(id, register.address, &register.bytes(raw)).map(|_| ())
+                }
+                _ => Ok(()),
+            });
+            match outcome {
+                Ok(()) | Err(BusError::Servo { .. }) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// Switches torque. Switched on, a servo holds where it is: its goal is written first.
+    pub fn switch_torque(&mut self, i: usize, on: bool) -> Result<Option<Refusal>, BusError> {
+        let slot = &mut self.slots[i];
+        let (joint, name) = (slot.unit.servo.joint, slot.unit.servo.title.clone());
+        let unknown = Refusal::Unknown { joint, name };
+        let Some(register) = slot.unit.table.register(Item::TorqueEnable) else { return Ok(Some(unknown)) };
+        let id = slot.unit.id();
+        let written = (|| {
+            if on {
+                let BulkItem { address, length, .. } =
+                    BulkItem { id, address: slot.unit.block.0, length: slot.unit.block.1 };
+                let status = self.bus.read(id, address, length)?;
+                slot.take(&status);
+                let goal = slot.reading.angle_rad.and_then(|angle_rad| {
+                    Some((slot.unit.goal_address()?, slot.unit.goal_bytes(angle_rad, self.speed_rad_s).ok()?))
+                });
+                let Some((address, bytes)) = goal else { return Ok(false) };
+                self.bus.write(id, address, &bytes)?;
+                slot.reading.goal_rad = slot.reading.angle_rad;
+            }
+            self.bus.write(id, register.address, &[u8::from(on)])?;
+            Ok(true)
+        })();
+        match written {
+            Ok(true) => {
+                slot.reading.torque_on = Some(on);
+                slot.torque_lost = false;
+                if !on {
+                    slot.reading.goal_rad = None;
+                }
+                Ok(None)
+            }
+            Ok(false) | Err(BusError::Servo { .. }) => Ok(Some(unknown)),
+            Err(error) => Err(error),
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! Limits beyond those of single joints: every goal that is sent passes them.
+
+use std::sync::Arc;
+
+use nalgebra::Isometry3;
+use plumbline_model::robot::{Description, LinkIndex, Posture, Rig, Shape};
+
+use super::refusal::Refusal;
+
+/// Looks at a whole posture before it is sent.
+pub trait Guard: Send + Sync {
+    /// Whether the arm may go from `present` on to `goal`, which is near. Where `present` is
+    /// already wrong, what makes it better must be allowed.
+    ///
+    /// # Errors
+    /// When not.
+    fn check(&self, present: &Posture, goal: &Posture) -> Result<(), Refusal>;
+}
+
+/// No part of an arm below a height.
+pub struct FloorGuard {
+    description: Arc<Description>,
+    parts: Vec<LinkIndex>,
+    floor_m: f64,
+}
+
+/// Where the present posture is below the floor, lower by this much is still no worse, m.
+const NO_WORSE_M: f64 = 1e-4;
+
+impl FloorGuard {
+    /// For all arms of a rig, at its floor.
+    pub fn new(rig: &Rig) -> Self {
+        let description = rig.description.clone();
+        let arm_joints: Vec<_> = rig.arms.iter().flat_map(|arm| arm.joints.iter().copied()).collect();
+        let mut is_arm = vec![false; description.links().len()];
+        // Parents come before children.
+        for joint in description.joints() {
+            let own = arm_joints.iter().any(|index| description.joint(*index).name == joint.name);
+            is_arm[joint.child.0] = own || is_arm[joint.parent.0];
+        }
+        let parts = (0..is_arm.len()).filter(|link| is_arm[*link]).map(LinkIndex).collect();
+        Self { description, parts, floor_m: rig.gate.floor_m }
+    }
+
+    /// The lowest part of an arm in a posture, and the height of its lowest point (m).
+    pub fn lowest(&self, posture: &Posture) -> Option<(LinkIndex, f64)> {
+        let poses = self.description.forward(posture);
+        let height = |link: &LinkIndex| (*link, lowest_m(&self.description, *link, &poses.all()[link.0]));
+        self.parts.iter().map(height).min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+impl Guard for FloorGuard {
+    fn check(&self, present: &Posture, goal: &Posture) -> Result<(), Refusal> {
+        let Some((link, height_m)) = self.lowest(goal) else { return Ok(()) };
+        if height_m >= self.floor_m {
+            return Ok(());
+        }
+        let before_m = self.lowest(present).map_or(f64::INFINITY, |(_, height_m)| height_m);
+        if before_m < self.floor_m && height_m >= before_m - NO_WORSE_M {
+            return Ok(());
+        }
+        let link = self.description.links()[link.0].name.clone();
+        Err(Refusal::Floor { link, height_m, floor_m: self.floor_m })
+    }
+}
+
+/// Height of the lowest point of a link, m: of its shapes, or of its origin without any.
+fn lowest_m(description: &Description, link: LinkIndex, robot_from_link: &Isometry3<f64>) -> f64 {
+    let link = &description.links()[link.0];
+    let shapes = if link.collisions.is_empty() { &link.visuals } else { &link.collisions };
+    let lowest = |pose: Isometry3<f64>, shape: &Shape| {
+        // The third row of the rotation: how much each axis of the shape points up.
+        let up = pose.rotation.inverse() * nalgebra::Vector3::z();
+        let below_m = match shape {
+            Shape::Box { half_m } => up.abs().dot(half_m),
+            Shape::Sphere { radius_m } => *radius_m,
+            Shape::Capsule { radius_m, half_length_m } => up.z.abs() * half_length_m + radius_m,
+            Shape::Cylinder { radius_m, half_length_m } => {
+                up.z.abs() * half_length_m + up.x.hypot(up.y) * radius_m
+            }
+        };
+        pose.translation.z - below_m
+    };
+    shapes
+        .iter()
+        .map(|visual| lowest(robot_from_link * visual.link_from_shape, &visual.shape))
+        .fold(robot_from_link.translation.z, f64::min)
+}

@@ -1,0 +1,43 @@
+//! The joints of a robot, moved only within its limits.
+//!
+//! [`ArmDriver`] is the only way to move anything: it owns the bus, and the bus's writing side is
+//! private to this crate. Each cycle reads the stop, moves the goals by a step that all limits
+//! allow, sends all goals in one packet, and reads every servo.
+//!
+//! - A goal is never sent farther ahead of the present angle than the rig's step limit: whatever
+//!   becomes of the program, the arm stands within one step of where it was.
+//! - [`StopSwitch`] passes every queue and interrupts every wait; it latches.
+//! - [`Heartbeat`] and the deadline of a [`Setpoint`] make the arm hold when nobody is there.
+//! - A [`Refusal`] says which joint, which limit and by how much; nothing is clamped in silence.
+//!   Where a joint stays behind, the whole move waits for it.
+//! - Holding means that every servo with torque is told to stay at its present angle. A loaded
+//!   joint hangs a little below its goal, and settles by as much again.
+
+mod command;
+mod controller;
+mod driver;
+mod exchange;
+mod guard;
+mod limiter;
+mod options;
+mod problem;
+mod rate;
+mod reading;
+mod refusal;
+mod ring;
+mod servo_unit;
+mod stop;
+mod touch;
+mod trajectory;
+
+#[cfg(test)]
+mod tests;
+
+pub use command::{Motion, Move, MoveId, MoveOutcome, Pace, Setpoint, SetpointKind};
+pub use driver::{ArmDriver, expected_servos};
+pub use guard::{FloorGuard, Guard};
+pub use options::{ArmOptions, OnState};
+pub use reading::{BusStatistics, JointReading, JointState};
+pub use refusal::{HoldReason, Refusal};
+pub use stop::{Heartbeat, StopSwitch};
+pub use touch::{Touch, TouchSource};

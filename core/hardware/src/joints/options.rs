@@ -1,0 +1,61 @@
+//! How an arm is driven.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::guard::Guard;
+use super::stop::{Heartbeat, StopSwitch};
+use crate::dynamixel::{BusTiming, Protocol};
+
+/// Called after every cycle, from the thread of the bus: wake the window, nothing more.
+pub type OnState = Box<dyn Fn() + Send>;
+
+/// How an arm is driven. Limits of joints, speed, step, temperature and load are those of the rig.
+pub struct ArmOptions {
+    /// Language of the bus.
+    pub protocol: Protocol,
+    /// Timing of the bus; its rate is replaced by the rig's.
+    pub timing: BusTiming,
+    /// Time from one cycle to the next.
+    pub period: Duration,
+    /// A cycle's answers are repeated until this time after its beginning.
+    pub cycle_deadline: Duration,
+    /// The stop.
+    pub stop: StopSwitch,
+    /// Sign of life of the window; `None` where nobody watches (a script).
+    pub heartbeat: Option<Heartbeat>,
+    /// Without a sign of life for this long the arm holds.
+    pub heartbeat_timeout: Duration,
+    /// Limits beyond those of joints; the floor is always among them.
+    pub guards: Vec<Arc<dyn Guard>>,
+    /// Servos that wait longer before they answer are told to wait this long; `None` leaves them.
+    pub return_delay: Option<Duration>,
+    /// A moving servo that does not answer for this many cycles makes the arm hold.
+    pub missed_cycles: u32,
+    /// A joint that stays behind for this long makes the arm hold.
+    pub following_timeout: Duration,
+    /// A load above the gate for this long makes the arm hold.
+    pub load_timeout: Duration,
+    /// Called after every cycle.
+    pub on_state: Option<OnState>,
+}
+
+impl Default for ArmOptions {
+    fn default() -> Self {
+        Self {
+            protocol: Protocol::V1,
+            timing: BusTiming::default(),
+            period: Duration::from_millis(16),
+            cycle_deadline: Duration::from_millis(20),
+            stop: StopSwitch::default(),
+            heartbeat: None,
+            heartbeat_timeout: Duration::from_secs(1),
+            guards: vec![],
+            return_delay: Some(Duration::from_micros(10)),
+            missed_cycles: 6,
+            following_timeout: Duration::from_millis(1500),
+            load_timeout: Duration::from_millis(300),
+            on_state: None,
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! What is known about the joints at one moment.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use plumbline_model::image_pair::Stamp;
+use plumbline_model::robot::{JointIndex, Posture};
+
+use super::command::{Motion, MoveId, MoveOutcome};
+use super::refusal::Refusal;
+use crate::dynamixel::{BusCounts, WireTime};
+
+/// One joint. What is not known is `None`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointReading {
+    /// The joint.
+    pub joint: JointIndex,
+    /// Id of its servo.
+    pub servo: u8,
+    /// Angle by the encoder, rad of the joint, as last read.
+    pub angle_rad: Option<f64>,
+    /// Angle sent last, rad of the joint.
+    pub goal_rad: Option<f64>,
+    /// Speed, rad/s of the joint.
+    pub speed_rad_s: Option<f64>,
+    /// Load as a signed share of the stall torque, in the joint's direction.
+    pub load: Option<f64>,
+    /// Temperature, °C.
+    pub temperature_c: Option<f64>,
+    /// Supply voltage, V.
+    pub voltage_v: Option<f64>,
+    /// Current, A.
+    pub current_a: Option<f64>,
+    /// Whether it holds.
+    pub torque_on: Option<bool>,
+    /// When the angle was read, host clock.
+    pub read_at: Option<Instant>,
+    /// Age of the angle when the state was published.
+    pub age: Option<Duration>,
+    /// What is wrong with it and what to do.
+    pub problem: Option<String>,
+}
+
+impl JointReading {
+    pub(super) fn new(joint: JointIndex, servo: u8) -> Self {
+        Self {
+            joint,
+            servo,
+            angle_rad: None,
+            goal_rad: None,
+            speed_rad_s: None,
+            load: None,
+            temperature_c: None,
+            voltage_v: None,
+            current_a: None,
+            torque_on: None,
+            read_at: None,
+            age: None,
+            problem: None,
+        }
+    }
+}
+
+/// How the bus is doing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct BusStatistics {
+    /// Cycles so far.
+    pub cycles: u64,
+    /// Cycles in which every servo in use was read.
+    pub complete_cycles: u64,
+    /// Complete cycles per second over the last second; `None` during the first.
+    pub complete_per_s: Option<f64>,
+    /// What passed over the wire in the last cycle.
+    pub last_cycle: WireTime,
+    /// Time of the last cycle on the wire itself, without the host's pauses, s.
+    pub last_wire_s: f64,
+    /// Answers and faults since the connection was made.
+    pub counts: BusCounts,
+}
+
+/// All joints at one moment.
+#[derive(Clone, Debug)]
+pub struct JointState {
+    /// Counts up by one per cycle.
+    pub stamp: Stamp,
+    /// In the order of the rig's servos.
+    pub joints: Arc<[JointReading]>,
+    /// What the arm does.
+    pub motion: Motion,
+    /// Whether STOP is latched.
+    pub stopped: bool,
+    /// All joints as measured; joints without a servo or not yet read stand as at rest. `None`
+    /// until every servo in use was read once.
+    pub measured: Option<Posture>,
+    /// All joints as commanded last, the others as measured.
+    pub commanded: Option<Posture>,
+    /// The bus.
+    pub bus: BusStatistics,
+    /// The newest ends of moves, oldest first.
+    pub outcomes: Arc<[(MoveId, MoveOutcome)]>,
+    /// The newest refusal of anything that was asked, with a number that grows with each.
+    pub refusal: Option<(u64, Refusal)>,
+    /// What the operator should know, a sentence each (a servo gets warm).
+    pub warnings: Arc<[String]>,
+    /// Why the port is gone.
+    pub gone: Option<String>,
+}
+
+impl JointState {
+    /// The reading of a joint.
+    pub fn of(&self, joint: JointIndex) -> Option<&JointReading> {
+        self.joints.iter().find(|reading| reading.joint == joint)
+    }
+
+    /// How a move ended, if it did and not too many ended since.
+    pub fn outcome(&self, id: MoveId) -> Option<&MoveOutcome> {
+        self.outcomes.iter().find(|(ended, _)| *ended == id).map(|(_, outcome)| outcome)
+    }
+}
