@@ -11,6 +11,7 @@ pub mod depth;
 pub mod disparity;
 pub mod locate;
 pub mod mat;
+pub mod mount;
 pub mod opencv_storage;
 pub mod rectify;
 pub mod synthetic;

@@ -10,7 +10,7 @@ use super::problem::{Corner, Free, Problem, State, View};
 /// Pose of a plane (z = 0) from rays to points on it, by the direct linear transform on rays:
 /// ray × (H · (X, Y, 1)) = 0 with H = [r1 r2 t]. Works beyond 90° off the axis, where image
 /// coordinates do not exist. Returns camera_from_board; `None` if the rays do not determine it.
-pub(super) fn pose_from_rays(rays: &[Vector3<f64>], points: &[Vector3<f64>]) -> Option<Isometry3<f64>> {
+pub(crate) fn pose_from_rays(rays: &[Vector3<f64>], points: &[Vector3<f64>]) -> Option<Isometry3<f64>> {
     if rays.len() < 4 {
         return None;
     }

@@ -26,6 +26,8 @@ use plumbline_model::{
 pub use check::{CheckReport, check};
 pub use optimizer::Termination;
 
+pub(crate) use initial::pose_from_rays;
+pub(crate) use outliers::median;
 use optimizer::Optimizer;
 use problem::{Problem, State};
 

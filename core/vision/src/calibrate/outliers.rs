@@ -53,7 +53,7 @@ fn worst_bad_corner(problem: &Problem, state: &State) -> Option<(usize, usize)> 
 }
 
 /// Median; `None` of nothing.
-pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }

@@ -1,0 +1,4 @@
+//! placeholder
+/// Placeholder.
+#[derive(Debug, thiserror::Error)]
+pub enum MountFileError {}

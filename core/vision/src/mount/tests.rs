@@ -1,0 +1,5 @@
+//! Synthetic truth: planted mounts, pixel noise, encoder ticks; then everything that can go wrong.
+
+mod failures;
+mod honesty;
+mod world;
