@@ -1,0 +1,245 @@
+//! The world against the description, and against what hands and things do.
+
+use std::sync::Arc;
+
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use plumbline_model::robot::{LinkIndex, Posture, Rig};
+
+use super::*;
+use crate::scenario::Scenario;
+use crate::toys::Toy;
+
+fn rig() -> Arc<Rig> {
+    Arc::new(Rig::built_in("nico").expect("valid"))
+}
+
+fn world(scenario: &str) -> World {
+    World::new(rig(), &Scenario::built_in(scenario).expect("valid"), 1).expect("a world")
+}
+
+/// A scenario as described but for some lines.
+fn scenario(lines: &str) -> Scenario {
+    let text = format!("format = 1\nname = \"x\"\ntitle = \"X\"\nabout = \"x\"\n{lines}");
+    Scenario::from_toml("x", &text).expect("valid")
+}
+
+/// Largest distance (m) and turn (rad) of a link from where the description has it.
+fn miss(world: &mut World, posture: &Posture) -> (f64, f64) {
+    world.refresh();
+    let rig = world.rig().clone();
+    let nominal = rig.description.forward(posture);
+    let mut worst = (0.0, 0.0);
+    for i in 0..rig.description.links().len() {
+        let Some(place) = world.true_link(LinkIndex(i)) else { continue };
+        let difference = nominal.of(LinkIndex(i)).isometry.inverse() * place;
+        worst = (f64::max(worst.0, difference.translation.vector.norm()), f64::max(worst.1, difference.rotation.angle()));
+    }
+    worst
+}
+
+#[test]
+fn every_link_is_where_the_description_has_it_when_nothing_is_hidden() {
+    let mut world = world("perfect");
+    let rig = world.rig().clone();
+    for name in ["home", "touch-ready", "close-hand", "point", "look-table"] {
+        let posture = rig.pose(name).expect("a pose").applied_to(&rig.home());
+        world.stand(&posture);
+        let (distance_m, turn_rad) = miss(&mut world, &posture);
+        assert!(distance_m < 1e-9 && turn_rad < 1e-9, "{name}: {distance_m} m, {turn_rad} rad");
+    }
+    // Marks on links have a place too.
+    let tip = rig.description.find_link("right_index_tip").expect("a link");
+    assert!(world.true_link(tip).is_some());
+}
+
+#[test]
+fn servos_without_droop_end_where_they_are_sent() {
+    let mut world = world("perfect");
+    let rig = world.rig().clone();
+    for name in ["touch-ready", "home"] {
+        let arm = &rig.arm("right").expect("an arm").joints;
+        let pose = rig.pose(name).expect("a pose").applied_to(&rig.home());
+        let goal = rig.home().with(arm, &pose.of(arm));
+        world.send(&goal, Some(1.0));
+        world.run(6.0);
+        let (distance_m, _) = miss(&mut world, &goal);
+        assert!(distance_m < 1e-4, "{name}: {distance_m} m");
+    }
+}
+
+#[test]
+fn real_servos_droop_and_their_encoders_show_it() {
+    let mut world = World::new(rig(), &scenario(""), 1).expect("a world");
+    let rig = world.rig().clone();
+    let mut goal = rig.home();
+    let shoulder = rig.description.find_joint("r_shoulder_y").expect("a joint");
+    let elbow = rig.description.find_joint("r_elbow_y").expect("a joint");
+    goal[shoulder] = 1.2;
+    goal[elbow] = 3.0;
+    world.send(&goal, Some(0.8));
+    world.run(5.0);
+    let droop = goal[shoulder] - world.encoders()[shoulder];
+    assert!((0.003..0.08).contains(&droop), "the stretched arm pulls down: {droop} rad");
+    // The encoder tells the droop: with its angles the description is right again.
+    let encoders = world.encoders();
+    let (distance_m, _) = miss(&mut world, &encoders);
+    assert!(distance_m < 5e-4, "{distance_m}");
+}
+
+#[test]
+fn give_and_slack_do_not_show_in_the_encoder() {
+    let lines = "[joint.r_shoulder_y]\ncompliance_rad_per_nm = 0.02\nslack_rad = 0.01";
+    let mut world = World::new(rig(), &scenario(lines), 1).expect("a world");
+    let rig = world.rig().clone();
+    let mut goal = rig.home();
+    goal[rig.description.find_joint("r_elbow_y").expect("a joint")] = 3.0;
+    goal[rig.description.find_joint("r_shoulder_y").expect("a joint")] = 1.2;
+    world.send(&goal, Some(0.8));
+    world.run(5.0);
+    let encoders = world.encoders();
+    let (distance_m, turn_rad) = miss(&mut world, &encoders);
+    assert!(distance_m > 2e-3, "{distance_m}");
+    assert!((0.005..0.05).contains(&turn_rad), "{turn_rad}");
+}
+
+#[test]
+fn an_encoder_zero_turns_the_joint_and_nothing_else() {
+    let lines = "[servo]\nholding = \"exact\"\n[joint.r_shoulder_z]\nencoder_zero_rad = 0.05";
+    let mut world = World::new(rig(), &scenario(lines), 1).expect("a world");
+    let rig = world.rig().clone();
+    let mut real = rig.home();
+    real[rig.description.find_joint("r_shoulder_z").expect("a joint")] += 0.05;
+    assert!(miss(&mut world, &real).0 < 1e-9);
+    assert!(miss(&mut world, &rig.home()).0 > 5e-3);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_course() {
+    let course = || {
+        let mut world = world("lab");
+        let goal = world.rig().pose("touch-ready").expect("a pose").applied_to(&world.rig().home());
+        world.send(&goal, Some(1.0));
+        world.run(1.0);
+        world.snapshot()
+    };
+    assert_eq!(course(), course());
+}
+
+#[test]
+fn toys_come_to_rest_on_the_table() {
+    let mut world = world("lab");
+    world.run(6.0);
+    let before: Vec<_> = Toy::ALL.iter().map(|toy| world.toy(*toy).expect("out")).collect();
+    world.run(1.0);
+    for (toy, before) in Toy::ALL.into_iter().zip(before) {
+        let now = world.toy(toy).expect("out");
+        let moved = (now.translation.vector - before.translation.vector).norm();
+        assert!(moved < 2e-3, "{toy:?} moves {moved} m in a second");
+        assert!((0.04..0.12).contains(&now.translation.z), "{toy:?} is at {}", now.translation.vector);
+    }
+}
+
+#[test]
+fn a_toy_beside_the_table_is_refused() {
+    let mut world = world("lab");
+    let error = world.place_toy(Toy::Duck, 3.0, 0.0).expect_err("not on the table").to_string();
+    assert!(error.contains("table"), "{error}");
+    world.remove_toy(Toy::Duck);
+    assert_eq!(world.toy(Toy::Duck), None);
+    world.run(0.1);
+    assert_eq!(world.toy(Toy::Duck), None);
+}
+
+#[test]
+fn unknown_parts_in_a_scenario_are_named() {
+    for (lines, part) in [
+        ("[joint.r_knee]\nslack_rad = 0.01", "r_knee"),
+        ("[fingertip.r_toe]\noffset_m = [0.0, 0.0, 0.0]", "r_toe"),
+    ] {
+        let error = World::new(rig(), &scenario(lines), 1).expect_err(part).to_string();
+        assert!(error.contains(part), "{error}");
+    }
+}
+
+#[test]
+fn pace() {
+    let mut world = world("lab");
+    world.run(0.5);
+    let started = std::time::Instant::now();
+    world.run(10.0);
+    let factor = 10.0 / started.elapsed().as_secs_f64();
+    println!("physics: {factor:.1} times real time on one core");
+    assert!(factor > 2.0, "{factor}");
+}
+
+#[test]
+fn onion_look() {
+    for name in ["perfect", "lab"] {
+        let mut world = world(name);
+        for t in 0..10 {
+            for toy in Toy::ALL {
+                let p = world.toy(toy).expect("out").translation.vector;
+                print!(" {:.4} {:.4} {:.4} |", p.x, p.y, p.z);
+            }
+            println!(" {name} {t}");
+            world.run(1.0);
+        }
+    }
+}
+
+#[test]
+fn thumb_look() {
+    let rig = rig();
+    let palm = rig.description.find_link("right_palm").expect("x");
+    let thumb = rig.description.find_link("right_thumb").expect("x");
+    for tx in [0.0, -0.6, -1.2, -1.8, -2.5] {
+        for tz in [0.0, -0.6, -1.2, -1.8, -2.5] {
+            let mut p = rig.home();
+            p[rig.description.find_joint("r_thumb_x").expect("x")] = tx;
+            p[rig.description.find_joint("r_thumb_z").expect("x")] = tz;
+            let poses = rig.description.forward(&p);
+            let t = poses.of(palm).isometry.inverse() * poses.of(thumb).isometry;
+            let tip = t * nalgebra::Point3::new(0.0, 0.0, -0.05);
+            println!("tx {tx} tz {tz}: tip {:.3} {:.3} {:.3}", tip.x, tip.y, tip.z);
+        }
+    }
+}
+
+/// Palm down, hand around a toy that stands on the table, fingers closed, arm lifted.
+fn grasp(friction: f64, toy: Toy) -> (f64, f64) {
+    let lines = format!("[servo]\nholding = \"exact\"\n[contact]\ntoy_friction = {friction}");
+    let mut world = World::new(rig(), &scenario(&lines), 1).expect("a world");
+    let rig = world.rig().clone();
+    Toy::ALL.iter().filter(|other| **other != toy).for_each(|other| world.remove_toy(*other));
+    let open = rig.pose("open-hand").expect("a pose").applied_to(&rig.home());
+    world.stand(&open);
+    // The hand is up beside the head with its palm somewhere: the toy is put into it.
+    let palm = rig.description.find_link("right_palm").expect("a link");
+    let robot_from_palm = world.true_link(palm).expect("a body");
+    let out_m = 0.011 + toy.rest_height_m() + 0.001;
+    let toy_in_palm = Isometry3::from_parts(
+        Translation3::new(out_m, 0.0, -0.045),
+        UnitQuaternion::rotation_between(&Vector3::z(), &Vector3::x()).expect("not opposite"),
+    );
+    println!("palm normal {:?}", robot_from_palm.rotation * Vector3::x());
+    let close = rig.pose("close-hand").expect("a pose").applied_to(&open);
+    world.send(&close, Some(3.0));
+    // Held in the air until the fingers are there.
+    for _ in 0..800 {
+        world.put_toy(toy, robot_from_palm * toy_in_palm);
+        world.step();
+    }
+    world.run(1.5);
+    let place = world.toy(toy).expect("out").translation.vector;
+    let relative = world.true_link(palm).expect("a body").inverse() * nalgebra::Point3::from(place);
+    println!("{toy:?} friction {friction}: in palm {:?}", relative.coords.as_slice());
+    ((relative.coords - toy_in_palm.translation.vector).norm(), place.z)
+}
+
+#[test]
+fn a_closed_hand_holds() {
+    for toy in [Toy::Tomato, Toy::Orange, Toy::Mushroom, Toy::Duck, Toy::Onion] {
+        println!("{toy:?}: {:?}", grasp(1.0, toy));
+        println!("{toy:?}: {:?}", grasp(0.05, toy));
+    }
+}
