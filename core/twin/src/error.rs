@@ -22,7 +22,9 @@ pub enum TwinError {
         reason: String,
     },
     /// The scenario speaks of a part that the robot does not have.
-    #[error("scenario {scenario} speaks of {what} \"{name}\", which the robot {robot} does not have: correct the name")]
+    #[error(
+        "scenario {scenario} speaks of {what} \"{name}\", which the robot {robot} does not have: correct the name"
+    )]
     UnknownPart {
         /// The scenario.
         scenario: String,

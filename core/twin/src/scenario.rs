@@ -263,7 +263,9 @@ impl Scenario {
         for value in conductances {
             within("a heat conductance of the eyes", value, 1e-3, 1.0)?;
         }
-        for turn in heat.left_rad_per_k.iter().chain(&heat.right_rad_per_k).chain(&self.eyes.right_rotation_rad) {
+        for turn in
+            heat.left_rad_per_k.iter().chain(&heat.right_rad_per_k).chain(&self.eyes.right_rotation_rad)
+        {
             within("a turn of an eye", *turn, -0.1, 0.1)?;
         }
         within("eyes.heat.power_w", heat.power_w, 0.0, 50.0)?;

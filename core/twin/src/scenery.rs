@@ -39,7 +39,8 @@ pub mod object {
     }
 }
 
-const BLACK_GLASS: Material = Material { albedo: [0.006, 0.006, 0.008], gloss: 0.35, pattern: Pattern::Plain };
+const BLACK_GLASS: Material =
+    Material { albedo: [0.006, 0.006, 0.008], gloss: 0.35, pattern: Pattern::Plain };
 const BEZEL: Material = Material { albedo: [0.010, 0.010, 0.011], gloss: 0.15, pattern: Pattern::Plain };
 const WALL: Material = plain([0.62, 0.62, 0.60]);
 const CEILING: Material = plain([0.70, 0.70, 0.68]);

@@ -58,7 +58,7 @@ impl Writer<'_> {
             self.text,
             r#"<mujoco model="{}">
   <compiler angle="radian" autolimits="true" balanceinertia="true" inertiafromgeom="false" boundmass="0.001" boundinertia="1e-7"/>
-  <option timestep="{STEP_S}" integrator="implicitfast" cone="elliptic" impratio="5" iterations="30"/>
+  <option timestep="{STEP_S}" integrator="implicitfast" cone="elliptic" impratio="20" iterations="30" sleep_tolerance="0.004"><flag sleep="enable"/></option>
   <size memory="16M"/>
   <default>
     <geom condim="4" friction="0.8 0.005 0.0005"/>
@@ -128,7 +128,9 @@ impl Writer<'_> {
         pad: &str,
     ) -> Result<(), TwinError> {
         let (axis, limits) = match kind {
-            JointKind::Revolute { axis, limits, .. } | JointKind::Coupled { axis, limits, .. } => (axis, limits),
+            JointKind::Revolute { axis, limits, .. } | JointKind::Coupled { axis, limits, .. } => {
+                (axis, limits)
+            }
             JointKind::Fixed => return Ok(()),
         };
         let (armature, damping) = match (kind, finger) {
@@ -200,7 +202,10 @@ impl Writer<'_> {
         let (center, tensor) = rod(&finger.near.0);
         self.inertia(LEAST_FINGER_KG, center, tensor, pad);
         let name = &link.name;
-        let skin = format!(r#"{ROBOT} friction="{} 0.01 0.001" solref="0.01 1""#, self.scenario.contact.toy_friction);
+        let skin = format!(
+            r#"{ROBOT} friction="{} 0.01 0.001" solref="0.01 1""#,
+            self.scenario.contact.toy_friction
+        );
         self.geom(&format!("{name}.near"), &finger.near.0, &finger.near.1, &skin, pad);
         let bend = 1.45 * finger.closing;
         let range = if bend < 0.0 { [bend, 0.0] } else { [0.0, bend] };
@@ -288,9 +293,12 @@ impl Writer<'_> {
             let name = toy.name();
             let friction = self.scenario.contact.toy_friction;
             let more = format!(
-                r#"{TOY} priority="2" condim="6" friction="{friction} 0.008 0.001" solref="0.012 1" solimp="0.85 0.97 0.002""#
+                r#"{TOY} priority="2" condim="6" friction="{friction} 0.008 0.001" solref="0.015 1" solimp="0.96 0.99 0.002""#
             );
-            let _ = writeln!(self.text, r#"    <body name="toy.{name}" pos="0 0 -1"><freejoint name="toy.{name}"/>"#);
+            let _ = writeln!(
+                self.text,
+                r#"    <body name="toy.{name}" pos="0 0 -1"><freejoint name="toy.{name}"/>"#
+            );
             let mass_kg = toy.mass_kg();
             // A hollow ball of its size.
             let moment = 2.0 / 3.0 * mass_kg * toy.radius_m().powi(2);

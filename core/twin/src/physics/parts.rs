@@ -2,7 +2,9 @@
 //! description knows as one part, is made of two, so that it can bend around things.
 
 use nalgebra::{Isometry3, Point3, Translation3, Vector3};
-use plumbline_model::robot::{Description, JointIndex, JointKind, LinkIndex, Rig, Shape as LinkShape, Visual};
+use plumbline_model::robot::{
+    Description, JointIndex, JointKind, LinkIndex, Rig, Shape as LinkShape, Visual,
+};
 
 use crate::scene::{Material, Pattern, Shape};
 use crate::toys::along;
@@ -115,11 +117,7 @@ pub(crate) fn material_of(visual: &Visual, side: Side) -> Material {
         Side::Arm(_) => (0.06, 0.08),
         Side::Hand(_) => (0.7, 0.08),
     };
-    Material {
-        albedo: [r, g, b].map(|c| (linear(c) * darkening).max(0.012)),
-        gloss,
-        pattern: Pattern::Plain,
-    }
+    Material { albedo: [r, g, b].map(|c| (linear(c) * darkening).max(0.012)), gloss, pattern: Pattern::Plain }
 }
 
 /// Frame at the pivot of a finger.

@@ -115,7 +115,10 @@ mod tests {
         let glass = tilted.robot_from_screen.translation.vector;
         let over = |places: &Places, p: Vector3<f64>| p.z - places.table_height_m(p.x, p.y);
         assert!((over(&level, screen) - over(&tilted, glass)).abs() < 1e-5);
-        assert!((tilted.table_height_m(0.26, 0.2) - tilted.table_height_m(0.26, 0.0) - 0.2 * 0.02f64.tan()).abs() < 1e-6);
+        assert!(
+            (tilted.table_height_m(0.26, 0.2) - tilted.table_height_m(0.26, 0.0) - 0.2 * 0.02f64.tan()).abs()
+                < 1e-6
+        );
         assert!(tilted.on_table(0.3, 0.0) && !tilted.on_table(0.9, 0.0));
     }
 }

@@ -9,8 +9,8 @@ use plumbline_model::robot::{JointIndex, LinkIndex, Posture, Rig};
 use plumbline_model::{Board, Pose, Robot};
 use rand::{Rng, SeedableRng, rngs::StdRng};
 
-use super::motor::Motor;
 use super::mjcf;
+use super::motor::Motor;
 use super::parts;
 use super::place::Places;
 use super::servo::{Drive, Reading, ServoMotor};
@@ -59,7 +59,6 @@ enum Rub {
 
 #[derive(Clone, Copy, Debug)]
 struct ToyState {
-    toy: Toy,
     out: bool,
     /// First of its seven coordinates, first of its six speeds.
     qpos: usize,
@@ -95,7 +94,11 @@ impl World {
             .iter()
             .map(|s| Ok(ServoMotor::at(Motor::of(&s.model)?, s.ratio, holding, home[s.joint])))
             .collect::<Result<Vec<_>, TwinError>>()?;
-        let rubs = rig.servos.iter().map(|servo| find_rub(data.model(), &rig, servo.joint)).collect::<Result<_, _>>()?;
+        let rubs = rig
+            .servos
+            .iter()
+            .map(|servo| find_rub(data.model(), &rig, servo.joint))
+            .collect::<Result<_, _>>()?;
         let toys = Toy::ALL.into_iter().map(|toy| find_toy(data.model(), toy)).collect::<Result<_, _>>()?;
         let eyes_link = &rig.description.links()[rig.eyes.link.0].name;
         let touch = watch(data.model(), &rig, scenario.contact.touch_threshold_n)?;
@@ -452,7 +455,7 @@ fn find_rub(model: &MjModel, rig: &Rig, joint: JointIndex) -> Result<Rub, TwinEr
 fn find_toy(model: &MjModel, toy: Toy) -> Result<ToyState, TwinError> {
     let id = find(model, MjtObjBase::mjOBJ_JOINT, &format!("toy.{}", toy.name()))?;
     let (qpos, dof) = (model.jnt_qposadr()[id] as usize, model.jnt_dofadr()[id] as usize);
-    Ok(ToyState { toy, out: true, qpos, dof })
+    Ok(ToyState { out: true, qpos, dof })
 }
 
 fn watch(model: &MjModel, rig: &Rig, threshold_n: f64) -> Result<TouchWatch, TwinError> {
@@ -460,7 +463,9 @@ fn watch(model: &MjModel, rig: &Rig, threshold_n: f64) -> Result<TouchWatch, Twi
     let links = rig.description.links().iter().enumerate();
     let fingers = links
         .filter(|(i, _)| parts::finger(rig, LinkIndex(*i)).is_some())
-        .map(|(_, link)| find(model, MjtObjBase::mjOBJ_GEOM, &format!("{}.tip", link.name)).map(|id| id as i32))
+        .map(|(_, link)| {
+            find(model, MjtObjBase::mjOBJ_GEOM, &format!("{}.tip", link.name)).map(|id| id as i32)
+        })
         .collect::<Result<_, _>>()?;
     Ok(TouchWatch::new(glass, fingers, threshold_n))
 }
