@@ -319,8 +319,14 @@ impl Controller {
 
     fn take_setpoint(&mut self, newest: Option<(Instant, Setpoint)>) {
         let Some((given_at, setpoint)) = newest else { return };
-        let is_same = matches!(&self.mode, Mode::Follow { given_at: known, .. } if *known == given_at);
-        if is_same || given_at.elapsed() > setpoint.valid_for {
+        if let Mode::Follow { given_at: known, setpoint: followed, .. } = &mut self.mode
+            && *known == given_at
+        {
+            // Known; but it may have been shortened since.
+            followed.valid_for = setpoint.valid_for;
+            return;
+        }
+        if given_at.elapsed() > setpoint.valid_for {
             return;
         }
         let joints: Vec<JointIndex> = setpoint.joints.iter().map(|(joint, _)| *joint).collect();

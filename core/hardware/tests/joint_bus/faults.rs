@@ -1,0 +1,140 @@
+//! Answers that are late, garbled, cut, missing, echoed, or of somebody else; lines that break.
+
+use std::time::Duration;
+
+use plumbline_hardware::dynamixel::{FaultKind, Item, open_port};
+use plumbline_hardware::joints::{ArmDriver, ArmOptions, HoldReason, Motion, MoveOutcome, Refusal};
+
+use super::chain::{Fault, PtyChain};
+use super::world::{await_state, id_of, joint, nico, ready, run, turn};
+
+/// A servo read by the bulk read and one read singly, each with a few broken answers: counted,
+/// repeated, and the arm works on.
+#[test]
+fn every_kind_of_broken_answer_is_counted_and_repeated() {
+    for (fault, kind) in [
+        (Fault::Silent, FaultKind::Missing),
+        (Fault::Cut, FaultKind::Cut),
+        (Fault::Checksum, FaultKind::Checksum),
+        (Fault::OtherId(99), FaultKind::WrongId),
+        (Fault::Garbled, FaultKind::Garbled),
+        (Fault::Complains(0x10), FaultKind::Refused),
+    ] {
+        let (rig, chain, driver) = ready();
+        let finger = id_of(&rig, joint(&rig, "r_thumb_x"));
+        let elbow = id_of(&rig, joint(&rig, "r_elbow_y"));
+        chain.fault(finger, fault.clone(), 2);
+        chain.fault(elbow, fault.clone(), 1);
+        let state = await_state(&driver, "counted faults", |s| {
+            let of = |id| s.bus.counts.by_servo.get(&id).map_or(0, |c| c.total());
+            of(finger) >= 2 && of(elbow) >= 1
+        });
+        let counts = &state.bus.counts;
+        assert!(counts.by_servo[&finger].of(kind) >= 1, "{fault:?}: {}", counts.by_servo[&finger]);
+        assert!(counts.retries >= 1, "{fault:?}");
+        let pan = joint(&rig, "head_z");
+        assert!(matches!(run(&driver, pan, 0.1, 0.5), MoveOutcome::Arrived { .. }), "{fault:?}");
+        let state = driver.state();
+        assert!(state.joints.iter().all(|j| j.problem.is_none()), "{fault:?}: all is well again");
+    }
+}
+
+#[test]
+fn a_late_answer_is_not_taken_for_another_servos() {
+    let (rig, chain, driver) = ready();
+    let finger = id_of(&rig, joint(&rig, "r_thumb_x"));
+    chain.fault(finger, Fault::Late(Duration::from_millis(15)), 1);
+    let state = await_state(&driver, "a late answer", |s| {
+        s.bus.counts.by_servo.get(&finger).is_some_and(|c| c.of(FaultKind::Late) >= 1)
+    });
+    for (servo, reading) in rig.servos.iter().zip(state.joints.iter()) {
+        let true_rad = servo.joint_rad(chain.lock().servos[&servo.id].motor_rad());
+        assert!((reading.angle_rad.expect("read") - true_rad).abs() < 2e-3, "{}", servo.title);
+    }
+}
+
+#[test]
+fn an_adapter_that_echoes_is_noticed_and_does_no_harm() {
+    let rig = nico();
+    let chain = PtyChain::of(&rig);
+    chain.lock().echo = true;
+    let port = open_port(&chain.path, rig.bus.baud).expect("there");
+    let driver = ArmDriver::connect(port, rig.clone(), ArmOptions::default()).expect("all answer");
+    assert!(driver.scan().is_complete(), "{:?}", driver.scan().problems());
+    driver.engage(&[]).expect("queued");
+    await_state(&driver, "torque on", |s| s.joints.iter().all(|j| j.torque_on == Some(true)));
+    let pan = joint(&rig, "head_z");
+    assert!(matches!(run(&driver, pan, 0.1, 0.5), MoveOutcome::Arrived { .. }));
+    let counts = driver.state().bus.counts.clone();
+    assert!(counts.echoes > 100, "{counts:?}");
+    assert_eq!(counts.faults.total(), 0, "{}", counts.faults);
+}
+
+#[test]
+fn a_moving_servo_that_falls_silent_holds_the_arm_and_says_so() {
+    let (rig, chain, driver) = ready();
+    let pan = joint(&rig, "head_z");
+    let id = driver.start_move(turn(pan, 0.8, 0.2)).expect("queued");
+    std::thread::sleep(Duration::from_millis(300));
+    chain.fault(id_of(&rig, pan), Fault::Silent, u32::MAX);
+    let outcome = driver.wait_for(id, Duration::from_secs(3)).expect("it ends");
+    let MoveOutcome::Held(HoldReason::NoAnswer { servo, .. }) = outcome else { panic!("{outcome:?}") };
+    assert_eq!(servo, id_of(&rig, pan));
+    let state = await_state(&driver, "it is left out", |s| {
+        s.of(pan).and_then(|r| r.problem.as_ref()).is_some_and(|p| p.contains("left out"))
+    });
+    assert!(state.of(pan).and_then(|r| r.age) > Some(Duration::from_millis(50)));
+    // The others go on, complete cycles too, though it was the first of the bulk read.
+    let elbow = joint(&rig, "r_elbow_y");
+    let begin = state.measured.as_ref().expect("known")[elbow];
+    assert!(matches!(run(&driver, elbow, begin + 0.1, 0.5), MoveOutcome::Arrived { .. }));
+    assert!(matches!(run(&driver, pan, 0.0, 0.5), MoveOutcome::Refused(Refusal::Unknown { .. })));
+    // It comes back.
+    chain.lock().servos.get_mut(&id_of(&rig, pan)).expect("there").fault = None;
+    await_state(&driver, "it answers again", |s| s.of(pan).is_some_and(|r| r.problem.is_none()));
+    assert!(matches!(run(&driver, pan, 0.0, 0.5), MoveOutcome::Arrived { .. }));
+}
+
+#[test]
+fn a_servo_that_switches_itself_off_is_told_and_not_switched_on_again() {
+    let (rig, chain, driver) = ready();
+    let pan = joint(&rig, "head_z");
+    let servo = id_of(&rig, pan);
+    let id = driver.start_move(turn(pan, 1.2, 0.1)).expect("queued");
+    std::thread::sleep(Duration::from_millis(200));
+    // It complains of overload and its torque is gone.
+    chain.fault(servo, Fault::Complains(0x20), u32::MAX);
+    chain.lock().servos.get_mut(&servo).expect("there").set(Item::TorqueEnable, 0);
+    let outcome = driver.wait_for(id, Duration::from_secs(3)).expect("it ends");
+    assert!(matches!(outcome, MoveOutcome::Held(HoldReason::TorqueLost { .. })), "{outcome:?}");
+    let state = driver.state();
+    let problem = state.of(pan).and_then(|r| r.problem.clone()).expect("told");
+    assert!(problem.contains("overloaded") || problem.contains("switched its torque off"), "{problem}");
+}
+
+#[test]
+fn a_port_that_vanishes_is_told_and_the_arm_stays_near() {
+    for mid_packet in [false, true] {
+        let (rig, mut chain, driver) = ready();
+        let pan = joint(&rig, "head_z");
+        let id = driver.start_move(turn(pan, 1.2, 0.3)).expect("queued");
+        std::thread::sleep(Duration::from_millis(500));
+        if mid_packet {
+            chain.lock().hang_up = true;
+            std::thread::sleep(Duration::from_millis(100));
+        }
+        let there = chain.lock().servos[&id_of(&rig, pan)].position;
+        chain.close();
+        let state = await_state(&driver, "the port is gone", |s| s.gone.is_some());
+        assert!(state.gone.as_ref().is_some_and(|reason| reason.contains("is gone")), "{:?}", state.gone);
+        assert!(matches!(state.motion, Motion::Holding(HoldReason::Gone(_))), "{:?}", state.motion);
+        assert!(matches!(
+            driver.wait_for(id, Duration::from_secs(1)),
+            Some(MoveOutcome::Held(HoldReason::Gone(_)))
+        ));
+        assert!(matches!(run(&driver, pan, 0.0, 0.3), MoveOutcome::Refused(Refusal::Gone(_))));
+        let goal = f64::from(chain.lock().servos[&id_of(&rig, pan)].get(Item::GoalPosition));
+        let step_ticks = rig.gate.step_rad / std::f64::consts::TAU * 4096.0;
+        assert!((goal - there).abs() <= step_ticks + 1.0, "{} ticks ahead", goal - there);
+    }
+}

@@ -1,0 +1,123 @@
+//! Gates and watchdogs: when the arm holds by itself.
+
+use std::time::Duration;
+
+use plumbline_hardware::dynamixel::Item;
+use plumbline_hardware::joints::{
+    ArmOptions, Heartbeat, HoldReason, Motion, MoveOutcome, Refusal, Setpoint, SetpointKind,
+};
+
+use super::world::{assert_goals_stay_near, await_state, id_of, joint, ready, ready_with, run, turn};
+
+#[test]
+fn a_hot_servo_holds_the_arm_and_a_warm_one_warns() {
+    let (rig, chain, driver) = ready();
+    let pan = joint(&rig, "head_z");
+    let set = |raw| {
+        chain.lock().servos.get_mut(&id_of(&rig, pan)).expect("there").set(Item::PresentTemperature, raw)
+    };
+    set(57);
+    let warm = await_state(&driver, "a warning", |s| !s.warnings.is_empty());
+    assert!(warm.warnings[0].contains("57 °C"), "{:?}", warm.warnings);
+    let id = driver.start_move(turn(pan, 0.8, 0.3)).expect("queued");
+    std::thread::sleep(Duration::from_millis(300));
+    set(71);
+    let outcome = driver.wait_for(id, Duration::from_secs(2)).expect("it ends");
+    assert!(matches!(outcome, MoveOutcome::Held(HoldReason::Refused(Refusal::Hot { .. }))), "{outcome:?}");
+    let again = run(&driver, pan, 0.0, 0.3);
+    assert!(matches!(again, MoveOutcome::Refused(Refusal::Hot { .. })), "{again:?}");
+}
+
+#[test]
+fn too_much_load_holds_the_arm() {
+    let (rig, chain, driver) = ready();
+    let pan = joint(&rig, "head_z");
+    let id = driver.start_move(turn(pan, 0.8, 0.2)).expect("queued");
+    std::thread::sleep(Duration::from_millis(200));
+    chain.lock().servos.get_mut(&id_of(&rig, pan)).expect("there").set(Item::PresentLoad, 1024 + 1000);
+    let outcome = driver.wait_for(id, Duration::from_secs(2)).expect("it ends");
+    let MoveOutcome::Held(HoldReason::Heavy { load, .. }) = outcome else { panic!("{outcome:?}") };
+    assert!((load - 1000.0 / 1023.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_blocked_joint_holds_the_arm_and_its_goal_stays_near() {
+    let (rig, chain, driver) = ready();
+    let pan = joint(&rig, "head_z");
+    chain.lock().servos.get_mut(&id_of(&rig, pan)).expect("there").blocked = true;
+    let outcome = run(&driver, pan, 0.8, 0.3);
+    let MoveOutcome::Held(HoldReason::NotFollowing { joint, behind_rad, .. }) = outcome else {
+        panic!("{outcome:?}")
+    };
+    assert_eq!(joint, pan);
+    assert!(behind_rad > 0.0 && behind_rad <= rig.gate.step_rad, "{behind_rad}");
+    assert_goals_stay_near(&rig, &chain);
+}
+
+#[test]
+fn without_a_sign_of_life_the_arm_holds() {
+    let heartbeat = Heartbeat::default();
+    heartbeat.beat();
+    let options = ArmOptions {
+        heartbeat: Some(heartbeat.clone()),
+        heartbeat_timeout: Duration::from_millis(600),
+        ..ArmOptions::default()
+    };
+    let (rig, _chain, driver) = ready_with(options);
+    let pan = joint(&rig, "head_z");
+    heartbeat.beat();
+    let id = driver.start_move(turn(pan, 1.2, 0.2)).expect("queued");
+    let outcome = driver.wait_for(id, Duration::from_secs(3)).expect("it ends");
+    assert!(matches!(outcome, MoveOutcome::Held(HoldReason::NoHeartbeat(_))), "{outcome:?}");
+    assert_eq!(run(&driver, pan, 0.0, 0.3), MoveOutcome::Refused(Refusal::NoHeartbeat));
+    heartbeat.beat();
+    driver.start_move(turn(pan, 0.0, 0.3)).expect("queued");
+    await_state(&driver, "moving again", |s| matches!(s.motion, Motion::Moving { .. }));
+}
+
+#[test]
+fn jogging_into_a_limit_is_told_not_clamped() {
+    let (rig, chain, driver) = ready();
+    let tilt = joint(&rig, "head_y");
+    let limit_rad = rig.limits(tilt).upper_rad;
+    assert!(matches!(run(&driver, tilt, limit_rad - 0.05, 0.5), MoveOutcome::Arrived { .. }));
+    let refused = |s: &plumbline_hardware::joints::JointState| {
+        matches!(&s.refusal, Some((_, Refusal::Position { .. })))
+    };
+    for _ in 0..40 {
+        driver.follow(Setpoint {
+            kind: SetpointKind::Velocity,
+            joints: vec![(tilt, 0.4)],
+            valid_for: Duration::from_millis(200),
+        });
+        std::thread::sleep(Duration::from_millis(25));
+        if refused(&driver.state()) {
+            break;
+        }
+    }
+    let state = await_state(&driver, "a refusal", refused);
+    assert!(state.refusal.as_ref().is_some_and(|(_, r)| r.to_string().contains("beyond its limit")));
+    let servo = rig.servo_of(tilt).expect("it has a servo");
+    let angle_rad = servo.joint_rad(chain.lock().servos[&servo.id].motor_rad());
+    assert!(angle_rad <= limit_rad + 0.003, "{angle_rad} beyond {limit_rad}");
+}
+
+#[test]
+fn setpoints_that_are_no_numbers_or_too_fast_move_nothing() {
+    let (rig, chain, driver) = ready();
+    let pan = joint(&rig, "head_z");
+    let before = chain.lock().servos[&id_of(&rig, pan)].position;
+    for (value, kind) in [
+        (f64::NAN, SetpointKind::Velocity),
+        (f64::INFINITY, SetpointKind::Position),
+        (100.0, SetpointKind::Velocity),
+    ] {
+        let seen = driver.state().refusal.as_ref().map(|(number, _)| *number);
+        driver.follow(Setpoint { kind, joints: vec![(pan, value)], valid_for: Duration::from_millis(200) });
+        await_state(&driver, "a refusal", |s| s.refusal.as_ref().map(|(number, _)| *number) > seen);
+    }
+    for bad in [f64::NAN, f64::NEG_INFINITY] {
+        assert!(matches!(run(&driver, pan, bad, 0.3), MoveOutcome::Refused(Refusal::NotANumber { .. })));
+    }
+    assert_eq!(chain.lock().servos[&id_of(&rig, pan)].position, before);
+}

@@ -1,0 +1,11 @@
+//! The arm on a chain of servos behind a pseudo-terminal: byte for byte what real servos would
+//! see, with everything that can go wrong between them.
+
+mod chain;
+mod faults;
+mod killed;
+mod limits;
+mod moving;
+mod scanning;
+mod stopping;
+mod world;
