@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use plumbline_model::robot::ik::{Answer, Options, Solver, Target};
 use plumbline_model::robot::{Chain, Rig};
-use plumbline_model::{Direction, Point, Robot};
+use plumbline_model::{Point, Robot};
 
 const TIP: &str = "right_palm_center";
 
@@ -45,17 +45,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let plain = Options::default();
     let rested = Options { rest: Some(middle), ..Options::default() };
     let point = |pose: &Pose| Target::Position(point_of(pose));
-    let yaw = |pose: &Pose, tool_z| Target::PositionYaw {
-        point: point_of(pose),
-        yaw_rad: pose.rotation.euler_angles().2,
-        tool_z,
-    };
-    let up = Direction::new(nalgebra::Vector3::z());
-    let cases: [(&'static str, &Options, &dyn Fn(&Pose) -> Target); 5] = [
+    let yaw =
+        |pose: &Pose| Target::PositionYaw { point: point_of(pose), yaw_rad: pose.rotation.euler_angles().2 };
+    let upright = Options::upright();
+    let cases: [(&'static str, &Options, &dyn Fn(&Pose) -> Target); 6] = [
         ("position", &plain, &point),
         ("position, rest posture", &rested, &point),
-        ("position and yaw", &plain, &|pose| yaw(pose, None)),
-        ("position and yaw, upright", &plain, &|pose| yaw(pose, up)),
+        ("position, upright", &upright, &point),
+        ("position and yaw", &plain, &yaw),
+        ("position and yaw, upright", &upright, &yaw),
         ("pose", &plain, &|pose| Target::Pose(plumbline_model::Pose::new(*pose))),
     ];
     let all: Vec<Figures> = cases

@@ -3,14 +3,18 @@
 //!
 //! - [`Description`] is read from URDF and checked; [`Posture`] holds one angle per movable joint.
 //! - [`Description::forward`] places every link; [`Chain`] places one tip and differentiates it.
+//! - [`ik`] finds joint angles for a place of a tip, [`collision`] says what a posture or a way runs
+//!   into, [`Reach`] joins the two: from a posture and a target to a move that can be made.
 //! - [`Rig`] is a robot on its table: servo ids and ratios, eye mounts, poses, touchscreen. All
 //!   numbers of a robot live in `assets/robots`, none in code.
 
 mod chain;
+pub mod collision;
 mod description;
 mod error;
 pub mod ik;
 mod posture;
+mod reach;
 mod rig;
 mod rig_file;
 #[cfg(test)]
@@ -24,6 +28,7 @@ pub use description::{
 };
 pub use error::{DescriptionError, RigError};
 pub use posture::Posture;
+pub use reach::{Plan, Reach, ReachError, ReachOptions, Refusal};
 pub use rig::{
     Arm, Board, Bus, CoupledLimit, Direction as ServoDirection, EyeMount, Gate, NamedPose, Rig, Servo,
     TableTop, TipName, WorkPatch,

@@ -175,7 +175,8 @@ impl Solver {
             }
             None => None,
         };
-        Ok(Question { task: Task::new(target, rest), limits, start })
+        let tool_z = options.tool_z.map(|axis| axis.vector());
+        Ok(Question { task: Task::new(target, tool_z, rest), limits, start })
     }
 
     fn angles(&self, what: &'static str, given: &[f64]) -> Result<Angles, IkError> {

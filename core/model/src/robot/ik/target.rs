@@ -9,7 +9,7 @@ use crate::frame::{Direction, Point, Pose, Robot, Tip};
 use crate::robot::{JointIndex, Limits};
 
 /// Where a tip shall go.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
     /// The tip's origin to a point; its orientation is free.
     Position(Point<Robot>),
@@ -18,16 +18,12 @@ pub enum Target {
     /// The heading is the azimuth of the tip's x axis: the angle about the robot's z from the
     /// robot's x to the horizontal part of the tip's x axis. It is the yaw of
     /// R = Rz(yaw) · Ry(pitch) · Rx(roll), so the published top grasp "Euler (0, 0, yaw)" has this
-    /// heading. Pitch and roll are free.
+    /// heading. Pitch and roll are free, see [`Options::tool_z`].
     PositionYaw {
         /// Place of the tip's origin.
         point: Point<Robot>,
         /// Heading, rad.
         yaw_rad: f64,
-        /// Where the tip's z axis should point as nearly as the arm can, without giving up any
-        /// of the position or the heading: the robot's up for a palm that faces down or for a
-        /// fingertip that points down. `None`: wherever the motion brings it.
-        tool_z: Option<Direction<Robot>>,
     },
     /// The whole place of the tip.
     Pose(Pose<Robot, Tip>),
@@ -40,12 +36,6 @@ impl Target {
             Self::Position(point) | Self::PositionYaw { point, .. } => *point,
             Self::Pose(pose) => Point::from(nalgebra::Point3::from(pose.translation_m())),
         }
-    }
-
-    /// A top grasp: position and heading exact, the tip's z as near to the robot's up as the arm
-    /// can.
-    pub fn from_above(point: Point<Robot>, yaw_rad: f64) -> Self {
-        Self::PositionYaw { point, yaw_rad, tool_z: Direction::new(Vector3::z()) }
     }
 
     /// Whether every number is one.
@@ -153,7 +143,7 @@ impl Answer {
 }
 
 /// How to solve. All angles are of the chain's joints, in their order.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Options {
     /// Limits in force, narrower than or equal to the solver's own; `None`: the solver's own.
     pub limits: Option<Vec<Limits>>,
@@ -161,6 +151,10 @@ pub struct Options {
     pub rest: Option<Vec<f64>>,
     /// How far it is drawn: 0 stays near the start, 1 goes to the solution nearest to `rest`.
     pub pull: f64,
+    /// Where the tip's z axis should point as nearly as the arm can, without giving up anything of
+    /// the target: the robot's up for a palm that faces down or a fingertip that points down.
+    /// Means nothing for a pose, which leaves no choice.
+    pub tool_z: Option<Direction<Robot>>,
     /// The position counts as reached within this, m.
     pub position_tolerance_m: f64,
     /// The orientation counts as reached within this, rad.
@@ -175,10 +169,19 @@ impl Default for Options {
             limits: None,
             rest: None,
             pull: 1.0,
+            tool_z: None,
             position_tolerance_m: 1e-5,
             orientation_tolerance_rad: 1e-4,
             other_starts: 60,
         }
+    }
+}
+
+impl Options {
+    /// The usual ones, with the tip's z axis as near to the robot's up as the arm can: for a grasp
+    /// from above or a fingertip on the table.
+    pub fn upright() -> Self {
+        Self { tool_z: Direction::new(Vector3::z()), ..Self::default() }
     }
 }
 

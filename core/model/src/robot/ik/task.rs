@@ -56,14 +56,12 @@ impl Remaining {
 }
 
 impl Task {
-    /// Everything that the target demands and wishes, and a rest posture as a further wish.
-    pub fn new(target: &Target, rest: Option<Angles>) -> Self {
+    /// What the target demands, and as wishes a direction for the tip's z axis and a rest posture.
+    pub fn new(target: &Target, tool_z: Option<Vector3<f64>>, rest: Option<Angles>) -> Self {
         let position_m = target.point().coords.coords;
         let (orientation, tool_z) = match target {
-            Target::Position(_) => (Orientation::Free, None),
-            Target::PositionYaw { yaw_rad, tool_z, .. } => {
-                (Orientation::Yaw(*yaw_rad), tool_z.as_ref().map(|axis| axis.vector()))
-            }
+            Target::Position(_) => (Orientation::Free, tool_z),
+            Target::PositionYaw { yaw_rad, .. } => (Orientation::Yaw(*yaw_rad), tool_z),
             Target::Pose(pose) => (Orientation::Full(pose.rotation()), None),
         };
         Self { position_m, orientation, tool_z, rest }

@@ -57,12 +57,11 @@ fn point(place: &Isometry3<f64>) -> Point<crate::frame::Robot> {
     Point::from(Point3::from(place.translation.vector))
 }
 
-fn targets(place: &Isometry3<f64>) -> [Target; 4] {
+fn targets(place: &Isometry3<f64>) -> [Target; 3] {
     let yaw_rad = place.rotation.euler_angles().2;
     [
         Target::Position(point(place)),
-        Target::PositionYaw { point: point(place), yaw_rad, tool_z: None },
-        Target::from_above(point(place), yaw_rad),
+        Target::PositionYaw { point: point(place), yaw_rad },
         Target::Pose(Pose::new(*place)),
     ]
 }
@@ -72,8 +71,9 @@ fn what_is_reached_is_where_forward_kinematics_says() {
     for tip in ["right_palm_center", "left_palm_center", "right_index_tip", "left_index_tip"] {
         let arm = arm(tip);
         for place in arm.spread(250, 0.0).iter().map(|angles| arm.place(angles)) {
-            for target in targets(&place) {
-                let answer = arm.solve(&target);
+            for (target, upright) in targets(&place).into_iter().flat_map(|t| [(t, false), (t, true)]) {
+                let options = if upright { Options::upright() } else { Options::default() };
+                let answer = arm.solver.solve(&target, &arm.home(), &options).expect("proper");
                 let Answer::Reached(solution) = answer else { panic!("{tip} {target:?}: {answer:?}") };
                 arm.assert_inside(&solution.joints);
                 let there = arm.place(&solution.joints);
@@ -98,7 +98,7 @@ fn at_the_solution_nothing_is_computed_and_nothing_moves() {
     for angles in arm.spread(50, 0.05) {
         let place = arm.place(&angles);
         let yaw_rad = place.rotation.euler_angles().2;
-        let heading = Target::PositionYaw { point: point(&place), yaw_rad, tool_z: None };
+        let heading = Target::PositionYaw { point: point(&place), yaw_rad };
         for target in [Target::Position(point(&place)), heading, Target::Pose(Pose::new(place))] {
             let answer = arm.solver.solve(&target, &angles, &Options::default()).expect("proper");
             assert!(answer.is_reached());
@@ -119,7 +119,7 @@ fn near_targets_have_near_solutions() {
             let mut at = angles.clone();
             for k in 1..=10 {
                 let moved = Translation3::from(along * (step_m * f64::from(k))) * place;
-                let target = targets(&moved)[i % 2];
+                let target = targets(&moved)[i];
                 let Answer::Reached(next) =
                     arm.solver.solve(&target, &at, &Options::default()).expect("proper")
                 else {
@@ -197,16 +197,15 @@ fn a_rest_posture_gives_the_same_solution_from_wherever_the_arm_is() {
 fn a_top_grasp_keeps_the_palm_as_level_as_the_arm_can() {
     let arm = arm("right_palm_center");
     let at = Point::new(0.3, -0.2, 0.15);
-    let tilt = |target: &Target| {
-        let answer = arm.solve(target);
+    let tilt = |target: &Target, options: &Options| {
+        let answer = arm.solver.solve(target, &arm.home(), options).expect("proper");
         assert!(answer.is_reached(), "{answer:?}");
         (arm.place(&answer.best().joints).rotation * Vector3::z()).angle(&Vector3::z())
     };
-    let (level, any) = (
-        tilt(&Target::from_above(at, 0.3)),
-        tilt(&Target::PositionYaw { point: at, yaw_rad: 0.3, tool_z: None }),
-    );
-    assert!(level < any, "{level} {any}");
+    for target in [Target::Position(at), Target::PositionYaw { point: at, yaw_rad: 0.3 }] {
+        let (level, any) = (tilt(&target, &Options::upright()), tilt(&target, &Options::default()));
+        assert!(level < 0.8 * any, "{level} {any}");
+    }
 }
 
 #[test]
@@ -254,7 +253,7 @@ fn nonsense_is_refused_with_a_sentence() {
     let bad = Target::Position(Point::new(f64::NAN, 0.0, 0.2));
     let turned = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(f64::NAN, 0.0, 0.0, 0.0));
     let bad_pose = Target::Pose(Pose::new(Isometry3::from_parts(Translation3::identity(), turned)));
-    let bad_yaw = Target::PositionYaw { point: good.point(), yaw_rad: f64::INFINITY, tool_z: None };
+    let bad_yaw = Target::PositionYaw { point: good.point(), yaw_rad: f64::INFINITY };
     let refused = |target: &Target, start: &[f64], options: &Options| {
         arm.solver.solve(target, start, options).expect_err("must be refused").to_string()
     };
