@@ -94,6 +94,7 @@ fn planning_problem(rig: &Rig, cameras: &StereoCameras, neck: Neck, target: &Pla
             tip_m: None,
         },
         robust_px: None,
+        unknown_angles: None,
     }
 }
 

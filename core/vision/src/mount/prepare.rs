@@ -95,6 +95,7 @@ pub(super) fn prepare(
         },
         views: usable,
         robust_px: Some(options.robust_px),
+        unknown_angles: None,
     };
     match target {
         Target::UnknownBoard(_) => start_from_board(problem, rejected, views.len()),

@@ -85,6 +85,8 @@ pub(super) struct Problem {
     pub priors: Priors,
     /// Scale (px) of a Cauchy loss; `None` is plain least squares.
     pub robust_px: Option<f64>,
+    /// A view whose head angles count as unknown: for asking the other views about them.
+    pub unknown_angles: Option<usize>,
 }
 
 /// Everything that is estimated.
@@ -264,7 +266,8 @@ impl Problem {
         }
         for v in 0..self.views.len() {
             for k in 0..2 {
-                let (off, sd) = (state.angle_error_rad[v][k], self.priors.angle_rad[k]);
+                let off = state.angle_error_rad[v][k];
+                let sd = if self.unknown_angles == Some(v) { ANYTHING } else { self.priors.angle_rad[k] };
                 priors.push(Prior { index: layout.angle(v, k), off, sd });
             }
             if let Some(sd) = self.priors.tip_m {

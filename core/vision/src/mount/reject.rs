@@ -1,10 +1,10 @@
 //! Views in which the board was elsewhere, and single bad points: found by their residuals.
 
-use nalgebra::{Isometry3, Point3, Vector3};
-use plumbline_model::{JobContext, RejectedPair};
+use nalgebra::{Isometry3, Matrix2, Point3, Vector2, Vector3};
+use plumbline_model::{Cancelled, JobContext, RejectedPair};
 
 use super::error::MountError;
-use super::optimizer::converge;
+use super::optimizer::{converge, covariance};
 use super::prepare::{Prepared, sentences};
 use super::problem::{Problem, State};
 use crate::calibrate::median;
@@ -13,6 +13,9 @@ use crate::calibrate::median;
 const TIMES_TYPICAL: f64 = 3.0;
 /// Or when its head angles would have to be off by this many standard deviations.
 const ANGLE_SIGMAS: f64 = 6.0;
+/// Views beyond this many standard deviations are judged by the others, this many at a time.
+const SUSPECT_SIGMAS: f64 = 2.5;
+const SUSPECTS: usize = 3;
 /// Residuals below this never reject a view, px.
 const ALWAYS_GOOD_PX: f64 = 0.15;
 /// Share of the views that must agree.
@@ -32,7 +35,8 @@ pub(super) fn reject_views(
     loop {
         let state = converge(&prepared.problem, prepared.state.clone(), context)?;
         prepared.state = state;
-        let Some(worst) = worst_view(&prepared.problem, &prepared.state) else { return Ok(prepared) };
+        let worst = worst_view(&prepared.problem, &prepared.state, context)?;
+        let Some(worst) = worst else { return Ok(prepared) };
         let reason = reason(&prepared, worst);
         let Prepared { problem, state, mut left_from_target, mut rejected } = prepared;
         rejected.push(RejectedPair { name: problem.views[worst].name.clone(), reason });
@@ -52,21 +56,72 @@ fn norms(problem: &Problem, state: &State, view: usize) -> Vec<f64> {
     seen.filter(|(s, _)| !s.left_out).map(|(_, r)| r.map_or(f64::INFINITY, |r| r.norm())).collect()
 }
 
-fn worst_view(problem: &Problem, state: &State) -> Option<usize> {
+/// The view that agrees least with the others, if it does not agree.
+fn worst_view(
+    problem: &Problem,
+    state: &State,
+    context: &dyn JobContext,
+) -> Result<Option<usize>, Cancelled> {
+    let count = problem.views.len();
     let medians: Vec<f64> =
-        (0..problem.views.len()).map(|v| median(norms(problem, state, v)).unwrap_or(f64::INFINITY)).collect();
-    let typical_px = median(medians.clone())?.max(ALWAYS_GOOD_PX);
-    let angle_sd = [0, 1].map(|k| {
-        let errors = state.angle_error_rad.iter().map(|e| e[k].abs()).collect();
-        // 1.4826 times the median absolute value is the standard deviation of a normal.
-        (1.4826_f64 * median(errors).unwrap_or(0.0)).max(problem.priors.angle_rad[k])
-    });
-    let badness = |v: usize| {
-        let angle = (0..2).map(|k| state.angle_error_rad[v][k].abs() / angle_sd[k]).fold(0.0, f64::max);
-        (medians[v] / typical_px / TIMES_TYPICAL).max(angle / ANGLE_SIGMAS)
-    };
-    let worst = (0..problem.views.len()).max_by(|a, b| badness(*a).total_cmp(&badness(*b)))?;
-    (badness(worst) > 1.0).then_some(worst)
+        (0..count).map(|v| median(norms(problem, state, v)).unwrap_or(f64::INFINITY)).collect();
+    let Some(typical_px) = median(medians.clone()) else { return Ok(None) };
+    let by_residual = |v: &usize| medians[*v] / typical_px.max(ALWAYS_GOOD_PX) / TIMES_TYPICAL;
+    let worst = (0..count).max_by(|a, b| by_residual(a).total_cmp(&by_residual(b)));
+    if let Some(worst) = worst.filter(|v| by_residual(v) > 1.0) {
+        return Ok(Some(worst));
+    }
+    // A small push of the board looks like an error of the head angles, and bends the others' too:
+    // the views whose angles stand out are judged by the others alone.
+    let mut by_angle: Vec<(usize, f64)> = (0..count)
+        .map(|v| (v, angle_sigmas(&state.angle_error_rad[v], &scatter(problem, state, v))))
+        .collect();
+    by_angle.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut worst: Option<(usize, f64)> = None;
+    for (v, _) in by_angle.into_iter().take(SUSPECTS).filter(|(_, sigmas)| *sigmas > SUSPECT_SIGMAS) {
+        let sigmas = sigmas_by_others(problem, state, v, context)?;
+        if sigmas > ANGLE_SIGMAS && worst.is_none_or(|(_, most)| sigmas > most) {
+            worst = Some((v, sigmas));
+        }
+    }
+    Ok(worst.map(|(v, _)| v))
+}
+
+/// Typical error of the head angles in all views but one, rad: rms of the smaller four fifths, as
+/// large as that of all would be if they were normal.
+fn scatter(problem: &Problem, state: &State, without: usize) -> [f64; 2] {
+    const SHARE: f64 = 0.8;
+    const OF_NORMAL: f64 = 1.511;
+    [0, 1].map(|k| {
+        let others = state.angle_error_rad.iter().enumerate().filter(|(v, _)| *v != without);
+        let mut squares: Vec<f64> = others.map(|(_, e)| e[k].powi(2)).collect();
+        squares.sort_by(f64::total_cmp);
+        squares.truncate((SHARE * squares.len() as f64).ceil() as usize);
+        let mean = squares.iter().sum::<f64>() / f64::max(squares.len() as f64, 1.0);
+        (OF_NORMAL * mean.sqrt()).max(problem.priors.angle_rad[k])
+    })
+}
+
+fn angle_sigmas(error_rad: &[f64; 2], sd_rad: &[f64; 2]) -> f64 {
+    (error_rad[0] / sd_rad[0]).hypot(error_rad[1] / sd_rad[1])
+}
+
+/// By how many standard deviations a view's head angles miss what the other views expect of them.
+fn sigmas_by_others(
+    problem: &Problem,
+    state: &State,
+    view: usize,
+    context: &dyn JobContext,
+) -> Result<f64, Cancelled> {
+    let asked = Problem { unknown_angles: Some(view), ..problem.clone() };
+    let free = converge(&asked, state.clone(), context)?;
+    let sd_rad = scatter(problem, &free, view);
+    let Some(covariance) = covariance(&asked, &free) else { return Ok(0.0) };
+    let at = asked.layout().angle(view, 0);
+    let own = Matrix2::from_diagonal(&Vector2::new(sd_rad[0].powi(2), sd_rad[1].powi(2)));
+    let total: Matrix2<f64> = covariance.fixed_view::<2, 2>(at, at) + own;
+    let error = Vector2::from(free.angle_error_rad[view]);
+    Ok(total.cholesky().map_or(0.0, |factor| error.dot(&factor.solve(&error)).sqrt()))
 }
 
 /// Why a view is out, from how far its target is from where the other views see it.

@@ -8,7 +8,7 @@ use plumbline_model::Pose;
 use plumbline_model::frame::{Head, LeftCamera};
 
 /// True minus solved, in the order of the covariance.
-fn error(truth: &Pose<Head, LeftCamera>, solved: &MountCalibration) -> Vector6<f64> {
+pub fn error(truth: &Pose<Head, LeftCamera>, solved: &MountCalibration) -> Vector6<f64> {
     let change = MountChange::between(&solved.head_from_left, truth);
     let (r, t) = (change.turned_rad, change.moved_m);
     Vector6::new(r.x, r.y, r.z, t.x, t.y, t.z)
@@ -27,7 +27,7 @@ fn perfect_views_give_the_mount_and_the_board_exactly() {
 
 /// Runs worlds and returns the mean squared error in units of the stated covariance (6 expected),
 /// the share of single errors within 2.5 standard deviations, and the sigmas' mean.
-fn coverage(
+pub fn coverage(
     worlds: u64,
     make: impl Fn(u64) -> (World, Result<MountCalibration, crate::mount::MountError>),
 ) -> (f64, f64) {

@@ -1,4 +1,0 @@
-//! placeholder
-/// Placeholder.
-#[derive(Debug, thiserror::Error)]
-pub enum MountFileError {}

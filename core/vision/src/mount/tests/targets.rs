@@ -1,0 +1,249 @@
+//! Known points, the fingertip, encoder zeros, slack, far-off starts, other boards.
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use plumbline_model::robot::EyeMount;
+use plumbline_model::{Chessboard, Eye, Point, Robot};
+
+use super::honesty::{coverage, error};
+use super::world::{World, board};
+use crate::mount::{
+    HeadView, LocatedPoint, MountOptions, PlannedTarget, Target, localization_improvement, plan_head_views,
+};
+
+/// Corners of the touchscreen.
+fn screen(world: &World) -> Vec<Point<Robot>> {
+    let screen = &world.rig.touchscreen;
+    [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+        .map(|(u, v)| {
+            let along = screen.u_axis.vector() * (u * screen.width_m)
+                + screen.v_axis.vector() * (v * screen.height_m);
+            Point::from(screen.origin.coords + along)
+        })
+        .to_vec()
+}
+
+fn exact() -> MountOptions {
+    MountOptions { known_place_sd_m: 0.0, known_turn_sd_rad: 0.0, ..MountOptions::default() }
+}
+
+#[test]
+fn the_corners_of_the_touchscreen_give_the_mount_with_errors_of_the_stated_size() {
+    let options =
+        MountOptions { known_place_sd_m: 0.002, known_turn_sd_rad: 0.004, ..MountOptions::default() };
+    let (chi_square, within) = coverage(40, |seed| {
+        let mut world = World::new(100 + seed);
+        let nominal = screen(&world);
+        // Where it really lies, as well as the options say.
+        let mut vector =
+            |sd: f64| Vector3::new(world.noise.normal(), world.noise.normal(), world.noise.normal()) * sd;
+        let (shift, turn) = (vector(0.002), UnitQuaternion::from_scaled_axis(vector(0.004)));
+        let middle = nominal.iter().map(|p| p.coords.coords).sum::<Vector3<f64>>() / 4.0;
+        let real: Vec<_> = nominal
+            .iter()
+            .map(|p| Point::from(nalgebra::Point3::from(turn * (p.coords.coords - middle) + middle + shift)))
+            .collect();
+        let views: Vec<_> = (0..10)
+            .map(|i| {
+                let pose = (0.08 * f64::from(i - 5), -0.35 - 0.05 * f64::from(i % 4));
+                world.view(&format!("{i}"), pose, &real)
+            })
+            .collect();
+        let solved = world.solve_with(&views, &Target::KnownPoints(nominal), &options);
+        (world, solved)
+    });
+    assert!((4.5..7.5).contains(&chi_square), "{chi_square}");
+    assert!(within >= 0.95, "{within}");
+}
+
+#[test]
+fn the_fingertip_gives_the_mount_with_errors_of_the_stated_size() {
+    let (chi_square, within) = coverage(40, |seed| {
+        let mut world = World::new(200 + seed);
+        let tip = world.rig.chain("right_index_tip").expect("a tip");
+        let arm = world.rig.arm("right").expect("an arm").joints.clone();
+        let ready = world.rig.pose("touch-ready").expect("a pose").clone();
+        let views: Vec<HeadView> = (0..30)
+            .map(|i| {
+                let (mut posture, mut truth) =
+                    world.stand(0.06 * f64::from(i % 6) - 0.3, -0.6 + 0.1 * f64::from(i % 5));
+                let mut arms = ready.applied_to(&posture);
+                for joint in &arm {
+                    let limits = world.rig.limits(*joint);
+                    arms[*joint] = (arms[*joint] + world.noise.between(-0.35, 0.35))
+                        .clamp(limits.lower_rad, limits.upper_rad);
+                }
+                for joint in &arm {
+                    posture[*joint] = arms[*joint];
+                    truth[*joint] = arms[*joint];
+                }
+                let off =
+                    Vector3::new(world.noise.normal(), world.noise.normal(), world.noise.normal()) * 0.004;
+                let place = tip.robot_from_tip_in(&posture).translation_m() + off;
+                let point = [Point::new(place.x, place.y, place.z)];
+                let [left, right] = Eye::BOTH.map(|eye| Some(world.pixels(&truth, &point, eye)));
+                HeadView { name: format!("{i}"), posture, left, right }
+            })
+            .filter(|view| view.pixels(Eye::Left).into_iter().flatten().all(Option::is_some))
+            .collect();
+        let target = Target::Fingertip { tip: "right_index_tip".to_owned() };
+        let solved = world.solve_with(&views, &target, &MountOptions::default());
+        (world, solved)
+    });
+    assert!((4.5..7.5).contains(&chi_square), "{chi_square}");
+    assert!(within >= 0.95, "{within}");
+}
+
+#[test]
+fn slack_that_nobody_stated_is_noticed_and_enters_the_uncertainty() {
+    let slack_rad = 0.003;
+    let (chi_square, within) = coverage(40, |seed| {
+        let mut world = World { slack_rad, ..World::new(300 + seed) };
+        let views = world.board_views(16);
+        let solved = world.solve(&views);
+        if let Ok(solved) = &solved {
+            assert!(
+                solved.angle_sigma_rad.iter().all(|sd| (0.3..3.0).contains(&(sd / slack_rad))),
+                "{:?}",
+                solved.angle_sigma_rad
+            );
+        }
+        (world, solved)
+    });
+    // Its size is estimated from some twenty numbers: tails are heavier.
+    assert!((4.5..10.0).contains(&chi_square), "{chi_square}");
+    assert!(within >= 0.93, "{within}");
+}
+
+#[test]
+fn encoder_zeros_that_cannot_be_told_from_the_mount_are_said() {
+    let mut world = World { zeros_rad: [0.02, -0.015], ..World::new(30) };
+    let views = world.board_views(12);
+    let options = MountOptions { head_zero_sd_rad: Some(0.02), ..exact() };
+    let solved = world.solve_with(&views, &Target::UnknownBoard(board()), &options).expect("solvable");
+    assert!(
+        solved.not_seen.iter().any(|s| s.contains("zero of head_z") && s.contains("unknown place")),
+        "{:?}",
+        solved.not_seen
+    );
+    assert!(
+        solved.not_seen.iter().any(|s| s.contains("zero of head_y") && s.contains("together they are right"))
+    );
+    let zeros = solved.head_zeros_rad.expect("asked for");
+    assert!(zeros.iter().all(|zero| zero.sigma > 0.018), "{zeros:?}");
+    // What cannot be told apart is uncertain together: the turn about y carries the zero's prior.
+    assert!(solved.turned_sigma_rad().y > 0.018);
+
+    // With known points the zero of head_z shows.
+    let points = screen(&world);
+    let mut views = vec![];
+    for i in 0..12 {
+        let pose = (0.08 * f64::from(i - 6), -0.2 - 0.1 * f64::from(i % 5));
+        views.push(world.view(&format!("{i}"), pose, &points));
+    }
+    let solved = world.solve_with(&views, &Target::KnownPoints(points), &options).expect("solvable");
+    let zeros = solved.head_zeros_rad.expect("asked for");
+    assert!(zeros[0].sigma < 0.01 && (zeros[0].value - 0.02).abs() < 3.0 * zeros[0].sigma, "{zeros:?}");
+    assert!(!solved.not_seen.iter().any(|s| s.contains("head_z")), "{:?}", solved.not_seen);
+    assert!(solved.not_seen.iter().any(|s| s.contains("head_y")), "{:?}", solved.not_seen);
+}
+
+#[test]
+fn a_nominal_mount_that_is_far_off_does_not_matter() {
+    for (turn, shift) in [(0.8, 0.1), (2.5, 0.3)] {
+        let mut world = World::new(31);
+        let views = world.board_views(10);
+        let near = world.solve(&views).expect("solvable");
+        let axis = UnitQuaternion::from_scaled_axis(Vector3::new(0.5, -0.6, 0.62).normalize() * turn);
+        let nominal = world.rig.eyes.head_from_left.isometry;
+        let wrong = Isometry3::from_parts(
+            (nominal.translation.vector.add_scalar(shift)).into(),
+            axis * nominal.rotation,
+        );
+        world.rig.eyes =
+            EyeMount { head_from_left: plumbline_model::Pose::new(wrong), ..world.rig.eyes.clone() };
+        let far = world.solve(&views).expect("solvable");
+        assert!((far.head_from_left.translation_m() - near.head_from_left.translation_m()).norm() < 1e-5);
+        assert!(far.change.moved_m.norm() > shift);
+
+        let points = screen(&world);
+        let views: Vec<_> =
+            (0..6).map(|i| world.view(&format!("{i}"), (0.1 * f64::from(i - 3), -0.4), &points)).collect();
+        let far = world.solve_with(&views, &Target::KnownPoints(points), &exact()).expect("solvable");
+        assert!(error(&world.mount(), &far).amax() < 0.01, "{}", error(&world.mount(), &far));
+    }
+}
+
+#[test]
+fn a_board_that_looks_the_same_upside_down_may_be_counted_from_either_end() {
+    let mut world = World::new(32);
+    let mut views = world.board_views(8);
+    for i in [1, 4, 5] {
+        let view = &mut views[i];
+        for corners in [&mut view.left, &mut view.right] {
+            corners.as_mut().expect("seen").reverse();
+        }
+    }
+    let solved = world.solve(&views).expect("solvable");
+    assert!(solved.rejected.is_empty() && solved.rms_px < 0.4, "{:?}", solved.rejected);
+    assert!(error(&world.mount(), &solved).amax() < 0.003);
+}
+
+#[test]
+fn planned_head_poses_keep_the_limits_and_beat_poses_in_a_row() {
+    let world = World::new(33);
+    let (pan, tilt) = (world.rig.eyes.pan, world.rig.eyes.tilt);
+    let poses = world.planned(12);
+    assert_eq!(poses.len(), 12);
+    for (pan_rad, tilt_rad) in &poses {
+        let posture = world.rig.home().with(&[pan, tilt], &[*pan_rad, *tilt_rad]);
+        assert!(world.rig.limits_in(tilt, &posture).contain(*tilt_rad));
+        assert!(world.rig.limits_in(pan, &posture).contain(*pan_rad));
+    }
+    let sigma = |poses: &[(f64, f64)]| {
+        let mut world = World { pixel_px: 0.15, ..World::new(33) };
+        let corners = world.corners();
+        let views: Vec<_> =
+            poses.iter().enumerate().map(|(i, p)| world.view(&format!("{i}"), *p, &corners)).collect();
+        let solved = world.solve(&views).expect("solvable");
+        solved.covariance.determinant().powf(1.0 / 12.0)
+    };
+    let row: Vec<_> =
+        (0..12).map(|i| (0.1 * f64::from(i % 6) - 0.25, -0.55 + 0.1 * f64::from(i / 6))).collect();
+    assert!(sigma(&poses) < 0.5 * sigma(&row), "{} {}", sigma(&poses), sigma(&row));
+}
+
+#[test]
+fn a_board_out_of_view_cannot_be_planned_for() {
+    let world = World::new(34);
+    let behind = Isometry3::translation(-0.6, 0.0, 0.054) * world.robot_from_board.rotation;
+    let what = PlannedTarget::board(
+        &Chessboard::new(8, 5, 0.03).expect("usable"),
+        &plumbline_model::Pose::new(behind),
+    );
+    let refused = plan_head_views(&world.rig, &world.rig.eyes.cameras, &world.rig.home(), &what, 10);
+    let message = refused.expect_err("behind the robot").to_string();
+    assert!(message.contains("move the board"), "{message}");
+}
+
+#[test]
+fn a_calibrated_mount_localizes_better() {
+    let mut world = World::new(35);
+    let views = world.board_views(12);
+    let solved = world.solve(&views).expect("solvable");
+    let mut points = vec![];
+    for (x, y) in [(0.3, -0.1), (0.4, 0.1), (0.45, 0.0), (0.35, 0.2)] {
+        let truth = Point::new(x, y, 0.06);
+        let (encoder, real) = world.stand(0.1, -0.5);
+        let [left, right] = Eye::BOTH.map(|eye| world.pixels(&real, &[truth], eye)[0].expect("in view"));
+        points.push(LocatedPoint { posture: encoder, left, right, truth });
+    }
+    let cameras = world.rig.eyes.cameras;
+    let better =
+        localization_improvement(&world.rig, &cameras, &solved.head_from_left, &points).expect("rays meet");
+    assert!(better.before_rms_m > 0.004, "{better:?}");
+    // What is left is the match itself: a millimeter or two of depth.
+    assert!(better.after_rms_m < 0.4 * better.before_rms_m, "{better:?}");
+    let rig = solved.applied_to(&world.rig);
+    assert_eq!(rig.eyes.head_from_left, solved.head_from_left);
+    assert!((0.0001..0.002).contains(&solved.point_sigma_m(Point::new(0.0, 0.0, 0.4))));
+}
