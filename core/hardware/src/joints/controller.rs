@@ -398,6 +398,10 @@ impl Controller {
         if slot.torque_lost || reading.torque_on == Some(false) {
             return Some(HoldReason::TorqueLost { joint, name, servo });
         }
+        if slot.alarm {
+            let words = slot.complaint.clone().unwrap_or_default();
+            return Some(HoldReason::Alarm { joint, name, servo, words });
+        }
         if let Some(temperature_c) = reading.temperature_c.filter(|t| *t >= gate.hot_c) {
             let limit_c = gate.hot_c;
             return Some(HoldReason::Refused(Refusal::Hot { joint, name, temperature_c, limit_c }));

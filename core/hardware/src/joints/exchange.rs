@@ -23,8 +23,12 @@ pub(super) struct Slot {
     pub missed: u32,
     /// What it complained about last.
     pub complaint: Option<String>,
-    /// Whether the torque was switched on by us and is off now.
+    /// Whether it raises an alarm (overload, overheating).
+    pub alarm: bool,
+    /// Whether its torque was on and is off without our doing.
     pub torque_lost: bool,
+    /// It raised an alarm, and may have switched its torque off; a goal would switch it on again.
+    suspect: bool,
     reads_singly: bool,
     no_bulk: u32,
 }
@@ -33,7 +37,17 @@ impl Slot {
     pub fn new(unit: ServoUnit) -> Self {
         let reading = JointReading::new(unit.servo.joint, unit.id());
         let reads_singly = !unit.table.bulk_read;
-        Self { unit, reading, missed: 0, complaint: None, torque_lost: false, reads_singly, no_bulk: 0 }
+        Self {
+            unit,
+            reading,
+            missed: 0,
+            complaint: None,
+            alarm: false,
+            torque_lost: false,
+            suspect: false,
+            reads_singly,
+            no_bulk: 0,
+        }
     }
 
     /// Whether it takes part in every cycle.
@@ -58,6 +72,9 @@ impl Slot {
         reading.read_at = Some(now);
         self.missed = 0;
         self.complaint = (!status.error.is_none()).then(|| status.error.to_string());
+        let alarm = status.error.is_alarm();
+        self.suspect |= alarm && !self.alarm;
+        self.alarm = alarm;
     }
 }
 
@@ -88,7 +105,7 @@ impl Exchange {
         let mut refusal = None;
         let mut packets: Vec<(u16, u16, Vec<(u8, Vec<u8>)>)> = vec![];
         for (i, slot) in self.slots.iter_mut().enumerate() {
-            if !slot.holds_torque() || !slot.in_use() {
+            if !slot.holds_torque() || !slot.in_use() || slot.suspect {
                 continue;
             }
             let (Some(goal_rad), Some(address)) = (goal_rad(i, slot), slot.unit.goal_address()) else {
@@ -185,17 +202,20 @@ impl Exchange {
         }
     }
 
-    /// Torque and current of one servo per cycle, round and round.
+    /// Torque or current of one servo per cycle, round and round; first the torque of one that
+    /// raised an alarm.
     fn read_slow(&mut self) -> Result<(), BusError> {
         let n = self.slots.len() as u64;
         if n == 0 {
             return Ok(());
         }
-        let i = (self.turn / 2 % n) as usize;
+        let suspect = self.slots.iter().position(|slot| slot.suspect && slot.in_use());
+        let i = suspect.unwrap_or((self.turn / 2 % n) as usize);
         if !self.slots[i].in_use() {
             return Ok(());
         }
-        let item = if self.turn.is_multiple_of(2) { Item::TorqueEnable } else { Item::PresentCurrent };
+        let is_torque = suspect.is_some() || self.turn.is_multiple_of(2);
+        let item = if is_torque { Item::TorqueEnable } else { Item::PresentCurrent };
         let Some(register) = self.slots[i].unit.table.register(item).copied() else { return Ok(()) };
         let id = self.slots[i].unit.id();
         let instruction =
@@ -213,6 +233,7 @@ impl Exchange {
             let on = raw != 0;
             slot.torque_lost |= slot.reading.torque_on == Some(true) && !on;
             slot.reading.torque_on = Some(on);
+            slot.suspect = false;
         }
         Ok(())
     }
@@ -286,6 +307,7 @@ impl Exchange {
             Ok(true) => {
                 slot.reading.torque_on = Some(on);
                 slot.torque_lost = false;
+                slot.suspect = false;
                 if !on {
                     slot.reading.goal_rad = None;
                 }

@@ -186,6 +186,18 @@ pub enum HoldReason {
         /// Cycles in a row.
         cycles: u32,
     },
+    /// A servo raises an alarm.
+    #[error("the servo of {name} (id {servo}) complains: {words}; lighten its load and let it cool down")]
+    Alarm {
+        /// The joint.
+        joint: JointIndex,
+        /// Its name.
+        name: String,
+        /// Id.
+        servo: u8,
+        /// What it says.
+        words: String,
+    },
     /// A servo switched its own torque off.
     #[error(
         "the servo of {name} (id {servo}) switched its torque off by itself: it was overloaded or too hot; let it cool down, then switch torque on"

@@ -56,6 +56,8 @@ pub struct Chain {
     pub echo: bool,
     /// Instructions other than reads: id and instruction.
     pub written: Vec<(u8, Instruction)>,
+    /// A servo that does not hear what is written to all.
+    pub deaf: Option<u8>,
     /// Closes the line in the middle of the next answer.
     pub hang_up: bool,
     moved_at: Instant,
@@ -117,7 +119,8 @@ impl Chain {
             let table = ControlTable::of_model(&servo.model).expect("a known model");
             let limits = rig.limits(servo.joint);
             let is_tilt = servo.joint == rig.eyes.tilt;
-            let angle_rad = if is_tilt { 0.0 } else { home[servo.joint].clamp(limits.lower_rad, limits.upper_rad) };
+            let angle_rad =
+                if is_tilt { 0.0 } else { home[servo.joint].clamp(limits.lower_rad, limits.upper_rad) };
             let ticks = table.ticks(servo.motor_rad(angle_rad)).expect("in range");
             servos.insert(servo.id, FakeServo::new(&servo.model, servo.id, f64::from(ticks.0)));
         }
@@ -130,6 +133,7 @@ impl Chain {
             reported: BTreeMap::new(),
             echo: false,
             written: vec![],
+            deaf: None,
             hang_up: false,
             moved_at: Instant::now(),
         }
@@ -165,7 +169,9 @@ impl Chain {
                     let before = self.servos.get(id).map_or(0.0, |servo| servo.position);
                     let reported = self.reported.get(id).copied().unwrap_or(0);
                     goals.push((*id, u16::from_le_bytes([bytes[0], bytes[1]]), before, reported));
-                    self.store(*id, address, bytes);
+                    if self.deaf != Some(*id) {
+                        self.store(*id, address, bytes);
+                    }
                 }
                 self.written.push((BROADCAST, Instruction::SyncWrite { address, length, data }));
                 self.told.push(Told { at, goals });

@@ -96,20 +96,48 @@ fn a_moving_servo_that_falls_silent_holds_the_arm_and_says_so() {
 }
 
 #[test]
-fn a_servo_that_switches_itself_off_is_told_and_not_switched_on_again() {
+fn an_overloaded_servo_holds_the_arm_and_is_not_switched_on_again() {
     let (rig, chain, driver) = ready();
     let pan = joint(&rig, "head_z");
     let servo = id_of(&rig, pan);
     let id = driver.start_move(turn(pan, 1.2, 0.1)).expect("queued");
     std::thread::sleep(Duration::from_millis(200));
-    // It complains of overload and its torque is gone.
     chain.fault(servo, Fault::Complains(0x20), u32::MAX);
-    chain.lock().servos.get_mut(&servo).expect("there").set(Item::TorqueEnable, 0);
     let outcome = driver.wait_for(id, Duration::from_secs(3)).expect("it ends");
-    assert!(matches!(outcome, MoveOutcome::Held(HoldReason::TorqueLost { .. })), "{outcome:?}");
-    let state = driver.state();
-    let problem = state.of(pan).and_then(|r| r.problem.clone()).expect("told");
-    assert!(problem.contains("overloaded") || problem.contains("switched its torque off"), "{problem}");
+    let MoveOutcome::Held(HoldReason::Alarm { words, .. }) = outcome else { panic!("{outcome:?}") };
+    assert!(words.contains("overloaded"), "{words}");
+    // While it holds it gives up: its torque is gone, and stays so although the others are told
+    // their goals in every cycle.
+    await_state(&driver, "the alarm is looked into", |s| s.bus.cycles > 5);
+    {
+        let mut chain = chain.lock();
+        let chain = chain.servos.get_mut(&servo).expect("there");
+        chain.fault = None;
+        chain.set(Item::TorqueEnable, 1);
+    }
+    await_state(&driver, "it is well", |s| s.of(pan).is_some_and(|r| r.problem.is_none()));
+    let other = joint(&rig, "r_elbow_y");
+    let begin = driver.state().measured.as_ref().expect("read")[other];
+    assert!(matches!(run(&driver, other, begin + 0.1, 0.5), MoveOutcome::Arrived { .. }));
+}
+
+#[test]
+fn a_servo_that_lost_its_torque_is_told() {
+    let (rig, chain, driver) = ready();
+    let finger = joint(&rig, "r_thumb_x");
+    // Switched off between two cycles, the next goal would switch it on again; a servo that was
+    // restarted by hand has lost its torque for good, as goals do not reach it for a while.
+    chain.lock().deaf = Some(id_of(&rig, finger));
+    chain.lock().servos.get_mut(&id_of(&rig, finger)).expect("there").set(Item::TorqueEnable, 0);
+    let state = await_state(&driver, "told", |s| s.of(finger).is_some_and(|r| r.problem.is_some()));
+    let problem = state.of(finger).and_then(|r| r.problem.clone()).expect("told");
+    assert!(problem.contains("switched its torque off"), "{problem}");
+    chain.lock().deaf = None;
+    std::thread::sleep(Duration::from_millis(100));
+    assert!(!super::world::has_torque(&chain, id_of(&rig, finger)), "it is left off");
+    driver.engage(&[finger]).expect("queued");
+    await_state(&driver, "on again", |s| s.of(finger).is_some_and(|r| r.problem.is_none()));
+    assert!(super::world::has_torque(&chain, id_of(&rig, finger)));
 }
 
 #[test]
