@@ -81,6 +81,8 @@ pub enum SourceKind {
     Videos,
     /// Images in memory.
     Memory,
+    /// The eyes of the simulated robot.
+    Twin,
 }
 
 /// What a source is.

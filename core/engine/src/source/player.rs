@@ -323,7 +323,7 @@ impl Player {
 fn is_photographs(kind: SourceKind) -> bool {
     match kind {
         SourceKind::Folder => true,
-        SourceKind::Cameras | SourceKind::Videos | SourceKind::Memory => false,
+        SourceKind::Cameras | SourceKind::Videos | SourceKind::Memory | SourceKind::Twin => false,
     }
 }
 
