@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use super::deframer::{Deframer, Found};
 use super::error::BusError;
 use super::fault::{BusCounts, FaultKind};
-use super::instruction::{BROADCAST, BulkItem, Instruction};
+use super::instruction::{BROADCAST, Instruction};
 use super::packet::{Protocol, Status};
 use super::port::ServoPort;
 use super::wire_time::WireTime;
@@ -39,20 +39,20 @@ impl Default for BusTiming {
 /// A bus with servos on it.
 pub struct Bus {
     port: Box<dyn ServoPort>,
-    protocol: Protocol,
+    pub(super) protocol: Protocol,
     timing: BusTiming,
-    deframer: Deframer,
-    wire: WireTime,
-    counts: BusCounts,
+    pub(super) deframer: Deframer,
+    pub(super) wire: WireTime,
+    pub(super) counts: BusCounts,
     /// Sent bytes that an echoing adapter may send back.
     echo: Vec<u8>,
     /// Servos whose answers were given up and may still come.
-    owed: Vec<u8>,
+    pub(super) owed: Vec<u8>,
     stop: Option<std::sync::Arc<AtomicBool>>,
 }
 
 /// Why a wait ended without what it waited for.
-enum Ended {
+pub(super) enum Ended {
     TimeOver,
     Bus(BusError),
 }
@@ -145,74 +145,6 @@ impl Bus {
         self.send(BROADCAST, &Instruction::SyncWrite { address, length, data })
     }
 
-    /// Reads registers of many servos in one conversation. What did not come is a fault, counted;
-    /// nothing is repeated.
-    pub(crate) fn bulk_read(
-        &mut self,
-        items: &[BulkItem],
-        deadline: Instant,
-    ) -> Result<Vec<Result<Status, FaultKind>>, BusError> {
-        let mut answers: Vec<Result<Status, FaultKind>> =
-            items.iter().map(|_| Err(FaultKind::Missing)).collect();
-        if items.is_empty() {
-            return Ok(answers);
-        }
-        self.drain()?;
-        self.send(BROADCAST, &Instruction::BulkRead { items: items.to_vec() })?;
-        let mut open = items.len();
-        while open > 0 {
-            let longest = items.iter().map(|item| usize::from(item.length)).max().unwrap_or(0);
-            let until = deadline.min(Instant::now() + self.answer_time(longest));
-            let found = match self.next_found(until) {
-                Ok(found) => found,
-                Err(Ended::Bus(error)) => return Err(error),
-                Err(Ended::TimeOver) => {
-                    // The one whose turn it was may have been cut; those behind it wait for it.
-                    let cut = self.deframer.clear() > 0;
-                    let first = answers.iter_mut().find(|answer| matches!(answer, Err(FaultKind::Missing)));
-                    if let (true, Some(first)) = (cut, first) {
-                        *first = Err(FaultKind::Cut);
-                    }
-                    break;
-                }
-            };
-            let place = |id: u8| items.iter().position(|item| item.id == id);
-            match found {
-                Found::Garbage(bytes) => self.counts.stray_bytes += bytes as u64,
-                Found::WrongCheck { id } => {
-                    if let Some(i) = place(id).filter(|i| answers[*i].is_err()) {
-                        answers[i] = Err(FaultKind::Checksum);
-                    }
-                }
-                Found::Frame(frame) => {
-                    let Ok(status) = self.protocol.status(&frame) else { continue };
-                    let Some(i) = place(status.id).filter(|i| answers[*i].is_err()) else {
-                        self.strange(status.id);
-                        continue;
-                    };
-                    self.wire.answers += 1;
-                    answers[i] = match status {
-                        status if status.error.is_transmission() => Err(FaultKind::Refused),
-                        status if status.data.len() == usize::from(items[i].length) => Ok(status),
-                        _ => Err(FaultKind::Garbled),
-                    };
-                    open -= 1;
-                }
-            }
-        }
-        self.wire.turnarounds += 1;
-        for (item, answer) in items.iter().zip(&answers) {
-            match answer {
-                Ok(_) => self.counts.answers += 1,
-                Err(kind) => {
-                    self.counts.fault(item.id, *kind);
-                    self.owed.push(item.id);
-                }
-            }
-        }
-        Ok(answers)
-    }
-
     /// Whether one more answer of `id` arrives though only one was asked for.
     pub(crate) fn another_answer(&mut self, id: u8) -> Result<bool, BusError> {
         let until = Instant::now() + Duration::from_millis(2);
@@ -235,7 +167,7 @@ impl Bus {
     }
 
     /// Time of an answer of `data` bytes on the wire, and the margin.
-    fn answer_time(&self, data: usize) -> Duration {
+    pub(super) fn answer_time(&self, data: usize) -> Duration {
         let bytes = self.protocol.status_bytes(data) as f64;
         self.timing.answer_margin + Duration::from_secs_f64(bytes * 10.0 / f64::from(self.timing.baud.max(1)))
     }
@@ -343,7 +275,7 @@ impl Bus {
     }
 
     /// An answer of `id` that nobody waits for: late when it had been given up. Returns whether.
-    fn strange(&mut self, id: u8) -> bool {
+    pub(super) fn strange(&mut self, id: u8) -> bool {
         let late = self.owed.iter().position(|owed| *owed == id);
         if let Some(i) = late {
             self.owed.swap_remove(i);
@@ -353,7 +285,7 @@ impl Bus {
     }
 
     /// Next packet or garbage, until `until`.
-    fn next_found(&mut self, until: Instant) -> Result<Found, Ended> {
+    pub(super) fn next_found(&mut self, until: Instant) -> Result<Found, Ended> {
         loop {
             if self.echo.is_empty()
                 && let Some(found) = self.deframer.pop()
@@ -397,7 +329,7 @@ impl Bus {
     }
 
     /// Takes what nobody waits for any more: late answers, echoes of what has no answer.
-    fn drain(&mut self) -> Result<(), BusError> {
+    pub(super) fn drain(&mut self) -> Result<(), BusError> {
         while self.receive(Duration::ZERO)? > 0 {}
         self.echo.clear();
         while let Some(found) = self.deframer.pop() {
@@ -415,7 +347,7 @@ impl Bus {
         Ok(())
     }
 
-    fn send(&mut self, id: u8, instruction: &Instruction) -> Result<(), BusError> {
+    pub(super) fn send(&mut self, id: u8, instruction: &Instruction) -> Result<(), BusError> {
         let bytes = self.protocol.encode_instruction(id, instruction)?;
         let sent = self.port.write_all(&bytes).and_then(|()| self.port.flush());
         sent.map_err(|error| BusError::PortGone { port: self.port.name(), detail: error.to_string() })?;

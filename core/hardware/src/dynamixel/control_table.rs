@@ -172,8 +172,12 @@ impl Register {
         };
         // NaN fails the comparison.
         let fits = size >= 0.0 && size <= f64::from(self.largest());
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked above")]
-        fits.then(|| size as u16 | sign)
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "kept only if it fits; floats saturate"
+        )]
+        fits.then_some(size as u16 | sign)
     }
 
     /// Bytes of a raw value.

@@ -11,6 +11,7 @@
 //! Sources: ROBOTIS e-Manual, "DYNAMIXEL Protocol 1.0" and "2.0", and the manuals of MX-64 and
 //! MX-28; Seed Robotics' documentation of the EROS hands' registers.
 
+mod bulk;
 mod bus;
 mod control_table;
 mod deframer;

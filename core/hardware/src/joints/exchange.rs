@@ -69,9 +69,14 @@ impl Slot {
         reading.load = load;
         reading.voltage_v = voltage_v;
         reading.temperature_c = temperature_c;
-        reading.read_at = Some(now);
-        self.missed = 0;
         self.complaint = (!status.error.is_none()).then(|| status.error.to_string());
+        if angle_rad.is_some() {
+            reading.read_at = Some(now);
+            self.missed = 0;
+        } else {
+            self.missed = self.missed.saturating_add(1);
+            self.complaint = Some("its position is out of range: take it out of multi-turn mode".to_owned());
+        }
         let alarm = status.error.is_alarm();
         self.suspect |= alarm && !self.alarm;
         self.alarm = alarm;
@@ -86,6 +91,13 @@ pub(super) struct Exchange {
     /// Largest speed of a joint, rad/s; servos are told a little more.
     pub speed_rad_s: f64,
     turn: u64,
+}
+
+/// Goals whose registers lie at the same place.
+struct GoalPacket {
+    address: u16,
+    length: u16,
+    goals: Vec<(u8, Vec<u8>)>,
 }
 
 /// A servo may catch up with its goal at this much more than the largest planned speed.
@@ -103,7 +115,7 @@ impl Exchange {
         goal_rad: impl Fn(usize, &Slot) -> Option<f64>,
     ) -> Result<Option<Refusal>, BusError> {
         let mut refusal = None;
-        let mut packets: Vec<(u16, u16, Vec<(u8, Vec<u8>)>)> = vec![];
+        let mut packets: Vec<GoalPacket> = vec![];
         for (i, slot) in self.slots.iter_mut().enumerate() {
             if !slot.holds_torque() || !slot.in_use() || slot.suspect {
                 continue;
@@ -120,13 +132,13 @@ impl Exchange {
             };
             slot.reading.goal_rad = Some(goal_rad);
             let length = bytes.len() as u16;
-            match packets.iter_mut().find(|(a, l, _)| (*a, *l) == (address, length)) {
-                Some((_, _, data)) => data.push((slot.unit.id(), bytes)),
-                None => packets.push((address, length, vec![(slot.unit.id(), bytes)])),
+            match packets.iter_mut().find(|packet| (packet.address, packet.length) == (address, length)) {
+                Some(packet) => packet.goals.push((slot.unit.id(), bytes)),
+                None => packets.push(GoalPacket { address, length, goals: vec![(slot.unit.id(), bytes)] }),
             }
         }
-        for (address, length, data) in packets {
-            self.bus.sync_write(address, length, data)?;
+        for packet in packets {
+            self.bus.sync_write(packet.address, packet.length, packet.goals)?;
         }
         Ok(refusal)
     }

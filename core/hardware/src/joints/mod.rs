@@ -19,16 +19,19 @@ mod driver;
 mod exchange;
 mod guard;
 mod limiter;
+mod motion;
 mod options;
 mod problem;
 mod rate;
 mod reading;
 mod refusal;
+mod report;
 mod ring;
 mod servo_unit;
 mod stop;
 mod touch;
 mod trajectory;
+mod watch;
 
 #[cfg(test)]
 mod tests;

@@ -13,6 +13,9 @@ const LENGTH: usize = 256;
 /// Beyond the newest reading an angle is held for this long, not extrapolated.
 const HOLD: Duration = Duration::from_millis(40);
 
+/// A joint whose reading is older does not answer.
+const SILENT: Duration = Duration::from_millis(500);
+
 /// The newest states, oldest first.
 #[derive(Debug, Default)]
 pub(super) struct StateRing(VecDeque<Arc<JointState>>);
@@ -29,12 +32,16 @@ impl StateRing {
         self.0.back()
     }
 
-    /// Every joint at a moment, linear between its two readings around it. Joints without a servo
-    /// stand as in the newest state. `None` when the moment is not covered by readings.
+    /// Every joint at a moment, linear between its two readings around it. Joints without a servo,
+    /// or whose servo does not answer, stand as in the newest state. `None` when the moment is not
+    /// covered by readings.
     pub fn posture_at(&self, at: Instant) -> Option<Posture> {
         let newest = self.0.back()?;
         let mut posture = newest.measured.clone()?;
         for (i, reading) in newest.joints.iter().enumerate() {
+            if reading.age.is_none_or(|age| age > SILENT) {
+                continue;
+            }
             posture[reading.joint] = self.angle_at(i, at)?;
         }
         Some(posture)

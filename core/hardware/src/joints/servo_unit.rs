@@ -3,7 +3,7 @@
 use plumbline_model::robot::{Servo, ServoDirection};
 
 use super::refusal::Refusal;
-use crate::dynamixel::{ControlTable, Item, Register};
+use crate::dynamixel::{ControlTable, Item, LAST_TICK, Register, Ticks};
 
 /// A servo with its registers.
 #[derive(Clone, Debug)]
@@ -61,12 +61,21 @@ impl ServoUnit {
             Some(register.si(register.in_data(first, data)?))
         };
         Measured {
-            angle_rad: si(Item::PresentPosition).map(|motor_rad| self.servo.joint_rad(motor_rad)),
+            angle_rad: self
+                .ticks(data)
+                .and_then(|ticks| self.table.motor_rad(ticks))
+                .map(|m| self.servo.joint_rad(m)),
             speed_rad_s: si(Item::PresentSpeed).map(|speed| self.sign() * speed / self.servo.ratio),
             load: si(Item::PresentLoad).map(|load| self.sign() * load),
             voltage_v: si(Item::PresentVoltage),
             temperature_c: si(Item::PresentTemperature),
         }
+    }
+
+    /// The position, if it is one that a servo in joint mode can have.
+    fn ticks(&self, data: &[u8]) -> Option<Ticks> {
+        let raw = self.table.register(Item::PresentPosition)?.in_data(self.block.0, data)?;
+        (raw <= LAST_TICK).then_some(Ticks(raw))
     }
 
     /// Bytes of goal position and moving speed, which lie side by side from

@@ -43,14 +43,14 @@ fn a_killed_process_leaves_the_arm_within_a_step_of_where_it_was() {
         }
         std::thread::sleep(Duration::from_millis(5));
     }
+    let there = chain.lock().servos[&pan].position;
     child.kill().expect("it runs");
     child.wait().expect("it ended");
-    let there = chain.lock().servos[&pan].position;
     assert!((there - begin).abs() > 150.0, "it did move");
     std::thread::sleep(Duration::from_millis(600));
     let rests = chain.lock().servos[&pan].position;
     let step_ticks = rig.gate.step_rad / std::f64::consts::TAU * 4096.0;
-    println!("moved on by {:.1} of at most {step_ticks:.1} ticks after the kill", (rests - there).abs());
+    eprintln!("moved on by {:.1} of at most {step_ticks:.1} ticks after the kill", (rests - there).abs());
     assert!((rests - there).abs() <= step_ticks + 1.0, "{}", rests - there);
     assert!(has_torque(&chain, pan), "it holds");
     assert_goals_stay_near(&rig, &chain);

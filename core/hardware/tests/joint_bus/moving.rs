@@ -116,7 +116,7 @@ fn fifty_complete_cycles_per_second_on_the_wire() {
     assert!(cycle.answers as usize >= rig.servos.len(), "every servo answered: {cycle:?}");
     let rate = |return_delay_s, turnaround_s| 1.0 / cycle.seconds(rig.bus.baud, return_delay_s, turnaround_s);
     let on_wire = rate(10e-6, 0.0);
-    println!(
+    eprintln!(
         "{} servos: {} bytes out, {} in, {} answers in {} conversations; {:.0} cycles/s on the wire at 1 Mbaud \
          with 10 µs return delay, {:.0} with the factory's 500 µs, {:.0} with 10 µs and 1 ms of USB per conversation; \
          {:?} complete cycles/s here, paced at 62.5",

@@ -94,7 +94,7 @@ fn the_hold_is_on_the_wire_within_20_ms() {
     }
     latencies.sort();
     let ms = |share: f64| latencies[((latencies.len() - 1) as f64 * share) as usize].as_secs_f64() * 1e3;
-    println!(
+    eprintln!(
         "stop to hold on the wire over {} trials: median {:.2} ms, 90 % {:.2} ms, 99 % {:.2} ms, worst {:.2} ms \
          ({stalled} trials repeated because the machine stood still)",
         latencies.len(),
@@ -142,6 +142,6 @@ fn the_stop_interrupts_the_wait_for_a_servo_that_is_silent() {
             && told.goals.iter().any(|(id, goal, _, reported)| *id == id_of(&rig, pan) && goal == reported)
     });
     let latency = first.map(|told| told.at.duration_since(pressed)).expect("a hold was sent");
-    println!("with a silent servo: {:.2} ms", latency.as_secs_f64() * 1e3);
+    eprintln!("with a silent servo: {:.2} ms", latency.as_secs_f64() * 1e3);
     assert!(latency < Duration::from_millis(20), "{latency:?}");
 }
