@@ -22,9 +22,17 @@ const EXACT: f64 = 1e-7;
 pub(super) struct Prepared {
     pub problem: Problem,
     pub state: State,
-    /// Pose of the target in the left camera per view, where it could be had.
-    pub left_from_target: Vec<Option<Isometry3<f64>>>,
+    /// Per view, the target by this view alone, where it could be had.
+    pub own_fit: Vec<Option<OwnFit>>,
     pub rejected: Vec<RejectedPair>,
+}
+
+/// The target as one view alone sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OwnFit {
+    pub left_from_target: Isometry3<f64>,
+    /// Rms residual per point.
+    pub rms_px: f64,
 }
 
 /// Reads views into a problem.
@@ -242,11 +250,13 @@ fn start_from_board(
     let limit_px = (4.0 * typical_px).max(1.0);
     let mut kept = vec![];
     let mut left_from_target = vec![];
+    let mut rms = vec![];
     for (view, fit) in std::mem::take(&mut problem.views).into_iter().zip(fits) {
         match fit {
             Some((pose, rms_px)) if rms_px <= limit_px => {
                 kept.push(view);
                 left_from_target.push(pose);
+                rms.push(rms_px);
             }
             Some((_, rms_px)) => rejected.push(RejectedPair {
                 name: view.name,
@@ -289,7 +299,11 @@ fn start_from_board(
     problem.expected.1 = place;
     Ok(Prepared {
         state: State::new(mount, place, count),
-        left_from_target: left_from_target.into_iter().map(Some).collect(),
+        own_fit: left_from_target
+            .into_iter()
+            .zip(rms)
+            .map(|(left_from_target, rms_px)| Some(OwnFit { left_from_target, rms_px }))
+            .collect(),
         problem,
         rejected,
     })
@@ -341,11 +355,15 @@ fn start_from_known(problem: Problem, rejected: Vec<RejectedPair>) -> Prepared {
             pairs.push((in_left.coords, (head_from_robot * in_robot).coords));
         }
     }
-    let left_from_target = problem
+    let poses_show = problem.priors.tip_m.is_none() && is_flat(&problem.points);
+    let own_fit = problem
         .views
         .iter()
-        .map(|view| start::left_from_target(&problem.cameras, &problem.points, &view.seen).map(|fit| fit.0))
-        .map(|pose| pose.filter(|_| problem.priors.tip_m.is_none() && is_flat(&problem.points)))
+        .map(|view| {
+            let fit = start::left_from_target(&problem.cameras, &problem.points, &view.seen);
+            let fit = fit.filter(|_| poses_show && view.seen.len() >= FEWEST_CORNERS);
+            fit.map(|(left_from_target, rms_px)| OwnFit { left_from_target, rms_px })
+        })
         .collect();
     let count = problem.views.len();
     let starts = [Some(problem.expected.0), start::absolute(&pairs)];
@@ -354,7 +372,7 @@ fn start_from_known(problem: Problem, rejected: Vec<RejectedPair>) -> Prepared {
     let state = costed
         .min_by(|a, b| a.0.total_cmp(&b.0))
         .map_or_else(|| State::new(problem.expected.0, problem.expected.1, count), |(_, state)| state);
-    Prepared { state, left_from_target, problem, rejected }
+    Prepared { state, own_fit, problem, rejected }
 }
 
 /// Whether points lie in the plane z = 0, as poses from rays assume.

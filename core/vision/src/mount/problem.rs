@@ -373,11 +373,6 @@ impl Problem {
         moved
     }
 
-    pub fn without_view(mut self, view: usize) -> Self {
-        self.views.remove(view);
-        self
-    }
-
     /// Number of pixel coordinates that count.
     pub fn measurement_count(&self) -> usize {
         2 * self.views.iter().flat_map(|view| &view.seen).filter(|seen| !seen.left_out).count()
