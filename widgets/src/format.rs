@@ -125,6 +125,11 @@ pub fn degrees(angle_rad: f64) -> String {
     Quantity::Angle.text(angle_rad)
 }
 
+/// Radians as degrees of a joint, one decimal: `34.2°`, `0.3°`. An encoder tells steps of 0.09°.
+pub fn joint_degrees(angle_rad: f64) -> String {
+    Quantity::Angle.with_unit(fixed(angle_rad.to_degrees(), 1))
+}
+
 /// Pixels: `0.0961 px`.
 pub fn px(pixels: f64) -> String {
     Quantity::Pixels.text(pixels)
@@ -255,6 +260,9 @@ mod tests {
     fn units_are_those_of_the_screen() {
         assert_eq!(mm(0.012_34), "12.3 mm");
         assert_eq!(degrees(std::f64::consts::FRAC_PI_6), "30.0°");
+        assert_eq!(joint_degrees(0.005), "0.3°");
+        assert_eq!(joint_degrees(-2.0), "−114.6°");
+        assert_eq!(joint_degrees(f64::NAN), "—");
         assert_eq!(ms(1.0 / 30.0), "33.3 ms");
         assert_eq!(px(0.0961), "0.0961 px");
         assert_eq!(celsius(41.0), "41.0 °C");

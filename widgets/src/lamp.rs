@@ -37,7 +37,7 @@ impl Health {
         }
     }
 
-    fn sign(self, tokens: &Tokens) -> (Glyph, egui::Color32) {
+    pub(crate) fn sign(self, tokens: &Tokens) -> (Glyph, egui::Color32) {
         match self {
             Self::Good => (Glyph::Disc, tokens.accepted),
             Self::Working(fraction) => (Glyph::Progress(fraction), tokens.text),

@@ -1,5 +1,6 @@
 //! Every widget with sample data: to look at, and for the tests to walk through.
 
+mod control;
 mod controls;
 mod pictures;
 mod robot;
@@ -10,6 +11,7 @@ use egui::{ScrollArea, Ui};
 
 use crate::format::Quantity;
 use crate::image_view::ViewState;
+use crate::jog_pad::{JogIntent, JogSpeed};
 use crate::notifications::Notifications;
 use crate::scene3d::SceneCamera;
 use crate::texture::TextureCache;
@@ -47,6 +49,16 @@ pub struct GalleryState {
     pub places_chosen: [bool; 2],
     /// How often the scene was drawn.
     pub renders: u64,
+    /// Proposed angles of the joints, radians.
+    pub proposed_rad: [Option<f64>; control::JOINTS],
+    /// The open row.
+    pub open_joint: Option<usize>,
+    /// Speed of the jog pad.
+    pub speed: JogSpeed,
+    /// What is asked of the jog pad right now.
+    pub jog: Option<JogIntent>,
+    /// Name of a new pose.
+    pub pose_name: String,
     /// The last thing that was done, in words.
     pub last: String,
 }
@@ -60,7 +72,7 @@ pub struct Page {
 }
 
 /// All pages.
-pub const PAGES: [Page; 16] = [
+pub const PAGES: [Page; 18] = [
     Page { name: "Window", draw: controls::window },
     Page { name: "Theme", draw: theme_page },
     Page { name: "Image views", draw: pictures::linked },
@@ -74,6 +86,8 @@ pub const PAGES: [Page; 16] = [
     Page { name: "Table map", draw: tables::table_map },
     Page { name: "Scene", draw: robot::scene },
     Page { name: "Scene states", draw: robot::scene_states },
+    Page { name: "Joints", draw: control::joints },
+    Page { name: "Jog and poses", draw: control::jog },
     Page { name: "Inspector", draw: tables::inspector },
     Page { name: "Buttons and progress", draw: controls::buttons },
     Page { name: "Notifications", draw: controls::notifications },

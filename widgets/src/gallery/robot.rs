@@ -133,9 +133,9 @@ pub(super) fn scene(ui: &mut Ui, state: &mut GalleryState) {
         state.last =
             format!("clicked {name}, point {}", if picked.point_m.is_some() { "known" } else { "none" });
     }
-    state.renders = shown.renders;
+    state.renders = shown.stats.renders;
     ui.add_space(space::S);
-    let ms = crate::format::ms(shown.render_time.as_secs_f64());
+    let ms = crate::format::ms(shown.stats.last.as_secs_f64());
     ui.label(theme::small(ui, format!("last: {}; picture made in {ms}", state.last)));
 }
 

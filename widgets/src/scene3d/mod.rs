@@ -76,10 +76,19 @@ pub struct Scene3dResponse {
     pub hovered: Option<Picked>,
     /// The button of the empty scene was pressed.
     pub button_clicked: bool,
-    /// How often the picture was made so far, and how long it took the last time.
+    /// What the picture cost.
+    pub stats: RenderStats,
+}
+
+/// What the pictures of a view cost so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RenderStats {
+    /// How often a picture was made: only when something had changed.
     pub renders: u64,
-    /// Time of the last picture.
-    pub render_time: Duration,
+    /// Triangles drawn in the last one.
+    pub triangles: usize,
+    /// Time that the last one took.
+    pub last: Duration,
 }
 
 /// What a picture was made of.
@@ -97,8 +106,7 @@ struct Key {
 struct Cache {
     renderer: Renderer,
     shown: Option<(Key, TextureHandle)>,
-    renders: u64,
-    render_time: Duration,
+    stats: RenderStats,
 }
 
 impl<'a> Scene3d<'a> {
@@ -150,8 +158,7 @@ impl<'a> Scene3d<'a> {
         }
         // Last, so that the buttons are on top; a new place is seen in the next frame.
         chrome::presets(ui, rect, camera);
-        let (renders, render_time) = (cache.renders, cache.render_time);
-        Scene3dResponse { response, clicked, hovered, button_clicked: false, renders, render_time }
+        Scene3dResponse { response, clicked, hovered, button_clicked: false, stats: cache.stats }
     }
 
     fn show_empty(&self, ui: &mut Ui, size: Vec2) -> Scene3dResponse {
@@ -165,8 +172,7 @@ impl<'a> Scene3d<'a> {
             clicked: None,
             hovered: None,
             button_clicked,
-            renders: 0,
-            render_time: Duration::ZERO,
+            stats: RenderStats::default(),
         }
     }
 
@@ -222,6 +228,7 @@ impl Cache {
         let tokens = theme::tokens(ui);
         let rendered =
             self.renderer.render(&key.scene, &key.camera, key.size_px, key.pixels_per_point, tokens);
+        let triangles = rendered.triangles;
         let image = ColorImage::new(rendered.size_px, rendered.pixels);
         match self.shown.take() {
             Some((_, mut texture)) => {
@@ -233,7 +240,6 @@ impl Cache {
                 self.shown = Some((key, texture));
             }
         }
-        self.renders += 1;
-        self.render_time = start.elapsed();
+        self.stats = RenderStats { renders: self.stats.renders + 1, triangles, last: start.elapsed() };
     }
 }
