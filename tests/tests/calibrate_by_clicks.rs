@@ -22,7 +22,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 fn window(data_dir: &Path) -> Window {
     let data_dir = Some(data_dir.to_owned());
     Harness::builder().with_size([1280.0, 800.0]).build_eframe(|creation| {
-        let engine = Engine::start(EngineSettings { data_dir, source: None }, Arc::new(|| {}));
+        let engine = Engine::start(EngineSettings { data_dir, source: None, twin: None }, Arc::new(|| {}));
         PlumblineWindow::new(&creation.egui_ctx, Box::new(engine), WindowOptions::default())
     })
 }

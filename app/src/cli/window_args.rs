@@ -1,5 +1,7 @@
 //! What the command line says about the window.
 
+mod robot_steps;
+
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -17,13 +19,17 @@ pub struct WindowArgs {
     /// Two USB cameras by number, left eye first: 0,2.
     #[arg(long, value_name = "LEFT,RIGHT", value_parser = cameras)]
     cameras: Option<(u32, u32)>,
+    /// The simulated robot to start with when nothing is opened: lab (like the real robot, with
+    /// its errors), perfect, or none.
+    #[arg(long, value_name = "SCENARIO", default_value = "lab", value_parser = scenario)]
+    twin: String,
     /// What draws the window.
     #[arg(long, value_enum, default_value_t)]
     renderer: RendererChoice,
     /// Colors of the window, in place of the remembered ones.
     #[arg(long, value_enum)]
     theme: Option<ThemeChoice>,
-    /// Screen to start with: live, collect, judge or accept.
+    /// Screen to start with: live, collect, judge, accept, mount or robot.
     #[arg(long, value_name = "SCREEN", value_parser = screen)]
     screen: Option<Screen>,
     /// Size of the window in points: 1280x800.
@@ -40,7 +46,13 @@ pub struct WindowArgs {
     data_dir: Option<PathBuf>,
     /// Does things without an operator, one after the other, each once the one before is done:
     /// collect, solve, judge, accept, compare, live, play, next, stop, palette, log, inspector,
-    /// messages, frame-times, pair:N, probe:U,V, rate:HZ, wait:SECONDS, measure, picture:FILE, quit.
+    /// messages, frame-times, pair:N, probe:U,V, rate:HZ, wait:SECONDS, measure, picture:FILE, quit;
+    /// with the robot: robot, mount, connect, connect-twin, connect-port:PATH, disconnect,
+    /// preview-pose:NAME, preview-joint:NAME=DEGREES, look-at:X,Y,Z, reach:X,Y,Z (meters), move,
+    /// forget, release, hold, speed:SHARE, joint:NAME, twin-board-tour, twin-board:N, twin-board-lay,
+    /// twin-board-away, twin-toy:NAME,X,Y, twin-toy-away:NAME, twin-warm-up:MINUTES, twin-cool,
+    /// twin-fault:NAME=on, twin-reset, mount-plan, mount-tour, mount-capture, mount-solve,
+    /// mount-accept, mount-discard.
     #[arg(long = "do", value_name = "STEPS", value_delimiter = ';', value_parser = step, hide_short_help = true)]
     script: Vec<ScriptStep>,
     /// Writes how long the frames took, as JSON, when the window is closed.
@@ -58,6 +70,7 @@ impl WindowArgs {
         launch(LaunchOptions {
             paths: self.paths,
             cameras: self.cameras,
+            twin: (self.twin != "none").then_some(self.twin),
             renderer: self.renderer,
             theme: self.theme,
             screen: self.screen,
@@ -89,6 +102,14 @@ fn cameras(text: &str) -> Result<(u32, u32), String> {
     }
 }
 
+fn scenario(text: &str) -> Result<String, String> {
+    let known: Vec<&str> = plumbline_engine::robot::scenarios().collect();
+    if text == "none" || known.contains(&text) {
+        return Ok(text.to_owned());
+    }
+    Err(format!("there are the scenarios {}, and none", known.join(", ")))
+}
+
 fn size(text: &str) -> Result<[f32; 2], String> {
     let sides = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
     sides
@@ -102,7 +123,9 @@ fn screen(text: &str) -> Result<Screen, String> {
         "eyes" | "collect" => Ok(Screen::Collect),
         "judge" => Ok(Screen::Judge),
         "accept" | "compare" => Ok(Screen::Accept),
-        _ => Err("there are the screens live, collect, judge and accept".to_owned()),
+        "mount" => Ok(Screen::Mount),
+        "robot" => Ok(Screen::Robot),
+        _ => Err("there are the screens live, collect, judge, accept, mount and robot".to_owned()),
     }
 }
 
@@ -142,7 +165,8 @@ fn step(text: &str) -> Result<ScriptStep, String> {
             seconds(value).map(ScriptStep::Wait).ok_or_else(|| "wait:SECONDS wants a number".to_owned())
         }
         "picture" if !value.is_empty() => Ok(ScriptStep::Picture(value.into())),
-        other => Err(format!("\"{other}\" is not a step; plumbline --help lists them")),
+        other => robot_steps::step(other, value)
+            .unwrap_or_else(|| Err(format!("\"{other}\" is not a step; plumbline --help lists them"))),
     }
 }
 

@@ -16,6 +16,8 @@ pub struct LaunchOptions {
     pub paths: Vec<PathBuf>,
     /// Numbers of two cameras.
     pub cameras: Option<(u32, u32)>,
+    /// Scenario of the twin that runs when nothing else is opened; `None`: no twin.
+    pub twin: Option<String>,
     /// Which renderer.
     pub renderer: RendererChoice,
     /// Colors, in place of the remembered ones.
@@ -69,6 +71,7 @@ pub fn launch(options: LaunchOptions) -> anyhow::Result<()> {
                 script: options.script.clone(),
                 frame_report: options.frame_report.clone(),
                 renderer: chosen.reason,
+                gamepads: options.script.is_empty(),
             };
             let engine = start_engine(&ctx, &options);
             if let Some(trouble) = trouble {
@@ -88,7 +91,9 @@ fn start_engine(ctx: &egui::Context, options: &LaunchOptions) -> Engine {
     let wake = ctx.clone();
     let source =
         options.cameras.map(|(left, right)| SourceSpec::Cameras { left_index: left, right_index: right });
-    let settings = EngineSettings { data_dir: options.data_dir.clone(), source };
+    let nothing_else = options.paths.is_empty() && source.is_none();
+    let twin = options.twin.clone().filter(|_| nothing_else);
+    let settings = EngineSettings { data_dir: options.data_dir.clone(), source, twin };
     let engine = Engine::start(settings, Arc::new(move || wake.request_repaint()));
     if !options.paths.is_empty() {
         // Remembered sources have to be found from another folder too.

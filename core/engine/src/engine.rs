@@ -82,12 +82,12 @@ impl Engine {
     /// Whatever moves holds, and nothing moves until the operator releases it. Passes every queue:
     /// the joint bus reads it in every cycle.
     pub fn stop(&self) {
-        self.shared.switches.stop();
+        self.shared.switches.stop.press();
     }
 
     /// To be called with every frame of the window: without it the arm holds.
     pub fn heartbeat(&self) {
-        self.shared.switches.heartbeat();
+        self.shared.switches.heartbeat.beat();
     }
 
     /// The newest snapshot.

@@ -16,11 +16,13 @@ pub mod sharpness;
 mod state;
 pub mod store;
 pub mod work;
+mod worlds;
 
 use plumbline_model::Chessboard;
 
 pub use events::Look;
 pub use state::EyesState;
+pub use worlds::{EyesOfWorlds, World};
 
 /// The board that the laboratory of NICO uses: 9×6 squares of 30 mm.
 pub fn default_board() -> Chessboard {

@@ -10,6 +10,7 @@ mod job_list;
 pub mod jobs;
 pub mod journal;
 mod live;
+mod mount;
 pub mod notice;
 pub mod offline;
 pub mod settings;

@@ -174,15 +174,21 @@ impl LiveState {
     }
 
     /// Where the eyes sit in which head.
+    pub fn rig(&self) -> &Arc<Rig> {
+        &self.rig
+    }
+
+    /// Another head, or other places of the eyes in it.
     pub fn set_rig(&mut self, rig: Arc<Rig>) {
         self.rig = rig;
         self.set_up();
     }
 
-    /// Lenses to use as long as nobody has calibrated these eyes.
-    pub fn set_nominal(&mut self, nominal: Option<Arc<StereoCalibration>>) {
-        if self.nominal != nominal {
-            self.nominal = nominal;
+    /// Whether the rig's lenses stand in as long as nobody has calibrated these eyes.
+    pub fn use_nominal_lenses(&mut self, wanted: bool) {
+        if wanted != self.nominal.is_some() {
+            let lenses = || Arc::new(StereoCalibration::bare(self.rig.eyes.cameras));
+            self.nominal = wanted.then(lenses);
             self.set_up();
         }
     }

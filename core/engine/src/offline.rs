@@ -10,14 +10,17 @@ mod calibrate;
 mod check;
 mod disparity;
 mod error;
+mod ik;
 mod locate;
 mod pairs;
 mod sample;
+mod table;
 
 pub use bench::{BenchReport, Figure, Peer, bench};
 pub use calibrate::{CalibrateArgs, CalibrateReport, LeftOutCorner, PairErrors, Rejected, calibrate_stereo};
 pub use check::{CheckArgs, CheckReport, check};
 pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};
 pub use error::OfflineError;
+pub use ik::{IkArgs, IkReport, IkSolution, ik};
 pub use locate::{LocateArgs, LocateReport, LocatedPoint, locate};
 pub use sample::{SampleArgs, SampleReport, write_sample};

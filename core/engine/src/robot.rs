@@ -1,13 +1,35 @@
 //! The robot's side of the engine: a thread that connects, previews, jogs and moves.
 
+pub mod arm;
+mod connect;
+mod destination;
+mod history;
 mod jog;
+mod path;
 mod poses;
+mod publish;
+#[cfg(test)]
+mod tests;
+mod thread;
+mod twin_api;
+mod twin_desk;
+mod twin_eyes;
+mod worker;
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::Instant;
+use plumbline_hardware::joints::{Heartbeat, StopSwitch};
+use plumbline_model::frame::{Head, LeftCamera, Pose};
+
+pub use thread::{RobotThread, Wires as RobotWires};
+pub use twin_desk::TwinDesk;
+pub use twin_eyes::TwinEyesPlug;
+pub use worker::{News, Worker};
 
 use crate::command::{RobotCommand, TwinCommand};
+
+/// Names of the twin's scenarios that come with the program.
+pub fn scenarios() -> impl Iterator<Item = &'static str> {
+    plumbline_twin::Scenario::built_in_names()
+}
 
 /// What is handed to the robot's thread.
 #[derive(Clone, Debug)]
@@ -16,6 +38,18 @@ pub enum RobotControl {
     Robot(RobotCommand),
     /// The operator wants something of the twin.
     Twin(TwinCommand),
+    /// The eyes sit elsewhere in the head: looking at a point needs to know.
+    PlaceEyes {
+        /// Place of the left eye.
+        head_from_left: Pose<Head, LeftCamera>,
+    },
+    /// A workflow turns the head.
+    TurnHead {
+        /// Positive to the left, rad.
+        pan_rad: f64,
+        /// Positive up, rad.
+        tilt_rad: f64,
+    },
 }
 
 impl From<RobotCommand> for RobotControl {
@@ -31,30 +65,10 @@ impl From<TwinCommand> for RobotControl {
 }
 
 /// What goes past every queue: the latched STOP and the window's sign of life.
-#[derive(Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Switches {
-    /// Read in every cycle of the joint bus; set at once, released only by a command.
-    pub stop: Arc<AtomicBool>,
-    /// When the window last said that it is alive, milliseconds since `started`.
-    pub alive_ms: Arc<AtomicU64>,
-    started: Instant,
-}
-
-impl Default for Switches {
-    fn default() -> Self {
-        Self { stop: Arc::default(), alive_ms: Arc::default(), started: Instant::now() }
-    }
-}
-
-impl Switches {
-    /// Whatever moves has to hold, now.
-    pub fn stop(&self) {
-        self.stop.store(true, Ordering::SeqCst);
-    }
-
-    /// The window is alive.
-    pub fn heartbeat(&self) {
-        let now_ms = u64::try_from(self.started.elapsed().as_millis()).unwrap_or(u64::MAX);
-        self.alive_ms.store(now_ms, Ordering::Relaxed);
-    }
+    /// Read in every cycle of the joint bus; pressed at once, released only by a command.
+    pub stop: StopSwitch,
+    /// Without it the arm holds.
+    pub heartbeat: Heartbeat,
 }

@@ -3,7 +3,7 @@
 mod player;
 mod thread;
 
-pub use player::{Control, Note, Player};
+pub use player::{Control, Note, Opener, Player};
 pub use thread::{SourceThread, Wires};
 
 use std::sync::Arc;

@@ -1,23 +1,27 @@
 //! Everything the engine knows, driven by commands and events; owns no thread.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use plumbline_hardware::SourceSpec;
 use plumbline_model::StereoFrame;
+use plumbline_model::robot::Rig;
 
-use crate::command::{Command, JobCommand, JobId, NoticeCommand};
+use crate::command::{Command, HeadPose, JobCommand, JobId, NoticeCommand};
 use crate::context::{Action, Context};
-use crate::eyes::store::Store;
 use crate::eyes::work::{EyesWork, Restore};
-use crate::eyes::{EyesState, Look};
+use crate::eyes::{EyesOfWorlds, EyesState, Look, World};
 use crate::job_list::JobList;
 use crate::jobs::Outcome;
-use crate::live::{LiveState, Skipped};
+use crate::live::{LiveState, Skipped, default_rig};
+use crate::mount::{MountState, Surroundings as MountSurroundings};
 use crate::notice::{NoticeLevel, Notices};
-use crate::source::{Note, SourceState};
+use crate::robot::{News, RobotControl};
+use crate::source::{Control, Note, SourceState};
 use crate::stages::{CornersInput, ProbeInput, ProbeOutput, RectifyInput, RectifyOutput, StagePanic, Timed};
-use crate::view::{JobState, JobView, RobotView, SourceView, TwinView, View};
+use crate::view::{JobState, JobView, MountView, RobotView, SourceView, TwinView, View};
 use crate::work::WorkResult;
 
 /// Everything the engine knows.
@@ -25,9 +29,14 @@ use crate::work::WorkResult;
 pub struct State {
     source: SourceState,
     live: LiveState,
-    eyes: EyesState,
+    eyes: EyesOfWorlds,
     robot: Arc<RobotView>,
     twin: Arc<TwinView>,
+    twins_started: u64,
+    rig: Arc<Rig>,
+    mounts: BTreeMap<World, MountState>,
+    /// Work belongs to the world it was started for, whatever is shown when it ends.
+    started_by: BTreeMap<JobId, World>,
     jobs: JobList,
     notices: Notices,
     actions: Vec<Action>,
@@ -40,13 +49,19 @@ impl State {
     /// Nothing opened; what was accepted before is read as the first job.
     pub fn new(data_dir: &Path) -> Self {
         let live = LiveState::default();
-        let store = Store::new(data_dir.join("calibrations"));
         let mut state = Self {
-            eyes: EyesState::new(store.clone(), data_dir.join("sessions"), live.workspace()),
+            eyes: EyesOfWorlds::new(data_dir, live.workspace()),
             live,
             source: SourceState::default(),
             robot: Arc::default(),
             twin: Arc::default(),
+            twins_started: 0,
+            rig: default_rig(),
+            mounts: WORLDS
+                .into_iter()
+                .map(|world| (world, MountState::new(&world.folder(data_dir))))
+                .collect(),
+            started_by: BTreeMap::new(),
             jobs: JobList::default(),
             notices: Notices::default(),
             actions: Vec::new(),
@@ -54,9 +69,16 @@ impl State {
             revision: 0,
         };
         let workspace = state.live.workspace();
-        state.with_eyes(|_, context| {
-            context.start(EyesWork::Restore(Restore { store, workspace }));
-        });
+        for world in WORLDS {
+            let store = state.eyes.of(world).store().clone();
+            state.with_eyes_of(world, |_, context| {
+                context.start(EyesWork::Restore(Restore { store, workspace }));
+            });
+            state.with_mount_of(world, |mount, around, context| {
+                let work = mount.restore(around.rig);
+                context.start(work);
+            });
+        }
         state
     }
 
@@ -75,7 +97,9 @@ impl State {
             Command::Eyes(command) => self.with_eyes(|eyes, context| eyes.apply(command, context)),
             Command::Robot(command) => self.actions.push(Action::Robot(command.into())),
             Command::Twin(command) => self.actions.push(Action::Robot(command.into())),
-            Command::Mount(_) => {}
+            Command::Mount(command) => {
+                self.with_mount(|mount, around, context| mount.apply(command, around, context));
+            }
             Command::Job(JobCommand::Cancel(id)) if self.jobs.is_running(id) => {
                 self.actions.push(Action::Cancel(id));
             }
@@ -93,9 +117,58 @@ impl State {
     }
 
     fn with_eyes(&mut self, act: impl FnOnce(&mut EyesState, &mut Context<'_>)) {
+        self.with_eyes_of(self.eyes.shown, act);
+    }
+
+    fn with_eyes_of(&mut self, world: World, act: impl FnOnce(&mut EyesState, &mut Context<'_>)) {
         let Self { source, live, eyes, jobs, notices, actions, .. } = self;
-        act(eyes, &mut Context { notices, newest: live.newest(), source: source.view(), jobs, actions });
-        self.live.set_calibration(self.eyes.in_use());
+        let before = actions.len();
+        let mut context = Context { notices, newest: live.newest(), source: source.view(), jobs, actions };
+        act(eyes.of_mut(world), &mut context);
+        for action in &actions[before..] {
+            if let Action::Start(id, _) = action {
+                self.started_by.insert(*id, world);
+            }
+        }
+        self.live.set_calibration(self.eyes.shown().in_use());
+    }
+
+    fn with_mount(&mut self, act: impl FnOnce(&mut MountState, &MountSurroundings<'_>, &mut Context<'_>)) {
+        self.with_mount_of(self.eyes.shown, act);
+    }
+
+    fn with_mount_of(
+        &mut self,
+        world: World,
+        act: impl FnOnce(&mut MountState, &MountSurroundings<'_>, &mut Context<'_>),
+    ) {
+        let Self { source, live, eyes, jobs, notices, actions, robot, rig, mounts, .. } = self;
+        let Some(mount) = mounts.get_mut(&world) else { return };
+        let before = actions.len();
+        let mut context = Context { notices, newest: live.newest(), source: source.view(), jobs, actions };
+        act(mount, &surroundings(rig, robot, eyes.of(world)), &mut context);
+        for action in &actions[before..] {
+            if let Action::Start(id, _) = action {
+                self.started_by.insert(*id, world);
+            }
+        }
+        self.use_mount();
+    }
+
+    /// The eyes sit where the mount in use says, for everything that looks or turns the head.
+    fn use_mount(&mut self) {
+        let shown = self.mounts.get(&self.eyes.shown);
+        let head_from_left = shown
+            .and_then(|mount| mount.in_use())
+            .map_or(self.rig.eyes.head_from_left, |mount| mount.head_from_left);
+        if self.live.rig().eyes.head_from_left == head_from_left {
+            return;
+        }
+        let mut rig = (*self.rig).clone();
+        rig.eyes.head_from_left = head_from_left;
+        self.live.set_rig(Arc::new(rig));
+        self.eyes.set_workspace(self.live.workspace());
+        self.actions.push(Action::Robot(RobotControl::PlaceEyes { head_from_left }));
     }
 
     /// A pair has come from the source.
@@ -106,7 +179,7 @@ impl State {
             return;
         }
         self.shown_of = opened;
-        self.eyes.set_image_size(frame.left.dimensions());
+        self.eyes.of_mut(self.eyes.shown).set_image_size(frame.left.dimensions());
         self.live.frame(frame, now);
     }
 
@@ -115,12 +188,35 @@ impl State {
         if view.opened != self.source.view().opened && view.opened != self.shown_of {
             self.live.clear();
         }
+        self.eyes.shown = World::of(view.spec.as_ref());
+        self.use_mount();
+        let own_eyes = matches!(view.spec, Some(SourceSpec::Twin | SourceSpec::Cameras { .. }));
+        self.live.use_nominal_lenses(own_eyes);
         self.source.update(view);
+        self.live.set_calibration(self.eyes.shown().in_use());
     }
 
     /// The source has a message for the operator.
     pub fn source_note(&mut self, (level, text): Note) {
         self.notices.add(level, text);
+    }
+
+    /// The robot or the twin has something new.
+    pub fn robot_changed(&mut self, news: News) {
+        let eyes_of_this_robot =
+            matches!(self.source.view().spec, Some(SourceSpec::Twin | SourceSpec::Cameras { .. }));
+        if let (Some(rig), Some(posture), true) = (&news.robot.rig, &news.robot.measured, eyes_of_this_robot)
+        {
+            let head = HeadPose { head_z_rad: posture[rig.eyes.pan], head_y_rad: posture[rig.eyes.tilt] };
+            self.live.set_head(head);
+            self.eyes.set_workspace(self.live.workspace());
+        }
+        if news.twins_started > self.twins_started {
+            self.twins_started = news.twins_started;
+            self.actions.push(Action::Source(Control::Open(SourceSpec::Twin)));
+        }
+        (self.robot, self.twin) = (news.robot, news.twin);
+        self.with_mount(|mount, around, context| mount.step(around, Instant::now(), context));
     }
 
     /// Rectification has something.
@@ -136,7 +232,14 @@ impl State {
     /// The chessboard search has something.
     pub fn looked(&mut self, output: Timed<Look>, now: Instant) {
         self.live.corners(&output, now);
-        self.with_eyes(|eyes, context| eyes.look(output.result, context));
+        let look = output.result;
+        if self.mounts.get(&self.eyes.shown).is_some_and(MountState::wants_corners)
+            || self.live.wants_corners()
+        {
+            let look = look.clone();
+            self.with_mount(|mount, around, context| mount.look(look, around, context));
+        }
+        self.with_eyes(|eyes, context| eyes.look(look, context));
     }
 
     /// A stage met a defect of this program and goes on with the next pair.
@@ -160,9 +263,10 @@ impl State {
 
     /// What the chessboard search is to do with the newest pair, if anything.
     pub fn corners_input(&self) -> Option<CornersInput> {
-        let wanted = self.live.wants_corners() || self.eyes.auto_capture();
+        let mount_wants = self.mounts.get(&self.eyes.shown).is_some_and(MountState::wants_corners);
+        let wanted = self.live.wants_corners() || self.eyes.shown().auto_capture() || mount_wants;
         let frame = self.live.newest().filter(|_| wanted)?.clone();
-        Some(CornersInput { frame, board: *self.eyes.board() })
+        Some(CornersInput { frame, board: *self.eyes.shown().board() })
     }
 
     /// A job says how far it is.
@@ -184,12 +288,12 @@ impl State {
             }
             Outcome::Cancelled => {
                 self.notices.add(NoticeLevel::Info, format!("{title}: cancelled, nothing was changed."));
-                self.eyes.work_ended(id);
+                self.work_gave_nothing(id);
                 JobState::Cancelled
             }
             Outcome::Failed(reason) => {
                 self.notices.add(NoticeLevel::Error, &*reason);
-                self.eyes.work_ended(id);
+                self.work_gave_nothing(id);
                 JobState::Failed { reason }
             }
             Outcome::Panicked(message) => {
@@ -197,7 +301,7 @@ impl State {
                     "{title}: this program made a mistake ({message}). Nothing was changed. Please report it with the journal."
                 );
                 self.notices.add(NoticeLevel::Error, text);
-                self.eyes.work_ended(id);
+                self.work_gave_nothing(id);
                 JobState::Panicked { message }
             }
         };
@@ -207,7 +311,26 @@ impl State {
     fn work_done(&mut self, id: JobId, result: WorkResult) {
         match result {
             WorkResult::Cameras(cameras) => self.source.set_cameras(cameras),
-            WorkResult::Eyes(result) => self.with_eyes(|eyes, context| eyes.work_done(id, *result, context)),
+            WorkResult::Eyes(result) => {
+                let world = self.world_of(id);
+                self.with_eyes_of(world, |eyes, context| eyes.work_done(id, *result, context));
+            }
+            WorkResult::Mount(result) => {
+                let world = self.world_of(id);
+                self.with_mount_of(world, |mount, _, _| mount.work_done(id, *result));
+            }
+        }
+    }
+
+    fn world_of(&mut self, id: JobId) -> World {
+        self.started_by.remove(&id).unwrap_or(self.eyes.shown)
+    }
+
+    fn work_gave_nothing(&mut self, id: JobId) {
+        let world = self.world_of(id);
+        self.eyes.of_mut(world).work_ended(id);
+        if let Some(mount) = self.mounts.get_mut(&world) {
+            mount.work_ended(id);
         }
     }
 
@@ -226,6 +349,11 @@ impl State {
         self.live.newest().map(|frame| frame.stamp.seq)
     }
 
+    fn mount_view(&self) -> MountView {
+        let around = surroundings(&self.rig, &self.robot, self.eyes.shown());
+        self.mounts.get(&self.eyes.shown).map(|mount| mount.view(&around)).unwrap_or_default()
+    }
+
     /// What the window shows.
     pub fn view(&mut self, skipped: Skipped, lost_commands: u64, now: Instant) -> View {
         self.revision += 1;
@@ -233,13 +361,21 @@ impl State {
             revision: self.revision,
             source: self.source.view().clone(),
             live: Arc::new(self.live.view(skipped, now)),
-            eyes: Arc::new(self.eyes.view()),
+            eyes: Arc::new(self.eyes.of_mut(self.eyes.shown).view()),
             robot: self.robot.clone(),
             twin: self.twin.clone(),
-            mount: Arc::default(),
+            mount: Arc::new(self.mount_view()),
             jobs: self.jobs.view(),
             notices: self.notices.view(),
             lost_commands,
         }
     }
+}
+
+const WORLDS: [World; 2] = [World::Robot, World::Twin];
+
+/// What the mount's workflow can see of the rest.
+fn surroundings<'a>(rig: &'a Arc<Rig>, robot: &'a RobotView, eyes: &EyesState) -> MountSurroundings<'a> {
+    let cameras = eyes.in_use().map(|calibration| calibration.cameras);
+    MountSurroundings { rig, robot, cameras, board: *eyes.board() }
 }

@@ -6,6 +6,7 @@ use plumbline_model::JobContext;
 
 use crate::eyes::work::{EyesResult, EyesWork};
 use crate::jobs::JobError;
+use crate::mount::work::{MountResult, MountWork};
 
 /// Something to do beside the window.
 #[derive(Clone, Debug)]
@@ -14,6 +15,14 @@ pub enum Work {
     ListCameras,
     /// Part of calibrating the eyes.
     Eyes(Box<EyesWork>),
+    /// Part of calibrating how they sit in the head.
+    Mount(Box<MountWork>),
+}
+
+impl From<MountWork> for Work {
+    fn from(work: MountWork) -> Self {
+        Self::Mount(Box::new(work))
+    }
 }
 
 impl From<EyesWork> for Work {
@@ -29,6 +38,8 @@ pub enum WorkResult {
     Cameras(Vec<CameraDevice>),
     /// Part of calibrating the eyes.
     Eyes(Box<EyesResult>),
+    /// Part of calibrating how they sit in the head.
+    Mount(Box<MountResult>),
 }
 
 impl Work {
@@ -37,6 +48,7 @@ impl Work {
         match self {
             Self::ListCameras => "Look for cameras".to_owned(),
             Self::Eyes(work) => work.title(),
+            Self::Mount(work) => work.title(),
         }
     }
 
@@ -45,6 +57,7 @@ impl Work {
         match self {
             Self::ListCameras => true,
             Self::Eyes(work) => work.is_quiet(),
+            Self::Mount(work) => work.is_quiet(),
         }
     }
 
@@ -53,6 +66,7 @@ impl Work {
         match self {
             Self::ListCameras => Ok(WorkResult::Cameras(camera_devices())),
             Self::Eyes(work) => work.run(context).map(Box::new).map(WorkResult::Eyes),
+            Self::Mount(work) => work.run(context).map(Box::new).map(WorkResult::Mount),
         }
     }
 }
@@ -63,6 +77,7 @@ impl WorkResult {
         match self {
             Self::Cameras(cameras) => format!("{} cameras", cameras.len()),
             Self::Eyes(result) => result.summary(),
+            Self::Mount(result) => result.summary(),
         }
     }
 }

@@ -13,13 +13,14 @@ use plumbline_model::{Chessboard, StereoFrame};
 
 use super::Shared;
 use crate::bell::Bell;
-use crate::command::{Command, JobId, ProbePoint, SourceCommand};
+use crate::command::{Command, JobId, ProbePoint, RobotCommand, SourceCommand};
 use crate::context::Action;
 use crate::eyes::Look;
 use crate::jobs::{JobHandle, on_job_workers, panic_message};
 use crate::journal::{Entry, Journal};
-use crate::live::Skipped;
+use crate::live::{Skipped, default_rig};
 use crate::notice::{Notice, NoticeLevel};
+use crate::robot::{News, RobotThread, RobotWires, TwinDesk, TwinEyesPlug, Worker};
 use crate::settings::EngineSettings;
 use crate::slot::{Putter, Taker, newest_value_slot};
 use crate::source::{Note, Player, SourceThread, Wires};
@@ -88,6 +89,8 @@ struct Pipeline {
     frames_in: Putter<(u64, StereoFrame)>,
     views: Taker<SourceView>,
     notes: Receiver<Note>,
+    robot: RobotThread,
+    news: Taker<News>,
     rectify: StageThread<RectifyInput, RectifyOutput>,
     corners: StageThread<CornersInput, Look>,
     probe: StageThread<ProbeInput, ProbeOutput>,
@@ -126,7 +129,7 @@ impl<'a> Hub<'a> {
             journal,
             started: Instant::now(),
             jobs: BTreeMap::new(),
-            pipeline: Pipeline::start(&bell)?,
+            pipeline: Pipeline::start(&bell, &data_dir, shared)?,
             bell,
             rung,
             published: Instant::now(),
@@ -134,6 +137,9 @@ impl<'a> Hub<'a> {
         };
         if let Some(spec) = settings.source {
             hub.apply(SourceCommand::Open(spec).into());
+        }
+        if let Some(scenario) = settings.twin {
+            hub.apply(RobotCommand::ConnectTwin { scenario }.into());
         }
         Ok(hub)
     }
@@ -196,7 +202,12 @@ impl<'a> Hub<'a> {
         for action in self.state.take_actions() {
             self.changed = true;
             match action {
-                Action::Robot(_control) => {}
+                Action::Robot(control) => {
+                    if !self.pipeline.robot.control(control) {
+                        let text = "The robot's side does not keep up; wait until it is connected.";
+                        self.state.notify(NoticeLevel::Warning, text);
+                    }
+                }
                 Action::Source(control) => {
                     if !self.pipeline.source.control(control) {
                         let text = "The source does not answer yet; wait until it is open.";
@@ -268,11 +279,17 @@ impl<'a> Hub<'a> {
 }
 
 impl Pipeline {
-    fn start(bell: &Bell) -> std::io::Result<Self> {
+    fn start(bell: &Bell, data_dir: &Path, shared: &Shared) -> std::io::Result<Self> {
         let (frames_in, frames) = newest_value_slot();
         let (views_in, views) = newest_value_slot();
         let (notes_in, notes) = crossbeam_channel::bounded(NOTES_WAITING);
-        let wires = Wires { frames: frames_in.clone(), views: views_in, notes: notes_in, bell: bell.clone() };
+        let wires =
+            Wires { frames: frames_in.clone(), views: views_in, notes: notes_in.clone(), bell: bell.clone() };
+        let (news_in, news) = newest_value_slot();
+        let eyes = TwinEyesPlug::default();
+        let worker =
+            Worker::new(default_rig(), data_dir, shared.switches.clone(), TwinDesk::new(eyes.clone()));
+        let robot_wires = RobotWires { news: news_in, notes: notes_in, bell: bell.clone() };
         let rectify = || {
             let mut stage = RectifyStage::default();
             move |input| stage.process(input)
@@ -286,7 +303,9 @@ impl Pipeline {
             move |input| stage.process(input)
         };
         Ok(Self {
-            source: SourceThread::start(Player::default(), wires)?,
+            source: SourceThread::start(Player::with_opener(eyes.opener()), wires)?,
+            robot: RobotThread::start(worker, robot_wires)?,
+            news,
             frames,
             frames_in,
             views,
@@ -307,6 +326,10 @@ impl Pipeline {
         }
         for note in self.notes.try_iter() {
             state.source_note(note);
+            any = true;
+        }
+        if let Some(news) = self.news.try_take() {
+            state.robot_changed(news);
             any = true;
         }
         if let Some((opened, frame)) = self.frames.try_take() {

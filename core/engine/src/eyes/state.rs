@@ -132,6 +132,11 @@ impl EyesState {
         }
     }
 
+    /// Where calibrations are kept.
+    pub fn store(&self) -> &Store {
+        &self.store
+    }
+
     /// The board looked for.
     pub fn board(&self) -> &Chessboard {
         self.collection.board()

@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use plumbline_hardware::{ImageProblem, SourceError};
+use plumbline_model::robot::RigError;
+use plumbline_model::robot::ik::{IkError, SolverError};
 use plumbline_model::{AimError, BoardError, Cancelled, FormatError};
 use plumbline_vision::calibrate::SolveError;
 use plumbline_vision::disparity::DisparityError;
@@ -71,9 +73,7 @@ pub enum OfflineError {
         calibrated: String,
     },
     /// A table cannot be read.
-    #[error(
-        "{file}, line {line}: {reason}. The file needs the header u_px,v_px and one pixel of the raw left image per line, for example 321.5,240"
-    )]
+    #[error("{file}, line {line}: {reason}. The file needs {needs}")]
     Table {
         /// The file.
         file: PathBuf,
@@ -81,6 +81,27 @@ pub enum OfflineError {
         line: usize,
         /// What is wrong.
         reason: String,
+        /// What the file needs, with an example.
+        needs: &'static str,
+    },
+    /// The robot is not known, or its file cannot be used.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// The tip is not known, or cannot be solved.
+    #[error(transparent)]
+    Tip(#[from] SolverError),
+    /// The inverse kinematics cannot be asked so.
+    #[error(transparent)]
+    Kinematics(#[from] IkError),
+    /// The table asks for a part of an orientation.
+    #[error(
+        "{file} has the columns {given} of an orientation: give all of roll_rad, pitch_rad and yaw_rad for a whole pose, yaw_rad alone for a heading, or none of them"
+    )]
+    HalfAnOrientation {
+        /// The file.
+        file: PathBuf,
+        /// The columns that are there.
+        given: String,
     },
     /// Left and right image of a pair differ in size.
     #[error("the left image is {left} px and the right one {right} px: give the two images of one pair")]

@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use super::OfflineError;
 use super::pairs::check_sizes;
+use super::table::Table;
 use crate::text::sentence;
 
 /// What to locate.
@@ -98,35 +99,9 @@ pub(super) fn read_image(path: &Path, notes: &mut Vec<String>) -> Result<RgbImag
 
 /// Reads pixels from a table with the header `u_px,v_px`; other columns are ignored.
 fn read_points(file: &Path) -> Result<Vec<Pixel<Raw>>, OfflineError> {
-    let text = std::fs::read_to_string(file).map_err(OfflineError::io(file))?;
-    let bad = |line: usize, reason: String| OfflineError::Table { file: file.to_owned(), line, reason };
-    // Spreadsheets put a byte-order mark first.
-    let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
-    let header: Vec<&str> = match lines.next() {
-        Some((_, header)) => header.split(',').map(str::trim).collect(),
-        None => return Err(bad(1, "the file is empty".to_owned())),
-    };
-    let column = |name: &str| {
-        header.iter().position(|column| *column == name).ok_or_else(|| {
-            bad(1, format!("there is no column {name} in the header \"{}\"", header.join(",")))
-        })
-    };
-    let (u, v) = (column("u_px")?, column("v_px")?);
-    let mut pixels = Vec::new();
-    for (index, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
-        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
-        if cells.len() != header.len() {
-            let reason = format!("{} cells instead of {}", cells.len(), header.len());
-            return Err(bad(index + 1, reason));
-        }
-        let number = |column: usize| {
-            cells[column].parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(|| {
-                bad(index + 1, format!("\"{}\" in column {} is no number", cells[column], header[column]))
-            })
-        };
-        pixels.push(Pixel::new(number(u)?, number(v)?));
-    }
-    Ok(pixels)
+    let needs = "the header u_px,v_px and one pixel of the raw left image per line, for example 321.5,240";
+    let table = Table::read(file, &["u_px", "v_px"], &[], needs)?;
+    Ok(table.rows().iter().map(|row| Pixel::new(row[0], row[1])).collect())
 }
 
 #[cfg(test)]

@@ -1,0 +1,242 @@
+//! What was seen, what was solved, what is in use.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::{Chessboard, PairObservation, StereoCameras};
+use plumbline_vision::mount::{
+    HeadView, MountCalibration, PlannedTarget, Target, place_of_board, plan_head_views,
+};
+
+use super::tour::{Tour, Wish};
+use super::work::{MountResult, MountWork};
+use crate::command::{JobId, MountCommand};
+use crate::context::{Action, Context};
+use crate::eyes::Look;
+use crate::notice::NoticeLevel;
+use crate::robot::RobotControl;
+use crate::text::sentence;
+use crate::view::RobotView;
+
+/// Head poses that are planned.
+const POSES: usize = 14;
+/// At least so many views are asked for.
+pub(super) const LEAST_VIEWS: usize = 6;
+
+/// What the workflow can see of the rest.
+pub struct Surroundings<'a> {
+    /// The robot as its description has it.
+    pub rig: &'a Arc<Rig>,
+    /// The robot now.
+    pub robot: &'a RobotView,
+    /// The calibration of the eyes; `None` before one was accepted.
+    pub cameras: Option<StereoCameras>,
+    /// The board in use.
+    pub board: Chessboard,
+}
+
+/// The whole workflow, of one world.
+#[derive(Clone, Debug)]
+pub struct MountState {
+    file: PathBuf,
+    pub(super) views: Vec<HeadView>,
+    pub(super) board: Option<Chessboard>,
+    pub(super) planned: Vec<(f64, f64)>,
+    pub(super) tour: Option<Tour>,
+    pub(super) proposal: Option<Arc<MountCalibration>>,
+    pub(super) in_use: Option<Arc<MountCalibration>>,
+    pub(super) solving: Option<JobId>,
+    last_look: Option<Look>,
+    counted: usize,
+}
+
+impl MountState {
+    /// Nothing seen. The mount in use is kept in a file of `folder`.
+    pub fn new(folder: &Path) -> Self {
+        Self {
+            file: folder.join("mount.toml"),
+            views: Vec::new(),
+            board: None,
+            planned: Vec::new(),
+            tour: None,
+            proposal: None,
+            in_use: None,
+            solving: None,
+            last_look: None,
+            counted: 0,
+        }
+    }
+
+    /// Reads what was accepted before.
+    pub fn restore(&self, rig: &Arc<Rig>) -> MountWork {
+        MountWork::Restore { file: self.file.clone(), rig: rig.clone() }
+    }
+
+    /// The mount in use; `None`: nominal.
+    pub fn in_use(&self) -> Option<&Arc<MountCalibration>> {
+        self.in_use.as_ref()
+    }
+
+    /// Whether the board has to be looked for.
+    pub fn wants_corners(&self) -> bool {
+        self.tour.is_some()
+    }
+
+    /// Applies a command of the operator.
+    pub fn apply(&mut self, command: MountCommand, around: &Surroundings<'_>, context: &mut Context<'_>) {
+        match command {
+            MountCommand::Plan => match self.plan(around) {
+                Ok(planned) => self.planned = planned,
+                Err(reason) => context.refuse(reason),
+            },
+            MountCommand::Tour => {
+                if self.planned.is_empty() {
+                    return context.refuse("No head poses are planned yet. Plan them first.");
+                }
+                self.tour = Some(Tour::new(&self.planned));
+                self.step(around, Instant::now(), context);
+            }
+            MountCommand::Capture => match self.last_look.clone() {
+                Some(look) => {
+                    if let Err(reason) = self.take(&look, around) {
+                        context.refuse(reason);
+                    }
+                }
+                None => {
+                    context.refuse("No image has been searched for the board yet. Wait for the next one.")
+                }
+            },
+            MountCommand::Delete { view } => self.views.retain(|known| known.name != view),
+            MountCommand::DeleteAll => {
+                self.views.clear();
+                (self.tour, self.proposal) = (None, None);
+            }
+            MountCommand::Solve => self.solve(around, context),
+            MountCommand::Accept => match self.proposal.clone() {
+                Some(mount) => {
+                    context.start(MountWork::Save { file: self.file.clone(), mount });
+                }
+                None => context.refuse("Nothing waits to be accepted. Solve first."),
+            },
+            MountCommand::Discard => self.proposal = None,
+            MountCommand::UseNominal => {
+                context.start(MountWork::Forget { file: self.file.clone() });
+            }
+        }
+    }
+
+    fn plan(&self, around: &Surroundings<'_>) -> Result<Vec<(f64, f64)>, String> {
+        let (cameras, posture) = ready(around)?;
+        let view = self.last_look.as_ref().and_then(|look| head_view(look, "now".to_owned(), &posture));
+        let view = view
+            .ok_or("Neither eye sees the board. Lay it flat on the table where both eyes see all of it.")?;
+        let words = |error: plumbline_vision::mount::MountError| sentence(&error.to_string());
+        let robot_from_board = place_of_board(around.rig, &cameras, &view, &around.board).map_err(words)?;
+        let target = PlannedTarget::board(&around.board, &robot_from_board);
+        plan_head_views(around.rig, &cameras, &posture, &target, POSES).map_err(words)
+    }
+
+    fn solve(&mut self, around: &Surroundings<'_>, context: &mut Context<'_>) {
+        if self.solving.is_some() {
+            return context.refuse("The mount is being solved already.");
+        }
+        let cameras = match ready(around) {
+            Ok((cameras, _)) => cameras,
+            Err(reason) => return context.refuse(reason),
+        };
+        let board = self.board.unwrap_or(around.board);
+        let work = MountWork::Solve {
+            rig: around.rig.clone(),
+            cameras,
+            views: self.views.clone(),
+            target: Target::UnknownBoard(board),
+        };
+        self.solving = Some(context.start(work));
+    }
+
+    /// The chessboard search has looked at an image.
+    pub fn look(&mut self, look: Look, around: &Surroundings<'_>, context: &mut Context<'_>) {
+        let captured_at = look.frame.stamp.captured_at;
+        if self.tour.as_ref().is_some_and(|tour| tour.accepts(captured_at)) {
+            if let Err(reason) = self.take(&look, around) {
+                context.notices.add(NoticeLevel::Info, format!("One head pose was passed over: {reason}"));
+            }
+            if let Some(tour) = &mut self.tour {
+                tour.advance();
+            }
+        }
+        self.last_look = Some(look);
+        self.step(around, Instant::now(), context);
+    }
+
+    /// The robot has something new.
+    pub fn step(&mut self, around: &Surroundings<'_>, now: Instant, context: &mut Context<'_>) {
+        let Some(tour) = &mut self.tour else { return };
+        match tour.step(around.robot, around.rig, now) {
+            Wish::Nothing => {}
+            Wish::Turn(pan_rad, tilt_rad) => {
+                context.actions.push(Action::Robot(RobotControl::TurnHead { pan_rad, tilt_rad }));
+            }
+            Wish::Finished => {
+                (self.tour, self.planned) = (None, Vec::new());
+                let text = format!("The head was in all planned poses: {} views.", self.views.len());
+                context.notices.add(NoticeLevel::Success, text);
+            }
+            Wish::GiveUp(reason) => {
+                self.tour = None;
+                context.refuse(reason);
+            }
+        }
+    }
+
+    fn take(&mut self, look: &Look, around: &Surroundings<'_>) -> Result<(), String> {
+        let (_, posture) = ready(around)?;
+        if self.board.is_some_and(|board| board != look.board) && !self.views.is_empty() {
+            return Err("Another board was used for the views so far. Remove them first.".to_owned());
+        }
+        let name = format!("view {:02}", self.counted + 1);
+        let view = head_view(look, name, &posture).ok_or("Neither eye sees the board.")?;
+        self.board = Some(look.board);
+        self.counted += 1;
+        self.views.push(view);
+        Ok(())
+    }
+
+    /// Work has ended with a result.
+    pub fn work_done(&mut self, id: JobId, result: MountResult) {
+        self.work_ended(id);
+        match result {
+            MountResult::Solved(mount) => self.proposal = Some(mount),
+            MountResult::Saved(mount) => {
+                self.proposal = self.proposal.take().filter(|proposal| !Arc::ptr_eq(proposal, &mount));
+                self.in_use = Some(mount);
+            }
+            MountResult::Restored(mount) => self.in_use = mount,
+            MountResult::Forgotten => self.in_use = None,
+        }
+    }
+
+    /// Work has ended without a result.
+    pub fn work_ended(&mut self, id: JobId) {
+        self.solving = self.solving.filter(|solving| *solving != id);
+    }
+}
+
+/// The eyes' calibration and the present posture, or why there is none.
+fn ready(around: &Surroundings<'_>) -> Result<(StereoCameras, Posture), String> {
+    let cameras = around.cameras.ok_or("The eyes are not calibrated yet. Do step 1, Eyes, first.")?;
+    let posture = around.robot.measured.clone();
+    let posture =
+        posture.ok_or("The head's angles are not known. Connect to the robot or the twin first.")?;
+    Ok((cameras, posture))
+}
+
+fn head_view(look: &Look, name: String, posture: &Posture) -> Option<HeadView> {
+    if look.left.is_none() && look.right.is_none() {
+        return None;
+    }
+    let sighting = PairObservation { name, left: look.left.clone(), right: look.right.clone() };
+    Some(HeadView::new(sighting, posture.clone()))
+}

@@ -1,0 +1,127 @@
+//! What takes time: solving, and reading and writing the file of the mount in use.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use plumbline_model::robot::Rig;
+use plumbline_model::{Cancelled, JobContext, StereoCameras};
+use plumbline_vision::mount::{
+    HeadView, MountCalibration, MountError, MountOptions, Target, calibrate_mount,
+};
+
+use crate::jobs::JobError;
+use crate::text::sentence;
+
+/// Work of this workflow.
+#[derive(Clone, Debug)]
+pub enum MountWork {
+    /// Solves the mount.
+    Solve {
+        /// The robot, its mount nominal.
+        rig: Arc<Rig>,
+        /// The eyes' calibration.
+        cameras: StereoCameras,
+        /// What was seen.
+        views: Vec<HeadView>,
+        /// What was looked at.
+        target: Target,
+    },
+    /// Writes the accepted mount.
+    Save {
+        /// Where to.
+        file: PathBuf,
+        /// What.
+        mount: Arc<MountCalibration>,
+    },
+    /// Reads the mount that was accepted last.
+    Restore {
+        /// Where from.
+        file: PathBuf,
+        /// The robot that it must be of.
+        rig: Arc<Rig>,
+    },
+    /// Removes the file, so that the nominal mount is used again.
+    Forget {
+        /// Which.
+        file: PathBuf,
+    },
+}
+
+/// What came out.
+#[derive(Clone, Debug)]
+pub enum MountResult {
+    /// A proposal.
+    Solved(Arc<MountCalibration>),
+    /// It is in use from now on.
+    Saved(Arc<MountCalibration>),
+    /// What was in use, if anything was.
+    Restored(Option<Arc<MountCalibration>>),
+    /// The nominal mount is in use.
+    Forgotten,
+}
+
+impl MountWork {
+    /// What it does, for people.
+    pub fn title(&self) -> String {
+        match self {
+            Self::Solve { views, .. } => format!("Solve the mount from {} views", views.len()),
+            Self::Save { .. } => "Use this mount".to_owned(),
+            Self::Restore { .. } => "Read the mount in use".to_owned(),
+            Self::Forget { .. } => "Go back to the nominal mount".to_owned(),
+        }
+    }
+
+    /// Whether it is over so soon that it needs no line when it is done.
+    pub fn is_quiet(&self) -> bool {
+        matches!(self, Self::Restore { .. })
+    }
+
+    /// Does it, on the thread of the caller.
+    pub fn run(self, context: &dyn JobContext) -> Result<MountResult, JobError> {
+        match self {
+            Self::Solve { rig, cameras, views, target } => {
+                let solved =
+                    calibrate_mount(&rig, &cameras, &views, &target, &MountOptions::default(), context);
+                match solved {
+                    Ok(mount) => Ok(MountResult::Solved(Arc::new(mount))),
+                    Err(MountError::Cancelled(_)) => Err(JobError::Cancelled(Cancelled)),
+                    Err(error) => Err(JobError::failed(sentence(&error.to_string()))),
+                }
+            }
+            Self::Save { file, mount } => {
+                if let Some(folder) = file.parent() {
+                    std::fs::create_dir_all(folder).map_err(JobError::failed)?;
+                }
+                mount.write(&file).map_err(|error| JobError::failed(sentence(&error.to_string())))?;
+                Ok(MountResult::Saved(mount))
+            }
+            Self::Restore { file, .. } if !file.exists() => Ok(MountResult::Restored(None)),
+            Self::Restore { file, rig } => {
+                let mount = MountCalibration::read(&file, &rig)
+                    .map_err(|error| JobError::failed(sentence(&error.to_string())))?;
+                Ok(MountResult::Restored(Some(Arc::new(mount))))
+            }
+            Self::Forget { file } => match std::fs::remove_file(&file) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(JobError::failed(format!(
+                    "{} cannot be removed: {error}. Remove it by hand.",
+                    file.display()
+                ))),
+                _ => Ok(MountResult::Forgotten),
+            },
+        }
+    }
+}
+
+impl MountResult {
+    /// The result in a sentence.
+    pub fn summary(&self) -> String {
+        match self {
+            Self::Solved(mount) => {
+                format!("The mount is solved from {} views: {:.2} px.", mount.per_view.len(), mount.rms_px)
+            }
+            Self::Saved(_) => "The calibrated mount is in use.".to_owned(),
+            Self::Restored(_) => "The mount in use was read.".to_owned(),
+            Self::Forgotten => "The nominal mount is in use.".to_owned(),
+        }
+    }
+}

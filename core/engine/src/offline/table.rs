@@ -1,0 +1,65 @@
+//! Tables of numbers (CSV) that verbs are given.
+
+use std::path::Path;
+
+use super::OfflineError;
+
+/// A table whose cells in the columns asked for are finite numbers.
+#[derive(Debug)]
+pub(super) struct Table {
+    columns: Vec<&'static str>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Table {
+    /// Reads a table with a header line. Columns are found by name, in any order; `needed` must be
+    /// there, `optional` may be, all others are ignored. `needs` tells people what the file needs.
+    pub fn read(
+        file: &Path,
+        needed: &[&'static str],
+        optional: &[&'static str],
+        needs: &'static str,
+    ) -> Result<Self, OfflineError> {
+        let text = std::fs::read_to_string(file).map_err(OfflineError::io(file))?;
+        let bad =
+            |line: usize, reason: String| OfflineError::Table { file: file.to_owned(), line, reason, needs };
+        // Spreadsheets put a byte-order mark first.
+        let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
+        let header: Vec<&str> = match lines.next() {
+            Some((_, header)) => header.split(',').map(str::trim).collect(),
+            None => return Err(bad(1, "the file is empty".to_owned())),
+        };
+        let place = |name: &str| header.iter().position(|column| *column == name);
+        if let Some(missing) = needed.iter().find(|name| place(name).is_none()) {
+            let reason = format!("there is no column {missing} in the header \"{}\"", header.join(","));
+            return Err(bad(1, reason));
+        }
+        let (columns, places): (Vec<&'static str>, Vec<usize>) =
+            needed.iter().chain(optional).filter_map(|name| Some((*name, place(name)?))).unzip();
+        let mut rows = Vec::new();
+        for (index, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
+            let cells: Vec<&str> = line.split(',').map(str::trim).collect();
+            if cells.len() != header.len() {
+                let reason = format!("{} cells instead of {}", cells.len(), header.len());
+                return Err(bad(index + 1, reason));
+            }
+            let number = |place: &usize| {
+                cells[*place].parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(|| {
+                    bad(index + 1, format!("\"{}\" in column {} is no number", cells[*place], header[*place]))
+                })
+            };
+            rows.push(places.iter().map(number).collect::<Result<_, _>>()?);
+        }
+        Ok(Self { columns, rows })
+    }
+
+    /// Columns that are there: those needed, then the optional ones found.
+    pub fn columns(&self) -> &[&'static str] {
+        &self.columns
+    }
+
+    /// Rows in the order of the file, cells in the order of [`Self::columns`].
+    pub fn rows(&self) -> &[Vec<f64>] {
+        &self.rows
+    }
+}

@@ -1,0 +1,97 @@
+//! Opening the servo bus of the robot or of the twin: to its callers both are the same.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use plumbline_hardware::dynamixel::{BusCounts, BusScan, FaultKind, latency_hint, list_ports, open_port};
+use plumbline_hardware::joints::{ArmDriver, ArmOptions, JointState, Move, MoveId, Refusal, Setpoint};
+use plumbline_model::robot::{JointIndex, Rig};
+
+use super::Switches;
+use super::arm::{Arm, Census};
+use super::path::Paths;
+use crate::text::sentence;
+use crate::view::PortView;
+
+/// An open arm.
+pub type Connected = Box<dyn Arm>;
+
+/// The arm at a port and what was said when it was opened.
+struct DrivenArm {
+    driver: ArmDriver,
+    census: Census,
+}
+
+/// Opens the bus at a port and reads all joints. Nothing moves and torque stays as it is.
+pub fn open(path: &Path, rig: &Arc<Rig>, paths: &Paths, switches: &Switches) -> Result<Connected, String> {
+    let path = path.to_string_lossy();
+    let words = |error: plumbline_hardware::dynamixel::BusError| sentence(&error.to_string());
+    let port = open_port(&path, rig.bus.baud).map_err(words)?;
+    let options = ArmOptions {
+        stop: switches.stop.clone(),
+        heartbeat: Some(switches.heartbeat.clone()),
+        guards: vec![Arc::new(paths.clone())],
+        ..ArmOptions::default()
+    };
+    let driver = ArmDriver::connect(port, rig.clone(), options).map_err(words)?;
+    let census = census(driver.scan(), latency_hint(&path));
+    Ok(Box::new(DrivenArm { driver, census }))
+}
+
+fn census(scan: &BusScan, latency: Option<String>) -> Census {
+    let model = |found: &plumbline_hardware::dynamixel::FoundServo| {
+        found.model().map_or_else(|| format!("{found}"), str::to_owned)
+    };
+    Census {
+        missing: scan.missing.iter().map(|servo| servo.id).collect(),
+        unexpected: scan.unexpected.iter().map(|found| (found.id, model(found))).collect(),
+        warnings: scan.problems().iter().chain(&latency).map(|problem| sentence(problem)).collect(),
+    }
+}
+
+impl Arm for DrivenArm {
+    fn state(&self) -> Option<Arc<JointState>> {
+        Some(self.driver.state())
+    }
+
+    fn begin(&self, motion: Move) -> Result<MoveId, Refusal> {
+        // Said before it is queued: which joint, which limit.
+        self.driver.check(&motion)?;
+        self.driver.start_move(motion)
+    }
+
+    fn follow(&self, setpoint: Setpoint) -> Result<(), Refusal> {
+        self.driver.follow(setpoint);
+        Ok(())
+    }
+
+    fn hold(&self) -> Result<(), Refusal> {
+        self.driver.end_following();
+        self.driver.hold()
+    }
+
+    fn torque(&self, joints: &[JointIndex], on: bool) -> Result<(), Refusal> {
+        if on { self.driver.engage(joints) } else { self.driver.relax(joints) }
+    }
+
+    fn census(&self) -> Census {
+        self.census.clone()
+    }
+}
+
+/// Serial ports of this machine.
+pub fn ports() -> Result<Arc<[PortView]>, String> {
+    let ports = list_ports().map_err(|error| sentence(&error.to_string()))?;
+    Ok(ports.into_iter().map(|port| PortView { what: port.description, path: port.path }).collect())
+}
+
+/// What went wrong on the bus, for people, with how often.
+pub fn faults(counts: &BusCounts) -> Vec<(String, u64)> {
+    let kind = |kind: FaultKind| (kind.to_string(), counts.faults.of(kind));
+    FaultKind::ALL.into_iter().map(kind).filter(|(_, count)| *count > 0).collect()
+}
+
+/// Answers that were asked for once more.
+pub fn retries(counts: &BusCounts) -> u64 {
+    counts.retries
+}

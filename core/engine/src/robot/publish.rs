@@ -1,0 +1,177 @@
+//! What the window shows of the robot.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use plumbline_hardware::joints::{HoldReason, JointReading, JointState, Motion};
+use plumbline_model::robot::{Posture, Servo};
+
+use super::worker::{News, Worker};
+use crate::text::sentence;
+use crate::view::{BusView, JointView, MotionState, RobotView, TipPlace};
+
+impl Worker {
+    /// What is new since the last call, if anything.
+    pub fn take_news(&mut self) -> Option<News> {
+        let robot = self.robot_view();
+        let twin = self.desk.view();
+        if let Some(told) = &self.told
+            && *told.twin == twin
+            && told.robot.is_same(&robot)
+            && told.twins_started == self.twins_started
+        {
+            return None;
+        }
+        let news = News { robot: Arc::new(robot), twin: Arc::new(twin), twins_started: self.twins_started };
+        self.told = Some(news.clone());
+        Some(news)
+    }
+
+    fn robot_view(&self) -> RobotView {
+        let state = self.arm.as_ref().and_then(|arm| arm.state());
+        let state = state.as_deref();
+        let measured = state.and_then(|state| state.measured.clone());
+        RobotView {
+            rig: Some(self.rig.clone()),
+            connection: self.connection.clone(),
+            motion: state.map_or(MotionState::Unknown, |state| self.motion(state)),
+            stopped: self.switches.stop.is_pressed(),
+            joints: self.joints(state, measured.as_ref()),
+            commanded: state.and_then(|state| state.commanded.clone()),
+            tip: self.tip.clone(),
+            tip_place: measured.as_ref().map(|posture| self.tip_place(posture)),
+            measured,
+            trail: self.trail.iter().map(|(_, place)| *place).collect(),
+            preview: self.preview.as_ref().map(|(_, preview)| preview.clone()),
+            refusal: self.refusal.clone(),
+            poses: self.poses.all(&self.rig).into(),
+            bus: self.bus(state),
+            ports: self.ports.clone(),
+            speed: self.speed,
+        }
+    }
+
+    fn motion(&self, state: &JointState) -> MotionState {
+        match &state.motion {
+            Motion::Limp => MotionState::Limp,
+            // These are how it should be; anything else is worth a word.
+            Motion::Holding(HoldReason::Connected | HoldReason::Arrived | HoldReason::JogEnded) => {
+                MotionState::Holding { why: None }
+            }
+            Motion::Holding(reason) => MotionState::Holding { why: Some(sentence(&reason.to_string())) },
+            Motion::Moving { fraction, remaining, .. } => MotionState::Moving {
+                what: self.running.as_ref().map_or_else(String::new, |running| running.title.clone()),
+                fraction: Some(*fraction),
+                remaining: Some(*remaining),
+            },
+            Motion::Following => {
+                MotionState::Moving { what: "jogging".to_owned(), fraction: None, remaining: None }
+            }
+        }
+    }
+
+    fn joints(&self, state: Option<&JointState>, measured: Option<&Posture>) -> Arc<[JointView]> {
+        let row =
+            |(i, servo): (usize, &Servo)| self.joint(i, servo, state.and_then(|s| s.joints.get(i)), measured);
+        self.rig.servos.iter().enumerate().map(row).collect()
+    }
+
+    fn joint(
+        &self,
+        place: usize,
+        servo: &Servo,
+        reading: Option<&JointReading>,
+        measured: Option<&Posture>,
+    ) -> JointView {
+        let limits = self.rig.limits(servo.joint);
+        JointView {
+            joint: servo.joint,
+            name: servo.joint_name.clone(),
+            title: servo.title.clone(),
+            servo: servo.id,
+            model: servo.model.clone(),
+            limits,
+            limits_now: measured.map_or(limits, |posture| self.rig.limits_in(servo.joint, posture)),
+            angle_rad: reading.and_then(|r| r.angle_rad),
+            goal_rad: reading.and_then(|r| r.goal_rad),
+            speed_rad_s: reading.and_then(|r| r.speed_rad_s),
+            load: reading.and_then(|r| r.load),
+            temperature_c: reading.and_then(|r| r.temperature_c),
+            voltage_v: reading.and_then(|r| r.voltage_v),
+            torque_on: reading.and_then(|r| r.torque_on),
+            age: reading.and_then(|r| r.age),
+            problem: reading.and_then(|r| r.problem.clone()),
+            history: self.histories.of(place),
+        }
+    }
+
+    fn tip_place(&self, posture: &Posture) -> TipPlace {
+        let place = self.chain.robot_from_tip_in(posture);
+        let x_axis = place.isometry.rotation * nalgebra::Vector3::x();
+        TipPlace {
+            point: plumbline_model::Point::from(nalgebra::Point3::from(place.translation_m())),
+            yaw_rad: x_axis.y.atan2(x_axis.x),
+        }
+    }
+
+    fn bus(&self, state: Option<&JointState>) -> BusView {
+        let census = self.arm.as_ref().map(|arm| arm.census()).unwrap_or_default();
+        let Some(state) = state else { return BusView::default() };
+        let counts = &state.bus.counts;
+        BusView {
+            cycles_per_s: state.bus.complete_per_s,
+            cycles: state.bus.complete_cycles,
+            faults: super::connect::faults(counts),
+            retries: super::connect::retries(counts),
+            missing: census.missing,
+            unexpected: census.unexpected,
+            warnings: census.warnings.into_iter().chain(state.warnings.iter().cloned()).collect(),
+        }
+    }
+}
+
+/// Smaller changes than these are not worth drawing the window again.
+const ANGLE_RAD: f64 = 2e-4;
+const RATE: f64 = 1.0;
+
+impl RobotView {
+    /// Whether nothing that can be seen has changed; ages and cycle counts do not count.
+    fn is_same(&self, other: &Self) -> bool {
+        let close = |a: Option<f64>, b: Option<f64>, by: f64| match (a, b) {
+            (Some(a), Some(b)) => (a - b).abs() < by,
+            (None, None) => true,
+            _ => false,
+        };
+        let same_joint = |a: &JointView, b: &JointView| {
+            close(a.angle_rad, b.angle_rad, ANGLE_RAD)
+                && close(a.goal_rad, b.goal_rad, ANGLE_RAD)
+                && close(a.load, b.load, 0.02)
+                && close(a.temperature_c, b.temperature_c, 0.5)
+                && a.torque_on == b.torque_on
+                && a.problem == b.problem
+                && Arc::ptr_eq(&a.history, &b.history)
+                && stale(a.age) == stale(b.age)
+        };
+        self.connection == other.connection
+            && self.motion == other.motion
+            && self.stopped == other.stopped
+            && self.preview == other.preview
+            && self.refusal == other.refusal
+            && self.poses == other.poses
+            && self.ports == other.ports
+            && self.tip == other.tip
+            && (self.speed - other.speed).abs() < f64::EPSILON
+            && self.trail.len() == other.trail.len()
+            && close(self.bus.cycles_per_s, other.bus.cycles_per_s, RATE)
+            && self.bus.faults == other.bus.faults
+            && self.bus.warnings == other.bus.warnings
+            && self.bus.missing == other.bus.missing
+            && self.joints.len() == other.joints.len()
+            && self.joints.iter().zip(other.joints.iter()).all(|(a, b)| same_joint(a, b))
+    }
+}
+
+/// Whether an angle is so old that the window has to say so.
+fn stale(age: Option<Duration>) -> bool {
+    age.is_some_and(|age| age > Duration::from_secs(1))
+}

@@ -1,0 +1,251 @@
+//! The robot's side driven with a made-up arm: nothing moves that was not asked for.
+
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use plumbline_hardware::joints::{
+    BusStatistics, HoldReason, JointReading, JointState, Motion, Move, MoveId, Refusal, Setpoint,
+};
+use plumbline_model::Stamp;
+use plumbline_model::robot::{JointIndex, Posture, Rig};
+
+use super::arm::{Arm, Census};
+use super::{RobotControl, Switches, TwinDesk, TwinEyesPlug, Worker};
+use crate::command::{Destination, JogRates, RobotCommand, TwinCommand};
+use crate::view::Connection;
+
+/// What reached the arm.
+#[derive(Clone, Debug, PartialEq)]
+enum Asked {
+    Move(Move),
+    Follow(Setpoint),
+    Hold,
+    Torque(usize, bool),
+}
+
+#[derive(Default)]
+struct Record {
+    asked: Vec<Asked>,
+    gone: Option<String>,
+}
+
+struct FakeArm {
+    record: Arc<Mutex<Record>>,
+    posture: Posture,
+}
+
+impl Arm for FakeArm {
+    fn state(&self) -> Option<Arc<JointState>> {
+        Some(Arc::new(JointState {
+            stamp: Stamp { seq: 1, captured_at: Instant::now() },
+            joints: Arc::<[JointReading]>::from([]),
+            motion: Motion::Holding(HoldReason::Connected),
+            stopped: false,
+            measured: Some(self.posture.clone()),
+            commanded: Some(self.posture.clone()),
+            bus: BusStatistics::default(),
+            outcomes: Arc::from([]),
+            refusal: None,
+            warnings: Arc::from([]),
+            gone: self.record.lock().expect("no test panics in here").gone.clone(),
+        }))
+    }
+
+    fn begin(&self, motion: Move) -> Result<MoveId, Refusal> {
+        self.note(Asked::Move(motion));
+        Ok(MoveId(1))
+    }
+
+    fn follow(&self, setpoint: Setpoint) -> Result<(), Refusal> {
+        self.note(Asked::Follow(setpoint));
+        Ok(())
+    }
+
+    fn hold(&self) -> Result<(), Refusal> {
+        self.note(Asked::Hold);
+        Ok(())
+    }
+
+    fn torque(&self, joints: &[JointIndex], on: bool) -> Result<(), Refusal> {
+        self.note(Asked::Torque(joints.len(), on));
+        Ok(())
+    }
+
+    fn census(&self) -> Census {
+        Census::default()
+    }
+}
+
+impl FakeArm {
+    fn note(&self, asked: Asked) {
+        self.record.lock().expect("no test panics in here").asked.push(asked);
+    }
+}
+
+struct Bench {
+    worker: Worker,
+    record: Arc<Mutex<Record>>,
+    rig: Arc<Rig>,
+    _folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let rig = Arc::new(Rig::built_in("nico").expect("the rig that comes with the program"));
+        let desk = TwinDesk::new(TwinEyesPlug::default());
+        let worker = Worker::new(rig.clone(), folder.path(), Switches::default(), desk);
+        Self { worker, record: Arc::default(), rig, _folder: folder }
+    }
+
+    fn connected() -> Self {
+        let mut bench = Self::new();
+        let arm = FakeArm { record: bench.record.clone(), posture: bench.rig.home() };
+        bench.worker.arm = Some(Box::new(arm));
+        bench.worker.connection = Connection::Connected { to: "test".to_owned(), twin: false };
+        bench
+    }
+
+    fn send(&mut self, command: RobotCommand) {
+        self.worker.control(RobotControl::Robot(command));
+    }
+
+    fn asked(&self) -> Vec<Asked> {
+        self.record.lock().expect("no test panics in here").asked.clone()
+    }
+
+    fn refusal(&self) -> Option<String> {
+        self.worker.refusal.clone()
+    }
+
+    fn joint(&self, name: &str) -> JointIndex {
+        self.rig.description.find_joint(name).expect("a joint of NICO")
+    }
+}
+
+#[test]
+fn a_preview_moves_nothing_and_running_it_moves_what_it_showed() {
+    let mut bench = Bench::connected();
+    let elbow = bench.joint("r_elbow_y");
+    bench.send(RobotCommand::Preview(Destination::Joint { joint: elbow, angle_rad: 1.6 }));
+    assert_eq!(bench.asked(), vec![]);
+    let news = bench.worker.take_news().expect("there is a preview");
+    let preview = news.robot.preview.clone().expect("it is shown");
+    assert!((preview.end[elbow] - 1.6).abs() < 1e-12);
+    assert!(preview.path.is_ok(), "{:?}", preview.path);
+    assert!(preview.duration > Duration::from_millis(50));
+    bench.send(RobotCommand::RunPreview);
+    match &bench.asked()[..] {
+        [Asked::Move(motion)] => assert_eq!(motion.goals, vec![(elbow, 1.6)]),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn without_a_preview_or_a_connection_nothing_runs() {
+    let mut bench = Bench::connected();
+    bench.send(RobotCommand::RunPreview);
+    assert!(bench.refusal().is_some_and(|reason| reason.contains("No move is shown")));
+    assert_eq!(bench.asked(), vec![]);
+    let mut bench = Bench::new();
+    bench.send(RobotCommand::Preview(Destination::Pose { name: "home".to_owned() }));
+    assert!(bench.refusal().is_some_and(|reason| reason.contains("Connect")));
+}
+
+#[test]
+fn a_way_through_the_table_is_shown_as_refused_and_does_not_run() {
+    let mut bench = Bench::connected();
+    let joints = ["r_shoulder_y", "r_elbow_y", "r_arm_x"].map(|name| bench.joint(name));
+    let down = bench.rig.home().with(&joints, &[0.3, 3.1, 0.1]);
+    bench.send(RobotCommand::Preview(Destination::Posture(down)));
+    let news = bench.worker.take_news().expect("a preview");
+    let path = news.robot.preview.as_ref().expect("it is shown").path.clone();
+    assert!(path.expect_err("the table is in the way").contains("would run into"));
+    bench.send(RobotCommand::RunPreview);
+    assert_eq!(bench.asked(), vec![]);
+    assert!(bench.refusal().is_some_and(|reason| reason.contains("would run into")));
+}
+
+#[test]
+fn jogging_ends_by_itself_when_the_key_is_no_longer_heard_of() {
+    let mut bench = Bench::connected();
+    bench.send(RobotCommand::Jog(JogRates { velocity_m_s: [0.0, 0.0, 0.03], yaw_rad_s: 0.0 }));
+    assert!(matches!(bench.asked()[..], [Asked::Follow(_)]), "{:?}", bench.asked());
+    bench.worker.tick(Instant::now() + Duration::from_millis(50));
+    assert_eq!(bench.asked().len(), 2);
+    bench.worker.tick(Instant::now() + Duration::from_secs(1));
+    assert_eq!(bench.asked().last(), Some(&Asked::Hold));
+    let sent = bench.asked().len();
+    bench.worker.tick(Instant::now() + Duration::from_secs(2));
+    assert_eq!(bench.asked().len(), sent, "it stays ended");
+}
+
+#[test]
+fn while_stop_is_latched_nothing_is_jogged() {
+    let mut bench = Bench::connected();
+    bench.worker.switches.stop.press();
+    bench.send(RobotCommand::Jog(JogRates { velocity_m_s: [0.0, 0.0, 0.03], yaw_rad_s: 0.0 }));
+    assert_eq!(bench.asked(), vec![]);
+    bench.send(RobotCommand::ReleaseStop);
+    assert!(!bench.worker.switches.stop.is_pressed());
+    assert_eq!(bench.asked(), vec![], "releasing moves nothing");
+}
+
+#[test]
+fn numbers_that_are_none_are_refused() {
+    let mut bench = Bench::connected();
+    for command in [
+        RobotCommand::Jog(JogRates { velocity_m_s: [f64::NAN, 0.0, 0.0], yaw_rad_s: 0.0 }),
+        RobotCommand::Speed(f64::NAN),
+        RobotCommand::Speed(0.0),
+        RobotCommand::Preview(Destination::TipPosition { point_m: [f64::INFINITY, 0.0, 0.3] }),
+    ] {
+        bench.worker.refusal = None;
+        bench.send(command.clone());
+        assert!(bench.refusal().is_some(), "{command:?}");
+    }
+    assert_eq!(bench.asked(), vec![]);
+}
+
+#[test]
+fn a_port_that_vanishes_is_told_with_its_reason() {
+    let mut bench = Bench::connected();
+    bench.record.lock().expect("no test panics in here").gone = Some("the cable was pulled".to_owned());
+    bench.worker.tick(Instant::now());
+    let news = bench.worker.take_news().expect("news");
+    match &news.robot.connection {
+        Connection::Lost { reason, .. } => assert!(reason.contains("cable was pulled"), "{reason}"),
+        other => panic!("{other:?}"),
+    }
+    assert!(bench.worker.take_notes().iter().any(|(_, text)| text.contains("cable was pulled")));
+}
+
+#[test]
+fn a_pose_of_ones_own_can_be_saved_previewed_and_deleted() {
+    let mut bench = Bench::connected();
+    let elbow = bench.joint("r_elbow_y");
+    bench.send(RobotCommand::SavePose { title: "Mine".to_owned(), joints: vec![elbow] });
+    let poses = bench.worker.take_news().expect("news").robot.poses.clone();
+    let own = poses.iter().find(|pose| pose.own).expect("it was saved").clone();
+    assert_eq!(own.joints.len(), 1);
+    bench.send(RobotCommand::Preview(Destination::Pose { name: own.name.clone() }));
+    assert!(bench.worker.take_news().expect("news").robot.preview.is_some());
+    bench.send(RobotCommand::DeletePose { name: own.name });
+    assert!(bench.worker.take_news().expect("news").robot.poses.iter().all(|pose| !pose.own));
+}
+
+#[test]
+fn torque_is_switched_for_the_joints_named_or_for_all() {
+    let mut bench = Bench::connected();
+    let elbow = bench.joint("r_elbow_y");
+    bench.send(RobotCommand::Torque { joints: vec![elbow], on: false });
+    bench.send(RobotCommand::Torque { joints: vec![], on: true });
+    assert_eq!(bench.asked(), vec![Asked::Torque(1, false), Asked::Torque(22, true)]);
+}
+
+#[test]
+fn the_twin_is_not_commanded_while_it_does_not_run() {
+    let mut bench = Bench::new();
+    bench.worker.control(RobotControl::Twin(TwinCommand::HideBoard));
+    assert!(bench.refusal().is_some_and(|reason| reason.contains("not running")));
+}

@@ -1,0 +1,104 @@
+//! The thread that connects, previews, jogs and moves, so that nobody else has to wait.
+
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError};
+
+use super::RobotControl;
+use super::worker::{News, Worker};
+use crate::bell::Bell;
+use crate::notice::NoticeLevel;
+use crate::slot::Putter;
+
+/// Commands that may wait while something is being connected.
+const WAITING: usize = 256;
+/// While connected, it looks at the joints this often.
+const TICK: Duration = Duration::from_millis(33);
+/// Otherwise.
+const IDLE: Duration = Duration::from_millis(500);
+
+/// Where the thread puts what it has.
+pub struct Wires {
+    /// Newest state.
+    pub news: Putter<News>,
+    /// Messages for the operator.
+    pub notes: Sender<(NoticeLevel, String)>,
+    /// Rung when there is something.
+    pub bell: Bell,
+}
+
+/// The running thread; ends when dropped.
+pub struct RobotThread {
+    controls: Option<Sender<RobotControl>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl RobotThread {
+    /// Starts it.
+    pub fn start(worker: Worker, wires: Wires) -> std::io::Result<Self> {
+        let (controls, received) = crossbeam_channel::bounded(WAITING);
+        let thread =
+            std::thread::Builder::new().name("robot".into()).spawn(move || run(worker, &received, &wires))?;
+        Ok(Self { controls: Some(controls), thread: Some(thread) })
+    }
+
+    /// Hands a command over; `false` when too many wait.
+    pub fn control(&self, control: RobotControl) -> bool {
+        match self.controls.as_ref().map(|controls| controls.try_send(control)) {
+            None | Some(Ok(())) => true,
+            Some(Err(TrySendError::Full(_) | TrySendError::Disconnected(_))) => false,
+        }
+    }
+}
+
+impl Drop for RobotThread {
+    fn drop(&mut self) {
+        self.controls = None;
+        if let Some(thread) = self.thread.take() {
+            // A thread that panicked has been reported by the panic itself.
+            let _ = thread.join();
+        }
+    }
+}
+
+fn run(mut worker: Worker, controls: &Receiver<RobotControl>, wires: &Wires) {
+    tell(&mut worker, wires);
+    let mut next = Instant::now();
+    loop {
+        let period = if worker.is_awake() { TICK } else { IDLE };
+        match controls.recv_timeout(next.saturating_duration_since(Instant::now())) {
+            Ok(control) => {
+                // Connecting takes seconds; meanwhile the window says so.
+                if let Some(connecting) = worker.announce(&control) {
+                    put(connecting, wires);
+                }
+                worker.control(control);
+                tell(&mut worker, wires);
+                next = next.min(Instant::now() + period);
+            }
+            Err(RecvTimeoutError::Timeout) => {
+                worker.tick(Instant::now());
+                tell(&mut worker, wires);
+                next = Instant::now() + period;
+            }
+            Err(RecvTimeoutError::Disconnected) => return,
+        }
+    }
+}
+
+fn tell(worker: &mut Worker, wires: &Wires) {
+    for note in worker.take_notes() {
+        if let Err(TrySendError::Full((_, text))) = wires.notes.try_send(note) {
+            log::warn!("too many messages at once, not shown: {text}");
+        }
+    }
+    if let Some(news) = worker.take_news() {
+        put(news, wires);
+    }
+}
+
+fn put(news: News, wires: &Wires) {
+    wires.news.put(news);
+    wires.bell.ring();
+}

@@ -1,0 +1,503 @@
+//! What the robot's thread knows and does. Owns no thread and reads the clock only where told,
+//! so that tests drive it with a made-up arm.
+
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use plumbline_hardware::joints::{Motion, Move, MoveId, MoveOutcome, Pace, Refusal, Setpoint, SetpointKind};
+use plumbline_model::frame::{Point, Robot};
+use plumbline_model::robot::{Chain, JointIndex, Posture, Reach, Rig};
+
+use super::arm::Arm;
+use super::connect::{self, Connected};
+use super::destination::{Resolved, Surroundings, resolve};
+use super::history::Histories;
+use super::jog::joint_rates;
+use super::path::{Paths, duration};
+use super::poses::PoseLibrary;
+use super::twin_desk::TwinDesk;
+use super::{RobotControl, Switches};
+use crate::command::{Destination, JOG_DEADLINE_MS, JogRates, RobotCommand};
+use crate::notice::NoticeLevel;
+use crate::text::sentence;
+use crate::view::{Connection, PortView, Preview, RobotView, TwinView};
+
+/// The trail of the tip goes back this far.
+const TRAIL: Duration = Duration::from_secs(30);
+/// Places nearer than this to the last one are left out of the trail, m.
+const TRAIL_STEP_M: f64 = 0.002;
+
+/// What the state is told.
+#[derive(Clone, Debug)]
+pub struct News {
+    /// For the window.
+    pub robot: Arc<RobotView>,
+    /// For the window.
+    pub twin: Arc<TwinView>,
+    /// Counts twins started: a new one has new eyes.
+    pub twins_started: u64,
+}
+
+/// The running move.
+#[derive(Clone, Debug)]
+pub(super) struct Running {
+    pub id: MoveId,
+    pub title: String,
+}
+
+/// Jogging: what is asked, until when, and where that leads.
+#[derive(Clone, Debug)]
+struct Jog {
+    rates: JogRates,
+    until: Instant,
+    last: Instant,
+    goal: Posture,
+}
+
+/// What the robot's thread knows and does.
+pub struct Worker {
+    pub(super) rig: Arc<Rig>,
+    pub(super) switches: Switches,
+    pub(super) poses: PoseLibrary,
+    pub(super) connection: Connection,
+    pub(super) arm: Option<Box<dyn Arm>>,
+    pub(super) connected_at: Option<Instant>,
+    pub(super) desk: TwinDesk,
+    pub(super) tip: String,
+    pub(super) chain: Chain,
+    reach: Option<Reach>,
+    paths: Paths,
+    pub(super) preview: Option<(Resolved, Preview)>,
+    pub(super) running: Option<Running>,
+    jog: Option<Jog>,
+    pub(super) refusal: Option<String>,
+    seen_refusal: u64,
+    pub(super) speed: f64,
+    pub(super) ports: Option<Arc<[PortView]>>,
+    pub(super) histories: Histories,
+    pub(super) trail: VecDeque<(Instant, Point<Robot>)>,
+    pub(super) twins_started: u64,
+    notes: Vec<(NoticeLevel, String)>,
+    pub(super) told: Option<News>,
+}
+
+impl Worker {
+    /// Not connected.
+    pub fn new(rig: Arc<Rig>, data_dir: &std::path::Path, switches: Switches, desk: TwinDesk) -> Self {
+        let (poses, problem) = PoseLibrary::read(data_dir, &rig);
+        let tip =
+            rig.arms.first().and_then(|arm| arm.tips.first()).map(|tip| tip.link.clone()).unwrap_or_default();
+        let paths = Paths::new(&rig);
+        let chain = rig.chain(&tip).or_else(|_| rig.chain(&rig.description.links()[0].name));
+        Self {
+            switches,
+            poses,
+            connection: Connection::None,
+            arm: None,
+            connected_at: None,
+            desk,
+            chain: chain.expect("the base is a link, and a rig's tips are checked when it is read"),
+            reach: Reach::with_model(&rig, &tip, paths.model()).ok(),
+            tip,
+            paths,
+            preview: None,
+            running: None,
+            jog: None,
+            refusal: None,
+            seen_refusal: 0,
+            speed: 1.0,
+            ports: None,
+            histories: Histories::new(rig.servos.len()),
+            trail: VecDeque::new(),
+            twins_started: 0,
+            notes: problem.map(|text| (NoticeLevel::Warning, text)).into_iter().collect(),
+            told: None,
+            rig,
+        }
+    }
+
+    /// Whether there is something to look at often.
+    pub fn is_awake(&self) -> bool {
+        self.arm.is_some() || self.desk.is_running()
+    }
+
+    /// Messages for the operator since the last call.
+    pub fn take_notes(&mut self) -> Vec<(NoticeLevel, String)> {
+        self.notes.extend(self.desk.take_notes());
+        std::mem::take(&mut self.notes)
+    }
+
+    /// What to show while a command that takes long is carried out.
+    pub fn announce(&self, control: &RobotControl) -> Option<News> {
+        let (to, doing) = match control {
+            RobotControl::Robot(RobotCommand::ConnectTwin { scenario }) => {
+                (format!("twin \"{scenario}\""), "starting the simulation")
+            }
+            RobotControl::Robot(RobotCommand::ConnectPort { path }) => {
+                (path.display().to_string(), "asking the bus who is there")
+            }
+            RobotControl::Robot(RobotCommand::Scan) => {
+                let Connection::Connected { to, .. } = &self.connection else { return None };
+                (to.clone(), "asking the bus who is there")
+            }
+            _ => return None,
+        };
+        let told = self.told.clone()?;
+        let connection = Connection::Connecting { to, doing: doing.to_owned() };
+        let robot = Arc::new(RobotView { connection, ..(*told.robot).clone() });
+        Some(News { robot, ..told })
+    }
+
+    /// Does what the operator asked.
+    pub fn control(&mut self, control: RobotControl) {
+        let result = match control {
+            RobotControl::Robot(command) => self.robot(command),
+            RobotControl::Twin(command) => self.desk.control(command, &self.rig),
+            RobotControl::TurnHead { pan_rad, tilt_rad } => self.turn_head(pan_rad, tilt_rad),
+            RobotControl::PlaceEyes { head_from_left } => {
+                Arc::make_mut(&mut self.rig).eyes.head_from_left = head_from_left;
+                Ok(())
+            }
+        };
+        match result {
+            Ok(()) => {}
+            Err(reason) => self.refuse(reason),
+        }
+    }
+
+    fn refuse(&mut self, reason: String) {
+        self.notes.push((NoticeLevel::Warning, reason.clone()));
+        self.refusal = Some(reason);
+    }
+
+    fn robot(&mut self, command: RobotCommand) -> Result<(), String> {
+        if !matches!(command, RobotCommand::ListPorts | RobotCommand::Jog(_) | RobotCommand::EndJog) {
+            self.refusal = None;
+        }
+        match command {
+            RobotCommand::ConnectTwin { scenario } => self.connect_twin(&scenario),
+            RobotCommand::ConnectPort { path } => self.connect_port(path),
+            RobotCommand::Disconnect => {
+                self.disconnect();
+                Ok(())
+            }
+            RobotCommand::ListPorts => {
+                self.ports = Some(connect::ports()?);
+                Ok(())
+            }
+            RobotCommand::Scan => self.scan(),
+            RobotCommand::Torque { joints, on } => self.torque(&joints, on),
+            RobotCommand::Preview(destination) => self.show(&destination),
+            RobotCommand::ClearPreview => {
+                self.preview = None;
+                Ok(())
+            }
+            RobotCommand::RunPreview => self.run_preview(),
+            RobotCommand::Jog(rates) => self.begin_jog(rates, Instant::now()),
+            RobotCommand::EndJog => self.end_jog(),
+            RobotCommand::ChooseTip { link } => {
+                self.chain = self.rig.chain(&link).map_err(|error| sentence(&error.to_string()))?;
+                self.reach = Reach::with_model(&self.rig, &link, self.paths.model()).ok();
+                self.tip = link;
+                self.trail.clear();
+                Ok(())
+            }
+            RobotCommand::Speed(speed) => {
+                if !(speed > 0.0 && speed <= 2.0) {
+                    return Err("The speed goes from just above 0 to 2 times the usual one.".to_owned());
+                }
+                self.speed = speed;
+                if let Some((resolved, _)) = self.preview.take() {
+                    self.preview_of(resolved);
+                }
+                Ok(())
+            }
+            RobotCommand::ReleaseStop => {
+                self.switches.stop.release();
+                Ok(())
+            }
+            RobotCommand::SavePose { title, joints } => self.save_pose(&title, &joints),
+            RobotCommand::DeletePose { name } => self.poses.delete(&name, &self.rig.clone()),
+            RobotCommand::DismissRefusal => Ok(()),
+        }
+    }
+
+    fn connect_twin(&mut self, scenario: &str) -> Result<(), String> {
+        self.disconnect();
+        let to = format!("twin \"{scenario}\"");
+        let port = self.desk.start(scenario, &self.rig).and_then(|port| {
+            self.twins_started += 1;
+            connect::open(&port, &self.rig, &self.paths, &self.switches)
+        });
+        self.connected(to, true, port)
+    }
+
+    fn connect_port(&mut self, path: PathBuf) -> Result<(), String> {
+        self.disconnect();
+        let to = path.display().to_string();
+        let arm = connect::open(&path, &self.rig, &self.paths, &self.switches);
+        self.connected(to, false, arm)
+    }
+
+    fn connected(&mut self, to: String, twin: bool, arm: Result<Connected, String>) -> Result<(), String> {
+        match arm {
+            Ok(arm) => {
+                self.arm = Some(arm);
+                self.connected_at = Some(Instant::now());
+                self.connection = Connection::Connected { to, twin };
+                Ok(())
+            }
+            Err(reason) => {
+                self.connection = Connection::Lost { to, reason: reason.clone() };
+                Err(reason)
+            }
+        }
+    }
+
+    fn disconnect(&mut self) {
+        if let Some(arm) = self.arm.take() {
+            // If it cannot be told to hold it is gone already.
+            let _ = arm.hold();
+        }
+        self.connection = Connection::None;
+        (self.preview, self.running, self.jog) = (None, None, None);
+        self.trail.clear();
+        self.histories.clear();
+        self.seen_refusal = 0;
+    }
+
+    fn scan(&mut self) -> Result<(), String> {
+        // Who is there is asked when the bus is opened: it is closed and opened again.
+        match (self.connection.clone(), self.desk.port()) {
+            (Connection::Connected { to, twin: true }, Some(port)) => {
+                self.disconnect();
+                let arm = connect::open(&port, &self.rig, &self.paths, &self.switches);
+                self.connected(to, true, arm)
+            }
+            (Connection::Connected { to, .. } | Connection::Lost { to, .. }, _) => {
+                self.connect_port(to.into())
+            }
+            _ => Err("Nothing is connected. Connect first.".to_owned()),
+        }
+    }
+
+    fn arm(&self) -> Result<&dyn Arm, String> {
+        self.arm
+            .as_deref()
+            .ok_or_else(|| "Nothing is connected, so nothing can move. Connect first.".to_owned())
+    }
+
+    /// Present angles.
+    pub(super) fn present(&self) -> Option<Posture> {
+        self.arm.as_ref()?.state()?.measured.clone()
+    }
+
+    fn torque(&mut self, joints: &[JointIndex], on: bool) -> Result<(), String> {
+        let all: Vec<JointIndex> = self.rig.servos.iter().map(|servo| servo.joint).collect();
+        let joints = if joints.is_empty() { &all } else { joints };
+        self.arm()?.torque(joints, on).map_err(|refusal| sentence(&refusal.to_string()))
+    }
+
+    fn show(&mut self, destination: &Destination) -> Result<(), String> {
+        self.preview = None;
+        let present = self
+            .present()
+            .ok_or("The joints have not been read yet. Connect, and wait for the first reading.")?;
+        let poses = self.poses.all(&self.rig);
+        let around =
+            Surroundings { rig: &self.rig, reach: self.reach.as_ref(), present: &present, poses: &poses };
+        let resolved = resolve(destination, &around)?;
+        self.preview_of(resolved);
+        Ok(())
+    }
+
+    fn preview_of(&mut self, resolved: Resolved) {
+        let Some(present) = self.present() else { return };
+        let path = self.paths.check(&present, &resolved.end);
+        let turn = |joint: &JointIndex| (*joint, (resolved.end[*joint] - present[*joint]).abs());
+        let largest = resolved.joints.iter().map(turn).max_by(|a, b| a.1.total_cmp(&b.1));
+        let title = |joint| self.rig.servo_of(joint).map_or_else(String::new, |servo| servo.title.clone());
+        let preview = Preview {
+            title: resolved.title.clone(),
+            end: resolved.end.clone(),
+            path,
+            duration: duration(largest.map_or(0.0, |(_, turn_rad)| turn_rad), self.peak_speed_rad_s()),
+            largest_turn: largest.map(|(joint, turn_rad)| (title(joint), turn_rad)),
+        };
+        self.preview = Some((resolved, preview));
+    }
+
+    fn peak_speed_rad_s(&self) -> f64 {
+        (self.speed * self.rig.gate.usual_speed_rad_s).min(self.rig.gate.speed_rad_s)
+    }
+
+    fn run_preview(&mut self) -> Result<(), String> {
+        let (resolved, _) = self.preview.take().ok_or("No move is shown. Choose where to go first.")?;
+        let present = self.present().ok_or("The joints have not been read yet.")?;
+        // The arm may have moved since it was shown.
+        self.paths.check(&present, &resolved.end)?;
+        self.begin(resolved)
+    }
+
+    fn turn_head(&mut self, pan_rad: f64, tilt_rad: f64) -> Result<(), String> {
+        let present = self.present().ok_or("The joints have not been read yet.")?;
+        let joints = vec![self.rig.eyes.pan, self.rig.eyes.tilt];
+        let end = present.with(&joints, &[pan_rad, tilt_rad]);
+        self.paths.check(&present, &end)?;
+        self.begin(Resolved { title: "the head to its next pose".to_owned(), end, joints })
+    }
+
+    fn begin(&mut self, resolved: Resolved) -> Result<(), String> {
+        let goals = resolved.joints.iter().map(|joint| (*joint, resolved.end[*joint])).collect();
+        let motion = Move { goals, pace: Pace::PeakSpeed(self.peak_speed_rad_s()) };
+        self.jog = None;
+        let id = self.arm()?.begin(motion).map_err(|refusal| sentence(&refusal.to_string()))?;
+        self.running = Some(Running { id, title: resolved.title });
+        Ok(())
+    }
+
+    fn begin_jog(&mut self, rates: JogRates, now: Instant) -> Result<(), String> {
+        let finite = rates.velocity_m_s.iter().chain([&rates.yaw_rad_s]).all(|rate| rate.is_finite());
+        if !finite {
+            return Err("The speed of jogging must be a number.".to_owned());
+        }
+        if self.switches.stop.is_pressed() {
+            return Err(sentence(&Refusal::Stopped.to_string()));
+        }
+        let until = now + Duration::from_millis(JOG_DEADLINE_MS);
+        match &mut self.jog {
+            Some(jog) => (jog.rates, jog.until) = (rates, until),
+            None => {
+                let goal = self.present().ok_or("The joints have not been read yet.")?;
+                self.refusal = None;
+                (self.preview, self.running) = (None, None);
+                self.jog = Some(Jog { rates, until, last: now, goal });
+                self.step_jog(now);
+            }
+        }
+        Ok(())
+    }
+
+    fn end_jog(&mut self) -> Result<(), String> {
+        if self.jog.take().is_some() {
+            self.arm()?.hold().map_err(|refusal| sentence(&refusal.to_string()))?;
+        }
+        Ok(())
+    }
+
+    /// Sends the next joint speeds of a jog; ends it when its time is over or it would lead
+    /// into something.
+    fn step_jog(&mut self, now: Instant) {
+        let Some(mut jog) = self.jog.take() else { return };
+        if now >= jog.until || self.switches.stop.is_pressed() {
+            let _ = self.arm().map(|arm| arm.hold());
+            return;
+        }
+        let fastest = self.peak_speed_rad_s();
+        let speeds = joint_rates(&self.chain, &jog.goal.of(self.chain.joints()), &jog.rates, fastest);
+        let step_s = now.saturating_duration_since(jog.last).as_secs_f64().min(0.1);
+        let ahead = |seconds: f64| {
+            let angles: Vec<f64> = self
+                .chain
+                .joints()
+                .iter()
+                .zip(&speeds)
+                .map(|(joint, speed)| jog.goal[*joint] + speed * seconds)
+                .collect();
+            jog.goal.with(self.chain.joints(), &angles)
+        };
+        // Looks as far ahead as the setpoint lasts.
+        let lookahead_s = JOG_DEADLINE_MS as f64 / 1e3;
+        if let Err(reason) = self.paths.check(&jog.goal, &ahead(lookahead_s)) {
+            let _ = self.arm().map(|arm| arm.hold());
+            return self.refuse(reason);
+        }
+        let goal = ahead(step_s);
+        let setpoint = Setpoint {
+            kind: SetpointKind::Velocity,
+            joints: self.chain.joints().iter().copied().zip(speeds.iter().copied()).collect(),
+            valid_for: Duration::from_millis(JOG_DEADLINE_MS),
+        };
+        match self.arm().map(|arm| arm.follow(setpoint)) {
+            Ok(Ok(())) => {
+                (jog.goal, jog.last) = (goal, now);
+                // Where the arm really is counts more than where it was sent.
+                if let Some(present) = self.present()
+                    && present.distance_rad(&jog.goal) > 0.2
+                {
+                    jog.goal = present;
+                }
+                self.jog = Some(jog);
+            }
+            Ok(Err(refusal)) => self.refuse(sentence(&refusal.to_string())),
+            Err(reason) => self.refuse(reason),
+        }
+    }
+
+    fn save_pose(&mut self, title: &str, joints: &[JointIndex]) -> Result<(), String> {
+        let present =
+            self.present().ok_or("The joints have not been read yet, so there is nothing to save.")?;
+        let all: Vec<JointIndex> = self.rig.servos.iter().map(|servo| servo.joint).collect();
+        let joints = if joints.is_empty() { &all } else { joints };
+        let rig = self.rig.clone();
+        let clamped = |joint: &JointIndex| {
+            // An encoder may read half a tick beyond the limit at which it stands.
+            let limits = rig.limits(*joint);
+            let angle_rad = present[*joint];
+            let near = limits.excess_rad(angle_rad).abs() < 0.02;
+            (*joint, if near { angle_rad.clamp(limits.lower_rad, limits.upper_rad) } else { angle_rad })
+        };
+        self.poses.save(title, joints.iter().map(clamped).collect(), &rig)
+    }
+
+    /// Looks at the joints and goes on with what runs.
+    pub fn tick(&mut self, now: Instant) {
+        self.desk.tick(now, &self.rig);
+        self.step_jog(now);
+        let Some(state) = self.arm.as_ref().and_then(|arm| arm.state()) else { return };
+        if let Some(reason) = &state.gone {
+            let Connection::Connected { to, .. } = self.connection.clone() else { return };
+            let reason = sentence(reason);
+            self.disconnect();
+            self.connection = Connection::Lost { to, reason: reason.clone() };
+            return self.refuse(reason);
+        }
+        if let Some((number, refusal)) = &state.refusal
+            && *number > self.seen_refusal
+        {
+            self.seen_refusal = *number;
+            self.refuse(sentence(&refusal.to_string()));
+        }
+        if let Some(running) = &self.running
+            && let Some(outcome) = state.outcome(running.id)
+        {
+            if let MoveOutcome::Held(reason) = outcome {
+                let text = format!("Not finished: {}. {}", running.title, sentence(&reason.to_string()));
+                self.refuse(text);
+            }
+            self.running = None;
+        }
+        if !matches!(state.motion, Motion::Moving { .. } | Motion::Following) && self.jog.is_none() {
+            self.running = self.running.take().filter(|running| state.outcome(running.id).is_none());
+        }
+        if let Some(since) = self.connected_at {
+            self.histories.note(now.saturating_duration_since(since).as_secs_f64(), &state.joints);
+        }
+        if let Some(posture) = &state.measured {
+            self.follow_tip(posture, now);
+        }
+    }
+
+    fn follow_tip(&mut self, posture: &Posture, now: Instant) {
+        while self.trail.front().is_some_and(|(at, _)| now.saturating_duration_since(*at) > TRAIL) {
+            self.trail.pop_front();
+        }
+        let place = self.chain.robot_from_tip_in(posture).translation_m();
+        let place = Point::new(place.x, place.y, place.z);
+        if self.trail.back().is_none_or(|(_, last)| last.distance_m(&place) > TRAIL_STEP_M) {
+            self.trail.push_back((now, place));
+        }
+    }
+}
