@@ -45,6 +45,8 @@ pub enum ArmState {
     Moving,
     /// Torque off: can be moved by hand, and falls.
     Free,
+    /// Stopped and held; nothing moves before the stop is released.
+    Stopped,
     /// No arm is connected.
     NotConnected,
 }
@@ -56,6 +58,7 @@ impl ArmState {
             Self::Held => "arm held",
             Self::Moving => "arm moving",
             Self::Free => "arm free",
+            Self::Stopped => "stopped",
             Self::NotConnected => "no arm connected",
         }
     }

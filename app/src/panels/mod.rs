@@ -10,22 +10,28 @@ mod error_bars;
 mod eye;
 mod figures;
 mod files;
+mod mount;
 mod pairs;
 mod picture;
 mod probe;
 mod rectified;
 mod residuals;
+mod robot;
 mod source_state;
 mod start;
 mod table;
+mod twin;
 mod verdict_line;
 
 pub use board::BoardDraft;
 pub(crate) use picture::key as picture_key;
 pub use probe::{ProbeState, probe_readout};
 pub(crate) use residuals::chosen_fit;
+pub use robot::RobotPanels;
+pub(crate) use robot::{move_sentence, moved_name, show_inspector as show_robot_inspector};
 pub(crate) use source_state::source_age;
 pub(crate) use start::show as show_start;
+pub use twin::TwinPanels;
 
 use std::sync::Arc;
 
@@ -67,6 +73,10 @@ pub struct PanelState {
     pub proposal_seen: Option<usize>,
     /// Which calibration is exported while there are two.
     pub exported: Exported,
+    /// The robot.
+    pub robot: RobotPanels,
+    /// The twin.
+    pub twin: TwinPanels,
 }
 
 impl Default for PanelState {
@@ -85,6 +95,8 @@ impl Default for PanelState {
             coverage: Default::default(),
             proposal_seen: None,
             exported: Exported::InUse,
+            robot: RobotPanels::default(),
+            twin: TwinPanels::default(),
         }
     }
 }
@@ -156,5 +168,12 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
         Pane::Difference => table::difference(ui, cx),
         Pane::Comparison => comparison::show(ui, cx),
         Pane::Files => files::show(ui, cx),
+        Pane::Scene => robot::show_scene(ui, cx),
+        Pane::Joints => robot::show_joints(ui, cx),
+        Pane::Jog => robot::show_jog(ui, cx),
+        Pane::Poses => robot::show_poses(ui, cx),
+        Pane::Twin => twin::show(ui, cx),
+        Pane::HeadViews => mount::show_views(ui, cx),
+        Pane::EyeMount => mount::show_result(ui, cx),
     }
 }

@@ -6,14 +6,15 @@ use egui::{Align, Button, Layout, RichText, Ui, UiBuilder, vec2};
 use plumbline_engine::{SourceCommand, SourceSpec};
 use plumbline_widgets::theme::{self, space};
 
-use crate::window::{Action, Outbox, source_name};
+use crate::window::{Action, Outbox, RobotAction, source_name};
 
 /// What can be opened, and in which case one would.
-const WAYS: [(Action, &str); 4] = [
+const WAYS: [(Action, &str); 5] = [
     (Action::OpenFolder, "Image pairs in one folder, or in a folder with left and right in it."),
     (Action::OpenTwoFolders, "One folder per eye; the same file name is one pair."),
     (Action::OpenVideos, "One video per eye."),
     (Action::OpenCameras, "The eyes themselves, live."),
+    (Action::Robot(RobotAction::ConnectTwin), "A simulated robot, to try everything on."),
 ];
 const WIDTH: f32 = 560.0;
 const BUTTON_WIDTH: f32 = 190.0;

@@ -1,8 +1,11 @@
 //! Everything that can be asked for by name: by a button, a shortcut or the command palette.
 
+use std::borrow::Cow;
+
 use plumbline_engine::view::SourceStatus;
 use plumbline_engine::{ExportFormat, Exported, View};
 
+use super::robot_actions::{MountAction, RobotAction};
 use super::steps::Screen;
 
 /// One thing that the operator can do.
@@ -62,6 +65,10 @@ pub enum Action {
     Import,
     /// Writes a calibration file.
     Export(Exported, ExportFormat),
+    /// Something of the robot or its twin.
+    Robot(RobotAction),
+    /// Something of the mount of the eyes.
+    Mount(MountAction),
     /// Asks the running job to stop.
     CancelJob,
     /// Saves a picture of the window.
@@ -87,7 +94,13 @@ pub enum Action {
 }
 
 /// All actions with a place in the palette, in its order.
-pub const ALL: &[Action] = &[
+pub fn all() -> impl Iterator<Item = Action> {
+    let robot = RobotAction::ALL.into_iter().map(Action::Robot);
+    let mount = MountAction::ALL.into_iter().map(Action::Mount);
+    ALL.iter().copied().chain(robot).chain(mount)
+}
+
+const ALL: &[Action] = &[
     Action::Next,
     Action::Stop,
     Action::OpenFolder,
@@ -105,6 +118,8 @@ pub const ALL: &[Action] = &[
     Action::Go(Screen::Collect),
     Action::Go(Screen::Judge),
     Action::Go(Screen::Accept),
+    Action::Go(Screen::Mount),
+    Action::Go(Screen::Robot),
     Action::RecognizeBoard,
     Action::UseSeenBoard,
     Action::Capture,
@@ -156,6 +171,10 @@ impl Action {
             Self::Go(Screen::Collect) => "Go to Eyes: collect",
             Self::Go(Screen::Judge) => "Go to Eyes: judge",
             Self::Go(Screen::Accept) => "Go to Eyes: accept",
+            Self::Go(Screen::Mount) => "Go to Mount",
+            Self::Go(Screen::Robot) => "Go to Robot",
+            Self::Robot(action) => action.label(),
+            Self::Mount(action) => action.label(),
             Self::RecognizeBoard => "Recognize the board",
             Self::UseSeenBoard => "Use the recognized board",
             Self::Capture => "Capture pair",
@@ -185,9 +204,9 @@ impl Action {
     }
 
     /// Why it cannot be done now; `None` when it can.
-    pub fn refusal(self, view: &View) -> Option<&'static str> {
+    pub fn refusal(self, view: &View) -> Option<Cow<'static, str>> {
         let eyes = &view.eyes;
-        let when = |possible: bool, why| (!possible).then_some(why);
+        let when = |possible: bool, why| (!possible).then_some(Cow::Borrowed(why));
         match self {
             Self::CloseSource => when(view.source.status != SourceStatus::None, "no source is open"),
             Self::RetrySource => {
@@ -204,11 +223,13 @@ impl Action {
             Self::CollectRecording => when(view.source.replay.is_some(), "no recording is open"),
             Self::DeleteLast | Self::DeleteAll => when(!eyes.collected.is_empty(), "no pair is collected"),
             Self::Undo => when(eyes.can_undo, "nothing was changed"),
-            Self::Solve if eyes.solving.is_some() => Some("a solution is being computed"),
+            Self::Solve if eyes.solving.is_some() => Some("a solution is being computed".into()),
             Self::Solve => when(!eyes.collected.is_empty(), "no pair is collected"),
             Self::Accept | Self::Discard => when(eyes.proposal.is_some(), "nothing is proposed"),
             Self::Export(Exported::InUse, _) => when(eyes.in_use.is_some(), "no calibration is in use"),
             Self::Export(Exported::Proposal, _) => when(eyes.proposal.is_some(), "nothing is proposed"),
+            Self::Robot(action) => action.refusal(view),
+            Self::Mount(action) => action.refusal(view),
             Self::CancelJob => when(view.running_job().is_some(), "no job is running"),
             _ => None,
         }
@@ -233,8 +254,10 @@ mod tests {
     #[test]
     fn without_anything_open_the_reasons_are_said() {
         let view = View::default();
-        assert_eq!(Action::Solve.refusal(&view), Some("no pair is collected"));
-        assert_eq!(Action::PlayPause.refusal(&view), Some("no recording is open"));
+        assert_eq!(Action::Solve.refusal(&view).as_deref(), Some("no pair is collected"));
+        assert_eq!(Action::PlayPause.refusal(&view).as_deref(), Some("no recording is open"));
+        let going = Action::Robot(RobotAction::Move).refusal(&view);
+        assert_eq!(going.as_deref(), Some("no robot is connected"));
         assert_eq!(Action::Stop.refusal(&view), None, "stop can always be asked for");
     }
 }

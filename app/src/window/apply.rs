@@ -7,17 +7,20 @@ use std::time::Instant;
 
 use plumbline_engine::view::{JobState, SourceStatus};
 use plumbline_engine::{
-    Command, EyesCommand, FileLength, JobCommand, LiveCommand, NoticeCommand, NoticeLevel, ProbePoint,
-    SourceCommand,
+    Command, Destination, EyesCommand, FileLength, JobCommand, LiveCommand, MountCommand, NoticeCommand,
+    NoticeLevel, ProbePoint, RobotCommand, SourceCommand,
 };
 use plumbline_model::Eye;
+use plumbline_model::robot::JointIndex;
 
 use super::PlumblineWindow;
 use super::actions::Action;
 use super::ask::{Ask, Asked};
 use super::dialogs::{Answer, Question};
 use super::frame_time::{FrameTimes, resident_mb};
+use super::jogging::RENEW;
 use super::outbox::Outbox;
+use super::robot_actions::RobotAction;
 use super::saving::save_picture;
 use super::script::ScriptStep;
 use super::settings::ThemeChoice;
@@ -36,7 +39,12 @@ impl PlumblineWindow {
         }
         self.panels.probe.follow(outbox.probe, &mut |command| self.backend.send(command.into()));
         for command in outbox.commands {
-            self.backend.send(command);
+            self.send(command);
+        }
+        let backend = &self.backend;
+        self.jogging.follow(outbox.jog, Instant::now(), &mut |command| backend.send(command.into()));
+        if self.jogging.active() {
+            ctx.request_repaint_after(RENEW);
         }
         for action in outbox.actions {
             self.act(ctx, action);
@@ -51,13 +59,26 @@ impl PlumblineWindow {
         }
     }
 
+    /// Hands a command over; one that begins a motion keeps the window drawing.
+    pub(super) fn send(&mut self, command: Command) {
+        if matches!(command, Command::Robot(RobotCommand::RunPreview) | Command::Mount(MountCommand::Tour)) {
+            self.motion_asked = Some(Instant::now());
+        }
+        self.backend.send(command);
+    }
+
     pub(super) fn act(&mut self, ctx: &egui::Context, action: Action) {
         if let Some(why) = action.refusal(&self.view) {
             self.notices.say(&format!("{}: {why}.", action.label().trim_end_matches('…')));
             return;
         }
         if let Some(command) = self.command_of(action) {
-            self.backend.send(command);
+            // Showing the board is for capturing pairs of it.
+            let collecting = self.settings.screen == Screen::Collect && !self.view.eyes.auto_capture;
+            if action == Action::Robot(RobotAction::TourBoard) && collecting {
+                self.send(EyesCommand::AutoCapture(true).into());
+            }
+            self.send(command);
             return;
         }
         match action {
@@ -67,6 +88,12 @@ impl PlumblineWindow {
                     self.act(ctx, next.action);
                 }
             }
+            Action::Robot(RobotAction::Connect) => {
+                self.backend.send(RobotCommand::ListPorts.into());
+                self.ask = Some(Ask::Connect(Default::default()));
+            }
+            Action::Robot(RobotAction::TorqueOff) => self.ask = Some(Ask::LetGo),
+            Action::Robot(RobotAction::SavePose) => self.ask = Some(Ask::SavePose { title: String::new() }),
             Action::OpenFolder => self.ask_for(ctx, Question::Folder),
             Action::OpenTwoFolders => self.ask_for(ctx, Question::TwoFolders),
             Action::OpenVideos => self.ask_for(ctx, Question::TwoVideos),
@@ -119,13 +146,16 @@ impl PlumblineWindow {
             Action::Solve => EyesCommand::Solve.into(),
             Action::Accept => EyesCommand::Accept.into(),
             Action::Discard => EyesCommand::Discard.into(),
+            Action::Robot(action) => return action.command(&self.view),
+            Action::Mount(action) => action.command(),
             Action::CancelJob => JobCommand::Cancel(self.view.running_job()?.id).into(),
             _ => return None,
         })
     }
 
-    /// No arm is connected in this version: what runs is jobs, replay and automatic capture.
+    /// The arm first; then jobs, replay, automatic capture and the tour of the board.
     fn stop(&mut self) {
+        self.backend.stop();
         self.stopped_at = Some(Instant::now());
         for job in self.view.jobs.iter().filter(|job| job.state.is_running()) {
             self.backend.send(JobCommand::Cancel(job.id).into());
@@ -191,6 +221,7 @@ impl PlumblineWindow {
                 self.ask = None;
                 outbox.send(command);
             }
+            Asked::CommandKeepOpen(command) => outbox.send(command),
             Asked::Answer(answer) => {
                 self.ask = None;
                 self.take_answer(ctx, answer);
@@ -212,6 +243,14 @@ impl PlumblineWindow {
                 self.frame_times = FrameTimes::default();
                 self.resident_before_mb = resident_mb();
             }
+            ScriptStep::Send(command) => self.send(command),
+            ScriptStep::PreviewJoint(name, degrees) => {
+                if let Some(joint) = self.joint_called(&name) {
+                    let to = Destination::Joint { joint, angle_rad: degrees.to_radians() };
+                    self.send(RobotCommand::Preview(to).into());
+                }
+            }
+            ScriptStep::ChooseJoint(name) => self.panels.robot.chosen_joint = self.joint_called(&name),
             ScriptStep::Wait(_) => {}
             ScriptStep::Picture(file) => {
                 self.script.waiting_for_picture.store(true, Ordering::Relaxed);
@@ -223,6 +262,11 @@ impl PlumblineWindow {
             }
             ScriptStep::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
         }
+    }
+
+    fn joint_called(&self, name: &str) -> Option<JointIndex> {
+        let found = self.view.robot.rig.as_ref()?.description.find_joint(name);
+        found.inspect_err(|error| log::warn!("{error}")).ok()
     }
 
     fn save_window(&self, ctx: &egui::Context, file: PathBuf) {

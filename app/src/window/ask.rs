@@ -4,10 +4,11 @@
 use std::path::PathBuf;
 
 use egui::{Align2, DragValue, TextEdit, Ui, Vec2};
-use plumbline_engine::{CameraDevice, Command, EyesCommand, SourceCommand, SourceSpec, View};
+use plumbline_engine::{CameraDevice, Command, EyesCommand, RobotCommand, SourceCommand, SourceSpec, View};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
+use super::connect::{self, ConnectChoice};
 use super::dialogs::{Answer, Question};
 use super::sheet::sheet;
 
@@ -33,6 +34,15 @@ pub enum Ask {
         /// How many there are.
         count: usize,
     },
+    /// What the robot is connected to.
+    Connect(ConnectChoice),
+    /// Whether all joints may go limp.
+    LetGo,
+    /// The name of a posture.
+    SavePose {
+        /// As it is being typed.
+        title: String,
+    },
 }
 
 /// What a sheet ended with.
@@ -44,6 +54,8 @@ pub enum Asked {
     Closed,
     /// For the engine.
     Command(Command),
+    /// For the engine; the sheet shows what comes of it.
+    CommandKeepOpen(Command),
     /// Paths for the window to use.
     Answer(Answer),
 }
@@ -63,6 +75,9 @@ impl Ask {
             Self::Paths { question, typed } => paths(ui, *question, typed),
             Self::Cameras { left, right } => cameras(ui, view, left, right),
             Self::DeleteAll { count } => delete_all(ui, *count),
+            Self::Connect(chosen) => connect::show(ui, view, chosen),
+            Self::LetGo => let_go(ui),
+            Self::SavePose { title } => save_pose(ui, title),
         });
         match shown.inner {
             Asked::Open if shown.close => Asked::Closed,
@@ -170,14 +185,46 @@ fn delete_all(ui: &mut Ui, count: usize) -> Asked {
     }
 }
 
-fn title(ui: &mut Ui, title: &str, hint: &str) {
+fn let_go(ui: &mut Ui) -> Asked {
+    title(ui, "Let all joints go limp?", "Both arms sink by their own weight: hold them, and keep clear.");
+    match buttons(ui, "Let all go limp", true) {
+        Some(true) => Asked::Command(RobotCommand::Torque { joints: Vec::new(), on: false }.into()),
+        Some(false) => Asked::Closed,
+        None => Asked::Open,
+    }
+}
+
+fn save_pose(ui: &mut Ui, name: &mut String) -> Asked {
+    title(ui, "Save this posture", "All joints as they are now, under a name.");
+    let label = ui.label(theme::weak(ui, "Name"));
+    let edit = ui.add(TextEdit::singleline(name).desired_width(f32::INFINITY)).labelled_by(label.id);
+    if name.is_empty() && ui.memory(|memory| memory.focused().is_none()) {
+        edit.request_focus();
+    }
+    let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
+    let filled = !name.trim().is_empty();
+    let pressed = buttons(ui, "Save posture", filled);
+    match pressed {
+        Some(false) => Asked::Closed,
+        Some(true) => saved_pose(name),
+        None if entered && filled => saved_pose(name),
+        None => Asked::Open,
+    }
+}
+
+fn saved_pose(name: &str) -> Asked {
+    let title = name.trim().to_owned();
+    Asked::Command(RobotCommand::SavePose { title, joints: Vec::new() }.into())
+}
+
+pub(super) fn title(ui: &mut Ui, title: &str, hint: &str) {
     ui.heading(title);
     ui.label(theme::weak(ui, hint));
     ui.add_space(space::S);
 }
 
 /// `Some(true)` when the work was asked for, `Some(false)` when it was called off.
-fn buttons(ui: &mut Ui, verb: &str, enabled: bool) -> Option<bool> {
+pub(super) fn buttons(ui: &mut Ui, verb: &str, enabled: bool) -> Option<bool> {
     ui.add_space(space::S);
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
         let done = ui.add_enabled(enabled, super::primary_button(ui, verb)).clicked();

@@ -10,6 +10,10 @@ pub trait Backend {
     fn view(&self) -> Arc<View>;
     /// Hands a command over.
     fn send(&self, command: Command);
+    /// Whatever moves holds, past every queue.
+    fn stop(&self);
+    /// Says that the window is alive; without it the arm holds.
+    fn heartbeat(&self);
 }
 
 impl Backend for Engine {
@@ -19,5 +23,13 @@ impl Backend for Engine {
 
     fn send(&self, command: Command) {
         Self::send(self, command);
+    }
+
+    fn stop(&self) {
+        Self::stop(self);
+    }
+
+    fn heartbeat(&self) {
+        Self::heartbeat(self);
     }
 }

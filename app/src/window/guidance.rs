@@ -1,5 +1,7 @@
 //! What is happening and what to do next, in one sentence and one button.
 
+mod robot;
+
 use plumbline_engine::View;
 use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
 use plumbline_widgets::format;
@@ -32,12 +34,25 @@ pub const ENOUGH_PAIRS: usize = 10;
 
 /// The bottom line of a screen.
 pub fn guidance(view: &View, screen: Screen) -> Guidance {
+    if let Some(guidance) = stopped(view, screen) {
+        return guidance;
+    }
     match screen {
         Screen::Live => live(view),
         Screen::Collect => collect(view),
         Screen::Judge => judge(&view.eyes),
         Screen::Accept => accept(&view.eyes),
+        Screen::Mount => robot::mount(view),
+        Screen::Robot => robot::robot(view),
     }
+}
+
+/// What only looks goes on while STOP is latched; what moves says so.
+fn stopped(view: &View, screen: Screen) -> Option<Guidance> {
+    let moves = matches!(screen, Screen::Live | Screen::Mount | Screen::Robot);
+    let connected = view.robot.connection.is_connected();
+    (moves && connected && view.robot.stopped)
+        .then(|| say("Stopped: nothing moves until you press Release STOP, at the top right.").warn())
 }
 
 fn say(sentence: impl Into<String>) -> Guidance {
@@ -65,6 +80,7 @@ impl Guidance {
 /// What is wrong or not yet there with the source; `None` when it delivers.
 fn source_trouble(view: &View) -> Option<Guidance> {
     match &view.source.status {
+        SourceStatus::None if view.twin.running => Some(say("The twin's eyes open.")),
         SourceStatus::None => Some(
             say("No images yet: open a folder of pairs, or drop one on the window.")
                 .then("Open a folder of pairs…", Action::OpenFolder),
@@ -80,6 +96,12 @@ fn source_trouble(view: &View) -> Option<Guidance> {
 fn live(view: &View) -> Guidance {
     if let Some(guidance) = source_trouble(view) {
         return guidance;
+    }
+    if view.eyes.in_use.is_none() && view.twin.running {
+        return say(
+            "This is the twin, a simulated robot: nothing real moves. Try first: calibrate its eyes, by clicks.",
+        )
+        .then("Calibrate the eyes", Action::Go(Screen::Collect));
     }
     if view.eyes.in_use.is_none() {
         return say("The eyes are not calibrated, so nothing can be measured yet.")
@@ -108,6 +130,9 @@ fn collect(view: &View) -> Guidance {
     }
     if eyes.collected.is_empty() {
         if let Some(guidance) = source_trouble(view) {
+            return guidance;
+        }
+        if let Some(guidance) = robot::board_of_the_twin(view) {
             return guidance;
         }
         let (columns, rows) = eyes.board.squares();

@@ -6,7 +6,7 @@ use egui::{Align, Button, DragValue, Layout, Panel, Popup, Ui};
 use jiff::Timestamp;
 use plumbline_engine::view::{SourceStatus, StepState};
 use plumbline_engine::{EyesCommand, View};
-use plumbline_widgets::buttons::{ArmState, STOP_SIZE, stop_button, stop_pressed};
+use plumbline_widgets::buttons::{STOP_SIZE, stop_button, stop_pressed};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::lamp::{Health, Lamp};
@@ -14,13 +14,14 @@ use plumbline_widgets::theme::{self, space};
 
 use super::actions::Action;
 use super::outbox::Outbox;
+use super::robot_actions::RobotAction;
 use super::shortcuts::shortcut_text;
 use super::steps::Screen;
-use super::{PlumblineWindow, source_menu};
+use super::{PlumblineWindow, robot_lamps, world_menu};
 use crate::panels::source_age;
 
 /// Below this width, points, the lamps take a row of their own.
-const NARROW: f32 = 1180.0;
+const NARROW: f32 = 1400.0;
 const LAMPS_HEIGHT: f32 = 30.0;
 /// A live picture older than this is worth a warning.
 const OLD: Duration = Duration::from_millis(500);
@@ -37,18 +38,21 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
         ui.spacing_mut().item_spacing.y = 0.0;
         let first_row = egui::vec2(ui.available_width(), STOP_SIZE.y);
         ui.allocate_ui_with_layout(first_row, Layout::right_to_left(Align::Center), |ui| {
-            let stop = stop_button(ui, ArmState::NotConnected);
+            let stop = stop_button(ui, robot_lamps::arm_state(&window.view.robot));
             if stop_pressed(&stop) {
+                // At once; the action ends everything else after the frame.
+                window.backend.stop();
                 outbox.act(Action::Stop);
             }
             ui.add_space(space::S);
+            robot_lamps::release_button(&window.view, ui, outbox);
             view_menu(window, ui, outbox);
             messages_button(window, ui, outbox);
             commands_button(ui, outbox);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.heading("Plumbline");
                 ui.add_space(space::S);
-                source_menu::show(&window.view, &window.settings.recent_sources, ui, outbox);
+                world_menu::show(&window.view, &window.settings.recent_sources, ui, outbox);
                 if !narrow {
                     lamps(window, ui, outbox);
                 }
@@ -63,6 +67,7 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
 fn lamps(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     ui.spacing_mut().item_spacing.x = space::XS;
     eyes_lamps(&window.view, ui, outbox);
+    robot_lamps::show(&window.view, ui, outbox);
     calibration_lamp(&window.view, ui, outbox);
     clock_lamp(window, ui, outbox);
 }
@@ -126,13 +131,11 @@ fn eyes_lamps(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
     let lamp = Lamp::new("Eyes", &value, health).reason(reason.as_deref()).show(ui);
     Popup::menu(&lamp).width(300.0).show(|ui| eyes_details(view, ui, outbox));
 
-    if let Some(age) = source_age(view) {
-        let old = age > OLD;
+    if let Some(age) = source_age(view).filter(|age| *age > OLD) {
         let value =
             if age < Duration::from_secs(10) { format::ms(age.as_secs_f64()) } else { format::age(age) };
-        let reason = old.then_some("No new pair has come: look at the cameras and their cables.");
-        let health = if old { Health::Warning } else { Health::Good };
-        Lamp::new("Age", &value, health).reason(reason).show(ui);
+        let reason = Some("No new pair has come: look at the cameras and their cables.");
+        Lamp::new("Age", &value, Health::Warning).reason(reason).show(ui);
     }
 }
 
@@ -182,6 +185,9 @@ fn calibration_lamp(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
 }
 
 fn clock_lamp(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    if window.view.twin.running {
+        return twin_clock_lamp(&window.view, ui, outbox);
+    }
     let since_start = window.started.elapsed();
     let minutes_on = window.view.eyes.minutes_since_on;
     let live = window.view.source.replay.is_none() && window.view.source.status == SourceStatus::Running;
@@ -212,4 +218,23 @@ fn clock_lamp(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
             });
         },
     );
+}
+
+/// The twin knows how long its eyes have been on.
+fn twin_clock_lamp(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+    let on = Duration::try_from_secs_f64(view.twin.eyes_on_s).unwrap_or_default();
+    let fraction = on.as_secs_f64() / 60.0 / WARM_AFTER_MINUTES;
+    let warming = fraction < 1.0;
+    let health = if warming { Health::Working(fraction as f32) } else { Health::Good };
+    let reason =
+        warming.then_some("The twin's eyes turn in their mounts while they warm up, as real ones do.");
+    let lamp = Lamp::new("Warm-up", &format::clock(on), health).reason(reason).show(ui);
+    Popup::menu(&lamp).width(240.0).show(|ui| {
+        for action in [RobotAction::WarmUp, RobotAction::CoolEyes] {
+            if ui.button(action.label()).clicked() {
+                outbox.act(Action::Robot(action));
+                ui.close();
+            }
+        }
+    });
 }

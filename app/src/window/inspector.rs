@@ -13,7 +13,7 @@ use plumbline_widgets::theme::{self, Role, group_heading, space};
 use super::outbox::Outbox;
 use super::steps::Screen;
 use super::{PlumblineWindow, hint_text};
-use crate::panels::{PanelState, chosen_fit, probe_readout};
+use crate::panels::{PanelState, chosen_fit, probe_readout, show_robot_inspector};
 
 pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let margin = egui::Margin::symmetric(space::M as i8, space::S as i8);
@@ -27,6 +27,8 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
             Screen::Collect => collecting(ui, &view, state, outbox),
             Screen::Judge => judged_pair(ui, &view, state, outbox),
             Screen::Accept => provenance(ui, &view),
+            Screen::Mount => mount(ui, &view),
+            Screen::Robot => show_robot_inspector(ui, &view, &mut state.robot, outbox),
         });
     });
 }
@@ -50,6 +52,33 @@ fn live(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {
         head_controls(ui, view.live.head, outbox);
     }
     source(ui, view);
+}
+
+fn mount(ui: &mut Ui, view: &View) {
+    group_heading(ui, "Head");
+    let robot = &view.robot;
+    let angles = robot
+        .rig
+        .as_ref()
+        .zip(robot.measured.as_ref())
+        .filter(|(rig, posture)| posture.len() == rig.description.movable_count());
+    match angles {
+        Some((rig, posture)) => {
+            let rows = [
+                KeyValue::quantity("Left", Quantity::Angle, posture[rig.eyes.pan]),
+                KeyValue::quantity("Up", Quantity::Angle, posture[rig.eyes.tilt]),
+            ];
+            key_value_grid(ui, "head", &rows);
+        }
+        None => {
+            ui.label(theme::weak(ui, "Its angles are known once the robot is connected."));
+        }
+    }
+    group_heading(ui, "What this is for");
+    ui.label(theme::weak(
+        ui,
+        "Points that the eyes measure become places in the robot's frame through the mount. One degree here is 8 mm on the table.",
+    ));
 }
 
 fn aim_controls(ui: &mut Ui, aim: &AimView, outbox: &mut Outbox) {

@@ -7,14 +7,17 @@ mod actions;
 mod apply;
 mod ask;
 mod backend;
+mod connect;
 mod dialogs;
 mod drop;
 mod frame_time;
 mod frame_times_overlay;
+mod gamepad;
 mod guidance;
 mod health;
 mod icon;
 mod inspector;
+mod jogging;
 mod launch;
 mod log_lines;
 mod log_panel;
@@ -23,6 +26,8 @@ mod outbox;
 mod palette;
 mod rail;
 pub mod renderer;
+mod robot_actions;
+mod robot_lamps;
 mod saving;
 mod script;
 mod settings;
@@ -33,19 +38,23 @@ mod status_line;
 mod steps;
 mod tiles;
 mod transport;
+mod world_menu;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use plumbline_engine::view::MotionState;
 use plumbline_engine::{JobId, Products, View};
 
 pub use actions::{Action, format_name};
 pub use backend::Backend;
+pub use gamepad::GamepadState;
 pub use guidance::{Verdict, capitalized, hint_text, other_board, verdict};
 pub use launch::{LaunchOptions, launch};
 pub use log_lines::{LogStore, start as start_log};
 pub use outbox::Outbox;
+pub use robot_actions::{MountAction, RobotAction, default_scenario};
 pub use script::ScriptStep;
 pub use settings::{ThemeChoice, WindowSettings};
 pub(crate) use source_menu::short_name as source_name;
@@ -55,6 +64,8 @@ use crate::panels::PanelState;
 use ask::Ask;
 use dialogs::Dialogs;
 use frame_time::FrameTimes;
+use gamepad::Gamepads;
+use jogging::Jogging;
 use log_panel::LogPanel;
 use notices::NoticeList;
 use palette::Palette;
@@ -76,6 +87,8 @@ pub struct WindowOptions {
     pub frame_report: Option<PathBuf>,
     /// Said in the frame times overlay and in the report.
     pub renderer: String,
+    /// Whether gamepads are looked for.
+    pub gamepads: bool,
 }
 
 impl Default for WindowOptions {
@@ -88,6 +101,7 @@ impl Default for WindowOptions {
             script: Vec::new(),
             frame_report: None,
             renderer: "none".to_owned(),
+            gamepads: false,
         }
     }
 }
@@ -117,7 +131,17 @@ pub struct PlumblineWindow {
     pending_picture: Option<Arc<egui::ColorImage>>,
     dismissed: Vec<JobId>,
     wanted: Option<Products>,
+    gamepads: Gamepads,
+    jogging: Jogging,
+    /// When a motion was asked for last.
+    motion_asked: Option<Instant>,
 }
+
+/// The arm holds without a sign of life from the window; this often it gets one while something
+/// moves.
+const SIGN_OF_LIFE: Duration = Duration::from_millis(100);
+/// For this long after a motion was asked for, the window expects it to begin.
+const BEGINS_WITHIN: Duration = Duration::from_secs(2);
 
 impl PlumblineWindow {
     /// A window over a running engine.
@@ -149,6 +173,9 @@ impl PlumblineWindow {
             pending_picture: None,
             dismissed: Vec::new(),
             wanted: None,
+            gamepads: Gamepads::new(options.gamepads),
+            jogging: Jogging::default(),
+            motion_asked: None,
         }
     }
 
@@ -158,6 +185,11 @@ impl PlumblineWindow {
     }
 
     fn before_frame(&mut self, ctx: &egui::Context) {
+        // Before anything that takes time.
+        if shortcuts::stop_asked(ctx) {
+            self.backend.stop();
+        }
+        self.backend.heartbeat();
         self.view = self.backend.view();
         if let Some(answer) = self.dialogs.poll() {
             self.take_answer(ctx, answer);
@@ -169,8 +201,26 @@ impl PlumblineWindow {
         if let Some(step) = next {
             self.do_script_step(ctx, step);
         }
+        self.poll_gamepad(ctx);
         // Ages and clocks move on although nothing else does.
-        ctx.request_repaint_after(Duration::from_secs(1));
+        ctx.request_repaint_after(if self.may_move() { SIGN_OF_LIFE } else { Duration::from_secs(1) });
+    }
+
+    /// Whether something moves or is about to, so that the window has to keep drawing.
+    fn may_move(&self) -> bool {
+        matches!(self.view.robot.motion, MotionState::Moving { .. })
+            || self.jogging.active()
+            || self.motion_asked.is_some_and(|asked| asked.elapsed() < BEGINS_WITHIN)
+    }
+
+    /// Only the robot's screen uses one.
+    fn poll_gamepad(&mut self, ctx: &egui::Context) {
+        let wanted = self.settings.screen == Screen::Robot;
+        let state = wanted.then(|| self.gamepads.poll(ctx)).flatten();
+        if let Some(pad) = &state {
+            ctx.request_repaint_after(if pad.enabled { jogging::RENEW } else { SIGN_OF_LIFE });
+        }
+        self.panels.robot.gamepad = state;
     }
 
     /// What the last frame took: everything that this thread did since the one before.

@@ -1,7 +1,7 @@
 //! What the panels ask for during a frame. Panels change nothing themselves: all of it is
 //! carried out after the frame, in one place.
 
-use plumbline_engine::{Command, ExportFormat, Exported, ProbePoint, Products};
+use plumbline_engine::{Command, ExportFormat, Exported, JogRates, ProbePoint, Products};
 use plumbline_widgets::texture::Picture;
 
 use super::actions::Action;
@@ -17,6 +17,8 @@ pub struct Outbox {
     pub wanted: Products,
     /// The point under the mouse, if it is over an image that can be measured.
     pub probe: Option<ProbePoint>,
+    /// How a tip is to be jogged, as long as the keys for it are held.
+    pub jog: Option<JogRates>,
     /// A picture to be saved (asks where to).
     pub save: Option<Picture>,
     /// A picture to be put on the clipboard.

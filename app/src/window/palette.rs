@@ -1,10 +1,12 @@
 //! The command palette: everything that can be done, by typing a part of its name.
 
+use std::borrow::Cow;
+
 use egui::{Key, Modifiers, ScrollArea, TextEdit, Ui};
 use plumbline_engine::View;
 use plumbline_widgets::theme::{self, space};
 
-use super::actions::{ALL, Action};
+use super::actions::{self, Action};
 use super::sheet::sheet;
 use super::shortcuts::shortcut_text;
 
@@ -100,7 +102,7 @@ fn row(ui: &mut Ui, action: Action, view: &View, chosen: bool) -> egui::Response
     let left = rect.left_center() + egui::vec2(space::S, 0.0);
     let right = rect.right_center() - egui::vec2(space::S, 0.0);
     ui.painter().text(left, egui::Align2::LEFT_CENTER, label, font, color);
-    let hint = refusal.map(str::to_owned).or_else(|| shortcut_text(ui.ctx(), action));
+    let hint = refusal.map(Cow::into_owned).or_else(|| shortcut_text(ui.ctx(), action));
     if let Some(hint) = hint {
         ui.painter().text(right, egui::Align2::RIGHT_CENTER, hint, small, tokens.text_weak);
     }
@@ -111,9 +113,7 @@ fn row(ui: &mut Ui, action: Action, view: &View, chosen: bool) -> egui::Response
 fn matching(typed: &str) -> Vec<Action> {
     let typed = typed.to_lowercase();
     let words: Vec<&str> = typed.split_whitespace().collect();
-    let mut found: Vec<Action> = ALL
-        .iter()
-        .copied()
+    let mut found: Vec<Action> = actions::all()
         .filter(|action| {
             let label = action.label().to_lowercase();
             *action != Action::Palette && words.iter().all(|word| label.contains(word))
@@ -131,7 +131,7 @@ mod tests {
     fn words_are_found_in_any_order() {
         assert_eq!(matching("pairs solve"), [Action::Solve]);
         assert!(matching("teapot").is_empty());
-        assert_eq!(matching("").len(), ALL.len() - 1);
+        assert_eq!(matching("").len(), actions::all().count() - 1);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use egui::{Panel, TextStyle, Ui};
 use plumbline_engine::View;
-use plumbline_engine::view::{EyesView, JobState, StepState as EngineStep};
+use plumbline_engine::view::{Connection, EyesView, JobState, StepState as EngineStep};
 use plumbline_widgets::format;
 use plumbline_widgets::rail::{RailStep, StepState};
 use plumbline_widgets::theme::{self, space};
@@ -33,6 +33,15 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
             }
             for part in Part::ALL {
                 part_row(ui, view, part, screen, outbox);
+            }
+            let mount = RailStep::new("Mount", step_state(&view.mount.step)).number(2);
+            if mount.selected(screen == Screen::Mount).show(ui).clicked() {
+                outbox.act(Action::Go(Screen::Mount));
+            }
+            ui.add_space(space::S);
+            let robot = RailStep::new("Robot", robot_state(view)).selected(screen == Screen::Robot).show(ui);
+            if robot.clicked() {
+                outbox.act(Action::Go(Screen::Robot));
             }
         },
     );
@@ -149,7 +158,20 @@ fn eyes_state(view: &View) -> StepState<'_> {
     if let Some(JobState::Running { fraction, .. }) = solving.map(|job| &job.state) {
         return StepState::Running(*fraction as f32);
     }
-    match &view.eyes.step {
+    step_state(&view.eyes.step)
+}
+
+/// The robot is no step of the work; it only says when it needs to be looked at.
+fn robot_state(view: &View) -> StepState<'_> {
+    match &view.robot.connection {
+        Connection::Lost { reason, .. } => StepState::Failed(reason),
+        Connection::Connecting { .. } => StepState::Running(0.5),
+        Connection::None | Connection::Connected { .. } => StepState::Always,
+    }
+}
+
+fn step_state(step: &EngineStep) -> StepState<'_> {
+    match step {
         EngineStep::NotDone => StepState::NotDone,
         EngineStep::Running => StepState::Running(0.5),
         EngineStep::Done => StepState::Done,

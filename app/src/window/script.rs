@@ -7,8 +7,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use plumbline_engine::View;
-use plumbline_engine::view::SourceStatus;
+use plumbline_engine::view::{Connection, MotionState, SourceStatus};
+use plumbline_engine::{Command, View};
 
 use super::actions::Action;
 
@@ -17,6 +17,12 @@ use super::actions::Action;
 pub enum ScriptStep {
     /// As if its button were pressed.
     Act(Action),
+    /// Hands a command to the engine.
+    Send(Command),
+    /// Shows one joint at an angle (degrees), without moving.
+    PreviewJoint(String, f64),
+    /// Chooses a joint for the inspector.
+    ChooseJoint(String),
     /// Chooses the pair with this place in the list.
     ChoosePair(usize),
     /// Keeps measuring at this pixel of the raw left image.
@@ -57,6 +63,8 @@ impl Script {
         ctx.request_repaint_after(Duration::from_millis(50));
         let now = Instant::now();
         let busy = view.running_job().is_some()
+            || matches!(view.robot.connection, Connection::Connecting { .. })
+            || matches!(view.robot.motion, MotionState::Moving { .. })
             || view.source.status == SourceStatus::Opening
             || self.waiting_for_picture.load(Ordering::Relaxed)
             || now < self.not_before;

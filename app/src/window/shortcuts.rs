@@ -2,7 +2,7 @@
 
 use egui::{Event, Key, KeyboardShortcut, Modifiers};
 
-use super::actions::{ALL, Action};
+use super::actions::{self, Action};
 use super::steps::Screen;
 
 impl Action {
@@ -24,6 +24,8 @@ impl Action {
             Self::Go(Screen::Collect) => command(Key::Num2),
             Self::Go(Screen::Judge) => command(Key::Num3),
             Self::Go(Screen::Accept) => command(Key::Num4),
+            Self::Go(Screen::Mount) => command(Key::Num5),
+            Self::Go(Screen::Robot) => command(Key::Num6),
             Self::Capture => plain(Key::C),
             Self::DeleteLast => plain(Key::Backspace),
             Self::Undo => command(Key::Z),
@@ -58,6 +60,12 @@ pub fn shortcut_text(ctx: &egui::Context, action: Action) -> Option<String> {
     Some(text.replace("Escape", "Esc").replace("Period", ".").replace("Comma", ","))
 }
 
+/// Whether Esc or space was pressed in this frame; takes nothing away.
+pub fn stop_asked(ctx: &egui::Context) -> bool {
+    let typing = ctx.text_edit_focused();
+    ctx.input(|input| input.key_pressed(Key::Escape) || !typing && input.key_pressed(Key::Space))
+}
+
 /// Whether Esc or space was pressed, with whatever other keys are held. Esc counts while a text
 /// is typed as well: who presses it in alarm must not be asked where the cursor is. Space is
 /// taken away, so that it does not press the button that has the focus too.
@@ -80,10 +88,9 @@ pub fn take_shortcuts(ctx: &egui::Context) -> Vec<Action> {
     if take_stop_keys(ctx, typing) {
         taken.push(Action::Stop);
     }
-    let mut shortcuts: Vec<(KeyboardShortcut, Action)> = ALL
-        .iter()
-        .filter(|action| **action != Action::Stop)
-        .flat_map(|&action| {
+    let mut shortcuts: Vec<(KeyboardShortcut, Action)> = actions::all()
+        .filter(|action| *action != Action::Stop)
+        .flat_map(|action| {
             [action.shortcut(), action.second_shortcut()]
                 .into_iter()
                 .flatten()
@@ -108,8 +115,9 @@ mod tests {
 
     #[test]
     fn no_two_actions_share_a_shortcut_or_a_name() {
-        for (i, a) in ALL.iter().enumerate() {
-            for b in &ALL[i + 1..] {
+        let all: Vec<Action> = actions::all().collect();
+        for (i, a) in all.iter().enumerate() {
+            for b in &all[i + 1..] {
                 assert_ne!(a.label(), b.label());
                 let keys = |x: &Action| {
                     [x.shortcut(), x.second_shortcut()].into_iter().flatten().collect::<Vec<_>>()

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::path::Path;
 
-use egui::{Button, Popup, Ui};
+use egui::{Button, Ui};
 use plumbline_engine::view::SourceStatus;
 use plumbline_engine::{SourceCommand, SourceSpec, View};
 use plumbline_widgets::theme;
@@ -15,54 +15,42 @@ use super::shortcuts::shortcut_text;
 /// Longest name on the button, characters.
 const LONGEST: usize = 28;
 
-pub(super) fn show(view: &View, recent: &VecDeque<SourceSpec>, ui: &mut Ui, outbox: &mut Outbox) {
-    let name = match &view.source.spec {
-        Some(spec) => shortened(&short_name(spec)),
-        None => "none".to_owned(),
-    };
-    let response = ui.button(format!("Source: {name}"));
-    let response = if view.source.description.is_empty() {
-        response
-    } else {
-        response.on_hover_text(&view.source.description)
-    };
-    Popup::menu(&response).show(|ui| {
-        ui.set_min_width(280.0);
-        for action in [
-            Action::OpenFolder,
-            Action::OpenTwoFolders,
-            Action::OpenVideos,
-            Action::OpenCameras,
-            Action::OpenPath,
-        ] {
-            let button = Button::new(action.label())
-                .shortcut_text(shortcut_text(ui.ctx(), action).unwrap_or_default());
-            if ui.add(button).clicked() {
-                outbox.act(action);
+/// What can be opened, what was opened before, and closing it.
+pub(super) fn entries(view: &View, recent: &VecDeque<SourceSpec>, ui: &mut Ui, outbox: &mut Outbox) {
+    for action in [
+        Action::OpenFolder,
+        Action::OpenTwoFolders,
+        Action::OpenVideos,
+        Action::OpenCameras,
+        Action::OpenPath,
+    ] {
+        let button =
+            Button::new(action.label()).shortcut_text(shortcut_text(ui.ctx(), action).unwrap_or_default());
+        if ui.add(button).clicked() {
+            outbox.act(action);
+            ui.close();
+        }
+    }
+    if !recent.is_empty() {
+        ui.separator();
+        ui.label(theme::small(ui, "Opened before"));
+        for spec in recent {
+            if ui.button(shortened(&short_name(spec))).on_hover_text(long_name(spec)).clicked() {
+                outbox.send(SourceCommand::Open(spec.clone()));
                 ui.close();
             }
         }
-        if !recent.is_empty() {
-            ui.separator();
-            ui.label(theme::small(ui, "Opened before"));
-            for spec in recent {
-                if ui.button(shortened(&short_name(spec))).on_hover_text(long_name(spec)).clicked() {
-                    outbox.send(SourceCommand::Open(spec.clone()));
-                    ui.close();
-                }
-            }
+    }
+    if view.source.status != SourceStatus::None {
+        ui.separator();
+        if ui.button(Action::CloseSource.label()).clicked() {
+            outbox.act(Action::CloseSource);
+            ui.close();
         }
-        if view.source.status != SourceStatus::None {
-            ui.separator();
-            if ui.button(Action::CloseSource.label()).clicked() {
-                outbox.act(Action::CloseSource);
-                ui.close();
-            }
-        }
-    });
+    }
 }
 
-fn shortened(name: &str) -> String {
+pub(super) fn shortened(name: &str) -> String {
     if name.chars().count() <= LONGEST {
         return name.to_owned();
     }

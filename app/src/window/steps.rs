@@ -16,15 +16,20 @@ pub enum Screen {
     Judge,
     /// Calibrating the eyes: comparing with what is in use, accepting, files.
     Accept,
+    /// Calibrating how the eyes sit in the head.
+    Mount,
+    /// The robot: its joints, moving it.
+    Robot,
 }
 
 impl Screen {
     /// All of them, in the order of work.
-    pub const ALL: [Self; 4] = [Self::Live, Self::Collect, Self::Judge, Self::Accept];
+    pub const ALL: [Self; 6] =
+        [Self::Live, Self::Collect, Self::Judge, Self::Accept, Self::Mount, Self::Robot];
 
     /// Whether it belongs to the step "Eyes".
     pub fn is_eyes(self) -> bool {
-        self != Self::Live
+        matches!(self, Self::Collect | Self::Judge | Self::Accept)
     }
 }
 
@@ -66,6 +71,20 @@ pub enum Pane {
     Comparison,
     /// Reading and writing calibration files; earlier calibrations.
     Files,
+    /// Robot, table and objects in three dimensions.
+    Scene,
+    /// The joints: where they are, where they should be.
+    Joints,
+    /// Moving a tip while a key is held.
+    Jog,
+    /// Poses with a name.
+    Poses,
+    /// What stands on the twin's table, its clock, its faults.
+    Twin,
+    /// Head poses from which the board was seen.
+    HeadViews,
+    /// How the eyes sit in the head: nominal, in use, proposed.
+    EyeMount,
 }
 
 impl Pane {
@@ -89,6 +108,13 @@ impl Pane {
             Self::Difference => "Difference at the table",
             Self::Comparison => "Comparison",
             Self::Files => "Files",
+            Self::Scene => "Scene",
+            Self::Joints => "Joints",
+            Self::Jog => "Jog",
+            Self::Poses => "Poses",
+            Self::Twin => "Twin",
+            Self::HeadViews => "Views",
+            Self::EyeMount => "Mount of the eyes",
         }
     }
 }
@@ -101,6 +127,8 @@ pub fn default_arrangement(screen: Screen) -> Tree<Pane> {
         Screen::Collect => collect(&mut tiles),
         Screen::Judge => judge(&mut tiles),
         Screen::Accept => accept(&mut tiles),
+        Screen::Mount => mount(&mut tiles),
+        Screen::Robot => robot(&mut tiles),
     };
     Tree::new(egui::Id::unique(("tiles", screen)), root, tiles)
 }
@@ -110,9 +138,12 @@ fn live(tiles: &mut Tiles<Pane>) -> TileId {
     let right = tabs(tiles, &[Pane::RightEye]);
     let rectified = tabs(tiles, &[Pane::Rectified, Pane::Anaglyph, Pane::Blink]);
     let depth = tabs(tiles, &[Pane::Depth, Pane::Disparity]);
-    let top = row(tiles, &[(left, 1.0), (right, 1.0)]);
-    let bottom = row(tiles, &[(rectified, 1.0), (depth, 1.0)]);
-    column(tiles, &[(top, 1.0), (bottom, 1.0)])
+    let scene = tabs(tiles, &[Pane::Scene]);
+    let twin = tabs(tiles, &[Pane::Twin, Pane::Joints]);
+    let left = column(tiles, &[(left, 1.0), (rectified, 1.0)]);
+    let right = column(tiles, &[(right, 1.0), (depth, 1.0)]);
+    let robot = column(tiles, &[(scene, 0.8), (twin, 1.2)]);
+    row(tiles, &[(left, 1.0), (right, 1.0), (robot, 0.85)])
 }
 
 fn collect(tiles: &mut Tiles<Pane>) -> TileId {
@@ -144,6 +175,28 @@ fn accept(tiles: &mut Tiles<Pane>) -> TileId {
     let left = column(tiles, &[(comparison, 1.0), (files, 1.0)]);
     let right = column(tiles, &[(difference, 1.0), (uncertainty, 1.0)]);
     row(tiles, &[(left, 1.0), (right, 1.2)])
+}
+
+fn mount(tiles: &mut Tiles<Pane>) -> TileId {
+    let left = tabs(tiles, &[Pane::LeftEye]);
+    let right = tabs(tiles, &[Pane::RightEye]);
+    let views = tabs(tiles, &[Pane::HeadViews]);
+    let result = tabs(tiles, &[Pane::EyeMount]);
+    let scene = tabs(tiles, &[Pane::Scene, Pane::Twin]);
+    let top = row(tiles, &[(left, 1.0), (right, 1.0)]);
+    let bottom = row(tiles, &[(views, 1.0), (result, 1.25), (scene, 1.0)]);
+    column(tiles, &[(top, 0.9), (bottom, 1.2)])
+}
+
+fn robot(tiles: &mut Tiles<Pane>) -> TileId {
+    let scene = tabs(tiles, &[Pane::Scene]);
+    let jog = tabs(tiles, &[Pane::Jog, Pane::Twin]);
+    let joints = tabs(tiles, &[Pane::Joints]);
+    let poses = tabs(tiles, &[Pane::Poses]);
+    // Pad and rows of joints need their width on the smallest window too.
+    let top = row(tiles, &[(scene, 1.0), (jog, 1.0)]);
+    let bottom = row(tiles, &[(joints, 2.4), (poses, 1.0)]);
+    column(tiles, &[(top, 1.1), (bottom, 1.0)])
 }
 
 fn tabs(tiles: &mut Tiles<Pane>, panes: &[Pane]) -> TileId {

@@ -3,7 +3,7 @@
 use egui::{CentralPanel, Color32, Frame, Stroke, Ui, Visuals, WidgetText};
 use egui_tiles::{Behavior, SimplificationOptions, TabState, TileId, Tiles, UiResponse};
 use plumbline_engine::View;
-use plumbline_engine::view::SourceStatus;
+use plumbline_engine::view::{Connection, SourceStatus};
 use plumbline_widgets::theme;
 
 use super::PlumblineWindow;
@@ -15,7 +15,10 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
     let screen = window.settings.screen;
     let background = theme::tokens(ui).background;
     CentralPanel::no_frame().frame(Frame::new().fill(background)).show(ui, |ui| {
-        if screen == Screen::Live && window.view.source.status == SourceStatus::None {
+        let twin =
+            window.view.twin.running || matches!(window.view.robot.connection, Connection::Connecting { .. });
+        let nothing = window.view.source.status == SourceStatus::None && !twin;
+        if screen == Screen::Live && nothing {
             return panels::show_start(ui, &window.settings.recent_sources, outbox);
         }
         let tree = window.settings.arrangement(screen);

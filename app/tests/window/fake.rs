@@ -1,5 +1,6 @@
 //! A window without an engine: it draws what the test made up and notes what was asked for.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 use egui_kittest::Harness;
@@ -12,6 +13,8 @@ use plumbline_engine::{Command, View};
 pub struct Fake {
     view: Arc<Mutex<Arc<View>>>,
     sent: Arc<Mutex<Vec<Command>>>,
+    stops: Arc<AtomicUsize>,
+    heartbeats: Arc<AtomicUsize>,
 }
 
 impl Backend for Fake {
@@ -22,6 +25,14 @@ impl Backend for Fake {
     fn send(&self, command: Command) {
         self.sent.lock().expect("no test panics with the lock").push(command);
     }
+
+    fn stop(&self) {
+        self.stops.fetch_add(1, Ordering::SeqCst);
+    }
+
+    fn heartbeat(&self) {
+        self.heartbeats.fetch_add(1, Ordering::SeqCst);
+    }
 }
 
 impl Fake {
@@ -29,6 +40,21 @@ impl Fake {
         let fake = Self::default();
         *fake.view.lock().expect("fresh") = Arc::new(view);
         fake
+    }
+
+    /// Shows another view from the next frame on.
+    pub fn show(&self, view: View) {
+        *self.view.lock().expect("no test panics with the lock") = Arc::new(view);
+    }
+
+    /// How often STOP was called since the last call.
+    pub fn take_stops(&self) -> usize {
+        self.stops.swap(0, Ordering::SeqCst)
+    }
+
+    /// Signs of life so far.
+    pub fn heartbeats(&self) -> usize {
+        self.heartbeats.load(Ordering::SeqCst)
     }
 
     /// What was asked for since the last call, without what the window asks for by itself.
@@ -47,15 +73,27 @@ impl Fake {
         settings: WindowSettings,
         size: [f32; 2],
     ) -> Harness<'static, PlumblineWindow> {
+        self.window_with(settings, size, false)
+    }
+
+    /// With a renderer when it shall be looked at.
+    pub fn window_with(
+        &self,
+        settings: WindowSettings,
+        size: [f32; 2],
+        picture: bool,
+    ) -> Harness<'static, PlumblineWindow> {
         let backend = self.clone();
         let options =
             WindowOptions { settings, script: Vec::<ScriptStep>::new(), ..WindowOptions::default() };
-        let mut harness = Harness::builder()
-            .with_size(size)
+        let builder = Harness::builder().with_size(size);
+        let builder = if picture { builder.wgpu() } else { builder };
+        let mut harness = builder
             .build_eframe(|creation| PlumblineWindow::new(&creation.egui_ctx, Box::new(backend), options));
         // The first frames only measure.
         harness.run_steps(3);
         self.take_sent();
+        self.take_stops();
         harness
     }
 }

@@ -2,6 +2,10 @@
 
 mod fake;
 mod guidance;
+mod made_up;
+mod mount;
 mod pictures;
+mod robot;
 mod stop;
+mod twin;
 mod words;

@@ -1,0 +1,114 @@
+//! The views that were taken, and the head poses that are planned.
+
+use egui::{Button, ScrollArea, Ui};
+use plumbline_engine::MountCommand;
+use plumbline_engine::view::{HeadViewSummary, MountView};
+use plumbline_widgets::empty::{EmptyState, Message};
+use plumbline_widgets::format;
+use plumbline_widgets::theme::{self, Role, space};
+
+use crate::panels::{PanelContext, padded};
+use crate::window::{Action, MountAction};
+
+const ROW: f32 = 24.0;
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let view = cx.view;
+    let mount = &view.mount;
+    padded(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            button(ui, cx, MountAction::Plan, "Plan");
+            button(ui, cx, MountAction::Capture, "Take a view");
+            button(ui, cx, MountAction::DeleteAll, "Delete all");
+        });
+        ui.add_space(space::XS);
+        if mount.views.is_empty() && mount.planned.is_empty() {
+            let message = Message::new(
+                "No views yet",
+                "Lay the board on the table and plan: the head turns, the board stays, both eyes look.",
+            );
+            if EmptyState::empty(message.button("Plan head poses")).show(ui) {
+                cx.outbox.act(Action::Mount(MountAction::Plan));
+            }
+            return;
+        }
+        ui.label(theme::small(ui, summary(mount)));
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            for seen in mount.views.iter() {
+                row(ui, cx, seen);
+            }
+            for (pan_rad, tilt_rad) in mount.planned.iter() {
+                planned_row(ui, *pan_rad, *tilt_rad);
+            }
+        });
+    });
+}
+
+fn button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: MountAction, text: &str) {
+    let why = action.refusal(cx.view);
+    let button = ui.add_enabled(why.is_none(), Button::new(text)).on_hover_text(action.label());
+    if button.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
+        cx.outbox.act(Action::Mount(action));
+    }
+}
+
+fn summary(mount: &MountView) -> String {
+    match mount.planned.len() {
+        0 => format::count(mount.views.len(), "view"),
+        planned => format!("{}, {planned} more planned", format::count(mount.views.len(), "view")),
+    }
+}
+
+fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, seen: &HeadViewSummary) {
+    let mount = &cx.view.mount;
+    let left_out =
+        mount.proposal.as_ref().and_then(|p| p.rejected.iter().find(|(name, _)| *name == seen.name));
+    ui.horizontal(|ui| {
+        ui.set_min_height(ROW);
+        let weak = theme::tokens(ui).text_weak;
+        let warning = Role::Warning.color(theme::tokens(ui));
+        ui.add_sized([118.0, ROW], egui::Label::new(head_text(seen.pan_rad, seen.tilt_rad))).on_hover_text(
+            format!("{}: {} corners left, {} right", seen.name, seen.corners.0, seen.corners.1),
+        );
+        match (left_out, seen.rms_px) {
+            (Some((_, why)), _) => {
+                ui.add(egui::Label::new(egui::RichText::new(why).color(warning)).truncate())
+                    .on_hover_text(why);
+            }
+            (None, Some(rms)) => {
+                ui.label(format::px(rms));
+            }
+            (None, None) => {
+                ui.label(egui::RichText::new("seen").color(weak));
+            }
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let delete = ui.add(Button::new(theme::small(ui, "Delete")).frame(false));
+            delete.widget_info(|| {
+                egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Delete {}", seen.name))
+            });
+            if delete.clicked() {
+                cx.outbox.send(MountCommand::Delete { view: seen.name.clone() });
+            }
+        });
+    });
+}
+
+fn planned_row(ui: &mut Ui, pan_rad: f64, tilt_rad: f64) {
+    ui.horizontal(|ui| {
+        ui.set_min_height(ROW);
+        let weak = theme::tokens(ui).text_weak;
+        let text = egui::RichText::new(head_text(pan_rad, tilt_rad)).color(weak);
+        ui.add_sized([118.0, ROW], egui::Label::new(text));
+        ui.label(theme::small(ui, "planned"));
+    });
+}
+
+/// "left 12°, down 30°".
+fn head_text(pan_rad: f64, tilt_rad: f64) -> String {
+    let side = if pan_rad >= 0.0 { "left" } else { "right" };
+    let height = if tilt_rad > 0.0 { "up" } else { "down" };
+    let degrees = |angle: f64| format::fixed(angle.abs().to_degrees(), 0);
+    format!("{side} {}°, {height} {}°", degrees(pan_rad), degrees(tilt_rad))
+}

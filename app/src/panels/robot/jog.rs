@@ -1,0 +1,103 @@
+//! Moving a tip by hand. Nothing is sent unless the enabling key is held: Shift over the pad, its
+//! enable button, or the left shoulder button of a gamepad.
+
+use egui::{ComboBox, ScrollArea, Ui};
+use plumbline_engine::view::RobotView;
+use plumbline_engine::{JogRates, RobotCommand};
+use plumbline_widgets::jog_pad::{JogPad, JogSpeed};
+use plumbline_widgets::theme::{self, space};
+
+use super::words::tip_title;
+use super::{Asked, cannot_move, refusal_line};
+use crate::panels::{PanelContext, padded};
+use crate::window::GamepadState;
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    if super::without_joints(ui, cx) {
+        return;
+    }
+    padded(ui, |ui| {
+        ScrollArea::both().auto_shrink(false).show(ui, |ui| contents(ui, cx));
+    });
+}
+
+fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    refusal_line(ui, cx, Asked::Jog);
+    let view = cx.view;
+    choose_tip(ui, &view.robot, &mut |link| cx.outbox.send(RobotCommand::ChooseTip { link }));
+    let why = cannot_move(&view.robot);
+    let tip = tip_title(&view.robot).to_lowercase();
+    let pad = cx.state.robot.gamepad.clone().filter(|pad| pad.enabled && why.is_none());
+    let shown = JogPad::new(&tip)
+        .why_not(why)
+        .enabled_elsewhere(pad.is_some())
+        .show(ui, &mut cx.state.robot.jog_speed);
+    let by_hand = shown.intent.map(|intent| JogRates {
+        velocity_m_s: intent.velocity_m_s.into(),
+        yaw_rad_s: intent.yaw_rate_rad_s,
+    });
+    let by_stick = pad.as_ref().and_then(|pad| stick_rates(pad, cx.state.robot.jog_speed));
+    if let Some(rates) = by_hand.or(by_stick) {
+        cx.state.robot.asked = Asked::Jog;
+        cx.outbox.jog = Some(rates);
+    }
+    ui.add_space(space::XS);
+    gamepad(ui, cx.state.robot.gamepad.as_ref());
+}
+
+/// A stick all the way pushed is as fast as a button; a diagonal is no faster.
+fn stick_rates(pad: &GamepadState, speed: JogSpeed) -> Option<JogRates> {
+    let [x, y, z, turn] = pad.push;
+    if !pad.push.iter().all(|push| push.is_finite()) || pad.push.iter().all(|push| push.abs() < 1e-9) {
+        return None;
+    }
+    let norm = (x * x + y * y + z * z).sqrt().max(1.0);
+    let velocity_m_s = [x, y, z].map(|part| part / norm * speed.linear_m_s());
+    Some(JogRates { velocity_m_s, yaw_rad_s: turn.clamp(-1.0, 1.0) * speed.yaw_rad_s() })
+}
+
+fn choose_tip(ui: &mut Ui, robot: &RobotView, choose: &mut dyn FnMut(String)) {
+    let Some(rig) = &robot.rig else { return };
+    ui.horizontal(|ui| {
+        let label = ui.label("Tip");
+        let shown = tip_title(robot);
+        let combo = ComboBox::from_id_salt("tip").width(220.0).selected_text(shown).show_ui(ui, |ui| {
+            for tip in rig.arms.iter().flat_map(|arm| &arm.tips) {
+                if ui.selectable_label(tip.link == robot.tip, &tip.title).clicked() {
+                    choose(tip.link.clone());
+                }
+            }
+        });
+        combo.response.labelled_by(label.id);
+    });
+}
+
+fn gamepad(ui: &mut Ui, pad: Option<&GamepadState>) {
+    let text = match pad {
+        Some(pad) if pad.enabled => format!("{}: enabled", pad.name),
+        Some(pad) => format!("{}: hold its left shoulder button", pad.name),
+        None => "A gamepad works too: plug one in.".to_owned(),
+    };
+    ui.label(theme::small(ui, text))
+        .on_hover_text("Left stick: forward, back, left, right. Right stick: up, down, turn.");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pushed(push: [f64; 4]) -> Option<JogRates> {
+        stick_rates(&GamepadState { push, enabled: true, ..GamepadState::default() }, JogSpeed::Normal)
+    }
+
+    #[test]
+    fn sticks_are_no_faster_than_buttons_and_half_a_push_is_half_as_fast() {
+        assert_eq!(pushed([0.0; 4]), None);
+        assert_eq!(pushed([f64::NAN, 0.0, 0.0, 0.0]), None);
+        let both = pushed([1.0, 1.0, 0.0, 0.0]).expect("a way").velocity_m_s;
+        let speed = both.iter().map(|v| v * v).sum::<f64>().sqrt();
+        assert!((speed - JogSpeed::Normal.linear_m_s()).abs() < 1e-12);
+        let slow = pushed([0.5, 0.0, 0.0, 0.0]).expect("half way").velocity_m_s;
+        assert!((slow[0] - 0.5 * JogSpeed::Normal.linear_m_s()).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,175 @@
+//! The joints in their groups: where they are, where they should be, how warm and how loaded.
+//! Proposing an angle shows a move; the bottom line runs it.
+
+mod compact;
+
+use egui::{ScrollArea, Ui};
+use plumbline_engine::view::{JointView, RobotView};
+use plumbline_engine::{Destination, RobotCommand};
+use plumbline_model::robot::{JointIndex, Posture, Rig};
+use plumbline_widgets::joint_row::{
+    Freshness, JointHistory, JointRow, JointState, ReducedRange, joint_header,
+};
+use plumbline_widgets::theme::{self, space};
+
+use super::{Asked, OLD, cannot_show, refusal_line, stale_line};
+use crate::panels::{PanelContext, padded};
+
+/// Below this width the rows leave out what the inspector says too.
+const NARROW: f32 = 560.0;
+/// History shown in an open row, s.
+const HISTORY_S: f64 = 120.0;
+/// A joint that would move by more than this belongs to the shown move, rad. More than encoders
+/// flicker and joints sag.
+const OTHER_MOVES_RAD: f64 = 0.01;
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    if super::without_joints(ui, cx) {
+        return;
+    }
+    let view = cx.view;
+    let Some(rig) = &view.robot.rig else { return };
+    padded(ui, |ui| {
+        stale_line(ui, &view.robot);
+        refusal_line(ui, cx, Asked::Joints);
+        let narrow = ui.available_width() < NARROW;
+        if !narrow {
+            // As wide as the rows, which leave room for the scroll bar.
+            joint_header(ui);
+        }
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            for (title, joints) in groups(rig) {
+                group(ui, cx, &title, &joints, narrow);
+            }
+        });
+    });
+}
+
+/// Head, then each arm with its hand, as people look at a robot.
+fn groups(rig: &Rig) -> Vec<(String, Vec<JointIndex>)> {
+    let mut groups = vec![("Head".to_owned(), vec![rig.eyes.pan, rig.eyes.tilt])];
+    for arm in &rig.arms {
+        groups.push((arm.title.clone(), arm.joints.clone()));
+        groups.push((format!("{}, hand", arm.title), arm.hand.clone()));
+    }
+    groups
+}
+
+fn group(ui: &mut Ui, cx: &mut PanelContext<'_>, title: &str, joints: &[JointIndex], narrow: bool) {
+    let view = cx.view;
+    let found = |index: &JointIndex| view.robot.joints.iter().find(|joint| joint.joint == *index);
+    let shown: Vec<&JointView> = joints.iter().filter_map(found).collect();
+    if shown.is_empty() {
+        return;
+    }
+    theme::group_heading(ui, title);
+    ui.spacing_mut().item_spacing.y = 0.0;
+    for joint in shown {
+        if narrow {
+            compact::row(ui, cx, joint);
+        } else {
+            row(ui, cx, joint);
+        }
+    }
+    ui.add_space(space::XS);
+}
+
+fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, joint: &JointView) {
+    let robot = &cx.view.robot;
+    let chosen = cx.state.robot.chosen_joint == Some(joint.joint);
+    let limits = joint.limits;
+    let narrowed = (joint.limits_now != limits).then(|| ReducedRange {
+        range_rad: [joint.limits_now.lower_rad, joint.limits_now.upper_rad],
+        reason: coupled_reason(robot, joint.joint),
+    });
+    let servo = format!("servo {}", joint.servo);
+    // Only the open row needs its minutes.
+    let history = if chosen { history(joint) } else { JointHistory::new(HISTORY_S) };
+    let shown =
+        JointRow::new(&joint.title, &joint.name, [limits.lower_rad, limits.upper_rad], state(robot, joint))
+            .reduced(narrowed)
+            .freshness(freshness(robot, joint, &servo))
+            .history(&history)
+            .expanded(chosen)
+            .show(ui);
+    if shown.expand_toggled {
+        cx.state.robot.chosen_joint = (!chosen).then_some(joint.joint);
+    }
+    if let Some(angle_rad) = shown.proposed_rad {
+        propose(cx, joint, angle_rad);
+    }
+    if let Some(on) = shown.torque.filter(|_| robot.connection.is_connected()) {
+        cx.outbox.send(RobotCommand::Torque { joints: vec![joint.joint], on });
+    }
+    if let Some(problem) = &joint.problem {
+        super::warning(ui, problem);
+    }
+}
+
+/// Shows the move; nothing moves by that.
+fn propose(cx: &mut PanelContext<'_>, joint: &JointView, angle_rad: f64) {
+    if cannot_show(&cx.view.robot).is_some() {
+        return;
+    }
+    cx.state.robot.chosen_joint = Some(joint.joint);
+    let to = destination(&cx.view.robot, joint.joint, angle_rad);
+    cx.preview(Asked::Joints, to);
+}
+
+fn state(robot: &RobotView, joint: &JointView) -> JointState {
+    let proposed = preview_angle(robot, joint)
+        .filter(|there| joint.angle_rad.is_none_or(|here| (there - here).abs() > OTHER_MOVES_RAD));
+    JointState {
+        present_rad: joint.angle_rad,
+        goal_rad: joint.goal_rad,
+        proposed_rad: proposed,
+        load: joint.load,
+        temperature_c: joint.temperature_c,
+        torque_on: joint.torque_on,
+    }
+}
+
+fn freshness<'a>(robot: &RobotView, joint: &JointView, servo: &'a str) -> Freshness<'a> {
+    if robot.bus.missing.contains(&joint.servo) {
+        return Freshness::NoAnswer { from: servo, since: joint.age };
+    }
+    match joint.age {
+        Some(age) if age > OLD => Freshness::Stale(age),
+        _ => Freshness::Live,
+    }
+}
+
+fn coupled_reason(robot: &RobotView, joint: JointIndex) -> &str {
+    let rig = robot.rig.as_ref();
+    let coupled = rig.and_then(|rig| rig.coupled_limits.iter().find(|limit| limit.joint == joint));
+    coupled.map_or("another joint is in the way", |limit| &limit.why)
+}
+
+fn history(joint: &JointView) -> JointHistory {
+    let mut history = JointHistory::new(HISTORY_S);
+    for sample in joint.history.iter() {
+        history.load.push(sample.at_s, sample.load);
+        history.temperature_c.push(sample.at_s, sample.temperature_c);
+    }
+    history
+}
+
+fn preview_angle(robot: &RobotView, joint: &JointView) -> Option<f64> {
+    robot.preview.as_ref()?.end.angles_rad().get(joint.joint.0).copied()
+}
+
+/// Where the move goes: this joint, together with what is shown already.
+fn destination(robot: &RobotView, joint: JointIndex, angle_rad: f64) -> Destination {
+    let shown = robot.preview.as_ref().map(|preview| &preview.end);
+    match shown.filter(|end| joint.0 < end.len() && others_move(robot, joint, end)) {
+        Some(end) => Destination::Posture(end.with(&[joint], &[angle_rad])),
+        None => Destination::Joint { joint, angle_rad },
+    }
+}
+
+fn others_move(robot: &RobotView, joint: JointIndex, end: &Posture) -> bool {
+    robot.joints.iter().filter(|other| other.joint != joint).any(|other| {
+        let there = end.angles_rad().get(other.joint.0);
+        there.zip(other.angle_rad).is_some_and(|(there, here)| (there - here).abs() > OTHER_MOVES_RAD)
+    })
+}

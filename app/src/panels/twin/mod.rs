@@ -1,0 +1,149 @@
+//! The twin: what stands on its table, the board, the clock of its eyes, its faults. Nothing of
+//! what its scenario hides is here.
+
+mod board;
+mod table;
+
+use std::time::Duration;
+
+use egui::{Button, ComboBox, ScrollArea, Ui};
+use plumbline_engine::view::{Connection, TwinView};
+use plumbline_engine::{RobotCommand, TwinCommand};
+use plumbline_widgets::empty::{EmptyState, Message};
+use plumbline_widgets::format;
+use plumbline_widgets::theme::{self, Role, group_heading, space};
+
+use super::{PanelContext, padded};
+use crate::window::{Action, RobotAction, default_scenario};
+
+/// How the twin is looked at: kept from frame to frame, never saved.
+#[derive(Clone, Debug, Default)]
+pub struct TwinPanels {
+    /// The toy that a click on the table puts down, by its place in the list.
+    pub chosen_toy: Option<usize>,
+    /// Place at which the board is held next, counted from 1 as on screen.
+    pub board_place: usize,
+}
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let view = cx.view;
+    let twin = &view.twin;
+    if !twin.running {
+        return without_twin(ui, cx);
+    }
+    padded(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.label(theme::weak(ui, "A simulated robot: nothing real moves."));
+            table::show(ui, cx);
+            board::show(ui, cx);
+            clock(ui, cx, twin);
+            scenario(ui, cx, twin);
+            faults(ui, cx, twin);
+        });
+    });
+}
+
+fn without_twin(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let view = cx.view;
+    let connecting = match &view.robot.connection {
+        Connection::Connecting { to, doing } if to.contains("twin") => {
+            Some(format!("Starting {to}: {doing}"))
+        }
+        _ => None,
+    };
+    if let Some(text) = connecting {
+        EmptyState::loading(&text).show(ui);
+        return;
+    }
+    let action = Action::Robot(RobotAction::ConnectTwin);
+    let clicked = match &view.twin.failed {
+        Some(why) => {
+            EmptyState::failed(Message::new("The twin does not run", why).button("Start the twin")).show(ui)
+        }
+        None => {
+            let message = Message::new(
+                "The twin does not run",
+                "It is a simulated robot with eyes, table and toys: everything can be tried on it.",
+            );
+            EmptyState::empty(message.button("Start the twin")).show(ui)
+        }
+    };
+    if clicked {
+        cx.outbox.act(action);
+    }
+}
+
+/// The eyes turn in their mounts while they warm up.
+fn clock(ui: &mut Ui, cx: &mut PanelContext<'_>, twin: &TwinView) {
+    group_heading(ui, "Warm-up");
+    let on = Duration::try_from_secs_f64(twin.eyes_on_s).unwrap_or_default();
+    ui.label(format!("Eyes on for {}", format::clock(on))).on_hover_text(
+        "Eyes turn in their mounts while they warm up: a calibration made cold does not hold warm",
+    );
+    ui.horizontal_wrapped(|ui| {
+        for (text, minutes) in [("+5 min", 5.0), ("+10 min", 10.0)] {
+            if ui.button(text).clicked() {
+                cx.outbox.send(TwinCommand::AdvanceWarmUp { minutes });
+            }
+        }
+        if ui.button("Cool").on_hover_text("Switches the eyes off and on: they are cold again").clicked() {
+            cx.outbox.send(TwinCommand::CoolEyes);
+        }
+    });
+}
+
+fn scenario(ui: &mut Ui, cx: &mut PanelContext<'_>, twin: &TwinView) {
+    group_heading(ui, "Scenario");
+    ui.horizontal_wrapped(|ui| {
+        let chosen = default_scenario(cx.view);
+        ComboBox::from_id_salt("scenario").selected_text(&chosen).show_ui(ui, |ui| {
+            for (name, about) in &twin.scenarios {
+                let entry = ui.selectable_label(*name == chosen, name).on_hover_text(about);
+                if entry.clicked() && *name != chosen {
+                    cx.outbox.send(RobotCommand::ConnectTwin { scenario: name.clone() });
+                }
+            }
+        });
+        if ui.button("Put all back").on_hover_text("Table and robot as at the start").clicked() {
+            cx.outbox.act(Action::Robot(RobotAction::ResetTwin));
+        }
+    });
+    if let Some((_, about)) = twin.scenarios.iter().find(|(name, _)| *name == twin.scenario) {
+        ui.label(theme::small(ui, about));
+    }
+    let pace = format!("Runs at {} of real time", format::percent(twin.real_time_factor));
+    let slow = twin.real_time_factor < 0.9;
+    let text = theme::small(ui, pace);
+    let color = Role::Warning.color(theme::tokens(ui));
+    ui.label(if slow { text.color(color) } else { text });
+}
+
+fn faults(ui: &mut Ui, cx: &mut PanelContext<'_>, twin: &TwinView) {
+    if twin.faults.is_empty() {
+        return;
+    }
+    ui.add_space(space::S);
+    let on = twin.faults.iter().filter(|fault| fault.on).count();
+    let title = if on == 0 {
+        "Faults of the servo bus".to_owned()
+    } else {
+        format!("Faults of the servo bus ({on} on)")
+    };
+    egui::CollapsingHeader::new(title).id_salt("faults").show(ui, |ui| {
+        for fault in &twin.faults {
+            let mut on = fault.on;
+            if ui.checkbox(&mut on, &fault.about).changed() {
+                cx.outbox.send(TwinCommand::Fault { name: fault.name.clone(), on });
+            }
+        }
+    });
+}
+
+/// A button of one of the twin's actions, with its reason where it cannot be pressed.
+fn action_button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: RobotAction, text: &str) {
+    let why = action.refusal(cx.view);
+    let button = ui.add_enabled(why.is_none(), Button::new(text)).on_hover_text(action.label());
+    if button.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
+        cx.outbox.act(Action::Robot(action));
+    }
+}

@@ -1,0 +1,95 @@
+//! The table from above: where the toys are, and where to put them.
+
+use egui::{Color32, Sense, Ui, vec2};
+use plumbline_engine::TwinCommand;
+use plumbline_engine::view::ToyView;
+use plumbline_model::robot::Rig;
+use plumbline_widgets::overlay::Ink;
+use plumbline_widgets::table_map::{Outline, Place, TableMap, TableMark, TableScene};
+use plumbline_widgets::theme::{self, Role, space};
+
+use crate::panels::PanelContext;
+
+const MAP_HEIGHT: f32 = 190.0;
+/// The part of the table that is shown, robot frame, m.
+const X_M: [f64; 2] = [0.10, 0.60];
+const Y_M: [f64; 2] = [-0.40, 0.40];
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let view = cx.view;
+    let toys = &view.twin.toys;
+    theme::group_heading(ui, "Toys");
+    chips(ui, cx, toys);
+    let chosen = cx.state.twin.chosen_toy.and_then(|i| toys.get(i));
+    let said = match chosen {
+        Some(toy) => format!("Click the table to put the {} there.", toy.name),
+        None => "Choose a toy, then click the table.".to_owned(),
+    };
+    ui.label(theme::small(ui, said));
+    let scene = scene(view.robot.rig.as_deref(), toys, chosen);
+    let shown = TableMap::new("Twin's table", &scene).height(MAP_HEIGHT).show(ui);
+    if let (Some([x_m, y_m]), Some(toy)) = (shown.clicked_m, chosen) {
+        cx.outbox.send(TwinCommand::PlaceToy { toy: toy.name.clone(), x_m, y_m });
+    }
+    if let Some(toy) = chosen.filter(|toy| toy.place.is_some())
+        && ui.button(format!("Put the {} away", toy.name)).clicked()
+    {
+        cx.outbox.send(TwinCommand::RemoveToy { toy: toy.name.clone() });
+    }
+}
+
+/// One chip per toy in its color; a ring where it is put away.
+fn chips(ui: &mut Ui, cx: &mut PanelContext<'_>, toys: &[ToyView]) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
+        for (i, toy) in toys.iter().enumerate() {
+            let chosen = cx.state.twin.chosen_toy == Some(i);
+            let where_to = if toy.place.is_some() { "on the table" } else { "put away" };
+            let text = egui::RichText::new(format!("     {}", toy.name));
+            let chip = ui.add(egui::Button::selectable(chosen, text).sense(Sense::click()));
+            chip.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, chosen, &toy.name));
+            let at = chip.rect.left_center() + vec2(14.0, 0.0);
+            match toy.place {
+                Some(_) => ui.painter().circle_filled(at, 5.0, color(toy)),
+                None => ui.painter().circle_stroke(at, 4.5, egui::Stroke::new(1.5, color(toy))),
+            };
+            if chip.on_hover_text(where_to).clicked() {
+                cx.state.twin.chosen_toy = (!chosen).then_some(i);
+            }
+        }
+    });
+}
+
+fn color(toy: &ToyView) -> Color32 {
+    let [r, g, b] = toy.rgb;
+    Color32::from_rgb(r, g, b)
+}
+
+fn scene(rig: Option<&Rig>, toys: &[ToyView], chosen: Option<&ToyView>) -> TableScene {
+    let mut scene = TableScene { x_m: X_M, y_m: Y_M, ..TableScene::new() };
+    if let Some(rig) = rig {
+        let screen = &rig.touchscreen;
+        let (u, v) = (screen.u_axis.vector() * screen.width_m, screen.v_axis.vector() * screen.height_m);
+        let origin = screen.origin.coords.coords;
+        let corners = [origin, origin + u, origin + u + v, origin + v];
+        scene.outlines.push(Outline {
+            place: Place::Touchscreen,
+            name: "touchscreen".to_owned(),
+            corners_m: corners.iter().map(|corner| [corner.x, corner.y]).collect(),
+        });
+    }
+    scene.marks = toys
+        .iter()
+        .filter_map(|toy| {
+            let at = toy.place?.coords;
+            let is_chosen = chosen.is_some_and(|chosen| chosen.name == toy.name);
+            Some(TableMark {
+                at_m: [at.x, at.y],
+                vector_m: None,
+                ink: if is_chosen { Role::Ink.into() } else { Ink::Color(color(toy)) },
+                text: toy.name.clone(),
+            })
+        })
+        .collect();
+    scene
+}

@@ -1,0 +1,111 @@
+//! What to do next with the robot and with the mount of its eyes.
+
+use plumbline_engine::View;
+use plumbline_engine::view::{Connection, MotionState, RobotView};
+use plumbline_widgets::format;
+
+use super::{Guidance, say};
+use crate::panels::{move_sentence, moved_name};
+use crate::window::actions::Action;
+use crate::window::robot_actions::{MountAction, RobotAction};
+use crate::window::steps::Screen;
+
+/// What keeps the robot from being moved; `None` when it is connected and stands.
+fn trouble(robot: &RobotView) -> Option<Guidance> {
+    let connect = Action::Robot(RobotAction::Connect);
+    match &robot.connection {
+        Connection::None => {
+            Some(say("No robot is connected; connecting moves nothing.").then("Connect the robot…", connect))
+        }
+        Connection::Connecting { to, doing } => Some(say(format!("Connecting to {to}: {doing}."))),
+        Connection::Lost { reason, .. } => {
+            Some(say(reason.clone()).warn().then("Connect the robot…", connect))
+        }
+        Connection::Connected { .. } => moving(&robot.motion),
+    }
+}
+
+fn moving(motion: &MotionState) -> Option<Guidance> {
+    let MotionState::Moving { what, fraction, remaining } = motion else { return None };
+    let far = fraction.map_or_else(String::new, |part| format!(", {}", format::percent(part)));
+    let left = remaining.map_or_else(String::new, |left| format!(", {}", format::time_left(left)));
+    Some(say(format!("Moving {what}{far}{left}. Esc or space stops.")))
+}
+
+pub(super) fn robot(view: &View) -> Guidance {
+    let robot = &view.robot;
+    if let Some(guidance) = trouble(robot) {
+        return guidance;
+    }
+    if let Some(preview) = &robot.preview {
+        let guidance =
+            say(move_sentence(preview)).then(moved_name(preview), Action::Robot(RobotAction::Move));
+        return if preview.path.is_err() { guidance.warn() } else { guidance };
+    }
+    if let Some(why) = &robot.refusal {
+        return say(why.clone()).warn();
+    }
+    match &robot.motion {
+        MotionState::Limp => say("The joints are limp: they can be turned by hand, and sink.")
+            .then("Hold all joints", Action::Robot(RobotAction::TorqueOn)),
+        MotionState::Holding { why: Some(why) } => {
+            say(format!("Holds where it stands: {why}. Show a move, or jog.")).warn()
+        }
+        _ => say("Drag a joint or choose a pose: it is shown first, and moves only when you say so."),
+    }
+}
+
+pub(super) fn mount(view: &View) -> Guidance {
+    let mount = &view.mount;
+    if let Some(guidance) = trouble(&view.robot) {
+        return guidance;
+    }
+    if view.eyes.in_use.is_none() {
+        return say("Calibrate the eyes first: how they sit in the head rests on their lenses.")
+            .then("Calibrate the eyes", Action::Go(Screen::Collect));
+    }
+    if mount.proposal.is_some() {
+        return say(next_or(view, "Solved. Look at the figures, then accept."))
+            .then("Accept the mount", Action::Mount(MountAction::Accept));
+    }
+    if !mount.planned.is_empty() {
+        let poses = format::count(mount.planned.len(), "pose");
+        return say(next_or(view, &format!("The head turns to {poses} and looks at each; the arms stay.")))
+            .then(format!("Turn the head to {poses}"), Action::Mount(MountAction::Tour));
+    }
+    if !mount.views.is_empty() {
+        let views = format::count(mount.views.len(), "view");
+        return say(next_or(view, &format!("{views} taken. Next: solve.")))
+            .then(format!("Solve {views}"), Action::Mount(MountAction::Solve));
+    }
+    if view.twin.running && view.twin.board.is_none() {
+        return say("The board has to lie where both eyes see it; the head turns, the board stays.")
+            .then("Lay the board on the table", Action::Robot(RobotAction::LayBoard));
+    }
+    if mount.in_use.is_some() {
+        return say(next_or(
+            view,
+            "The mount of the eyes is in use. Plan again when the head was taken apart.",
+        ))
+        .then("Plan head poses", Action::Mount(MountAction::Plan));
+    }
+    say(next_or(
+        view,
+        "Lay the board where both eyes see it and leave it there. Then plan: nothing moves yet.",
+    ))
+    .then("Plan head poses", Action::Mount(MountAction::Plan))
+}
+
+/// The engine's own sentence, where it has one.
+fn next_or(view: &View, otherwise: &str) -> String {
+    if view.mount.next.is_empty() { otherwise.to_owned() } else { view.mount.next.clone() }
+}
+
+/// With the twin, showing it the board is the first step of calibrating its eyes.
+pub(super) fn board_of_the_twin(view: &View) -> Option<Guidance> {
+    let first = view.twin.running && view.twin.board.is_none() && view.twin.board_places > 0;
+    first.then(|| {
+        say("An unseen hand shows the twin the board at all places; pairs are captured by themselves.")
+            .then("Show the board at all places", Action::Robot(RobotAction::TourBoard))
+    })
+}

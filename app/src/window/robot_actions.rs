@@ -1,0 +1,263 @@
+//! What can be asked for by name of the robot, its twin, and the mount of the eyes.
+
+use std::borrow::Cow;
+
+use plumbline_engine::view::{Connection, MotionState};
+use plumbline_engine::{Command, MountCommand, RobotCommand, TwinCommand, View};
+
+/// Of the robot and its twin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RobotAction {
+    /// Chooses what to connect to.
+    Connect,
+    /// Starts the twin.
+    ConnectTwin,
+    /// Lets the connection go.
+    Disconnect,
+    /// Asks the bus who is there.
+    Scan,
+    /// Runs the move that is shown.
+    Move,
+    /// Forgets the move that is shown.
+    ForgetMove,
+    /// Releases a latched STOP.
+    ReleaseStop,
+    /// All joints hold.
+    TorqueOn,
+    /// All joints go limp (asks first).
+    TorqueOff,
+    /// Saves the present posture (asks for a name).
+    SavePose,
+    /// Shows the board at all places of the twin, or ends that.
+    TourBoard,
+    /// Lays the board on the twin's table.
+    LayBoard,
+    /// Puts the board away.
+    HideBoard,
+    /// Lets the eyes warm up by ten minutes.
+    WarmUp,
+    /// Cold eyes.
+    CoolEyes,
+    /// Puts everything on the twin's table back.
+    ResetTwin,
+}
+
+/// Of calibrating how the eyes sit in the head.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MountAction {
+    /// Plans head poses.
+    Plan,
+    /// Turns the head to all of them.
+    Tour,
+    /// Takes a view where the head stands.
+    Capture,
+    /// Solves.
+    Solve,
+    /// Puts the proposal in use.
+    Accept,
+    /// Forgets the proposal.
+    Discard,
+    /// Removes all views.
+    DeleteAll,
+    /// Goes back to the nominal mount.
+    UseNominal,
+}
+
+/// Where the board lies when it is laid down: ahead of the robot, well inside of what the eyes
+/// see at the working pose of the head. Robot frame, m.
+const BOARD_ON_TABLE_M: [f64; 2] = [0.34, 0.0];
+
+type Refusal = Option<Cow<'static, str>>;
+
+fn when(possible: bool, why: &'static str) -> Refusal {
+    (!possible).then_some(Cow::Borrowed(why))
+}
+
+impl RobotAction {
+    /// All of them, in the palette's order.
+    pub const ALL: [Self; 16] = [
+        Self::Connect,
+        Self::ConnectTwin,
+        Self::Disconnect,
+        Self::Scan,
+        Self::Move,
+        Self::ForgetMove,
+        Self::ReleaseStop,
+        Self::TorqueOn,
+        Self::TorqueOff,
+        Self::SavePose,
+        Self::TourBoard,
+        Self::LayBoard,
+        Self::HideBoard,
+        Self::WarmUp,
+        Self::CoolEyes,
+        Self::ResetTwin,
+    ];
+
+    /// What it is called everywhere.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Connect => "Connect the robot…",
+            Self::ConnectTwin => "Connect the twin",
+            Self::Disconnect => "Disconnect the robot",
+            Self::Scan => "Look for servos again",
+            Self::Move => "Move there",
+            Self::ForgetMove => "Forget the shown move",
+            Self::ReleaseStop => "Release STOP",
+            Self::TorqueOn => "Hold all joints",
+            Self::TorqueOff => "Let all joints go limp…",
+            Self::SavePose => "Save this posture…",
+            Self::TourBoard => "Show the board at all places",
+            Self::LayBoard => "Lay the board on the table",
+            Self::HideBoard => "Put the board away",
+            Self::WarmUp => "Warm the twin's eyes by 10 minutes",
+            Self::CoolEyes => "Cool the twin's eyes",
+            Self::ResetTwin => "Put the twin's table back",
+        }
+    }
+
+    /// Why it cannot be done now.
+    pub fn refusal(self, view: &View) -> Refusal {
+        let robot = &view.robot;
+        let connected = robot.connection.is_connected();
+        match self {
+            Self::Connect => None,
+            Self::ConnectTwin => match robot.connection {
+                Connection::Connected { twin: true, .. } => Some("the twin is connected".into()),
+                Connection::Connecting { .. } => Some("a connection is being made".into()),
+                _ => None,
+            },
+            Self::Disconnect => when(
+                connected || matches!(robot.connection, Connection::Connecting { .. }),
+                "no robot is connected",
+            ),
+            Self::Scan | Self::SavePose => when(connected, "no robot is connected"),
+            Self::Move => move_refusal(view),
+            Self::ForgetMove => when(robot.preview.is_some(), "no move is shown"),
+            Self::ReleaseStop => when(robot.stopped, "STOP is not latched"),
+            Self::TorqueOn if robot.stopped => Some("STOP is latched: release it first".into()),
+            Self::TorqueOn | Self::TorqueOff => when(connected, "no robot is connected"),
+            Self::HideBoard => when(view.twin.board.is_some(), "the board is put away"),
+            Self::TourBoard => when(
+                view.twin.running && view.twin.board_places > 0,
+                "the twin does not run; connect it first",
+            ),
+            Self::LayBoard | Self::WarmUp | Self::CoolEyes | Self::ResetTwin => {
+                when(view.twin.running, "the twin does not run; connect it first")
+            }
+        }
+    }
+
+    /// The command that it stands for; `None` where the window has to ask first.
+    pub fn command(self, view: &View) -> Option<Command> {
+        let all = Vec::new;
+        Some(match self {
+            Self::Connect | Self::TorqueOff | Self::SavePose => return None,
+            Self::ConnectTwin => RobotCommand::ConnectTwin { scenario: default_scenario(view) }.into(),
+            Self::Disconnect => RobotCommand::Disconnect.into(),
+            Self::Scan => RobotCommand::Scan.into(),
+            Self::Move => RobotCommand::RunPreview.into(),
+            Self::ForgetMove => RobotCommand::ClearPreview.into(),
+            Self::ReleaseStop => RobotCommand::ReleaseStop.into(),
+            Self::TorqueOn => RobotCommand::Torque { joints: all(), on: true }.into(),
+            Self::TourBoard => TwinCommand::TourBoard(true).into(),
+            Self::LayBoard => {
+                let [x_m, y_m] = BOARD_ON_TABLE_M;
+                TwinCommand::LayBoard { x_m, y_m, yaw_rad: 0.0 }.into()
+            }
+            Self::HideBoard => TwinCommand::HideBoard.into(),
+            Self::WarmUp => TwinCommand::AdvanceWarmUp { minutes: 10.0 }.into(),
+            Self::CoolEyes => TwinCommand::CoolEyes.into(),
+            Self::ResetTwin => TwinCommand::Reset.into(),
+        })
+    }
+}
+
+/// Why the shown move cannot be run.
+fn move_refusal(view: &View) -> Refusal {
+    let robot = &view.robot;
+    if !robot.connection.is_connected() {
+        return Some("no robot is connected".into());
+    }
+    if robot.stopped {
+        return Some("STOP is latched: release it first".into());
+    }
+    if matches!(robot.motion, MotionState::Moving { .. }) {
+        return Some("the robot is moving".into());
+    }
+    match &robot.preview {
+        None => Some("no move is shown: drag a joint or choose a pose".into()),
+        Some(preview) => preview.path.as_ref().err().map(|why| why.clone().into()),
+    }
+}
+
+/// The scenario in use, else the first.
+pub fn default_scenario(view: &View) -> String {
+    let twin = &view.twin;
+    if !twin.scenario.is_empty() {
+        return twin.scenario.clone();
+    }
+    twin.scenarios.first().map_or_else(|| "lab".to_owned(), |(name, _)| name.clone())
+}
+
+impl MountAction {
+    /// All of them, in the palette's order.
+    pub const ALL: [Self; 8] = [
+        Self::Plan,
+        Self::Tour,
+        Self::Capture,
+        Self::Solve,
+        Self::Accept,
+        Self::Discard,
+        Self::DeleteAll,
+        Self::UseNominal,
+    ];
+
+    /// What it is called everywhere.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Plan => "Plan head poses",
+            Self::Tour => "Turn the head to the planned poses",
+            Self::Capture => "Take a view from here",
+            Self::Solve => "Solve the mount of the eyes",
+            Self::Accept => "Accept the mount",
+            Self::Discard => "Discard the proposed mount",
+            Self::DeleteAll => "Delete all views",
+            Self::UseNominal => "Use the nominal mount",
+        }
+    }
+
+    /// Why it cannot be done now.
+    pub fn refusal(self, view: &View) -> Refusal {
+        let mount = &view.mount;
+        let busy = view.running_job().is_some();
+        match self {
+            Self::Plan | Self::Tour | Self::Capture if !view.robot.connection.is_connected() => {
+                Some("no robot is connected: the head's angles are needed".into())
+            }
+            Self::Plan | Self::Capture => when(!busy, "a job is running"),
+            Self::Tour if view.robot.stopped => Some("STOP is latched: release it first".into()),
+            Self::Tour if busy => Some("a job is running".into()),
+            Self::Tour => when(!mount.planned.is_empty(), "no head poses are planned"),
+            Self::Solve if busy => Some("a job is running".into()),
+            Self::Solve | Self::DeleteAll => when(!mount.views.is_empty(), "there is no view yet"),
+            Self::Accept | Self::Discard => when(mount.proposal.is_some(), "nothing is proposed"),
+            Self::UseNominal => when(mount.in_use.is_some(), "the nominal mount is in use"),
+        }
+    }
+
+    /// The command that it stands for.
+    pub fn command(self) -> Command {
+        match self {
+            Self::Plan => MountCommand::Plan,
+            Self::Tour => MountCommand::Tour,
+            Self::Capture => MountCommand::Capture,
+            Self::Solve => MountCommand::Solve,
+            Self::Accept => MountCommand::Accept,
+            Self::Discard => MountCommand::Discard,
+            Self::DeleteAll => MountCommand::DeleteAll,
+            Self::UseNominal => MountCommand::UseNominal,
+        }
+        .into()
+    }
+}

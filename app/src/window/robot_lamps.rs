@@ -1,0 +1,136 @@
+//! The robot in the top line: the bus, the hottest servo, what STOP says, and releasing it.
+
+use egui::{Popup, RichText, Ui};
+use plumbline_engine::View;
+use plumbline_engine::view::{Connection, MotionState, RobotView};
+use plumbline_widgets::buttons::ArmState;
+use plumbline_widgets::format;
+use plumbline_widgets::key_value::{KeyValue, key_value_grid};
+use plumbline_widgets::lamp::{Health, Lamp};
+use plumbline_widgets::theme::{self, Role, space};
+
+use super::actions::Action;
+use super::outbox::Outbox;
+use super::robot_actions::RobotAction;
+use super::steps::Screen;
+
+/// Fewer complete cycles per second than this make motion rough.
+const SLOW_BUS_HZ: f64 = 50.0;
+
+/// What the STOP button says.
+pub(super) fn arm_state(robot: &RobotView) -> ArmState {
+    if !robot.connection.is_connected() {
+        return ArmState::NotConnected;
+    }
+    match robot.motion {
+        // Until it is known to stand, it is said to move.
+        MotionState::Moving { .. } => ArmState::Moving,
+        MotionState::Limp => ArmState::Free,
+        _ if robot.stopped => ArmState::Stopped,
+        MotionState::Holding { .. } | MotionState::Unknown => ArmState::Held,
+    }
+}
+
+/// Beside STOP while it is latched. Space never reaches it: it stops.
+pub(super) fn release_button(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+    if !view.robot.stopped || view.robot.connection == Connection::None {
+        return;
+    }
+    let color = Role::Warning.color(theme::tokens(ui));
+    let text = RichText::new(RobotAction::ReleaseStop.label()).color(color);
+    if ui.button(text).on_hover_text("Moves may be asked for again; nothing moves by this").clicked() {
+        outbox.act(Action::Robot(RobotAction::ReleaseStop));
+    }
+    ui.label(RichText::new("Stopped.").color(color));
+    ui.add_space(space::S);
+}
+
+/// Nothing where no robot is: the button that connects one is in the menu beside.
+pub(super) fn show(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+    bus(view, ui, outbox);
+    servos(view, ui, outbox);
+}
+
+fn bus(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+    let robot = &view.robot;
+    let (value, health, reason) = match &robot.connection {
+        Connection::None => return,
+        Connection::Connecting { doing, .. } => {
+            ("connecting".to_owned(), Health::Working(0.5), Some(doing.clone()))
+        }
+        Connection::Lost { reason, .. } => ("lost".to_owned(), Health::Failed, Some(reason.clone())),
+        Connection::Connected { .. } => connected(robot),
+    };
+    let lamp = Lamp::new("Bus", &value, health).reason(reason.as_deref()).show(ui);
+    Popup::menu(&lamp).width(320.0).show(|ui| details(ui, view, outbox));
+}
+
+fn connected(robot: &RobotView) -> (String, Health, Option<String>) {
+    let bus = &robot.bus;
+    let Some(rate) = bus.cycles_per_s else { return ("starting".to_owned(), Health::Working(0.5), None) };
+    let value = format::hertz(rate);
+    if !bus.missing.is_empty() {
+        let ids = bus.missing.iter().map(u8::to_string).collect::<Vec<_>>().join(", ");
+        return (
+            value,
+            Health::Warning,
+            Some(format!("No answer from servo {ids}: look at cable and supply.")),
+        );
+    }
+    if let Some(warning) = bus.warnings.first() {
+        return (value, Health::Warning, Some(warning.clone()));
+    }
+    if rate < SLOW_BUS_HZ {
+        return (value, Health::Warning, Some("Below 50 cycles per second motion gets rough.".to_owned()));
+    }
+    (value, Health::Good, None)
+}
+
+fn details(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
+    let bus = &view.robot.bus;
+    let rate = bus.cycles_per_s.map_or(format::NONE.to_owned(), format::hertz);
+    let mut rows = vec![
+        KeyValue::text("Complete cycles", rate),
+        KeyValue::text("Asked again", bus.retries.to_string()).help("Within the cycle's deadline"),
+    ];
+    rows.extend(
+        bus.faults.iter().map(|(kind, count)| KeyValue::text(super::capitalized(kind), count.to_string())),
+    );
+    key_value_grid(ui, "bus", &rows);
+    for warning in &bus.warnings {
+        ui.label(RichText::new(warning).color(Role::Warning.color(theme::tokens(ui))));
+    }
+    for action in [RobotAction::Scan, RobotAction::Connect, RobotAction::Disconnect] {
+        if action.refusal(view).is_none() && ui.button(action.label()).clicked() {
+            outbox.act(Action::Robot(action));
+            ui.close();
+        }
+    }
+}
+
+/// The hottest servo, because it is the one that ends the work.
+fn servos(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+    let robot = &view.robot;
+    if !robot.connection.is_connected() {
+        return;
+    }
+    let warm = robot.joints.iter().filter_map(|joint| Some((joint.temperature_c?, joint)));
+    let Some((hottest_c, joint)) = warm.max_by(|a, b| a.0.total_cmp(&b.0)) else { return };
+    let gate = robot.rig.as_ref().map(|rig| rig.gate);
+    let (health, reason) = match gate {
+        Some(gate) if hottest_c >= gate.hot_c => {
+            (Health::Danger, Some(format!("{} is too hot to move: let it cool.", joint.title)))
+        }
+        Some(gate) if hottest_c >= gate.warm_c => {
+            (Health::Warning, Some(format!("{} gets hot: give it a rest soon.", joint.title)))
+        }
+        _ => match robot.joints.iter().find_map(|joint| Some((joint, joint.problem.as_ref()?))) {
+            Some((joint, problem)) => (Health::Warning, Some(format!("{}: {problem}", joint.title))),
+            None => (Health::Good, None),
+        },
+    };
+    let value = format!("{} °C", format::fixed(hottest_c, 0));
+    if Lamp::new("Servos", &value, health).reason(reason.as_deref()).show(ui).clicked() {
+        outbox.act(Action::Go(Screen::Robot));
+    }
+}

@@ -1,0 +1,115 @@
+//! Calibrating how the eyes sit in the head: one button per step of it.
+
+use std::sync::Arc;
+
+use egui_kittest::kittest::Queryable as _;
+use plumbline::{Screen, ThemeChoice, WindowSettings};
+use plumbline_engine::view::{AcceptedCalibration, EyesView, MountView, TwinView};
+use plumbline_engine::{Command, MountCommand, TwinCommand, View};
+use plumbline_model::StereoCalibration;
+
+use crate::fake::{Fake, click, says};
+use crate::made_up::{everything, lying_board, mount, rig, solved_mount, twin};
+
+fn on_mount() -> WindowSettings {
+    WindowSettings { screen: Screen::Mount, ..WindowSettings::default() }
+}
+
+/// The eyes are calibrated and the board lies on the table.
+fn ready(mount: MountView) -> View {
+    let twin = TwinView { board: Some(lying_board()), ..twin() };
+    let eyes = EyesView { in_use: Some(calibrated()), ..EyesView::default() };
+    View { mount: Arc::new(mount), twin: Arc::new(twin), eyes: Arc::new(eyes), ..everything() }
+}
+
+fn sent(fake: &Fake) -> Vec<MountCommand> {
+    let only = |command| if let Command::Mount(command) = command { Some(command) } else { None };
+    fake.take_sent().into_iter().filter_map(only).collect()
+}
+
+fn calibrated() -> Arc<AcceptedCalibration> {
+    Arc::new(AcceptedCalibration {
+        id: "first".to_owned(),
+        calibration: Arc::new(StereoCalibration::bare(rig().eyes.cameras.clone())),
+        accepted: jiff::Timestamp::now(),
+        uncertainty: None,
+        stated_at_m: 0.45,
+        depth_per_px_m: None,
+    })
+}
+
+#[test]
+fn without_calibrated_eyes_it_leads_to_them() {
+    let fake = Fake::over(everything());
+    let mut window = fake.window(on_mount());
+    assert!(says(&window, "Calibrate the eyes first"));
+    click(&mut window, "Calibrate the eyes");
+    assert_eq!(sent(&fake), []);
+}
+
+#[test]
+fn one_button_leads_through_the_work() {
+    let planned = MountView { planned: vec![(0.1, -0.5); 14].into(), ..MountView::default() };
+    let seen = MountView { proposal: None, ..mount() };
+    for (view, button, wanted) in [
+        (MountView::default(), "Plan head poses", MountCommand::Plan),
+        (planned, "Turn the head to 14 poses", MountCommand::Tour),
+        (seen, "Solve 13 views", MountCommand::Solve),
+        (mount(), "Accept the mount", MountCommand::Accept),
+    ] {
+        let fake = Fake::over(ready(view));
+        let mut window = fake.window(on_mount());
+        let buttons: Vec<_> = window.get_all_by_label(button).collect();
+        // The last one is in the bottom line.
+        buttons.last().expect("a button").click();
+        window.run_steps(3);
+        assert_eq!(sent(&fake), [wanted], "{button}");
+    }
+}
+
+#[test]
+fn the_tour_says_that_only_the_head_moves() {
+    let planned = MountView { planned: vec![(0.1, -0.5); 14].into(), ..MountView::default() };
+    let fake = Fake::over(ready(planned));
+    let window = fake.window(on_mount());
+    assert!(says(&window, "the arms stay"));
+}
+
+#[test]
+fn the_board_is_laid_first_where_there_is_none() {
+    let mut view = ready(MountView::default());
+    view.twin = Arc::new(twin());
+    let fake = Fake::over(view);
+    let mut window = fake.window(on_mount());
+    click(&mut window, "Lay the board on the table");
+    let laid = fake.take_sent();
+    assert!(matches!(laid.as_slice(), [Command::Twin(TwinCommand::LayBoard { .. })]), "{laid:?}");
+}
+
+#[test]
+fn figures_come_with_their_uncertainty_and_left_out_views_with_the_reason() {
+    let fake = Fake::over(ready(mount()));
+    let window = fake.window(on_mount());
+    for words in ["1.20 ± 0.40 mm", "−1.203 ± 0.034°", "the head had not settled", "0.183 px"] {
+        assert!(says(&window, words), "{words}");
+    }
+}
+
+/// With `PLUMBLINE_WINDOW_PICTURES=<folder>` drawn into PNGs there.
+#[test]
+fn pictures_of_the_mount() {
+    let Some(folder) = std::env::var_os("PLUMBLINE_WINDOW_PICTURES").map(std::path::PathBuf::from) else {
+        return;
+    };
+    let both = MountView { in_use: Some(solved_mount()), ..mount() };
+    for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
+        for (name, view) in [("empty", MountView::default()), ("solved", both.clone())] {
+            let fake = Fake::over(ready(view));
+            let mut window = fake.window_with(WindowSettings { theme, ..on_mount() }, [1280.0, 800.0], true);
+            window.run_steps(2);
+            let image = window.render().expect("the test renderer draws");
+            let file = format!("mount {name} {theme:?}.png").to_lowercase().replace(' ', "-");
+            image.save(folder.join(file)).expect("the folder can be written");
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! The twin's controls: its toys, its board, its clock.
+
+use std::sync::Arc;
+
+use plumbline::{Screen, ThemeChoice, WindowSettings};
+use plumbline_engine::view::TwinView;
+use plumbline_engine::{Command, EyesCommand, RobotCommand, TwinCommand, View};
+
+use crate::fake::{Fake, click, says, shows};
+use crate::made_up::{everything, lying_board, twin};
+
+fn on(screen: Screen) -> WindowSettings {
+    WindowSettings { screen, ..WindowSettings::default() }
+}
+
+const TALL: [f32; 2] = [1440.0, 1700.0];
+
+#[test]
+fn a_chosen_toy_is_put_where_the_table_is_clicked() {
+    let fake = Fake::over(everything());
+    let mut window = fake.window_of_size(on(Screen::Live), TALL);
+    assert!(says(&window, "nothing real moves"));
+    click(&mut window, "orange");
+    let map = egui_kittest::kittest::Queryable::get_by_label(&window, "Twin's table").rect();
+    let at = map.center();
+    for pressed in [true, false] {
+        window.event(egui::Event::PointerMoved(at));
+        window.event(egui::Event::PointerButton {
+            pos: at,
+            button: egui::PointerButton::Primary,
+            pressed,
+            modifiers: egui::Modifiers::NONE,
+        });
+        window.run_steps(2);
+    }
+    let sent = fake.take_sent();
+    let [Command::Twin(TwinCommand::PlaceToy { toy, x_m, y_m })] = sent.as_slice() else {
+        panic!("one toy is placed: {sent:?}")
+    };
+    assert_eq!(toy, "orange");
+    assert!((0.1..0.6).contains(x_m) && y_m.abs() < 0.15, "{x_m} {y_m}");
+}
+
+#[test]
+fn board_clock_and_faults_ask_for_what_they_say() {
+    let fake = Fake::over(View {
+        twin: Arc::new(TwinView { board: Some(lying_board()), ..twin() }),
+        ..everything()
+    });
+    let mut window = fake.window_of_size(on(Screen::Live), TALL);
+    for (label, wanted) in [
+        ("Hold it there", TwinCommand::HoldBoard { place: 0 }),
+        ("Hold it there", TwinCommand::HoldBoard { place: 1 }),
+        ("Show at all 24 places", TwinCommand::TourBoard(true)),
+        ("Put away", TwinCommand::HideBoard),
+        ("+10 min", TwinCommand::AdvanceWarmUp { minutes: 10.0 }),
+        ("Cool", TwinCommand::CoolEyes),
+    ] {
+        click(&mut window, label);
+        assert_eq!(fake.take_sent(), [Command::from(wanted)], "{label}");
+    }
+    click(&mut window, "Faults of the servo bus");
+    window.run_steps(12);
+    click(&mut window, "Answers come late");
+    assert_eq!(fake.take_sent(), [Command::from(TwinCommand::Fault { name: "late".to_owned(), on: true })]);
+}
+
+#[test]
+fn the_eyes_of_the_twin_are_calibrated_from_clicks() {
+    let fake = Fake::over(everything());
+    let mut window = fake.window(on(Screen::Live));
+    assert!(says(&window, "This is the twin"));
+    click(&mut window, "Calibrate the eyes");
+    click(&mut window, "Show the board at all places");
+    let sent = fake.take_sent();
+    assert_eq!(
+        sent,
+        [Command::from(EyesCommand::AutoCapture(true)), Command::from(TwinCommand::TourBoard(true))]
+    );
+}
+
+#[test]
+fn a_twin_that_failed_says_why_and_can_be_started_again() {
+    let failed = TwinView {
+        failed: Some("no graphics device answers: see the doctor".to_owned()),
+        ..TwinView::default()
+    };
+    let fake = Fake::over(View { twin: Arc::new(failed), ..View::default() });
+    let mut window = fake.window(on(Screen::Robot));
+    click(&mut window, "Twin");
+    assert!(says(&window, "see the doctor"));
+    click(&mut window, "Start the twin");
+    assert_eq!(fake.take_sent(), [Command::from(RobotCommand::ConnectTwin { scenario: "lab".to_owned() })]);
+}
+
+/// With `PLUMBLINE_WINDOW_PICTURES=<folder>` drawn into PNGs there.
+#[test]
+fn pictures_of_live_with_the_twin() {
+    let Some(folder) = std::env::var_os("PLUMBLINE_WINDOW_PICTURES").map(std::path::PathBuf::from) else {
+        return;
+    };
+    for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
+        for screen in [Screen::Live, Screen::Collect] {
+            let view =
+                View { twin: Arc::new(TwinView { board: Some(lying_board()), ..twin() }), ..everything() };
+            let fake = Fake::over(view);
+            let mut window = fake.window_with(WindowSettings { theme, ..on(screen) }, [1280.0, 800.0], true);
+            assert!(shows(&window, "STOP"));
+            let image = window.render().expect("the test renderer draws");
+            let file = format!("twin {screen:?} {theme:?}.png").to_lowercase().replace(' ', "-");
+            image.save(folder.join(file)).expect("the folder can be written");
+        }
+    }
+}
