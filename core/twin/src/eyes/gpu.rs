@@ -4,9 +4,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::error::RenderError;
 use super::pack::MOST_ITEMS;
+use super::sensor::MOST_TAPS;
 use super::shadow;
 use super::speckle;
-use super::tiles::{NEEDS_BOARD, NEEDS_MESH, NEEDS_MIRROR, VARIANTS};
+use super::tiles::{NEEDS_BOARD, NEEDS_MESH, NEEDS_MIRROR, NEEDS_PATTERN, NEEDS_ROUND, VARIANTS};
 
 /// Which device draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,10 +28,10 @@ const JOBS: u64 = VARIANTS as u64 + 1;
 /// Job of the shadow map.
 pub(super) const SHADOW_JOB: u32 = VARIANTS as u32;
 
-/// vec4 of the frame's numbers: two eyes of 6, light, size.
-pub(super) const FRAME_VEC4: usize = 2 * 6 + 3 + 3;
+/// vec4 of the frame's numbers: two eyes of 6, light, size, exposure.
+pub(super) const FRAME_VEC4: usize = 2 * 6 + 3 + 4;
 /// vec4 of the sensor's numbers: two eyes of 18, three, blur, size.
-pub(super) const SENSOR_VEC4: usize = 2 * 18 + 3 + 4 + 1;
+pub(super) const SENSOR_VEC4: usize = 2 * 18 + 3 + 2 + 1;
 
 const COMMON: &str = include_str!("shaders/common.wgsl");
 const SHADOW: &str = include_str!("shaders/shadow.wgsl");
@@ -50,12 +51,17 @@ pub(super) struct Gpu {
     job_layout: wgpu::BindGroupLayout,
     sensor_layout: wgpu::BindGroupLayout,
     scene_pipeline_layout: wgpu::PipelineLayout,
+    shadow_pipeline_layout: wgpu::PipelineLayout,
+    sensor_pipeline_layout: wgpu::PipelineLayout,
+    shadow_module: wgpu::ShaderModule,
+    sensor_module: wgpu::ShaderModule,
     see_module: wgpu::ShaderModule,
     /// Variants of `see`, made when first needed.
     see: Vec<Option<wgpu::ComputePipeline>>,
-    pub cast: wgpu::ComputePipeline,
-    pub blur_rows: wgpu::ComputePipeline,
-    pub develop: wgpu::ComputePipeline,
+    /// Without and with meshes.
+    cast: [Option<wgpu::ComputePipeline>; 2],
+    /// By taps of the blur.
+    develop: Vec<Option<wgpu::ComputePipeline>>,
     speckles: wgpu::TextureView,
     sampler: wgpu::Sampler,
 }
@@ -91,12 +97,8 @@ impl Gpu {
             })
         };
         let shadow_module = module("shadow", format!("{COMMON}\n{SHADOW}"));
-        let see_module = module("see", format!("{COMMON}\n{SEE}"));
+        let see_module = module("see", match std::env::var("TWSH") { Ok(p) => std::fs::read_to_string(p).unwrap_or_default(), _ => format!("{COMMON}\n{SEE}") });
         let sensor_module = module("sensor", SENSOR.to_owned());
-        // The map is small and every scene may hold a mesh, so its shader always knows meshes.
-        let cast = pipeline(&device, &shadow_pipeline_layout, &shadow_module, "cast_shadows", &[("HAS_MESH", 1.0)]);
-        let blur_rows = pipeline(&device, &sensor_pipeline_layout, &sensor_module, "blur_rows", &[]);
-        let develop = pipeline(&device, &sensor_pipeline_layout, &sensor_module, "develop", &[]);
         let speckles = speckle_texture(&device, &queue);
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             address_mode_u: wgpu::AddressMode::Repeat,
@@ -117,10 +119,13 @@ impl Gpu {
             job_layout,
             sensor_layout,
             scene_pipeline_layout,
+            shadow_pipeline_layout,
+            sensor_pipeline_layout,
+            shadow_module,
             see_module,
-            cast,
-            blur_rows,
-            develop,
+            sensor_module,
+            cast: [None, None],
+            develop: (0..=MOST_TAPS).map(|_| None).collect(),
             speckles,
             sampler,
         };
@@ -128,23 +133,45 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// Makes sure that a variant of `see` is there.
-    pub fn prepare_see(&mut self, variant: usize) {
-        if self.see[variant].is_none() {
-            let flag = |bit: usize| if variant & bit != 0 { 1.0 } else { 0.0 };
-            let constants = [
-                ("HAS_MESH", flag(NEEDS_MESH)),
-                ("HAS_BOARD", flag(NEEDS_BOARD)),
-                ("HAS_MIRROR", flag(NEEDS_MIRROR)),
-            ];
+    /// Compiles what an image needs and was not needed before: about 50 ms each.
+    pub fn prepare(&mut self, variants: impl Iterator<Item = usize>, meshes: bool, taps: usize) {
+        for variant in variants {
             let layout = &self.scene_pipeline_layout;
-            self.see[variant] = Some(pipeline(&self.device, layout, &self.see_module, "see", &constants));
+            self.see[variant].get_or_insert_with(|| {
+                let flag = |bit: usize| if variant & bit != 0 { 1.0 } else { 0.0 };
+                let constants = [
+                    ("HAS_MESH", flag(NEEDS_MESH)),
+                    ("HAS_BOARD", flag(NEEDS_BOARD)),
+                    ("HAS_MIRROR", flag(NEEDS_MIRROR)),
+                    ("HAS_ROUND", flag(NEEDS_ROUND)),
+                    ("HAS_PATTERN", flag(NEEDS_PATTERN)),
+                ];
+                pipeline(&self.device, layout, &self.see_module, "see", &constants)
+            });
         }
+        self.cast[usize::from(meshes)].get_or_insert_with(|| {
+            let constants = [("HAS_MESH", f64::from(meshes)), ("HAS_ROUND", 1.0), ("HAS_BOARD", 1.0)];
+            pipeline(&self.device, &self.shadow_pipeline_layout, &self.shadow_module, "cast_shadows", &constants)
+        });
+        self.develop[taps].get_or_insert_with(|| {
+            let constants = [("TAPS", taps as f64)];
+            pipeline(&self.device, &self.sensor_pipeline_layout, &self.sensor_module, "develop", &constants)
+        });
     }
 
     /// A variant of `see` that was prepared.
     pub fn see(&self, variant: usize) -> Option<&wgpu::ComputePipeline> {
         self.see.get(variant)?.as_ref()
+    }
+
+    /// The shadow map's pipeline, if prepared.
+    pub fn cast(&self, meshes: bool) -> Option<&wgpu::ComputePipeline> {
+        self.cast[usize::from(meshes)].as_ref()
+    }
+
+    /// The sensor's pipeline for a width of blur, if prepared.
+    pub fn develop(&self, taps: usize) -> Option<&wgpu::ComputePipeline> {
+        self.develop.get(taps)?.as_ref()
     }
 
     /// Whether the device has reported anything since it was last asked.
@@ -319,8 +346,6 @@ fn sensor_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
             storage(1, true),
             storage(2, true),
             storage(3, false),
-            storage(4, false),
-            storage(5, false),
         ],
     })
 }
@@ -374,7 +399,6 @@ pub(super) struct Buffers {
     pub see_group: wgpu::BindGroup,
     pub shadow_group: wgpu::BindGroup,
     pub job_group: wgpu::BindGroup,
-    pub rows_group: wgpu::BindGroup,
     pub develop_group: wgpu::BindGroup,
 }
 
@@ -416,8 +440,7 @@ impl Buffers {
         let shadow_tiles = gpu.buffer("shadow tiles", 2 * room.shadow_tiles, list);
         let shadow_map = gpu.buffer("shadow map", (shadow::SIDE * shadow::SIDE * 4) as u64, list);
         let meshes = gpu.buffer("meshes", room.meshes, list);
-        let radiance = gpu.buffer("radiance", 2 * pixels, list);
-        let rows = gpu.buffer("blurred rows", 2 * pixels, list);
+        let radiance = gpu.buffer("radiance", pixels, list);
         let objects = gpu.buffer("objects", pixels, image);
         let bytes = gpu.buffer("bytes", pixels, image);
         let group = |layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]| {
@@ -459,12 +482,8 @@ impl Buffers {
         );
         let one_job = wgpu::BufferBinding { buffer: &jobs, offset: 0, size: wgpu::BufferSize::new(16) };
         let job_group = group(&gpu.job_layout, &[wgpu::BindingResource::Buffer(one_job)]);
-        let develop = |source: &wgpu::Buffer, target: &wgpu::Buffer| {
-            let all = [&sensor, &tiles, source, target, &objects, &bytes].map(wgpu::Buffer::as_entire_binding);
-            group(&gpu.sensor_layout, &all)
-        };
-        let rows_group = develop(&radiance, &rows);
-        let develop_group = develop(&rows, &radiance);
+        let develop_group =
+            group(&gpu.sensor_layout, &[whole(&sensor), whole(&tiles), whole(&radiance), whole(&bytes)]);
         Self {
             bytes_back: gpu.buffer("bytes back", pixels, back),
             objects_back: gpu.buffer("objects back", pixels, back),
@@ -484,7 +503,6 @@ impl Buffers {
             see_group,
             shadow_group,
             job_group,
-            rows_group,
             develop_group,
         }
     }

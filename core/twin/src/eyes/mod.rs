@@ -19,8 +19,6 @@ mod sensor;
 mod shadow;
 mod speckle;
 mod stream;
-#[cfg(test)]
-mod tests;
 mod tiles;
 
 pub use error::RenderError;
@@ -28,3 +26,4 @@ pub use gpu::AdapterChoice;
 pub use renderer::{EyeOptions, EyeRenderer, LabeledPair, ObjectImage, RenderedPair};
 pub use sensor::{FaceShell, Sensor};
 
+pub use stream::{EyeControls, SceneView, TwinEyes, TwinEyesOptions};

@@ -37,6 +37,8 @@ pub(super) struct Bound {
     pub half_m: Vector3<f64>,
     /// A flat glossy box that shows mirror images.
     pub mirrors: bool,
+    /// Has a pattern.
+    pub patterned: bool,
 }
 
 /// Meshes as last uploaded.
@@ -163,6 +165,7 @@ fn push(
         radius_m: half_m.norm(),
         robot_from_box,
         half_m,
+        patterned: m.pattern != Pattern::Plain,
         mirrors: kind == BOX && m.gloss >= LEAST_GLOSS && sides[1] >= 0.5 * LEAST_MIRROR_M,
     });
     Ok(())

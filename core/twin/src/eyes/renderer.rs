@@ -62,6 +62,10 @@ struct Work {
     packed: Packed,
     lists: TileLists,
     shadow: Shadow,
+    /// Whether there is any mesh.
+    meshes: bool,
+    /// Taps of the blur to each side.
+    taps: usize,
 }
 
 /// Handles to where the device leaves an image pair.
@@ -110,9 +114,10 @@ impl EyeRenderer {
     ) -> Result<LabeledPair, RenderError> {
         let work = self.prepare(scenery, snapshot, sensor, seed)?;
         let results = self.submit(&work, true)?;
-        let [left, right] = self.gpu.read(&results.bytes, |bytes| images(bytes, work.size))?;
+        let ([left, right], seen) =
+            self.gpu.read(&results.bytes, |bytes| (images(bytes, work.size), bytes.to_vec()))?;
         let [left_objects, right_objects] =
-            self.gpu.read(&results.objects, |bytes| object_images(bytes, work.size))?;
+            self.gpu.read(&results.objects, |bytes| object_images(bytes, &seen, work.size))?;
         Ok(LabeledPair { pair: RenderedPair { left, right }, left_objects, right_objects })
     }
 
@@ -153,17 +158,15 @@ impl EyeRenderer {
         let lists = tiles::lists(poses, cones, &packed.bounds);
         let shadow = shadow::shadow(&light.toward, &packed.bounds);
         let frame = frame_numbers(&lenses, &poses, scenery, &shadow, sensor, size);
-        let sensor = sensor_numbers(&lenses, sensor, size, seed);
-        Ok(Work { size, frame, sensor, packed, lists, shadow })
+        let (sensor, taps) = sensor_numbers(&lenses, sensor, size, seed);
+        let meshes = packed.bounds.iter().any(|b| b.kind == pack::MESH);
+        Ok(Work { size, frame, sensor, packed, lists, shadow, meshes, taps })
     }
 
     /// Uploads and starts the device; tells where the results will be.
     fn submit(&mut self, work: &Work, objects: bool) -> Result<Results, RenderError> {
-        for variant in 0..VARIANTS {
-            if work.lists.runs[variant].1 > 0 {
-                self.gpu.prepare_see(variant);
-            }
-        }
+        let used = (0..VARIANTS).filter(|&variant| work.lists.runs[variant].1 > 0);
+        self.gpu.prepare(used, work.meshes, work.taps);
         let room = Room {
             tiles: 4 * work.lists.data.len() as u64,
             shadow_tiles: 4 * work.shadow.data.len() as u64,
@@ -233,10 +236,12 @@ fn frame_numbers(
     let ambient = scenery.light.ambient.max(0.0);
     out.push([ambient, shadow.texel_m, shadow::SIDE as f32, 0.3 * ambient]);
     out.push([size.0 as f32, size.1 as f32, 0.0, 0.0]);
+    let [red, green, blue] = sensor.white_balance.map(|factor| factor * sensor.exposure);
+    out.push([red, green, blue, 0.0]);
     out
 }
 
-fn sensor_numbers(lenses: &[Fisheye; 2], sensor: &Sensor, size: (u32, u32), seed: u64) -> Vec<[f32; 4]> {
+fn sensor_numbers(lenses: &[Fisheye; 2], sensor: &Sensor, size: (u32, u32), seed: u64) -> (Vec<[f32; 4]>, usize) {
     let mut out = Vec::with_capacity(SENSOR_VEC4);
     for (lens, eye) in lenses.iter().zip(Eye::BOTH) {
         out.push([lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px].map(|n| n as f32));
@@ -252,13 +257,14 @@ fn sensor_numbers(lenses: &[Fisheye; 2], sensor: &Sensor, size: (u32, u32), seed
     let shell = sensor.shell.unwrap_or_default();
     out.push([shell.light[0], shell.light[1], shell.light[2], shell.softness_rad]);
     let mut weights = sensor.blur_weights();
-    out.push([sensor.full_well_electrons, sensor.read_noise_electrons, (weights.len() - 1) as f32, 0.0]);
-    weights.resize(16, 0.0);
+    out.push([sensor.full_well_electrons, sensor.read_noise_electrons, 0.0, 0.0]);
+    let taps = weights.len() - 1;
+    weights.resize(8, 0.0);
     out.extend(weights.chunks(4).map(|w| [w[0], w[1], w[2], w[3]]));
     // Two halves of 16 bits stay exact as floats.
     let mixed = seed ^ (seed >> 32);
     out.push([size.0 as f32, size.1 as f32, (mixed & 0xffff) as f32, (mixed >> 16 & 0xffff) as f32]);
-    out
+    (out, taps)
 }
 
 fn upload(gpu: &Gpu, buffers: &Buffers, work: &Work) {
@@ -285,8 +291,8 @@ fn encode(gpu: &Gpu, buffers: &Buffers, work: &Work, objects: bool) {
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         let job = |number: u32| number * JOB_STRIDE as u32;
-        if work.shadow.tiles > 0 {
-            pass.set_pipeline(&gpu.cast);
+        if let Some(cast) = gpu.cast(work.meshes).filter(|_| work.shadow.tiles > 0) {
+            pass.set_pipeline(cast);
             pass.set_bind_group(0, &buffers.shadow_group, &[]);
             pass.set_bind_group(1, &buffers.job_group, &[job(SHADOW_JOB)]);
             pass.dispatch_workgroups(work.shadow.tiles as u32, 1, 1);
@@ -299,13 +305,11 @@ fn encode(gpu: &Gpu, buffers: &Buffers, work: &Work, objects: bool) {
                 pass.dispatch_workgroups(4 * count as u32, 1, 1);
             }
         }
-        let groups = 4 * work.lists.tiles as u32;
-        pass.set_pipeline(&gpu.blur_rows);
-        pass.set_bind_group(0, &buffers.rows_group, &[]);
-        pass.dispatch_workgroups(groups, 1, 1);
-        pass.set_pipeline(&gpu.develop);
-        pass.set_bind_group(0, &buffers.develop_group, &[]);
-        pass.dispatch_workgroups(groups, 1, 1);
+        if let Some(develop) = gpu.develop(work.taps) {
+            pass.set_pipeline(develop);
+            pass.set_bind_group(0, &buffers.develop_group, &[]);
+            pass.dispatch_workgroups(4 * work.lists.tiles as u32, 1, 1);
+        }
     }
     let bytes = Buffers::image_bytes(work.size);
     encoder.copy_buffer_to_buffer(&buffers.bytes, 0, &buffers.bytes_back, 0, bytes);
@@ -328,13 +332,15 @@ fn images(bytes: &[u8], (width, height): (u32, u32)) -> [RgbImage; 2] {
     })
 }
 
-fn object_images(bytes: &[u8], (width, height): (u32, u32)) -> [ObjectImage; 2] {
+/// Object numbers where the image's alpha says that the scene is seen at all.
+fn object_images(bytes: &[u8], seen: &[u8], (width, height): (u32, u32)) -> [ObjectImage; 2] {
     let half = width as usize * height as usize * 4;
     [0, 1].map(|eye| {
         let mut image = ObjectImage::new(width, height);
-        let source = bytes[eye * half..(eye + 1) * half].chunks_exact(4);
-        for (to, from) in image.iter_mut().zip(source) {
-            *to = u16::from_le_bytes([from[0], from[1]]);
+        let range = eye * half..(eye + 1) * half;
+        let source = bytes[range.clone()].chunks_exact(4).zip(seen[range].chunks_exact(4));
+        for (to, (object, seen)) in image.iter_mut().zip(source) {
+            *to = if seen[3] == 0 { 0 } else { u16::from_le_bytes([object[0], object[1]]) };
         }
         image
     })

@@ -12,7 +12,7 @@ const TILES: usize = SIDE / TILE;
 /// Numbers of a header.
 pub(super) const HEADER: usize = 8;
 /// Items larger than this throw no shadow (table, walls), meters.
-const LARGEST_CASTER_M: f64 = 0.6;
+const LARGEST_CASTER_M: f64 = 0.3;
 
 /// The map's frame and lists.
 pub(super) struct Shadow {

@@ -27,8 +27,10 @@ const SLACK_PX: f64 = 1.5;
 pub(super) const NEEDS_BOARD: usize = 1;
 pub(super) const NEEDS_MIRROR: usize = 2;
 pub(super) const NEEDS_MESH: usize = 4;
+pub(super) const NEEDS_ROUND: usize = 8;
+pub(super) const NEEDS_PATTERN: usize = 16;
 /// Number of combinations.
-pub(super) const VARIANTS: usize = 8;
+pub(super) const VARIANTS: usize = 32;
 
 /// A cone around all rays of a tile; directions in the eye's frame.
 #[derive(Clone, Copy, Debug)]
@@ -208,12 +210,16 @@ fn tile(
             .map(|&i| i as u32)
             .collect();
     }
+    if tile.seen.iter().any(|&i| bounds[i as usize].patterned) {
+        tile.needs |= NEEDS_PATTERN;
+    }
     for &item in tile.seen.iter().chain(&tile.mirrored) {
-        match bounds[item as usize].kind {
-            BOARD => tile.needs |= NEEDS_BOARD,
-            MESH => tile.needs |= NEEDS_MESH,
-            _ => {}
-        }
+        tile.needs |= match bounds[item as usize].kind {
+            BOX => 0,
+            BOARD => NEEDS_BOARD,
+            MESH => NEEDS_MESH,
+            _ => NEEDS_ROUND,
+        };
     }
     tile
 }

@@ -22,8 +22,10 @@ struct Frame {
     to_lamp: vec4<f32>,
     // Light from everywhere, meters per shadow texel, texels of the shadow map, background.
     light: vec4<f32>,
-    // Width and height of the images; number of samples that this one is averaged with.
+    // Width and height of the images.
     size: vec4<f32>,
+    // Exposure of red, green, blue.
+    exposure: vec4<f32>,
 }
 
 struct Geometry {
@@ -68,6 +70,8 @@ const FAR = 50.0;
 // Whether the tiles of this dispatch hold meshes at all: a shader on a CPU runs through all its
 // branches, taken or not.
 override HAS_MESH: bool = false;
+override HAS_ROUND: bool = false;
+override HAS_BOARD: bool = false;
 
 struct Rays {
     ox: vec4<f32>, oy: vec4<f32>, oz: vec4<f32>,
@@ -97,24 +101,41 @@ fn into_shape(g: Geometry, r: Rays) -> Rays {
     );
 }
 
-// Direction in the eye's frame that the lens maps onto a pixel: the inverse of Kannala and Brandt
-// by Newton's method.
-fn unproject(eye: u32, pixel: vec2<f32>) -> vec3<f32> {
+// Where a pixel lies on the lens: direction from the axis (x, y) and distance theta_d from it.
+fn on_lens(eye: u32, pixel: vec2<f32>) -> vec3<f32> {
     let lens = frame.eyes[eye].lens;
-    let k = frame.eyes[eye].k;
-    let more = frame.eyes[eye].more;
     let y = (pixel.y - lens.w) / lens.y;
-    let x = (pixel.x - lens.z - more.x * y) / lens.x;
-    let theta_d = max(sqrt(x * x + y * y), 1e-7);
-    var theta = min(theta_d, more.y);
+    let x = (pixel.x - lens.z - frame.eyes[eye].more.x * y) / lens.x;
+    return vec3<f32>(x, y, max(sqrt(x * x + y * y), 1e-7));
+}
+
+// One step of Newton's method toward the angle theta off the axis that the lens of Kannala and Brandt
+// maps to theta_d.
+fn toward_theta(k: vec4<f32>, theta: f32, theta_d: f32) -> f32 {
+    let t2 = theta * theta;
+    let value = theta * (1.0 + t2 * (k.x + t2 * (k.y + t2 * (k.z + t2 * k.w))));
+    let slope = 1.0 + t2 * (3.0 * k.x + t2 * (5.0 * k.y + t2 * (7.0 * k.z + t2 * 9.0 * k.w)));
+    return clamp(theta - (value - theta_d) / max(slope, 0.05), 0.0, 3.0);
+}
+
+// Angle off the axis of a pixel.
+fn theta_of(eye: u32, pixel: vec2<f32>) -> f32 {
+    let at = on_lens(eye, pixel);
+    let k = frame.eyes[eye].k;
+    var theta = min(at.z, frame.eyes[eye].more.y);
     for (var i = 0; i < 5; i++) {
-        let t2 = theta * theta;
-        let value = theta * (1.0 + t2 * (k.x + t2 * (k.y + t2 * (k.z + t2 * k.w))));
-        let slope = 1.0 + t2 * (3.0 * k.x + t2 * (5.0 * k.y + t2 * (7.0 * k.z + t2 * 9.0 * k.w)));
-        theta = clamp(theta - (value - theta_d) / max(slope, 0.05), 0.0, 3.0);
+        theta = toward_theta(k, theta, at.z);
     }
-    let s = sin(theta) / theta_d;
-    return vec3<f32>(x * s, y * s, cos(theta));
+    return theta;
+}
+
+// Direction in the eye's frame of a pixel, given the angle off the axis of one at most a pixel away.
+fn unproject(eye: u32, pixel: vec2<f32>, nearby: f32) -> vec3<f32> {
+    let at = on_lens(eye, pixel);
+    let k = frame.eyes[eye].k;
+    let theta = toward_theta(k, toward_theta(k, nearby, at.z), at.z);
+    let s = sin(theta) / at.z;
+    return vec3<f32>(at.x * s, at.y * s, cos(theta));
 }
 
 fn turn(rows: array<vec4<f32>, 3>, v: vec3<f32>) -> vec3<f32> {
@@ -257,38 +278,70 @@ fn keep(hits: ptr<function, Hits>, range: vec4<f32>, item: u32) {
 }
 
 // The nearest hits among the items of a list; `list` is the place of seven numbers in `tiles`: where
-// the items of each kind begin, and where the last ends.
+// the items of each kind begin, and where the last ends. Loops test at their end, because a CPU runs
+// the body once more for a test at the beginning.
 fn trace(rays: Rays, list: u32) -> Hits {
     var hits = no_hits();
+    let start = tiles[list];
     let end0 = tiles[list + 1u];
-    for (var i = tiles[list]; i < end0; i++) {
-        let item = tiles[i];
-        let g = geometries[item];
-        keep(&hits, meet_box(into_shape(g, rays), g.dims.xyz), item);
+    if (start < end0) {
+        var i = start;
+        loop {
+            let item = tiles[i];
+            let g = geometries[item];
+            keep(&hits, meet_box(into_shape(g, rays), g.dims.xyz), item);
+            i++;
+            if (i >= end0) { break; }
+        }
     }
-    let end1 = tiles[list + 2u];
-    for (var i = end0; i < end1; i++) {
-        let item = tiles[i];
-        let g = geometries[item];
-        keep(&hits, meet_ellipsoid(into_shape(g, rays), g.dims.xyz), item);
-    }
-    let end2 = tiles[list + 3u];
-    for (var i = end1; i < end2; i++) {
-        let item = tiles[i];
-        let g = geometries[item];
-        keep(&hits, meet_capsule(into_shape(g, rays), g.dims.x, g.dims.y), item);
+    if (HAS_ROUND) {
+        let end1 = tiles[list + 2u];
+        if (end0 < end1) {
+            var i = end0;
+            loop {
+                let item = tiles[i];
+                let g = geometries[item];
+                keep(&hits, meet_ellipsoid(into_shape(g, rays), g.dims.xyz), item);
+                i++;
+                if (i >= end1) { break; }
+            }
+        }
+        let end2 = tiles[list + 3u];
+        if (end1 < end2) {
+            var i = end1;
+            loop {
+                let item = tiles[i];
+                let g = geometries[item];
+                keep(&hits, meet_capsule(into_shape(g, rays), g.dims.x, g.dims.y), item);
+                i++;
+                if (i >= end2) { break; }
+            }
+        }
+        let end3 = tiles[list + 4u];
+        if (end2 < end3) {
+            var i = end2;
+            loop {
+                let item = tiles[i];
+                let g = geometries[item];
+                keep(&hits, meet_cylinder(into_shape(g, rays), g.dims.x, g.dims.y), item);
+                i++;
+                if (i >= end3) { break; }
+            }
+        }
     }
     let end3 = tiles[list + 4u];
-    for (var i = end2; i < end3; i++) {
-        let item = tiles[i];
-        let g = geometries[item];
-        keep(&hits, meet_cylinder(into_shape(g, rays), g.dims.x, g.dims.y), item);
-    }
     let end4 = tiles[list + 5u];
-    for (var i = end3; i < end4; i++) {
-        let item = tiles[i];
-        let g = geometries[item];
-        keep(&hits, meet_board(into_shape(g, rays), g.dims), item);
+    if (HAS_BOARD) {
+        if (end3 < end4) {
+            var i = end3;
+            loop {
+                let item = tiles[i];
+                let g = geometries[item];
+                keep(&hits, meet_board(into_shape(g, rays), g.dims), item);
+                i++;
+                if (i >= end4) { break; }
+            }
+        }
     }
     if (HAS_MESH) {
         let end5 = tiles[list + 6u];

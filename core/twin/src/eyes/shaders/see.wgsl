@@ -1,8 +1,8 @@
 // What each pixel sees: four rays, the nearest thing of each, every different thing shaded once.
 
 @group(0) @binding(5) var<storage, read> shadow_map: array<f32>;
-// Linear light, as half floats: (red, green), (blue, 0).
-@group(0) @binding(6) var<storage, read_write> radiance: array<vec2<u32>>;
+// Exposed light, see `packed`.
+@group(0) @binding(6) var<storage, read_write> radiance: array<u32>;
 @group(0) @binding(7) var<storage, read_write> objects: array<u32>;
 @group(0) @binding(8) var speckles: texture_2d<f32>;
 @group(0) @binding(9) var repeat: sampler;
@@ -13,7 +13,7 @@ struct Job {
 }
 @group(1) @binding(0) var<uniform> job: Job;
 
-override HAS_BOARD: bool = false;
+override HAS_PATTERN: bool = false;
 override HAS_MIRROR: bool = false;
 
 const SPECKLE_TEXELS = 512.0;
@@ -24,17 +24,19 @@ const INK = 0.045;
 fn normal_on(kind: u32, dims: vec4<f32>, p: vec3<f32>, triangle: u32) -> vec3<f32> {
     let q = abs(p) / max(dims.xyz, vec3<f32>(1e-9));
     var n = select(vec3<f32>(0.0, 0.0, p.z), select(vec3<f32>(0.0, p.y, 0.0), vec3<f32>(p.x, 0.0, 0.0), q.x > q.y && q.x > q.z), q.x > q.z || q.y > q.z);
-    if (kind == ELLIPSOID) {
-        n = p / (dims.xyz * dims.xyz);
+    if (HAS_ROUND) {
+        if (kind == ELLIPSOID) {
+            n = p / (dims.xyz * dims.xyz);
+        }
+        if (kind == CAPSULE) {
+            n = vec3<f32>(p.xy, p.z - clamp(p.z, -dims.y, dims.y));
+        }
+        if (kind == CYLINDER) {
+            let on_end = dims.y - abs(p.z) < dims.x - length(p.xy);
+            n = select(vec3<f32>(p.xy, 0.0), vec3<f32>(0.0, 0.0, p.z), on_end);
+        }
     }
-    if (kind == CAPSULE) {
-        n = vec3<f32>(p.xy, p.z - clamp(p.z, -dims.y, dims.y));
-    }
-    if (kind == CYLINDER) {
-        let on_end = dims.y - abs(p.z) < dims.x - length(p.xy);
-        n = select(vec3<f32>(p.xy, 0.0), vec3<f32>(0.0, 0.0, p.z), on_end);
-    }
-    if (kind == BOARD) {
+    if (HAS_BOARD && kind == BOARD) {
         n = vec3<f32>(0.0, 0.0, -1.0);
     }
     if (HAS_MESH && kind == MESH) {
@@ -61,7 +63,8 @@ fn surroundings(d: vec3<f32>) -> f32 {
     return frame.light.w * (1.0 + 2.0 * clamp(d.z, 0.0, 1.0));
 }
 
-// Share of the lamp that reaches a place, 0 to 1; 3 by 3 texels averaged, for a lamp is no point.
+// Share of the lamp that reaches a place, 0 to 1: 3 by 3 texels averaged under a tent, for a lamp is no
+// point.
 fn lit(p: vec3<f32>, n: vec3<f32>) -> f32 {
     let rows = frame.light_from_robot;
     let per_texel = frame.light.y;
@@ -69,24 +72,27 @@ fn lit(p: vec3<f32>, n: vec3<f32>) -> f32 {
     let q = p + n * (1.8 * per_texel);
     let x = dot(rows[0].xyz, q) + rows[0].w - 0.5;
     let y = dot(rows[1].xyz, q) + rows[1].w - 0.5;
-    let depth = dot(rows[2].xyz, q) + rows[2].w - per_texel;
+    let depth = FAR - (dot(rows[2].xyz, q) + rows[2].w - per_texel);
     let width = frame.light.z;
-    if (facing <= 0.0 || x < 2.0 || y < 2.0 || x > width - 3.0 || y > width - 3.0) {
-        return 1.0;
-    }
-    let x0 = floor(x);
-    let y0 = floor(y);
-    let fx = x - x0;
-    let fy = y - y0;
-    var open = 0.0;
-    // Tent-weighted 4 by 4 texels: the average of 3 by 3 bilinear ones.
-    for (var j = 0u; j < 4u; j++) {
-        let wy = select(select(1.0, fy, j == 3u), 1.0 - fy, j == 0u);
-        let row = (u32(y0) - 1u + j) * u32(width) + u32(x0) - 1u;
-        let s = vec4<f32>(shadow_map[row], shadow_map[row + 1u], shadow_map[row + 2u], shadow_map[row + 3u]);
-        open += wy * dot(select(vec4<f32>(0.0), vec4<f32>(1.0), s < vec4<f32>(FAR - depth)), vec4<f32>(1.0 - fx, 1.0, 1.0, fx));
-    }
-    return open / 9.0;
+    let off_map = facing <= 0.0 || x < 2.0 || y < 2.0 || x > width - 3.0 || y > width - 3.0;
+    let x0 = floor(clamp(x, 2.0, width - 3.0) + 0.5);
+    let y0 = floor(clamp(y, 2.0, width - 3.0) + 0.5);
+    // Weights of three texels each way; the middle one is nearest.
+    let fx = x - x0 + 0.5;
+    let fy = y - y0 + 0.5;
+    let wx = vec3<f32>(1.0 - fx, 1.0, fx);
+    let first = (u32(y0) - 1u) * u32(width) + u32(x0) - 1u;
+    let second = first + u32(width);
+    let third = second + u32(width);
+    let a = vec3<f32>(shadow_map[first], shadow_map[first + 1u], shadow_map[first + 2u]);
+    let b = vec3<f32>(shadow_map[second], shadow_map[second + 1u], shadow_map[second + 2u]);
+    let c = vec3<f32>(shadow_map[third], shadow_map[third + 1u], shadow_map[third + 2u]);
+    let open = (1.0 - fy) * dot(wx, open_of(a, depth)) + dot(wx, open_of(b, depth)) + fy * dot(wx, open_of(c, depth));
+    return select(0.25 * open, 1.0, off_map);
+}
+
+fn open_of(s: vec3<f32>, depth: f32) -> vec3<f32> {
+    return select(vec3<f32>(0.0), vec3<f32>(1.0), s < vec3<f32>(depth));
 }
 
 // Light from lamp and surroundings on a surface.
@@ -120,7 +126,7 @@ fn speckle(p: vec3<f32>, n: vec3<f32>, d: vec3<f32>, footprint: f32, size: f32) 
 }
 
 // Factor of the pattern on a surface.
-fn pattern_at(m: Material, p: vec3<f32>, n: vec3<f32>, d: vec3<f32>, footprint: f32, grain: f32) -> f32 {
+fn pattern_at(m: Material, p: vec3<f32>, n: vec3<f32>, footprint: f32, grain: f32) -> f32 {
     if (m.pattern.x == 1.0) {
         return 1.0 + m.pattern.z * grain;
     }
@@ -165,6 +171,13 @@ fn simple(item: u32, triangle: u32, p: vec3<f32>, d: vec3<f32>) -> vec3<f32> {
     return m.albedo.xyz * irradiance(n, 1.0);
 }
 
+// Light in one number: square roots in 11, 11 and 10 bits, up to four times saturation; a step is a
+// quarter of a gray level of the image.
+fn packed(light: vec3<f32>) -> u32 {
+    let root = sqrt(clamp(light * 0.25, vec3<f32>(0.0), vec3<f32>(1.0))) * vec3<f32>(2047.0, 2047.0, 1023.0) + 0.5;
+    return u32(root.x) | (u32(root.y) << 11u) | (u32(root.z) << 22u);
+}
+
 struct Seen {
     item: u32,
     triangle: u32,
@@ -190,8 +203,11 @@ fn shade(eye: u32, o: vec3<f32>, seen: Seen, mirror_list: u32) -> vec3<f32> {
     let n = g.row0.xyz * ns.x + g.row1.xyz * ns.y + g.row2.xyz * ns.z;
     let footprint = seen.range * frame.eyes[eye].more.w;
 
-    let grain = speckle(ps, ns, ds, footprint, max(m.pattern.y, 1e-4));
-    var albedo = m.albedo.xyz * pattern_at(m, ps, ns, ds, footprint, grain);
+    var albedo = m.albedo.xyz;
+    if (HAS_PATTERN) {
+        let grain = speckle(ps, ns, ds, footprint, max(m.pattern.y, 1e-4));
+        albedo *= pattern_at(m, ps, ns, footprint, grain);
+    }
     if (HAS_BOARD && kind == BOARD) {
         let os = vec3<f32>(dot(g.row0.xyz, o) + g.row0.w, dot(g.row1.xyz, o) + g.row1.w, dot(g.row2.xyz, o) + g.row2.w);
         let dus = vec3<f32>(dot(g.row0.xyz, seen.du), dot(g.row1.xyz, seen.du), dot(g.row2.xyz, seen.du));
@@ -239,10 +255,11 @@ fn see(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) lo
 
     let rows = frame.eyes[eye].robot_from_eye;
     let o = vec3<f32>(rows[0].w, rows[1].w, rows[2].w);
-    let d0 = turn(rows, unproject(eye, center + vec2<f32>(-0.375, -0.125)));
-    let d1 = turn(rows, unproject(eye, center + vec2<f32>(0.125, -0.375)));
-    let d2 = turn(rows, unproject(eye, center + vec2<f32>(0.375, 0.125)));
-    let d3 = turn(rows, unproject(eye, center + vec2<f32>(-0.125, 0.375)));
+    let theta = theta_of(eye, center);
+    let d0 = turn(rows, unproject(eye, center + vec2<f32>(-0.375, -0.125), theta));
+    let d1 = turn(rows, unproject(eye, center + vec2<f32>(0.125, -0.375), theta));
+    let d2 = turn(rows, unproject(eye, center + vec2<f32>(0.375, 0.125), theta));
+    let d3 = turn(rows, unproject(eye, center + vec2<f32>(-0.125, 0.375), theta));
     let rays = Rays(
         vec4<f32>(o.x), vec4<f32>(o.y), vec4<f32>(o.z),
         vec4<f32>(d0.x, d1.x, d2.x, d3.x), vec4<f32>(d0.y, d1.y, d2.y, d3.y), vec4<f32>(d0.z, d1.z, d2.z, d3.z),
@@ -260,7 +277,7 @@ fn see(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) lo
     var todo = vec4<f32>(1.0);
     var most = 0.0;
     var object = 0u;
-    while (dot(todo, todo) > 0.0) {
+    loop {
         var pick = NO_ITEM;
         var triangle = 0u;
         for (var s = 0u; s < 4u; s++) {
@@ -286,14 +303,15 @@ fn see(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) lo
             most = count;
             object = select(0u, u32(materials[seen.item].what.y), pick != NO_ITEM);
         }
+        if (dot(todo, todo) == 0.0) {
+            break;
+        }
     }
     let width = u32(frame.size.x);
     let height = u32(frame.size.y);
     if (pixel.x < width && pixel.y < height) {
         let index = (eye * height + pixel.y) * width + pixel.x;
-        // Brighter than any film: keeps half floats finite.
-        let safe = clamp(color, vec3<f32>(0.0), vec3<f32>(1000.0));
-        radiance[index] = vec2<u32>(pack2x16float(safe.xy), pack2x16float(vec2<f32>(safe.z, 0.0)));
+        radiance[index] = packed(color * frame.exposure.xyz);
         objects[index] = object;
     }
 }

@@ -16,66 +16,47 @@ struct Sensor {
     exposure: vec4<f32>,
     // Light from the shell; softness of its edge in theta_d.
     shell: vec4<f32>,
-    // Electrons at full brightness, read noise in electrons, taps of the blur to each side, 0.
+    // Electrons at full brightness, read noise in electrons, 0, 0.
     noise: vec4<f32>,
     // Weights of the blur, the middle first.
-    blur: array<vec4<f32>, 4>,
+    blur: array<vec4<f32>, 2>,
     // Width, height of the images, seed (two 16-bit halves).
     size: vec4<f32>,
 }
 
 @group(0) @binding(0) var<uniform> sensor: Sensor;
 @group(0) @binding(1) var<storage, read> tiles: array<u32>;
-@group(0) @binding(2) var<storage, read> source: array<vec2<u32>>;
-@group(0) @binding(3) var<storage, read_write> target_light: array<vec2<u32>>;
-@group(0) @binding(4) var<storage, read_write> objects: array<u32>;
-@group(0) @binding(5) var<storage, read_write> bytes: array<u32>;
+// Exposed light, packed by `see`.
+@group(0) @binding(2) var<storage, read> radiance: array<u32>;
+@group(0) @binding(3) var<storage, read_write> bytes: array<u32>;
 
-struct Where {
-    eye: u32,
-    x: u32,
-    y: u32,
-}
-
-// Headers of 16 numbers per tile, see `see`.
-fn place_of(group: u32, local: vec2<u32>) -> Where {
-    let place = tiles[(group >> 2u) * 16u];
-    let quarter = vec2<u32>(group & 1u, (group >> 1u) & 1u) * 8u;
-    return Where(place >> 20u, (place & 1023u) * 16u + quarter.x + local.x, ((place >> 10u) & 1023u) * 16u + quarter.y + local.y);
-}
+// Pixels that the blur reaches to each side, 1 to 6.
+override TAPS: i32 = 1;
 
 fn light_at(eye: u32, x: i32, y: i32) -> vec3<f32> {
     let width = i32(sensor.size.x);
     let height = i32(sensor.size.y);
-    let index = (i32(eye) * height + clamp(y, 0, height - 1)) * width + clamp(x, 0, width - 1);
-    let packed = source[index];
-    return vec3<f32>(unpack2x16float(packed.x), unpack2x16float(packed.y).x);
+    let root = radiance[(i32(eye) * height + clamp(y, 0, height - 1)) * width + clamp(x, 0, width - 1)];
+    let unit = vec3<f32>(f32(root & 2047u), f32((root >> 11u) & 2047u), f32(root >> 22u))
+        * vec3<f32>(2.0 / 2047.0, 2.0 / 2047.0, 2.0 / 1023.0);
+    return unit * unit;
 }
 
 fn weight(i: i32) -> f32 {
-    return sensor.blur[i >> 2u][i & 3];
+    let k = abs(i);
+    return sensor.blur[k >> 2u][k & 3];
 }
 
-fn blurred(at: Where, step: vec2<i32>) -> vec3<f32> {
-    let x = i32(at.x);
-    let y = i32(at.y);
-    var sum = light_at(at.eye, x, y) * sensor.blur[0].x;
-    let taps = i32(sensor.noise.z);
-    for (var i = 1; i <= taps; i++) {
-        sum += (light_at(at.eye, x + step.x * i, y + step.y * i) + light_at(at.eye, x - step.x * i, y - step.y * i)) * weight(i);
+fn blurred(eye: u32, x: i32, y: i32) -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
+    for (var j = -TAPS; j <= TAPS; j++) {
+        var row = vec3<f32>(0.0);
+        for (var i = -TAPS; i <= TAPS; i++) {
+            row += light_at(eye, x + i, y + j) * weight(i);
+        }
+        sum += row * weight(j);
     }
     return sum;
-}
-
-@compute @workgroup_size(8, 8)
-fn blur_rows(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
-    let at = place_of(group.x, local.xy);
-    if (at.x >= u32(sensor.size.x) || at.y >= u32(sensor.size.y)) {
-        return;
-    }
-    let light = blurred(at, vec2<i32>(1, 0));
-    let index = (at.eye * u32(sensor.size.y) + at.y) * u32(sensor.size.x) + at.x;
-    target_light[index] = vec2<u32>(pack2x16float(light.xy), pack2x16float(vec2<f32>(light.z, 0.0)));
 }
 
 // A permuted congruential generator as a hash.
@@ -99,29 +80,33 @@ fn curve(x: vec3<f32>) -> vec3<f32> {
     return select(high, low, x < vec3<f32>(0.0031308));
 }
 
+// Headers of 16 numbers per tile, see `see`; alpha is 255 where the scene is seen, 0 on shell and outside.
 @compute @workgroup_size(8, 8)
 fn develop(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
-    let at = place_of(group.x, local.xy);
+    let place = tiles[(group.x >> 2u) * 16u];
+    let eye = place >> 20u;
+    let corner = vec2<u32>(place & 1023u, (place >> 10u) & 1023u) * 16u;
+    let at = corner + vec2<u32>(group.x & 1u, (group.x >> 1u) & 1u) * 8u + local.xy;
     if (at.x >= u32(sensor.size.x) || at.y >= u32(sensor.size.y)) {
         return;
     }
-    let light = blurred(at, vec2<i32>(0, 1));
-    let index = (at.eye * u32(sensor.size.y) + at.y) * u32(sensor.size.x) + at.x;
+    let light = blurred(eye, i32(at.x), i32(at.y));
+    let index = (eye * u32(sensor.size.y) + at.y) * u32(sensor.size.x) + at.x;
 
-    let lens = sensor.eyes[at.eye].lens;
-    let more = sensor.eyes[at.eye].more;
+    let lens = sensor.eyes[eye].lens;
+    let more = sensor.eyes[eye].more;
     let y = (f32(at.y) - lens.w) / lens.y;
     let x = (f32(at.x) - lens.z - more.x * y) / lens.x;
     let theta_d = sqrt(x * x + y * y);
 
     let edge = theta_d / more.y;
     let falloff = 1.0 - sensor.exposure.w * edge * edge * edge * edge;
-    var exposed = light * sensor.exposure.xyz * falloff;
+    var exposed = light * falloff;
 
     let turns = fract(atan2(y, x) / 6.2831853 + 1.0) * 64.0;
     let before = u32(turns) & 63u;
     let after = (before + 1u) & 63u;
-    let begins = mix(sensor.eyes[at.eye].shell[before >> 2u][before & 3u], sensor.eyes[at.eye].shell[after >> 2u][after & 3u], fract(turns));
+    let begins = mix(sensor.eyes[eye].shell[before >> 2u][before & 3u], sensor.eyes[eye].shell[after >> 2u][after & 3u], fract(turns));
     let shell = smoothstep(-sensor.shell.w, sensor.shell.w, theta_d - begins);
     // The shell curves away from the light further out.
     let shade = 1.0 - 0.35 * clamp((theta_d - begins) * 2.5, 0.0, 1.0) + 0.25 * clamp(-y, -0.4, 1.0);
@@ -143,8 +128,6 @@ fn develop(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id
     let value = clamp(exposed + sd * random, vec3<f32>(0.0), vec3<f32>(1.0));
     let inside = theta_d < more.y + 4.0 * more.z;
     let rgb = select(vec3<f32>(0.0), curve(value) * 255.0 + 0.5, inside);
-    bytes[index] = u32(rgb.x) | (u32(rgb.y) << 8u) | (u32(rgb.z) << 16u) | 0xff000000u;
-    if (shell > 0.5 || theta_d > more.y) {
-        objects[index] = 0u;
-    }
+    let alpha = select(0u, 0xff000000u, shell <= 0.5 && theta_d <= more.y);
+    bytes[index] = u32(rgb.x) | (u32(rgb.y) << 8u) | (u32(rgb.z) << 16u) | alpha;
 }
