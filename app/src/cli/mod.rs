@@ -6,6 +6,7 @@ mod calibrate;
 mod common;
 mod disparity;
 mod doctor;
+mod ik;
 mod locate;
 mod output;
 mod sample;
@@ -42,6 +43,8 @@ enum Verb {
     Calibrate(Calibrate),
     /// Says where in space points of the left image are.
     Locate(WithJson<locate::Locate>),
+    /// Finds the joint angles that bring a tip of the robot to targets.
+    Ik(WithJson<ik::Ik>),
     /// Computes the disparity of a pair.
     Disparity(WithJson<disparity::Disparity>),
     /// Says what works on this machine: libraries, graphics, cameras, serial ports, folders.
@@ -93,6 +96,7 @@ pub fn run() -> ExitCode {
                 Verb::Calibrate(Calibrate::Stereo(verb)) => verb.run(calibrate::stereo),
                 Verb::Calibrate(Calibrate::Check(verb)) => verb.run(calibrate::check),
                 Verb::Locate(verb) => verb.run(locate::run),
+                Verb::Ik(verb) => verb.run(ik::run),
                 Verb::Disparity(verb) => verb.run(disparity::run),
                 Verb::Doctor(verb) => verb.run(doctor::run),
                 Verb::Sample(verb) => verb.run(sample::run),
