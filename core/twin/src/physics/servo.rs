@@ -16,6 +16,8 @@ pub struct Drive {
     pub speed_rad_s: Option<f64>,
     /// Largest share of its torque that it may use, 0–1.
     pub torque_limit: f64,
+    /// Gain of its position control over the factory's.
+    pub gain: f64,
 }
 
 /// What a servo reads.
@@ -54,7 +56,8 @@ pub(super) struct ServoMotor {
 
 impl ServoMotor {
     pub(super) fn at(motor: Motor, ratio: f64, holding: Holding, angle_rad: f64) -> Self {
-        let drive = Drive { torque_on: true, goal_rad: angle_rad, speed_rad_s: None, torque_limit: 1.0 };
+        let drive =
+            Drive { torque_on: true, goal_rad: angle_rad, speed_rad_s: None, torque_limit: 1.0, gain: 1.0 };
         let heat = MotorHeat::default();
         Self { motor, ratio, holding, drive, setpoint_rad: angle_rad, heat, load: 0.0 }
     }
@@ -76,7 +79,7 @@ impl ServoMotor {
         let step_rad = speed_rad_s * dt_s;
         self.setpoint_rad += (self.drive.goal_rad - self.setpoint_rad).clamp(-step_rad, step_rad);
         let error_motor_rad = (self.setpoint_rad - seen_rad) * self.ratio;
-        self.load = (error_motor_rad * self.motor.duty_per_rad).clamp(-limit, limit);
+        self.load = (error_motor_rad * self.motor.duty_per_rad * self.drive.gain).clamp(-limit, limit);
         self.load * self.motor.stall_nm() * self.ratio
     }
 

@@ -62,6 +62,11 @@ impl TouchWatch {
         }
     }
 
+    /// Whether a finger is on the glass, or was a moment ago.
+    pub(super) fn is_down(&self, time_s: f64) -> bool {
+        self.fingers.iter().any(|(_, last)| last.is_some_and(|last| time_s - last <= LIFT_S))
+    }
+
     pub(super) fn take(&mut self) -> Vec<Contact> {
         self.waiting.drain(..).collect()
     }

@@ -235,7 +235,7 @@ impl World {
         let rig = self.rig.clone();
         for (servo, motor) in rig.servos.iter().zip(&mut self.servos) {
             let goal_rad = posture[servo.joint];
-            motor.drive = Drive { torque_on: true, goal_rad, speed_rad_s, torque_limit: 1.0 };
+            motor.drive = Drive { torque_on: true, goal_rad, speed_rad_s, torque_limit: 1.0, gain: 1.0 };
         }
     }
 
@@ -261,6 +261,11 @@ impl World {
     /// Touches since they were last taken.
     pub fn take_touches(&mut self) -> Vec<Contact> {
         self.touch.take()
+    }
+
+    /// Whether a finger is on the glass.
+    pub fn is_touched(&self) -> bool {
+        self.touch.is_down(self.data.time())
     }
 
     /// Simulated time, s.

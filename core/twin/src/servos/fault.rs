@@ -1,0 +1,99 @@
+//! What can be made to go wrong on the twin's bus.
+
+use serde::{Deserialize, Serialize};
+
+/// A fault of the servo bus. Those that say "sometimes" hit about one answer in eight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fault {
+    /// Some answers do not come.
+    Dropped,
+    /// Some answers come too late.
+    Late,
+    /// Some answers have a wrong bit.
+    Garbled,
+    /// Some answers end early.
+    Cut,
+    /// Some answers have a wrong checksum.
+    WrongChecksum,
+    /// Some answers carry the id of another servo.
+    WrongId,
+    /// The adapter returns the host's own bytes.
+    Echo,
+    /// One servo (the elbow of the first arm) is not there.
+    MissingServo,
+    /// Two servos answer to the id of the first arm's elbow.
+    TwoWithOneId,
+    /// One servo (the elbow of the first arm) grows hot.
+    HotServo,
+    /// The port is gone.
+    PortClosed,
+    /// The port vanishes in the middle of the next answer.
+    PortClosedMidAnswer,
+}
+
+impl Fault {
+    /// All of them.
+    pub const ALL: [Self; 12] = [
+        Self::Dropped,
+        Self::Late,
+        Self::Garbled,
+        Self::Cut,
+        Self::WrongChecksum,
+        Self::WrongId,
+        Self::Echo,
+        Self::MissingServo,
+        Self::TwoWithOneId,
+        Self::HotServo,
+        Self::PortClosed,
+        Self::PortClosedMidAnswer,
+    ];
+
+    /// Short name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Dropped => "dropped",
+            Self::Late => "late",
+            Self::Garbled => "garbled",
+            Self::Cut => "cut",
+            Self::WrongChecksum => "wrong-checksum",
+            Self::WrongId => "wrong-id",
+            Self::Echo => "echo",
+            Self::MissingServo => "missing-servo",
+            Self::TwoWithOneId => "two-with-one-id",
+            Self::HotServo => "hot-servo",
+            Self::PortClosed => "port-closed",
+            Self::PortClosedMidAnswer => "port-closed-mid-answer",
+        }
+    }
+
+    /// The fault of a short name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|fault| fault.name() == name)
+    }
+
+    /// What happens, for people.
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::Dropped => "Some answers of servos do not come.",
+            Self::Late => "Some answers of servos come 30 ms late.",
+            Self::Garbled => "Some answers of servos arrive with a wrong bit.",
+            Self::Cut => "Some answers of servos end early.",
+            Self::WrongChecksum => "Some answers of servos have a wrong checksum.",
+            Self::WrongId => "Some answers carry the id of another servo.",
+            Self::Echo => "The adapter returns the program's own bytes.",
+            Self::MissingServo => "The servo of the elbow is unplugged.",
+            Self::TwoWithOneId => "Two servos answer to the id of the elbow.",
+            Self::HotServo => "The servo of the elbow grows hot.",
+            Self::PortClosed => "The port is unplugged.",
+            Self::PortClosedMidAnswer => "The port is unplugged in the middle of an answer.",
+        }
+    }
+
+    /// How long a late answer takes, s.
+    pub(crate) const LATE_S: f64 = 0.030;
+    /// One answer in so many is hit.
+    pub(crate) const ONE_IN: u32 = 8;
+    /// How fast the hot servo warms, K/s.
+    pub(crate) const HEATING_K_PER_S: f64 = 1.5;
+}
