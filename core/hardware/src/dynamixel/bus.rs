@@ -18,6 +18,9 @@ use super::wire_time::WireTime;
 /// Longest single wait for bytes: how late a pressed stop is noticed.
 const SLICE: Duration = Duration::from_millis(1);
 
+/// An answer that was given up is waited for no longer than this where it would do harm.
+const OWED: Duration = Duration::from_millis(60);
+
 /// Timing of a bus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BusTiming {
@@ -128,7 +131,23 @@ impl Bus {
     /// Writes bytes from `address` on and waits for the servo's confirmation.
     pub(crate) fn write(&mut self, id: u8, address: u16, data: &[u8]) -> Result<Status, BusError> {
         let instruction = Instruction::Write { address, data: data.to_vec() };
-        self.ask(id, &instruction, None, self.far())
+        // A late answer to a question must not be taken for the confirmation.
+        self.ask(id, &instruction, Some(0), self.far())
+    }
+
+    /// Waits for answers of a servo that were given up and may still come, so that they are not
+    /// taken for newer ones.
+    pub(crate) fn await_owed(&mut self, id: u8) -> Result<(), BusError> {
+        let end = Instant::now() + OWED;
+        while self.owed.contains(&id) && Instant::now() < end {
+            self.drain()?;
+            if self.owed.contains(&id) {
+                self.receive(SLICE)?;
+                self.take_strays();
+            }
+        }
+        self.owed.retain(|owed| *owed != id);
+        Ok(())
     }
 
     /// Writes the same registers of many servos at once. Nobody answers.
@@ -332,6 +351,13 @@ impl Bus {
     pub(super) fn drain(&mut self) -> Result<(), BusError> {
         while self.receive(Duration::ZERO)? > 0 {}
         self.echo.clear();
+        self.take_strays();
+        self.counts.stray_bytes += self.deframer.clear() as u64;
+        Ok(())
+    }
+
+    /// Packets that nobody waits for.
+    fn take_strays(&mut self) {
         while let Some(found) = self.deframer.pop() {
             match found {
                 Found::Garbage(bytes) => self.counts.stray_bytes += bytes as u64,
@@ -343,8 +369,6 @@ impl Bus {
                 }
             }
         }
-        self.counts.stray_bytes += self.deframer.clear() as u64;
-        Ok(())
     }
 
     pub(super) fn send(&mut self, id: u8, instruction: &Instruction) -> Result<(), BusError> {

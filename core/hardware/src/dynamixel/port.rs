@@ -25,16 +25,23 @@ pub trait ServoPort: Read + Write + Send {
 struct SerialServoPort {
     name: String,
     port: Box<dyn serialport::SerialPort>,
+    read_timeout: Duration,
 }
+
+/// The longest packet lasts 2.6 ms on the wire; a port that takes no bytes for longer is gone.
+const WRITE_TIMEOUT: Duration = Duration::from_millis(30);
 
 impl Read for SerialServoPort {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.port.set_timeout(self.read_timeout)?;
         self.port.read(buffer)
     }
 }
 
 impl Write for SerialServoPort {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        // One timeout serves both directions of the device.
+        self.port.set_timeout(WRITE_TIMEOUT)?;
         self.port.write(bytes)
     }
 
@@ -50,7 +57,8 @@ impl ServoPort for SerialServoPort {
     }
 
     fn set_read_timeout(&mut self, timeout: Duration) -> io::Result<()> {
-        self.port.set_timeout(timeout).map_err(io::Error::from)
+        self.read_timeout = timeout;
+        Ok(())
     }
 }
 
@@ -60,7 +68,9 @@ impl ServoPort for SerialServoPort {
 /// When there is none, it is used by another program, or may not be used.
 pub fn open_port(path: &str, baud: u32) -> Result<Box<dyn ServoPort>, BusError> {
     match serialport::new(path, baud).timeout(Duration::from_millis(2)).open() {
-        Ok(port) => Ok(Box::new(SerialServoPort { name: path.to_owned(), port })),
+        Ok(port) => {
+            Ok(Box::new(SerialServoPort { name: path.to_owned(), port, read_timeout: Duration::ZERO }))
+        }
         Err(error) => Err(open_error(path, baud, &error)),
     }
 }

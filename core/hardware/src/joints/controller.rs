@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 use super::command::{Move, MoveId, MoveOutcome, Setpoint};
+use super::driver::expected_servos;
 use super::exchange::Exchange;
 use super::guard::{FloorGuard, Guard};
 use super::limiter::Limiter;
@@ -15,7 +16,7 @@ use super::options::ArmOptions;
 use super::rate::Rate;
 use super::refusal::{HoldReason, Refusal};
 use super::trajectory::Trajectory;
-use crate::dynamixel::BusError;
+use crate::dynamixel::{BusError, BusScan, ScanRange};
 
 /// What is asked through the queue.
 #[derive(Clone, Debug)]
@@ -23,6 +24,7 @@ pub(super) enum Request {
     Move(MoveId, Move),
     Hold,
     Torque { joints: Vec<JointIndex>, on: bool },
+    Scan(ScanRange),
 }
 
 /// What moves the goals.
@@ -58,10 +60,11 @@ pub(super) struct Controller {
     pub(super) rate: Rate,
     last_cycle_at: Instant,
     pub(super) gone: Option<String>,
+    pub(super) scan: Arc<BusScan>,
 }
 
 impl Controller {
-    pub fn new(exchange: Exchange, rig: Arc<Rig>, options: ArmOptions) -> Self {
+    pub fn new(exchange: Exchange, scan: BusScan, rig: Arc<Rig>, options: ArmOptions) -> Self {
         let n = exchange.slots.len();
         let mut guards = options.guards.clone();
         guards.push(Arc::new(FloorGuard::new(&rig)));
@@ -82,6 +85,7 @@ impl Controller {
             rate: Rate::default(),
             last_cycle_at: Instant::now(),
             gone: None,
+            scan: Arc::new(scan),
         }
     }
 
@@ -233,6 +237,7 @@ impl Controller {
     fn take(&mut self, request: Request) -> Result<(), BusError> {
         match request {
             Request::Hold => self.hold(HoldReason::Asked),
+            Request::Scan(range) => self.scan_again(range)?,
             Request::Torque { joints, on } => {
                 // A moving joint that goes limp, or a limp one that holds, ends the motion.
                 self.stay(MoveOutcome::Replaced, HoldReason::Asked);
@@ -258,6 +263,19 @@ impl Controller {
                 Err(refusal) => self.refuse_request(&Request::Move(id, wanted), refusal),
             },
         }
+        Ok(())
+    }
+
+    /// Asks anew who is on the bus, while the arm stands. A servo that is back takes part again.
+    fn scan_again(&mut self, range: ScanRange) -> Result<(), BusError> {
+        self.stay(MoveOutcome::Replaced, HoldReason::Asked);
+        let scan = self.exchange.bus.scan(&expected_servos(&self.limiter.rig), range)?;
+        for slot in &mut self.exchange.slots {
+            if !slot.in_use() && scan.found.iter().any(|found| found.id == slot.unit.id()) {
+                slot.missed = 0;
+            }
+        }
+        self.scan = Arc::new(scan);
         Ok(())
     }
 

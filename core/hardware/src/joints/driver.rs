@@ -34,7 +34,6 @@ pub struct ArmDriver {
     requests: Sender<Request>,
     limiter: Limiter,
     stop: StopSwitch,
-    scan: BusScan,
     ids: AtomicU64,
     thread: Option<JoinHandle<()>>,
 }
@@ -92,7 +91,7 @@ impl ArmDriver {
         }
         let stop = options.stop.clone();
         let limiter = Limiter { rig: rig.clone(), guards: options.guards.clone() };
-        let mut controller = Controller::new(exchange, rig, options);
+        let mut controller = Controller::new(exchange, scan, rig, options);
         let limiter = Limiter { guards: controller.guards(), ..limiter };
         controller.cycle(std::iter::empty(), None);
         let shared = Arc::new(Shared {
@@ -110,12 +109,20 @@ impl ArmDriver {
             })
             .map_err(|error| BusError::NoThread { detail: error.to_string() })?;
         let ids = AtomicU64::new(1);
-        Ok(Self { shared, requests, limiter, stop, scan, ids, thread: Some(thread) })
+        Ok(Self { shared, requests, limiter, stop, ids, thread: Some(thread) })
     }
 
-    /// Who was on the bus when it was connected.
-    pub fn scan(&self) -> &BusScan {
-        &self.scan
+    /// Who was on the bus when it was last asked.
+    pub fn scan(&self) -> Arc<BusScan> {
+        self.state().scan.clone()
+    }
+
+    /// Asks the bus anew who is there; the arm holds meanwhile, with all ids for seconds.
+    ///
+    /// # Errors
+    /// When too much waits, or the driver ended.
+    pub fn scan_again(&self, range: ScanRange) -> Result<(), Refusal> {
+        self.request(Request::Scan(range))
     }
 
     /// The newest state.

@@ -93,6 +93,9 @@ pub(super) struct Exchange {
     turn: u64,
 }
 
+/// How many bytes are read to learn the return delay.
+const RETURN_DELAY_BYTES: u16 = 4;
+
 /// Goals whose registers lie at the same place.
 struct GoalPacket {
     address: u16,
@@ -257,6 +260,7 @@ impl Exchange {
             else {
                 continue;
             };
+            self.bus.await_owed(slot.unit.id())?;
             match self.bus.read(slot.unit.id(), register.address, register.size) {
                 Ok(status) => slot.reading.torque_on = status.data.first().map(|on| *on != 0),
                 Err(BusError::Servo { .. }) => {}
@@ -275,10 +279,10 @@ impl Exchange {
             }
             let Some(raw) = register.raw(delay_s) else { continue };
             let id = slot.unit.id();
-            let outcome = self.bus.read(id, register.address, register.size).and_then(|status| match status
-                .data
-                .first()
-            {
+            // Read together with its neighbors, because every question has its own length: a late
+            // answer is never taken for one about the torque.
+            let (first, length) = (register.address - 1, RETURN_DELAY_BYTES);
+            let outcome = self.bus.read(id, first, length).and_then(|status| match status.data.first() {
                 Some(now) if u16::from(*now) > raw => {
                     self.bus.write(id, register.address, &register.bytes(raw)).map(|_| ())
                 }
@@ -299,6 +303,7 @@ impl Exchange {
         let unknown = Refusal::Unknown { joint, name };
         let Some(register) = slot.unit.table.register(Item::TorqueEnable) else { return Ok(Some(unknown)) };
         let id = slot.unit.id();
+        self.bus.await_owed(id)?;
         let written = (|| {
             if on {
                 let BulkItem { address, length, .. } =
@@ -313,7 +318,9 @@ impl Exchange {
                 slot.reading.goal_rad = slot.reading.angle_rad;
             }
             self.bus.write(id, register.address, &[u8::from(on)])?;
-            Ok(true)
+            // Only what the servo itself says counts.
+            let told = self.bus.read(id, register.address, register.size)?;
+            Ok(register.in_data(register.address, &told.data).map(|raw| raw != 0) == Some(on))
         })();
         match written {
             Ok(true) => {

@@ -8,7 +8,7 @@ use plumbline_model::robot::{JointIndex, Posture};
 
 use super::command::{Motion, MoveId, MoveOutcome};
 use super::refusal::Refusal;
-use crate::dynamixel::{BusCounts, WireTime};
+use crate::dynamixel::{BusCounts, BusScan, WireTime};
 
 /// One joint. What is not known is `None`.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,6 +104,8 @@ pub struct JointState {
     pub warnings: Arc<[String]>,
     /// Why the port is gone.
     pub gone: Option<String>,
+    /// Who was on the bus when it was last asked.
+    pub scan: Arc<BusScan>,
 }
 
 impl JointState {

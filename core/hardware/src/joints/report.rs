@@ -60,6 +60,7 @@ impl Controller {
             refusal: self.refusal.clone(),
             warnings: warnings.into(),
             gone: self.gone.clone(),
+            scan: self.scan.clone(),
         }
     }
 }

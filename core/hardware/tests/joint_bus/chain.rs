@@ -35,6 +35,8 @@ pub struct FakeServo {
     pub memory: Vec<u8>,
     /// Where it stands, ticks.
     pub position: f64,
+    /// Fastest it can, rad/s of the motor.
+    pub fastest_rad_s: f64,
     /// Whether something blocks it.
     pub blocked: bool,
     /// Fault and for how many answers.
@@ -66,8 +68,14 @@ pub struct Chain {
 impl FakeServo {
     pub fn new(model: &str, id: u8, position: f64) -> Self {
         let table = ControlTable::of_model(model).expect("a known model");
-        let mut servo =
-            Self { table, memory: vec![0; table.memory_bytes()], position, blocked: false, fault: None };
+        let mut servo = Self {
+            table,
+            memory: vec![0; table.memory_bytes()],
+            position,
+            fastest_rad_s: 6.0,
+            blocked: false,
+            fault: None,
+        };
         servo.set(Item::ModelNumber, table.number);
         servo.set(Item::FirmwareVersion, 36);
         servo.set(Item::Id, u16::from(id));
@@ -93,7 +101,7 @@ impl FakeServo {
             return;
         }
         let speed = self.table.register(Item::MovingSpeed).map_or(0.0, |r| r.si(self.get(Item::MovingSpeed)));
-        let largest = speed * dt_s / (std::f64::consts::TAU / 4096.0);
+        let largest = speed.min(self.fastest_rad_s) * dt_s / (std::f64::consts::TAU / 4096.0);
         self.position += (f64::from(self.get(Item::GoalPosition)) - self.position).clamp(-largest, largest);
     }
 

@@ -28,6 +28,9 @@ fn child_that_moves_until_it_is_killed() {
 fn a_killed_process_leaves_the_arm_within_a_step_of_where_it_was() {
     let rig = nico();
     let chain = PtyChain::of(&rig);
+    // It is slower than its goals, so that they run ahead as far as they may.
+    let pan = id_of(&rig, joint(&rig, "head_z"));
+    chain.lock().servos.get_mut(&pan).expect("there").fastest_rad_s = 0.4;
     let program = std::env::current_exe().expect("this test");
     let mut child = Command::new(program)
         .args(["--exact", "killed::child_that_moves_until_it_is_killed"])
@@ -35,7 +38,6 @@ fn a_killed_process_leaves_the_arm_within_a_step_of_where_it_was() {
         .stdout(Stdio::null())
         .spawn()
         .expect("it starts");
-    let pan = id_of(&rig, joint(&rig, "head_z"));
     let begin = chain.lock().servos[&pan].position;
     for _ in 0..2000 {
         if (chain.lock().servos[&pan].position - begin).abs() > 150.0 {
@@ -51,7 +53,7 @@ fn a_killed_process_leaves_the_arm_within_a_step_of_where_it_was() {
     let rests = chain.lock().servos[&pan].position;
     let step_ticks = rig.gate.step_rad / std::f64::consts::TAU * 4096.0;
     eprintln!("moved on by {:.1} of at most {step_ticks:.1} ticks after the kill", (rests - there).abs());
-    assert!((rests - there).abs() <= step_ticks + 1.0, "{}", rests - there);
+    assert!((rests - there).abs() <= step_ticks + 2.0, "{}", rests - there);
     assert!(has_torque(&chain, pan), "it holds");
     assert_goals_stay_near(&rig, &chain);
 }

@@ -107,3 +107,22 @@ fn connecting_moves_nothing_and_reads_every_joint() {
     });
     assert_eq!(outcome, limp);
 }
+
+#[test]
+fn a_servo_that_is_plugged_in_later_is_found_and_used() {
+    let rig = nico();
+    let elbow = joint(&rig, "r_elbow_y");
+    let mut servos = Chain::of(&rig);
+    let missing = servos.servos.remove(&id_of(&rig, elbow)).expect("there");
+    let chain = PtyChain::start(servos);
+    let port = open_port(&chain.path, 1_000_000).expect("the pseudo-terminal is there");
+    let driver = ArmDriver::connect(port, rig.clone(), ArmOptions::default()).expect("the others answer");
+    assert_eq!(driver.scan().missing.len(), 1);
+    let problem = driver.state().of(elbow).and_then(|r| r.problem.clone()).expect("told");
+    assert!(problem.contains("does not answer"), "{problem}");
+    chain.lock().servos.insert(id_of(&rig, elbow), missing);
+    driver.scan_again(ScanRange::Expected).expect("the queue is empty");
+    await_state(&driver, "it answers", |s| {
+        s.scan.is_complete() && s.of(elbow).is_some_and(|r| r.problem.is_none())
+    });
+}
