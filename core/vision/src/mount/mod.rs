@@ -11,6 +11,8 @@
 
 mod error;
 mod file;
+mod inputs;
+mod lens;
 mod localization;
 mod observability;
 mod optimizer;
@@ -20,6 +22,7 @@ mod problem;
 mod reject;
 mod report;
 mod start;
+mod state;
 #[cfg(test)]
 mod tests;
 mod types;
@@ -34,22 +37,23 @@ pub use file::MountFileError;
 pub use localization::{Improvement, LocatedPoint, localization_improvement};
 pub use plan::{PlannedTarget, plan_head_views};
 pub use types::{
-    Estimate, HeadView, MountCalibration, MountChange, MountEvidence, MountOptions, Target, ViewFit,
+    Estimate, Eyes, HeadView, MountCalibration, MountChange, MountEvidence, MountOptions, Target, ViewFit,
     mount_numbers,
 };
 
 /// Calibrates how the eyes sit in the head.
 ///
-/// `cameras` are the calibrated eyes; `rig` gives the kinematics and the nominal mount, which may
-/// be far off.
-pub fn calibrate_mount(
+/// `eyes` are the calibrated eyes (`&StereoCalibration`, or `&StereoCameras` without their
+/// uncertainty); `rig` gives the kinematics and the nominal mount, which may be far off.
+pub fn calibrate_mount<'a>(
     rig: &Rig,
-    cameras: &StereoCameras,
+    eyes: impl Into<Eyes<'a>>,
     views: &[HeadView],
     target: &Target,
     options: &MountOptions,
     context: &dyn JobContext,
 ) -> Result<MountCalibration, MountError> {
+    let eyes: Eyes<'a> = eyes.into();
     context.report(0.0, "finding where the views agree");
     let unknown = matches!(target, Target::UnknownBoard(_));
     let fewest = match target {
@@ -57,7 +61,7 @@ pub fn calibrate_mount(
         Target::KnownPoints(_) => 2,
         Target::Fingertip { .. } => 4,
     };
-    let prepared = prepare::prepare(rig, cameras, views, target, options)?;
+    let prepared = prepare::prepare(rig, eyes.cameras, views, target, options)?;
     if prepared.problem.views.len() < fewest {
         return Err(MountError::TooFewViews {
             found: prepared.problem.views.len(),
@@ -85,8 +89,8 @@ pub fn calibrate_mount(
 
     context.report(0.6, "solving, and estimating uncertainty");
     let solved = optimizer::solve_with_noise(problem, state, context)?.ok_or(MountError::Undetermined)?;
-    report::calibration(rig, cameras, views, target, options, solved, rejected)
-        .ok_or(MountError::Undetermined)
+    let asked = report::Asked { rig, eyes, views, target, options };
+    report::calibration(&asked, solved, rejected).ok_or(MountError::Undetermined)
 }
 
 /// Where a board lies according to one view and the rig's mount: good enough to plan views of it.
@@ -99,9 +103,9 @@ pub fn place_of_board(
     view: &HeadView,
     board: &Chessboard,
 ) -> Result<Pose<Robot, Board>, MountError> {
-    prepare::check_view(rig, view, board.corner_count())?;
+    inputs::check_view(rig, view, board.corner_count())?;
     let points: Vec<_> = board.corners().iter().map(|corner| corner.coords.coords).collect();
-    let (left_from_board, _) = start::left_from_target(cameras, &points, &prepare::seen_of(view))
+    let (left_from_board, _) = start::left_from_target(cameras, &points, &inputs::seen_of(view))
         .filter(|(pose, _)| (pose * Point3::from(points[0])).z > 0.0)
         .ok_or(MountError::NotSeen { views: 1 })?;
     Ok(rig.robot_from_left(&view.posture) * Pose::new(left_from_board))

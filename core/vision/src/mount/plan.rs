@@ -6,7 +6,8 @@ use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::{Chessboard, Eye, Pixel, Point, Pose, Raw, Robot, StereoCameras};
 
 use super::error::MountError;
-use super::prepare::{FEWEST_OF_UNKNOWN, neck};
+use super::inputs::neck;
+use super::prepare::FEWEST_OF_UNKNOWN;
 use super::problem::{ANYTHING, MOUNT, Neck, Priors, Problem, Seen, State, View};
 use super::types::MountOptions;
 

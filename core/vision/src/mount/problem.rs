@@ -10,6 +10,7 @@ use nalgebra::{DMatrix, DVector, Isometry3, Matrix2x3, Matrix3, Point3, Vector2,
 use plumbline_model::robot::{Chain, Posture};
 use plumbline_model::{Eye, StereoCameras};
 
+pub(super) use super::state::{Layout, State};
 use super::types::perturbed;
 
 /// Cost of a point that its lens cannot even project; keeps a bad step from looking good.
@@ -89,57 +90,8 @@ pub(super) struct Problem {
     pub unknown_angles: Option<usize>,
 }
 
-/// Everything that is estimated.
-#[derive(Clone, Debug)]
-pub(super) struct State {
-    pub head_from_left: Isometry3<f64>,
-    pub zeros_rad: [f64; 2],
-    pub robot_from_target: Isometry3<f64>,
-    /// Per view: errors of pan and tilt, rad.
-    pub angle_error_rad: Vec<[f64; 2]>,
-    /// Per view: error of the fingertip, robot frame, m.
-    pub tip_error_m: Vec<Vector3<f64>>,
-}
-
-impl State {
-    pub fn new(head_from_left: Isometry3<f64>, robot_from_target: Isometry3<f64>, views: usize) -> Self {
-        Self {
-            head_from_left,
-            zeros_rad: [0.0; 2],
-            robot_from_target,
-            angle_error_rad: vec![[0.0; 2]; views],
-            tip_error_m: vec![Vector3::zeros(); views],
-        }
-    }
-
-    pub fn without_view(mut self, view: usize) -> Self {
-        self.angle_error_rad.remove(view);
-        self.tip_error_m.remove(view);
-        self
-    }
-}
-
-/// Where things are in the vector of parameters.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Layout {
-    pub zeros: Option<usize>,
-    pub target: Option<usize>,
-    views: usize,
-    per_view: usize,
-    pub total: usize,
-}
-
-impl Layout {
-    pub fn angle(&self, view: usize, joint: usize) -> usize {
-        self.views + view * self.per_view + joint
-    }
-    fn tip(&self, view: usize) -> usize {
-        self.angle(view, 2)
-    }
-}
-
 /// A head pose of a view and how it changes with the two angles.
-struct HeadPose {
+pub(super) struct HeadPose {
     robot_from_head: Isometry3<f64>,
     /// Velocity of the head's origin and angular velocity per pan and tilt, robot frame.
     by_angle: [(Vector3<f64>, Vector3<f64>); 2],
@@ -153,9 +105,9 @@ pub(super) struct Prior {
 }
 
 /// One point's residual (px) and its derivatives by the parameters that it depends on.
-struct Row {
-    residual: Vector2<f64>,
-    columns: Vec<(usize, Vector2<f64>)>,
+pub(super) struct Row {
+    pub residual: Vector2<f64>,
+    pub columns: Vec<(usize, Vector2<f64>)>,
 }
 
 impl Problem {
@@ -184,7 +136,7 @@ impl Problem {
         self.neck.chain.robot_from_tip(&self.angles(state, view)).isometry
     }
 
-    fn head_pose(&self, state: &State, view: usize) -> HeadPose {
+    pub fn head_pose(&self, state: &State, view: usize) -> HeadPose {
         let (place, jacobian) = self.neck.chain.jacobian(&self.angles(state, view));
         let by_angle = self.neck.pan_tilt.map(|joint| {
             let column = jacobian.column(joint);
@@ -193,7 +145,7 @@ impl Problem {
         HeadPose { robot_from_head: place.isometry, by_angle }
     }
 
-    fn point_in_robot(&self, state: &State, view: usize, index: usize) -> Point3<f64> {
+    pub fn point_in_robot(&self, state: &State, view: usize, index: usize) -> Point3<f64> {
         if self.priors.tip_m.is_some() {
             Point3::from(self.views[view].tip + state.tip_error_m[view])
         } else {
@@ -308,7 +260,14 @@ impl Problem {
     }
 
     /// One point: how its predicted pixel depends on the parameters.
-    fn row(&self, state: &State, layout: &Layout, head: &HeadPose, view: usize, seen: &Seen) -> Option<Row> {
+    pub fn row(
+        &self,
+        state: &State,
+        layout: &Layout,
+        head: &HeadPose,
+        view: usize,
+        seen: &Seen,
+    ) -> Option<Row> {
         let in_robot = self.point_in_robot(state, view, seen.index);
         let in_head = head.robot_from_head.inverse_transform_point(&in_robot);
         let in_left = state.head_from_left.inverse_transform_point(&in_head);

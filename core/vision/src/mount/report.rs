@@ -2,25 +2,39 @@
 
 use nalgebra::Matrix6;
 use plumbline_model::robot::Rig;
-use plumbline_model::{CornerResidual, Eye, Pose, RejectedPair, StereoCameras};
+use plumbline_model::{CornerResidual, Eye, Pose, RejectedPair};
 
+use super::lens;
 use super::observability::not_seen;
 use super::optimizer::Solved;
+use super::problem::{Problem, State};
 use super::types::{
-    Estimate, HeadView, MountCalibration, MountChange, MountEvidence, MountOptions, Target, ViewFit,
+    Estimate, Eyes, HeadView, MountCalibration, MountChange, MountEvidence, MountOptions, Target, ViewFit,
 };
+
+/// What was asked for.
+pub(super) struct Asked<'a> {
+    pub rig: &'a Rig,
+    pub eyes: Eyes<'a>,
+    pub views: &'a [HeadView],
+    pub target: &'a Target,
+    pub options: &'a MountOptions,
+}
 
 /// `None` if a solved point cannot be projected, which a solution does not have.
 pub(super) fn calibration(
-    rig: &Rig,
-    cameras: &StereoCameras,
-    views: &[HeadView],
-    target: &Target,
-    options: &MountOptions,
+    asked: &Asked<'_>,
     solved: Solved,
     rejected: Vec<RejectedPair>,
 ) -> Option<MountCalibration> {
-    let Solved { problem, state, covariance } = &solved;
+    let Asked { rig, eyes, views, target, options } = *asked;
+    let Solved { problem, state, .. } = &solved;
+    let of_lenses = eyes.covariance.and_then(|covariance| lens::share(&solved, covariance));
+    let covariance = match &of_lenses {
+        Some(share) => &solved.covariance + share,
+        None => solved.covariance.clone(),
+    };
+    let covariance = &covariance;
     let layout = problem.layout();
     let six = |at: usize| -> Matrix6<f64> { covariance.fixed_view::<6, 6>(at, at).into_owned() };
     let unknown = matches!(target, Target::UnknownBoard(_));
@@ -43,12 +57,13 @@ pub(super) fn calibration(
         per_view,
         rejected,
         not_seen: not_seen(rig, target, &layout, &problem.priors, covariance),
+        remarks: remarks(asked, problem, state, of_lenses.is_some()),
         change: MountChange::between(&rig.eyes.head_from_left, &head_from_left),
         evidence: MountEvidence {
             rig: rig.name.clone(),
             joints: rig.description.movable().map(|joint| joint.name.clone()).collect(),
             nominal: rig.eyes.head_from_left,
-            cameras: *cameras,
+            cameras: *eyes.cameras,
             target: target.clone(),
             options: options.clone(),
             views: views.to_vec(),
@@ -56,6 +71,45 @@ pub(super) fn calibration(
             software: concat!("plumbline ", env!("CARGO_PKG_VERSION")).to_owned(),
         },
     })
+}
+
+/// What else the operator should know.
+fn remarks(asked: &Asked<'_>, problem: &Problem, state: &State, lenses_included: bool) -> Vec<String> {
+    let Asked { rig, target, options, .. } = asked;
+    let mut remarks = vec![];
+    let stated_rad = options.angle_sd_rad();
+    for (joint, sd_rad) in [rig.eyes.pan, rig.eyes.tilt].into_iter().zip(problem.priors.angle_rad) {
+        if sd_rad > 1.2 * stated_rad {
+            remarks.push(format!(
+                "{} stands ±{:.2}° from where its encoder says, more than the ±{:.2}° expected: its gears have slack, or the head had not come to rest; the stated uncertainty includes it",
+                rig.description.joint(joint).name,
+                sd_rad.to_degrees(),
+                stated_rad.to_degrees()
+            ));
+        }
+    }
+    if matches!(target, Target::KnownPoints(_)) && problem.free_target {
+        let moved_m =
+            (state.robot_from_target.translation.vector - problem.expected.1.translation.vector).norm();
+        let turned_rad = state.robot_from_target.rotation.angle_to(&problem.expected.1.rotation);
+        let (turn_sd, place_sd) = problem.priors.target;
+        // Three axes together stay below four times the deviation of one in 999 of 1000 cases.
+        if moved_m > 4.0 * place_sd || turned_rad > 4.0 * turn_sd {
+            remarks.push(format!(
+                "the known points lie {:.1} mm and {:.2}° away from where they were said to be, more than the ±{:.1} mm and ±{:.2}° expected: measure their place again",
+                moved_m * 1e3,
+                turned_rad.to_degrees(),
+                place_sd * 1e3,
+                turn_sd.to_degrees()
+            ));
+        }
+    }
+    if !lenses_included {
+        remarks.push(
+            "the uncertainty of the eyes' own calibration is not known and not included: calibrate the eyes from board pairs to have it".to_owned(),
+        );
+    }
+    remarks
 }
 
 fn view_fit(solved: &Solved, view: usize) -> Option<ViewFit> {

@@ -4,9 +4,31 @@ use nalgebra::{Isometry3, Matrix6, SMatrix, SymmetricEigen, UnitQuaternion, Vect
 use plumbline_model::frame::{Board, Head, LeftCamera};
 use plumbline_model::robot::{EyeMount, Posture, Rig};
 use plumbline_model::{
-    Chessboard, Corners, Eye, PairObservation, Point, Pose, RejectedPair, Robot, StereoCameras,
+    Chessboard, Corners, Eye, PairObservation, ParameterCovariance, Point, Pose, RejectedPair, Robot,
+    StereoCalibration, StereoCameras,
 };
 use serde::{Deserialize, Serialize};
+
+/// The calibrated eyes, and how well they are known.
+#[derive(Clone, Copy, Debug)]
+pub struct Eyes<'a> {
+    /// Lenses and how the eyes sit to each other.
+    pub cameras: &'a StereoCameras,
+    /// How well these are known; `None` leaves this part out of the mount's uncertainty.
+    pub covariance: Option<&'a ParameterCovariance>,
+}
+
+impl<'a> From<&'a StereoCameras> for Eyes<'a> {
+    fn from(cameras: &'a StereoCameras) -> Self {
+        Self { cameras, covariance: None }
+    }
+}
+
+impl<'a> From<&'a StereoCalibration> for Eyes<'a> {
+    fn from(calibration: &'a StereoCalibration) -> Self {
+        Self { cameras: &calibration.cameras, covariance: calibration.covariance.as_ref() }
+    }
+}
 
 /// What both eyes saw with the head in one pose.
 #[derive(Clone, Debug, PartialEq)]
@@ -166,7 +188,8 @@ pub struct MountEvidence {
 pub struct MountCalibration {
     /// Place of the left eye in the head.
     pub head_from_left: Pose<Head, LeftCamera>,
-    /// How well it is known, scaled by the residuals. Order: rotation vector (rad), translation
+    /// How well it is known, scaled by the residuals, with the uncertainty of the eyes' own
+    /// calibration where that is known. Order: rotation vector (rad), translation
     /// (m), both in the axes of the head, a perturbation on the left side.
     pub covariance: Matrix6<f64>,
     /// Zeros of the head's encoders (pan, tilt), if they were estimated: true angle = encoder +
@@ -190,6 +213,9 @@ pub struct MountCalibration {
     /// What these views cannot tell, a sentence each, with what would show it; empty when all
     /// was seen.
     pub not_seen: Vec<String>,
+    /// What else the operator should know, a sentence each: slack in the neck, known points that
+    /// are not where they were said to be, uncertainty that is not included.
+    pub remarks: Vec<String>,
     /// Difference to the nominal mount.
     pub change: MountChange,
     /// What it was made from.

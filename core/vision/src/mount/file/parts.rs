@@ -14,6 +14,7 @@ pub(super) struct File {
     pub pixel_sigma_px: f64,
     pub angle_sigma_rad: [f64; 2],
     pub not_seen: Vec<String>,
+    pub remarks: Vec<String>,
     /// Rotation vector (rad), then place (m), axes of the head.
     pub covariance: [[f64; 6]; 6],
     pub head_from_left: PosePart,

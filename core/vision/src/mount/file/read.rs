@@ -71,6 +71,7 @@ impl Reader<'_> {
             per_view: parts.fit.into_iter().map(|part| self.fit(part)).collect::<Result<_, _>>()?,
             rejected: parts.rejected,
             not_seen: parts.not_seen,
+            remarks: parts.remarks,
             change: MountChange::between(&evidence.nominal, &head_from_left),
             head_from_left,
             evidence,

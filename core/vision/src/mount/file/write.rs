@@ -19,6 +19,7 @@ pub(super) fn parts(mount: &MountCalibration) -> File {
         pixel_sigma_px: mount.pixel_sigma_px,
         angle_sigma_rad: mount.angle_sigma_rad,
         not_seen: mount.not_seen.clone(),
+        remarks: mount.remarks.clone(),
         covariance: rows(&mount.covariance),
         head_from_left: pose_part(&mount.head_from_left.isometry),
         head_zeros_rad: mount.head_zeros_rad,

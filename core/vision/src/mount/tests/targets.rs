@@ -1,14 +1,20 @@
 //! Known points, the fingertip, encoder zeros, slack, far-off starts, other boards.
 
-use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, DVector, Isometry3, UnitQuaternion, Vector3};
 use plumbline_model::robot::EyeMount;
-use plumbline_model::{Chessboard, Eye, Point, Robot};
+use plumbline_model::{
+    Camera, CameraModel, Chessboard, Eye, Fisheye, ModelKind, ParameterCovariance, Point, Pose, Robot,
+    StereoCameras, Unattended,
+};
 
 use super::honesty::{coverage, error};
 use super::world::{World, board};
+use crate::mount::types::perturbed;
 use crate::mount::{
-    HeadView, LocatedPoint, MountOptions, PlannedTarget, Target, localization_improvement, plan_head_views,
+    Eyes, HeadView, LocatedPoint, MountOptions, PlannedTarget, Target, calibrate_mount,
+    localization_improvement, plan_head_views,
 };
+use crate::synthetic::Noise;
 
 /// Corners of the touchscreen.
 fn screen(world: &World) -> Vec<Point<Robot>> {
@@ -246,4 +252,77 @@ fn a_calibrated_mount_localizes_better() {
     let rig = solved.applied_to(&world.rig);
     assert_eq!(rig.eyes.head_from_left, solved.head_from_left);
     assert!((0.0001..0.002).contains(&solved.point_sigma_m(Point::new(0.0, 0.0, 0.4))));
+}
+
+#[test]
+fn lenses_that_are_a_little_off_are_part_of_the_uncertainty() {
+    // How well a good calibration of the eyes knows them: f, c (px), k1 to k4, twice; turn (rad), shift (m).
+    let lens = [0.08, 0.08, 0.06, 0.06, 5e-4, 5e-4, 2e-4, 3e-5];
+    let sd: Vec<f64> = lens.iter().chain(&lens).copied().chain([2e-4; 3]).chain([5e-5; 3]).collect();
+    let matrix = DMatrix::from_diagonal(&DVector::from_iterator(22, sd.iter().map(|s| s * s)));
+    let known = ParameterCovariance { matrix };
+    let run = |included: bool| {
+        coverage(40, |seed| {
+            let mut world = World::new(400 + seed);
+            let views = world.board_views(12);
+            let cameras = off_by(&world.rig.eyes.cameras, &sd, &mut world.noise);
+            let eyes = Eyes { cameras: &cameras, covariance: included.then_some(&known) };
+            let target = Target::UnknownBoard(board());
+            let solved =
+                calibrate_mount(&world.rig, eyes, &views, &target, &MountOptions::default(), &Unattended);
+            (world, solved)
+        })
+    };
+    let (chi_square, within) = run(true);
+    assert!((4.0..8.0).contains(&chi_square), "{chi_square}");
+    assert!(within >= 0.95, "{within}");
+    // The test would notice if this part were missing.
+    assert!(run(false).0 > 10.0);
+}
+
+/// Eyes that differ by errors of these standard deviations, in the order of a calibration's
+/// covariance.
+fn off_by(cameras: &StereoCameras, sd: &[f64], noise: &mut Noise) -> StereoCameras {
+    let mut error = sd.iter().map(|sd| sd * noise.normal());
+    let mut lens = |camera: &Camera| {
+        let CameraModel::Fisheye(old) = camera.model else { panic!("a fisheye") };
+        let mut p = camera.model.parameters();
+        p.iter_mut().zip(&mut error).for_each(|(p, e)| *p += e);
+        let CameraModel::Fisheye(new) = CameraModel::from_parameters(ModelKind::Fisheye, &p) else {
+            panic!("a fisheye")
+        };
+        Camera { model: CameraModel::Fisheye(Fisheye { skew_px: old.skew_px, ..new }), ..*camera }
+    };
+    let (left, right) = (lens(&cameras.left), lens(&cameras.right));
+    let six: Vec<f64> = error.collect();
+    StereoCameras {
+        left,
+        right,
+        right_from_left: Pose::new(perturbed(&cameras.right_from_left.isometry, &six)),
+    }
+}
+
+#[test]
+fn known_points_that_are_elsewhere_and_slack_are_remarked() {
+    let mut world = World { slack_rad: 0.004, ..World::new(36) };
+    let nominal = screen(&world);
+    let real: Vec<_> = nominal.iter().map(|p| Point::from(p.coords + Vector3::new(0.02, 0.0, 0.0))).collect();
+    let views: Vec<_> = (0..14)
+        .map(|i| {
+            world.view(&format!("{i}"), (0.08 * f64::from(i - 7), -0.3 - 0.08 * f64::from(i % 4)), &real)
+        })
+        .collect();
+    let solved =
+        world.solve_with(&views, &Target::KnownPoints(nominal), &MountOptions::default()).expect("solvable");
+    assert!(solved.remarks.iter().any(|r| r.contains("known points lie")), "{:?}", solved.remarks);
+    assert!(
+        solved.remarks.iter().any(|r| r.starts_with("head_z stands") && r.contains("slack")),
+        "{:?}",
+        solved.remarks
+    );
+    assert!(
+        solved.remarks.iter().any(|r| r.contains("own calibration is not known")),
+        "{:?}",
+        solved.remarks
+    );
 }
