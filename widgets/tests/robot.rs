@@ -82,7 +82,7 @@ fn drag<State>(harness: &mut Harness<'_, State>, from: Pos2, to: Pos2) {
 fn type_goal(harness: &mut Harness<'_, Joint>, text: &str) {
     harness.get_by_label("elbow goal in degrees").focus();
     harness.run_steps(2);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    // The old number is selected: typing replaces it.
     harness.get_by_label("elbow goal in degrees").type_text(text);
     harness.run_steps(2);
     harness.key_press(Key::Enter);
@@ -124,6 +124,19 @@ fn a_typed_goal_is_proposed() {
     let goal = harness.state().proposals.clone();
     assert_eq!(goal.len(), 1);
     assert!((goal[0] - 80.5f64.to_radians()).abs() < 1e-12);
+}
+
+#[test]
+fn a_click_into_the_number_selects_it() {
+    let mut harness = joint();
+    harness.get_by_label("elbow goal in degrees").click();
+    harness.run_steps(3);
+    harness.get_by_label("elbow goal in degrees").type_text("30");
+    harness.run_steps(2);
+    // Leaving it is as good as the enter key.
+    harness.get_by_label("elbow goal").focus();
+    harness.run_steps(3);
+    assert_eq!(harness.state().proposals, [30f64.to_radians()]);
 }
 
 #[test]
@@ -399,6 +412,20 @@ fn the_scene_is_drawn_only_when_something_changed() {
     harness.state_mut().camera.zoom(1.5);
     harness.run_steps(5);
     assert_eq!(harness.state().renders, 3);
+}
+
+#[test]
+fn a_large_scene_is_drawn_finer_once_it_stands_still() {
+    let mut harness = view();
+    harness.set_size(vec2(1200.0, 900.0));
+    harness.run_steps(3);
+    let moving = harness.state().renders;
+    std::thread::sleep(std::time::Duration::from_millis(230));
+    harness.run_steps(3);
+    assert_eq!(harness.state().renders, moving + 1);
+    std::thread::sleep(std::time::Duration::from_millis(230));
+    harness.run_steps(3);
+    assert_eq!(harness.state().renders, moving + 1, "and only once");
 }
 
 #[test]

@@ -66,7 +66,7 @@ fn body(scene: &mut Scene) {
     scene.solids.push(limb(at([-0.02, -0.13, 0.25]), at([-0.02, 0.13, 0.25]), 0.038, Tint::Neutral));
     for y in [-0.035, 0.035] {
         // OpenCV axes: z along the optical axis, 30° down.
-        let down = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), 0.5236);
+        let down = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), std::f64::consts::FRAC_PI_6);
         let axes = UnitQuaternion::from_euler_angles(
             -std::f64::consts::FRAC_PI_2,
             0.0,

@@ -1,5 +1,7 @@
 //! The goal as a number that can be typed.
 
+use egui::text::{CCursor, CCursorRange};
+use egui::text_edit::TextEditState;
 use egui::{Align2, Id, Margin, Rect, TextEdit, Ui, vec2};
 
 use super::JointRow;
@@ -24,6 +26,9 @@ pub(super) fn show(row: &JointRow<'_>, ui: &mut Ui, rect: Rect, base: Id) -> Opt
     inner.spacing_mut().interact_size.y = rect.height();
     let response = inner.put(rect, edit.desired_width(rect.width()).min_size(rect.size()));
     let response = response.accessible_name(format!("{} goal in degrees", row.name));
+    if response.gained_focus() {
+        select_all(ui, id, text.chars().count());
+    }
     if response.lost_focus() {
         ui.data_mut(|data| data.remove_temp::<String>(id));
         let changed = editing.is_some_and(|before| before != shown) || text != shown;
@@ -33,6 +38,15 @@ pub(super) fn show(row: &JointRow<'_>, ui: &mut Ui, rect: Rect, base: Id) -> Opt
         ui.data_mut(|data| data.insert_temp(id, text));
     }
     None
+}
+
+/// What is typed first replaces the old number.
+fn select_all(ui: &Ui, id: Id, length: usize) {
+    if let Some(mut state) = TextEditState::load(ui.ctx(), id) {
+        let [start, end] = [0, length].map(CCursor::new);
+        state.cursor.set_char_range(Some(CCursorRange::two(start, end)));
+        state.store(ui.ctx(), id);
+    }
 }
 
 /// Degrees as people write them.

@@ -330,10 +330,10 @@ mod tests {
 
     #[test]
     fn a_limit_typed_as_it_is_written_is_inside() {
-        let row = JointRow::new("x", "x", [-0.7854, 0.785_37], JointState::default());
-        assert_eq!(row.check(45f64.to_radians()), Ok(0.785_37));
-        assert_eq!(row.check(-45f64.to_radians()), Ok(-0.785_398_163_397_448_3));
-        assert!(row.check(45.2f64.to_radians()).is_err());
+        let row = JointRow::new("x", "x", [-0.7, 0.52], JointState::default());
+        assert_eq!(row.check(29.8f64.to_radians()), Ok(0.52), "29.79° is written as 29.8°");
+        assert_eq!(row.check(-40.1f64.to_radians()), Ok(-40.1f64.to_radians()));
+        assert!(row.check(30f64.to_radians()).is_err());
     }
 
     #[test]

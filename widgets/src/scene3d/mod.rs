@@ -35,11 +35,13 @@ use egui::{
 
 use crate::empty::{EmptyState, Message};
 use crate::theme;
-use render::Renderer;
+use render::{Quality, Renderer, Sampling};
 
 /// Nobody's screen is larger, in pixels.
 const LARGEST_PX: f32 = 4096.0;
 
+/// A scene that did not change for so long is drawn again as well as it can be.
+const AT_REST: Duration = Duration::from_millis(200);
 /// Strength of a picture that is old.
 const STALE: Color32 = Color32::from_rgba_premultiplied(110, 110, 110, 110);
 
@@ -92,12 +94,12 @@ pub struct RenderStats {
 }
 
 /// What a picture was made of.
-#[derive(PartialEq)]
+#[derive(Clone, PartialEq)]
 struct Key {
     scene: Scene,
     camera: SceneCamera,
-    size_px: [usize; 2],
-    pixels_per_point: f32,
+    view_px: [usize; 2],
+    height_points: f32,
     dark: bool,
 }
 
@@ -106,6 +108,8 @@ struct Key {
 struct Cache {
     renderer: Renderer,
     shown: Option<(Key, TextureHandle)>,
+    /// Samples of the picture that is shown, and when it was made.
+    made: Option<(Sampling, Instant)>,
     stats: RenderStats,
 }
 
@@ -180,19 +184,20 @@ impl<'a> Scene3d<'a> {
         let pixels_per_point = ui.pixels_per_point();
         let rect = rect.round_to_pixels(pixels_per_point);
         let pixels = |points: f32| (points * pixels_per_point).round().clamp(1.0, LARGEST_PX) as usize;
-        let size_px = [pixels(rect.width()), pixels(rect.height())];
-        let dark = ui.visuals().dark_mode;
+        let view_px = [pixels(rect.width()), pixels(rect.height())];
+        let (height_points, dark) = (rect.height(), ui.visuals().dark_mode);
         let fresh = cache.shown.as_ref().is_some_and(|(key, _)| {
-            key.size_px == size_px
+            key.view_px == view_px
                 && key.dark == dark
-                && key.pixels_per_point == pixels_per_point
+                && key.height_points == height_points
                 && key.camera == *camera
                 && key.scene == *self.scene
         });
         if !fresh {
-            let key = Key { scene: self.scene.clone(), camera: *camera, size_px, pixels_per_point, dark };
-            cache.render(ui, self.label, key);
+            let key = Key { scene: self.scene.clone(), camera: *camera, view_px, height_points, dark };
+            cache.render(ui, self.label, key, Quality::Draft);
         }
+        cache.refine(ui, self.label);
         let painter = ui.painter_at(rect);
         if let Some((_, texture)) = &cache.shown {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
@@ -208,11 +213,10 @@ impl<'a> Scene3d<'a> {
     }
 
     fn paint_words(&self, ui: &Ui, rect: Rect, view: &View, hovered: Option<&Picked>, cache: &Cache) {
-        let pixels_per_point = ui.pixels_per_point();
         if let Some(grid) = self.scene.grid.filter(Grid::is_drawable) {
             chrome::axes(ui, rect, view, &grid);
         }
-        let hidden = |at: Pos2, depth_m: f64| cache.renderer.is_hidden(at * pixels_per_point, depth_m);
+        let hidden = |at: Pos2, depth_m: f64| cache.renderer.is_hidden(at.to_vec2() / rect.size(), depth_m);
         chrome::labels(ui, rect, view, self.scene, hidden);
         chrome::compass(ui, rect, view);
         chrome::captions(ui, rect, self.label, self.stale, self.scene);
@@ -223,23 +227,37 @@ impl<'a> Scene3d<'a> {
 }
 
 impl Cache {
-    fn render(&mut self, ui: &Ui, label: &str, key: Key) {
+    fn render(&mut self, ui: &Ui, label: &str, key: Key, quality: Quality) {
         let start = Instant::now();
+        let sampling = Sampling::of(key.view_px, quality);
         let tokens = theme::tokens(ui);
-        let rendered =
-            self.renderer.render(&key.scene, &key.camera, key.size_px, key.pixels_per_point, tokens);
+        let rendered = self.renderer.render(&key.scene, &key.camera, sampling, key.height_points, tokens);
         let triangles = rendered.triangles;
         let image = ColorImage::new(rendered.size_px, rendered.pixels);
-        match self.shown.take() {
+        let texture = match self.shown.take() {
             Some((_, mut texture)) => {
                 texture.set(image, TextureOptions::LINEAR);
-                self.shown = Some((key, texture));
+                texture
             }
-            None => {
-                let texture = ui.ctx().load_texture(label, image, TextureOptions::LINEAR);
-                self.shown = Some((key, texture));
-            }
-        }
+            None => ui.ctx().load_texture(label, image, TextureOptions::LINEAR),
+        };
+        self.shown = Some((key, texture));
+        self.made = Some((sampling, Instant::now()));
         self.stats = RenderStats { renders: self.stats.renders + 1, triangles, last: start.elapsed() };
+    }
+
+    /// Draws a large picture again, finer, once it stands still.
+    fn refine(&mut self, ui: &Ui, label: &str) {
+        let (Some((key, _)), Some((sampling, made))) = (&self.shown, self.made) else { return };
+        if sampling == Sampling::of(key.view_px, Quality::Fine) {
+            return;
+        }
+        let age = made.elapsed();
+        if age < AT_REST {
+            ui.ctx().request_repaint_after(AT_REST - age);
+        } else {
+            let key = key.clone();
+            self.render(ui, label, key, Quality::Fine);
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! The scene as a picture.
 
-use egui::{Color32, Pos2, Vec2};
+use egui::{Color32, Vec2};
 use nalgebra::{Point3, Vector3};
 
 use super::camera::{NEAR_M, SceneCamera, View};
@@ -10,8 +10,40 @@ use super::scene::{Dot, Grid, Line, LineStyle, Scene, Shape, Solid};
 use super::shade::{Light, Linear, linear, on_screen};
 use crate::theme::Tokens;
 
-/// More samples than this would take longer than a frame has.
-const MOST_SAMPLES: f32 = 3.2e6;
+/// How much work a picture may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Quality {
+    /// Less than a frame has time for: while something moves.
+    Draft,
+    /// As good as it gets: once it stands still.
+    Fine,
+}
+
+/// How many samples a picture of a view is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Sampling {
+    /// Pixels of the picture; fewer than the view has if there are very many.
+    pub(super) size_px: [usize; 2],
+    /// Samples per pixel along each side.
+    pub(super) factor: usize,
+}
+
+impl Sampling {
+    /// For a view of so many pixels.
+    pub(super) fn of(view_px: [usize; 2], quality: Quality) -> Self {
+        let most = match quality {
+            Quality::Draft => 3_200_000,
+            Quality::Fine => 9_000_000,
+        };
+        let [width, height] = view_px.map(|n| n.max(1));
+        match width.saturating_mul(height) {
+            pixels if pixels.saturating_mul(4) <= most => Self { size_px: [width, height], factor: 2 },
+            pixels if pixels <= most => Self { size_px: [width, height], factor: 1 },
+            _ => Self { size_px: [width.div_ceil(2), height.div_ceil(2)], factor: 1 },
+        }
+    }
+}
+
 /// How much nearer lines are drawn than they are, so that those on a surface are seen.
 const LINE_LIFT: f32 = 1.002;
 /// A ghost that coincides with a body is not drawn over it.
@@ -32,7 +64,10 @@ pub(super) struct Renderer {
     over: Layer,
     scratch: Vec<Corner>,
     triangles: usize,
-    factor: usize,
+    /// Samples of the last picture.
+    size: [f32; 2],
+    /// Width of a hairline in samples.
+    line_samples: f32,
 }
 
 /// A vertex in front of the camera or behind it.
@@ -77,18 +112,19 @@ impl Projection {
 }
 
 impl Renderer {
-    /// Draws the scene for a view of so many pixels, `pixels_per_point` of them per point.
+    /// Draws the scene; lines are measured in points, of which the view is `height_points` high.
     pub(super) fn render(
         &mut self,
         scene: &Scene,
         camera: &SceneCamera,
-        size_px: [usize; 2],
-        pixels_per_point: f32,
+        sampling: Sampling,
+        height_points: f32,
         tokens: &Tokens,
     ) -> Rendered {
-        let [width, height] = size_px.map(|n| n.max(1));
-        self.factor = if (4 * width * height) as f32 <= MOST_SAMPLES { 2 } else { 1 };
-        let (columns, rows) = (width * self.factor, height * self.factor);
+        let Sampling { size_px: [width, height], factor } = sampling;
+        let (columns, rows) = (width * factor, height * factor);
+        self.size = [columns as f32, rows as f32];
+        self.line_samples = factor as f32;
         let projection = Projection { view: camera.view(Vec2::new(columns as f32, rows as f32)) };
         self.triangles = 0;
         self.solids.reset(columns, rows, tokens.backdrop);
@@ -102,7 +138,7 @@ impl Renderer {
             self.shadows(drawable(), &grid, &projection);
             self.grid(&grid, &projection, tokens);
         }
-        let samples_per_point = pixels_per_point * self.factor as f32;
+        let samples_per_point = rows as f32 / height_points.max(1.0);
         for line in scene.drawn_lines(true) {
             self.line(line, &projection, samples_per_point, tokens);
         }
@@ -113,17 +149,14 @@ impl Renderer {
             self.solid(solid, &projection, tokens);
         }
         self.solids.composite(&mut self.over, |ghost, solid| ghost * GHOST_LIFT > solid);
-        Rendered {
-            size_px: [width, height],
-            pixels: self.solids.resolve(self.factor),
-            triangles: self.triangles,
-        }
+        Rendered { size_px: [width, height], pixels: self.solids.resolve(factor), triangles: self.triangles }
     }
 
-    /// Whether something solid is in front of a point: `at_px` and `depth_m` as projected.
-    pub(super) fn is_hidden(&self, at_px: Pos2, depth_m: f64) -> bool {
-        let factor = self.factor as f32;
-        let nearness = self.solids.nearness_at(at_px.x * factor, at_px.y * factor);
+    /// Whether something solid is in front of a point: its place as a fraction of the picture
+    /// from the top left, and its distance along the optical axis.
+    pub(super) fn is_hidden(&self, at: Vec2, depth_m: f64) -> bool {
+        let [columns, rows] = self.size;
+        let nearness = self.solids.nearness_at(at.x * columns, at.y * rows);
         nearness.is_some_and(|nearness| nearness > 1.01 / depth_m as f32)
     }
 
@@ -205,7 +238,7 @@ impl Renderer {
             (first as i64..=last as i64).map(|i| (i, i as f64 * grid.step_m))
         };
         let alpha = |i: i64| if i == 0 { 0.62 } else { 0.24 };
-        let width = self.factor as f32;
+        let width = self.line_samples;
         for (i, x) in multiples(grid.x_m) {
             self.segment([at(x, y0), at(x, y1)], [color(alpha(i)); 2], width, projection);
         }
@@ -273,8 +306,7 @@ impl Renderer {
         const CORNERS: usize = 14;
         let [r, g, b, _] = dot.tint.ink(tokens).to_array().map(f32::from);
         let corner = projection.corner(&dot.at_m, [r, g, b, 255.0]);
-        // Also false for what is not a number.
-        if !(corner.place.z >= NEAR_M as f32) {
+        if corner.place.z.is_nan() || corner.place.z < NEAR_M as f32 {
             return;
         }
         let middle = lifted(projection.vertex(&corner));
