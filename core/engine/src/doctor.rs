@@ -3,6 +3,7 @@
 
 mod processor;
 mod serial;
+mod twin;
 
 use std::io::Write;
 use std::path::Path;
@@ -40,6 +41,7 @@ impl Check {
 /// use by this program. Serial ports are not opened, because that makes some devices restart.
 pub fn checks(data_folder: &Path) -> Vec<Check> {
     let mut checks = vec![opencv(), processor::instructions(), processor::cores(), processor::memory()];
+    checks.extend(twin::checks());
     checks.extend(cameras());
     checks.extend(serial::ports());
     checks.push(writable(data_folder));
@@ -113,7 +115,7 @@ mod tests {
     fn every_part_is_looked_at_and_says_something() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let checks = checks(folder.path());
-        for part in ["OpenCV", "processor", "cores", "memory", "cameras", "serial ports", "data folder"] {
+        for part in ["OpenCV", "processor", "cores", "memory", "twin", "twin's eyes", "cameras", "serial ports", "data folder"] {
             let found = checks.iter().filter(|check| check.name == part).count();
             assert_eq!(found, 1, "{part} in {checks:?}");
         }

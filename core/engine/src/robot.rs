@@ -11,7 +11,6 @@ mod publish;
 #[cfg(test)]
 mod tests;
 mod thread;
-mod twin_api;
 mod twin_desk;
 mod twin_eyes;
 mod worker;

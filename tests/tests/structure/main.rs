@@ -63,9 +63,11 @@ fn the_computation_reaches_no_window() {
     let table = Table::with_header(&text, &["package", "never reaches"]);
     let packages = packages();
     let lock = Lock::read();
-    for below in ["model", "vision", "hardware", "engine"] {
+    for below in ["model", "vision", "hardware", "twin", "engine"] {
         let row = table.row(below);
-        for library in ["egui", "eframe", "wgpu", "winit"] {
+        // The twin draws what its eyes see, without a window.
+        let drawing = ["wgpu"].into_iter().filter(|_| !["twin", "engine"].contains(&below));
+        for library in ["egui", "eframe", "winit"].into_iter().chain(drawing) {
             assert!(
                 row[1].split(", ").any(|told| told == library),
                 "{below} must be told to avoid {library}"
@@ -87,6 +89,25 @@ fn the_computation_reaches_no_window() {
     }
     let app = packages.iter().find(|package| package.name == "plumbline").expect("the program");
     assert!(lock.reached_by(app, &packages).contains("egui"), "this test must be able to see a window");
+}
+
+#[test]
+fn nobody_but_judges_reads_what_the_twin_hides() {
+    // Put together here, so that this file does not contain them itself.
+    let hidden = ["truth_for".to_owned() + "_judging", "plumbline_twin::".to_owned() + "truth"];
+    let mut readers = Vec::new();
+    let mut in_twin = 0;
+    for (name, text) in tracked_text_files().into_iter().filter(|(name, _)| name.ends_with(".rs")) {
+        let reads = hidden.iter().any(|hidden| text.contains(hidden.as_str()));
+        // The twin itself offers it; tests and judges may ask.
+        if name.starts_with("core/twin/") {
+            in_twin += usize::from(reads);
+        } else if reads && !name.starts_with("tests/") {
+            readers.push(name);
+        }
+    }
+    assert!(in_twin > 0, "this test must be able to see the truth");
+    assert!(readers.is_empty(), "these read what the twin hides: {readers:?}");
 }
 
 #[test]

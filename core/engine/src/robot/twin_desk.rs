@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::twin_api::{self as plumbline_twin, Fault, Scenario, Toy, Twin, TwinSettings, board_presets};
 use plumbline_model::Point;
 use plumbline_model::frame::{Board, Pose, Robot};
 use plumbline_model::robot::Rig;
+use plumbline_twin::{Fault, Scenario, Toy, Twin, TwinSettings, board_presets};
 
 use super::twin_eyes::TwinEyesPlug;
 use crate::command::TwinCommand;
@@ -53,7 +53,7 @@ impl TwinDesk {
 
     /// Where its servos are reached.
     pub fn port(&self) -> Option<PathBuf> {
-        self.twin.as_ref().map(|twin| twin.port().to_path_buf())
+        self.twin.as_ref().map(Twin::port)
     }
 
     /// Messages since the last call.
@@ -78,7 +78,7 @@ impl TwinDesk {
         let twin = Twin::start(settings).map_err(words)?;
         self.board_places = board_presets(rig);
         self.eyes.set(Some(twin.scene()));
-        let port = twin.port().to_path_buf();
+        let port = twin.port();
         self.twin = Some(twin);
         Ok(port)
     }
@@ -91,7 +91,7 @@ impl TwinDesk {
             twin.send(command);
             Ok(())
         };
-        use super::twin_api::TwinCommand as To;
+        use plumbline_twin::TwinCommand as To;
         match command {
             TwinCommand::PlaceToy { toy: name, x_m, y_m } => {
                 let on = |range: [f64; 2], value: f64| value >= range[0] && value <= range[1];

@@ -2,9 +2,10 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::twin_api::SceneSource;
 use plumbline_hardware::RetryPolicy;
 use plumbline_hardware::{Retrying, SourceError, SourceOptions, SourceSpec, StereoSource, open_retrying};
+use plumbline_twin::SceneSource;
+use plumbline_twin::eyes::{TwinEyes, TwinEyesOptions};
 
 use crate::source::Opener;
 
@@ -21,7 +22,8 @@ impl TwinEyesPlug {
     fn open(&self) -> Result<Box<dyn StereoSource>, SourceError> {
         let scene = self.0.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let scene = scene.ok_or(SourceError::TwinNotRunning)?;
-        super::twin_api::open_eyes(scene)
+        let eyes = TwinEyes::open(Arc::new(move || scene.newest()), TwinEyesOptions::default());
+        Ok(Box::new(eyes.map_err(|error| SourceError::Lost { reason: error.to_string() })?))
     }
 
     /// Opens the twin's eyes itself and everything else as usual.
