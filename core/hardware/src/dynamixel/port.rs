@@ -28,6 +28,9 @@ struct SerialServoPort {
     read_timeout: Duration,
 }
 
+/// Until another is set.
+const READ_TIMEOUT: Duration = Duration::from_millis(2);
+
 /// The longest packet lasts 2.6 ms on the wire; a port that takes no bytes for longer is gone.
 const WRITE_TIMEOUT: Duration = Duration::from_millis(30);
 
@@ -67,10 +70,8 @@ impl ServoPort for SerialServoPort {
 /// # Errors
 /// When there is none, it is used by another program, or may not be used.
 pub fn open_port(path: &str, baud: u32) -> Result<Box<dyn ServoPort>, BusError> {
-    match serialport::new(path, baud).timeout(Duration::from_millis(2)).open() {
-        Ok(port) => {
-            Ok(Box::new(SerialServoPort { name: path.to_owned(), port, read_timeout: Duration::ZERO }))
-        }
+    match serialport::new(path, baud).timeout(READ_TIMEOUT).open() {
+        Ok(port) => Ok(Box::new(SerialServoPort { name: path.to_owned(), port, read_timeout: READ_TIMEOUT })),
         Err(error) => Err(open_error(path, baud, &error)),
     }
 }

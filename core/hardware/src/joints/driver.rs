@@ -34,6 +34,7 @@ pub struct ArmDriver {
     requests: Sender<Request>,
     limiter: Limiter,
     stop: StopSwitch,
+    scan: BusScan,
     ids: AtomicU64,
     thread: Option<JoinHandle<()>>,
 }
@@ -91,7 +92,7 @@ impl ArmDriver {
         }
         let stop = options.stop.clone();
         let limiter = Limiter { rig: rig.clone(), guards: options.guards.clone() };
-        let mut controller = Controller::new(exchange, scan, rig, options);
+        let mut controller = Controller::new(exchange, scan.clone(), rig, options);
         let limiter = Limiter { guards: controller.guards(), ..limiter };
         controller.cycle(std::iter::empty(), None);
         let shared = Arc::new(Shared {
@@ -109,12 +110,13 @@ impl ArmDriver {
             })
             .map_err(|error| BusError::NoThread { detail: error.to_string() })?;
         let ids = AtomicU64::new(1);
-        Ok(Self { shared, requests, limiter, stop, ids, thread: Some(thread) })
+        Ok(Self { shared, requests, limiter, stop, scan, ids, thread: Some(thread) })
     }
 
-    /// Who was on the bus when it was last asked.
-    pub fn scan(&self) -> Arc<BusScan> {
-        self.state().scan.clone()
+    /// Who was on the bus when it was connected; what a later scan found stands in
+    /// [`JointState::scan`].
+    pub fn scan(&self) -> &BusScan {
+        &self.scan
     }
 
     /// Asks the bus anew who is there; the arm holds meanwhile, with all ids for seconds.
