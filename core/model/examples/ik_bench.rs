@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let yaw =
         |pose: &Pose| Target::PositionYaw { point: point_of(pose), yaw_rad: pose.rotation.euler_angles().2 };
     let upright = Options::upright();
-    let cases: [(&'static str, &Options, &dyn Fn(&Pose) -> Target); 6] = [
+    let cases: [Case<'_>; 6] = [
         ("position", &plain, &point),
         ("position, rest posture", &rested, &point),
         ("position, upright", &upright, &point),
@@ -70,6 +70,8 @@ fn point_of(pose: &Pose) -> Point<Robot> {
 }
 
 type Pose = nalgebra::Isometry3<f64>;
+/// Name, how to solve, what is asked at a place of the tip.
+type Case<'a> = (&'static str, &'a Options, &'a dyn Fn(&Pose) -> Target);
 
 /// Places of the tip at random angles; the same ones every time.
 fn random_poses(chain: &Chain, solver: &Solver, count: usize) -> Vec<Pose> {

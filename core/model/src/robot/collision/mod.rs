@@ -6,6 +6,7 @@
 //! shapes are larger than the parts): those are computed, see
 //! [`CollisionModel::always_in_contact`].
 
+mod bodies;
 mod model;
 mod path;
 mod solid;

@@ -2,18 +2,11 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Isometry3, Matrix3, Point3, Translation3, UnitQuaternion, Vector3};
-
+use super::bodies::{Part, bit, joined, movers, parts, people_name, reach_m, surroundings};
 use super::solid::Solid;
 use crate::frame::{Point, Robot};
-use crate::robot::{
-    CoupledLimit, Description, JointIndex, JointKind, Limits, LinkIndex, Posture, Rig, Shape,
-};
+use crate::robot::{CoupledLimit, Description, JointIndex, Limits, LinkIndex, Posture, Rig};
 
-/// The table is taken to be solid down to here below its top, m: nothing passes under it.
-const TABLE_DEPTH_M: f64 = 1.0;
-/// Thickness of the touchscreen below its surface, m.
-const SCREEN_DEPTH_M: f64 = 0.04;
 /// Links nearer than this in the home pose count as in contact, m: the shapes are drawn no more
 /// exactly.
 const CONTACT_M: f64 = 0.003;
@@ -106,20 +99,13 @@ pub struct CollisionModel {
     pub(super) reach_m: Vec<f64>,
 }
 
-#[derive(Clone, Debug)]
-struct Part {
-    link: LinkIndex,
-    link_from_shape: Isometry3<f64>,
-    shape: Shape,
-}
-
 /// Two bodies that can meet: a part, and another part or one of the surroundings.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     a: usize,
     b: Other,
     /// Joints that move one against the other, one bit each.
-    pub moved_by: u64,
+    pub moved_by: u128,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -134,10 +120,10 @@ impl CollisionModel {
         let description = rig.description.clone();
         let parts = parts(&description);
         let surroundings = surroundings(rig);
-        let movers: Vec<u64> =
+        let movers: Vec<u128> =
             (0..description.links().len()).map(|link| movers(&description, LinkIndex(link))).collect();
-        let bits = |joints: &[JointIndex]| joints.iter().fold(0u64, |bits, joint| bits | 1 << joint.0);
-        let hands: Vec<u64> = rig.arms.iter().map(|arm| bits(&arm.hand)).collect();
+        let bits = |joints: &[JointIndex]| joints.iter().fold(0, |bits, joint| bits | bit(*joint));
+        let hands: Vec<u128> = rig.arms.iter().map(|arm| bits(&arm.hand)).collect();
         let mut pairs = vec![];
         for (a, part) in parts.iter().enumerate() {
             for (b, other) in parts.iter().enumerate().skip(a + 1) {
@@ -227,7 +213,7 @@ impl CollisionModel {
         posture: &Posture,
         chain: &[JointIndex],
     ) -> Option<(Body, f64)> {
-        let moving = chain.iter().fold(0u64, |bits, joint| bits | 1 << joint.0);
+        let moving = chain.iter().fold(0, |bits, joint| bits | bit(*joint));
         let point = Solid::point(point.coords);
         let links = self.parts.iter().zip(self.solids(posture));
         let still = links
@@ -345,100 +331,4 @@ pub(super) struct Worst {
     pub pair: usize,
     pub distance_m: f64,
     pub collides: bool,
-}
-
-fn parts(description: &Description) -> Vec<Part> {
-    let links = description.links().iter().enumerate();
-    let of_link = |(i, link): (usize, &crate::robot::Link)| -> Vec<Part> {
-        let part = |collision: &crate::robot::Visual| Part {
-            link: LinkIndex(i),
-            link_from_shape: collision.link_from_shape,
-            shape: collision.shape,
-        };
-        link.collisions.iter().map(part).collect()
-    };
-    links.flat_map(of_link).collect()
-}
-
-fn surroundings(rig: &Rig) -> Vec<(Body, Solid)> {
-    let table = &rig.table;
-    let ([x0, x1], [y0, y1]) = (table.x_range_m, table.y_range_m);
-    let half_m = Vector3::new(0.5 * (x1 - x0), 0.5 * (y1 - y0), 0.5 * TABLE_DEPTH_M);
-    let center = Translation3::new(0.5 * (x0 + x1), 0.5 * (y0 + y1), table.height_m - 0.5 * TABLE_DEPTH_M);
-    let table =
-        Solid::new(&Shape::Box { half_m }, &Isometry3::from_parts(center, UnitQuaternion::identity()));
-    let screen = &rig.touchscreen;
-    let (u, v) = (screen.u_axis.vector(), screen.v_axis.vector());
-    let down = u.cross(&v);
-    let middle: Point3<f64> = screen.origin.coords
-        + u * (0.5 * screen.width_m)
-        + v * (0.5 * screen.height_m)
-        + down * (0.5 * SCREEN_DEPTH_M);
-    let axes = nalgebra::Rotation3::from_matrix_unchecked(Matrix3::from_columns(&[u, v, down]));
-    let half_m = Vector3::new(0.5 * screen.width_m, 0.5 * screen.height_m, 0.5 * SCREEN_DEPTH_M);
-    let place =
-        Isometry3::from_parts(Translation3::from(middle), UnitQuaternion::from_rotation_matrix(&axes));
-    let screen = Solid::new(&Shape::Box { half_m }, &place);
-    vec![(Body::Table, table), (Body::Touchscreen, screen), (Body::Floor, Solid::below(rig.gate.floor_m))]
-}
-
-/// Joints that move a link, one bit each.
-fn movers(description: &Description, mut link: LinkIndex) -> u64 {
-    let mut bits = 0;
-    while let Some(joint) = description.joint_above(link) {
-        bits |= match &joint.kind {
-            JointKind::Fixed => 0,
-            JointKind::Revolute { index, .. } => 1 << index.0,
-            JointKind::Coupled { mimic, .. } => 1 << mimic.source.0,
-        };
-        link = joint.parent;
-    }
-    bits
-}
-
-/// Whether nothing with a shape lies between two links of a branch.
-fn joined(description: &Description, a: LinkIndex, b: LinkIndex) -> bool {
-    let carrier = |mut link: LinkIndex| {
-        while let Some(parent) = description.links()[link.0].parent {
-            if !description.links()[parent.0].collisions.is_empty() {
-                return Some(parent);
-            }
-            link = parent;
-        }
-        None
-    };
-    carrier(a) == Some(b) || carrier(b) == Some(a)
-}
-
-/// How far the parts below a joint reach from its origin, m, by movable joint. What follows a
-/// joint by a factor is added to it.
-fn reach_m(description: &Description) -> Vec<f64> {
-    let links = description.links();
-    let mut extent_m = vec![0.0f64; links.len()];
-    let mut reach_m = vec![0.0; description.movable_count()];
-    for i in (0..links.len()).rev() {
-        for collision in &links[i].collisions {
-            let solid = Solid::new(&collision.shape, &collision.link_from_shape);
-            extent_m[i] = extent_m[i].max(solid.ball.0.coords.norm() + solid.ball.1);
-        }
-        let Some(joint) = description.joint_above(LinkIndex(i)) else { continue };
-        match &joint.kind {
-            JointKind::Fixed => {}
-            JointKind::Revolute { index, .. } => reach_m[index.0] += extent_m[i],
-            JointKind::Coupled { mimic, .. } => reach_m[mimic.source.0] += extent_m[i] * mimic.ratio.abs(),
-        }
-        let through = joint.parent_from_joint.translation.vector.norm() + extent_m[i];
-        extent_m[joint.parent.0] = extent_m[joint.parent.0].max(through);
-    }
-    reach_m
-}
-
-/// "right_lower_arm" → "right lower arm", "l_thumb_intermediate_link" → "left thumb intermediate".
-fn people_name(link: &str) -> String {
-    let word = |word: &str| match word {
-        "r" => "right".to_owned(),
-        "l" => "left".to_owned(),
-        other => other.to_owned(),
-    };
-    link.split('_').filter(|part| *part != "link" && !part.is_empty()).map(word).collect::<Vec<_>>().join(" ")
 }

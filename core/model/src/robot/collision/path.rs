@@ -1,5 +1,6 @@
 //! The straight way in joint angles between two postures.
 
+use super::bodies::bit;
 use super::model::{Allowance, CollisionError, CollisionModel, Contact, PostureCheck};
 use super::solid::Solid;
 use crate::robot::{JointIndex, Posture};
@@ -129,13 +130,13 @@ impl CollisionModel {
 
     /// More than any two points of the robot can move against each other on the way, m, and the
     /// joints that turn, one bit each.
-    fn travel_m(&self, from: &Posture, to: &Posture) -> (f64, u64) {
+    fn travel_m(&self, from: &Posture, to: &Posture) -> (f64, u128) {
         let turns = from.angles_rad().iter().zip(to.angles_rad()).zip(&self.reach_m).enumerate();
         let mut sum = (0.0, 0);
         for (i, ((from, to), reach_m)) in turns {
             let turn_rad = (to - from).abs();
             if turn_rad > 0.0 {
-                sum = (sum.0 + turn_rad * reach_m, sum.1 | 1 << i);
+                sum = (sum.0 + turn_rad * reach_m, sum.1 | bit(JointIndex(i)));
             }
         }
         (sum.0.max(1e-9), sum.1)

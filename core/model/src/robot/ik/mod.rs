@@ -14,6 +14,7 @@
 //! ```
 
 mod descent;
+mod explain;
 mod kernel;
 mod seeds;
 mod solver;

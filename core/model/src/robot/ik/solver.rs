@@ -7,10 +7,6 @@ use super::target::{Answer, ChainAngles, IkError, Options, Solution, Target};
 use super::task::Task;
 use crate::robot::{Chain, DescriptionError, JointIndex, Limits, Posture, Rig};
 
-/// Part of the remaining error that freeing a joint must take away for the joint to be named.
-const RELIEF: f64 = 0.05;
-/// How far beyond its limits a joint may turn when it is asked whether a limit is in the way, rad.
-const BEYOND_RAD: f64 = std::f64::consts::PI;
 /// Two solutions are different ones when a joint differs by more, rad.
 const DISTINCT_RAD: f64 = 0.05;
 
@@ -18,18 +14,18 @@ const DISTINCT_RAD: f64 = 0.05;
 #[derive(Clone, Debug)]
 pub struct Solver {
     tip: String,
-    joints: Vec<JointIndex>,
-    names: Vec<String>,
-    kernel: Kernel,
+    pub(super) joints: Vec<JointIndex>,
+    pub(super) names: Vec<String>,
+    pub(super) kernel: Kernel,
     limits: [Limits; MAX_JOINTS],
     seeds: Seeds,
 }
 
 /// A checked question.
-struct Question {
-    task: Task,
-    limits: [Limits; MAX_JOINTS],
-    start: Angles,
+pub(super) struct Question {
+    pub task: Task,
+    pub limits: [Limits; MAX_JOINTS],
+    pub start: Angles,
 }
 
 impl Solver {
@@ -161,6 +157,9 @@ impl Solver {
         if !target.is_finite() {
             return Err(IkError::NotANumber { what: "target" });
         }
+        if !(0.0..=1.0).contains(&options.pull) {
+            return Err(IkError::Pull(options.pull));
+        }
         let limits = match &options.limits {
             Some(narrower) => checked_limits(narrower, Some(self.limits()), &self.names)?,
             None => self.limits,
@@ -171,7 +170,7 @@ impl Solver {
             Some(rest) => {
                 let rest = inside(&self.angles("rest posture", rest)?, &limits, count);
                 (options.pull > 0.0)
-                    .then(|| std::array::from_fn(|i| start[i] + options.pull.min(1.0) * (rest[i] - start[i])))
+                    .then(|| std::array::from_fn(|i| start[i] + options.pull * (rest[i] - start[i])))
             }
             None => None,
         };
@@ -191,7 +190,7 @@ impl Solver {
         Ok(angles)
     }
 
-    fn promising(&self, question: &Question, count: usize) -> Vec<Angles> {
+    pub(super) fn promising(&self, question: &Question, count: usize) -> Vec<Angles> {
         self.seeds.promising(&question.task, &question.start, self.kernel.len(), count)
     }
 
@@ -225,53 +224,6 @@ impl Solver {
             starts,
         }
     }
-
-    /// Whether a limit is in the way, and whose.
-    fn explain(&self, question: &Question, best: &Outcome, solution: Solution, options: &Options) -> Answer {
-        let demands = question.task.demands();
-        let count = self.kernel.len();
-        let normal = demands.normal(&best.reading, &best.angles, count);
-        let stuck = (0..count).filter_map(|i| {
-            let limits = &question.limits[i];
-            let (low, high) = (best.angles[i] <= limits.lower_rad, best.angles[i] >= limits.upper_rad);
-            let pushed = (low && normal.right[i] < 0.0) || (high && normal.right[i] > 0.0);
-            pushed.then(|| {
-                let mut freed = question.limits;
-                freed[i] = widened(limits);
-                let relieved = descend(&self.kernel, &demands, &freed, &best.angles, DEMANDING);
-                (i, relieved.remaining.cost())
-            })
-        });
-        let most = stuck.min_by(|a, b| a.1.total_cmp(&b.1));
-        let worth = |cost: f64| cost.sqrt() < (1.0 - RELIEF) * best.remaining.cost().sqrt();
-        let joint = most.filter(|(_, cost)| worth(*cost)).map(|(i, _)| i);
-        match joint.or_else(|| self.farthest_beyond(question, best, options)) {
-            Some(i) => {
-                let limits = &question.limits[i];
-                let nearer_upper = best.angles[i] > limits.middle_rad();
-                Answer::LimitedBy {
-                    joint: self.joints[i],
-                    name: self.names[i].clone(),
-                    limit_rad: if nearer_upper { limits.upper_rad } else { limits.lower_rad },
-                    best: solution,
-                }
-            }
-            None => Answer::OutOfReach { by_m: solution.position_error_m, best: solution },
-        }
-    }
-
-    /// When no single limit is to blame but the target is reached without any: the joint that then
-    /// is farthest beyond its own.
-    fn farthest_beyond(&self, question: &Question, best: &Outcome, options: &Options) -> Option<usize> {
-        let demands = question.task.demands();
-        let free = question.limits.map(|limits| widened(&limits));
-        let starts = std::iter::once(best.angles).chain(self.promising(question, 8));
-        let reached = starts
-            .map(|start| descend(&self.kernel, &demands, &free, &start, DEMANDING))
-            .find(|outcome| outcome.meets(options))?;
-        let excess = |i: &usize| question.limits[*i].excess_rad(reached.angles[*i]).abs();
-        (0..self.kernel.len()).max_by(|a, b| excess(a).total_cmp(&excess(b))).filter(|i| excess(i) > 0.0)
-    }
 }
 
 /// Why there is no solver.
@@ -283,10 +235,6 @@ pub enum SolverError {
     /// Its chain cannot be solved.
     #[error(transparent)]
     Chain(#[from] IkError),
-}
-
-fn widened(limits: &Limits) -> Limits {
-    Limits { lower_rad: limits.lower_rad - BEYOND_RAD, upper_rad: limits.upper_rad + BEYOND_RAD }
 }
 
 fn inside(angles: &Angles, limits: &[Limits; MAX_JOINTS], count: usize) -> Angles {

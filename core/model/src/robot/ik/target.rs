@@ -149,7 +149,7 @@ pub struct Options {
     pub limits: Option<Vec<Limits>>,
     /// A posture (rad) toward which the arm is drawn with whatever freedom the target leaves.
     pub rest: Option<Vec<f64>>,
-    /// How far it is drawn: 0 stays near the start, 1 goes to the solution nearest to `rest`.
+    /// How far it is drawn, 0–1: 0 stays near the start, 1 goes to the solution nearest to `rest`.
     pub pull: f64,
     /// Where the tip's z axis should point as nearly as the arm can, without giving up anything of
     /// the target: the robot's up for a palm that faces down or a fingertip that points down.
@@ -214,6 +214,9 @@ pub enum IkError {
         /// Joints.
         joints: usize,
     },
+    /// The pull toward the rest posture is no share.
+    #[error("the pull toward the rest posture is {0}: give a number from 0 (none) to 1 (all the way)")]
+    Pull(f64),
     /// Limits that leave a joint no angle.
     #[error(
         "the limits {lower_rad} to {upper_rad} rad given for {joint} leave it no angle inside of its own {own_lower_rad} to {own_upper_rad} rad: widen them"

@@ -265,6 +265,8 @@ fn nonsense_is_refused_with_a_sentence() {
     assert!(refused(&good, &[0.0; 5], &plain).contains("5 values for the 6 joints"));
     let rest = Options { rest: Some(vec![f64::NAN; 6]), ..plain.clone() };
     assert!(refused(&good, &arm.home(), &rest).contains("rest posture"));
+    let pulled = Options { pull: f64::NAN, ..plain.clone() };
+    assert!(refused(&good, &arm.home(), &pulled).contains("from 0 (none) to 1"));
     let mut limits = arm.solver.limits().to_vec();
     limits[2] = Limits { lower_rad: 5.0, upper_rad: 6.0 };
     let nowhere = Options { limits: Some(limits), ..plain };
