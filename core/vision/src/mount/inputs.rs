@@ -1,8 +1,8 @@
 //! Inputs read and checked, every refusal in words.
 
 use nalgebra::{Isometry3, Vector2, Vector3};
-use plumbline_model::Eye;
 use plumbline_model::robot::Rig;
+use plumbline_model::{Eye, StereoCameras};
 
 use super::error::MountError;
 use super::problem::{Neck, Seen};
@@ -74,6 +74,16 @@ pub(super) fn check_options(options: &MountOptions) -> Result<(), MountError> {
         }
     }
     Ok(())
+}
+
+pub(super) fn check_cameras(cameras: &StereoCameras) -> Result<(), MountError> {
+    let lenses = Eye::BOTH.into_iter().flat_map(|eye| cameras.camera(eye).model.parameters());
+    let between = cameras.right_from_left.isometry.to_homogeneous();
+    if lenses.chain(between.iter().copied()).all(f64::is_finite) {
+        return Ok(());
+    }
+    let what = "a value of the eyes' calibration".to_owned();
+    Err(MountError::NotFinite { what, remedy: "calibrate the eyes again, or load another file".to_owned() })
 }
 
 pub(super) fn check_view(rig: &Rig, view: &HeadView, points: usize) -> Result<(), MountError> {

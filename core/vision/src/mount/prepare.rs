@@ -5,7 +5,7 @@ use plumbline_model::robot::{Chain, Rig};
 use plumbline_model::{Eye, RejectedPair, StereoCameras};
 
 use super::error::MountError;
-use super::inputs::{check_options, check_view, neck, seen_of, target_points};
+use super::inputs::{check_cameras, check_options, check_view, neck, seen_of, target_points};
 use super::problem::{ANYTHING, Priors, Problem, State, View};
 use super::start;
 use super::types::{HeadView, MountOptions, Target};
@@ -45,6 +45,7 @@ pub(super) fn prepare(
     options: &MountOptions,
 ) -> Result<Prepared, MountError> {
     check_options(options)?;
+    check_cameras(cameras)?;
     let neck = neck(rig)?;
     let (points, target_pose) = target_points(target)?;
     let tip = match target {
@@ -204,15 +205,15 @@ fn same_end_first(problem: &mut Problem, heads: &[Isometry3<f64>], left_from_tar
         end.into(),
         nalgebra::UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI),
     );
-    let place = |v: usize, board: &Isometry3<f64>| heads[v] * problem.expected.0 * board;
-    let first = place(0, &left_from_target[0]);
-    for v in 1..left_from_target.len() {
-        let here = place(v, &left_from_target[v]);
+    let nominal = problem.expected.0;
+    let mut first: Option<Isometry3<f64>> = None;
+    for ((head, view), board) in heads.iter().zip(&mut problem.views).zip(left_from_target) {
+        let here = head * nominal * *board;
         let there = here * turned;
-        let angle = |pose: &Isometry3<f64>| first.rotation.angle_to(&pose.rotation);
-        if angle(&there) + 1.0 < angle(&here) {
-            left_from_target[v] *= turned;
-            for seen in &mut problem.views[v].seen {
+        let first = *first.get_or_insert(here);
+        if first.rotation.angle_to(&there.rotation) + 1.0 < first.rotation.angle_to(&here.rotation) {
+            *board *= turned;
+            for seen in &mut view.seen {
                 seen.index = last - seen.index;
             }
         }

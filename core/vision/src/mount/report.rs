@@ -104,6 +104,11 @@ fn remarks(asked: &Asked<'_>, problem: &Problem, state: &State, lenses_included:
             ));
         }
     }
+    if matches!(target, Target::Fingertip { .. }) {
+        remarks.push(
+            "errors of the arm that are the same in all views, such as zeros of its encoders, are now part of the mount: check it with a board or with the touchscreen".to_owned(),
+        );
+    }
     if !lenses_included {
         remarks.push(
             "the uncertainty of the eyes' own calibration is not known and not included: calibrate the eyes from board pairs to have it".to_owned(),

@@ -136,7 +136,8 @@ fn aligning_rotation(
     let (u, v_t) = (svd.u?, svd.v_t?);
     let mut strengths: Vec<f64> = svd.singular_values.iter().copied().collect();
     strengths.sort_by(f64::total_cmp);
-    if !(strengths[1] > 1e-4 * strengths[2]) {
+    let tells = strengths[1] > 1e-4 * strengths[2];
+    if !tells {
         return None;
     }
     // The weakest direction takes whatever sign makes a rotation.

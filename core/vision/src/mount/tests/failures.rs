@@ -1,7 +1,7 @@
 //! What can go wrong, and the words it is answered with.
 
 use nalgebra::{Isometry3, Vector3};
-use plumbline_model::{Cancelled, JobContext};
+use plumbline_model::{Cancelled, JobContext, Unattended};
 
 use super::world::{World, board};
 use crate::mount::{HeadView, MountError, MountOptions, Target, calibrate_mount};
@@ -99,9 +99,9 @@ fn a_board_pushed_halfway_is_found_by_the_majority() {
         Isometry3::new(Vector3::new(0.01, 0.005, 0.0), Vector3::z() * 0.05) * world.robot_from_board;
     let corners = world.corners();
     let (pan, tilt) = (world.rig.eyes.pan, world.rig.eyes.tilt);
-    for i in 8..12 {
-        let stood = (views[i].posture[pan], views[i].posture[tilt]);
-        views[i] = world.view(&format!("view {i}"), stood, &corners);
+    for view in &mut views[8..] {
+        let stood = (view.posture[pan], view.posture[tilt]);
+        *view = world.view(&view.name, stood, &corners);
     }
     let solved = world.solve(&views).expect("eight views agree");
     let mut named: Vec<&str> = solved.rejected.iter().map(|r| r.name.as_str()).collect();
@@ -163,6 +163,12 @@ fn numbers_that_are_none_are_refused_by_name() {
     assert!(refusal(&world, &views).contains("has 3 joint angles"));
 
     let target = Target::UnknownBoard(board());
+    let mut cameras = world.rig.eyes.cameras;
+    cameras.right_from_left.isometry.translation.vector.x = f64::NAN;
+    let options = MountOptions::default();
+    let refused = calibrate_mount(&world.rig, &cameras, &good, &target, &options, &Unattended).map(|_| ());
+    let message = refused.expect_err("NaN").to_string();
+    assert!(message.contains("eyes' calibration is not a number"), "{message}");
     let options = MountOptions { encoder_tick_rad: 0.0, ..MountOptions::default() };
     let message = world.solve_with(&good, &target, &options).expect_err("must be refused").to_string();
     assert!(message.contains("encoder_tick_rad is 0"), "{message}");

@@ -8,7 +8,7 @@ use super::honesty::error;
 use super::world::{World, board};
 use crate::chessboard;
 use crate::mount::{HeadView, place_of_board};
-use crate::synthetic::{Plane, Scene, chessboard_texture, granite_texture};
+use crate::synthetic::{Plane, Scene, chessboard_texture};
 
 /// Both images of the board on the table, and what is found in them.
 fn rendered_view(world: &mut World, name: &str, pan_tilt: (f64, f64), seed: u64) -> HeadView {
@@ -17,7 +17,10 @@ fn rendered_view(world: &mut World, name: &str, pan_tilt: (f64, f64), seed: u64)
     let left_from_robot = (head * world.head_from_left).inverse();
     let table = Isometry3::translation(0.3, 0.0, 0.0535);
     let mut scene = Scene { background: 90.0, ..Scene::default() };
-    scene.planes.push(Plane::new(left_from_robot * table, granite_texture(0.006, 7)));
+    scene.planes.push(Plane::new(
+        left_from_robot * table,
+        Box::new(|x, y| Some(120.0 + 20.0 * (60.0 * x).sin() * (45.0 * y).cos())),
+    ));
     scene.planes.push(Plane::new(left_from_robot * world.robot_from_board, chessboard_texture(&board())));
     let (left, right) = scene.render_pair(&world.rig.eyes.cameras, 2.0, seed);
     let sighting = chessboard::find_in_pair(name, &left, &right, &board());
@@ -42,7 +45,9 @@ fn rendered_boards_give_the_planted_mount_within_its_uncertainty() {
     let off = place.translation_m() - world.robot_from_board.translation.vector;
     assert!(off.norm() < 0.08, "by the nominal mount {off:?}");
 
+    let start = std::time::Instant::now();
     let solved = world.solve(&views).expect("solvable");
+    println!("solved in {:.0} ms", start.elapsed().as_secs_f64() * 1e3);
     let error = error(&world.mount(), &solved);
     let (turned, moved) = (solved.turned_sigma_rad(), solved.moved_sigma_m());
     println!(

@@ -326,3 +326,15 @@ fn known_points_that_are_elsewhere_and_slack_are_remarked() {
         solved.remarks
     );
 }
+
+#[test]
+fn too_few_known_points_say_what_they_do_not_show() {
+    let mut world = World::new(37);
+    let point = vec![Point::new(0.4, 0.0, 0.06)];
+    let views: Vec<_> = (0..4).map(|i| world.view(&format!("{i}"), (0.1, -0.5), &point)).collect();
+    let solved =
+        world.solve_with(&views, &Target::KnownPoints(point), &exact()).expect("a solution, of sorts");
+    assert!(solved.not_seen.iter().any(|s| s.contains("turn about")), "{:?}", solved.not_seen);
+    assert!(solved.not_seen.iter().any(|s| s.contains("place along")), "{:?}", solved.not_seen);
+    assert!(solved.not_seen.iter().all(|s| s.contains("look at more points")), "{:?}", solved.not_seen);
+}
