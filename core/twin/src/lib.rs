@@ -8,6 +8,7 @@
 mod board_presets;
 mod error;
 pub mod eyes;
+pub mod judging;
 pub mod physics;
 pub mod scenario;
 pub mod scene;
