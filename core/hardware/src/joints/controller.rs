@@ -386,12 +386,23 @@ impl Controller {
         Some(posture)
     }
 
-    /// What is commanded before anything was: where the joints are. A limp joint's goal is where
-    /// it was turned to by hand.
+    /// What is commanded before anything was: what a servo holds already, else where it is. A
+    /// limp joint's goal is where it was turned to by hand.
     fn begin_commanded(&mut self) {
         let Some(measured) = self.measured() else { return };
-        let commanded = self.commanded.get_or_insert_with(|| measured.clone());
-        for slot in self.exchange.slots.iter().filter(|slot| !slot.holds_torque()) {
+        let step_rad = self.limiter.rig.gate.step_rad;
+        let slots = &self.exchange.slots;
+        let commanded = self.commanded.get_or_insert_with(|| {
+            let mut held = measured.clone();
+            for slot in slots.iter().filter(|slot| slot.holds_torque()) {
+                let near = |goal_rad: &f64| (goal_rad - held[slot.reading.joint]).abs() <= step_rad;
+                if let Some(goal_rad) = slot.reading.goal_rad.filter(near) {
+                    held[slot.reading.joint] = goal_rad;
+                }
+            }
+            held
+        });
+        for slot in slots.iter().filter(|slot| !slot.holds_torque()) {
             commanded[slot.reading.joint] = measured[slot.reading.joint];
         }
     }

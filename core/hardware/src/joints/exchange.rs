@@ -253,7 +253,8 @@ impl Exchange {
         Ok(())
     }
 
-    /// Reads the torque of every servo in use, at the beginning.
+    /// Reads torque and goal of every servo in use, at the beginning: who holds already goes on
+    /// holding where it was told to.
     pub fn read_torques(&mut self) -> Result<(), BusError> {
         for slot in &mut self.slots {
             let Some(register) = slot.unit.table.register(Item::TorqueEnable).filter(|_| slot.missed == 0)
@@ -263,6 +264,15 @@ impl Exchange {
             self.bus.await_owed(slot.unit.id())?;
             match self.bus.read(slot.unit.id(), register.address, register.size) {
                 Ok(status) => slot.reading.torque_on = status.data.first().map(|on| *on != 0),
+                Err(BusError::Servo { .. }) => continue,
+                Err(error) => return Err(error),
+            }
+            let Some(register) = slot.unit.table.register(Item::GoalPosition).filter(|_| slot.holds_torque())
+            else {
+                continue;
+            };
+            match self.bus.read(slot.unit.id(), register.address, register.size) {
+                Ok(status) => slot.reading.goal_rad = slot.unit.goal_rad(&status.data),
                 Err(BusError::Servo { .. }) => {}
                 Err(error) => return Err(error),
             }

@@ -96,6 +96,13 @@ impl ServoUnit {
         Ok(bytes)
     }
 
+    /// Angle of the joint (rad) that the bytes of the goal's register stand for.
+    pub fn goal_rad(&self, data: &[u8]) -> Option<f64> {
+        let register = self.table.register(Item::GoalPosition)?;
+        let raw = register.in_data(register.address, data).filter(|raw| *raw <= LAST_TICK)?;
+        Some(self.servo.joint_rad(register.si(raw)))
+    }
+
     /// Where goals are written; `None` for a servo without goals.
     pub fn goal_address(&self) -> Option<u16> {
         self.table.register(Item::GoalPosition).map(|register| register.address)
