@@ -201,8 +201,8 @@ fn grasp(friction: f64, toy: Toy, thumb: [f64; 2], toy_in_palm: [f64; 2]) -> f64
     Toy::ALL.iter().filter(|other| **other != toy).for_each(|other| world.remove_toy(*other));
     let reach = |z_m: f64, from: &Posture| {
         let solver = Solver::of_rig(&rig, "right_palm_center").expect("a tip");
-        let target = Target::from_above(Point::new(0.28, -0.16, z_m), 0.0);
-        let answer = solver.solve_from(&target, from, &Options::default()).expect("finite");
+        let target = Target::PositionYaw { point: Point::new(0.28, -0.16, z_m), yaw_rad: 0.0 };
+        let answer = solver.solve_from(&target, from, &Options::upright()).expect("finite");
         from.with(solver.joints(), answer.best().joints.as_ref())
     };
     let joint = |name: &str| rig.description.find_joint(name).expect("a joint");
