@@ -143,7 +143,14 @@ pub(super) fn axes(ui: &Ui, rect: Rect, view: &View, grid: &Grid) {
     let (x_edge, x_inner) = if view.eye_m.x < x0 { (x0, x1) } else { (x1, x0) };
     let (y_edge, y_inner) = if view.eye_m.y < (y0 + y1) / 2.0 { (y0, y1) } else { (y1, y0) };
     let place = |x, y| view.project(&Point3::new(x, y, grid.z_m)).map(|(at, _)| rect.min + at.to_vec2());
-    let ruler = Ruler { ui, rect, step_m: grid.step_m };
+    // Buttons, captions and the small axes have their corners.
+    let corner = |at: Align2, size: Vec2| at.align_size_within_rect(size, rect);
+    let mut taken =
+        vec![corner(Align2::LEFT_TOP, vec2(190.0, 56.0)), corner(Align2::RIGHT_TOP, vec2(320.0, 36.0))];
+    if has_compass(rect) {
+        taken.push(corner(Align2::LEFT_BOTTOM, vec2(150.0, 112.0)));
+    }
+    let mut ruler = Ruler { ui, rect, taken, step_m: grid.step_m };
     ruler.paint("x forward, mm", grid.x_m, |x| Some([place(x, y_inner)?, place(x, y_edge)?]));
     ruler.paint("y left, mm", grid.y_m, |y| Some([place(x_inner, y)?, place(x_edge, y)?]));
 }
@@ -151,12 +158,14 @@ pub(super) fn axes(ui: &Ui, rect: Rect, view: &View, grid: &Grid) {
 struct Ruler<'a> {
     ui: &'a Ui,
     rect: Rect,
+    /// Where other words stand.
+    taken: Vec<Rect>,
     step_m: f64,
 }
 
 impl Ruler<'_> {
     /// `ends` gives, for a value, the ends of its grid line, the one at the edge last.
-    fn paint(&self, name: &str, range: [f64; 2], ends: impl Fn(f64) -> Option<[Pos2; 2]>) {
+    fn paint(&mut self, name: &str, range: [f64; 2], ends: impl Fn(f64) -> Option<[Pos2; 2]>) {
         let tokens = theme::tokens(self.ui);
         let Some(stride) = self.stride(range, &ends) else { return };
         let [first, last] = [(range[0] / stride - 1e-6).ceil(), (range[1] / stride + 1e-6).floor()];
@@ -166,20 +175,32 @@ impl Ruler<'_> {
                 self.text(line, 0.0, &format::fixed(value * 1e3, 0), tokens.text_weak);
             }
         }
-        if let Some(line) = ends((range[0] + range[1]) / 2.0) {
+        // In the middle, or where else there is room for it.
+        for along in [0.5, 0.7, 0.3, 0.85, 0.15] {
+            let Some(line) = ends(range[0] + along * (range[1] - range[0])) else { continue };
             // Past the widest number.
-            self.text(line, self.reach(line, vec2(30.0, 14.0)), name, tokens.text);
+            let beyond = self.reach(line, vec2(30.0, 14.0));
+            if self.text(line, beyond, name, tokens.text) {
+                break;
+            }
         }
     }
 
-    /// Writes beyond the end of a grid line, `beyond` points farther out than a number.
-    fn text(&self, line: [Pos2; 2], beyond: f32, text: &str, color: Color32) {
+    /// Writes beyond the end of a grid line, `beyond` points farther out than a number; `false`
+    /// if there is no room.
+    fn text(&mut self, line: [Pos2; 2], beyond: f32, text: &str, color: Color32) -> bool {
         let font = theme::font(self.ui, &TextStyle::Small);
         let painter = self.ui.painter_at(self.rect);
         let galley = painter.layout_no_wrap(text.to_owned(), font, color);
         let out = space::XS + beyond + self.reach(line, galley.size()) / 2.0;
         let center = line[1] + (line[1] - line[0]).normalized() * out;
-        painter.galley(center - galley.size() / 2.0, galley, color);
+        let place = Rect::from_center_size(center, galley.size()).expand(2.0);
+        let free = self.rect.contains_rect(place) && !self.taken.iter().any(|t| t.intersects(place));
+        if free {
+            painter.galley(center - galley.size() / 2.0, galley, color);
+            self.taken.push(place);
+        }
+        free
     }
 
     /// How far a box of a size reaches along a line.
@@ -201,9 +222,13 @@ impl Ruler<'_> {
     }
 }
 
+fn has_compass(rect: Rect) -> bool {
+    rect.width() >= COMPASS_ROOM.x && rect.height() >= COMPASS_ROOM.y
+}
+
 /// Which way the robot's axes point, at the bottom left.
 pub(super) fn compass(ui: &Ui, rect: Rect, view: &View) {
-    if rect.width() < COMPASS_ROOM.x || rect.height() < COMPASS_ROOM.y {
+    if !has_compass(rect) {
         return;
     }
     let tokens = theme::tokens(ui);

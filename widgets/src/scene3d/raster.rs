@@ -139,11 +139,17 @@ impl Layer {
         }
     }
 
-    /// Mixes another layer of the same size into this one where `visible` says so, from the
-    /// nearness of the other layer's sample and of this one's. The other layer is empty after it.
-    pub(super) fn composite(&mut self, over: &mut Layer, visible: impl Fn(f32, f32) -> bool) {
+    /// Mixes another layer of the same size into this one where the rule of the row says so, from
+    /// the nearness of the other layer's sample and of this one's. The other layer is empty after
+    /// it.
+    pub(super) fn composite<Visible: Fn(f32, f32) -> bool>(
+        &mut self,
+        over: &mut Layer,
+        rule_of_row: impl Fn(usize) -> Visible,
+    ) {
         let Touched { x: [left, right], y: [top, bottom] } = over.touched;
         for y in top..bottom {
+            let visible = rule_of_row(y);
             let range = y * self.width + left..y * self.width + right;
             let below = self.color[range.clone()].iter_mut().zip(&self.nearness[range.clone()]);
             let above = over.color[range.clone()].iter_mut().zip(&mut over.nearness[range]);
@@ -424,12 +430,12 @@ mod tests {
         for _ in 0..3 {
             square::<{ mode::SHADOW }>(&mut shadow, 5.0, 15.0, 1.0, [0.0, 0.0, 0.0, 100.0]);
         }
-        ground.composite(&mut shadow, |_, _| true);
+        ground.composite(&mut shadow, |_| |_, _| true);
         let shaded = at(&ground, 10, 10)[0];
         assert!((115..130).contains(&shaded), "{shaded}");
         assert_eq!(at(&ground, 2, 2)[0], 200);
         // The layer can be used again at once.
-        ground.composite(&mut shadow, |_, _| true);
+        ground.composite(&mut shadow, |_| |_, _| true);
         assert_eq!(at(&ground, 10, 10)[0], shaded);
     }
 

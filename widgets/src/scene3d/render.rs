@@ -148,7 +148,7 @@ impl Renderer {
         for solid in drawable().filter(|solid| solid.tint.is_ghost()) {
             self.solid(solid, &projection, tokens);
         }
-        self.solids.composite(&mut self.over, |ghost, solid| ghost * GHOST_LIFT > solid);
+        self.solids.composite(&mut self.over, |_| |ghost, solid| ghost * GHOST_LIFT > solid);
         Rendered { size_px: [width, height], pixels: self.solids.resolve(factor), triangles: self.triangles }
     }
 
@@ -218,10 +218,13 @@ impl Renderer {
                 }
             }
         }
-        // Along a line of sight that meets the plane at this angle, a height is a distance.
-        let reach_m = SHADOW_REACH_M / (-projection.view.forward.z as f32).max(0.05);
-        let near = |shadow: f32, ground: f32| (shadow - ground).abs() < reach_m * shadow * ground;
-        self.solids.composite(&mut self.over, near);
+        // Lines of sight of one row fall by the same height per meter of depth.
+        let View { forward, up, focal, center, .. } = projection.view;
+        self.solids.composite(&mut self.over, |row| {
+            let above_middle = (center.y - row as f32 - 0.5) / focal;
+            let fall = (forward.z as f32 + up.z as f32 * above_middle).abs();
+            move |shadow: f32, ground: f32| fall * (shadow - ground).abs() < SHADOW_REACH_M * shadow * ground
+        });
     }
 
     fn grid(&mut self, grid: &Grid, projection: &Projection, tokens: &Tokens) {
