@@ -35,7 +35,7 @@ use plumbline_model::{Chessboard, JobContext, Pose, Robot, StereoCameras};
 pub use error::MountError;
 pub use file::MountFileError;
 pub use localization::{Improvement, LocatedPoint, localization_improvement};
-pub use plan::{PlannedTarget, plan_head_views};
+pub use plan::{PlannedTarget, expected_sigma, plan_head_views};
 pub use types::{
     Estimate, Eyes, HeadView, MountCalibration, MountChange, MountEvidence, MountOptions, Target, ViewFit,
     mount_numbers,

@@ -76,7 +76,7 @@ pub fn plan_head_views(
     }
     let chosen = choose(&candidates, n, problem.layout().total);
     let poses = chosen.into_iter().map(|i| candidates[i].pan_tilt_rad).collect();
-    Ok(in_short_ways(poses, [posture[rig.eyes.pan], posture[rig.eyes.tilt]]))
+    Ok(in_short_ways(rig, posture, poses))
 }
 
 fn planning_problem(rig: &Rig, cameras: &StereoCameras, neck: Neck, target: &PlannedTarget) -> Problem {
@@ -208,16 +208,56 @@ fn choose(candidates: &[Candidate], n: usize, size: usize) -> Vec<usize> {
     chosen
 }
 
-/// Always the nearest next.
-fn in_short_ways(mut poses: Vec<[f64; 2]>, from: [f64; 2]) -> Vec<(f64, f64)> {
-    let mut here = from;
+/// Standard deviations to be expected of the mount when `target` is seen from these head poses (pan,
+/// tilt; rad), with pixels to 0.15 px and no slack: turn about (rad) and place along (m) the head's x, y
+/// and z. `None` if they leave a direction open or do not show the whole target.
+pub fn expected_sigma(
+    rig: &Rig,
+    cameras: &StereoCameras,
+    posture: &Posture,
+    target: &PlannedTarget,
+    poses: &[(f64, f64)],
+) -> Option<(Vector3<f64>, Vector3<f64>)> {
+    let problem = planning_problem(rig, cameras, neck(rig).ok()?, target);
+    let size = problem.layout().total;
+    let mut total = DMatrix::<f64>::zeros(size, size);
+    for (pan_rad, tilt_rad) in poses {
+        let posture = posture.with(&[rig.eyes.pan, rig.eyes.tilt], &[*pan_rad, *tilt_rad]);
+        total += information(&problem, seen_from(&problem, &posture)?);
+    }
+    let sigma = total.cholesky()?.inverse().diagonal().map(|variance| variance.max(0.0).sqrt());
+    let turn = Vector3::new(sigma[0], sigma[1], sigma[2]);
+    let place = Vector3::new(sigma[3], sigma[4], sigma[5]);
+    // Nothing but the trace of knowledge that keeps the sum invertible: left open.
+    (turn.amax() < 0.5 && place.amax() < 0.5).then_some((turn, place))
+}
+
+/// Always the nearest next among those that the head reaches on a straight way within its limits;
+/// the nearest of all if there is none.
+fn in_short_ways(rig: &Rig, posture: &Posture, mut poses: Vec<[f64; 2]>) -> Vec<(f64, f64)> {
+    let joints = [rig.eyes.pan, rig.eyes.tilt];
+    let mut here = joints.map(|joint| posture[joint]);
     let mut ordered = Vec::with_capacity(poses.len());
-    let far = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
-    while let Some(next) =
-        (0..poses.len()).min_by(|&a, &b| far(&poses[a], &here).total_cmp(&far(&poses[b], &here)))
-    {
+    while !poses.is_empty() {
+        let blocked = |pose: &[f64; 2]| !is_free_way(rig, posture, &here, pose);
+        let far = |pose: &[f64; 2]| (pose[0] - here[0]).abs().max((pose[1] - here[1]).abs());
+        let cost = |pose: &[f64; 2]| far(pose) + if blocked(pose) { 100.0 } else { 0.0 };
+        let costs: Vec<f64> = poses.iter().map(cost).collect();
+        let next = (0..costs.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
         here = poses.swap_remove(next);
         ordered.push((here[0], here[1]));
     }
     ordered
+}
+
+/// Whether the head stays within its limits when both joints turn evenly from one pose to another.
+fn is_free_way(rig: &Rig, posture: &Posture, from: &[f64; 2], to: &[f64; 2]) -> bool {
+    const STEPS: u32 = 20;
+    let joints = [rig.eyes.pan, rig.eyes.tilt];
+    (1..=STEPS).all(|step| {
+        let part = f64::from(step) / f64::from(STEPS);
+        let angles = [0, 1].map(|k| from[k] + part * (to[k] - from[k]));
+        let there = posture.with(&joints, &angles);
+        joints.into_iter().zip(angles).all(|(joint, angle)| rig.limits_in(joint, &there).contain(angle))
+    })
 }

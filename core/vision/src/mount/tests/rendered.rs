@@ -30,14 +30,14 @@ fn rendered_view(world: &mut World, name: &str, pan_tilt: (f64, f64), seed: u64)
 #[test]
 fn rendered_boards_give_the_planted_mount_within_its_uncertainty() {
     let mut world = World::new(41);
-    let poses = world.planned(12);
+    let poses = world.planned(7);
     let views: Vec<HeadView> = poses
         .into_iter()
         .enumerate()
         .map(|(i, pose)| rendered_view(&mut world, &format!("view {i}"), pose, 1000 + i as u64))
         .collect();
     let seen = views.iter().filter(|view| view.left.is_some() && view.right.is_some()).count();
-    assert!(seen >= 9, "both eyes find the board in {seen} of 12 views");
+    assert!(seen >= 6, "both eyes find the board in {seen} of 7 views");
 
     let glimpse = views.iter().find(|view| view.left.is_some()).expect("seen");
     let cameras = world.rig.eyes.cameras;
@@ -51,7 +51,7 @@ fn rendered_boards_give_the_planted_mount_within_its_uncertainty() {
     let error = error(&world.mount(), &solved);
     let (turned, moved) = (solved.turned_sigma_rad(), solved.moved_sigma_m());
     println!(
-        "{seen} of 12 views, rms {:.3} px; error {:.3} {:.3} {:.3} deg, {:.2} {:.2} {:.2} mm; sigma {:.3} {:.3} {:.3} deg, {:.2} {:.2} {:.2} mm",
+        "{seen} of 7 views, rms {:.3} px; error {:.3} {:.3} {:.3} deg, {:.2} {:.2} {:.2} mm; sigma {:.3} {:.3} {:.3} deg, {:.2} {:.2} {:.2} mm",
         solved.rms_px,
         error[0].to_degrees(),
         error[1].to_degrees(),
@@ -66,7 +66,7 @@ fn rendered_boards_give_the_planted_mount_within_its_uncertainty() {
         moved.y * 1e3,
         moved.z * 1e3
     );
-    assert!(solved.rejected.len() == 12 - seen || solved.rejected.is_empty(), "{:?}", solved.rejected);
+    assert!(solved.rejected.len() == 7 - seen || solved.rejected.is_empty(), "{:?}", solved.rejected);
     assert!(solved.rms_px < 0.2, "{}", solved.rms_px);
     for k in 0..6 {
         let sigma = solved.covariance[(k, k)].sqrt();

@@ -11,7 +11,7 @@ use super::honesty::{coverage, error};
 use super::world::{World, board};
 use crate::mount::types::perturbed;
 use crate::mount::{
-    Eyes, HeadView, LocatedPoint, MountOptions, PlannedTarget, Target, calibrate_mount,
+    Eyes, HeadView, LocatedPoint, MountOptions, PlannedTarget, Target, calibrate_mount, expected_sigma,
     localization_improvement, plan_head_views,
 };
 use crate::synthetic::Noise;
@@ -205,6 +205,16 @@ fn planned_head_poses_keep_the_limits_and_beat_poses_in_a_row() {
         assert!(world.rig.limits_in(tilt, &posture).contain(*tilt_rad));
         assert!(world.rig.limits_in(pan, &posture).contain(*pan_rad));
     }
+    // The way from each to the next stays within the limits too.
+    for pair in poses.windows(2) {
+        for step in 0..=10 {
+            let part = f64::from(step) / 10.0;
+            let (pan_rad, tilt_rad) =
+                (pair[0].0 + part * (pair[1].0 - pair[0].0), pair[0].1 + part * (pair[1].1 - pair[0].1));
+            let posture = world.rig.home().with(&[pan, tilt], &[pan_rad, tilt_rad]);
+            assert!(world.rig.limits_in(pan, &posture).contain(pan_rad), "{pair:?}");
+        }
+    }
     let sigma = |poses: &[(f64, f64)]| {
         let mut world = World { pixel_px: 0.15, ..World::new(33) };
         let corners = world.corners();
@@ -337,4 +347,24 @@ fn too_few_known_points_say_what_they_do_not_show() {
     assert!(solved.not_seen.iter().any(|s| s.contains("turn about")), "{:?}", solved.not_seen);
     assert!(solved.not_seen.iter().any(|s| s.contains("place along")), "{:?}", solved.not_seen);
     assert!(solved.not_seen.iter().all(|s| s.contains("look at more points")), "{:?}", solved.not_seen);
+}
+
+#[test]
+fn the_expected_uncertainty_is_the_one_that_comes_out() {
+    let mut world = World { pixel_px: 0.15, ..World::new(38) };
+    let poses = world.planned(12);
+    let place = Pose::new(world.robot_from_board);
+    let what = PlannedTarget::board(&board(), &place);
+    let cameras = world.rig.eyes.cameras;
+    let home = world.rig.home();
+    let (turn, shift) = expected_sigma(&world.rig, &cameras, &home, &what, &poses).expect("determined");
+    let corners = world.corners();
+    let views: Vec<_> =
+        poses.iter().enumerate().map(|(i, p)| world.view(&format!("{i}"), *p, &corners)).collect();
+    let solved = world.solve(&views).expect("solvable");
+    let ratios =
+        [turn.component_div(&solved.turned_sigma_rad()), shift.component_div(&solved.moved_sigma_m())];
+    assert!(ratios.iter().flat_map(|r| r.iter()).all(|r| (0.8..1.25).contains(r)), "{ratios:?}");
+    // One pose alone says nothing about a board at an unknown place.
+    assert!(expected_sigma(&world.rig, &cameras, &home, &what, &poses[..1]).is_none());
 }
