@@ -184,7 +184,7 @@ fn mount(tiles: &mut Tiles<Pane>) -> TileId {
     let result = tabs(tiles, &[Pane::EyeMount]);
     let scene = tabs(tiles, &[Pane::Scene, Pane::Twin]);
     let top = row(tiles, &[(left, 1.0), (right, 1.0)]);
-    let bottom = row(tiles, &[(views, 1.0), (result, 1.25), (scene, 1.0)]);
+    let bottom = row(tiles, &[(views, 1.0), (result, 1.35), (scene, 0.85)]);
     column(tiles, &[(top, 0.9), (bottom, 1.2)])
 }
 

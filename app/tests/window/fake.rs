@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use plumbline::{Backend, PlumblineWindow, ScriptStep, WindowOptions, WindowSettings};
+use plumbline::{Backend, PlumblineWindow, ScriptStep, ThemeChoice, WindowOptions, WindowSettings};
 use plumbline_engine::{Command, View};
 
 /// What the test can see and change from outside.
@@ -83,10 +83,11 @@ impl Fake {
         size: [f32; 2],
         picture: bool,
     ) -> Harness<'static, PlumblineWindow> {
+        let theme = if settings.theme == ThemeChoice::Light { egui::Theme::Light } else { egui::Theme::Dark };
         let backend = self.clone();
         let options =
             WindowOptions { settings, script: Vec::<ScriptStep>::new(), ..WindowOptions::default() };
-        let builder = Harness::builder().with_size(size);
+        let builder = Harness::builder().with_size(size).with_theme(theme);
         let builder = if picture { builder.wgpu() } else { builder };
         let mut harness = builder
             .build_eframe(|creation| PlumblineWindow::new(&creation.egui_ctx, Box::new(backend), options));

@@ -24,9 +24,10 @@ fn robot_commands(fake: &Fake) -> Vec<RobotCommand> {
 /// Presses the pointer on what has this label and leaves it there.
 fn hold(window: &mut Harness<'_, PlumblineWindow>, label: &str, modifiers: Modifiers) {
     let center = window.get_by_label(label).rect().center();
+    window.event(egui::Event::ModifiersChanged(modifiers));
     window.event(egui::Event::PointerMoved(center));
     window.run_steps(1);
-    window.event_modifiers(pointer(center, true, modifiers), modifiers);
+    window.event(pointer(center, true, modifiers));
     window.run_steps(2);
 }
 
@@ -144,7 +145,7 @@ fn a_held_jog_key_is_renewed_and_released_at_once() {
     window.run_steps(1);
     assert!(matches!(robot_commands(&fake).as_slice(), [RobotCommand::Jog(_)]));
     // The enabling key alone is enough to end it.
-    window.event_modifiers(egui::Event::PointerMoved(egui::pos2(3.0, 3.0)), Modifiers::NONE);
+    window.event(egui::Event::ModifiersChanged(Modifiers::NONE));
     window.run_steps(2);
     assert_eq!(robot_commands(&fake).last(), Some(&RobotCommand::EndJog));
 }

@@ -43,11 +43,10 @@ fn verdict(ui: &mut Ui, mount: &MountView) {
         (None, Some(in_use)) => (in_use, "in use"),
         (None, None) => return,
     };
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = space::L;
         big_figure(ui, &format!("residual, {what}"), &format::px(summary.rms_px), Role::Ink);
-        ui.add_space(space::L);
-        big_figure(ui, "turned from nominal", &format::degrees(norm(summary.turned_rad)), Role::Difference);
-        ui.add_space(space::L);
+        big_figure(ui, "turned", &format::degrees(norm(summary.turned_rad)), Role::Difference);
         big_figure(ui, "moved from nominal", &format::mm(norm(summary.moved_m)), Role::Difference);
     });
     let age = Timestamp::now().duration_since(summary.at);
@@ -66,6 +65,7 @@ fn table(ui: &mut Ui, mount: &MountView) {
         .into_iter()
         .filter_map(|(name, summary)| Some((name, summary.as_ref()?)))
         .collect();
+    ui.spacing_mut().interact_size.y = 20.0;
     Grid::new("mount").num_columns(columns.len() + 1).spacing([space::M, 3.0]).striped(false).show(
         ui,
         |ui| {
@@ -75,14 +75,14 @@ fn table(ui: &mut Ui, mount: &MountView) {
             }
             ui.end_row();
             for (i, (along, _)) in AXES.iter().enumerate() {
-                ui.label(theme::weak(ui, *along));
+                ui.label(theme::weak(ui, format!("{along}, mm")));
                 for (_, summary) in &columns {
                     figure(ui, Quantity::Length, summary.moved_m[i], summary.moved_sd_m[i]);
                 }
                 ui.end_row();
             }
             for (i, (_, about)) in AXES.iter().enumerate() {
-                ui.label(theme::weak(ui, *about));
+                ui.label(theme::weak(ui, format!("{about}, °")));
                 for (_, summary) in &columns {
                     figure(ui, Quantity::Angle, summary.turned_rad[i], summary.turned_sd_rad[i]);
                 }
@@ -93,7 +93,7 @@ fn table(ui: &mut Ui, mount: &MountView) {
 }
 
 fn figure(ui: &mut Ui, quantity: Quantity, value: f64, sigma: f64) {
-    ui.label(RichText::new(quantity.text_with(value, sigma)).color(theme::tokens(ui).text_strong));
+    ui.label(RichText::new(quantity.number_with(value, sigma)).color(theme::tokens(ui).text_strong));
 }
 
 fn notes(ui: &mut Ui, proposal: &MountSummary) {

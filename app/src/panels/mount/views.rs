@@ -1,6 +1,6 @@
 //! The views that were taken, and the head poses that are planned.
 
-use egui::{Button, ScrollArea, Ui};
+use egui::{Align, Button, Layout, ScrollArea, Ui};
 use plumbline_engine::MountCommand;
 use plumbline_engine::view::{HeadViewSummary, MountView};
 use plumbline_widgets::empty::{EmptyState, Message};
@@ -66,24 +66,7 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, seen: &HeadViewSummary) {
         mount.proposal.as_ref().and_then(|p| p.rejected.iter().find(|(name, _)| *name == seen.name));
     ui.horizontal(|ui| {
         ui.set_min_height(ROW);
-        let weak = theme::tokens(ui).text_weak;
-        let warning = Role::Warning.color(theme::tokens(ui));
-        ui.add_sized([118.0, ROW], egui::Label::new(head_text(seen.pan_rad, seen.tilt_rad))).on_hover_text(
-            format!("{}: {} corners left, {} right", seen.name, seen.corners.0, seen.corners.1),
-        );
-        match (left_out, seen.rms_px) {
-            (Some((_, why)), _) => {
-                ui.add(egui::Label::new(egui::RichText::new(why).color(warning)).truncate())
-                    .on_hover_text(why);
-            }
-            (None, Some(rms)) => {
-                ui.label(format::px(rms));
-            }
-            (None, None) => {
-                ui.label(egui::RichText::new("seen").color(weak));
-            }
-        }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let delete = ui.add(Button::new(theme::small(ui, "Delete")).frame(false));
             delete.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Delete {}", seen.name))
@@ -91,16 +74,49 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, seen: &HeadViewSummary) {
             if delete.clicked() {
                 cx.outbox.send(MountCommand::Delete { view: seen.name.clone() });
             }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                head_label(ui, seen.pan_rad, seen.tilt_rad).on_hover_text(format!(
+                    "{}: {} corners left, {} right",
+                    seen.name, seen.corners.0, seen.corners.1
+                ));
+                fit(ui, left_out.map(|(_, why)| why.as_str()), seen.rms_px);
+            });
         });
     });
+}
+
+/// The residual, or why the view is left out.
+fn fit(ui: &mut Ui, left_out: Option<&str>, rms_px: Option<f64>) {
+    let tokens = theme::tokens(ui);
+    match (left_out, rms_px) {
+        (Some(why), _) => {
+            let text = egui::RichText::new(why).color(Role::Warning.color(tokens));
+            ui.add(egui::Label::new(text).truncate()).on_hover_text(why);
+        }
+        (None, Some(rms)) => {
+            ui.label(format::px(rms));
+        }
+        (None, None) => {
+            ui.label(egui::RichText::new("seen").color(tokens.text_weak));
+        }
+    }
+}
+
+/// In a column of its own.
+fn head_label(ui: &mut Ui, pan_rad: f64, tilt_rad: f64) -> egui::Response {
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(132.0, ROW), egui::Sense::hover());
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let text = head_text(pan_rad, tilt_rad);
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));
+    let color = theme::tokens(ui).text;
+    ui.painter().text(rect.left_center(), egui::Align2::LEFT_CENTER, &text, font, color);
+    response
 }
 
 fn planned_row(ui: &mut Ui, pan_rad: f64, tilt_rad: f64) {
     ui.horizontal(|ui| {
         ui.set_min_height(ROW);
-        let weak = theme::tokens(ui).text_weak;
-        let text = egui::RichText::new(head_text(pan_rad, tilt_rad)).color(weak);
-        ui.add_sized([118.0, ROW], egui::Label::new(text));
+        head_label(ui, pan_rad, tilt_rad);
         ui.label(theme::small(ui, "planned"));
     });
 }

@@ -19,7 +19,7 @@ const STILL_M: f64 = 0.0005;
 /// A link that the ghost has nearer than this to where it is is not drawn twice, m and rad.
 const SAME: (f64, f64) = (0.001, 0.004);
 /// The cone drawn for an eye says where it looks, not all that it sees.
-const EYE_CONE: (f64, f64) = (0.5, 0.10);
+const EYE_CONE: (f64, f64) = (0.22, 0.16);
 const BOARD_THICKNESS_M: f64 = 0.004;
 /// Picks from here on are toys, below are joints.
 const TOYS_FROM: u64 = 1000;

@@ -13,7 +13,7 @@ use crate::panels::{PanelContext, padded};
 use crate::window::GamepadState;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    if super::without_joints(ui, cx) {
+    if super::without_joints(ui, cx, Some("Moves the tip of an arm while a key is held.")) {
         return;
     }
     padded(ui, |ui| {

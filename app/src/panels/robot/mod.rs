@@ -74,8 +74,10 @@ impl PanelContext<'_> {
     }
 }
 
-/// What stands in a tile while there are no joints to show; `true` when it was drawn.
-fn without_joints(ui: &mut Ui, cx: &mut PanelContext<'_>) -> bool {
+/// What stands in a tile while there are no joints to show; `true` when it was drawn. `purpose`
+/// says what the tile is for; only the scene, which has none, offers to connect: the same button
+/// four times helps nobody.
+fn without_joints(ui: &mut Ui, cx: &mut PanelContext<'_>, purpose: Option<&str>) -> bool {
     let robot = &cx.view.robot;
     let clicked = match &robot.connection {
         _ if robot.rig.is_none() => EmptyState::failed(Message::new(
@@ -83,6 +85,9 @@ fn without_joints(ui: &mut Ui, cx: &mut PanelContext<'_>) -> bool {
             "The messages say what is wrong with the rig file; nothing can be moved without it.",
         ))
         .show(ui),
+        Connection::None if purpose.is_some() => {
+            EmptyState::empty(Message::new("No robot is connected", purpose.unwrap_or_default())).show(ui)
+        }
         Connection::None => EmptyState::empty(
             Message::new("No robot is connected", "Connect the twin to try everything, or a serial port.")
                 .button("Connect…"),
@@ -92,9 +97,7 @@ fn without_joints(ui: &mut Ui, cx: &mut PanelContext<'_>) -> bool {
             let text = format!("Connecting to {to}: {doing}");
             EmptyState::loading(&text).show(ui)
         }
-        Connection::Lost { reason, .. } if robot.joints.is_empty() => {
-            EmptyState::failed(Message::new("The robot is lost", reason).button("Connect…")).show(ui)
-        }
+        Connection::Lost { reason, .. } if robot.joints.is_empty() => lost(ui, reason, purpose.is_none()),
         Connection::Connected { .. } if robot.joints.is_empty() => {
             EmptyState::loading("Waiting for the first answers of the servos").show(ui)
         }
@@ -106,10 +109,16 @@ fn without_joints(ui: &mut Ui, cx: &mut PanelContext<'_>) -> bool {
     true
 }
 
+fn lost(ui: &mut Ui, reason: &str, with_button: bool) -> bool {
+    let reason = crate::window::capitalized(reason);
+    let message = Message::new("The robot is lost", &reason);
+    EmptyState::failed(if with_button { message.button("Connect…") } else { message }).show(ui)
+}
+
 /// Says that what is shown is old, and why; `None` while it is fresh.
 fn stale_sentence(robot: &RobotView) -> Option<String> {
     if let Connection::Lost { reason, .. } = &robot.connection {
-        return Some(format!("As last seen. {reason}"));
+        return Some(format!("As last seen. {}", crate::window::capitalized(reason)));
     }
     let oldest = robot.joints.iter().filter_map(|joint| joint.age).min()?;
     (oldest > OLD).then(|| format!("Last reading {}: the bus gives no new one.", format::age(oldest)))

@@ -14,7 +14,7 @@ use crate::window::{Action, RobotAction};
 const ROW: f32 = 30.0;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    if super::without_joints(ui, cx) {
+    if super::without_joints(ui, cx, Some("Poses to go to, and to keep, stand here.")) {
         return;
     }
     padded(ui, |ui| {

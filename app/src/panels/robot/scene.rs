@@ -21,7 +21,7 @@ const ABOVE_M: f64 = 0.08;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let drawn = scene(cx.view, &cx.state.robot);
-    if drawn.is_empty() && super::without_joints(ui, cx) {
+    if drawn.is_empty() && super::without_joints(ui, cx, None) {
         return;
     }
     let robot = &cx.view.robot;

@@ -93,10 +93,10 @@ fn clock(ui: &mut Ui, cx: &mut PanelContext<'_>, twin: &TwinView) {
 }
 
 fn scenario(ui: &mut Ui, cx: &mut PanelContext<'_>, twin: &TwinView) {
-    group_heading(ui, "Scenario");
+    let heading = group_heading(ui, "Scenario");
     ui.horizontal_wrapped(|ui| {
         let chosen = default_scenario(cx.view);
-        ComboBox::from_id_salt("scenario").selected_text(&chosen).show_ui(ui, |ui| {
+        let combo = ComboBox::from_id_salt("scenario").selected_text(&chosen).show_ui(ui, |ui| {
             for (name, about) in &twin.scenarios {
                 let entry = ui.selectable_label(*name == chosen, name).on_hover_text(about);
                 if entry.clicked() && *name != chosen {
@@ -104,6 +104,7 @@ fn scenario(ui: &mut Ui, cx: &mut PanelContext<'_>, twin: &TwinView) {
                 }
             }
         });
+        combo.response.labelled_by(heading.id);
         if ui.button("Put all back").on_hover_text("Table and robot as at the start").clicked() {
             cx.outbox.act(Action::Robot(RobotAction::ResetTwin));
         }

@@ -24,7 +24,11 @@ const HISTORY_S: f64 = 120.0;
 const OTHER_MOVES_RAD: f64 = 0.01;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    if super::without_joints(ui, cx) {
+    if super::without_joints(
+        ui,
+        cx,
+        Some("One line per joint stands here: where it is, where it would go, load and temperature."),
+    ) {
         return;
     }
     let view = cx.view;
@@ -133,7 +137,9 @@ fn freshness<'a>(robot: &RobotView, joint: &JointView, servo: &'a str) -> Freshn
     if robot.bus.missing.contains(&joint.servo) {
         return Freshness::NoAnswer { from: servo, since: joint.age };
     }
+    let age = joint.age.unwrap_or_default();
     match joint.age {
+        _ if !robot.connection.is_connected() => Freshness::Stale(age),
         Some(age) if age > OLD => Freshness::Stale(age),
         _ => Freshness::Live,
     }
