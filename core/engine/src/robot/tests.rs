@@ -47,6 +47,7 @@ impl Arm for FakeArm {
             outcomes: Arc::from([]),
             refusal: None,
             warnings: Arc::from([]),
+            scan: Arc::default(),
             gone: self.record.lock().expect("no test panics in here").gone.clone(),
         }))
     }
