@@ -45,7 +45,8 @@ pub fn touches(
         return Ok(vec![]);
     };
     // The left arm stays up, out of the way.
-    let right = rig.arm("right").map(|arm| [arm.joints.clone(), arm.hand.clone()].concat()).unwrap_or_default();
+    let right =
+        rig.arm("right").map(|arm| [arm.joints.clone(), arm.hand.clone()].concat()).unwrap_or_default();
     let ready = rig.home().with(&right, &ready.of(&right));
     let wrong = |error: &dyn std::fmt::Display| TwinError::Physics { reason: error.to_string() };
     let solver = Solver::of_rig(rig, "right_index_tip").map_err(|error| wrong(&error))?;
@@ -64,7 +65,8 @@ pub fn touches(
 fn touch(world: &mut World, solver: &Solver, ready: &Posture, target_px: [f64; 2]) -> JudgedTouch {
     let rig = world.rig().clone();
     let screen = &rig.touchscreen;
-    let pitch_m = [screen.width_m / f64::from(screen.width_px), screen.height_m / f64::from(screen.height_px)];
+    let pitch_m =
+        [screen.width_m / f64::from(screen.width_px), screen.height_m / f64::from(screen.height_px)];
     let on_glass = screen.origin.coords.coords
         + screen.u_axis.vector() * (target_px[0] + 0.5) * pitch_m[0]
         + screen.v_axis.vector() * (target_px[1] + 0.5) * pitch_m[1];
