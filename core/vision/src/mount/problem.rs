@@ -7,10 +7,9 @@
 //! deviation.
 
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix2x3, Matrix3, Point3, Vector2, Vector3, Vector6};
-use plumbline_model::robot::{Chain, Posture};
 use plumbline_model::{Eye, StereoCameras};
 
-pub(super) use super::state::{Layout, State};
+pub(super) use super::state::{Layout, Neck, Priors, Seen, State, View};
 use super::types::perturbed;
 
 /// Cost of a point that its lens cannot even project; keeps a bad step from looking good.
@@ -19,57 +18,6 @@ const UNPROJECTABLE_PX: f64 = 1e3;
 pub(super) const ANYTHING: f64 = 3.0;
 /// Parameters of the mount.
 pub(super) const MOUNT: usize = 6;
-
-/// One measured point.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
-    pub eye: Eye,
-    /// Index on the target.
-    pub index: usize,
-    pub measured_px: Vector2<f64>,
-    /// Left-out points keep their residual but pull on nothing.
-    pub left_out: bool,
-}
-
-/// All points of one head pose.
-#[derive(Clone, Debug)]
-pub(super) struct View {
-    pub name: String,
-    /// Angles of the head's chain, by the encoders, rad.
-    pub encoder_rad: Vec<f64>,
-    pub seen: Vec<Seen>,
-    /// Place of the fingertip by the arm's encoders, robot frame, m; zero for other targets.
-    pub tip: Vector3<f64>,
-}
-
-/// The joints between the base and the eyes.
-#[derive(Clone, Debug)]
-pub(super) struct Neck {
-    pub chain: Chain,
-    /// Places of pan and tilt in the chain.
-    pub pan_tilt: [usize; 2],
-}
-
-impl Neck {
-    pub fn encoder_rad(&self, posture: &Posture) -> Vec<f64> {
-        posture.of(self.chain.joints())
-    }
-}
-
-/// Standard deviations of what is known beside the pixels.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Priors {
-    /// One coordinate of a pixel, px.
-    pub pixel_px: f64,
-    /// Pan and tilt from view to view, rad.
-    pub angle_rad: [f64; 2],
-    /// Zeros of the head joints; `None`: exact and no parameter.
-    pub zero_rad: Option<f64>,
-    /// Rotation (rad) and place (m) of the target.
-    pub target: (f64, f64),
-    /// Fingertip from view to view, m; `None`: no parameter.
-    pub tip_m: Option<f64>,
-}
 
 /// What to fit.
 #[derive(Clone, Debug)]

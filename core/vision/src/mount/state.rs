@@ -1,6 +1,59 @@
-//! What is estimated, and its place in the vector of parameters.
+//! What is measured, what is estimated, and its place in the vector of parameters.
 
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Vector2, Vector3};
+use plumbline_model::Eye;
+use plumbline_model::robot::{Chain, Posture};
+
+/// One measured point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    pub eye: Eye,
+    /// Index on the target.
+    pub index: usize,
+    pub measured_px: Vector2<f64>,
+    /// Left-out points keep their residual but pull on nothing.
+    pub left_out: bool,
+}
+
+/// All points of one head pose.
+#[derive(Clone, Debug)]
+pub(super) struct View {
+    pub name: String,
+    /// Angles of the head's chain, by the encoders, rad.
+    pub encoder_rad: Vec<f64>,
+    pub seen: Vec<Seen>,
+    /// Place of the fingertip by the arm's encoders, robot frame, m; zero for other targets.
+    pub tip: Vector3<f64>,
+}
+
+/// The joints between the base and the eyes.
+#[derive(Clone, Debug)]
+pub(super) struct Neck {
+    pub chain: Chain,
+    /// Places of pan and tilt in the chain.
+    pub pan_tilt: [usize; 2],
+}
+
+impl Neck {
+    pub fn encoder_rad(&self, posture: &Posture) -> Vec<f64> {
+        posture.of(self.chain.joints())
+    }
+}
+
+/// Standard deviations of what is known beside the pixels.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Priors {
+    /// One coordinate of a pixel, px.
+    pub pixel_px: f64,
+    /// Pan and tilt from view to view, rad.
+    pub angle_rad: [f64; 2],
+    /// Zeros of the head joints; `None`: exact and no parameter.
+    pub zero_rad: Option<f64>,
+    /// Rotation (rad) and place (m) of the target.
+    pub target: (f64, f64),
+    /// Fingertip from view to view, m; `None`: no parameter.
+    pub tip_m: Option<f64>,
+}
 
 /// Everything that is estimated.
 #[derive(Clone, Debug)]

@@ -6,6 +6,8 @@ mod derivative;
 mod failures;
 mod files;
 mod honesty;
+mod planning;
 mod rendered;
 mod targets;
+mod uncertainty;
 mod world;

@@ -1,20 +1,12 @@
-//! Known points, the fingertip, encoder zeros, slack, far-off starts, other boards.
+//! Known points, the fingertip, encoder zeros, far-off starts, boards counted from either end.
 
-use nalgebra::{DMatrix, DVector, Isometry3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use plumbline_model::robot::EyeMount;
-use plumbline_model::{
-    Camera, CameraModel, Chessboard, Eye, Fisheye, ModelKind, ParameterCovariance, Point, Pose, Robot,
-    StereoCameras, Unattended,
-};
+use plumbline_model::{Eye, Point, Robot};
 
 use super::honesty::{coverage, error};
 use super::world::{World, board};
-use crate::mount::types::perturbed;
-use crate::mount::{
-    Eyes, HeadView, LocatedPoint, MountOptions, PlannedTarget, Target, calibrate_mount, expected_sigma,
-    localization_improvement, plan_head_views,
-};
-use crate::synthetic::Noise;
+use crate::mount::{HeadView, LocatedPoint, MountOptions, Target, localization_improvement};
 
 /// Corners of the touchscreen.
 fn screen(world: &World) -> Vec<Point<Robot>> {
@@ -100,27 +92,6 @@ fn the_fingertip_gives_the_mount_with_errors_of_the_stated_size() {
 }
 
 #[test]
-fn slack_that_nobody_stated_is_noticed_and_enters_the_uncertainty() {
-    let slack_rad = 0.003;
-    let (chi_square, within) = coverage(40, |seed| {
-        let mut world = World { slack_rad, ..World::new(300 + seed) };
-        let views = world.board_views(16);
-        let solved = world.solve(&views);
-        if let Ok(solved) = &solved {
-            assert!(
-                solved.angle_sigma_rad.iter().all(|sd| (0.3..3.0).contains(&(sd / slack_rad))),
-                "{:?}",
-                solved.angle_sigma_rad
-            );
-        }
-        (world, solved)
-    });
-    // Its size is estimated from some twenty numbers: tails are heavier.
-    assert!((4.5..10.0).contains(&chi_square), "{chi_square}");
-    assert!(within >= 0.93, "{within}");
-}
-
-#[test]
 fn encoder_zeros_that_cannot_be_told_from_the_mount_are_said() {
     let mut world = World { zeros_rad: [0.02, -0.015], ..World::new(30) };
     let views = world.board_views(12);
@@ -195,53 +166,6 @@ fn a_board_that_looks_the_same_upside_down_may_be_counted_from_either_end() {
 }
 
 #[test]
-fn planned_head_poses_keep_the_limits_and_beat_poses_in_a_row() {
-    let world = World::new(33);
-    let (pan, tilt) = (world.rig.eyes.pan, world.rig.eyes.tilt);
-    let poses = world.planned(12);
-    assert_eq!(poses.len(), 12);
-    for (pan_rad, tilt_rad) in &poses {
-        let posture = world.rig.home().with(&[pan, tilt], &[*pan_rad, *tilt_rad]);
-        assert!(world.rig.limits_in(tilt, &posture).contain(*tilt_rad));
-        assert!(world.rig.limits_in(pan, &posture).contain(*pan_rad));
-    }
-    // The way from each to the next stays within the limits too.
-    for pair in poses.windows(2) {
-        for step in 0..=10 {
-            let part = f64::from(step) / 10.0;
-            let (pan_rad, tilt_rad) =
-                (pair[0].0 + part * (pair[1].0 - pair[0].0), pair[0].1 + part * (pair[1].1 - pair[0].1));
-            let posture = world.rig.home().with(&[pan, tilt], &[pan_rad, tilt_rad]);
-            assert!(world.rig.limits_in(pan, &posture).contain(pan_rad), "{pair:?}");
-        }
-    }
-    let sigma = |poses: &[(f64, f64)]| {
-        let mut world = World { pixel_px: 0.15, ..World::new(33) };
-        let corners = world.corners();
-        let views: Vec<_> =
-            poses.iter().enumerate().map(|(i, p)| world.view(&format!("{i}"), *p, &corners)).collect();
-        let solved = world.solve(&views).expect("solvable");
-        solved.covariance.determinant().powf(1.0 / 12.0)
-    };
-    let row: Vec<_> =
-        (0..12).map(|i| (0.1 * f64::from(i % 6) - 0.25, -0.55 + 0.1 * f64::from(i / 6))).collect();
-    assert!(sigma(&poses) < 0.5 * sigma(&row), "{} {}", sigma(&poses), sigma(&row));
-}
-
-#[test]
-fn a_board_out_of_view_cannot_be_planned_for() {
-    let world = World::new(34);
-    let behind = Isometry3::translation(-0.6, 0.0, 0.054) * world.robot_from_board.rotation;
-    let what = PlannedTarget::board(
-        &Chessboard::new(8, 5, 0.03).expect("usable"),
-        &plumbline_model::Pose::new(behind),
-    );
-    let refused = plan_head_views(&world.rig, &world.rig.eyes.cameras, &world.rig.home(), &what, 10);
-    let message = refused.expect_err("behind the robot").to_string();
-    assert!(message.contains("move the board"), "{message}");
-}
-
-#[test]
 fn a_calibrated_mount_localizes_better() {
     let mut world = World::new(35);
     let views = world.board_views(12);
@@ -262,54 +186,6 @@ fn a_calibrated_mount_localizes_better() {
     let rig = solved.applied_to(&world.rig);
     assert_eq!(rig.eyes.head_from_left, solved.head_from_left);
     assert!((0.0001..0.002).contains(&solved.point_sigma_m(Point::new(0.0, 0.0, 0.4))));
-}
-
-#[test]
-fn lenses_that_are_a_little_off_are_part_of_the_uncertainty() {
-    // How well a good calibration of the eyes knows them: f, c (px), k1 to k4, twice; turn (rad), shift (m).
-    let lens = [0.08, 0.08, 0.06, 0.06, 5e-4, 5e-4, 2e-4, 3e-5];
-    let sd: Vec<f64> = lens.iter().chain(&lens).copied().chain([2e-4; 3]).chain([5e-5; 3]).collect();
-    let matrix = DMatrix::from_diagonal(&DVector::from_iterator(22, sd.iter().map(|s| s * s)));
-    let known = ParameterCovariance { matrix };
-    let run = |included: bool| {
-        coverage(40, |seed| {
-            let mut world = World::new(400 + seed);
-            let views = world.board_views(12);
-            let cameras = off_by(&world.rig.eyes.cameras, &sd, &mut world.noise);
-            let eyes = Eyes { cameras: &cameras, covariance: included.then_some(&known) };
-            let target = Target::UnknownBoard(board());
-            let solved =
-                calibrate_mount(&world.rig, eyes, &views, &target, &MountOptions::default(), &Unattended);
-            (world, solved)
-        })
-    };
-    let (chi_square, within) = run(true);
-    assert!((4.0..8.0).contains(&chi_square), "{chi_square}");
-    assert!(within >= 0.95, "{within}");
-    // The test would notice if this part were missing.
-    assert!(run(false).0 > 10.0);
-}
-
-/// Eyes that differ by errors of these standard deviations, in the order of a calibration's
-/// covariance.
-fn off_by(cameras: &StereoCameras, sd: &[f64], noise: &mut Noise) -> StereoCameras {
-    let mut error = sd.iter().map(|sd| sd * noise.normal());
-    let mut lens = |camera: &Camera| {
-        let CameraModel::Fisheye(old) = camera.model else { panic!("a fisheye") };
-        let mut p = camera.model.parameters();
-        p.iter_mut().zip(&mut error).for_each(|(p, e)| *p += e);
-        let CameraModel::Fisheye(new) = CameraModel::from_parameters(ModelKind::Fisheye, &p) else {
-            panic!("a fisheye")
-        };
-        Camera { model: CameraModel::Fisheye(Fisheye { skew_px: old.skew_px, ..new }), ..*camera }
-    };
-    let (left, right) = (lens(&cameras.left), lens(&cameras.right));
-    let six: Vec<f64> = error.collect();
-    StereoCameras {
-        left,
-        right,
-        right_from_left: Pose::new(perturbed(&cameras.right_from_left.isometry, &six)),
-    }
 }
 
 #[test]
@@ -347,24 +223,4 @@ fn too_few_known_points_say_what_they_do_not_show() {
     assert!(solved.not_seen.iter().any(|s| s.contains("turn about")), "{:?}", solved.not_seen);
     assert!(solved.not_seen.iter().any(|s| s.contains("place along")), "{:?}", solved.not_seen);
     assert!(solved.not_seen.iter().all(|s| s.contains("look at more points")), "{:?}", solved.not_seen);
-}
-
-#[test]
-fn the_expected_uncertainty_is_the_one_that_comes_out() {
-    let mut world = World { pixel_px: 0.15, ..World::new(38) };
-    let poses = world.planned(12);
-    let place = Pose::new(world.robot_from_board);
-    let what = PlannedTarget::board(&board(), &place);
-    let cameras = world.rig.eyes.cameras;
-    let home = world.rig.home();
-    let (turn, shift) = expected_sigma(&world.rig, &cameras, &home, &what, &poses).expect("determined");
-    let corners = world.corners();
-    let views: Vec<_> =
-        poses.iter().enumerate().map(|(i, p)| world.view(&format!("{i}"), *p, &corners)).collect();
-    let solved = world.solve(&views).expect("solvable");
-    let ratios =
-        [turn.component_div(&solved.turned_sigma_rad()), shift.component_div(&solved.moved_sigma_m())];
-    assert!(ratios.iter().flat_map(|r| r.iter()).all(|r| (0.8..1.25).contains(r)), "{ratios:?}");
-    // One pose alone says nothing about a board at an unknown place.
-    assert!(expected_sigma(&world.rig, &cameras, &home, &what, &poses[..1]).is_none());
 }
