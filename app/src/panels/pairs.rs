@@ -2,14 +2,14 @@
 
 use egui::{Button, ScrollArea, Ui};
 use plumbline_engine::view::{CollectedPair, EyesView};
-use plumbline_engine::{EyesCommand, Products};
+use plumbline_engine::{EyesCommand, Products, SourceSpec};
 use plumbline_model::Eye;
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::PanelContext;
-use crate::window::{Action, hint_text};
+use crate::window::{Action, RobotAction, hint_text};
 
 const ROW: f32 = 24.0;
 
@@ -55,6 +55,18 @@ fn action_button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: Action, text: &
 }
 
 fn empty(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let tour = Action::Robot(RobotAction::TourBoard);
+    let eyes_of_twin = matches!(cx.view.source.spec, Some(SourceSpec::Twin) | None);
+    if eyes_of_twin && tour.refusal(cx.view).is_none() {
+        let message = Message::new(
+            "No pairs yet",
+            "An unseen hand can hold the board for the twin; pairs are captured by themselves.",
+        );
+        if EmptyState::empty(message.button("Show the board at all places")).show(ui) {
+            cx.outbox.act(tour);
+        }
+        return;
+    }
     let message = if cx.view.source.replay.is_some() {
         Message::new("No pairs yet", "Use all pairs of the recording, or step to a pair and capture it.")
             .button("Capture pair")

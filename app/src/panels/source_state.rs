@@ -9,7 +9,7 @@ use plumbline_widgets::empty::Message;
 use plumbline_widgets::format;
 use plumbline_widgets::image_view::Content;
 
-use crate::window::{Action, Outbox};
+use crate::window::{Action, Outbox, RobotAction};
 
 /// From this age on, the picture of a camera is called old.
 const OLD: Duration = Duration::from_millis(1500);
@@ -26,6 +26,10 @@ pub fn without_image(view: &View, eye: Eye) -> Content<'_> {
 
 fn without_image_of_left(view: &View) -> Content<'_> {
     match &view.source.status {
+        SourceStatus::None if view.twin.running => Content::Empty(
+            Message::new("No images yet", "The twin runs; its eyes are closed.")
+                .button("Look through the twin's eyes"),
+        ),
         SourceStatus::None => Content::Empty(
             Message::new(
                 "No images yet",
@@ -49,6 +53,7 @@ fn without_image_of_left(view: &View) -> Content<'_> {
 pub fn button_clicked(view: &View, outbox: &mut Outbox) {
     outbox.act(match view.source.status {
         SourceStatus::Lost { .. } => Action::RetrySource,
+        SourceStatus::None if view.twin.running => Action::Robot(RobotAction::TwinEyes),
         _ => Action::OpenFolder,
     });
 }

@@ -8,7 +8,7 @@ use std::time::Instant;
 use plumbline_engine::view::{JobState, SourceStatus};
 use plumbline_engine::{
     Command, Destination, EyesCommand, FileLength, JobCommand, LiveCommand, MountCommand, NoticeCommand,
-    NoticeLevel, ProbePoint, RobotCommand, SourceCommand,
+    NoticeLevel, ProbePoint, RobotCommand, SourceCommand, TwinCommand,
 };
 use plumbline_model::Eye;
 use plumbline_model::robot::JointIndex;
@@ -159,6 +159,9 @@ impl PlumblineWindow {
         self.stopped_at = Some(Instant::now());
         for job in self.view.jobs.iter().filter(|job| job.state.is_running()) {
             self.backend.send(JobCommand::Cancel(job.id).into());
+        }
+        if self.view.twin.running {
+            self.backend.send(TwinCommand::TourBoard(false).into());
         }
         if self.view.eyes.auto_capture {
             self.backend.send(EyesCommand::AutoCapture(false).into());

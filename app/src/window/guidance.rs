@@ -7,6 +7,7 @@ use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
 use plumbline_widgets::format;
 
 use super::actions::Action;
+use super::robot_actions::RobotAction;
 use super::steps::Screen;
 
 /// The bottom line.
@@ -80,7 +81,10 @@ impl Guidance {
 /// What is wrong or not yet there with the source; `None` when it delivers.
 fn source_trouble(view: &View) -> Option<Guidance> {
     match &view.source.status {
-        SourceStatus::None if view.twin.running => Some(say("The twin's eyes open.")),
+        SourceStatus::None if view.twin.running => Some(
+            say("The twin runs; its eyes are closed.")
+                .then("Look through the twin's eyes", Action::Robot(RobotAction::TwinEyes)),
+        ),
         SourceStatus::None => Some(
             say("No images yet: open a folder of pairs, or drop one on the window.")
                 .then("Open a folder of pairs…", Action::OpenFolder),

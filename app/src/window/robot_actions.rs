@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use plumbline_engine::view::{Connection, MotionState};
-use plumbline_engine::{Command, MountCommand, RobotCommand, TwinCommand, View};
+use plumbline_engine::{Command, MountCommand, RobotCommand, SourceCommand, SourceSpec, TwinCommand, View};
 
 /// Of the robot and its twin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +12,8 @@ pub enum RobotAction {
     Connect,
     /// Starts the twin.
     ConnectTwin,
+    /// Looks through the twin's eyes.
+    TwinEyes,
     /// Lets the connection go.
     Disconnect,
     /// Asks the bus who is there.
@@ -75,9 +77,10 @@ fn when(possible: bool, why: &'static str) -> Refusal {
 
 impl RobotAction {
     /// All of them, in the palette's order.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Connect,
         Self::ConnectTwin,
+        Self::TwinEyes,
         Self::Disconnect,
         Self::Scan,
         Self::Move,
@@ -99,6 +102,7 @@ impl RobotAction {
         match self {
             Self::Connect => "Connect the robot…",
             Self::ConnectTwin => "Connect the twin",
+            Self::TwinEyes => "Look through the twin's eyes",
             Self::Disconnect => "Disconnect the robot",
             Self::Scan => "Look for servos again",
             Self::Move => "Move there",
@@ -142,7 +146,10 @@ impl RobotAction {
                 view.twin.running && view.twin.board_places > 0,
                 "the twin does not run; connect it first",
             ),
-            Self::LayBoard | Self::WarmUp | Self::CoolEyes | Self::ResetTwin => {
+            Self::TwinEyes if matches!(view.source.spec, Some(SourceSpec::Twin)) => {
+                Some("the twin's eyes are open".into())
+            }
+            Self::TwinEyes | Self::LayBoard | Self::WarmUp | Self::CoolEyes | Self::ResetTwin => {
                 when(view.twin.running, "the twin does not run; connect it first")
             }
         }
@@ -154,6 +161,7 @@ impl RobotAction {
         Some(match self {
             Self::Connect | Self::TorqueOff | Self::SavePose => return None,
             Self::ConnectTwin => RobotCommand::ConnectTwin { scenario: default_scenario(view) }.into(),
+            Self::TwinEyes => SourceCommand::Open(SourceSpec::Twin).into(),
             Self::Disconnect => RobotCommand::Disconnect.into(),
             Self::Scan => RobotCommand::Scan.into(),
             Self::Move => RobotCommand::RunPreview.into(),

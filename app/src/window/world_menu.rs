@@ -27,6 +27,7 @@ pub(super) fn show(view: &View, recent: &VecDeque<SourceSpec>, ui: &mut Ui, outb
         }
         ui.separator();
         ui.label(theme::small(ui, "Images"));
+        entry(ui, view, Action::Robot(RobotAction::TwinEyes), outbox);
         source_menu::entries(view, recent, ui, outbox);
     });
 }

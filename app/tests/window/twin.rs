@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use plumbline::{Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::view::TwinView;
-use plumbline_engine::{Command, EyesCommand, RobotCommand, TwinCommand, View};
+use plumbline_engine::view::{SourceStatus, SourceView, TwinView};
+use plumbline_engine::{Command, EyesCommand, RobotCommand, SourceSpec, TwinCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
 use crate::made_up::{everything, lying_board, twin};
@@ -67,7 +67,9 @@ fn board_clock_and_faults_ask_for_what_they_say() {
 
 #[test]
 fn the_eyes_of_the_twin_are_calibrated_from_clicks() {
-    let fake = Fake::over(everything());
+    let source =
+        SourceView { spec: Some(SourceSpec::Twin), status: SourceStatus::Running, ..SourceView::default() };
+    let fake = Fake::over(View { source: Arc::new(source), ..everything() });
     let mut window = fake.window(on(Screen::Live));
     assert!(says(&window, "This is the twin"));
     click(&mut window, "Calibrate the eyes");

@@ -42,7 +42,9 @@ pub fn thing(id: PickId) -> Thing {
 }
 
 /// Everything there is to see; empty until the joints were read once.
-pub fn scene(view: &View, panels: &RobotPanels) -> Scene {
+///
+/// `names` false leaves the names of the toys out, where there is no room for them.
+pub fn scene(view: &View, panels: &RobotPanels, names: bool) -> Scene {
     let mut scene = Scene::default();
     let robot = &view.robot;
     let (Some(rig), Some(measured)) = (&robot.rig, &robot.measured) else { return scene };
@@ -57,7 +59,7 @@ pub fn scene(view: &View, panels: &RobotPanels) -> Scene {
     }
     eyes(&mut scene, rig, &measured);
     if view.twin.running {
-        toys(&mut scene, view);
+        toys(&mut scene, view, names);
         if let Some(pose) = &view.twin.board {
             board(&mut scene, &pose.isometry, &view.eyes.board);
         }
@@ -175,7 +177,7 @@ fn eyes(scene: &mut Scene, rig: &Rig, posture: &Posture) {
     }
 }
 
-fn toys(scene: &mut Scene, view: &View) {
+fn toys(scene: &mut Scene, view: &View, names: bool) {
     for (i, toy) in view.twin.toys.iter().enumerate() {
         let Some(place) = toy.place else { continue };
         let at = steadied_m(&place.coords);
@@ -184,6 +186,9 @@ fn toys(scene: &mut Scene, view: &View) {
         let solid =
             Solid::new(shape, Translation3::from(at.coords).into(), Tint::Object(Color32::from_rgb(r, g, b)));
         scene.solids.push(solid.pick(PickId(TOYS_FROM + i as u64)));
+        if !names {
+            continue;
+        }
         let above = at + Vector3::z() * (toy.radius_m + 0.02);
         scene.labels.push(Label3d { at_m: above, text: toy.name.clone(), tint: Tint::Neutral });
     }
@@ -247,7 +252,7 @@ mod tests {
         let (_, mut view) = nico();
         let robot = RobotView { measured: None, ..(*view.robot).clone() };
         view.robot = Arc::new(robot);
-        assert!(scene(&view, &RobotPanels::default()).is_empty());
+        assert!(scene(&view, &RobotPanels::default(), true).is_empty());
     }
 
     #[test]
@@ -263,7 +268,7 @@ mod tests {
             largest_turn: None,
         };
         view.robot = Arc::new(RobotView { preview: Some(preview), ..(*view.robot).clone() });
-        let scene = scene(&view, &RobotPanels::default());
+        let scene = scene(&view, &RobotPanels::default(), true);
         let ghosts = scene.solids.iter().filter(|solid| solid.tint == Tint::Ghost).count();
         let all: usize = rig.description.links().iter().map(|link| link.visuals.len()).sum();
         assert!(ghosts > 0 && ghosts < all / 2, "{ghosts} of {all}");
@@ -273,7 +278,7 @@ mod tests {
     #[test]
     fn parts_are_picked_as_the_joint_that_moves_them() {
         let (rig, view) = nico();
-        let picks: Vec<Thing> = scene(&view, &RobotPanels::default())
+        let picks: Vec<Thing> = scene(&view, &RobotPanels::default(), true)
             .solids
             .iter()
             .filter_map(|s| Some(thing(s.pick?)))

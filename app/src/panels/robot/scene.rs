@@ -16,11 +16,13 @@ use crate::panels::PanelContext;
 const STRIP: f32 = 36.0;
 /// Below this width there is room for one button only.
 const NARROW: f32 = 420.0;
+/// From this width on there is room for the names of the toys.
+const NAMES_FROM: f32 = 380.0;
 /// A tip that is sent to a point stops this far above it, m.
 const ABOVE_M: f64 = 0.08;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    let drawn = scene(cx.view, &cx.state.robot);
+    let drawn = scene(cx.view, &cx.state.robot, ui.available_width() >= NAMES_FROM);
     if drawn.is_empty() && super::without_joints(ui, cx, None) {
         return;
     }

@@ -41,14 +41,16 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 /// One chip per toy in its color; a ring where it is put away.
 fn chips(ui: &mut Ui, cx: &mut PanelContext<'_>, toys: &[ToyView]) {
     ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
+        ui.spacing_mut().item_spacing = vec2(space::XS, 2.0);
+        ui.spacing_mut().interact_size.y = 24.0;
+        ui.spacing_mut().button_padding = vec2(6.0, 2.0);
         for (i, toy) in toys.iter().enumerate() {
             let chosen = cx.state.twin.chosen_toy == Some(i);
             let where_to = if toy.place.is_some() { "on the table" } else { "put away" };
-            let text = egui::RichText::new(format!("     {}", toy.name));
+            let text = egui::RichText::new(format!("    {}", toy.name));
             let chip = ui.add(egui::Button::selectable(chosen, text).sense(Sense::click()));
             chip.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, chosen, &toy.name));
-            let at = chip.rect.left_center() + vec2(14.0, 0.0);
+            let at = chip.rect.left_center() + vec2(12.0, 0.0);
             match toy.place {
                 Some(_) => ui.painter().circle_filled(at, 5.0, color(toy)),
                 None => ui.painter().circle_stroke(at, 4.5, egui::Stroke::new(1.5, color(toy))),
@@ -78,18 +80,19 @@ fn scene(rig: Option<&Rig>, toys: &[ToyView], chosen: Option<&ToyView>) -> Table
             corners_m: corners.iter().map(|corner| [corner.x, corner.y]).collect(),
         });
     }
-    scene.marks = toys
-        .iter()
-        .filter_map(|toy| {
-            let at = toy.place?.coords;
-            let is_chosen = chosen.is_some_and(|chosen| chosen.name == toy.name);
-            Some(TableMark {
-                at_m: [at.x, at.y],
-                vector_m: None,
-                ink: if is_chosen { Role::Ink.into() } else { Ink::Color(color(toy)) },
-                text: toy.name.clone(),
-            })
-        })
-        .collect();
+    for toy in toys {
+        let Some(place) = toy.place else { continue };
+        let is_chosen = chosen.is_some_and(|chosen| chosen.name == toy.name);
+        let mark = |ink, text: &str| TableMark {
+            at_m: [place.coords.x, place.coords.y],
+            vector_m: None,
+            ink,
+            text: text.to_owned(),
+        };
+        // The name in a color that can be read, the toy's own color on top of its dot.
+        let role = if is_chosen { Role::Ink } else { Role::Weak };
+        scene.marks.push(mark(role.into(), &toy.name));
+        scene.marks.push(mark(Ink::Color(color(toy)), ""));
+    }
     scene
 }
