@@ -22,9 +22,7 @@ pub enum RenderError {
     #[error("the graphics device stopped drawing ({0}): restart the program")]
     Lost(String),
     /// A place that is no place.
-    #[error(
-        "the place of {0} is not a finite number: the simulation has become unstable, reset the twin"
-    )]
+    #[error("the place of {0} is not a finite number: the simulation has become unstable, reset the twin")]
     BadPose(String),
     /// An item on a body that the snapshot does not have.
     #[error(

@@ -23,10 +23,12 @@ pub enum AdapterChoice {
 
 /// Bytes between two numbers that select a run of tiles (the least alignment that every device has).
 pub(super) const JOB_STRIDE: u64 = 256;
-/// Jobs: one per variant of `see`, one for the shadow map.
-const JOBS: u64 = VARIANTS as u64 + 1;
+/// Jobs: one per variant of `see`, one for the shadow map, one for all tiles.
+const JOBS: u64 = VARIANTS as u64 + 2;
 /// Job of the shadow map.
 pub(super) const SHADOW_JOB: u32 = VARIANTS as u32;
+/// Job of all tiles.
+pub(super) const ALL_JOB: u32 = VARIANTS as u32 + 1;
 
 /// vec4 of the frame's numbers: two eyes of 6, light, size, exposure.
 pub(super) const FRAME_VEC4: usize = 2 * 6 + 3 + 4;
@@ -60,6 +62,7 @@ pub(super) struct Gpu {
     see: Vec<Option<wgpu::ComputePipeline>>,
     /// Without and with meshes.
     cast: [Option<wgpu::ComputePipeline>; 2],
+    label: Option<wgpu::ComputePipeline>,
     /// By taps of the blur.
     develop: Vec<Option<wgpu::ComputePipeline>>,
     speckles: wgpu::TextureView,
@@ -72,11 +75,12 @@ impl Gpu {
         let adapter = adapter(choice)?;
         let name = adapter.get_info().name;
         let failed = |detail: String| RenderError::Device { adapter: name.clone(), detail };
-        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-            label: Some("twin's eyes"),
-            ..Default::default()
-        }))
-        .map_err(|e| failed(e.to_string()))?;
+        let (device, queue) =
+            pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+                label: Some("twin's eyes"),
+                ..Default::default()
+            }))
+            .map_err(|e| failed(e.to_string()))?;
         let trouble = Arc::new(Mutex::new(None));
         let told = trouble.clone();
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
@@ -97,7 +101,13 @@ impl Gpu {
             })
         };
         let shadow_module = module("shadow", format!("{COMMON}\n{SHADOW}"));
-        let see_module = module("see", match std::env::var("TWSH") { Ok(p) => std::fs::read_to_string(p).unwrap_or_default(), _ => format!("{COMMON}\n{SEE}") });
+        let see_module = module(
+            "see",
+            match std::env::var("TWSH") {
+                Ok(p) => std::fs::read_to_string(p).unwrap_or_default(),
+                _ => format!("{COMMON}\n{SEE}"),
+            },
+        );
         let sensor_module = module("sensor", SENSOR.to_owned());
         let speckles = speckle_texture(&device, &queue);
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
@@ -125,6 +135,7 @@ impl Gpu {
             see_module,
             sensor_module,
             cast: [None, None],
+            label: None,
             develop: (0..=MOST_TAPS).map(|_| None).collect(),
             speckles,
             sampler,
@@ -134,7 +145,13 @@ impl Gpu {
     }
 
     /// Compiles what an image needs and was not needed before: about 50 ms each.
-    pub fn prepare(&mut self, variants: impl Iterator<Item = usize>, meshes: bool, taps: usize) {
+    pub fn prepare(
+        &mut self,
+        variants: impl Iterator<Item = usize>,
+        meshes: bool,
+        taps: usize,
+        labels: bool,
+    ) {
         for variant in variants {
             let layout = &self.scene_pipeline_layout;
             self.see[variant].get_or_insert_with(|| {
@@ -151,8 +168,20 @@ impl Gpu {
         }
         self.cast[usize::from(meshes)].get_or_insert_with(|| {
             let constants = [("HAS_MESH", f64::from(meshes)), ("HAS_ROUND", 1.0), ("HAS_BOARD", 1.0)];
-            pipeline(&self.device, &self.shadow_pipeline_layout, &self.shadow_module, "cast_shadows", &constants)
+            pipeline(
+                &self.device,
+                &self.shadow_pipeline_layout,
+                &self.shadow_module,
+                "cast_shadows",
+                &constants,
+            )
         });
+        if labels {
+            let constants = [("HAS_MESH", 1.0), ("HAS_ROUND", 1.0), ("HAS_BOARD", 1.0)];
+            self.label.get_or_insert_with(|| {
+                pipeline(&self.device, &self.scene_pipeline_layout, &self.see_module, "label", &constants)
+            });
+        }
         self.develop[taps].get_or_insert_with(|| {
             let constants = [("TAPS", taps as f64)];
             pipeline(&self.device, &self.sensor_pipeline_layout, &self.sensor_module, "develop", &constants)
@@ -167,6 +196,11 @@ impl Gpu {
     /// The shadow map's pipeline, if prepared.
     pub fn cast(&self, meshes: bool) -> Option<&wgpu::ComputePipeline> {
         self.cast[usize::from(meshes)].as_ref()
+    }
+
+    /// The pipeline of object numbers, if prepared.
+    pub fn label(&self) -> Option<&wgpu::ComputePipeline> {
+        self.label.as_ref()
     }
 
     /// The sensor's pipeline for a width of blur, if prepared.
@@ -328,7 +362,8 @@ fn scene_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
         ),
         entry(9, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
     ]);
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("see"), entries: &entries })
+    device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("see"), entries: &entries })
 }
 
 fn job_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
@@ -341,12 +376,7 @@ fn job_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
 fn sensor_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("sensor"),
-        entries: &[
-            uniform(0, false),
-            storage(1, true),
-            storage(2, true),
-            storage(3, false),
-        ],
+        entries: &[uniform(0, false), storage(1, true), storage(2, true), storage(3, false)],
     })
 }
 
@@ -449,7 +479,11 @@ impl Buffers {
                 .enumerate()
                 .map(|(i, r)| wgpu::BindGroupEntry { binding: i as u32, resource: r.clone() })
                 .collect();
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: None,
+                layout,
+                entries: &entries,
+            })
         };
         let speckles = wgpu::BindingResource::TextureView(&gpu.speckles);
         let sampler = wgpu::BindingResource::Sampler(&gpu.sampler);

@@ -17,8 +17,8 @@ pub(super) const BOX: usize = 0;
 pub(super) const BOARD: usize = 4;
 pub(super) const MESH: usize = 5;
 
-/// Smallest share of mirrored light that is worth tracing.
-const LEAST_GLOSS: f32 = 0.02;
+/// Smallest share of mirrored light that is worth tracing; below, the surroundings are guessed.
+const LEAST_GLOSS: f32 = 0.1;
 /// Smallest side of a box that mirrors, meters.
 const LEAST_MIRROR_M: f64 = 0.1;
 
@@ -127,7 +127,8 @@ pub(super) fn pack(
 
 /// Whether every number of a pose is one.
 pub(super) fn is_finite(pose: &Isometry3<f64>) -> bool {
-    pose.translation.vector.iter().all(|c| c.is_finite()) && pose.rotation.coords.iter().all(|c| c.is_finite())
+    pose.translation.vector.iter().all(|c| c.is_finite())
+        && pose.rotation.coords.iter().all(|c| c.is_finite())
 }
 
 fn push(

@@ -5,7 +5,9 @@ use nalgebra::Isometry3;
 use plumbline_model::{Camera, CameraModel, Eye, Fisheye};
 
 use super::error::RenderError;
-use super::gpu::{AdapterChoice, Buffers, FRAME_VEC4, Gpu, JOB_STRIDE, Room, SENSOR_VEC4, SHADOW_JOB};
+use super::gpu::{
+    ALL_JOB, AdapterChoice, Buffers, FRAME_VEC4, Gpu, JOB_STRIDE, Room, SENSOR_VEC4, SHADOW_JOB,
+};
 use super::pack::{self, MeshStore, Packed, rows};
 use super::sensor::{SHELL_STEPS, Sensor, theta_d};
 use super::shadow::{self, Shadow};
@@ -37,7 +39,7 @@ pub type ObjectImage = image::ImageBuffer<image::Luma<u16>, Vec<u16>>;
 pub struct LabeledPair {
     /// The images.
     pub pair: RenderedPair,
-    /// Objects in the left image: of every pixel the one that covers most of it.
+    /// Objects in the left image: of every pixel the one in its middle.
     pub left_objects: ObjectImage,
     /// Objects in the right image.
     pub right_objects: ObjectImage,
@@ -146,7 +148,8 @@ impl EyeRenderer {
             }
         }
         let light = &scenery.light;
-        let numbers = [light.toward.x, light.toward.y, light.toward.z, light.lamp.into(), light.ambient.into()];
+        let numbers =
+            [light.toward.x, light.toward.y, light.toward.z, light.lamp.into(), light.ambient.into()];
         if numbers.iter().any(|n| !n.is_finite()) {
             return Err(RenderError::BadPose("the lamp".to_owned()));
         }
@@ -154,7 +157,8 @@ impl EyeRenderer {
         let packed = pack::pack(scenery, snapshot, &mut self.meshes)?;
         let circle = f64::from(sensor.image_circle_rad);
         let [left_cones, right_cones] = &mut self.cones;
-        let cones = [left_cones.update(&lenses[0], size, circle), right_cones.update(&lenses[1], size, circle)];
+        let cones =
+            [left_cones.update(&lenses[0], size, circle), right_cones.update(&lenses[1], size, circle)];
         let lists = tiles::lists(poses, cones, &packed.bounds);
         let shadow = shadow::shadow(&light.toward, &packed.bounds);
         let frame = frame_numbers(&lenses, &poses, scenery, &shadow, sensor, size);
@@ -166,7 +170,7 @@ impl EyeRenderer {
     /// Uploads and starts the device; tells where the results will be.
     fn submit(&mut self, work: &Work, objects: bool) -> Result<Results, RenderError> {
         let used = (0..VARIANTS).filter(|&variant| work.lists.runs[variant].1 > 0);
-        self.gpu.prepare(used, work.meshes, work.taps);
+        self.gpu.prepare(used, work.meshes, work.taps, objects);
         let room = Room {
             tiles: 4 * work.lists.data.len() as u64,
             shadow_tiles: 4 * work.shadow.data.len() as u64,
@@ -241,7 +245,12 @@ fn frame_numbers(
     out
 }
 
-fn sensor_numbers(lenses: &[Fisheye; 2], sensor: &Sensor, size: (u32, u32), seed: u64) -> (Vec<[f32; 4]>, usize) {
+fn sensor_numbers(
+    lenses: &[Fisheye; 2],
+    sensor: &Sensor,
+    size: (u32, u32),
+    seed: u64,
+) -> (Vec<[f32; 4]>, usize) {
     let mut out = Vec::with_capacity(SENSOR_VEC4);
     for (lens, eye) in lenses.iter().zip(Eye::BOTH) {
         out.push([lens.fx_px, lens.fy_px, lens.cx_px, lens.cy_px].map(|n| n as f32));
@@ -250,7 +259,10 @@ fn sensor_numbers(lenses: &[Fisheye; 2], sensor: &Sensor, size: (u32, u32), seed
         let soft = f64::from(1.2 + sensor.blur_px) / lens.fx_px;
         out.push([lens.skew_px, edge, soft, eye.index() as f64].map(|n| n as f32));
         let shell = sensor.shell_edges(eye, lens);
-        out.extend((0..SHELL_STEPS / 4).map(|i| [shell[4 * i], shell[4 * i + 1], shell[4 * i + 2], shell[4 * i + 3]]));
+        out.extend(
+            (0..SHELL_STEPS / 4)
+                .map(|i| [shell[4 * i], shell[4 * i + 1], shell[4 * i + 2], shell[4 * i + 3]]),
+        );
     }
     let [r, g, b] = sensor.white_balance.map(|factor| factor * sensor.exposure);
     out.push([r, g, b, sensor.falloff]);
@@ -275,7 +287,8 @@ fn upload(gpu: &Gpu, buffers: &Buffers, work: &Work) {
     gpu.write(&buffers.tiles, bytemuck::cast_slice(&work.lists.data));
     gpu.write(&buffers.shadow_tiles, bytemuck::cast_slice(&work.shadow.data));
     let per_job = JOB_STRIDE as usize / 4;
-    let mut jobs = vec![0_u32; (VARIANTS + 1) * per_job];
+    // The jobs of the shadow map and of all tiles begin at 0.
+    let mut jobs = vec![0_u32; (VARIANTS + 2) * per_job];
     for (variant, (first, _)) in work.lists.runs.iter().enumerate() {
         jobs[variant * per_job] = (first * tiles::HEADER) as u32;
     }
@@ -283,10 +296,13 @@ fn upload(gpu: &Gpu, buffers: &Buffers, work: &Work) {
 }
 
 fn encode(gpu: &Gpu, buffers: &Buffers, work: &Work, objects: bool) {
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("eyes") });
+    let mut encoder =
+        gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("eyes") });
     encoder.clear_buffer(&buffers.shadow_map, 0, None);
     encoder.clear_buffer(&buffers.radiance, 0, None);
-    encoder.clear_buffer(&buffers.objects, 0, None);
+    if objects {
+        encoder.clear_buffer(&buffers.objects, 0, None);
+    }
     encoder.clear_buffer(&buffers.bytes, 0, None);
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -304,6 +320,11 @@ fn encode(gpu: &Gpu, buffers: &Buffers, work: &Work, objects: bool) {
                 pass.set_bind_group(1, &buffers.job_group, &[job(variant as u32)]);
                 pass.dispatch_workgroups(4 * count as u32, 1, 1);
             }
+        }
+        if let Some(label) = gpu.label().filter(|_| objects) {
+            pass.set_pipeline(label);
+            pass.set_bind_group(1, &buffers.job_group, &[job(ALL_JOB)]);
+            pass.dispatch_workgroups(4 * work.lists.tiles as u32, 1, 1);
         }
         if let Some(develop) = gpu.develop(work.taps) {
             pass.set_pipeline(develop);

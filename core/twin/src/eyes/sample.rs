@@ -30,10 +30,8 @@ pub fn eyes(down_rad: f64) -> TrueEyes {
     let middle = Vector3::new(-0.025, 0.0, 0.335) + pitch * Vector3::new(0.08, 0.0, 0.095);
     let robot_from_left =
         Isometry3::from_parts(Translation3::from(middle + Vector3::new(0.0, 0.035, 0.0)), pitch * level);
-    let right_from_left = Isometry3::new(
-        Vector3::new(-0.0699, -0.0003, -0.001),
-        Vector3::new(0.0035, -0.0089, 0.0057),
-    );
+    let right_from_left =
+        Isometry3::new(Vector3::new(-0.0699, -0.0003, -0.001), Vector3::new(0.0035, -0.0089, 0.0057));
     TrueEyes {
         robot_from_left: Pose::new(robot_from_left),
         robot_from_right: Pose::new(robot_from_left * right_from_left.inverse()),
@@ -59,7 +57,12 @@ impl Builder {
 
     fn ball(&mut self, object: u16, center: [f64; 3], radii: [f64; 3], material: Material) {
         let [x, y, z] = center;
-        self.add(object, Isometry3::translation(x, y, z), Shape::Ellipsoid { radii_m: radii.into() }, material);
+        self.add(
+            object,
+            Isometry3::translation(x, y, z),
+            Shape::Ellipsoid { radii_m: radii.into() },
+            material,
+        );
     }
 
     /// A capsule from one place to another.
@@ -85,8 +88,11 @@ pub fn lab() -> (Scenery, Snapshot) {
         arm(&mut b, side);
     }
     let scenery = Scenery { revision: 1, items: b.items, light: Light::default() };
-    let snapshot =
-        Snapshot { time_s: 0.0, robot_from_body: vec![Isometry3::identity()], eyes: eyes(30_f64.to_radians()) };
+    let snapshot = Snapshot {
+        time_s: 0.0,
+        robot_from_body: vec![Isometry3::identity()],
+        eyes: eyes(30_f64.to_radians()),
+    };
     (scenery, snapshot)
 }
 
@@ -113,8 +119,11 @@ fn room(b: &mut Builder) {
 }
 
 fn tables(b: &mut Builder) {
-    let granite =
-        Material { albedo: [0.62, 0.61, 0.59], gloss: 0.0, pattern: Pattern::Speckle { size_m: 0.003, contrast: 0.7 } };
+    let granite = Material {
+        albedo: [0.62, 0.61, 0.59],
+        gloss: 0.0,
+        pattern: Pattern::Speckle { size_m: 0.005, contrast: 0.9 },
+    };
     let wood = Material {
         albedo: [0.62, 0.25, 0.07],
         gloss: 0.0,
@@ -125,7 +134,7 @@ fn tables(b: &mut Builder) {
     b.cuboid([1.3, 0.0, TABLE_M - 0.025], [0.63, 0.68, 0.015], wood);
     // The touchscreen: a frame, and the glass in it.
     b.cuboid([0.41, 0.0, TABLE_M + 0.006], [0.165, 0.275, 0.006], plain([0.006, 0.006, 0.007], 0.015));
-    b.cuboid([0.41, 0.0, TABLE_M + 0.0065], [0.135, 0.2375, 0.0065], plain([0.004, 0.005, 0.007], 0.06));
+    b.cuboid([0.41, 0.0, TABLE_M + 0.0065], [0.135, 0.2375, 0.0065], plain([0.004, 0.005, 0.007], 0.12));
     // The robot's own chest and what lies about.
     b.cuboid([0.03, 0.0, 0.06], [0.03, 0.11, 0.04], plain([0.45, 0.45, 0.45], 0.03));
     b.cuboid([1.0, 0.32, TABLE_M + 0.01], [0.1, 0.13, 0.01], plain([0.8, 0.8, 0.8], 0.0));
@@ -199,7 +208,12 @@ fn arm(b: &mut Builder, side: f64) {
         b.cuboid([joint.x - 0.02, joint.y, joint.z + 0.02], [0.02, 0.018, 0.014], black);
     }
     let palm_box = Shape::Box { half_m: Vector3::new(0.035, 0.03, 0.012) };
-    b.add(object, Isometry3::from_parts(Translation3::from(palm), UnitQuaternion::identity()), palm_box, black);
+    b.add(
+        object,
+        Isometry3::from_parts(Translation3::from(palm), UnitQuaternion::identity()),
+        palm_box,
+        black,
+    );
     for finger in 0..4 {
         let y = -0.024 + 0.016 * f64::from(finger);
         let joint = |k: i32| palm + Vector3::new(0.035 + 0.022 * f64::from(k), y, -0.004 * f64::from(k * k));

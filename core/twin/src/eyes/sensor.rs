@@ -13,7 +13,7 @@ pub(super) const SHELL_STEPS: usize = 64;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
     /// Factor from light to brightness, more than 0. At 1, a white surface in full light just
-    /// saturates.
+    /// saturates; the real eyes expose a little longer.
     pub exposure: f32,
     /// Factors of red, green and blue, more than 0.
     pub white_balance: [f32; 3],
@@ -46,7 +46,7 @@ pub struct FaceShell {
 impl Default for Sensor {
     fn default() -> Self {
         Self {
-            exposure: 1.0,
+            exposure: 1.3,
             white_balance: [1.0, 1.0, 1.0],
             full_well_electrons: 4000.0,
             read_noise_electrons: 1.5,
@@ -60,11 +60,7 @@ impl Default for Sensor {
 
 impl Default for FaceShell {
     fn default() -> Self {
-        Self {
-            edge_rad: SHELL_EDGE_RAD,
-            softness_rad: 0.012,
-            light: [0.28, 0.235, 0.185],
-        }
+        Self { edge_rad: SHELL_EDGE_RAD, softness_rad: 0.012, light: [0.23, 0.19, 0.145] }
     }
 }
 
@@ -150,5 +146,7 @@ pub(super) fn theta_d(lens: &Fisheye, theta_rad: f64) -> f64 {
 
 /// Read off images of the real left eye.
 const SHELL_EDGE_RAD: [f32; 32] = [
-    1.463, 1.457, 1.439, 1.312, 1.244, 1.322, 1.405, 1.441, 1.491, 1.549, 1.620, 1.702, 1.796, 1.902, 1.961, 1.993, 2.028, 1.993, 1.961, 1.914, 1.840, 1.774, 1.681, 1.576, 1.541, 1.507, 1.485, 1.456, 1.401, 1.391, 1.401, 1.443,
+    1.463, 1.457, 1.439, 1.312, 1.244, 1.322, 1.405, 1.441, 1.491, 1.549, 1.620, 1.702, 1.796, 1.902, 1.961,
+    1.993, 2.028, 1.993, 1.961, 1.914, 1.840, 1.774, 1.681, 1.576, 1.541, 1.507, 1.485, 1.456, 1.401, 1.391,
+    1.401, 1.443,
 ];

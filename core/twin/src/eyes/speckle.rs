@@ -34,8 +34,9 @@ fn blotches() -> Vec<f32> {
     let mut random = StdRng::seed_from_u64(20_261_121);
     let mut white = || -> Vec<f32> { (0..SIDE * SIDE).map(|_| random.random_range(-1.0..1.0)).collect() };
     let fine = smooth(&white(), 1);
-    let coarse = smooth(&white(), 3);
-    let mut sum: Vec<f32> = fine.iter().zip(&coarse).map(|(f, c)| (5.0 * (f * 1.2 + c * 1.6 + 0.08)).tanh()).collect();
+    let coarse = smooth(&white(), 2);
+    let mut sum: Vec<f32> =
+        fine.iter().zip(&coarse).map(|(f, c)| (5.0 * (f * 1.3 + c * 1.2 + 0.15)).tanh()).collect();
     let mean = sum.iter().sum::<f32>() / sum.len() as f32;
     for v in &mut sum {
         *v = ((*v - mean) / (1.0 + mean.abs())).clamp(-1.0, 1.0);

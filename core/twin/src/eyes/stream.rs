@@ -5,9 +5,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use plumbline_hardware::{
-    Counters, Next, Report, SourceDescription, SourceError, SourceKind, StereoSource,
-};
+use plumbline_hardware::{Counters, Next, Report, SourceDescription, SourceError, SourceKind, StereoSource};
 use plumbline_model::{Stamp, StereoFrame};
 
 use super::error::RenderError;

@@ -90,7 +90,11 @@ fn cones(lens: &Fisheye, (width, height): (u32, u32), circle_rad: f64) -> Vec<Co
         for x in 0..width.div_ceil(TILE) {
             let (u0, v0) = (f64::from(x * TILE) - 0.5, f64::from(y * TILE) - 0.5);
             let (u1, v1) = (u0 + f64::from(TILE), v0 + f64::from(TILE));
-            let nearest = Vector3::new(lens.cx_px.clamp(u0, u1) - lens.cx_px, lens.cy_px.clamp(v0, v1) - lens.cy_px, 0.0);
+            let nearest = Vector3::new(
+                lens.cx_px.clamp(u0, u1) - lens.cx_px,
+                lens.cy_px.clamp(v0, v1) - lens.cy_px,
+                0.0,
+            );
             if nearest.norm() > edge_px {
                 continue;
             }
@@ -148,7 +152,9 @@ impl View {
         if beside * self.cos - along * self.sin > bound.radius_m {
             return false;
         }
-        self.planes.iter().all(|n| n.dot(&to) <= sides.iter().map(|side| n.dot(side).abs()).sum::<f64>() + 1e-6)
+        self.planes
+            .iter()
+            .all(|n| n.dot(&to) <= sides.iter().map(|side| n.dot(side).abs()).sum::<f64>() + 1e-6)
     }
 }
 
@@ -197,7 +203,12 @@ fn tile(
     let mut tile = Tile { place: cone.place | (eye as u32) << 20, needs: 0, seen, mirrored: Vec::new() };
     // The nearest mirror of the tile; a second one would show the first one's images.
     let near = |i: u32| (bounds[i as usize].center - apex).norm();
-    let mirror = tile.seen.iter().copied().filter(|&i| bounds[i as usize].mirrors).min_by(|&a, &b| near(a).total_cmp(&near(b)));
+    let mirror = tile
+        .seen
+        .iter()
+        .copied()
+        .filter(|&i| bounds[i as usize].mirrors)
+        .min_by(|&a, &b| near(a).total_cmp(&near(b)));
     if let Some(mirror) = mirror {
         tile.needs |= NEEDS_MIRROR;
         let (normal, place) = face(&bounds[mirror as usize], &apex);

@@ -17,7 +17,7 @@ override HAS_PATTERN: bool = false;
 override HAS_MIRROR: bool = false;
 
 const SPECKLE_TEXELS = 512.0;
-const TEXELS_PER_SPECKLE = 3.0;
+const TEXELS_PER_SPECKLE = 5.0;
 const INK = 0.045;
 
 // Unit normal in the shape's frame at a place on it, seen along `d`.
@@ -242,15 +242,46 @@ fn shade(eye: u32, o: vec3<f32>, seen: Seen, mirror_list: u32) -> vec3<f32> {
     return color;
 }
 
+// The pixel of an invocation, and the eye.
+struct Where {
+    pixel: vec2<u32>,
+    eye: u32,
+}
+
+fn place_of(header: u32, group: u32, local: vec2<u32>) -> Where {
+    let place = tiles[header];
+    let quarter = vec2<u32>(group & 1u, (group >> 1u) & 1u) * 8u;
+    return Where(vec2<u32>(place & 1023u, (place >> 10u) & 1023u) * 16u + quarter + local, place >> 20u);
+}
+
+// Which object the middle of each pixel shows.
+@compute @workgroup_size(8, 8)
+fn label(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
+    let header = job.first + (group.x >> 2u) * 16u;
+    let at = place_of(header, group.x, local.xy);
+    let rows = frame.eyes[at.eye].robot_from_eye;
+    let center = vec2<f32>(at.pixel);
+    let d = turn(rows, unproject(at.eye, center, theta_of(at.eye, center)));
+    let rays = Rays(
+        vec4<f32>(rows[0].w), vec4<f32>(rows[1].w), vec4<f32>(rows[2].w),
+        vec4<f32>(d.x), vec4<f32>(d.y), vec4<f32>(d.z),
+    );
+    let item = trace(rays, header + 1u).item.x;
+    let width = u32(frame.size.x);
+    let height = u32(frame.size.y);
+    if (at.pixel.x < width && at.pixel.y < height && item != NO_ITEM) {
+        objects[(at.eye * height + at.pixel.y) * width + at.pixel.x] = u32(materials[item].what.y);
+    }
+}
+
 // A header: place (x + 1024 y + 2^20 eye), seven numbers of the list, the same of what mirrors of the
 // tile may show, one number unused. Tiles of 16 by 16 pixels, four workgroups each.
 @compute @workgroup_size(8, 8)
 fn see(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) local: vec3<u32>) {
     let header = job.first + (group.x >> 2u) * 16u;
-    let place = tiles[header];
-    let eye = place >> 20u;
-    let quarter = vec2<u32>(group.x & 1u, (group.x >> 1u) & 1u) * 8u;
-    let pixel = vec2<u32>(place & 1023u, (place >> 10u) & 1023u) * 16u + quarter + local.xy;
+    let at = place_of(header, group.x, local.xy);
+    let eye = at.eye;
+    let pixel = at.pixel;
     let center = vec2<f32>(pixel);
 
     let rows = frame.eyes[eye].robot_from_eye;
@@ -275,8 +306,6 @@ fn see(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) lo
 
     var color = vec3<f32>(0.0);
     var todo = vec4<f32>(1.0);
-    var most = 0.0;
-    var object = 0u;
     loop {
         var pick = NO_ITEM;
         var triangle = 0u;
@@ -299,10 +328,6 @@ fn see(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) lo
             light = shade(eye, o, seen, header + 8u);
         }
         color += light * (count * 0.25);
-        if (count > most) {
-            most = count;
-            object = select(0u, u32(materials[seen.item].what.y), pick != NO_ITEM);
-        }
         if (dot(todo, todo) == 0.0) {
             break;
         }
@@ -312,6 +337,5 @@ fn see(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_id) lo
     if (pixel.x < width && pixel.y < height) {
         let index = (eye * height + pixel.y) * width + pixel.x;
         radiance[index] = packed(color * frame.exposure.xyz);
-        objects[index] = object;
     }
 }
