@@ -3,6 +3,7 @@
 use nalgebra::{Isometry3, Matrix6, SMatrix, SymmetricEigen, UnitQuaternion, Vector3};
 use plumbline_model::frame::{Board, Head, LeftCamera};
 use plumbline_model::robot::{EyeMount, Posture, Rig};
+use plumbline_model::session::Touchscreen;
 use plumbline_model::{
     Chessboard, Corners, Eye, PairObservation, ParameterCovariance, Point, Pose, RejectedPair, Robot,
     StereoCalibration, StereoCameras,
@@ -71,6 +72,19 @@ pub enum Target {
         /// Link of the description.
         tip: String,
     },
+}
+
+impl Target {
+    /// The four corners of a touchscreen's visible area, in this order: at pixel (0, 0), at the end of
+    /// the first row, at the last pixel, at the end of the first column.
+    pub fn touchscreen(screen: &Touchscreen) -> Self {
+        let corner = |u: f64, v: f64| {
+            let along = screen.u_axis.vector() * (u * screen.width_m);
+            let down = screen.v_axis.vector() * (v * screen.height_m);
+            Point::from(screen.origin.coords + along + down)
+        };
+        Self::KnownPoints(vec![corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)])
+    }
 }
 
 /// What the solver assumes. All standard deviations are of one axis.

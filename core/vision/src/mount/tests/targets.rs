@@ -8,16 +8,12 @@ use super::honesty::{coverage, error};
 use super::world::{World, board};
 use crate::mount::{HeadView, LocatedPoint, MountOptions, Target, localization_improvement};
 
-/// Corners of the touchscreen.
+/// Corners of the touchscreen: at its far left, far right, near right and near left end.
 fn screen(world: &World) -> Vec<Point<Robot>> {
-    let screen = &world.rig.touchscreen;
-    [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
-        .map(|(u, v)| {
-            let along = screen.u_axis.vector() * (u * screen.width_m)
-                + screen.v_axis.vector() * (v * screen.height_m);
-            Point::from(screen.origin.coords + along)
-        })
-        .to_vec()
+    let Target::KnownPoints(points) = Target::touchscreen(&world.rig.touchscreen) else { panic!("points") };
+    assert!(points[0].distance_m(&Point::new(0.545, 0.2375, 0.056)) < 1e-9);
+    assert!(points[2].distance_m(&Point::new(0.278, -0.2375, 0.056)) < 1e-9);
+    points
 }
 
 fn exact() -> MountOptions {
