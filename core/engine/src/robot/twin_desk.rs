@@ -18,6 +18,7 @@ use crate::view::{FaultView, ToyView, TwinView};
 /// While the board is shown at all places it stays at each for this long: long enough to be
 /// found still, sharp and new.
 const AT_EACH_PLACE: Duration = Duration::from_millis(1600);
+const NOT_RUNNING: &str = "The twin is not running. Connect to it first.";
 /// The same twin every time.
 const SEED: u64 = 1;
 
@@ -85,7 +86,7 @@ impl TwinDesk {
 
     /// Does what the operator asked.
     pub fn control(&mut self, command: TwinCommand, rig: &Rig) -> Result<(), String> {
-        let twin = self.twin.as_ref().ok_or("The twin is not running. Connect to it first.")?;
+        let twin = self.twin.as_ref().ok_or(NOT_RUNNING)?;
         let toy = |name: &str| Toy::from_name(name).ok_or_else(|| format!("There is no toy called {name}."));
         let send = |command| {
             twin.send(command);
@@ -111,7 +112,10 @@ impl TwinDesk {
             TwinCommand::LayBoard { x_m, y_m, yaw_rad } => {
                 self.tour = None;
                 let robot_from_board = lying(rig, x_m, y_m, yaw_rad)?;
-                send(To::PlaceBoard { robot_from_board })
+                self.make_room(&robot_from_board);
+                let twin = self.twin.as_ref().ok_or(NOT_RUNNING)?;
+                twin.send(To::PlaceBoard { robot_from_board });
+                Ok(())
             }
             TwinCommand::TourBoard(on) => {
                 self.tour = on.then(|| (0, Instant::now()));
@@ -137,6 +141,30 @@ impl TwinDesk {
                 self.tour = None;
                 send(To::Reset)
             }
+        }
+    }
+
+    /// Puts toys away that stand where the board is to lie: they would hide its corners.
+    fn make_room(&mut self, robot_from_board: &Pose<Robot, Board>) {
+        let Some(twin) = &self.twin else { return };
+        let board = crate::eyes::default_board();
+        let size = |corners: u32| f64::from(corners - 1) * board.square_m;
+        let (width_m, height_m) = (size(board.inner_columns), size(board.inner_rows));
+        let mut away = vec![];
+        for (toy, place) in &twin.state().toys {
+            let Some(place) = place else { continue };
+            let on_board = robot_from_board.isometry.inverse() * nalgebra::Point3::from(*place);
+            // The eyes look from the side, so what stands near hides something too.
+            let reach_m = 2.0 * board.square_m + 2.0 * toy.radius_m();
+            let inside = |value: f64, size_m: f64| value > -reach_m && value < size_m + reach_m;
+            if inside(on_board.x, width_m) && inside(on_board.y, height_m) {
+                twin.send(plumbline_twin::TwinCommand::RemoveObject { toy: *toy });
+                away.push(toy.name());
+            }
+        }
+        if !away.is_empty() {
+            let text = format!("Put away to make room for the board: {}.", away.join(", "));
+            self.notes.push((NoticeLevel::Info, text));
         }
     }
 
