@@ -42,17 +42,24 @@ fn logged_commands_reach_their_logged_targets() {
     let table = session.touches.expect("touches");
     let rig = nico();
     let chain = rig.chain("right_index_tip").expect("a tip of the rig");
-    let mut squares = vec![];
+    let (mut squares, mut elsewhere) = (vec![], vec![]);
     for row in table.rows() {
         let target = row.target.expect("every row has its target").coords.coords;
         let commanded: Option<Vec<f64>> = row.commanded_rad.iter().copied().collect();
         let reached = chain.robot_from_tip(&commanded.expect("every command is logged")).translation_m();
         squares.push((reached - target).norm_squared());
+        // In the far left corner, at the end of the arm's reach, the published solver stopped up to
+        // 3.5 mm short, always toward the shoulder.
+        if !(target.x > 0.4 && target.y > 0.1) {
+            elsewhere.push((reached - target).norm_squared());
+        }
     }
-    let rms_m = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    let rms_m = |squares: &[f64]| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    let (rms_m, elsewhere_m) = (rms_m(&squares), rms_m(&elsewhere));
     println!("{} commands, rms distance to their targets {:.3} mm", squares.len(), rms_m * 1e3);
     assert_eq!(squares.len(), 245);
-    // The residual is the published solver's own: it stops at up to 2.7 mm.
+    // Targets are logged in whole millimeters, which alone may leave 0.5 mm.
+    assert!(elsewhere.len() == 226 && elsewhere_m < 0.00042, "{elsewhere_m}");
     assert!(rms_m < 0.00065, "{rms_m}");
 }
 
