@@ -42,8 +42,6 @@ const LARGEST_PX: f32 = 4096.0;
 
 /// A scene that did not change for so long is drawn again as well as it can be.
 const AT_REST: Duration = Duration::from_millis(200);
-/// Strength of a picture that is old.
-const STALE: Color32 = Color32::from_rgba_premultiplied(110, 110, 110, 110);
 
 const NOTHING: Message<'static> = Message {
     title: "Nothing in the scene",
@@ -203,7 +201,7 @@ impl<'a> Scene3d<'a> {
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             // What is old fades into the background of its theme.
             painter.rect_filled(rect, 0.0, theme::tokens(ui).backdrop);
-            let tint = if self.stale.is_some() { STALE } else { Color32::WHITE };
+            let tint = if self.stale.is_some() { theme::STALE_FADE } else { Color32::WHITE };
             painter.image(texture.id(), rect, whole, tint);
         }
         if response.has_focus() {

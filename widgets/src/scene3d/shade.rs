@@ -27,20 +27,17 @@ impl Tint {
         }
     }
 
-    /// The color of surfaces, before light. Whole bodies in a pure color would shout; they are
-    /// moved towards gray and keep their hue.
+    /// The color of surfaces, before light.
     pub(super) fn surface(self, tokens: &Tokens) -> Color32 {
-        let dark = is_dark(tokens);
         match self {
-            Self::Measured => tokens.measured.lerp_to_gamma(gray(if dark { 190 } else { 215 }), 0.38),
-            Self::Predicted => tokens.predicted.lerp_to_gamma(gray(if dark { 190 } else { 215 }), 0.20),
+            Self::Measured => tokens.surface.measured,
+            Self::Predicted => tokens.surface.predicted,
             Self::Ghost => tokens.predicted,
-            Self::Neutral => gray(if dark { 172 } else { 214 }),
-            Self::Screen => Color32::from_rgb(24, 28, 33),
-            Self::Table if dark => tokens.raised.lerp_to_gamma(tokens.text_weak, 0.28),
-            Self::Table => Color32::WHITE,
+            Self::Neutral => tokens.surface.neutral,
+            Self::Screen => tokens.surface.screen,
+            Self::Table => tokens.surface.table,
             Self::Object(color) => color,
-            Self::Selected => tokens.accent.lerp_to_gamma(tokens.text_weak, if dark { 0.0 } else { 0.35 }),
+            Self::Selected => tokens.surface.selected,
             Self::Warning => tokens.warning,
         }
     }
@@ -54,14 +51,6 @@ impl Tint {
     pub(super) fn casts_shadow(self) -> bool {
         !matches!(self, Self::Ghost | Self::Table | Self::Screen)
     }
-}
-
-fn gray(level: u8) -> Color32 {
-    Color32::from_gray(level)
-}
-
-fn is_dark(tokens: &Tokens) -> bool {
-    tokens.panel.r() < 128
 }
 
 /// Directions of the light, in the frame of the shape that it falls on.

@@ -10,8 +10,8 @@ mod distinct;
 mod tokens;
 
 pub use apply::{apply, fonts};
-pub use tokens::{DARK, LIGHT, ON_IMAGE, Tokens};
-pub(crate) use tokens::{INVALID, PIXEL_GRID, RIM, STALE_TINT, readable_on};
+pub use tokens::{DARK, LIGHT, ON_IMAGE, Surfaces, Tokens};
+pub(crate) use tokens::{INVALID, PIXEL_GRID, RIM, STALE_FADE, STALE_TINT, readable_on};
 
 use egui::{Color32, FontId, RichText, TextStyle, Ui};
 

@@ -60,6 +60,26 @@ pub struct Tokens {
     pub on_stop: Color32,
     /// Shadow under popups.
     pub shadow: Color32,
+    /// Bodies in three dimensions, before light. Whole bodies in a pure color would shout: these
+    /// are the meanings moved towards gray.
+    pub surface: Surfaces,
+}
+
+/// Colors of bodies in three dimensions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surfaces {
+    /// Parts without a meaning of their own.
+    pub neutral: Color32,
+    /// See [`super::Role::Measured`].
+    pub measured: Color32,
+    /// See [`super::Role::Predicted`].
+    pub predicted: Color32,
+    /// What is selected.
+    pub selected: Color32,
+    /// The table.
+    pub table: Color32,
+    /// The touchscreen: black in both themes, as it is.
+    pub screen: Color32,
 }
 
 const fn rgb(hex: u32) -> Color32 {
@@ -93,6 +113,14 @@ pub const DARK: Tokens = Tokens {
     stop_hover: rgb(0xE5392C),
     on_stop: rgb(0xFFFFFF),
     shadow: Color32::from_black_alpha(120),
+    surface: Surfaces {
+        neutral: rgb(0xACACAC),
+        measured: rgb(0x6FC4DF),
+        predicted: rgb(0xDEA13F),
+        selected: rgb(0xEDF0F3),
+        table: rgb(0x454C54),
+        screen: rgb(0x181C21),
+    },
 };
 
 /// Light theme.
@@ -122,6 +150,14 @@ pub const LIGHT: Tokens = Tokens {
     stop_hover: rgb(0xA81812),
     on_stop: rgb(0xFFFFFF),
     shadow: Color32::from_black_alpha(40),
+    surface: Surfaces {
+        neutral: rgb(0xD6D6D6),
+        measured: rgb(0x7599C5),
+        predicted: rgb(0xC98F49),
+        selected: rgb(0x2C333A),
+        table: rgb(0xFFFFFF),
+        screen: rgb(0x181C21),
+    },
 };
 
 /// Marks drawn on top of camera images keep the dark theme's bright colors in both themes: the
@@ -141,6 +177,9 @@ pub(crate) const PIXEL_GRID: Color32 = Color32::from_gray(128);
 
 /// Tint of a picture that is old.
 pub(crate) const STALE_TINT: Color32 = Color32::from_gray(150);
+
+/// Strength of a scene that is old: it fades into the background.
+pub(crate) const STALE_FADE: Color32 = Color32::from_rgba_premultiplied(110, 110, 110, 110);
 
 /// Black or white, whichever can be read on a color.
 pub(crate) fn readable_on(back: Color32) -> Color32 {
