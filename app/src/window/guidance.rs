@@ -146,7 +146,9 @@ fn collect(view: &View) -> Guidance {
         ))
         .then(collect_label(view), collect_action(view));
     }
-    let enough = count >= ENOUGH_PAIRS && eyes.ghost.is_none();
+    // The twin's board was shown everywhere it can be held; nobody can hold it to the outline.
+    let toured = view.twin.running && view.twin.board.is_none();
+    let enough = count >= ENOUGH_PAIRS && (eyes.ghost.is_none() || toured);
     if enough || view.source.replay.is_some() || view.source.status == SourceStatus::None {
         let said = if count < ENOUGH_PAIRS {
             format!("{count} pairs are few; {ENOUGH_PAIRS} or more are better.")

@@ -49,7 +49,16 @@ fn live(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {
     if let Some(aim) = &view.live.aim {
         group_heading(ui, "Aim of the rectified pair");
         aim_controls(ui, aim, outbox);
-        head_controls(ui, view.live.head, outbox);
+        if view.robot.connection.is_connected() {
+            let head = view.live.head;
+            let rows = [
+                KeyValue::quantity("Head left", Quantity::Angle, head.head_z_rad).help("By the encoder"),
+                KeyValue::quantity("Head up", Quantity::Angle, head.head_y_rad).help("By the encoder"),
+            ];
+            key_value_grid(ui, "head", &rows);
+        } else {
+            head_controls(ui, view.live.head, outbox);
+        }
     }
     source(ui, view);
 }

@@ -196,7 +196,7 @@ fn robot(tiles: &mut Tiles<Pane>) -> TileId {
     // Pad and rows of joints need their width on the smallest window too.
     let top = row(tiles, &[(scene, 1.0), (jog, 1.0)]);
     let bottom = row(tiles, &[(joints, 2.4), (poses, 1.0)]);
-    column(tiles, &[(top, 1.1), (bottom, 1.0)])
+    column(tiles, &[(top, 1.12), (bottom, 1.0)])
 }
 
 fn tabs(tiles: &mut Tiles<Pane>, panes: &[Pane]) -> TileId {

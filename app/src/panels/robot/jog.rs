@@ -5,7 +5,7 @@ use egui::{ComboBox, ScrollArea, Ui};
 use plumbline_engine::view::RobotView;
 use plumbline_engine::{JogRates, RobotCommand};
 use plumbline_widgets::jog_pad::{JogPad, JogSpeed};
-use plumbline_widgets::theme::{self, space};
+use plumbline_widgets::theme;
 
 use super::words::tip_title;
 use super::{Asked, cannot_move, refusal_line};
@@ -17,14 +17,17 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         return;
     }
     padded(ui, |ui| {
-        ScrollArea::both().auto_shrink(false).show(ui, |ui| contents(ui, cx));
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| contents(ui, cx));
     });
 }
 
 fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     refusal_line(ui, cx, Asked::Jog);
     let view = cx.view;
-    choose_tip(ui, &view.robot, &mut |link| cx.outbox.send(RobotCommand::ChooseTip { link }));
+    ui.horizontal(|ui| {
+        choose_tip(ui, &view.robot, &mut |link| cx.outbox.send(RobotCommand::ChooseTip { link }));
+        gamepad(ui, cx.state.robot.gamepad.as_ref());
+    });
     let why = cannot_move(&view.robot);
     let tip = tip_title(&view.robot).to_lowercase();
     let pad = cx.state.robot.gamepad.clone().filter(|pad| pad.enabled && why.is_none());
@@ -41,8 +44,6 @@ fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         cx.state.robot.asked = Asked::Jog;
         cx.outbox.jog = Some(rates);
     }
-    ui.add_space(space::XS);
-    gamepad(ui, cx.state.robot.gamepad.as_ref());
 }
 
 /// A stick all the way pushed is as fast as a button; a diagonal is no faster.
@@ -58,28 +59,27 @@ fn stick_rates(pad: &GamepadState, speed: JogSpeed) -> Option<JogRates> {
 
 fn choose_tip(ui: &mut Ui, robot: &RobotView, choose: &mut dyn FnMut(String)) {
     let Some(rig) = &robot.rig else { return };
-    ui.horizontal(|ui| {
-        let label = ui.label("Tip");
-        let shown = tip_title(robot);
-        let combo = ComboBox::from_id_salt("tip").width(220.0).selected_text(shown).show_ui(ui, |ui| {
-            for tip in rig.arms.iter().flat_map(|arm| &arm.tips) {
-                if ui.selectable_label(tip.link == robot.tip, &tip.title).clicked() {
-                    choose(tip.link.clone());
-                }
+    let label = ui.label("Tip");
+    let shown = tip_title(robot);
+    let combo = ComboBox::from_id_salt("tip").width(170.0).selected_text(shown).show_ui(ui, |ui| {
+        for tip in rig.arms.iter().flat_map(|arm| &arm.tips) {
+            if ui.selectable_label(tip.link == robot.tip, &tip.title).clicked() {
+                choose(tip.link.clone());
             }
-        });
-        combo.response.labelled_by(label.id);
+        }
     });
+    combo.response.labelled_by(label.id);
 }
 
 fn gamepad(ui: &mut Ui, pad: Option<&GamepadState>) {
-    let text = match pad {
-        Some(pad) if pad.enabled => format!("{}: enabled", pad.name),
-        Some(pad) => format!("{}: hold its left shoulder button", pad.name),
-        None => "A gamepad works too: plug one in.".to_owned(),
+    const USE: &str = "Hold the left shoulder button to enable it. Left stick: forward, back, left, right. \
+                       Right stick: up, down, turn.";
+    let (text, hover) = match pad {
+        Some(pad) if pad.enabled => ("gamepad enabled", format!("{}. {USE}", pad.name)),
+        Some(pad) => ("gamepad: hold left shoulder", format!("{}. {USE}", pad.name)),
+        None => ("no gamepad", format!("Plug one in to jog with it. {USE}")),
     };
-    ui.label(theme::small(ui, text))
-        .on_hover_text("Left stick: forward, back, left, right. Right stick: up, down, turn.");
+    ui.label(theme::small(ui, text)).on_hover_text(hover);
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ const STRIP: f32 = 36.0;
 /// Below this width there is room for one button only.
 const NARROW: f32 = 420.0;
 /// From this width on there is room for the names of the toys.
-const NAMES_FROM: f32 = 380.0;
+const NAMES_FROM: f32 = 520.0;
 /// A tip that is sent to a point stops this far above it, m.
 const ABOVE_M: f64 = 0.08;
 

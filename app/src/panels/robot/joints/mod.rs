@@ -3,14 +3,15 @@
 
 mod compact;
 
-use egui::{ScrollArea, Ui};
+use egui::{RichText, ScrollArea, Ui};
 use plumbline_engine::view::{JointView, RobotView};
 use plumbline_engine::{Destination, RobotCommand};
 use plumbline_model::robot::{JointIndex, Posture, Rig};
+use plumbline_widgets::format;
 use plumbline_widgets::joint_row::{
     Freshness, JointHistory, JointRow, JointState, ReducedRange, joint_header,
 };
-use plumbline_widgets::theme::{self, space};
+use plumbline_widgets::theme::{self, Role, space};
 
 use super::{Asked, OLD, cannot_show, refusal_line, stale_line};
 use crate::panels::{PanelContext, padded};
@@ -36,6 +37,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     padded(ui, |ui| {
         stale_line(ui, &view.robot);
         refusal_line(ui, cx, Asked::Joints);
+        problems_line(ui, &view.robot);
         let narrow = ui.available_width() < NARROW;
         if !narrow {
             // As wide as the rows, which leave room for the scroll bar.
@@ -105,9 +107,24 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, joint: &JointView) {
     if let Some(on) = shown.torque.filter(|_| robot.connection.is_connected()) {
         cx.outbox.send(RobotCommand::Torque { joints: vec![joint.joint], on });
     }
-    if let Some(problem) = &joint.problem {
-        super::warning(ui, problem);
-    }
+}
+
+/// Always one line, so that rows do not move away from under the pointer: the first problem, or
+/// that there is none.
+fn problems_line(ui: &mut Ui, robot: &RobotView) {
+    let mut with = robot.joints.iter().filter_map(|joint| Some((joint, joint.problem.as_ref()?)));
+    let Some((joint, problem)) = with.next() else {
+        let all = format::count(robot.joints.len(), "joint");
+        ui.label(theme::small(ui, format!("{all} without a problem")));
+        return;
+    };
+    let more = match with.count() {
+        0 => String::new(),
+        n => format!(" And {n} more."),
+    };
+    let text = format!("{}: {problem}.{more}", joint.title);
+    let text = RichText::new(text).small().color(Role::Warning.color(theme::tokens(ui)));
+    ui.add(egui::Label::new(text).truncate());
 }
 
 /// Shows the move; nothing moves by that.
