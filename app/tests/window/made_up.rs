@@ -179,6 +179,7 @@ pub fn solved_mount() -> MountSummary {
         views: 13,
         rejected: vec![("view-09".to_owned(), "the head had not settled".to_owned())],
         not_seen: Vec::new(),
+        remarks: Vec::new(),
         at: Timestamp::now(),
     }
 }

@@ -376,6 +376,5 @@ const WORLDS: [World; 2] = [World::Robot, World::Twin];
 
 /// What the mount's workflow can see of the rest.
 fn surroundings<'a>(rig: &'a Arc<Rig>, robot: &'a RobotView, eyes: &EyesState) -> MountSurroundings<'a> {
-    let cameras = eyes.in_use().map(|calibration| calibration.cameras);
-    MountSurroundings { rig, robot, cameras, board: *eyes.board() }
+    MountSurroundings { rig, robot, calibration: eyes.in_use().cloned(), board: *eyes.board() }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_model::robot::{Posture, Rig};
-use plumbline_model::{Chessboard, PairObservation, StereoCameras};
+use plumbline_model::{Chessboard, PairObservation, StereoCalibration};
 use plumbline_vision::mount::{
     HeadView, MountCalibration, PlannedTarget, Target, place_of_board, plan_head_views,
 };
@@ -32,7 +32,7 @@ pub struct Surroundings<'a> {
     /// The robot now.
     pub robot: &'a RobotView,
     /// The calibration of the eyes; `None` before one was accepted.
-    pub cameras: Option<StereoCameras>,
+    pub calibration: Option<Arc<StereoCalibration>>,
     /// The board in use.
     pub board: Chessboard,
 }
@@ -50,6 +50,17 @@ pub struct MountState {
     pub(super) solving: Option<JobId>,
     last_look: Option<Look>,
     counted: usize,
+    /// What the operator asked for and needs an image that was taken after that.
+    pub(super) waiting: Option<(Waiting, Instant)>,
+}
+
+/// What is done with the next image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Waiting {
+    /// Planning head poses.
+    Plan,
+    /// A view.
+    Capture,
 }
 
 impl MountState {
@@ -66,6 +77,7 @@ impl MountState {
             solving: None,
             last_look: None,
             counted: 0,
+            waiting: None,
         }
     }
 
@@ -81,16 +93,13 @@ impl MountState {
 
     /// Whether the board has to be looked for.
     pub fn wants_corners(&self) -> bool {
-        self.tour.is_some()
+        self.tour.is_some() || self.waiting.is_some()
     }
 
     /// Applies a command of the operator.
     pub fn apply(&mut self, command: MountCommand, around: &Surroundings<'_>, context: &mut Context<'_>) {
         match command {
-            MountCommand::Plan => match self.plan(around) {
-                Ok(planned) => self.planned = planned,
-                Err(reason) => context.refuse(reason),
-            },
+            MountCommand::Plan => self.wait_for_image(Waiting::Plan, around, context),
             MountCommand::Tour => {
                 if self.planned.is_empty() {
                     return context.refuse("No head poses are planned yet. Plan them first.");
@@ -98,16 +107,7 @@ impl MountState {
                 self.tour = Some(Tour::new(&self.planned));
                 self.step(around, Instant::now(), context);
             }
-            MountCommand::Capture => match self.last_look.clone() {
-                Some(look) => {
-                    if let Err(reason) = self.take(&look, around) {
-                        context.refuse(reason);
-                    }
-                }
-                None => {
-                    context.refuse("No image has been searched for the board yet. Wait for the next one.")
-                }
-            },
+            MountCommand::Capture => self.wait_for_image(Waiting::Capture, around, context),
             MountCommand::Delete { view } => self.views.retain(|known| known.name != view),
             MountCommand::DeleteAll => {
                 self.views.clear();
@@ -127,8 +127,19 @@ impl MountState {
         }
     }
 
+    fn wait_for_image(&mut self, what: Waiting, around: &Surroundings<'_>, context: &mut Context<'_>) {
+        match ready(around) {
+            Ok(_) if context.source.spec.is_none() => {
+                context.refuse("No eyes are open. Choose a source of images first.")
+            }
+            Ok(_) => self.waiting = Some((what, Instant::now())),
+            Err(reason) => context.refuse(reason),
+        }
+    }
+
     fn plan(&self, around: &Surroundings<'_>) -> Result<Vec<(f64, f64)>, String> {
-        let (cameras, posture) = ready(around)?;
+        let (calibration, posture) = ready(around)?;
+        let cameras = calibration.cameras;
         let view = self.last_look.as_ref().and_then(|look| head_view(look, "now".to_owned(), &posture));
         let view = view
             .ok_or("Neither eye sees the board. Lay it flat on the table where both eyes see all of it.")?;
@@ -142,14 +153,14 @@ impl MountState {
         if self.solving.is_some() {
             return context.refuse("The mount is being solved already.");
         }
-        let cameras = match ready(around) {
-            Ok((cameras, _)) => cameras,
+        let eyes = match ready(around) {
+            Ok((eyes, _)) => eyes,
             Err(reason) => return context.refuse(reason),
         };
         let board = self.board.unwrap_or(around.board);
         let work = MountWork::Solve {
             rig: around.rig.clone(),
-            cameras,
+            eyes,
             views: self.views.clone(),
             target: Target::UnknownBoard(board),
         };
@@ -167,7 +178,19 @@ impl MountState {
                 tour.advance();
             }
         }
+        let waiting = self.waiting.take_if(|(_, since)| captured_at > *since);
+        if let Some((Waiting::Capture, _)) = waiting
+            && let Err(reason) = self.take(&look, around)
+        {
+            context.refuse(reason);
+        }
         self.last_look = Some(look);
+        if let Some((Waiting::Plan, _)) = waiting {
+            match self.plan(around) {
+                Ok(planned) => self.planned = planned,
+                Err(reason) => context.refuse(reason),
+            }
+        }
         self.step(around, Instant::now(), context);
     }
 
@@ -225,12 +248,13 @@ impl MountState {
 }
 
 /// The eyes' calibration and the present posture, or why there is none.
-fn ready(around: &Surroundings<'_>) -> Result<(StereoCameras, Posture), String> {
-    let cameras = around.cameras.ok_or("The eyes are not calibrated yet. Do step 1, Eyes, first.")?;
+fn ready(around: &Surroundings<'_>) -> Result<(Arc<StereoCalibration>, Posture), String> {
+    let calibration =
+        around.calibration.clone().ok_or("The eyes are not calibrated yet. Do step 1, Eyes, first.")?;
     let posture = around.robot.measured.clone();
     let posture =
         posture.ok_or("The head's angles are not known. Connect to the robot or the twin first.")?;
-    Ok((cameras, posture))
+    Ok((calibration, posture))
 }
 
 fn head_view(look: &Look, name: String, posture: &Posture) -> Option<HeadView> {

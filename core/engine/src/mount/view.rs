@@ -21,12 +21,12 @@ impl MountState {
     }
 
     fn step_state(&self, around: &Surroundings<'_>) -> StepState {
-        if self.tour.is_some() || self.solving.is_some() {
+        if self.tour.is_some() || self.solving.is_some() || self.waiting.is_some() {
             return StepState::Running;
         }
-        match (&self.in_use, around.cameras) {
+        match (&self.in_use, &around.calibration) {
             (None, _) => StepState::NotDone,
-            (Some(mount), Some(cameras)) if !mount.made_with(&cameras) => StepState::Stale {
+            (Some(mount), Some(eyes)) if !mount.made_with(&eyes.cameras) => StepState::Stale {
                 why: "The eyes were calibrated anew since the mount was solved. Solve it again.".to_owned(),
             },
             (Some(_), _) => StepState::Done,
@@ -40,13 +40,16 @@ impl MountState {
                 tour.remaining()
             );
         }
+        if self.waiting.is_some() {
+            return "The board is looked for in the next image.".to_owned();
+        }
         if self.solving.is_some() {
             return "The mount is being solved.".to_owned();
         }
         if self.proposal.is_some() {
             return "Compare the solution with the mount in use, then accept or discard it.".to_owned();
         }
-        if around.cameras.is_none() {
+        if around.calibration.is_none() {
             return "Calibrate the eyes first: step 1.".to_owned();
         }
         if around.robot.measured.is_none() {
@@ -94,6 +97,7 @@ fn summary(mount: &MountCalibration) -> MountSummary {
         views: mount.per_view.len(),
         rejected: mount.rejected.iter().map(|view| (view.name.clone(), view.reason.clone())).collect(),
         not_seen: mount.not_seen.clone(),
+        remarks: mount.remarks.clone(),
         at: mount.evidence.created,
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use plumbline_model::robot::Rig;
-use plumbline_model::{Cancelled, JobContext, StereoCameras};
+use plumbline_model::{Cancelled, JobContext, StereoCalibration};
 use plumbline_vision::mount::{
     HeadView, MountCalibration, MountError, MountOptions, Target, calibrate_mount,
 };
@@ -20,7 +20,7 @@ pub enum MountWork {
         /// The robot, its mount nominal.
         rig: Arc<Rig>,
         /// The eyes' calibration.
-        cameras: StereoCameras,
+        eyes: Arc<StereoCalibration>,
         /// What was seen.
         views: Vec<HeadView>,
         /// What was looked at.
@@ -79,9 +79,9 @@ impl MountWork {
     /// Does it, on the thread of the caller.
     pub fn run(self, context: &dyn JobContext) -> Result<MountResult, JobError> {
         match self {
-            Self::Solve { rig, cameras, views, target } => {
+            Self::Solve { rig, eyes, views, target } => {
                 let solved =
-                    calibrate_mount(&rig, &cameras, &views, &target, &MountOptions::default(), context);
+                    calibrate_mount(&rig, eyes.as_ref(), &views, &target, &MountOptions::default(), context);
                 match solved {
                     Ok(mount) => Ok(MountResult::Solved(Arc::new(mount))),
                     Err(MountError::Cancelled(_)) => Err(JobError::Cancelled(Cancelled)),

@@ -59,6 +59,8 @@ pub struct MountSummary {
     pub rejected: Vec<(String, String)>,
     /// Which directions could not be seen and what would show them; empty when all could.
     pub not_seen: Vec<String>,
+    /// What else the views say: slack, what the uncertainty does not include; a sentence each.
+    pub remarks: Vec<String>,
     /// When it was solved.
     pub at: jiff::Timestamp,
 }

@@ -13,6 +13,9 @@ use super::renderer::{EyeOptions, EyeRenderer};
 use super::sensor::Sensor;
 use crate::scene::{Scenery, Snapshot};
 
+/// How far drawing steps back, on the scale of the system (0 usual, 19 last).
+const NICE: i32 = 10;
+
 /// Gives the newest scenery and where everything is; called once per pair from the eyes' own thread, so
 /// it must not wait long.
 pub type SceneView = Arc<dyn Fn() -> (Arc<Scenery>, Snapshot) + Send + Sync>;
@@ -83,8 +86,6 @@ impl TwinEyes {
     pub fn open(view: SceneView, options: TwinEyesOptions) -> Result<Self, RenderError> {
         let rate_hz = check_rate(options.rate_hz)?;
         options.sensor.check()?;
-        let renderer = EyeRenderer::new(options.eyes)?;
-        let adapter = renderer.adapter_name().to_owned();
         let size = view().1.eyes.left.size_px();
         let shared = Arc::new(Shared {
             state: Mutex::new(State {
@@ -97,11 +98,24 @@ impl TwinEyes {
             wake: Condvar::new(),
             stop: AtomicBool::new(false),
         });
-        let work = Loop { shared: shared.clone(), view, renderer, seed: options.seed };
+        let (opened, told) = std::sync::mpsc::sync_channel(1);
+        let for_thread = shared.clone();
         let thread = std::thread::Builder::new()
             .name("twin eyes".to_owned())
-            .spawn(move || work.run())
+            .spawn(move || {
+                step_back();
+                match EyeRenderer::new(options.eyes) {
+                    Ok(renderer) => {
+                        // Whoever opened waits for this; if it gave up, nobody wants images.
+                        if opened.send(Ok(renderer.adapter_name().to_owned())).is_ok() {
+                            Loop { shared: for_thread, view, renderer, seed: options.seed }.run();
+                        }
+                    }
+                    Err(error) => drop(opened.send(Err(error))),
+                }
+            })
             .map_err(|e| RenderError::Thread(e.to_string()))?;
+        let adapter = told.recv().map_err(|_| RenderError::Thread("it ended at once".to_owned()))??;
         Ok(Self { shared, thread: Some(thread), size, adapter })
     }
 
@@ -129,6 +143,15 @@ impl EyeControls {
         self.shared.state().rate_hz = check_rate(rate_hz)?;
         self.shared.wake.notify_all();
         Ok(())
+    }
+}
+
+/// Lets everything else go first: without a graphics card the images are drawn by the processor,
+/// which would leave the joint bus waiting. Threads of the driver inherit it, so it comes before
+/// the device is opened.
+fn step_back() {
+    if let Err(error) = rustix::process::nice(NICE) {
+        log::debug!("drawing keeps its usual priority: {error}");
     }
 }
 
