@@ -35,7 +35,7 @@ pub struct BusTiming {
 
 impl Default for BusTiming {
     fn default() -> Self {
-        Self { baud: 1_000_000, answer_margin: Duration::from_millis(6), attempts: 3 }
+        Self { baud: 1_000_000, answer_margin: Duration::from_millis(8), attempts: 3 }
     }
 }
 
@@ -241,6 +241,20 @@ impl Bus {
                 Ok(Err(kind))
             }
         }
+    }
+
+    /// One attempt with another margin for the answer than the bus's own.
+    pub(super) fn ask_patiently(
+        &mut self,
+        id: u8,
+        instruction: &Instruction,
+        length: usize,
+        patience: Duration,
+    ) -> Result<Result<Status, FaultKind>, BusError> {
+        let margin = std::mem::replace(&mut self.timing.answer_margin, patience);
+        let answer = self.ask_once(id, instruction, Some(length), self.far());
+        self.timing.answer_margin = margin;
+        answer
     }
 
     fn await_answer(

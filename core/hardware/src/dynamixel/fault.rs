@@ -8,7 +8,7 @@ use std::fmt;
 pub enum FaultKind {
     /// Nothing came.
     Missing,
-    /// It came after its time was over.
+    /// It came after its time was over; it was counted as missing before.
     Late,
     /// It began and did not end.
     Cut,

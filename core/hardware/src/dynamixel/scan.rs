@@ -1,7 +1,7 @@
 //! Which servos are on a bus, and whether they are the expected ones.
 
 use std::fmt;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::bus::Bus;
 use super::control_table::ControlTable;
@@ -120,6 +120,8 @@ pub enum ScanRange {
 /// Registers 0 to 2: model number and firmware.
 const IDENTITY_BYTES: u16 = 3;
 const ATTEMPTS: u32 = 3;
+/// An expected servo may take this long, however busy the machine is.
+const PATIENCE: Duration = Duration::from_millis(25);
 
 /// What one id answered.
 enum Answer {
@@ -161,36 +163,34 @@ impl Bus {
     }
 
     /// Reads the model of an id. Two servos with one id answer at once: their bytes collide, or
-    /// come twice.
+    /// come twice, again and again; once may be noise, or an answer that comes late.
     fn identify(&mut self, id: u8, expected: bool) -> Result<Answer, BusError> {
-        let mut broken = 0;
         let instruction = Instruction::Read { address: 0, length: IDENTITY_BYTES };
-        let attempts = if expected { ATTEMPTS } else { 1 };
-        let mut attempt = 0;
-        while attempt < attempts {
+        let patience = if expected { PATIENCE } else { self.timing().answer_margin };
+        let (mut broken, mut doubled, mut attempt) = (0, 0, 0);
+        loop {
             attempt += 1;
-            let deadline = Instant::now() + Duration::from_millis(50);
-            let length = Some(usize::from(IDENTITY_BYTES));
-            match self.ask_once(id, &instruction, length, deadline)? {
-                Ok(status) => {
-                    if self.another_answer(id)? {
-                        return Ok(Answer::Collision);
-                    }
+            match self.ask_patiently(id, &instruction, usize::from(IDENTITY_BYTES), patience)? {
+                Ok(status) if !self.another_answer(id)? => {
                     let model_number = u16::from_le_bytes([status.data[0], status.data[1]]);
                     return Ok(Answer::Found(FoundServo { id, model_number, firmware: status.data[2] }));
                 }
+                Ok(_) => doubled += 1,
                 Err(FaultKind::Missing | FaultKind::Late | FaultKind::WrongId) => {}
-                // A single broken answer is noise; nothing but broken ones are two servos.
                 Err(FaultKind::Cut | FaultKind::Garbled | FaultKind::Checksum | FaultKind::Refused) => {
                     broken += 1
                 }
             }
-            // Something is there: worth asking again though it was not expected.
-            if broken == 1 && !expected && attempt == 1 {
-                return self.identify(id, true);
+            if doubled + broken >= ATTEMPTS {
+                return Ok(Answer::Collision);
+            }
+            // Where something was heard it is worth asking again, expected or not.
+            let attempts = if expected || doubled + broken > 0 { 2 * ATTEMPTS - 1 } else { 1 };
+            let nothing_heard = doubled + broken == 0 && attempt >= ATTEMPTS;
+            if attempt >= attempts || nothing_heard {
+                return Ok(if doubled + broken >= 2 { Answer::Collision } else { Answer::Silent });
             }
         }
-        Ok(if broken >= 2 { Answer::Collision } else { Answer::Silent })
     }
 }
 

@@ -9,13 +9,13 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, Sender, TrySendError};
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 
-use super::command::{Move, MoveId, MoveOutcome, Setpoint};
+use super::command::{Motion, Move, MoveId, MoveOutcome, Setpoint};
 use super::controller::{Controller, Request};
 use super::exchange::Exchange;
 use super::limiter::Limiter;
 use super::options::ArmOptions;
 use super::reading::JointState;
-use super::refusal::Refusal;
+use super::refusal::{HoldReason, Refusal};
 use super::ring::StateRing;
 use super::servo_unit::ServoUnit;
 use super::stop::StopSwitch;
@@ -239,8 +239,23 @@ impl Drop for ArmDriver {
     }
 }
 
-/// The thread.
-fn run(mut controller: Controller, queue: &Receiver<Request>, shared: &Shared) {
+/// The thread. A panic (of a guard, say) ends it and is told like a port that is gone: servos keep
+/// the goal they were sent last.
+fn run(controller: Controller, queue: &Receiver<Request>, shared: &Shared) {
+    let drive = std::panic::AssertUnwindSafe(|| drive(controller, queue, shared));
+    if std::panic::catch_unwind(drive).is_ok() {
+        return;
+    }
+    let mut ring = lock(&shared.ring);
+    let Some(newest) = ring.newest() else { return };
+    let reason =
+        "what drives the joints failed inside: note what was done before, and connect again".to_owned();
+    let motion = Motion::Holding(HoldReason::Gone(reason.clone()));
+    let failed = JointState { motion, gone: Some(reason), ..JointState::clone(newest) };
+    ring.push(Arc::new(failed));
+}
+
+fn drive(mut controller: Controller, queue: &Receiver<Request>, shared: &Shared) {
     let mut next = Instant::now();
     while !shared.end.load(Ordering::Acquire) {
         let setpoint = newest_setpoint(shared);

@@ -1,11 +1,15 @@
 //! Gates and watchdogs: when the arm holds by itself.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
 use std::time::Duration;
 
 use plumbline_hardware::dynamixel::Item;
 use plumbline_hardware::joints::{
-    ArmOptions, Heartbeat, HoldReason, Motion, MoveOutcome, Refusal, Setpoint, SetpointKind,
+    ArmOptions, Guard, Heartbeat, HoldReason, Motion, MoveOutcome, Refusal, Setpoint, SetpointKind,
 };
+
+use plumbline_model::robot::Posture;
 
 use super::world::{assert_goals_stay_near, await_state, id_of, joint, ready, ready_with, run, turn};
 
@@ -120,4 +124,54 @@ fn setpoints_that_are_no_numbers_or_too_fast_move_nothing() {
         assert!(matches!(run(&driver, pan, bad, 0.3), MoveOutcome::Refused(Refusal::NotANumber { .. })));
     }
     assert_eq!(chain.lock().servos[&id_of(&rig, pan)].position, before);
+}
+
+/// Lets everything pass (0), refuses (1), or fails (2).
+struct Moody(AtomicU8);
+
+impl Guard for Moody {
+    fn check(&self, _present: &Posture, _goal: &Posture) -> Result<(), Refusal> {
+        match self.0.load(Ordering::Relaxed) {
+            0 => Ok(()),
+            1 => Err(Refusal::Guarded("a cup is in the way".to_owned())),
+            _ => panic!("a defect in a guard"),
+        }
+    }
+}
+
+#[test]
+fn a_guard_of_the_caller_is_asked_before_and_on_the_way() {
+    let guard = Arc::new(Moody(AtomicU8::new(1)));
+    let (rig, chain, driver) =
+        ready_with(ArmOptions { guards: vec![guard.clone()], ..ArmOptions::default() });
+    let pan = joint(&rig, "head_z");
+    let cup = || Refusal::Guarded("a cup is in the way".to_owned());
+    assert_eq!(driver.check(&turn(pan, 0.5, 0.3)), Err(cup()));
+    assert_eq!(run(&driver, pan, 0.5, 0.3), MoveOutcome::Refused(cup()));
+    guard.0.store(0, Ordering::Relaxed);
+    let id = driver.start_move(turn(pan, 0.8, 0.2)).expect("queued");
+    std::thread::sleep(Duration::from_millis(300));
+    guard.0.store(1, Ordering::Relaxed);
+    let outcome = driver.wait_for(id, Duration::from_secs(2));
+    assert_eq!(outcome, Some(MoveOutcome::Held(HoldReason::Refused(cup()))));
+    assert_goals_stay_near(&rig, &chain);
+}
+
+#[test]
+fn a_defect_inside_is_told_and_the_arm_stays() {
+    let guard = Arc::new(Moody(AtomicU8::new(0)));
+    let (rig, chain, driver) =
+        ready_with(ArmOptions { guards: vec![guard.clone()], ..ArmOptions::default() });
+    let pan = joint(&rig, "head_z");
+    driver.start_move(turn(pan, 0.8, 0.2)).expect("queued");
+    std::thread::sleep(Duration::from_millis(300));
+    guard.0.store(2, Ordering::Relaxed);
+    let state = await_state(&driver, "told", |s| s.gone.is_some());
+    assert!(state.gone.as_ref().is_some_and(|reason| reason.contains("connect again")), "{:?}", state.gone);
+    assert!(driver.start_move(turn(pan, 0.0, 0.2)).is_err());
+    let there = chain.lock().servos[&id_of(&rig, pan)].position;
+    std::thread::sleep(Duration::from_millis(300));
+    let step_ticks = rig.gate.step_rad / std::f64::consts::TAU * 4096.0;
+    assert!((chain.lock().servos[&id_of(&rig, pan)].position - there).abs() <= step_ticks);
+    assert!(super::world::has_torque(&chain, id_of(&rig, pan)));
 }

@@ -55,6 +55,17 @@ fn a_single_broken_answer_is_noise_not_a_second_servo() {
 }
 
 #[test]
+fn a_late_answer_beside_a_prompt_one_is_not_a_second_servo() {
+    let rig = nico();
+    let chain = PtyChain::of(&rig);
+    for servo in rig.servos.iter().take(4) {
+        chain.fault(servo.id, Fault::Late(std::time::Duration::from_millis(40)), 1);
+    }
+    let scan = bus(&chain).scan(&expected_servos(&rig), ScanRange::Expected).expect("it answers");
+    assert!(scan.is_complete(), "{:?}", scan.problems());
+}
+
+#[test]
 fn an_unanswered_bus_and_a_used_port_are_told_in_words() {
     let rig = nico();
     let mut servos = Chain::of(&rig);

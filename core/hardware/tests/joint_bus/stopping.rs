@@ -11,7 +11,7 @@ use super::world::{assert_goals_stay_near, await_state, id_of, joint, ready, run
 
 const TRIALS: usize = 60;
 
-/// Longest time that a thread of the conversation was ready to run and got no processor, since
+/// Longest time that a thread of this process was ready to run and got no processor, since
 /// `before`: that says something about the machine, nothing about the program. Zero where the
 /// system does not tell.
 fn waited_for_processor(before: &BTreeMap<String, u64>) -> Duration {
@@ -25,9 +25,6 @@ fn processor_waits() -> BTreeMap<String, u64> {
     let mut waits = BTreeMap::new();
     for task in std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten() {
         let read = |name| std::fs::read_to_string(task.path().join(name)).unwrap_or_default();
-        if !matches!(read("comm").trim(), "joint bus" | "servo chain") {
-            continue;
-        }
         if let Some(ns) = read("schedstat").split_whitespace().nth(1).and_then(|ns| ns.parse().ok()) {
             waits.insert(task.path().display().to_string(), ns);
         }
@@ -50,11 +47,13 @@ fn stop_once(rig: &Rig, chain: &PtyChain, driver: &ArmDriver, pan: JointIndex, p
     let latency = {
         let chain = chain.lock();
         let servo = id_of(rig, pan);
-        let is_hold = |told: &&super::chain::Told| {
-            told.goals.iter().any(|(id, goal, _, reported)| *id == servo && goal.abs_diff(*reported) <= 1)
+        let goal = |told: &super::chain::Told| {
+            told.goals.iter().find(|(id, ..)| *id == servo).map(|(_, goal, ..)| *goal)
         };
-        let hold =
-            chain.told.iter().filter(|told| told.at >= pressed).find(is_hold).expect("a hold was sent");
+        // Moving, the goal is another in every packet; held, it stays.
+        let held = chain.told.last().and_then(goal).expect("goals are sent in every cycle");
+        let hold = chain.told.iter().filter(|told| told.at >= pressed).find(|told| goal(told) == Some(held));
+        let hold = hold.expect("the last one is a hold");
         hold.at.duration_since(pressed)
     };
     driver.stop_switch().release();
