@@ -81,7 +81,7 @@ impl SceneCamera {
             ViewPreset::Home => place([0.28, 0.0, 0.12], 142.0, 26.0, 2.1, 32.0),
             ViewPreset::Front => place([0.15, 0.0, 0.20], 180.0, 6.0, 1.8, 32.0),
             ViewPreset::Side => place([0.22, 0.0, 0.20], 90.0, 4.0, 1.7, 32.0),
-            ViewPreset::Top => place([0.36, 0.0, 0.06], 0.0, 90.0, 2.25, 32.0),
+            ViewPreset::Top => place([0.42, 0.0, 0.06], 0.0, 90.0, 2.5, 32.0),
             ViewPreset::Robot => place([0.40, 0.0, 0.06], 0.0, 48.0, 0.47, 80.0),
         }
     }

@@ -179,7 +179,7 @@ impl Ruler<'_> {
         for along in [0.5, 0.7, 0.3, 0.85, 0.15] {
             let Some(line) = ends(range[0] + along * (range[1] - range[0])) else { continue };
             // Past the widest number.
-            let beyond = self.reach(line, vec2(30.0, 14.0));
+            let beyond = self.reach(line, vec2(32.0, 20.0));
             if self.text(line, beyond, name, tokens.text) {
                 break;
             }
