@@ -1,4 +1,5 @@
 //! The scenarios miss by as much as they shall.
+#![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
 
 use std::sync::Arc;
 

@@ -54,7 +54,7 @@ impl Places {
         let part = |along_m: f64, i: usize| {
             let px = (along_m / self.screen_size_m[i] + 0.5) * f64::from(self.screen_px[i]);
             // Truncation is the number of the pixel; beside the image there is none.
-            (px >= 0.0 && px < f64::from(self.screen_px[i])).then(|| px as u32)
+            (px >= 0.0 && px < f64::from(self.screen_px[i])).then_some(px as u32)
         };
         Some([part(on_screen.x, 0)?, part(on_screen.y, 1)?])
     }

@@ -110,6 +110,11 @@ impl ServoMotor {
         }
     }
 
+    /// As cold as at the start.
+    pub(super) fn cool(&mut self) {
+        self.heat = MotorHeat::default();
+    }
+
     /// Stands somewhere, at rest, holding.
     pub(super) fn put(&mut self, angle_rad: f64) {
         self.drive.goal_rad = angle_rad;

@@ -129,6 +129,7 @@ impl World {
         self.data.reset();
         self.steps = 0;
         self.warm_up.reset();
+        self.servos.iter_mut().for_each(ServoMotor::cool);
         self.touch.forget();
         self.board = None;
         self.stand(&self.rig.home());
