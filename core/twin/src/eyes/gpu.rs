@@ -3,9 +3,8 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::error::RenderError;
-use super::pack::MOST_ITEMS;
+use super::layouts::{job_layout, pipeline_layout, scene_layout, scene_layout_of_shadow, sensor_layout};
 use super::sensor::MOST_TAPS;
-use super::shadow;
 use super::speckle;
 use super::tiles::{NEEDS_BOARD, NEEDS_MESH, NEEDS_MIRROR, NEEDS_PATTERN, NEEDS_ROUND, VARIANTS};
 
@@ -24,7 +23,7 @@ pub enum AdapterChoice {
 /// Bytes between two numbers that select a run of tiles (the least alignment that every device has).
 pub(super) const JOB_STRIDE: u64 = 256;
 /// Jobs: one per variant of `see`, one for the shadow map, one for all tiles.
-const JOBS: u64 = VARIANTS as u64 + 2;
+pub(super) const JOBS: u64 = VARIANTS as u64 + 2;
 /// Job of the shadow map.
 pub(super) const SHADOW_JOB: u32 = VARIANTS as u32;
 /// Job of all tiles.
@@ -48,10 +47,10 @@ pub(super) struct Gpu {
     pub name: String,
     /// Errors that the device reported on its own.
     trouble: Arc<Mutex<Option<String>>>,
-    scene_layout: wgpu::BindGroupLayout,
-    shadow_layout: wgpu::BindGroupLayout,
-    job_layout: wgpu::BindGroupLayout,
-    sensor_layout: wgpu::BindGroupLayout,
+    pub scene_layout: wgpu::BindGroupLayout,
+    pub shadow_layout: wgpu::BindGroupLayout,
+    pub job_layout: wgpu::BindGroupLayout,
+    pub sensor_layout: wgpu::BindGroupLayout,
     scene_pipeline_layout: wgpu::PipelineLayout,
     shadow_pipeline_layout: wgpu::PipelineLayout,
     sensor_pipeline_layout: wgpu::PipelineLayout,
@@ -65,8 +64,8 @@ pub(super) struct Gpu {
     label: Option<wgpu::ComputePipeline>,
     /// By taps of the blur.
     develop: Vec<Option<wgpu::ComputePipeline>>,
-    speckles: wgpu::TextureView,
-    sampler: wgpu::Sampler,
+    pub speckles: wgpu::TextureView,
+    pub sampler: wgpu::Sampler,
 }
 
 impl Gpu {
@@ -293,93 +292,6 @@ fn pipeline(
     })
 }
 
-fn pipeline_layout(device: &wgpu::Device, groups: &[&wgpu::BindGroupLayout]) -> wgpu::PipelineLayout {
-    let groups: Vec<_> = groups.iter().map(|g| Some(*g)).collect();
-    device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &groups,
-        immediate_size: 0,
-    })
-}
-
-fn uniform(binding: u32, dynamic: bool) -> wgpu::BindGroupLayoutEntry {
-    entry(
-        binding,
-        wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Uniform,
-            has_dynamic_offset: dynamic,
-            min_binding_size: None,
-        },
-    )
-}
-
-fn storage(binding: u32, read_only: bool) -> wgpu::BindGroupLayoutEntry {
-    entry(
-        binding,
-        wgpu::BindingType::Buffer {
-            ty: wgpu::BufferBindingType::Storage { read_only },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-    )
-}
-
-fn entry(binding: u32, ty: wgpu::BindingType) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None }
-}
-
-/// Frame, items, tiles, meshes, shadow map: what `cast` (which writes the map) and `see` share.
-fn scene_entries(writes_map: bool) -> Vec<wgpu::BindGroupLayoutEntry> {
-    vec![
-        uniform(0, false),
-        uniform(1, false),
-        uniform(2, false),
-        storage(3, true),
-        storage(4, true),
-        storage(5, !writes_map),
-    ]
-}
-
-fn scene_layout_of_shadow(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("shadow"),
-        entries: &scene_entries(true),
-    })
-}
-
-fn scene_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    let mut entries = scene_entries(false);
-    entries.extend([
-        storage(6, false),
-        storage(7, false),
-        entry(
-            8,
-            wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable: true },
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-        ),
-        entry(9, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)),
-    ]);
-    device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("see"), entries: &entries })
-}
-
-fn job_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("job"),
-        entries: &[uniform(0, true)],
-    })
-}
-
-fn sensor_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("sensor"),
-        entries: &[uniform(0, false), storage(1, true), storage(2, true), storage(3, false)],
-    })
-}
-
 fn speckle_texture(device: &wgpu::Device, queue: &wgpu::Queue) -> wgpu::TextureView {
     let side = speckle::SIDE as u32;
     let texture = device.create_texture(&wgpu::TextureDescriptor {
@@ -407,137 +319,4 @@ fn speckle_texture(device: &wgpu::Device, queue: &wgpu::Queue) -> wgpu::TextureV
         );
     }
     texture.create_view(&wgpu::TextureViewDescriptor::default())
-}
-
-/// All buffers, for images of one size and lists up to some length.
-pub(super) struct Buffers {
-    pub size: (u32, u32),
-    pub frame: wgpu::Buffer,
-    pub geometries: wgpu::Buffer,
-    pub materials: wgpu::Buffer,
-    pub jobs: wgpu::Buffer,
-    pub sensor: wgpu::Buffer,
-    pub tiles: wgpu::Buffer,
-    pub shadow_tiles: wgpu::Buffer,
-    pub shadow_map: wgpu::Buffer,
-    pub meshes: wgpu::Buffer,
-    pub radiance: wgpu::Buffer,
-    pub objects: wgpu::Buffer,
-    pub bytes: wgpu::Buffer,
-    pub bytes_back: wgpu::Buffer,
-    pub objects_back: wgpu::Buffer,
-    pub see_group: wgpu::BindGroup,
-    pub shadow_group: wgpu::BindGroup,
-    pub job_group: wgpu::BindGroup,
-    pub develop_group: wgpu::BindGroup,
-}
-
-/// How much room the lists need, in bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Room {
-    pub tiles: u64,
-    pub shadow_tiles: u64,
-    pub meshes: u64,
-}
-
-impl Buffers {
-    /// Bytes of one pixel of both eyes' images and object numbers.
-    pub fn image_bytes(size: (u32, u32)) -> u64 {
-        2 * u64::from(size.0) * u64::from(size.1) * 4
-    }
-
-    /// Whether these buffers can hold that much.
-    pub fn hold(&self, size: (u32, u32), room: Room) -> bool {
-        self.size == size
-            && self.tiles.size() >= room.tiles
-            && self.shadow_tiles.size() >= room.shadow_tiles
-            && self.meshes.size() >= room.meshes
-    }
-
-    pub fn new(gpu: &Gpu, size: (u32, u32), room: Room) -> Self {
-        use wgpu::BufferUsages as Usage;
-        let constant = Usage::UNIFORM | Usage::COPY_DST;
-        let list = Usage::STORAGE | Usage::COPY_DST;
-        let image = Usage::STORAGE | Usage::COPY_DST | Usage::COPY_SRC;
-        let back = Usage::MAP_READ | Usage::COPY_DST;
-        let pixels = Self::image_bytes(size);
-        let frame = gpu.buffer("frame", 16 * FRAME_VEC4 as u64, constant);
-        let geometries = gpu.buffer("geometries", 64 * MOST_ITEMS as u64, constant);
-        let materials = gpu.buffer("materials", 48 * MOST_ITEMS as u64, constant);
-        let jobs = gpu.buffer("jobs", JOBS * JOB_STRIDE, constant);
-        let sensor = gpu.buffer("sensor", 16 * SENSOR_VEC4 as u64, constant);
-        let tiles = gpu.buffer("tiles", 2 * room.tiles, list);
-        let shadow_tiles = gpu.buffer("shadow tiles", 2 * room.shadow_tiles, list);
-        let shadow_map = gpu.buffer("shadow map", (shadow::SIDE * shadow::SIDE * 4) as u64, list);
-        let meshes = gpu.buffer("meshes", room.meshes, list);
-        let radiance = gpu.buffer("radiance", pixels, list);
-        let objects = gpu.buffer("objects", pixels, image);
-        let bytes = gpu.buffer("bytes", pixels, image);
-        let group = |layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]| {
-            let entries: Vec<_> = resources
-                .iter()
-                .enumerate()
-                .map(|(i, r)| wgpu::BindGroupEntry { binding: i as u32, resource: r.clone() })
-                .collect();
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: None,
-                layout,
-                entries: &entries,
-            })
-        };
-        let speckles = wgpu::BindingResource::TextureView(&gpu.speckles);
-        let sampler = wgpu::BindingResource::Sampler(&gpu.sampler);
-        let whole = wgpu::Buffer::as_entire_binding;
-        let see_group = group(
-            &gpu.scene_layout,
-            &[
-                whole(&frame),
-                whole(&geometries),
-                whole(&materials),
-                whole(&tiles),
-                whole(&meshes),
-                whole(&shadow_map),
-                whole(&radiance),
-                whole(&objects),
-                speckles,
-                sampler,
-            ],
-        );
-        let shadow_group = group(
-            &gpu.shadow_layout,
-            &[
-                whole(&frame),
-                whole(&geometries),
-                whole(&materials),
-                whole(&shadow_tiles),
-                whole(&meshes),
-                whole(&shadow_map),
-            ],
-        );
-        let one_job = wgpu::BufferBinding { buffer: &jobs, offset: 0, size: wgpu::BufferSize::new(16) };
-        let job_group = group(&gpu.job_layout, &[wgpu::BindingResource::Buffer(one_job)]);
-        let develop_group =
-            group(&gpu.sensor_layout, &[whole(&sensor), whole(&tiles), whole(&radiance), whole(&bytes)]);
-        Self {
-            bytes_back: gpu.buffer("bytes back", pixels, back),
-            objects_back: gpu.buffer("objects back", pixels, back),
-            size,
-            frame,
-            geometries,
-            materials,
-            jobs,
-            sensor,
-            tiles,
-            shadow_tiles,
-            shadow_map,
-            meshes,
-            radiance,
-            objects,
-            bytes,
-            see_group,
-            shadow_group,
-            job_group,
-            develop_group,
-        }
-    }
 }

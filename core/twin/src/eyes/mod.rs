@@ -9,9 +9,12 @@
 //!
 //! Left out: light that bounces, depth of field, motion blur, rolling shutter.
 
+mod buffers;
 mod error;
 mod gpu;
+mod layouts;
 mod mesh_tree;
+mod numbers;
 mod pack;
 mod renderer;
 pub mod sample;

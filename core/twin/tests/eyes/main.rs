@@ -1,15 +1,15 @@
 //! Laws of the renderer: geometry, occlusion, light, noise, errors.
 #![allow(clippy::unwrap_used, clippy::print_stderr)]
 
+mod bad_input;
 mod calibration;
+mod stream;
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 use image::RgbImage;
 use nalgebra::{Isometry3, Vector3};
-use plumbline_hardware::{Next, StereoSource};
-use plumbline_model::{CameraModel, Eye, Pinhole};
+use plumbline_model::Eye;
 
 use plumbline_twin::eyes::*;
 
@@ -267,7 +267,7 @@ fn things_throw_shadows_and_glass_mirrors() {
     let floor = Shape::Box { half_m: Vector3::new(1.0, 1.0, 0.01) };
     scenery.light = Light { toward: -Vector3::z(), lamp: 0.8, ambient: 0.2 };
     scenery.items =
-        vec![item(1, [0.4, 0.0, 0.0], floor, plain(0.5)), item(2, [0.4, 0.0, 0.25], ball(0.05), plain(0.5))];
+        vec![item(1, [0.4, 0.0, 0.0], floor, plain(0.5)), item(2, [0.4, 0.0, 0.06], ball(0.02), plain(0.5))];
     let brightness = |renderer: &mut EyeRenderer, scenery: &Scenery, at: [f64; 3]| {
         let image = renderer.render(scenery, &snapshot, &Sensor::ideal(), 0).expect("an image").left;
         let left = snapshot.eyes.robot_from_left.isometry.inverse() * nalgebra::Point3::from(at);
@@ -336,113 +336,4 @@ fn the_image_circle_ends_where_the_sensor_says() {
     let (left, right) = (middle(&with.left_objects, 1), middle(&with.right_objects, 1));
     let (left, right) = (left.expect("seen"), right.expect("seen"));
     assert!(left[0] < 318.0 && right[0] > 325.0, "{left:?} {right:?}");
-}
-
-#[test]
-fn what_cannot_be_drawn_is_said() {
-    let absent = EyeOptions { adapter: AdapterChoice::Absent };
-    let error = EyeRenderer::new(absent).err().expect("there is no device");
-    assert!(error.to_string().contains("install"), "{error}");
-    let Some(mut renderer) = renderer() else { return };
-    let (scenery, snapshot) = sample::lab();
-    let mut fails = |scenery: &Scenery, snapshot: &Snapshot, sensor: &Sensor| {
-        renderer.render(scenery, snapshot, sensor, 1).expect_err("bad input").to_string()
-    };
-    let sensor = Sensor::default();
-    let mut bad = snapshot.clone();
-    bad.robot_from_body[0].translation.x = f64::NAN;
-    assert!(fails(&scenery, &bad, &sensor).contains("body 0"));
-    let mut bad = snapshot.clone();
-    bad.eyes.robot_from_right.isometry.translation.z = f64::INFINITY;
-    assert!(fails(&scenery, &bad, &sensor).contains("right eye"));
-    let mut bad = snapshot.clone();
-    bad.robot_from_body.clear();
-    assert!(fails(&scenery, &bad, &sensor).contains("bodies"));
-    let mut bad = snapshot.clone();
-    bad.eyes.left.model = CameraModel::Pinhole(Pinhole {
-        fx_px: 500.0,
-        fy_px: 500.0,
-        cx_px: 320.0,
-        cy_px: 240.0,
-        k1: 0.0,
-        k2: 0.0,
-        p1: 0.0,
-        p2: 0.0,
-        k3: 0.0,
-    });
-    assert!(fails(&scenery, &bad, &sensor).contains("fisheye"));
-    let mut bad = scenery.clone();
-    bad.items[3].shape = Shape::Capsule { radius_m: -1.0, half_length_m: 0.1 };
-    assert!(fails(&bad, &snapshot, &sensor).contains("item 3"));
-    let mut bad = scenery.clone();
-    let hole = Mesh { triangles: vec![[0, 1, 99]], ..cube(0.1) };
-    bad.items[4].shape = Shape::Mesh { mesh: Arc::new(hole) };
-    assert!(fails(&bad, &snapshot, &sensor).contains("item 4"));
-    let mut bad = scenery.clone();
-    bad.items = (0..40).flat_map(|_| scenery.items.clone()).collect();
-    assert!(fails(&bad, &snapshot, &sensor).contains("768"));
-    let blind = Sensor { exposure: f32::NAN, ..sensor };
-    assert!(fails(&scenery, &snapshot, &blind).contains("exposure"));
-    // After all that it still draws.
-    renderer.render(&scenery, &snapshot, &sensor, 1).expect("an image");
-}
-
-#[test]
-fn the_stream_delivers_what_is_there_now() {
-    if renderer().is_none() {
-        return;
-    }
-    let (scenery, snapshot) = sample::lab();
-    let scenery = Arc::new(scenery);
-    let view: SceneView = Arc::new(move || (scenery.clone(), snapshot.clone()));
-    assert!(TwinEyes::open(view.clone(), TwinEyesOptions { rate_hz: 0.0, ..Default::default() }).is_err());
-    let mut eyes = TwinEyes::open(view, TwinEyesOptions::default()).expect("opened");
-    let mut next = || {
-        let begin = Instant::now();
-        loop {
-            match eyes.next_pair().expect("no error") {
-                Next::Pair(pair) => return pair,
-                _ if begin.elapsed() > Duration::from_secs(20) => panic!("no pair within 20 s"),
-                _ => std::thread::sleep(Duration::from_millis(2)),
-            }
-        }
-    };
-    let (first, second) = (next(), next());
-    assert_eq!((first.stamp.seq, second.stamp.seq), (0, 1));
-    assert!(second.stamp.captured_at > first.stamp.captured_at);
-    assert!(first.left != second.left, "noise stands still");
-    let controls = eyes.controls();
-    let dark = Sensor { exposure: 0.05, ..controls.sensor() };
-    controls.set_sensor(dark).expect("usable");
-    assert!(controls.set_sensor(Sensor { blur_px: -1.0, ..dark }).is_err());
-    let bright = patch(&second.left, 300, 200, 60).0;
-    let darker = (0..20).find(|_| {
-        std::thread::sleep(Duration::from_millis(50));
-        matches!(eyes.next_pair(), Ok(Next::Pair(pair)) if patch(&pair.left, 300, 200, 60).0 < 0.7 * bright)
-    });
-    assert!(darker.is_some(), "the exposure was not changed");
-    assert_eq!(eyes.describe().kind, plumbline_hardware::SourceKind::Twin);
-}
-
-#[test]
-fn a_stream_that_cannot_go_on_says_why() {
-    if renderer().is_none() {
-        return;
-    }
-    let (scenery, mut snapshot) = sample::lab();
-    snapshot.robot_from_body[0].translation.y = f64::NAN;
-    let scenery = Arc::new(scenery);
-    let view: SceneView = Arc::new(move || (scenery.clone(), snapshot.clone()));
-    let mut eyes = TwinEyes::open(view, TwinEyesOptions::default()).expect("opened");
-    let begin = Instant::now();
-    let error = loop {
-        match eyes.next_pair() {
-            Err(error) => break error.to_string(),
-            Ok(Next::NotYet) if begin.elapsed() < Duration::from_secs(20) => {
-                std::thread::sleep(Duration::from_millis(5));
-            }
-            Ok(other) => panic!("{other:?}"),
-        }
-    };
-    assert!(error.contains("body 0"), "{error}");
 }

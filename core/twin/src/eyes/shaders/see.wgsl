@@ -91,8 +91,10 @@ fn lit(p: vec3<f32>, n: vec3<f32>) -> f32 {
     return select(0.25 * open, 1.0, off_map);
 }
 
+// The lamp is as broad as a ceiling: what is far above a surface hardly darkens it.
 fn open_of(s: vec3<f32>, depth: f32) -> vec3<f32> {
-    return select(vec3<f32>(0.0), vec3<f32>(1.0), s < vec3<f32>(depth));
+    let gap = max(s - vec3<f32>(depth), vec3<f32>(0.0));
+    return select(1.0 - 1.0 / (1.0 + 25.0 * gap * gap), vec3<f32>(1.0), s < vec3<f32>(depth));
 }
 
 // Light from lamp and surroundings on a surface.
