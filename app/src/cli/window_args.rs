@@ -50,6 +50,7 @@ pub struct WindowArgs {
     /// with the robot: robot, mount, connect, connect-twin, connect-port:PATH, disconnect,
     /// preview-pose:NAME, preview-joint:NAME=DEGREES, look-at:X,Y,Z, reach:X,Y,Z (meters), move,
     /// forget, release, hold, speed:SHARE, joint:NAME, twin-board-tour, twin-board:N, twin-board-lay,
+    /// twin-board-at:X,Y,DEGREES,
     /// twin-board-away, twin-toy:NAME,X,Y, twin-toy-away:NAME, twin-warm-up:MINUTES, twin-cool,
     /// twin-fault:NAME=on, twin-reset, mount-plan, mount-tour, mount-capture, mount-solve,
     /// mount-accept, mount-discard.

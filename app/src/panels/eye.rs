@@ -14,8 +14,8 @@ use super::{PanelContext, picture, residuals, source_state};
 use crate::window::Screen;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
-    let collecting = cx.screen == Screen::Collect;
-    let chosen = cx.state.chosen_pair.as_deref().filter(|_| collecting);
+    let collecting = matches!(cx.screen, Screen::Collect | Screen::Mount);
+    let chosen = cx.state.chosen_pair.as_deref().filter(|_| cx.screen == Screen::Collect);
     if let Some(pair) = chosen.and_then(|name| residuals::collected(&cx.view.eyes, name)) {
         return collected_pair(ui, cx, &pair, eye);
     }
@@ -96,7 +96,7 @@ fn probe_marks(cx: &PanelContext<'_>, eye: Eye) -> Overlay {
 fn board_marks(cx: &PanelContext<'_>, eye: Eye) -> Overlay {
     let eyes = &cx.view.eyes;
     let mut overlay = Overlay::new();
-    if let Some(wanted) = &eyes.ghost {
+    if let Some(wanted) = eyes.ghost.as_ref().filter(|_| cx.screen == Screen::Collect) {
         let outline = if eye == Eye::Left { &wanted.left } else { &wanted.right };
         let outline_px: Vec<[f64; 2]> = outline.iter().map(at).collect();
         overlay.append(ghost(&outline_px, Ghost::Wanted, ""));

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use plumbline_engine::view::{Connection, MotionState};
+use plumbline_engine::view::{Connection, MotionState, StepState};
 use plumbline_engine::{Command, MountCommand, RobotCommand, SourceCommand, SourceSpec, TwinCommand, View};
 
 /// Of the robot and its twin.
@@ -68,6 +68,9 @@ pub enum MountAction {
 /// Where the board lies when it is laid down: ahead of the robot, well inside of what the eyes
 /// see at the working pose of the head. Robot frame, m.
 const BOARD_ON_TABLE_M: [f64; 2] = [0.34, 0.0];
+
+/// Its long side across: lying the long way, its far squares are too small for the eyes.
+const BOARD_TURN_RAD: f64 = -std::f64::consts::FRAC_PI_2;
 
 type Refusal = Option<Cow<'static, str>>;
 
@@ -171,7 +174,7 @@ impl RobotAction {
             Self::TourBoard => TwinCommand::TourBoard(true).into(),
             Self::LayBoard => {
                 let [x_m, y_m] = BOARD_ON_TABLE_M;
-                TwinCommand::LayBoard { x_m, y_m, yaw_rad: 0.0 }.into()
+                TwinCommand::LayBoard { x_m, y_m, yaw_rad: BOARD_TURN_RAD }.into()
             }
             Self::HideBoard => TwinCommand::HideBoard.into(),
             Self::WarmUp => TwinCommand::AdvanceWarmUp { minutes: 10.0 }.into(),
@@ -238,16 +241,16 @@ impl MountAction {
     /// Why it cannot be done now.
     pub fn refusal(self, view: &View) -> Refusal {
         let mount = &view.mount;
-        let busy = view.running_job().is_some();
+        let busy = mount.step == StepState::Running;
         match self {
             Self::Plan | Self::Tour | Self::Capture if !view.robot.connection.is_connected() => {
                 Some("no robot is connected: the head's angles are needed".into())
             }
-            Self::Plan | Self::Capture => when(!busy, "a job is running"),
+            Self::Plan | Self::Capture => when(!busy, "work on the mount is under way"),
             Self::Tour if view.robot.stopped => Some("STOP is latched: release it first".into()),
-            Self::Tour if busy => Some("a job is running".into()),
+            Self::Tour if busy => Some("work on the mount is under way".into()),
             Self::Tour => when(!mount.planned.is_empty(), "no head poses are planned"),
-            Self::Solve if busy => Some("a job is running".into()),
+            Self::Solve if busy => Some("work on the mount is under way".into()),
             Self::Solve | Self::DeleteAll => when(!mount.views.is_empty(), "there is no view yet"),
             Self::Accept | Self::Discard => when(mount.proposal.is_some(), "nothing is proposed"),
             Self::UseNominal => when(mount.in_use.is_some(), "the nominal mount is in use"),

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use plumbline_engine::view::{Connection, MotionState, SourceStatus};
+use plumbline_engine::view::{Connection, MotionState, SourceStatus, StepState};
 use plumbline_engine::{Command, View};
 
 use super::actions::Action;
@@ -65,6 +65,7 @@ impl Script {
         let busy = view.running_job().is_some()
             || matches!(view.robot.connection, Connection::Connecting { .. })
             || matches!(view.robot.motion, MotionState::Moving { .. })
+            || view.mount.step == StepState::Running
             || view.source.status == SourceStatus::Opening
             || self.waiting_for_picture.load(Ordering::Relaxed)
             || now < self.not_before;

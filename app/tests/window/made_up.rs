@@ -194,7 +194,7 @@ pub fn mount() -> MountView {
         rms_px: Some(0.12 + 0.01 * f64::from(i)),
     });
     MountView {
-        step: StepState::Running,
+        step: StepState::NotDone,
         views: views.collect(),
         proposal: Some(solved_mount()),
         ..MountView::default()

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use egui_kittest::kittest::Queryable as _;
 use plumbline::{Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::view::{AcceptedCalibration, EyesView, MountView, TwinView};
+use plumbline_engine::view::{AcceptedCalibration, EyesView, MountView, StepState, TwinView};
 use plumbline_engine::{Command, MountCommand, TwinCommand, View};
 use plumbline_model::StereoCalibration;
 
@@ -65,6 +65,22 @@ fn one_button_leads_through_the_work() {
         window.run_steps(3);
         assert_eq!(sent(&fake), [wanted], "{button}");
     }
+}
+
+#[test]
+fn while_the_head_tours_there_is_nothing_to_press() {
+    let touring = MountView {
+        step: StepState::Running,
+        planned: vec![(0.1, -0.5); 9].into(),
+        next: "The head turns and looks: 9 poses left.".to_owned(),
+        ..MountView::default()
+    };
+    let fake = Fake::over(ready(touring));
+    let mut window = fake.window(on_mount());
+    assert!(says(&window, "9 poses left. Esc or space stops."));
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Enter);
+    window.run_steps(2);
+    assert_eq!(sent(&fake), []);
 }
 
 #[test]

@@ -70,6 +70,12 @@ fn twin(name: &str, value: &str) -> Option<Step> {
             Ok(place) if place > 0 => send(TwinCommand::HoldBoard { place: place - 1 }),
             _ => Err("twin-board:N wants the number of a place, from 1".to_owned()),
         },
+        "twin-board-at" => match numbers(value) {
+            Some([x_m, y_m, turn_deg]) => {
+                send(TwinCommand::LayBoard { x_m, y_m, yaw_rad: turn_deg.to_radians() })
+            }
+            None => Err("twin-board-at:X,Y,DEGREES wants a place in meters and a turn".to_owned()),
+        },
         "twin-toy" => place_toy(value),
         "twin-toy-away" => send(TwinCommand::RemoveToy { toy: value.to_owned() }),
         "twin-warm-up" => match value.parse() {

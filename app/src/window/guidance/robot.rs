@@ -1,7 +1,7 @@
 //! What to do next with the robot and with the mount of its eyes.
 
 use plumbline_engine::View;
-use plumbline_engine::view::{Connection, MotionState, RobotView};
+use plumbline_engine::view::{Connection, MotionState, RobotView, StepState};
 use plumbline_widgets::format;
 
 use super::{Guidance, say};
@@ -57,6 +57,10 @@ pub(super) fn robot(view: &View) -> Guidance {
 
 pub(super) fn mount(view: &View) -> Guidance {
     let mount = &view.mount;
+    let connected = view.robot.connection.is_connected();
+    if connected && mount.step == StepState::Running {
+        return say(format!("{} Esc or space stops.", next_or(view, "Work on the mount is under way.")));
+    }
     if let Some(guidance) = trouble(&view.robot) {
         return guidance;
     }
