@@ -2,8 +2,11 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
-use plumbline_hardware::dynamixel::{BusCounts, BusScan, FaultKind, latency_hint, list_ports, open_port};
+use plumbline_hardware::dynamixel::{
+    BusCounts, BusScan, BusTiming, FaultKind, latency_hint, list_ports, open_port,
+};
 use plumbline_hardware::joints::{ArmDriver, ArmOptions, JointState, Move, MoveId, Refusal, Setpoint};
 use plumbline_model::robot::{JointIndex, Rig};
 
@@ -23,7 +26,16 @@ struct DrivenArm {
 }
 
 /// Opens the bus at a port and reads all joints. Nothing moves and torque stays as it is.
-pub fn open(path: &Path, rig: &Arc<Rig>, paths: &Paths, switches: &Switches) -> Result<Connected, String> {
+///
+/// The twin's servos are threads of this machine, which a busy processor delays as no wire would:
+/// they are waited for longer.
+pub fn open(
+    path: &Path,
+    twin: bool,
+    rig: &Arc<Rig>,
+    paths: &Paths,
+    switches: &Switches,
+) -> Result<Connected, String> {
     let path = path.to_string_lossy();
     let words = |error: plumbline_hardware::dynamixel::BusError| sentence(&error.to_string());
     let port = open_port(&path, rig.bus.baud).map_err(words)?;
@@ -31,11 +43,20 @@ pub fn open(path: &Path, rig: &Arc<Rig>, paths: &Paths, switches: &Switches) -> 
         stop: switches.stop.clone(),
         heartbeat: Some(switches.heartbeat.clone()),
         guards: vec![Arc::new(paths.clone())],
-        ..ArmOptions::default()
+        ..if twin { patient() } else { ArmOptions::default() }
     };
     let driver = ArmDriver::connect(port, rig.clone(), options).map_err(words)?;
     let census = census(driver.scan(), latency_hint(&path));
     Ok(Box::new(DrivenArm { driver, census }))
+}
+
+fn patient() -> ArmOptions {
+    ArmOptions {
+        timing: BusTiming { answer_margin: Duration::from_millis(40), ..BusTiming::default() },
+        cycle_deadline: Duration::from_millis(60),
+        missed_cycles: 25,
+        ..ArmOptions::default()
+    }
 }
 
 fn census(scan: &BusScan, latency: Option<String>) -> Census {

@@ -229,7 +229,7 @@ impl Worker {
         let to = format!("twin \"{scenario}\"");
         let port = self.desk.start(scenario, &self.rig).and_then(|port| {
             self.twins_started += 1;
-            connect::open(&port, &self.rig, &self.paths, &self.switches)
+            connect::open(&port, true, &self.rig, &self.paths, &self.switches)
         });
         self.connected(to, true, port)
     }
@@ -237,7 +237,7 @@ impl Worker {
     fn connect_port(&mut self, path: PathBuf) -> Result<(), String> {
         self.disconnect();
         let to = path.display().to_string();
-        let arm = connect::open(&path, &self.rig, &self.paths, &self.switches);
+        let arm = connect::open(&path, false, &self.rig, &self.paths, &self.switches);
         self.connected(to, false, arm)
     }
 
@@ -273,7 +273,7 @@ impl Worker {
         match (self.connection.clone(), self.desk.port()) {
             (Connection::Connected { to, twin: true }, Some(port)) => {
                 self.disconnect();
-                let arm = connect::open(&port, &self.rig, &self.paths, &self.switches);
+                let arm = connect::open(&port, true, &self.rig, &self.paths, &self.switches);
                 self.connected(to, true, arm)
             }
             (Connection::Connected { to, .. } | Connection::Lost { to, .. }, _) => {

@@ -198,6 +198,8 @@ impl Desk {
             }
             for action in actions {
                 match action {
+                    // No robot takes part in these workflows.
+                    plumbline_engine::Action::Robot(_) => {}
                     Action::Start(id, work) => {
                         let outcome = match work.run(&Unattended) {
                             Ok(result) => Outcome::Done(result),
