@@ -30,7 +30,7 @@ fn sent(fake: &Fake) -> Vec<MountCommand> {
 fn calibrated() -> Arc<AcceptedCalibration> {
     Arc::new(AcceptedCalibration {
         id: "first".to_owned(),
-        calibration: Arc::new(StereoCalibration::bare(rig().eyes.cameras.clone())),
+        calibration: Arc::new(StereoCalibration::bare(rig().eyes.cameras)),
         accepted: jiff::Timestamp::now(),
         uncertainty: None,
         stated_at_m: 0.45,

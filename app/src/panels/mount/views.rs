@@ -75,6 +75,7 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, seen: &HeadViewSummary) {
                 cx.outbox.send(MountCommand::Delete { view: seen.name.clone() });
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.spacing_mut().item_spacing.x = space::XS;
                 head_label(ui, seen.pan_rad, seen.tilt_rad).on_hover_text(format!(
                     "{}: {} corners left, {} right",
                     seen.name, seen.corners.0, seen.corners.1
@@ -94,7 +95,7 @@ fn fit(ui: &mut Ui, left_out: Option<&str>, rms_px: Option<f64>) {
             ui.add(egui::Label::new(text).truncate()).on_hover_text(why);
         }
         (None, Some(rms)) => {
-            ui.label(format::px(rms));
+            ui.add(egui::Label::new(format::px(rms)).truncate());
         }
         (None, None) => {
             ui.label(egui::RichText::new("seen").color(tokens.text_weak));
@@ -104,7 +105,7 @@ fn fit(ui: &mut Ui, left_out: Option<&str>, rms_px: Option<f64>) {
 
 /// In a column of its own.
 fn head_label(ui: &mut Ui, pan_rad: f64, tilt_rad: f64) -> egui::Response {
-    let (rect, response) = ui.allocate_exact_size(egui::vec2(132.0, ROW), egui::Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(122.0, ROW), egui::Sense::hover());
     let font = egui::TextStyle::Body.resolve(ui.style());
     let text = head_text(pan_rad, tilt_rad);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));
