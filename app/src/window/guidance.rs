@@ -38,6 +38,10 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
     if let Some(guidance) = stopped(view, screen) {
         return guidance;
     }
+    let with_scene = matches!(screen, Screen::Live | Screen::Mount);
+    if let Some(guidance) = robot::under_way(view).filter(|_| with_scene) {
+        return guidance;
+    }
     match screen {
         Screen::Live => live(view),
         Screen::Collect => collect(view),

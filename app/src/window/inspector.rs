@@ -2,7 +2,7 @@
 
 use egui::{Panel, ScrollArea, Slider, Ui};
 use plumbline_engine::view::{AimView, BoardPlace, SourceStatus};
-use plumbline_engine::{AimChoice, EyesCommand, HeadPose, LiveCommand, View};
+use plumbline_engine::{AimChoice, Destination, EyesCommand, HeadPose, LiveCommand, RobotCommand, View};
 use plumbline_model::{Eye, PairFit};
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::colormap::Colormap;
@@ -39,6 +39,7 @@ fn live(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {
     if state.probe.pinned.is_some() && ui.button("Let the point go").clicked() {
         state.probe.pinned = None;
     }
+    look_there(ui, view, outbox);
     group_heading(ui, "Picture");
     let maps = [(Colormap::Viridis, "Viridis"), (Colormap::Spectrum, "Spectrum"), (Colormap::Gray, "Gray")];
     choice(ui, "Colors of depth", &mut state.live.colormap, &maps);
@@ -61,6 +62,17 @@ fn live(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {
         }
     }
     source(ui, view);
+}
+
+/// The head can be turned to a measured point; the move is shown first.
+fn look_there(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
+    let reading = view.live.probe.as_ref().and_then(|probe| probe.reading.as_ref().ok());
+    let Some(reading) = reading.filter(|_| view.robot.connection.is_connected()) else { return };
+    let button = ui.button("Turn the head there");
+    if button.on_hover_text("Shows how the head would turn; nothing moves yet").clicked() {
+        let point_m = reading.point_in_robot.coords.into();
+        outbox.send(RobotCommand::Preview(Destination::LookAt { point_m }));
+    }
 }
 
 fn mount(ui: &mut Ui, view: &View) {

@@ -92,6 +92,17 @@ fn the_shown_move_runs_with_one_button_that_says_what_and_how_long() {
 }
 
 #[test]
+fn a_move_shown_on_another_screen_with_a_scene_runs_there_too() {
+    for screen in [Screen::Live, Screen::Mount] {
+        let robot = RobotView { preview: Some(preview(free_path())), ..connected() };
+        let fake = Fake::over(with_robot(robot));
+        let mut window = fake.window(WindowSettings { screen, ..WindowSettings::default() });
+        click(&mut window, "Move there: right elbow to 92°, 1.4 s");
+        assert_eq!(robot_commands(&fake), [RobotCommand::RunPreview], "{screen:?}");
+    }
+}
+
+#[test]
 fn a_refused_path_disables_the_button_and_says_why() {
     let mut robot = connected();
     let why = "the right palm would come 12 mm into the table: lift the arm first";

@@ -11,6 +11,7 @@ use plumbline_widgets::theme::{self, space};
 use super::bodies::{Thing, scene, thing};
 use super::{Asked, cannot_show, refusal_line, stale_sentence};
 use crate::panels::PanelContext;
+use crate::window::{Action, RobotAction};
 
 /// Below the picture: the chosen point and what can be done with it.
 const STRIP: f32 = 36.0;
@@ -63,8 +64,11 @@ fn strip(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             let point_m = [at_m.x, at_m.y, at_m.z + ABOVE_M];
             cx.preview(Asked::Scene, Destination::TipPosition { point_m });
         }
-        if ui.button("Forget").on_hover_text("Lets the chosen point go").clicked() {
+        if ui.button("Forget").on_hover_text("Lets the chosen point and the shown move go").clicked() {
             cx.state.robot.chosen_point_m = None;
+            if cx.view.robot.preview.is_some() {
+                cx.outbox.act(Action::Robot(RobotAction::ForgetMove));
+            }
         }
         if !narrow {
             ui.label(theme::small(ui, format::position_mm(at_m.into())));

@@ -55,6 +55,21 @@ pub(super) fn robot(view: &View) -> Guidance {
     }
 }
 
+fn shown_move(robot: &RobotView) -> Option<Guidance> {
+    let preview = robot.preview.as_ref()?;
+    let guidance = say(move_sentence(preview)).then(moved_name(preview), Action::Robot(RobotAction::Move));
+    Some(if preview.path.is_err() { guidance.warn() } else { guidance })
+}
+
+/// Screens with a scene can show a move too; it is run and watched there as well.
+pub(super) fn under_way(view: &View) -> Option<Guidance> {
+    let robot = &view.robot;
+    if !robot.connection.is_connected() || view.mount.step == StepState::Running {
+        return None;
+    }
+    moving(&robot.motion).or_else(|| shown_move(robot))
+}
+
 pub(super) fn mount(view: &View) -> Guidance {
     let mount = &view.mount;
     let connected = view.robot.connection.is_connected();
