@@ -42,8 +42,8 @@ pub mod object {
 const BLACK_GLASS: Material =
     Material { albedo: [0.006, 0.006, 0.008], gloss: 0.35, pattern: Pattern::Plain };
 const BEZEL: Material = Material { albedo: [0.010, 0.010, 0.011], gloss: 0.15, pattern: Pattern::Plain };
-const WALL: Material = plain([0.62, 0.62, 0.60]);
-const CEILING: Material = plain([0.70, 0.70, 0.68]);
+const WALL: Material = plain([0.76, 0.76, 0.74]);
+const CEILING: Material = plain([0.80, 0.80, 0.78]);
 const FLOOR: Material = Material {
     albedo: [0.45, 0.43, 0.39],
     gloss: 0.05,
@@ -102,8 +102,8 @@ fn room(items: &mut Vec<Item>) {
     put([0.6, 1.75, 0.6], [2.6, 0.02, 1.4], WALL);
     put([-1.2, 0.0, 0.6], [0.02, 2.4, 1.4], WALL);
     // Two halves of the curtain with a gap, and the bright wall under it.
-    put([2.03, 0.38, 0.72], [0.02, 0.36, 0.62], CURTAIN);
-    put([2.03, -0.42, 0.72], [0.02, 0.40, 0.62], CURTAIN);
+    put([2.03, 0.50, 0.80], [0.02, 0.48, 0.72], CURTAIN);
+    put([2.03, -0.46, 0.80], [0.02, 0.44, 0.72], CURTAIN);
     // A dark cupboard and a window front to the left, a box on the floor.
     put([1.1, 1.70, 0.0], [0.16, 0.03, 0.75], DARK_WOOD);
     put([1.9, 0.95, -0.05], [0.10, 0.10, 0.13], plain([0.03, 0.022, 0.018]));
