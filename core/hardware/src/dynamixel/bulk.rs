@@ -25,6 +25,8 @@ impl Bus {
         self.drain()?;
         self.send(BROADCAST, &Instruction::BulkRead { items: items.to_vec() })?;
         let mut open = items.len();
+        // What is known of the one whose turn it was when nothing came any more.
+        let mut told = None;
         while open > 0 {
             let longest = items.iter().map(|item| usize::from(item.length)).max().unwrap_or(0);
             let until = deadline.min(Instant::now() + self.answer_time(longest));
@@ -32,18 +34,23 @@ impl Bus {
                 Ok(found) => found,
                 Err(Ended::Bus(error)) => return Err(error),
                 Err(Ended::TimeOver) => {
-                    // The one whose turn it was may have been cut; those behind it wait for it.
-                    let cut = self.deframer.clear() > 0;
+                    // The one whose turn it was is at fault; those behind it wait for it.
+                    if self.deframer.clear() > 0 {
+                        told = told.or(Some(FaultKind::Cut));
+                    }
                     let first = answers.iter_mut().find(|answer| matches!(answer, Err(FaultKind::Missing)));
-                    if let (true, Some(first)) = (cut, first) {
-                        *first = Err(FaultKind::Cut);
+                    if let (Some(kind), Some(first)) = (told, first) {
+                        *first = Err(kind);
                     }
                     break;
                 }
             };
             let place = |id: u8| items.iter().position(|item| item.id == id);
             match found {
-                Found::Garbage(bytes) => self.counts.stray_bytes += bytes as u64,
+                Found::Garbage(bytes) => {
+                    self.counts.stray_bytes += bytes as u64;
+                    told = told.or(Some(FaultKind::Garbled));
+                }
                 Found::WrongCheck { id } => {
                     if let Some(i) = place(id).filter(|i| answers[*i].is_err()) {
                         answers[i] = Err(FaultKind::Checksum);
@@ -52,7 +59,9 @@ impl Bus {
                 Found::Frame(frame) => {
                     let Ok(status) = self.protocol.status(&frame) else { continue };
                     let Some(i) = place(status.id).filter(|i| answers[*i].is_err()) else {
-                        self.strange(status.id);
+                        if !self.strange(status.id) {
+                            told = Some(FaultKind::WrongId);
+                        }
                         continue;
                     };
                     self.wire.answers += 1;
@@ -68,7 +77,7 @@ impl Bus {
         self.wire.turnarounds += 1;
         for (item, answer) in items.iter().zip(&answers) {
             match answer {
-                Ok(_) => self.counts.answers += 1,
+                Ok(_) => self.count_answer(),
                 Err(kind) => {
                     self.counts.fault(item.id, *kind);
                     self.owed.push(item.id);

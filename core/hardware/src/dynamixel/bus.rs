@@ -18,6 +18,14 @@ use super::wire_time::WireTime;
 /// Longest single wait for bytes: how late a pressed stop is noticed.
 const SLICE: Duration = Duration::from_millis(1);
 
+/// The margin for answers grows to this many times the usual one.
+const MOST_MARGINS: u32 = 5;
+/// Share of the surplus by which it shrinks again with every answer.
+const MARGIN_DECAY: u32 = 512;
+
+/// Margin for an answer when patient.
+const PATIENCE: Duration = Duration::from_millis(40);
+
 /// An answer that was given up is waited for no longer than this where it would do harm.
 const OWED: Duration = Duration::from_millis(60);
 
@@ -27,7 +35,7 @@ pub struct BusTiming {
     /// Bits per second.
     pub baud: u32,
     /// How long an answer may take beyond its time on the wire: return delay, USB, other
-    /// programs on the machine.
+    /// programs on the machine. Grows by itself while answers come late, up to five times this.
     pub answer_margin: Duration,
     /// Attempts per answer, the first included.
     pub attempts: u32,
@@ -52,6 +60,9 @@ pub struct Bus {
     /// Servos whose answers were given up and may still come.
     pub(super) owed: Vec<u8>,
     stop: Option<std::sync::Arc<AtomicBool>>,
+    patient: bool,
+    /// The margin for answers now.
+    margin: Duration,
 }
 
 /// Why a wait ended without what it waited for.
@@ -73,6 +84,8 @@ impl Bus {
             echo: vec![],
             owed: vec![],
             stop: None,
+            patient: false,
+            margin: timing.answer_margin,
         }
     }
 
@@ -188,7 +201,8 @@ impl Bus {
     /// Time of an answer of `data` bytes on the wire, and the margin.
     pub(super) fn answer_time(&self, data: usize) -> Duration {
         let bytes = self.protocol.status_bytes(data) as f64;
-        self.timing.answer_margin + Duration::from_secs_f64(bytes * 10.0 / f64::from(self.timing.baud.max(1)))
+        let margin = self.margin.max(if self.patient { PATIENCE } else { Duration::ZERO });
+        margin + Duration::from_secs_f64(bytes * 10.0 / f64::from(self.timing.baud.max(1)))
     }
 
     /// Sends, waits, and repeats until the answer is right, attempts are used up or `deadline` is
@@ -230,7 +244,7 @@ impl Bus {
         self.wire.turnarounds += 1;
         match answer? {
             Ok(status) => {
-                self.counts.answers += 1;
+                self.count_answer();
                 Ok(Ok(status))
             }
             Err(kind) => {
@@ -243,18 +257,15 @@ impl Bus {
         }
     }
 
-    /// One attempt with another margin for the answer than the bus's own.
-    pub(super) fn ask_patiently(
-        &mut self,
-        id: u8,
-        instruction: &Instruction,
-        length: usize,
-        patience: Duration,
-    ) -> Result<Result<Status, FaultKind>, BusError> {
-        let margin = std::mem::replace(&mut self.timing.answer_margin, patience);
-        let answer = self.ask_once(id, instruction, Some(length), self.far());
-        self.timing.answer_margin = margin;
-        answer
+    pub(super) fn count_answer(&mut self) {
+        self.counts.answers += 1;
+        let surplus = self.margin.saturating_sub(self.timing.answer_margin);
+        self.margin -= surplus / MARGIN_DECAY;
+    }
+
+    /// What is asked now and then, not in every cycle, may wait longer on a busy machine.
+    pub(crate) fn be_patient(&mut self, patient: bool) {
+        self.patient = patient;
     }
 
     fn await_answer(
@@ -313,6 +324,8 @@ impl Bus {
         if let Some(i) = late {
             self.owed.swap_remove(i);
             self.counts.fault(id, FaultKind::Late);
+            // A machine that is busy now is busy for a while.
+            self.margin = (self.margin * 2).min(self.timing.answer_margin * MOST_MARGINS);
         }
         late.is_some()
     }

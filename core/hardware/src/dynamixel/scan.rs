@@ -1,7 +1,7 @@
 //! Which servos are on a bus, and whether they are the expected ones.
 
 use std::fmt;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::bus::Bus;
 use super::control_table::ControlTable;
@@ -120,14 +120,34 @@ pub enum ScanRange {
 /// Registers 0 to 2: model number and firmware.
 const IDENTITY_BYTES: u16 = 3;
 const ATTEMPTS: u32 = 3;
-/// An expected servo may take this long, however busy the machine is.
-const PATIENCE: Duration = Duration::from_millis(25);
+/// The margin for an answer is shorter than this.
+const LONG: Duration = Duration::from_millis(100);
 
 /// What one id answered.
 enum Answer {
     Silent,
     Found(FoundServo),
     Collision,
+}
+
+impl BusScan {
+    fn note(&mut self, id: u8, expected: Option<&ExpectedServo>, answer: Answer) {
+        match answer {
+            Answer::Silent => self.missing.extend(expected.cloned()),
+            Answer::Collision => self.duplicates_suspected.push(id),
+            Answer::Found(found) => {
+                match expected {
+                    None => self.unexpected.push(found.clone()),
+                    Some(expected) if !is_model(&found, &expected.model) => {
+                        self.wrong_model
+                            .push(WrongModel { expected: expected.clone(), found: found.clone() });
+                    }
+                    Some(_) => {}
+                }
+                self.found.push(found);
+            }
+        }
+    }
 }
 
 impl Bus {
@@ -141,22 +161,23 @@ impl Bus {
             ScanRange::Expected => expected.iter().map(|servo| servo.id).collect(),
             ScanRange::All => (0..=LARGEST_ID).collect(),
         };
-        for id in ids {
+        let late = |bus: &Self, id: u8| {
+            bus.counts().by_servo.get(&id).map_or(0, |counts| counts.of(FaultKind::Late))
+        };
+        let before: Vec<u64> = ids.iter().map(|id| late(self, *id)).collect();
+        let mut silent = vec![];
+        for (id, before) in ids.into_iter().zip(before) {
             let expected = expected.iter().find(|servo| servo.id == id);
             match self.identify(id, expected.is_some())? {
-                Answer::Silent => scan.missing.extend(expected.cloned()),
-                Answer::Collision => scan.duplicates_suspected.push(id),
-                Answer::Found(found) => {
-                    match expected {
-                        None => scan.unexpected.push(found.clone()),
-                        Some(expected) if !is_model(&found, &expected.model) => {
-                            scan.wrong_model
-                                .push(WrongModel { expected: expected.clone(), found: found.clone() });
-                        }
-                        Some(_) => {}
-                    }
-                    scan.found.push(found);
-                }
+                Answer::Silent if expected.is_none() => silent.push((id, before)),
+                answer => scan.note(id, expected, answer),
+            }
+        }
+        // Who was taken for absent, and answered after all, is asked once more.
+        for (id, before) in silent {
+            if late(self, id) > before {
+                let answer = self.identify(id, true)?;
+                scan.note(id, None, answer);
             }
         }
         Ok(scan)
@@ -166,11 +187,14 @@ impl Bus {
     /// come twice, again and again; once may be noise, or an answer that comes late.
     fn identify(&mut self, id: u8, expected: bool) -> Result<Answer, BusError> {
         let instruction = Instruction::Read { address: 0, length: IDENTITY_BYTES };
-        let patience = if expected { PATIENCE } else { self.timing().answer_margin };
         let (mut broken, mut doubled, mut attempt) = (0, 0, 0);
         loop {
             attempt += 1;
-            match self.ask_patiently(id, &instruction, usize::from(IDENTITY_BYTES), patience)? {
+            self.be_patient(expected);
+            let answer =
+                self.ask_once(id, &instruction, Some(usize::from(IDENTITY_BYTES)), Instant::now() + LONG);
+            self.be_patient(false);
+            match answer? {
                 Ok(status) if !self.another_answer(id)? => {
                     let model_number = u16::from_le_bytes([status.data[0], status.data[1]]);
                     return Ok(Answer::Found(FoundServo { id, model_number, firmware: status.data[2] }));

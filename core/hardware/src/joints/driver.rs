@@ -86,10 +86,12 @@ impl ArmDriver {
                 slot.missed = u32::MAX;
             }
         }
+        exchange.bus.be_patient(true);
         exchange.read_torques()?;
         if let Some(delay) = options.return_delay {
             exchange.shorten_return_delays(delay.as_secs_f64())?;
         }
+        exchange.bus.be_patient(false);
         let stop = options.stop.clone();
         let limiter = Limiter { rig: rig.clone(), guards: options.guards.clone() };
         let mut controller = Controller::new(exchange, scan.clone(), rig, options);

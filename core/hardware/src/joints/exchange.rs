@@ -7,8 +7,11 @@ use super::refusal::Refusal;
 use super::servo_unit::{Measured, ServoUnit};
 use crate::dynamixel::{BulkItem, Bus, BusError, Item, Status};
 
-/// Cycles without an answer after which a servo no longer takes part.
+/// Cycles without an answer, and time, after which a servo no longer takes part.
 const GIVE_UP: u32 = 12;
+const GIVE_UP_TIME: Duration = Duration::from_millis(400);
+/// The first attempt of a cycle waits as long as answers take at the moment.
+const FIRST_ATTEMPT: Duration = Duration::from_millis(100);
 /// A servo that was given up is asked again every so many cycles.
 const ASK_AGAIN: u64 = 32;
 /// Cycles with an answer to a single read but none to the bulk read after which it is read singly.
@@ -52,7 +55,12 @@ impl Slot {
 
     /// Whether it takes part in every cycle.
     pub fn in_use(&self) -> bool {
-        self.missed < GIVE_UP
+        self.missed < GIVE_UP || (self.missed < u32::MAX && self.silence() < GIVE_UP_TIME)
+    }
+
+    /// Time since the last answer; long before the first.
+    pub fn silence(&self) -> Duration {
+        self.reading.read_at.map_or(Duration::MAX, |at| at.elapsed())
     }
 
     pub fn holds_torque(&self) -> bool {
@@ -150,10 +158,11 @@ impl Exchange {
     /// what changes slowly. Returns whether all answered.
     pub fn read_all(&mut self, deadline: Instant) -> Result<bool, BusError> {
         self.turn += 1;
+        let first = Instant::now() + FIRST_ATTEMPT;
         let mut open = vec![];
         let bulk: Vec<usize> = (0..self.slots.len()).filter(|i| self.in_bulk(*i)).collect();
         let items: Vec<BulkItem> = bulk.iter().map(|i| self.item(*i)).collect();
-        for (i, answer) in bulk.iter().zip(self.bus.bulk_read(&items, deadline)?) {
+        for (i, answer) in bulk.iter().zip(self.bus.bulk_read(&items, first)?) {
             match answer {
                 Ok(status) => {
                     self.slots[*i].take(&status);
@@ -164,7 +173,7 @@ impl Exchange {
         }
         for i in 0..self.slots.len() {
             if (self.slots[i].in_use() && self.slots[i].reads_singly) || self.asked_again(i) {
-                self.read_one(i, deadline, &mut open)?;
+                self.read_one(i, first, &mut open)?;
             }
         }
         for _ in 1..self.bus.timing().attempts {
@@ -308,6 +317,13 @@ impl Exchange {
 
     /// Switches torque. Switched on, a servo holds where it is: its goal is written first.
     pub fn switch_torque(&mut self, i: usize, on: bool) -> Result<Option<Refusal>, BusError> {
+        self.bus.be_patient(true);
+        let switched = self.try_switch_torque(i, on);
+        self.bus.be_patient(false);
+        switched
+    }
+
+    fn try_switch_torque(&mut self, i: usize, on: bool) -> Result<Option<Refusal>, BusError> {
         let slot = &mut self.slots[i];
         let (joint, name) = (slot.unit.servo.joint, slot.unit.servo.title.clone());
         let unknown = Refusal::Unknown { joint, name };

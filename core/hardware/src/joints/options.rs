@@ -30,8 +30,11 @@ pub struct ArmOptions {
     pub guards: Vec<Arc<dyn Guard>>,
     /// Servos that wait longer before they answer are told to wait this long; `None` leaves them.
     pub return_delay: Option<Duration>,
-    /// A moving servo that does not answer for this many cycles makes the arm hold.
+    /// A moving servo that does not answer for this many cycles, and for the time of `silence`,
+    /// makes the arm hold.
     pub missed_cycles: u32,
+    /// See `missed_cycles`.
+    pub silence: Duration,
     /// A joint that stays behind for this long makes the arm hold.
     pub following_timeout: Duration,
     /// A load above the gate for this long makes the arm hold.
@@ -53,6 +56,7 @@ impl Default for ArmOptions {
             guards: vec![],
             return_delay: Some(Duration::from_micros(10)),
             missed_cycles: 6,
+            silence: Duration::from_millis(200),
             following_timeout: Duration::from_millis(1500),
             load_timeout: Duration::from_millis(300),
             on_state: None,

@@ -38,7 +38,7 @@ impl Controller {
         if !moving.contains(&joint) {
             return None;
         }
-        if slot.missed >= self.options.missed_cycles {
+        if slot.missed >= self.options.missed_cycles && slot.silence() >= self.options.silence {
             return Some(HoldReason::NoAnswer { joint, name, servo, cycles: slot.missed });
         }
         if slot.torque_lost || reading.torque_on == Some(false) {

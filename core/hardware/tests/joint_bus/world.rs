@@ -41,8 +41,19 @@ pub fn ready() -> (Arc<Rig>, PtyChain, ArmDriver) {
 
 pub fn ready_with(options: ArmOptions) -> (Arc<Rig>, PtyChain, ArmDriver) {
     let (rig, chain, driver) = limp_with(options);
-    driver.engage(&[]).expect("the queue is empty");
-    await_state(&driver, "torque on", |state| state.joints.iter().all(|j| j.torque_on == Some(true)));
+    let all_on = |state: &JointState| state.joints.iter().all(|j| j.torque_on == Some(true));
+    // On a busy machine a servo may have to be asked again, as an operator would.
+    for _ in 0..3 {
+        if all_on(&driver.state()) {
+            break;
+        }
+        driver.engage(&[]).expect("the queue is empty");
+        let end = Instant::now() + Duration::from_secs(2);
+        while !all_on(&driver.state()) && Instant::now() < end {
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+    await_state(&driver, "torque on", all_on);
     (rig, chain, driver)
 }
 
