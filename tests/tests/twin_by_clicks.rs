@@ -99,7 +99,9 @@ fn move_the_arm(window: &mut Window, rig: &Rig) {
     assert!(away_rad(&shown, &pose.joints).expect("measured") > 0.2, "showing a move moves nothing");
     click_once_there(window, "Move there");
     until(window, "the arm on its way", |window| matches!(robot(window).motion, MotionState::Moving { .. }));
-    until(window, "the arm at its goal", |window| matches!(robot(window).motion, MotionState::Holding { .. }));
+    until(window, "the arm at its goal", |window| {
+        matches!(robot(window).motion, MotionState::Holding { .. })
+    });
     // Servos that hold a weight hang below their goal by what their gain lets them.
     let away_rad = away_rad(&robot(window), &pose.joints).expect("measured");
     assert!(away_rad < 0.06, "{away_rad} rad from its goal: {:?}", robot(window).refusal);
@@ -109,9 +111,7 @@ fn stop_it(window: &mut Window, rig: &Rig) {
     let home = rig.pose("home").expect("a pose of NICO");
     click_once_there(window, &home.title);
     click_once_there(window, "Move there");
-    let on_its_way = |window: &Window| {
-        matches!(robot(window).motion, MotionState::Moving { fraction: Some(part), .. } if part > 0.15)
-    };
+    let on_its_way = |window: &Window| matches!(robot(window).motion, MotionState::Moving { fraction: Some(part), .. } if part > 0.15);
     until(window, "the arm on its way home", on_its_way);
     window.key_press(egui::Key::Escape);
     window.run_steps(2);

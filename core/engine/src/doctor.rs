@@ -115,7 +115,17 @@ mod tests {
     fn every_part_is_looked_at_and_says_something() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let checks = checks(folder.path());
-        for part in ["OpenCV", "processor", "cores", "memory", "twin", "twin's eyes", "cameras", "serial ports", "data folder"] {
+        for part in [
+            "OpenCV",
+            "processor",
+            "cores",
+            "memory",
+            "twin",
+            "twin's eyes",
+            "cameras",
+            "serial ports",
+            "data folder",
+        ] {
             let found = checks.iter().filter(|check| check.name == part).count();
             assert_eq!(found, 1, "{part} in {checks:?}");
         }

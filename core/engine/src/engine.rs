@@ -56,7 +56,12 @@ impl Engine {
     /// be written, a source that cannot be opened) is said in the view.
     pub fn start(settings: EngineSettings, wake: Wake) -> Self {
         let (commands, received) = crossbeam_channel::bounded(WAITING);
-        let shared = Arc::new(Shared { view: Mutex::default(), lost_commands: AtomicU64::new(0), wake, switches: Switches::default() });
+        let shared = Arc::new(Shared {
+            view: Mutex::default(),
+            lost_commands: AtomicU64::new(0),
+            wake,
+            switches: Switches::default(),
+        });
         let for_hub = shared.clone();
         let hub = std::thread::Builder::new()
             .name("engine".into())

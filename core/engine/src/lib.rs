@@ -13,9 +13,9 @@ mod live;
 mod mount;
 pub mod notice;
 pub mod offline;
+pub mod robot;
 pub mod settings;
 pub mod slot;
-pub mod robot;
 mod source;
 pub mod stages;
 pub mod state;
@@ -25,9 +25,9 @@ pub mod view;
 pub mod work;
 
 pub use command::{
-    AimChoice, Command, Destination, ExportFormat, Exported, EyesCommand, FileLength, HeadPose, JOG_DEADLINE_MS,
-    JobCommand, JobId, JogRates, LiveCommand, MountCommand, NoticeCommand, ProbePoint, Products, RobotCommand,
-    SourceCommand, TwinCommand,
+    AimChoice, Command, Destination, ExportFormat, Exported, EyesCommand, FileLength, HeadPose,
+    JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LiveCommand, MountCommand, NoticeCommand, ProbePoint,
+    Products, RobotCommand, SourceCommand, TwinCommand,
 };
 pub use context::Action;
 pub use engine::{Engine, Wake};

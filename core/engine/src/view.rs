@@ -23,7 +23,8 @@ pub use live::{
 pub use map::TableMap;
 pub use mount::{HeadViewSummary, MountSummary, MountView};
 pub use robot::{
-    BusView, Connection, JointSample, JointView, MotionState, PathCheck, PortView, PoseView, Preview, RobotView, TipPlace,
+    BusView, Connection, JointSample, JointView, MotionState, PathCheck, PortView, PoseView, Preview,
+    RobotView, TipPlace,
 };
 pub use twin::{FaultView, ToyView, TwinView};
 

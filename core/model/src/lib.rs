@@ -27,7 +27,9 @@ pub use calibration::{
 pub use camera::{Camera, CameraModel, Fisheye, ModelKind, Pinhole, ProjectError};
 pub use chessboard::{BoardError, Chessboard, InnerCorners};
 pub use formats::FormatError;
-pub use frame::{Board, LeftCamera, LeftRectified, RightCamera, RightRectified, Robot, Direction, Frame, Point, Pose};
+pub use frame::{
+    Board, Direction, Frame, LeftCamera, LeftRectified, Point, Pose, RightCamera, RightRectified, Robot,
+};
 pub use image_pair::{Stamp, StereoFrame};
 pub use job::{Cancelled, JobContext, Unattended};
 pub use pixel::{Eye, Pixel, PixelSpace, Raw, Rectified};

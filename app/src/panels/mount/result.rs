@@ -99,7 +99,7 @@ fn figure(ui: &mut Ui, quantity: Quantity, value: f64, sigma: f64) {
 fn notes(ui: &mut Ui, proposal: &MountSummary) {
     let warning = Role::Warning.color(theme::tokens(ui));
     ui.add_space(space::S);
-    for sentence in &proposal.not_seen {
+    for sentence in proposal.not_seen.iter().chain(&proposal.remarks) {
         ui.label(RichText::new(sentence).color(warning));
     }
     for (name, why) in &proposal.rejected {

@@ -2,6 +2,8 @@
 //!
 //! Data that are not at hand leave their figures out, with the reason.
 
+mod robot;
+
 use std::path::Path;
 use std::time::Instant;
 
@@ -112,6 +114,9 @@ pub fn bench(context: &dyn JobContext) -> Result<BenchReport, OfflineError> {
     context.checkpoint()?;
     context.report(0.8, "timing the live pipeline against the published one");
     figures.extend(pipeline()?);
+    context.checkpoint()?;
+    context.report(0.9, "kinematics, servo bus and the twin's eyes");
+    figures.extend(robot::figures());
     Ok(BenchReport { figures, threads: std::thread::available_parallelism().map_or(1, usize::from) })
 }
 

@@ -238,7 +238,9 @@ impl Player {
             SourceSpec::Folder(_) | SourceSpec::Folders { .. } => {
                 ReplayRate::PairsPerSecond(PHOTOGRAPHS_PER_SECOND)
             }
-            SourceSpec::Videos { .. } | SourceSpec::Cameras { .. } | SourceSpec::Twin => ReplayRate::AsRecorded,
+            SourceSpec::Videos { .. } | SourceSpec::Cameras { .. } | SourceSpec::Twin => {
+                ReplayRate::AsRecorded
+            }
         };
         let replay = Replay { rate, looping: true };
         // Cameras can be opened only once, so the same ones must be let go first.

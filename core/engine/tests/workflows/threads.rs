@@ -24,7 +24,8 @@ impl Bench {
         let folder = tempfile::tempdir().expect("temporary folder");
         write_pairs(&folder.path().join("pairs"), board_pairs());
         let (wake, woken) = crossbeam_channel::bounded(1);
-        let settings = EngineSettings { data_dir: Some(folder.path().join("data")), source: None, twin: None };
+        let settings =
+            EngineSettings { data_dir: Some(folder.path().join("data")), source: None, twin: None };
         let engine = Engine::start(
             settings,
             Arc::new(move || {

@@ -27,8 +27,8 @@ pub use check::{CheckReport, check};
 pub use optimizer::Termination;
 
 pub(crate) use initial::pose_from_rays;
-pub(crate) use outliers::median;
 use optimizer::Optimizer;
+pub(crate) use outliers::median;
 use problem::{Problem, State};
 
 /// Fewest pairs, seen by both eyes, that determine a stereo calibration with anything to spare.
