@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 use plumbline_engine::{Engine, EngineSettings, SourceCommand, SourceSpec};
 
@@ -53,6 +54,7 @@ pub fn launch(options: LaunchOptions) -> anyhow::Result<()> {
     settings.screen = options.screen.unwrap_or(settings.screen);
     settings.size = options.size.unwrap_or(settings.size);
 
+    let news_may_wait = chosen.news_may_wait();
     let native = native_options(&settings, chosen.renderer);
     // The closure runs once, but eframe's type cannot say so.
     let parts = Mutex::new(Some((settings, options)));
@@ -73,7 +75,7 @@ pub fn launch(options: LaunchOptions) -> anyhow::Result<()> {
                 renderer: chosen.reason,
                 gamepads: options.script.is_empty(),
             };
-            let engine = start_engine(&ctx, &options);
+            let engine = start_engine(&ctx, &options, news_may_wait);
             if let Some(trouble) = trouble {
                 engine.send(super::apply::warning(trouble));
             }
@@ -87,14 +89,14 @@ pub fn launch(options: LaunchOptions) -> anyhow::Result<()> {
     })
 }
 
-fn start_engine(ctx: &egui::Context, options: &LaunchOptions) -> Engine {
+fn start_engine(ctx: &egui::Context, options: &LaunchOptions, news_may_wait: Duration) -> Engine {
     let wake = ctx.clone();
     let source =
         options.cameras.map(|(left, right)| SourceSpec::Cameras { left_index: left, right_index: right });
     let nothing_else = options.paths.is_empty() && source.is_none();
     let twin = options.twin.clone().filter(|_| nothing_else);
     let settings = EngineSettings { data_dir: options.data_dir.clone(), source, twin };
-    let engine = Engine::start(settings, Arc::new(move || wake.request_repaint()));
+    let engine = Engine::start(settings, Arc::new(move || wake.request_repaint_after(news_may_wait)));
     if !options.paths.is_empty() {
         // Remembered sources have to be found from another folder too.
         let absolute = |path: &PathBuf| std::path::absolute(path).unwrap_or_else(|_| path.clone());

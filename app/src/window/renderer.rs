@@ -3,6 +3,8 @@
 //! On a graphics card wgpu is best. Without one, wgpu on the CPU's Vulkan needs about five times
 //! the processor time of OpenGL on the CPU, so then OpenGL (glow) draws.
 
+use std::time::Duration;
+
 use clap::ValueEnum;
 
 /// What the operator asked for.
@@ -35,6 +37,17 @@ pub struct Chosen {
     pub renderer: eframe::Renderer,
     /// A sentence for the log and for `doctor`.
     pub reason: String,
+    /// Whether a graphics card draws, as far as is known.
+    pub has_card: bool,
+}
+
+impl Chosen {
+    /// News of the engine may wait this long before the window is drawn again. Where the processor
+    /// draws, each picture of the window costs it 30 ms, which live views and the twin need too.
+    /// What the operator does is shown at once all the same.
+    pub fn news_may_wait(&self) -> Duration {
+        if self.has_card { Duration::ZERO } else { Duration::from_millis(80) }
+    }
 }
 
 /// Looks for adapters; takes about 0.1 s. None found is an empty list, never an error.
@@ -59,7 +72,8 @@ pub fn adapters() -> Vec<Adapter> {
 
 /// Chooses among what was found.
 pub fn choose(choice: RendererChoice, adapters: &[Adapter]) -> Chosen {
-    let chosen = |renderer, reason: String| Chosen { renderer, reason };
+    let has_card = adapters.iter().any(|adapter| !adapter.is_cpu);
+    let chosen = |renderer, reason: String| Chosen { renderer, reason, has_card };
     match choice {
         RendererChoice::Wgpu => chosen(eframe::Renderer::Wgpu, "wgpu, as asked".to_owned()),
         RendererChoice::Glow => chosen(eframe::Renderer::Glow, "OpenGL, as asked".to_owned()),
@@ -94,6 +108,12 @@ mod tests {
     fn without_a_card_opengl_draws() {
         assert_eq!(choose(RendererChoice::Auto, &[adapter(true)]).renderer, eframe::Renderer::Glow);
         assert_eq!(choose(RendererChoice::Auto, &[]).renderer, eframe::Renderer::Glow);
+    }
+
+    #[test]
+    fn news_wait_only_where_the_processor_draws() {
+        assert!(choose(RendererChoice::Auto, &[adapter(true)]).news_may_wait() > Duration::ZERO);
+        assert_eq!(choose(RendererChoice::Auto, &[adapter(false)]).news_may_wait(), Duration::ZERO);
     }
 
     #[test]

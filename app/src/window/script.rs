@@ -60,7 +60,7 @@ impl Script {
     /// The next step, once everything before it has come to rest.
     pub(super) fn next(&mut self, view: &View, ctx: &egui::Context) -> Option<ScriptStep> {
         self.steps.front()?;
-        ctx.request_repaint_after(Duration::from_millis(50));
+        ctx.request_repaint_after(Duration::from_millis(100));
         let now = Instant::now();
         let busy = view.running_job().is_some()
             || matches!(view.robot.connection, Connection::Connecting { .. })

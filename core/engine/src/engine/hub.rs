@@ -33,7 +33,7 @@ use crate::view::{SourceView, View};
 use crate::work::WorkResult;
 
 /// Views are published at most this often.
-const PUBLISH_EVERY: Duration = Duration::from_millis(12);
+const PUBLISH_EVERY: Duration = Duration::from_millis(30);
 /// While jobs run their elapsed time is shown at least this often.
 const JOB_TICK: Duration = Duration::from_millis(250);
 /// A point that stays is measured anew at most this often; a new one at once.

@@ -1,29 +1,35 @@
 //! What the window shows of the robot.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use plumbline_hardware::joints::{HoldReason, JointReading, JointState, Motion};
 use plumbline_model::robot::{Posture, Servo};
 
 use super::worker::{News, Worker};
 use crate::text::sentence;
-use crate::view::{BusView, JointView, MotionState, RobotView, TipPlace};
+use crate::view::{BusView, JointView, MotionState, RobotView, TipPlace, TwinView};
 
 impl Worker {
-    /// What is new since the last call, if anything.
+    /// What is new since the last call, if anything. What the operator did or has to know comes at
+    /// once; readings that merely flicker come a few times a second, for the window is drawn anew
+    /// each time.
     pub fn take_news(&mut self) -> Option<News> {
         let robot = self.robot_view();
         let twin = self.desk.view();
-        if let Some(told) = &self.told
-            && *told.twin == twin
-            && told.robot.is_same(&robot)
-            && told.twins_started == self.twins_started
-        {
-            return None;
+        if let Some(told) = &self.told {
+            let same_state = told.robot.is_same_state(&robot)
+                && told.twin.is_same_state(&twin)
+                && told.twins_started == self.twins_started;
+            let every = if matches!(robot.motion, MotionState::Moving { .. }) { MOVING } else { STANDING };
+            let soon = self.told_at.is_some_and(|at| at.elapsed() < every);
+            if same_state && (soon || (*told.twin == twin && told.robot.has_same_readings(&robot))) {
+                return None;
+            }
         }
         let news = News { robot: Arc::new(robot), twin: Arc::new(twin), twins_started: self.twins_started };
         self.told = Some(news.clone());
+        self.told_at = Some(Instant::now());
         Some(news)
     }
 
@@ -130,13 +136,36 @@ impl Worker {
     }
 }
 
+/// Readings are shown this often while something moves, and while nothing does.
+const MOVING: Duration = Duration::from_millis(66);
+const STANDING: Duration = Duration::from_millis(500);
 /// Smaller changes than these are not worth drawing the window again.
 const ANGLE_RAD: f64 = 2e-4;
 const RATE: f64 = 1.0;
 
 impl RobotView {
-    /// Whether nothing that can be seen has changed; ages and cycle counts do not count.
-    fn is_same(&self, other: &Self) -> bool {
+    /// Whether what is connected, what it does and what is shown is the same.
+    fn is_same_state(&self, other: &Self) -> bool {
+        self.connection == other.connection
+            && self.motion.is_same_kind(&other.motion)
+            && self.stopped == other.stopped
+            && self.preview == other.preview
+            && self.refusal == other.refusal
+            && self.poses == other.poses
+            && self.ports == other.ports
+            && self.tip == other.tip
+            && (self.speed - other.speed).abs() < f64::EPSILON
+            && self.measured.is_some() == other.measured.is_some()
+            && self.joints.len() == other.joints.len()
+            && self
+                .joints
+                .iter()
+                .zip(other.joints.iter())
+                .all(|(a, b)| a.torque_on == b.torque_on && a.problem.is_some() == b.problem.is_some())
+    }
+
+    /// Whether no number that can be read has changed; ages and cycle counts do not count.
+    fn has_same_readings(&self, other: &Self) -> bool {
         let close = |a: Option<f64>, b: Option<f64>, by: f64| match (a, b) {
             (Some(a), Some(b)) => (a - b).abs() < by,
             (None, None) => true,
@@ -147,27 +176,40 @@ impl RobotView {
                 && close(a.goal_rad, b.goal_rad, ANGLE_RAD)
                 && close(a.load, b.load, 0.02)
                 && close(a.temperature_c, b.temperature_c, 0.5)
-                && a.torque_on == b.torque_on
                 && a.problem == b.problem
                 && Arc::ptr_eq(&a.history, &b.history)
                 && stale(a.age) == stale(b.age)
         };
-        self.connection == other.connection
-            && self.motion == other.motion
-            && self.stopped == other.stopped
-            && self.preview == other.preview
-            && self.refusal == other.refusal
-            && self.poses == other.poses
-            && self.ports == other.ports
-            && self.tip == other.tip
-            && (self.speed - other.speed).abs() < f64::EPSILON
+        self.motion == other.motion
             && self.trail.len() == other.trail.len()
             && close(self.bus.cycles_per_s, other.bus.cycles_per_s, RATE)
             && self.bus.faults == other.bus.faults
             && self.bus.warnings == other.bus.warnings
             && self.bus.missing == other.bus.missing
-            && self.joints.len() == other.joints.len()
             && self.joints.iter().zip(other.joints.iter()).all(|(a, b)| same_joint(a, b))
+    }
+}
+
+impl MotionState {
+    /// Whether it differs by how far a move is at most.
+    fn is_same_kind(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Moving { what: a, .. }, Self::Moving { what: b, .. }) => a == b,
+            (a, b) => a == b,
+        }
+    }
+}
+
+impl TwinView {
+    /// Whether only clocks have moved on, or toys.
+    fn is_same_state(&self, other: &Self) -> bool {
+        self.running == other.running
+            && self.failed == other.failed
+            && self.scenario == other.scenario
+            && self.board == other.board
+            && self.faults == other.faults
+            && self.toys.len() == other.toys.len()
+            && self.toys.iter().zip(&other.toys).all(|(a, b)| a.place.is_some() == b.place.is_some())
     }
 }
 

@@ -81,6 +81,7 @@ pub struct Worker {
     pub(super) twins_started: u64,
     notes: Vec<(NoticeLevel, String)>,
     pub(super) told: Option<News>,
+    pub(super) told_at: Option<Instant>,
 }
 
 impl Worker {
@@ -114,6 +115,7 @@ impl Worker {
             twins_started: 0,
             notes: problem.map(|text| (NoticeLevel::Warning, text)).into_iter().collect(),
             told: None,
+            told_at: None,
             rig,
         }
     }
