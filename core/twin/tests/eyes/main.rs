@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 mod bad_input;
-mod calibration;
 mod stream;
 
 use std::sync::Arc;
