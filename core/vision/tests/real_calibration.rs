@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 /// The folder, or `None` after saying why the test is skipped.
 fn data(name: &str) -> Option<PathBuf> {
-    measured_data::folder(name).map_err(|reason| println!("{reason}")).ok()
+    measured_data::folder(name).map_err(|reason| eprintln!("{reason}")).ok()
 }
 
 fn images(folder: &Path, prefix: &str) -> Vec<PathBuf> {

@@ -49,7 +49,7 @@ pub(super) fn robot(view: &View) -> Guidance {
         MotionState::Limp => say("The joints are limp: they can be turned by hand, and sink.")
             .then("Hold all joints", Action::Robot(RobotAction::TorqueOn)),
         MotionState::Holding { why: Some(why) } => {
-            say(format!("Holds where it stands: {why}. Show a move, or jog.")).warn()
+            say(format!("Holds where it stands: {} Show a move, or jog.", closed(why))).warn()
         }
         _ => say("Drag a joint or choose a pose: it is shown first, and moves only when you say so."),
     }
@@ -127,4 +127,9 @@ pub(super) fn board_of_the_twin(view: &View) -> Option<Guidance> {
         say("An unseen hand shows the twin the board at all places; pairs are captured by themselves.")
             .then("Show the board at all places", Action::Robot(RobotAction::TourBoard))
     })
+}
+
+/// With a full stop at its end.
+fn closed(text: &str) -> String {
+    format!("{}.", text.trim_end_matches('.'))
 }

@@ -61,9 +61,9 @@ impl Worker {
         match &state.motion {
             Motion::Limp => MotionState::Limp,
             // These are how it should be; anything else is worth a word.
-            Motion::Holding(HoldReason::Connected | HoldReason::Arrived | HoldReason::JogEnded) => {
-                MotionState::Holding { why: None }
-            }
+            Motion::Holding(
+                HoldReason::Connected | HoldReason::Arrived | HoldReason::JogEnded | HoldReason::Asked,
+            ) => MotionState::Holding { why: None },
             Motion::Holding(reason) => MotionState::Holding { why: Some(sentence(&reason.to_string())) },
             Motion::Moving { fraction, remaining, .. } => MotionState::Moving {
                 what: self.running.as_ref().map_or_else(String::new, |running| running.title.clone()),

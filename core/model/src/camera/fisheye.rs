@@ -72,10 +72,10 @@ impl Fisheye {
         } else {
             (point.x / point.z, point.y / point.z)
         };
-        Ok(self.to_pixel(x, y))
+        Ok(self.pixel_of(x, y))
     }
 
-    fn to_pixel(&self, x: f64, y: f64) -> Pixel<Raw> {
+    fn pixel_of(&self, x: f64, y: f64) -> Pixel<Raw> {
         Pixel::new(self.fx_px * x + self.skew_px * y + self.cx_px, self.fy_px * y + self.cy_px)
     }
 
@@ -185,6 +185,6 @@ impl Fisheye {
             by_parameter.set_column(column, &d);
             power *= t2;
         }
-        Ok(ProjectionJacobian { pixel_px: self.to_pixel(x, y).vector(), by_point: k * normal, by_parameter })
+        Ok(ProjectionJacobian { pixel_px: self.pixel_of(x, y).vector(), by_point: k * normal, by_parameter })
     }
 }

@@ -56,7 +56,7 @@ impl Pinhole {
         (d, jacobian)
     }
 
-    fn to_pixel(&self, d: Vector2<f64>) -> Pixel<Raw> {
+    fn pixel_of(&self, d: Vector2<f64>) -> Pixel<Raw> {
         Pixel::new(self.fx_px * d.x + self.cx_px, self.fy_px * d.y + self.cy_px)
     }
 
@@ -103,7 +103,7 @@ impl Pinhole {
     /// See [`super::CameraModel::project`].
     pub fn project(&self, point: &Vector3<f64>) -> Result<Pixel<Raw>, ProjectError> {
         let n = self.normalize(point)?;
-        Ok(self.to_pixel(self.distort(n).0))
+        Ok(self.pixel_of(self.distort(n).0))
     }
 
     /// See [`super::CameraModel::unproject`].
@@ -154,7 +154,7 @@ impl Pinhole {
             by_parameter.set_column(4 + i, &(k * column));
         }
         Ok(ProjectionJacobian {
-            pixel_px: self.to_pixel(d).vector(),
+            pixel_px: self.pixel_of(d).vector(),
             by_point: k * by_normalized * normalized_by_point,
             by_parameter,
         })

@@ -36,7 +36,7 @@ fn the_palm_and_the_fingertip_are_where_the_published_software_has_them() {
 fn logged_commands_reach_their_logged_targets() {
     let folder = match measured_data::folder("nico-touch/touch-245") {
         Ok(folder) => folder,
-        Err(reason) => return println!("{reason}"),
+        Err(reason) => return eprintln!("{reason}"),
     };
     let session = Session::read(&folder).expect("a valid session");
     let table = session.touches.expect("touches");
@@ -56,7 +56,7 @@ fn logged_commands_reach_their_logged_targets() {
     }
     let rms_m = |squares: &[f64]| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
     let (rms_m, elsewhere_m) = (rms_m(&squares), rms_m(&elsewhere));
-    println!("{} commands, rms distance to their targets {:.3} mm", squares.len(), rms_m * 1e3);
+    eprintln!("{} commands, rms distance to their targets {:.3} mm", squares.len(), rms_m * 1e3);
     assert_eq!(squares.len(), 245);
     // Targets are logged in whole millimeters, which alone may leave 0.5 mm.
     assert!(elsewhere.len() == 226 && elsewhere_m < 0.00042, "{elsewhere_m}");

@@ -135,7 +135,7 @@ fn local_scale(corners: &[Vector2<f64>], columns: usize, k: usize) -> Option<Mat
         (false, true) => Some(corners[k + step] - corners[k]),
         (false, false) => None,
     };
-    let x = along(1, k % columns > 0, (k + 1) % columns != 0)?;
+    let x = along(1, !k.is_multiple_of(columns), !(k + 1).is_multiple_of(columns))?;
     let y = along(columns, k >= columns, k + columns < corners.len())?;
     Some(Matrix2::from_columns(&[x, y]))
 }
