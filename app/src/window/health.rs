@@ -166,8 +166,13 @@ fn eyes_details(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
 
 fn calibration_lamp(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
     let Some(in_use) = &view.eyes.in_use else {
-        let reason = Some("Nothing can be measured without one: go to step 1, Eyes.");
-        if Lamp::new("Calibration", "none", Health::Off).reason(reason).show(ui).clicked() {
+        let (value, health, reason) = if view.live.nominal_lenses {
+            let reason = "Views, depth and measured points rest on the lens data of the rig file, not on these eyes: go to step 1, Eyes.";
+            ("nominal", Health::Warning, reason)
+        } else {
+            ("none", Health::Off, "Nothing can be measured without one: go to step 1, Eyes.")
+        };
+        if Lamp::new("Calibration", value, health).reason(Some(reason)).show(ui).clicked() {
             outbox.act(Action::Go(Screen::Collect));
         }
         return;
