@@ -223,10 +223,15 @@ pub(super) fn title(ui: &mut Ui, title: &str, hint: &str) {
     ui.add_space(space::S);
 }
 
+/// Height of the row of buttons at the end of a sheet, points.
+const BUTTON_ROW_HEIGHT: f32 = 36.0;
+
 /// `Some(true)` when the work was asked for, `Some(false)` when it was called off.
 pub(super) fn buttons(ui: &mut Ui, verb: &str, enabled: bool) -> Option<bool> {
     ui.add_space(space::S);
-    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+    // One row high: left alone, the layout would take all the height there is and push the rest out.
+    let row = egui::vec2(ui.available_width(), BUTTON_ROW_HEIGHT);
+    ui.allocate_ui_with_layout(row, egui::Layout::right_to_left(egui::Align::Center), |ui| {
         let done = ui.add_enabled(enabled, super::primary_button(ui, verb)).clicked();
         let cancelled = ui.button("Cancel").clicked();
         if done { Some(true) } else { cancelled.then_some(false) }
