@@ -2,6 +2,7 @@
 //! commands is a replay.
 
 mod robot;
+mod touch;
 
 use std::path::PathBuf;
 
@@ -9,6 +10,9 @@ use plumbline_hardware::SourceSpec;
 use plumbline_model::{CalibrationOptions, Eye};
 use serde::{Deserialize, Serialize};
 
+pub use touch::{
+    ContactWith, GraspTable, ModelsCommand, ScreenContact, ScreenWindow, TablesCommand, TouchCommand,
+};
 pub use robot::{Destination, JOG_DEADLINE_MS, JogRates, MountCommand, RobotCommand, TwinCommand};
 
 /// Anything that the window (or a script) can ask of the engine.
@@ -27,6 +31,10 @@ pub enum Command {
     Twin(TwinCommand),
     /// Calibrating how the eyes sit in the head.
     Mount(MountCommand),
+    /// Touching the screen.
+    Touch(TouchCommand),
+    /// Correction models, and the tables of grasp height and yaw.
+    Models(ModelsCommand),
     /// Long work that is running.
     Job(JobCommand),
     /// Messages to the operator.
@@ -308,5 +316,5 @@ macro_rules! into_command {
 }
 into_command!(
     Source: SourceCommand, Live: LiveCommand, Eyes: EyesCommand, Robot: RobotCommand, Twin: TwinCommand,
-    Mount: MountCommand, Job: JobCommand, Notice: NoticeCommand
+    Mount: MountCommand, Touch: TouchCommand, Models: ModelsCommand, Job: JobCommand, Notice: NoticeCommand
 );

@@ -11,16 +11,20 @@ mod publish;
 #[cfg(test)]
 mod tests;
 mod thread;
+pub mod touch_order;
+mod touching;
 mod twin_desk;
 mod twin_eyes;
 mod worker;
 
-use plumbline_hardware::joints::{Heartbeat, StopSwitch};
+use plumbline_hardware::joints::{Heartbeat, StopSwitch, Touch};
 use plumbline_model::frame::{Head, LeftCamera, Pose};
+use plumbline_model::session::Touchscreen;
 
 pub use thread::{RobotThread, Wires as RobotWires};
 pub use twin_desk::TwinDesk;
 pub use twin_eyes::TwinEyesPlug;
+pub use touch_order::{TouchMeasurement, TouchNews, TouchOrder, TouchRun, TouchStage};
 pub use worker::{News, Worker};
 
 use crate::command::{RobotCommand, TwinCommand};
@@ -42,6 +46,14 @@ pub enum RobotControl {
         /// Place of the left eye.
         head_from_left: Pose<Head, LeftCamera>,
     },
+    /// The touchscreen lies elsewhere.
+    PlaceScreen(Touchscreen),
+    /// Touch the screen once.
+    Touch(Box<touch_order::TouchOrder>),
+    /// End the touch that is under way: up again, if the arm may move.
+    AbandonTouch,
+    /// The touch window felt a contact.
+    Contact(Touch),
     /// A workflow turns the head.
     TurnHead {
         /// Positive to the left, rad.

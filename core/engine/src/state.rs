@@ -16,12 +16,16 @@ use crate::eyes::{EyesOfWorlds, EyesState, Look, World};
 use crate::job_list::JobList;
 use crate::jobs::Outcome;
 use crate::live::{LiveState, Skipped, default_rig};
+use crate::models::{ModelsWorkflow, Surroundings as ModelsSurroundings};
 use crate::mount::{MountState, Surroundings as MountSurroundings};
 use crate::notice::{NoticeLevel, Notices};
-use crate::robot::{News, RobotControl};
+use crate::robot::{News, RobotControl, TouchNews};
 use crate::source::{Control, Note, SourceState};
 use crate::stages::{CornersInput, ProbeInput, ProbeOutput, RectifyInput, RectifyOutput, StagePanic, Timed};
-use crate::view::{JobState, JobView, MountView, RobotView, SourceView, TwinView, View};
+use crate::touch::{Surroundings as TouchSurroundings, TouchWorkflow};
+use crate::view::{
+    Connection, JobState, JobView, ModelsView, MountView, RobotView, SourceView, TouchView, TwinView, View,
+};
 use crate::work::WorkResult;
 
 /// Everything the engine knows.
@@ -35,6 +39,10 @@ pub struct State {
     twins_started: u64,
     rig: Arc<Rig>,
     mounts: BTreeMap<World, MountState>,
+    /// Whose arm: that of the connected robot, else that of the world whose eyes are shown.
+    arm_of: World,
+    touches: BTreeMap<World, TouchWorkflow>,
+    models: BTreeMap<World, ModelsWorkflow>,
     /// Work belongs to the world it was started for, whatever is shown when it ends.
     started_by: BTreeMap<JobId, World>,
     jobs: JobList,
@@ -61,6 +69,15 @@ impl State {
                 .into_iter()
                 .map(|world| (world, MountState::new(&world.folder(data_dir))))
                 .collect(),
+            arm_of: World::default(),
+            touches: WORLDS
+                .into_iter()
+                .map(|world| (world, TouchWorkflow::new(&world.folder(data_dir))))
+                .collect(),
+            models: WORLDS
+                .into_iter()
+                .map(|world| (world, ModelsWorkflow::new(&world.folder(data_dir))))
+                .collect(),
             started_by: BTreeMap::new(),
             jobs: JobList::default(),
             notices: Notices::default(),
@@ -76,6 +93,14 @@ impl State {
             });
             state.with_mount_of(world, |mount, around, context| {
                 let work = mount.restore(around.rig);
+                context.start(work);
+            });
+            state.with_touch_of(world, |touch, around, context| {
+                let work = touch.restore(around.rig);
+                context.start(work);
+            });
+            state.with_models_of(world, |models, around, context| {
+                let work = models.restore(around.rig);
                 context.start(work);
             });
         }
@@ -99,6 +124,12 @@ impl State {
             Command::Twin(command) => self.actions.push(Action::Robot(command.into())),
             Command::Mount(command) => {
                 self.with_mount(|mount, around, context| mount.apply(command, around, context));
+            }
+            Command::Touch(command) => {
+                self.with_touch(|touch, around, context| touch.apply(command, around, context));
+            }
+            Command::Models(command) => {
+                self.with_models(|models, around, context| models.apply(command, around, context));
             }
             Command::Job(JobCommand::Cancel(id)) if self.jobs.is_running(id) => {
                 self.actions.push(Action::Cancel(id));
@@ -155,6 +186,85 @@ impl State {
         self.use_mount();
     }
 
+    fn with_touch(
+        &mut self,
+        act: impl FnOnce(&mut TouchWorkflow, &TouchSurroundings<'_>, &mut Context<'_>),
+    ) {
+        self.with_touch_of(self.arm_of, act);
+    }
+
+    fn with_touch_of(
+        &mut self,
+        world: World,
+        act: impl FnOnce(&mut TouchWorkflow, &TouchSurroundings<'_>, &mut Context<'_>),
+    ) {
+        let Self { source, live, jobs, notices, actions, robot, rig, touches, models, .. } = self;
+        let (Some(touch), Some(models)) = (touches.get_mut(&world), models.get(&world)) else { return };
+        let before = actions.len();
+        let mut context = Context { notices, newest: live.newest(), source: source.view(), jobs, actions };
+        let usable = models.usable();
+        act(touch, &TouchSurroundings { rig, robot, models: &usable }, &mut context);
+        self.note_world(world, before);
+        self.use_screen();
+    }
+
+    fn with_models(
+        &mut self,
+        act: impl FnOnce(&mut ModelsWorkflow, &ModelsSurroundings<'_>, &mut Context<'_>),
+    ) {
+        self.with_models_of(self.arm_of, act);
+    }
+
+    fn with_models_of(
+        &mut self,
+        world: World,
+        act: impl FnOnce(&mut ModelsWorkflow, &ModelsSurroundings<'_>, &mut Context<'_>),
+    ) {
+        let rig = self.rig_of(world);
+        let Self { source, live, jobs, notices, actions, robot, touches, models, .. } = self;
+        let Some(models) = models.get_mut(&world) else { return };
+        let before = actions.len();
+        let mut context = Context { notices, newest: live.newest(), source: source.view(), jobs, actions };
+        let newest_session = touches.get(&world).and_then(TouchWorkflow::session);
+        act(models, &ModelsSurroundings { rig: &rig, robot, newest_session }, &mut context);
+        self.note_world(world, before);
+    }
+
+    /// Work that was just asked for belongs to this world.
+    fn note_world(&mut self, world: World, before: usize) {
+        for action in &self.actions[before..] {
+            if let Action::Start(id, _) = action {
+                self.started_by.insert(*id, world);
+            }
+        }
+    }
+
+    /// The robot of a world, its touchscreen where it was measured to lie.
+    fn rig_of(&self, world: World) -> Arc<Rig> {
+        match self.touches.get(&world).and_then(TouchWorkflow::screen) {
+            None => self.rig.clone(),
+            Some(screen) => {
+                let mut rig = (*self.rig).clone();
+                rig.touchscreen = screen.clone();
+                Arc::new(rig)
+            }
+        }
+    }
+
+    /// The screen lies where it was measured, for everything that draws or touches it.
+    fn use_screen(&mut self) {
+        let shown = self.touches.get(&self.arm_of).and_then(TouchWorkflow::screen);
+        let screen = shown.unwrap_or(&self.rig.touchscreen).clone();
+        if self.live.rig().touchscreen == screen {
+            return;
+        }
+        let mut rig = (*self.live.rig()).clone();
+        rig.touchscreen = screen.clone();
+        self.live.set_rig(Arc::new(rig));
+        self.eyes.set_workspace(self.live.workspace());
+        self.actions.push(Action::Robot(RobotControl::PlaceScreen(screen)));
+    }
+
     /// The eyes sit where the mount in use says, for everything that looks or turns the head.
     fn use_mount(&mut self) {
         let shown = self.mounts.get(&self.eyes.shown);
@@ -164,7 +274,7 @@ impl State {
         if self.live.rig().eyes.head_from_left == head_from_left {
             return;
         }
-        let mut rig = (*self.rig).clone();
+        let mut rig = (*self.live.rig()).clone();
         rig.eyes.head_from_left = head_from_left;
         self.live.set_rig(Arc::new(rig));
         self.eyes.set_workspace(self.live.workspace());
@@ -216,7 +326,18 @@ impl State {
             self.actions.push(Action::Source(Control::Open(SourceSpec::Twin)));
         }
         (self.robot, self.twin) = (news.robot, news.twin);
+        self.arm_of = match &self.robot.connection {
+            Connection::Connected { twin, .. } => World::of_robot(*twin),
+            _ => self.arm_of,
+        };
+        self.use_screen();
         self.with_mount(|mount, around, context| mount.step(around, Instant::now(), context));
+        self.with_touch(|touch, around, context| touch.step(around, Instant::now(), context));
+    }
+
+    /// The robot's thread tells how a touch is doing.
+    pub fn touch_news(&mut self, news: TouchNews) {
+        self.with_touch(|touch, around, context| touch.news(news, around, context));
     }
 
     /// Rectification has something.
@@ -319,6 +440,18 @@ impl State {
                 let world = self.world_of(id);
                 self.with_mount_of(world, |mount, _, _| mount.work_done(id, *result));
             }
+            WorkResult::Touch(result) => {
+                let world = self.world_of(id);
+                self.with_touch_of(world, |touch, around, context| {
+                    touch.work_done(id, *result, around, context);
+                });
+            }
+            WorkResult::Models(result) => {
+                let world = self.world_of(id);
+                self.with_models_of(world, |models, around, context| {
+                    models.work_done(id, *result, around, context);
+                });
+            }
         }
     }
 
@@ -331,6 +464,12 @@ impl State {
         self.eyes.of_mut(world).work_ended(id);
         if let Some(mount) = self.mounts.get_mut(&world) {
             mount.work_ended(id);
+        }
+        if let Some(touch) = self.touches.get_mut(&world) {
+            touch.work_ended(id);
+        }
+        if let Some(models) = self.models.get_mut(&world) {
+            models.work_ended(id);
         }
     }
 
@@ -354,6 +493,21 @@ impl State {
         self.mounts.get(&self.eyes.shown).map(|mount| mount.view(&around)).unwrap_or_default()
     }
 
+    fn touch_view(&self) -> TouchView {
+        let (Some(touch), Some(models)) = (self.touches.get(&self.arm_of), self.models.get(&self.arm_of))
+        else {
+            return TouchView::default();
+        };
+        touch.view(&TouchSurroundings { rig: &self.rig, robot: &self.robot, models: &models.usable() })
+    }
+
+    fn models_view(&self) -> ModelsView {
+        let newest_session = self.touches.get(&self.arm_of).and_then(TouchWorkflow::session);
+        let rig = self.rig_of(self.arm_of);
+        let around = ModelsSurroundings { rig: &rig, robot: &self.robot, newest_session };
+        self.models.get(&self.arm_of).map(|models| models.view(&around)).unwrap_or_default()
+    }
+
     /// What the window shows.
     pub fn view(&mut self, skipped: Skipped, lost_commands: u64, now: Instant) -> View {
         self.revision += 1;
@@ -365,6 +519,8 @@ impl State {
             robot: self.robot.clone(),
             twin: self.twin.clone(),
             mount: Arc::new(self.mount_view()),
+            touch: Arc::new(self.touch_view()),
+            models: Arc::new(self.models_view()),
             jobs: self.jobs.view(),
             notices: self.notices.view(),
             lost_commands,

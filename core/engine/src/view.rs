@@ -5,8 +5,10 @@
 mod eyes;
 mod live;
 mod map;
+mod models;
 mod mount;
 mod robot;
+mod touch;
 mod twin;
 
 use std::sync::Arc;
@@ -21,10 +23,15 @@ pub use live::{
     SourceCounters, SourceStatus, SourceView, StageStatistics, Statistics,
 };
 pub use map::TableMap;
+pub use models::{EarlierModel, Field, MapTouch, ModelMap, ModelsView, TablesView, TouchSession};
 pub use mount::{HeadViewSummary, MountSummary, MountView};
 pub use robot::{
     BusView, Connection, JointSample, JointView, MotionState, PathCheck, PortView, PoseView, Preview,
     RobotView, TipPlace,
+};
+pub use touch::{
+    ContactSource, ContactView, PlanView, TouchCounts, TouchFigures, TouchOutcome, TouchPhase, TouchState,
+    TouchView, UnfinishedRun,
 };
 pub use twin::{FaultView, ToyView, TwinView};
 
@@ -48,6 +55,10 @@ pub struct View {
     pub twin: Arc<TwinView>,
     /// Calibrating how the eyes sit in the head.
     pub mount: Arc<MountView>,
+    /// Touching the screen.
+    pub touch: Arc<TouchView>,
+    /// Correction models, and the tables of grasp height and yaw.
+    pub models: Arc<ModelsView>,
     /// Long work, oldest first: what is running and what has ended and was not dismissed.
     pub jobs: Arc<[JobView]>,
     /// Messages, oldest first.

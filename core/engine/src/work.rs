@@ -6,7 +6,9 @@ use plumbline_model::JobContext;
 
 use crate::eyes::work::{EyesResult, EyesWork};
 use crate::jobs::JobError;
+use crate::models::work::{ModelsResult, ModelsWork};
 use crate::mount::work::{MountResult, MountWork};
+use crate::touch::work::{TouchResult, TouchWork};
 
 /// Something to do beside the window.
 #[derive(Clone, Debug)]
@@ -17,6 +19,22 @@ pub enum Work {
     Eyes(Box<EyesWork>),
     /// Part of calibrating how they sit in the head.
     Mount(Box<MountWork>),
+    /// Part of touching the screen.
+    Touch(Box<TouchWork>),
+    /// Part of correction models and tables.
+    Models(Box<ModelsWork>),
+}
+
+impl From<TouchWork> for Work {
+    fn from(work: TouchWork) -> Self {
+        Self::Touch(Box::new(work))
+    }
+}
+
+impl From<ModelsWork> for Work {
+    fn from(work: ModelsWork) -> Self {
+        Self::Models(Box::new(work))
+    }
 }
 
 impl From<MountWork> for Work {
@@ -40,6 +58,10 @@ pub enum WorkResult {
     Eyes(Box<EyesResult>),
     /// Part of calibrating how they sit in the head.
     Mount(Box<MountResult>),
+    /// Part of touching the screen.
+    Touch(Box<TouchResult>),
+    /// Part of correction models and tables.
+    Models(Box<ModelsResult>),
 }
 
 impl Work {
@@ -49,6 +71,8 @@ impl Work {
             Self::ListCameras => "Look for cameras".to_owned(),
             Self::Eyes(work) => work.title(),
             Self::Mount(work) => work.title(),
+            Self::Touch(work) => work.title(),
+            Self::Models(work) => work.title(),
         }
     }
 
@@ -58,6 +82,8 @@ impl Work {
             Self::ListCameras => true,
             Self::Eyes(work) => work.is_quiet(),
             Self::Mount(work) => work.is_quiet(),
+            Self::Touch(work) => work.is_quiet(),
+            Self::Models(work) => work.is_quiet(),
         }
     }
 
@@ -67,6 +93,8 @@ impl Work {
             Self::ListCameras => Ok(WorkResult::Cameras(camera_devices())),
             Self::Eyes(work) => work.run(context).map(Box::new).map(WorkResult::Eyes),
             Self::Mount(work) => work.run(context).map(Box::new).map(WorkResult::Mount),
+            Self::Touch(work) => work.run(context).map(Box::new).map(WorkResult::Touch),
+            Self::Models(work) => work.run(context).map(Box::new).map(WorkResult::Models),
         }
     }
 }
@@ -78,6 +106,8 @@ impl WorkResult {
             Self::Cameras(cameras) => format!("{} cameras", cameras.len()),
             Self::Eyes(result) => result.summary(),
             Self::Mount(result) => result.summary(),
+            Self::Touch(result) => result.summary(),
+            Self::Models(result) => result.summary(),
         }
     }
 }

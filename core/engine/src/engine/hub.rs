@@ -20,7 +20,7 @@ use crate::jobs::{JobHandle, on_job_workers, panic_message};
 use crate::journal::{Entry, Journal};
 use crate::live::{Skipped, default_rig};
 use crate::notice::{Notice, NoticeLevel};
-use crate::robot::{News, RobotThread, RobotWires, TwinDesk, TwinEyesPlug, Worker};
+use crate::robot::{News, RobotThread, RobotWires, TouchNews, TwinDesk, TwinEyesPlug, Worker};
 use crate::settings::EngineSettings;
 use crate::slot::{Putter, Taker, newest_value_slot};
 use crate::source::{Note, Player, SourceThread, Wires};
@@ -91,6 +91,7 @@ struct Pipeline {
     notes: Receiver<Note>,
     robot: RobotThread,
     news: Taker<News>,
+    touches: Receiver<TouchNews>,
     rectify: StageThread<RectifyInput, RectifyOutput>,
     corners: StageThread<CornersInput, Look>,
     probe: StageThread<ProbeInput, ProbeOutput>,
@@ -289,7 +290,9 @@ impl Pipeline {
         let eyes = TwinEyesPlug::default();
         let worker =
             Worker::new(default_rig(), data_dir, shared.switches.clone(), TwinDesk::new(eyes.clone()));
-        let robot_wires = RobotWires { news: news_in, notes: notes_in, bell: bell.clone() };
+        let (touches_in, touches) = crossbeam_channel::bounded(NOTES_WAITING);
+        let robot_wires =
+            RobotWires { news: news_in, touches: touches_in, notes: notes_in, bell: bell.clone() };
         let rectify = || {
             let mut stage = RectifyStage::default();
             move |input| stage.process(input)
@@ -306,6 +309,7 @@ impl Pipeline {
             source: SourceThread::start(Player::with_opener(eyes.opener()), wires)?,
             robot: RobotThread::start(worker, robot_wires)?,
             news,
+            touches,
             frames,
             frames_in,
             views,
@@ -330,6 +334,10 @@ impl Pipeline {
         }
         if let Some(news) = self.news.try_take() {
             state.robot_changed(news);
+            any = true;
+        }
+        for news in self.touches.try_iter() {
+            state.touch_news(news);
             any = true;
         }
         if let Some((opened, frame)) = self.frames.try_take() {

@@ -28,6 +28,11 @@ impl World {
         }
     }
 
+    /// Whose arm is connected.
+    pub fn of_robot(twin: bool) -> Self {
+        if twin { Self::Twin } else { Self::Robot }
+    }
+
     /// Whose eyes a source shows.
     pub fn of(source: Option<&SourceSpec>) -> Self {
         match source {

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError};
 
 use super::RobotControl;
+use super::touch_order::TouchNews;
 use super::worker::{News, Worker};
 use crate::bell::Bell;
 use crate::notice::NoticeLevel;
@@ -22,6 +23,8 @@ const IDLE: Duration = Duration::from_millis(500);
 pub struct Wires {
     /// Newest state.
     pub news: Putter<News>,
+    /// How touches are doing; none is lost.
+    pub touches: Sender<TouchNews>,
     /// Messages for the operator.
     pub notes: Sender<(NoticeLevel, String)>,
     /// Rung when there is something.
@@ -91,6 +94,12 @@ fn tell(worker: &mut Worker, wires: &Wires) {
     for note in worker.take_notes() {
         if let Err(TrySendError::Full((_, text))) = wires.notes.try_send(note) {
             log::warn!("too many messages at once, not shown: {text}");
+        }
+    }
+    for news in worker.take_touch_news() {
+        match wires.touches.try_send(news) {
+            Ok(()) => wires.bell.ring(),
+            Err(error) => log::error!("news of a touch was lost: {error}"),
         }
     }
     if let Some(news) = worker.take_news() {

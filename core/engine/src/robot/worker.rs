@@ -17,6 +17,7 @@ use super::history::Histories;
 use super::jog::joint_rates;
 use super::path::{Paths, duration};
 use super::poses::PoseLibrary;
+use super::touching::Touching;
 use super::twin_desk::TwinDesk;
 use super::{RobotControl, Switches};
 use crate::command::{Destination, JOG_DEADLINE_MS, JogRates, RobotCommand};
@@ -79,6 +80,7 @@ pub struct Worker {
     pub(super) histories: Histories,
     pub(super) trail: VecDeque<(Instant, Point<Robot>)>,
     pub(super) twins_started: u64,
+    pub(super) touching: Touching,
     notes: Vec<(NoticeLevel, String)>,
     pub(super) told: Option<News>,
     pub(super) told_at: Option<Instant>,
@@ -113,6 +115,7 @@ impl Worker {
             histories: Histories::new(rig.servos.len()),
             trail: VecDeque::new(),
             twins_started: 0,
+            touching: Touching::default(),
             notes: problem.map(|text| (NoticeLevel::Warning, text)).into_iter().collect(),
             told: None,
             told_at: None,
@@ -158,6 +161,22 @@ impl Worker {
             RobotControl::Robot(command) => self.robot(command),
             RobotControl::Twin(command) => self.desk.control(command, &self.rig),
             RobotControl::TurnHead { pan_rad, tilt_rad } => self.turn_head(pan_rad, tilt_rad),
+            RobotControl::Touch(order) => {
+                self.begin_touch(*order, Instant::now());
+                Ok(())
+            }
+            RobotControl::AbandonTouch => {
+                self.abandon_touch();
+                Ok(())
+            }
+            RobotControl::Contact(contact) => {
+                self.felt_by_window(contact);
+                Ok(())
+            }
+            RobotControl::PlaceScreen(screen) => {
+                Arc::make_mut(&mut self.rig).touchscreen = screen;
+                Ok(())
+            }
             RobotControl::PlaceEyes { head_from_left } => {
                 Arc::make_mut(&mut self.rig).eyes.head_from_left = head_from_left;
                 Ok(())
@@ -458,6 +477,7 @@ impl Worker {
     pub fn tick(&mut self, now: Instant) {
         self.desk.tick(now, &self.rig);
         self.step_jog(now);
+        self.step_touch(now);
         let Some(state) = self.arm.as_ref().and_then(|arm| arm.state()) else { return };
         if let Some(reason) = &state.gone {
             let Connection::Connected { to, .. } = self.connection.clone() else { return };

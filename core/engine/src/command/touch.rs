@@ -1,0 +1,216 @@
+//! Commands of touching the screen, of correction models, and of the tables of grasp height and
+//! yaw.
+
+use std::path::PathBuf;
+
+use plumbline_correction::Method;
+use plumbline_model::touch_plan::PlanOptions;
+use serde::{Deserialize, Serialize};
+
+/// Touching the screen, in the order of work.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TouchCommand {
+    /// Plans touches and looks which of them can be reached. Moves nothing.
+    Plan(PlanOptions),
+    /// With which model targets are corrected before they are sent; `None`: with none. Plans anew.
+    CorrectWith(Option<Method>),
+    /// Starts the planned run in a new session. The arm moves.
+    Start,
+    /// Holds after the touch that is under way.
+    Pause,
+    /// Goes on with a paused or unfinished run, exactly where it was. The arm moves.
+    Resume,
+    /// Leaves the touch out that is under way or next.
+    Skip,
+    /// Touches a target once more at the end; its earlier touch is kept but does not count.
+    Redo {
+        /// Number of the planned touch, from 1.
+        number: usize,
+    },
+    /// Does not count a touch.
+    Reject {
+        /// Number of the planned touch.
+        number: usize,
+    },
+    /// Counts a rejected touch again.
+    Restore {
+        /// Number of the planned touch.
+        number: usize,
+    },
+    /// Ends the run with what there is; the session stays.
+    Finish,
+    /// Says that the screen stands on a block and what the hand carries, as the plan asks.
+    Prepared {
+        /// Height of the block under the screen, m.
+        screen_height_m: f64,
+        /// Known mass at the palm, kg.
+        payload_kg: f64,
+    },
+    /// Opens a run that was begun earlier, finished or not.
+    Open {
+        /// Its session folder.
+        session: PathBuf,
+    },
+    /// Forgets the plan and shows no session.
+    Close,
+    /// Makes the proposed place of the screen the one in use.
+    AcceptPlacement,
+    /// Forgets the proposed place of the screen.
+    DiscardPlacement,
+    /// Goes back to the place in the rig file.
+    UseNominalPlacement,
+    /// The touch window was touched, or clicked with the mouse.
+    Contact(ScreenContact),
+    /// The touch window has opened, was resized, or is gone (`None`).
+    Window(Option<ScreenWindow>),
+}
+
+/// A contact that the touch window felt.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScreenContact {
+    /// Column, px of the screen.
+    pub u_px: f64,
+    /// Row, px of the screen.
+    pub v_px: f64,
+    /// Time between the contact and this command, s.
+    pub age_s: f64,
+    /// With what.
+    pub with: ContactWith,
+    /// Whether it begins (`true`) or ends.
+    pub down: bool,
+}
+
+/// What touched the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ContactWith {
+    /// A finger or a pen.
+    Touch,
+    /// The mouse, for trying it out.
+    Mouse,
+}
+
+/// The touch window as the window system has it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScreenWindow {
+    /// Physical pixels across.
+    pub width_px: u32,
+    /// Physical pixels down.
+    pub height_px: u32,
+    /// Whether it fills its monitor.
+    pub full_screen: bool,
+}
+
+/// Training and using correction models.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ModelsCommand {
+    /// Looks anew which sessions with touches there are.
+    ListSessions,
+    /// Which session is learned from.
+    ChooseSession {
+        /// Its folder.
+        session: PathBuf,
+    },
+    /// Trains these models and compares them on the same held-out touches; gives proposals.
+    Train {
+        /// Which.
+        methods: Vec<Method>,
+        /// Same seed, same models.
+        seed: u64,
+        /// As published (Adam, 200 epochs), or as this program does it.
+        published_recipe: bool,
+    },
+    /// Which model's maps and numbers are shown.
+    Show(Method),
+    /// Makes a proposed model part of the rig.
+    Accept(Method),
+    /// Forgets all proposals.
+    Discard,
+    /// Goes back to the model that was in use before.
+    Undo,
+    /// Uses no model.
+    UseNone,
+    /// Reads a model file (own, ONNX, or published weights as JSON) as a proposal.
+    Import {
+        /// Which file.
+        file: PathBuf,
+    },
+    /// Writes a model.
+    Export {
+        /// Which; a proposal goes before the one in use.
+        method: Method,
+        /// As ONNX rather than as JSON.
+        onnx: bool,
+        /// Where to.
+        file: PathBuf,
+    },
+    /// Edits the tables of grasp height and yaw.
+    Tables(TablesCommand),
+}
+
+/// Editing the tables of grasp height and yaw.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TablesCommand {
+    /// Reads a table from a CSV file in place of the present one.
+    Import {
+        /// Which table.
+        table: GraspTable,
+        /// The file.
+        file: PathBuf,
+    },
+    /// Writes a table.
+    Export {
+        /// Which table.
+        table: GraspTable,
+        /// The file.
+        file: PathBuf,
+    },
+    /// Adds a point.
+    Add {
+        /// Which table.
+        table: GraspTable,
+        /// Robot frame, m; z counts for yaw only.
+        at_m: [f64; 3],
+        /// Height, m, or yaw, rad.
+        value: f64,
+    },
+    /// Adds a point where the palm is now, with its height or yaw.
+    AddHere {
+        /// Which table.
+        table: GraspTable,
+    },
+    /// Moves a point or changes its value.
+    Change {
+        /// Which table.
+        table: GraspTable,
+        /// Counted from 0.
+        point: usize,
+        /// Robot frame, m.
+        at_m: [f64; 3],
+        /// Height, m, or yaw, rad.
+        value: f64,
+    },
+    /// Removes a point.
+    Remove {
+        /// Which table.
+        table: GraspTable,
+        /// Counted from 0.
+        point: usize,
+    },
+    /// Takes back the last change.
+    Undo,
+}
+
+/// One of the two tables.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum GraspTable {
+    /// Grasp height over (x, y).
+    #[default]
+    Height,
+    /// Yaw over (x, y, z).
+    Yaw,
+}

@@ -1,0 +1,102 @@
+//! What the robot's thread is told about one touch, and what it tells.
+
+use std::time::{Duration, Instant};
+
+use plumbline_model::robot::Posture;
+use plumbline_model::session::Screen;
+use plumbline_model::{Pixel, Point, Robot};
+
+/// One touch: go above, wait until the arm stands, lower until something is felt, log, go up.
+/// Only the joints of one arm move.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TouchOrder {
+    /// Number of the planned touch, from 1.
+    pub number: usize,
+    /// Counts orders, so that a report is never taken for another's.
+    pub order: u64,
+    /// Name of the tip that touches.
+    pub tip: String,
+    /// Postures on the way to the one above the target, the last one above it. Each was checked
+    /// against the one before.
+    pub approach: Vec<Posture>,
+    /// Postures while lowering, a few millimeters apart, the last one the lowest.
+    pub lower: Vec<Posture>,
+    /// Place of the tip (by the model) in each posture of `lower`.
+    pub lower_tip: Vec<Point<Robot>>,
+    /// Speed of the tip while lowering, m/s.
+    pub lower_speed_m_s: f64,
+    /// Peak joint speed on the way, rad/s.
+    pub speed_rad_s: f64,
+    /// Time after the contact until the encoders are read once more.
+    pub dwell: Duration,
+    /// A contact outside of this many pixels of the target is somebody else's; `None` accepts any.
+    pub target: Pixel<Screen>,
+    /// Largest distance of a plausible contact from the target, px.
+    pub plausible_px: f64,
+}
+
+/// What the arm does in a touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TouchStage {
+    /// On the way to above the target.
+    Approaching,
+    /// Above the target; waits until the encoders stand still.
+    Settling,
+    /// Lowers.
+    Lowering,
+    /// Has touched, and stays for a moment.
+    Dwelling,
+    /// Goes up again.
+    Retreating,
+}
+
+/// How an order is doing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TouchNews {
+    /// Which order.
+    pub order: u64,
+    /// Number of the planned touch.
+    pub number: usize,
+    /// Under way, or ended.
+    pub state: TouchRun,
+}
+
+/// Under way, or ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TouchRun {
+    /// Under way.
+    Doing(TouchStage),
+    /// There was a contact; the arm is up again.
+    Touched(Box<TouchMeasurement>),
+    /// There was none; the arm is up again. A sentence: the lowest place was reached, the load was
+    /// too large.
+    Missed(String),
+    /// The run cannot go on without the operator: STOP, a lost connection, a refused move. The
+    /// arm stands where it is. A sentence.
+    Interrupted(String),
+}
+
+/// What was measured at a contact. Lists are in the order of the tip's chain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TouchMeasurement {
+    /// First contact.
+    pub pixel: Pixel<Screen>,
+    /// When.
+    pub at: Instant,
+    /// Angles commanded at that moment, rad.
+    pub commanded_rad: Vec<Option<f64>>,
+    /// Encoders at that moment, rad.
+    pub encoder_rad: Vec<Option<f64>>,
+    /// Encoders after the dwell, rad.
+    pub later_encoder_rad: Vec<Option<f64>>,
+    /// Sign of the last motion of each joint: −1, 0 or 1.
+    pub direction: Vec<i8>,
+    /// Temperatures, °C.
+    pub temperature_c: Vec<Option<f64>>,
+    /// Loads as signed shares of the stall torque, at the contact.
+    pub load: Vec<Option<f64>>,
+    /// Duration of the lowering up to the contact, s.
+    pub move_secs: f64,
+    /// Seconds since the connection was made.
+    pub connected_secs: f64,
+}

