@@ -17,6 +17,8 @@ pub mod pixel;
 pub mod robot;
 pub mod session;
 pub mod stereo;
+pub mod touch_plan;
+pub mod touchscreen;
 pub mod workspace;
 
 pub use aim::{AimError, AimedPair};
@@ -35,4 +37,8 @@ pub use job::{Cancelled, JobContext, Unattended};
 pub use pixel::{Eye, Pixel, PixelSpace, Raw, Rectified};
 pub use session::{Session, SessionError};
 pub use stereo::StereoCameras;
+pub use touch_plan::{
+    Pattern, PlanError, PlanOptions, PlannedTouch, Purpose, Side, Sides, TouchArea, TouchPlan,
+};
+pub use touchscreen::{PlacementError, ScreenPlacement, place_screen};
 pub use workspace::Workspace;

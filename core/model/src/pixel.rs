@@ -27,11 +27,14 @@ impl PixelSpace for Rectified {
 }
 
 /// A position in an image, in pixels.
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(bound = "")]
 pub struct Pixel<S: PixelSpace> {
     /// Column, to the right.
     pub u_px: f64,
     /// Row, downward.
     pub v_px: f64,
+    #[serde(skip)]
     space: PhantomData<S>,
 }
 

@@ -1,0 +1,59 @@
+//! Plans that are good to start with.
+
+use super::{Pattern, PlanOptions, Purpose, Sides, TouchArea};
+
+impl PlanOptions {
+    /// A first calibration: about 80 touches. A grid for the shape of the error over the area,
+    /// lines for what is bent in between, five places again and again for the noise floor.
+    pub fn first(area: TouchArea) -> Self {
+        let patterns = vec![
+            Pattern::Grid { columns: 7, rows: 4 },
+            Pattern::Lines { horizontal: 2, vertical: 1, diagonal: 2, points: 7 },
+            Pattern::Again { targets: 5, times: 4 },
+        ];
+        Self { patterns, ..Self::plain(area, Purpose::Train) }
+    }
+
+    /// The least that a model can be trained on: about 24 touches.
+    pub fn quick(area: TouchArea) -> Self {
+        let patterns = vec![Pattern::Grid { columns: 5, rows: 4 }, Pattern::Again { targets: 2, times: 2 }];
+        Self { patterns, ..Self::plain(area, Purpose::Train) }
+    }
+
+    /// The richest experiment: two sides, three heights, with and without a weight, so that
+    /// causes of the error can be told apart.
+    pub fn rich(area: TouchArea) -> Self {
+        let patterns = vec![Pattern::Grid { columns: 5, rows: 3 }, Pattern::Again { targets: 2, times: 1 }];
+        Self {
+            patterns,
+            sides: Sides::LeftAndRight,
+            screen_heights_m: vec![0.0, 0.06, 0.12],
+            payloads_kg: vec![0.0, 0.25],
+            ..Self::plain(area, Purpose::Train)
+        }
+    }
+
+    /// New random targets to see how well a model reaches.
+    pub fn check_reach(area: TouchArea, count: usize, seed: u64) -> Self {
+        let patterns = vec![Pattern::Random { count }];
+        Self { patterns, seed, ..Self::plain(area, Purpose::Check) }
+    }
+
+    /// Where the screen lies: the corners of the area, each twice.
+    pub fn place_screen(area: TouchArea) -> Self {
+        Self { patterns: vec![Pattern::Corners], repeats: 2, ..Self::plain(area, Purpose::PlaceScreen) }
+    }
+
+    fn plain(area: TouchArea, purpose: Purpose) -> Self {
+        Self {
+            area,
+            patterns: vec![],
+            repeats: 1,
+            sides: Sides::Above,
+            screen_heights_m: vec![0.0],
+            payloads_kg: vec![0.0],
+            seed: 1,
+            purpose,
+        }
+    }
+}

@@ -1,0 +1,337 @@
+//! Where the screen lies, measured by touching it.
+
+use std::path::PathBuf;
+
+use nalgebra::{
+    Isometry3, Matrix2, Matrix3, Matrix6, Rotation3, Translation3, UnitQuaternion, Vector2, Vector3,
+};
+
+use crate::formats::FormatError;
+use crate::frame::{Point, Robot};
+use crate::pixel::Pixel;
+use crate::session::{Screen, Touchscreen};
+
+/// Spread of a single touch per axis that is assumed while there are too few touches to judge it, m.
+pub const USUAL_NOISE_M: f64 = 1.5e-3;
+/// From this many degrees of freedom on (three per touch, less six) the residuals are believed.
+const TELLING_FREEDOM: usize = 9;
+/// Touches must spread at least this far (standard deviation across their longest line), m.
+const LEAST_SPREAD_M: f64 = 0.02;
+/// A placement that leaves more than this (rms) is no placement, m.
+const LARGEST_RMS_M: f64 = 0.03;
+/// A screen turned farther than this from where it nominally lies was touched in another order.
+const LARGEST_TURN_RAD: f64 = std::f64::consts::FRAC_PI_4;
+
+/// Where the screen lies, as touches say: nominal pose moved rigidly, size kept.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScreenPlacement {
+    /// The screen where it lies.
+    pub screen: Touchscreen,
+    /// How far its middle lies from its nominal place, robot frame, m.
+    pub moved_m: [f64; 3],
+    /// How it is turned against its nominal pose: rotation vector, robot frame, rad.
+    pub turned_rad: [f64; 3],
+    /// Standard deviation of `moved_m`, m.
+    pub sd_m: [f64; 3],
+    /// Standard deviation of `turned_rad`, rad.
+    pub sd_rad: [f64; 3],
+    /// √(Σ|residual|² / touches), m.
+    pub rms_m: f64,
+    /// Number of touches it was found from.
+    pub touches: usize,
+    /// Per touch, in their order: fingertip − its pixel on the placed screen, robot frame, m.
+    pub residuals_m: Vec<[f64; 3]>,
+    /// What the operator should know, a sentence each.
+    pub remarks: Vec<String>,
+    /// When it was found.
+    pub at: jiff::Timestamp,
+    /// Short name of the rig it belongs to; empty until [`Self::of_rig`].
+    pub rig: String,
+}
+
+/// Why the screen was not placed, or a placement not read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum PlacementError {
+    /// Fewer than three touches.
+    #[error("{touches} touched places do not tell how the screen lies: touch at least three of its corners")]
+    TooFew {
+        /// How many there were.
+        touches: usize,
+    },
+    /// A touch is not a number, or the screen has no size.
+    #[error("{what} is not a number that can be used: leave it out or measure it again")]
+    NotFinite {
+        /// Which.
+        what: String,
+    },
+    /// A pixel that the screen does not have.
+    #[error(
+        "touch {number} at pixel ({u_px:.0}, {v_px:.0}) lies beside the screen of {width_px}×{height_px} pixels: \
+         check the resolution in the rig file"
+    )]
+    OffScreen {
+        /// Which touch, counted from 1.
+        number: usize,
+        /// Its column.
+        u_px: f64,
+        /// Its row.
+        v_px: f64,
+        /// Pixels across.
+        width_px: u32,
+        /// Pixels down.
+        height_px: u32,
+    },
+    /// All touches near one line.
+    #[error(
+        "the touched places lie on a line (they spread {} mm across it), so how the screen is turned about it \
+         stays unknown: touch a corner away from it", mm(.spread_m)
+    )]
+    OnALine {
+        /// Standard deviation across the line, m.
+        spread_m: f64,
+    },
+    /// The placed screen would face away.
+    #[error(
+        "the touches only fit to a mirrored screen: corners were touched in another order, or the rig file's \
+         u_axis and v_axis have the wrong handedness"
+    )]
+    Mirrored,
+    /// The placed screen would be turned very far.
+    #[error(
+        "the touches fit to a screen turned by {:.0}° from where the rig file places it: corners were touched \
+         in another order, or the rig file is of another table", .turned_rad.to_degrees()
+    )]
+    Turned {
+        /// Angle, rad.
+        turned_rad: f64,
+    },
+    /// The touches do not fit to a rigid screen of this size.
+    #[error(
+        "the touches miss a screen of this size by {} mm rms (the worst is touch {worst} with {} mm): check the \
+         size in the rig file, and that the fingertip of the model is the one that touched",
+        mm(.rms_m), mm(.worst_m)
+    )]
+    Implausible {
+        /// √(Σ|residual|² / touches), m.
+        rms_m: f64,
+        /// The touch that fits least, counted from 1.
+        worst: usize,
+        /// Its distance, m.
+        worst_m: f64,
+    },
+    /// The file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FormatError),
+    /// Not a placement.
+    #[error("{file} is not a screen placement that this program reads: {reason}. Place the screen again")]
+    NotPlacement {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A placement for another rig.
+    #[error(
+        "the screen placement belongs to the rig \"{found}\", not to \"{expected}\": place the screen again"
+    )]
+    OtherRig {
+        /// Rig of the placement.
+        found: String,
+        /// Rig it was to be used with.
+        expected: String,
+    },
+    /// Written before [`ScreenPlacement::of_rig`].
+    #[error("the screen placement does not say which rig it belongs to: name it first")]
+    NoRig,
+}
+
+fn mm(meters: &f64) -> String {
+    format!("{:.1}", meters * 1e3)
+}
+
+/// Places the screen: the rigid motion (six degrees of freedom, size kept) that brings touched
+/// pixels of the nominal screen nearest to where the model says the fingertip was, in the sense of
+/// least squares (Horn 1987; Umeyama 1991).
+///
+/// The uncertainty assumes touches with the same independent spread along each axis: that of the
+/// residuals, or [`USUAL_NOISE_M`] if that is larger and there are fewer than five touches; the
+/// remarks say which. It does not contain what all touches share, such as a fingertip that the
+/// model places wrongly.
+///
+/// # Errors
+/// With fewer than three touches, touches on a line, beside the screen or not a number, and when
+/// what is found cannot be: mirrored, turned by more than 45°, or missed by more than 30 mm.
+pub fn place_screen(
+    nominal: &Touchscreen,
+    touches: &[(Pixel<Screen>, Point<Robot>)],
+) -> Result<ScreenPlacement, PlacementError> {
+    check(nominal, touches)?;
+    let on_glass: Vec<Vector3<f64>> =
+        touches.iter().map(|(pixel, _)| nominal.point_at(*pixel).coords.coords).collect();
+    let fingertips: Vec<Vector3<f64>> = touches.iter().map(|(_, point)| point.coords.coords).collect();
+    let motion = rigid_motion(&on_glass, &fingertips);
+    let screen = nominal.moved(&motion);
+    let residuals: Vec<Vector3<f64>> =
+        touches.iter().map(|(pixel, point)| point.coords - screen.point_at(*pixel).coords).collect();
+    plausible(nominal, &screen, &motion, &residuals)?;
+
+    let sum: f64 = residuals.iter().map(Vector3::norm_squared).sum();
+    let rms_m = (sum / touches.len() as f64).sqrt();
+    let (noise_m, mut remarks) = noise(sum, touches.len());
+    remarks.extend(outlying(&residuals, noise_m));
+    let middle = screen.point_at(screen.middle()).coords.coords;
+    let places = touches.iter().map(|(pixel, _)| screen.point_at(*pixel).coords.coords - middle);
+    let sd = standard_deviations(places, noise_m).ok_or(PlacementError::OnALine { spread_m: 0.0 })?;
+    let moved = middle - nominal.point_at(nominal.middle()).coords.coords;
+    Ok(ScreenPlacement {
+        screen,
+        moved_m: moved.into(),
+        turned_rad: motion.rotation.scaled_axis().into(),
+        sd_m: [sd[0], sd[1], sd[2]],
+        sd_rad: [sd[3], sd[4], sd[5]],
+        rms_m,
+        touches: touches.len(),
+        residuals_m: residuals.into_iter().map(Into::into).collect(),
+        remarks,
+        at: jiff::Timestamp::now(),
+        rig: String::new(),
+    })
+}
+
+fn check(nominal: &Touchscreen, touches: &[(Pixel<Screen>, Point<Robot>)]) -> Result<(), PlacementError> {
+    if !nominal.is_usable() {
+        return Err(PlacementError::NotFinite { what: "the size or pose of the nominal screen".to_owned() });
+    }
+    for (i, (pixel, point)) in touches.iter().enumerate() {
+        let number = i + 1;
+        if !pixel.vector().iter().chain(point.coords.iter()).all(|value| value.is_finite()) {
+            return Err(PlacementError::NotFinite { what: format!("touch {number}") });
+        }
+        if !nominal.contains(*pixel) {
+            return Err(PlacementError::OffScreen {
+                number,
+                u_px: pixel.u_px,
+                v_px: pixel.v_px,
+                width_px: nominal.width_px,
+                height_px: nominal.height_px,
+            });
+        }
+    }
+    if touches.len() < 3 {
+        return Err(PlacementError::TooFew { touches: touches.len() });
+    }
+    let spread_m = spread_across_m(nominal, touches);
+    if spread_m < LEAST_SPREAD_M {
+        return Err(PlacementError::OnALine { spread_m });
+    }
+    Ok(())
+}
+
+/// Standard deviation of the touched places across the line along which they spread most, m.
+fn spread_across_m(nominal: &Touchscreen, touches: &[(Pixel<Screen>, Point<Robot>)]) -> f64 {
+    let [u_m, v_m] = nominal.pitch_m();
+    let places: Vec<Vector2<f64>> =
+        touches.iter().map(|(pixel, _)| Vector2::new(pixel.u_px * u_m, pixel.v_px * v_m)).collect();
+    let count = places.len() as f64;
+    let mean = places.iter().sum::<Vector2<f64>>() / count;
+    let scatter: Matrix2<f64> = places.iter().map(|p| (p - mean) * (p - mean).transpose()).sum();
+    (scatter / count).symmetric_eigenvalues().min().max(0.0).sqrt()
+}
+
+/// The rigid motion that takes `from` nearest to `to`.
+fn rigid_motion(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Isometry3<f64> {
+    let count = from.len() as f64;
+    let (mean_from, mean_to) =
+        (from.iter().sum::<Vector3<f64>>() / count, to.iter().sum::<Vector3<f64>>() / count);
+    let covariance: Matrix3<f64> =
+        from.iter().zip(to).map(|(a, b)| (b - mean_to) * (a - mean_from).transpose()).sum();
+    let svd = covariance.svd(true, true);
+    let (Some(u), Some(v_t)) = (svd.u, svd.v_t) else { unreachable!("both were asked for") };
+    // Points of a plane fit a reflection as well as a rotation: the rotation is wanted.
+    let mut keep = Matrix3::identity();
+    keep[(2, 2)] = (u * v_t).determinant().signum();
+    let rotation = Rotation3::from_matrix_unchecked(u * keep * v_t);
+    let turn = UnitQuaternion::from_rotation_matrix(&rotation);
+    Isometry3::from_parts(Translation3::from(mean_to - turn * mean_from), turn)
+}
+
+fn plausible(
+    nominal: &Touchscreen,
+    screen: &Touchscreen,
+    motion: &Isometry3<f64>,
+    residuals: &[Vector3<f64>],
+) -> Result<(), PlacementError> {
+    // A mirrored order of corners fits to a screen that is turned over, without any residual.
+    if screen.normal().vector().dot(&nominal.normal().vector()) < 0.0 {
+        return Err(PlacementError::Mirrored);
+    }
+    let sum: f64 = residuals.iter().map(Vector3::norm_squared).sum();
+    let rms_m = (sum / residuals.len() as f64).sqrt();
+    if !(rms_m <= LARGEST_RMS_M) {
+        let (i, worst_m) = residuals
+            .iter()
+            .map(Vector3::norm)
+            .enumerate()
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .unwrap_or_default();
+        return Err(PlacementError::Implausible { rms_m, worst: i + 1, worst_m });
+    }
+    let turned_rad = motion.rotation.angle();
+    if turned_rad > LARGEST_TURN_RAD {
+        return Err(PlacementError::Turned { turned_rad });
+    }
+    Ok(())
+}
+
+/// Spread of one touch per axis (m), and where it comes from.
+fn noise(sum_of_squares: f64, touches: usize) -> (f64, Vec<String>) {
+    let freedom = 3 * touches - 6;
+    let seen_m = (sum_of_squares / freedom as f64).sqrt();
+    let seen_mm = seen_m * 1e3;
+    let remark = if freedom >= TELLING_FREEDOM {
+        format!("a touch is good to {seen_mm:.1} mm per axis, as the {touches} touches say themselves")
+    } else if seen_m > USUAL_NOISE_M {
+        format!(
+            "{touches} touches are few to judge how good a touch is; {seen_mm:.1} mm per axis is assumed, since they \
+             disagree by more than usual: touch more places"
+        )
+    } else {
+        format!(
+            "{touches} touches are too few to judge how good a touch is; the usual {:.1} mm per axis is assumed",
+            USUAL_NOISE_M * 1e3
+        )
+    };
+    let noise_m = if freedom >= TELLING_FREEDOM { seen_m } else { seen_m.max(USUAL_NOISE_M) };
+    (noise_m, vec![remark])
+}
+
+/// A sentence for every touch that lies far off.
+fn outlying(residuals: &[Vector3<f64>], noise_m: f64) -> Vec<String> {
+    // One touch in 10 000 is that far off by chance (chi², 3 degrees of freedom).
+    let limit_m = 4.6 * noise_m;
+    let far = residuals.iter().map(Vector3::norm).enumerate().filter(|(_, off_m)| *off_m > limit_m.min(0.01));
+    far.map(|(i, off_m)| {
+        format!("touch {} lies {:.1} mm beside the placed screen: touch that place again", i + 1, off_m * 1e3)
+    })
+    .collect()
+}
+
+/// Standard deviations of a shift of the middle (m) and of a turn about it (rad), from the places
+/// of the touches (m, from the middle).
+fn standard_deviations(places: impl Iterator<Item = Vector3<f64>>, noise_m: f64) -> Option<[f64; 6]> {
+    let mut information = Matrix6::<f64>::zeros();
+    for place in places {
+        // A turn w moves the place by w × place.
+        let turn = -place.cross_matrix();
+        let mut view = information.fixed_view_mut::<3, 3>(0, 0);
+        view += Matrix3::identity();
+        let mut view = information.fixed_view_mut::<3, 3>(0, 3);
+        view += turn;
+        let mut view = information.fixed_view_mut::<3, 3>(3, 0);
+        view += turn.transpose();
+        let mut view = information.fixed_view_mut::<3, 3>(3, 3);
+        view += turn.transpose() * turn;
+    }
+    let covariance = information.try_inverse()?;
+    Some(std::array::from_fn(|i| noise_m * covariance[(i, i)].max(0.0).sqrt()))
+}
