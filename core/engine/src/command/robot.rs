@@ -155,6 +155,13 @@ pub enum TwinCommand {
     TourBoard(bool),
     /// Puts the chessboard away.
     HideBoard,
+    /// Makes room on the touchscreen, puts it on a block and a weight into the right palm.
+    PrepareTouch {
+        /// Height of the block, m.
+        screen_height_m: f64,
+        /// The weight, kg.
+        payload_kg: f64,
+    },
     /// Lets the clock of the eyes' warming up run ahead.
     AdvanceWarmUp {
         /// Minutes.

@@ -125,6 +125,13 @@ impl TwinDesk {
                 self.tour = None;
                 send(To::HideBoard)
             }
+            TwinCommand::PrepareTouch { screen_height_m, payload_kg } => {
+                self.clear_screen(rig);
+                let twin = self.twin.as_ref().ok_or(NOT_RUNNING)?;
+                twin.send(To::HideBoard);
+                twin.send(To::PrepareTouch { screen_height_m, payload_kg });
+                Ok(())
+            }
             TwinCommand::AdvanceWarmUp { minutes } => {
                 if !(minutes > 0.0 && minutes <= 600.0) {
                     return Err("The clock can be advanced by up to 600 minutes.".to_owned());
@@ -141,6 +148,32 @@ impl TwinDesk {
                 self.tour = None;
                 send(To::Reset)
             }
+        }
+    }
+
+    /// Puts toys away that stand on the touchscreen or near it: the arm would push them.
+    fn clear_screen(&mut self, rig: &Rig) {
+        let Some(twin) = &self.twin else { return };
+        let mut away = vec![];
+        for (toy, place) in &twin.state().toys {
+            let Some(place) = place else { continue };
+            let on_glass = rig.touchscreen.pixel_at(Point::new(place.x, place.y, place.z));
+            let pitch_m = rig.touchscreen.pitch_m();
+            // The hand is wider than its finger.
+            let reach_m = 0.12 + toy.radius_m();
+            let near = |at_px: f64, size_px: u32, pitch_m: f64| {
+                at_px * pitch_m > -reach_m && (at_px - f64::from(size_px)) * pitch_m < reach_m
+            };
+            if near(on_glass.u_px, rig.touchscreen.width_px, pitch_m[0])
+                && near(on_glass.v_px, rig.touchscreen.height_px, pitch_m[1])
+            {
+                twin.send(plumbline_twin::TwinCommand::RemoveObject { toy: *toy });
+                away.push(toy.name());
+            }
+        }
+        if !away.is_empty() {
+            let text = format!("Put away to make room on the touchscreen: {}.", away.join(", "));
+            self.notes.push((NoticeLevel::Info, text));
         }
     }
 
@@ -225,6 +258,8 @@ impl TwinDesk {
             real_time_factor: (state.real_time_factor * 20.0).round() / 20.0,
             toys: Toy::ALL.into_iter().map(toy).collect(),
             board: state.board,
+            screen_height_m: state.screen_height_m,
+            payload_kg: state.payload_kg,
             faults: Fault::ALL.into_iter().map(fault).collect(),
             ..view
         }

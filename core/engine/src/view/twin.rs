@@ -26,6 +26,10 @@ pub struct TwinView {
     pub board: Option<Pose<Robot, Board>>,
     /// Number of places that the board can be held at for calibrating the eyes.
     pub board_places: usize,
+    /// Height of the block under the touchscreen, m.
+    pub screen_height_m: f64,
+    /// Weight in the right palm, kg.
+    pub payload_kg: f64,
     /// Faults of the servo bus: name, sentence, whether it is on.
     pub faults: Vec<FaultView>,
 }

@@ -264,7 +264,8 @@ impl Writer<'_> {
         let _ = writeln!(self.text, r#"{pad}  <geom name="{name}" {form} {} {more}/>"#, pose(place));
     }
 
-    /// Table, touchscreen and the board, which a hand may hold anywhere.
+    /// Table, the touchscreen, which may be raised on a block, and the board, which a hand may hold
+    /// anywhere.
     fn furniture(&mut self, places: &Places) {
         let [x, y] = places.table_half_m;
         let [u, v] = places.screen_size_m;
@@ -276,7 +277,7 @@ impl Writer<'_> {
             r#"    <body name="table" {}>
       <geom name="table" type="box" size="{x} {y} {slab}" pos="0 0 -{slab}" {STATIC}/>
     </body>
-    <body name="screen" {}>
+    <body name="screen" mocap="true" {}>
       <geom name="glass" type="box" size="{} {} {glass}" pos="0 0 {glass}" friction="{friction} 0.002 0.0002" solref="0.008 1" solimp="0.95 0.99 0.0005" priority="1" {STATIC}/>
     </body>
     <body name="board" mocap="true" pos="0 0 -2"/>

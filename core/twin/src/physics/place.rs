@@ -47,6 +47,11 @@ impl Places {
         }
     }
 
+    /// Moves the touchscreen straight up.
+    pub(crate) fn raise_screen(&mut self, by_m: f64) {
+        self.robot_from_screen.translation.vector.z += by_m;
+    }
+
     /// The pixel at a point of the robot frame, ignoring its height over the glass; `None` beside
     /// the image.
     pub fn pixel(&self, point: Vector3<f64>) -> Option<[u32; 2]> {

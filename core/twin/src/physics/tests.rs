@@ -253,3 +253,34 @@ fn a_closed_hand_lifts_things_by_contact_alone_and_slippery_things_slip() {
         assert!(slippery_m < 0.03, "{toy:?} is held without friction");
     }
 }
+
+#[test]
+fn a_raised_screen_is_touched_higher_and_a_weight_pulls_the_hand_down() {
+    let rig = rig();
+    let mut world = world("lab");
+    let before = *world.places();
+    world.raise_screen(0.06).expect("not too high");
+    let rise = world.places().robot_from_screen.translation.vector - before.robot_from_screen.translation.vector;
+    assert!((rise - Vector3::z() * 0.06).norm() < 1e-12);
+    assert!(world.raise_screen(0.5).is_err() && world.raise_screen(f64::NAN).is_err());
+    let ready = rig.pose("touch-ready").expect("a pose").applied_to(&rig.home());
+    let tip = rig.description.find_link("right_index_tip").expect("a tip");
+    world.send(&ready, Some(1.0));
+    world.run(3.0);
+    let height = |world: &mut World| {
+        world.refresh();
+        let palm = rig.description.joint_above(tip).map(|joint| joint.parent).expect("a parent");
+        world.true_link(palm).or_else(|| world.true_link(tip)).map(|place| place.translation.z)
+    };
+    let free = height(&mut world);
+    world.load_hand(0.25).expect("not too heavy");
+    world.run(2.0);
+    let loaded = height(&mut world);
+    let sag_m = free.zip(loaded).map(|(free, loaded)| free - loaded).expect("the hand is somewhere");
+    println!("a weight of 250 g: {:.1} mm lower", sag_m * 1e3);
+    assert!((0.001..0.05).contains(&sag_m), "{sag_m}");
+    assert!(world.load_hand(2.0).is_err() && world.load_hand(f64::NAN).is_err());
+    world.reset();
+    assert_eq!((world.screen_raised_m(), world.hand_load_kg()), (0.0, 0.0));
+    assert_eq!(world.places().robot_from_screen, before.robot_from_screen);
+}

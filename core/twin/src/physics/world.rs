@@ -23,6 +23,13 @@ use crate::warm_up::WarmUp;
 
 /// Temperatures change slowly: every so many steps is enough.
 const HEAT_EVERY: u64 = 50;
+/// Bodies that are moved by hand, in the order of the model: the touchscreen, then the board.
+const SCREEN_MOCAP: usize = 0;
+const BOARD_MOCAP: usize = 1;
+/// Blocks under the touchscreen may be this high, m.
+const HIGHEST_BLOCK_M: f64 = 0.2;
+/// The hand may carry this much, kg.
+const HEAVIEST_KG: f64 = 0.5;
 /// Where toys are that were put away.
 const SHELF_M: [f64; 3] = [-3.0, 0.0, 0.4];
 
@@ -30,6 +37,8 @@ const SHELF_M: [f64; 3] = [-3.0, 0.0, 0.4];
 pub struct World {
     rig: Arc<Rig>,
     places: Places,
+    /// The same with the touchscreen on the table.
+    level: Places,
     data: MjData<Box<MjModel>>,
     /// A second copy of the model: friction changes with every step, and a model can only be
     /// changed while it is not in use.
@@ -45,6 +54,10 @@ pub struct World {
     eyes_body: usize,
     board_body: usize,
     touch: TouchWatch,
+    /// Height of the block under the touchscreen.
+    raised_m: f64,
+    /// Weight in the right hand.
+    load_kg: f64,
     seed: u64,
     steps: u64,
 }
@@ -109,6 +122,7 @@ impl World {
             warm_up: WarmUp::cold(scenario.eyes.heat),
             rig,
             places,
+            level: places,
             data,
             spare,
             holding,
@@ -117,6 +131,8 @@ impl World {
             toys,
             board: None,
             touch,
+            raised_m: 0.0,
+            load_kg: 0.0,
             seed,
             steps: 0,
         };
@@ -127,6 +143,8 @@ impl World {
     /// Everything as at the start.
     pub fn reset(&mut self) {
         self.data.reset();
+        self.places = self.level;
+        (self.raised_m, self.load_kg) = (0.0, 0.0);
         self.steps = 0;
         self.warm_up.reset();
         self.servos.iter_mut().for_each(ServoMotor::cool);
@@ -279,6 +297,60 @@ impl World {
         &self.rig
     }
 
+    /// Puts the touchscreen on a block of this height (0: back on the table), straight up.
+    ///
+    /// # Errors
+    /// When the block is too high or not a number.
+    pub fn raise_screen(&mut self, by_m: f64) -> Result<(), TwinError> {
+        if !(0.0..=HIGHEST_BLOCK_M).contains(&by_m) {
+            return Err(TwinError::Value {
+                what: "the height of the block under the touchscreen",
+                value: format!("{by_m} m"),
+                remedy: "give 0 to 0.2 m",
+            });
+        }
+        self.places = self.level;
+        self.places.raise_screen(by_m);
+        self.raised_m = by_m;
+        self.data.mocap_pos_mut()[SCREEN_MOCAP] = self.places.robot_from_screen.translation.vector.into();
+        self.data.forward();
+        Ok(())
+    }
+
+    /// Height of the block under the touchscreen, m.
+    pub fn screen_raised_m(&self) -> f64 {
+        self.raised_m
+    }
+
+    /// Hangs a weight into the right palm (0: takes it off). It pulls; it has no inertia.
+    ///
+    /// # Errors
+    /// When it is too heavy or not a number.
+    pub fn load_hand(&mut self, mass_kg: f64) -> Result<(), TwinError> {
+        if !(0.0..=HEAVIEST_KG).contains(&mass_kg) {
+            return Err(TwinError::Value {
+                what: "the weight in the hand",
+                value: format!("{mass_kg} kg"),
+                remedy: "give 0 to 0.5 kg",
+            });
+        }
+        let palm = self.rig.arm("right").and_then(|arm| arm.joints.last().copied());
+        let palm = palm.and_then(|joint| {
+            let child = self.rig.description.joint(joint).child;
+            self.body_of_link(child)
+        });
+        if let Some(body) = palm {
+            self.data.xfrc_applied_mut()[body] = [0.0, 0.0, -9.81 * mass_kg, 0.0, 0.0, 0.0];
+            self.load_kg = mass_kg;
+        }
+        Ok(())
+    }
+
+    /// The weight in the right hand, kg.
+    pub fn hand_load_kg(&self) -> f64 {
+        self.load_kg
+    }
+
     /// Puts a toy on the table (or on what stands there).
     ///
     /// # Errors
@@ -329,9 +401,8 @@ impl World {
         self.board = robot_from_board;
         let place = robot_from_board.map_or(Isometry3::translation(0.0, 0.0, -2.0), |pose| pose.isometry);
         let q = place.rotation.quaternion();
-        // The board is the only body that is moved by hand.
-        self.data.mocap_pos_mut()[0] = place.translation.vector.into();
-        self.data.mocap_quat_mut()[0] = [q.w, q.i, q.j, q.k];
+        self.data.mocap_pos_mut()[BOARD_MOCAP] = place.translation.vector.into();
+        self.data.mocap_quat_mut()[BOARD_MOCAP] = [q.w, q.i, q.j, q.k];
         self.data.forward();
     }
 

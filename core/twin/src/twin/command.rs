@@ -30,6 +30,13 @@ pub enum TwinCommand {
     },
     /// Puts the chessboard away.
     HideBoard,
+    /// Puts the touchscreen on a block and a weight into the right palm.
+    PrepareTouch {
+        /// Height of the block, m.
+        screen_height_m: f64,
+        /// The weight, kg.
+        payload_kg: f64,
+    },
     /// Lets the clock of the eyes' warming up run ahead.
     AdvanceWarmUp {
         /// Minutes.
@@ -65,6 +72,10 @@ pub struct TwinState {
     pub toys: Vec<(Toy, Option<Vector3<f64>>)>,
     /// Where the chessboard is held.
     pub board: Option<Pose<Robot, Board>>,
+    /// Height of the block under the touchscreen, m.
+    pub screen_height_m: f64,
+    /// Weight in the right palm, kg.
+    pub payload_kg: f64,
     /// Faults that are on.
     pub faults: Vec<Fault>,
     /// Why the last command that was refused was.

@@ -108,6 +108,10 @@ impl Runner {
             }
             TwinCommand::PlaceBoard { robot_from_board } => self.hold_board(Some(robot_from_board)),
             TwinCommand::HideBoard => self.hold_board(None),
+            TwinCommand::PrepareTouch { screen_height_m, payload_kg } => {
+                let mut world = lock(&self.shared.world);
+                world.raise_screen(screen_height_m).and_then(|()| world.load_hand(payload_kg))
+            }
             TwinCommand::AdvanceWarmUp { minutes } => self.advance(minutes),
             TwinCommand::CoolEyes => {
                 lock(&self.shared.world).cool_eyes();
@@ -193,6 +197,8 @@ impl Runner {
             real_time_factor: self.factor,
             toys: Toy::ALL.into_iter().map(|t| (t, world.toy(t).map(|p| p.translation.vector))).collect(),
             board: world.board(),
+            screen_height_m: world.screen_raised_m(),
+            payload_kg: world.hand_load_kg(),
             faults: vec![],
             refusal: self.refusal.clone(),
         };
