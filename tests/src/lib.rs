@@ -1,1 +1,82 @@
-//! tests
+//! What whole-application tests share: the window over the real engine, clicks by label, and
+//! waiting until something holds.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use plumbline::{PlumblineWindow, WindowOptions};
+use plumbline_engine::{Engine, EngineSettings, View};
+
+/// The window, drawn in memory.
+pub type Window = Harness<'static, PlumblineWindow>;
+
+/// Drawing on the processor, beside other tests, is slow.
+const PATIENCE: Duration = Duration::from_secs(240);
+
+/// The window over the real engine; with the twin of a scenario, if one is named.
+pub fn window(data_dir: &Path, twin: Option<&str>) -> Window {
+    let settings =
+        EngineSettings { data_dir: Some(data_dir.to_owned()), source: None, twin: twin.map(str::to_owned) };
+    Harness::builder().with_size([1280.0, 800.0]).build_eframe(move |creation| {
+        let engine = Engine::start(settings, Arc::new(|| {}));
+        PlumblineWindow::new(&creation.egui_ctx, Box::new(engine), WindowOptions::default())
+    })
+}
+
+/// What the window shows just now.
+pub fn view(window: &Window) -> Arc<View> {
+    window.state().view()
+}
+
+/// Draws frames until something holds.
+///
+/// # Panics
+/// When it does not within four minutes; the messages of the window are told.
+pub fn until(window: &mut Window, what: &str, holds: impl Fn(&Window) -> bool) {
+    let start = Instant::now();
+    loop {
+        window.step();
+        if holds(window) {
+            return;
+        }
+        if start.elapsed() > PATIENCE {
+            let view = view(window);
+            panic!(
+                "waited in vain for {what}; robot {:?}, jobs {:?}, messages {:?}",
+                view.robot.motion, view.jobs, view.notices
+            );
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+/// Draws frames for some time.
+pub fn for_a_while(window: &mut Window, time: Duration) {
+    let start = Instant::now();
+    until(window, "time to pass", |_| start.elapsed() > time);
+}
+
+/// Clicks what has exactly this label, once it is there.
+pub fn click(window: &mut Window, label: &str) {
+    until(window, label, |window| window.query_all_by_label(label).next().is_some());
+    window.get_all_by_label(label).next().expect("just seen").click();
+    window.run_steps(3);
+}
+
+/// Clicks the first thing whose label has these words, once it is there.
+pub fn click_containing(window: &mut Window, words: &str) {
+    until(window, words, |window| window.query_all_by_label_contains(words).next().is_some());
+    window.get_all_by_label_contains(words).next().expect("just seen").click();
+    window.run_steps(3);
+}
+
+/// Types a path into the field that has the focus, in place of what stands there.
+pub fn type_over(window: &mut Window, path: &Path) {
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    window.run_steps(1);
+    window.event(egui::Event::Text(path.to_str().expect("a path in letters").to_owned()));
+    window.run_steps(2);
+}

@@ -2,55 +2,15 @@
 //! the real twin: its eyes are calibrated from a board that is shown to them, its arm is moved
 //! through the servo bus, and STOP stops it.
 
-use std::path::Path;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
-use plumbline::{PlumblineWindow, WindowOptions};
 use plumbline_engine::view::{MotionState, RobotView};
-use plumbline_engine::{Engine, EngineSettings};
 use plumbline_model::robot::{JointIndex, Rig};
-
-type Window = Harness<'static, PlumblineWindow>;
-
-/// Drawing on the processor, beside other tests, is slow.
-const PATIENCE: Duration = Duration::from_secs(240);
-
-fn window(data_dir: &Path) -> Window {
-    let data_dir = Some(data_dir.to_owned());
-    Harness::builder().with_size([1280.0, 800.0]).build_eframe(|creation| {
-        let settings = EngineSettings { data_dir, source: None, twin: Some("lab".to_owned()) };
-        let engine = Engine::start(settings, Arc::new(|| {}));
-        PlumblineWindow::new(&creation.egui_ctx, Box::new(engine), WindowOptions::default())
-    })
-}
-
-/// Draws frames until something holds.
-fn until(window: &mut Window, what: &str, holds: impl Fn(&Window) -> bool) {
-    let start = Instant::now();
-    loop {
-        window.step();
-        if holds(window) {
-            return;
-        }
-        if start.elapsed() > PATIENCE {
-            let view = window.state().view();
-            panic!("waited in vain for {what}; robot {:?}, messages {:?}", view.robot.motion, view.notices);
-        }
-        std::thread::sleep(Duration::from_millis(10));
-    }
-}
-
-fn click_once_there(window: &mut Window, label: &str) {
-    until(window, label, |window| window.query_all_by_label_contains(label).next().is_some());
-    window.get_all_by_label_contains(label).next().expect("just seen").click();
-    window.run_steps(3);
-}
+use plumbline_tests::{Window, click_containing, for_a_while, until, view, window};
 
 fn robot(window: &Window) -> Arc<RobotView> {
-    window.state().view().robot.clone()
+    view(window).robot.clone()
 }
 
 /// Largest distance of the pose's joints to where they are, rad.
@@ -62,42 +22,42 @@ fn away_rad(robot: &RobotView, joints: &[(JointIndex, f64)]) -> Option<f64> {
 fn connect(window: &mut Window) {
     until(window, "the twin's joints", |window| robot(window).measured.is_some());
     assert!(robot(window).connection.is_connected());
-    until(window, "the twin's eyes", |window| window.state().view().live.raw.is_some());
+    until(window, "the twin's eyes", |window| view(window).live.raw.is_some());
     until(window, "a rectified pair through the nominal lenses", |window| {
-        let live = window.state().view().live.clone();
+        let live = view(window).live.clone();
         live.rectified.is_some() && live.nominal_lenses
     });
 }
 
 fn calibrate_the_eyes(window: &mut Window) {
-    click_once_there(window, "Calibrate the eyes");
-    click_once_there(window, "Show the board at all places");
+    click_containing(window, "Calibrate the eyes");
+    click_containing(window, "Show the board at all places");
     until(window, "ten pairs, captured by themselves", |window| {
-        window.state().view().eyes.collected.len() >= 10 && window.state().view().twin.board.is_none()
+        view(window).eyes.collected.len() >= 10 && view(window).twin.board.is_none()
     });
-    let pairs = window.state().view().eyes.collected.len();
-    click_once_there(window, &format!("Solve {pairs} pairs"));
-    until(window, "the verdict", |window| window.state().view().eyes.proposal.is_some());
-    let proposal = window.state().view().eyes.proposal.clone().expect("just seen");
+    let pairs = view(window).eyes.collected.len();
+    click_containing(window, &format!("Solve {pairs} pairs"));
+    until(window, "the verdict", |window| view(window).eyes.proposal.is_some());
+    let proposal = view(window).eyes.proposal.clone().expect("just seen");
     let summary = proposal.calibration.summary.clone().expect("a solution has figures");
     assert!(summary.rms_stereo_px < 0.1, "{summary:?}");
-    click_once_there(window, "Accept calibration");
-    until(window, "the calibration in use", |window| window.state().view().eyes.in_use.is_some());
+    click_containing(window, "Accept calibration");
+    until(window, "the calibration in use", |window| view(window).eyes.in_use.is_some());
     until(window, "a pair through the calibrated lenses", |window| {
-        !window.state().view().live.nominal_lenses
+        !view(window).live.nominal_lenses
     });
 }
 
 fn move_the_arm(window: &mut Window, rig: &Rig) {
     let pose = rig.pose("touch-ready").expect("a pose of NICO");
-    click_once_there(window, "Robot");
-    click_once_there(window, &pose.title);
+    click_containing(window, "Robot");
+    click_containing(window, &pose.title);
     until(window, "the ghost", |window| robot(window).preview.is_some());
     let shown = robot(window);
     let preview = shown.preview.as_ref().expect("just seen");
     assert!(preview.path.is_ok(), "{:?}", preview.path);
     assert!(away_rad(&shown, &pose.joints).expect("measured") > 0.2, "showing a move moves nothing");
-    click_once_there(window, "Move there");
+    click_containing(window, "Move there");
     until(window, "the arm on its way", |window| matches!(robot(window).motion, MotionState::Moving { .. }));
     until(window, "the arm at its goal", |window| {
         matches!(robot(window).motion, MotionState::Holding { .. })
@@ -109,8 +69,8 @@ fn move_the_arm(window: &mut Window, rig: &Rig) {
 
 fn stop_it(window: &mut Window, rig: &Rig) {
     let home = rig.pose("home").expect("a pose of NICO");
-    click_once_there(window, &home.title);
-    click_once_there(window, "Move there");
+    click_containing(window, &home.title);
+    click_containing(window, "Move there");
     let on_its_way = |window: &Window| matches!(robot(window).motion, MotionState::Moving { fraction: Some(part), .. } if part > 0.15);
     until(window, "the arm on its way home", on_its_way);
     window.key_press(egui::Key::Escape);
@@ -122,13 +82,11 @@ fn stop_it(window: &mut Window, rig: &Rig) {
     assert!(away_rad(&robot(window), &home.joints).expect("measured") > 0.1, "it stopped on the way");
 
     // Nothing moves until STOP is released, and releasing moves nothing.
-    let wait = Instant::now();
-    until(window, "a second to pass", |_| wait.elapsed() > Duration::from_secs(1));
+    for_a_while(window, Duration::from_secs(1));
     assert!(robot(window).measured.as_ref().expect("measured").distance_rad(&stood) < 0.05);
-    click_once_there(window, "Release STOP");
+    click_containing(window, "Release STOP");
     until(window, "the release", |window| !robot(window).stopped);
-    let wait = Instant::now();
-    until(window, "another second to pass", |_| wait.elapsed() > Duration::from_secs(1));
+    for_a_while(window, Duration::from_secs(1));
     assert!(robot(window).measured.as_ref().expect("measured").distance_rad(&stood) < 0.05);
 }
 
@@ -136,7 +94,7 @@ fn stop_it(window: &mut Window, rig: &Rig) {
 fn the_twin_is_calibrated_moved_and_stopped() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let rig = Rig::built_in("nico").expect("the rig that comes with the program");
-    let mut window = window(&folder.path().join("data"));
+    let mut window = window(&folder.path().join("data"), Some("lab"));
     connect(&mut window);
     calibrate_the_eyes(&mut window);
     move_the_arm(&mut window, &rig);

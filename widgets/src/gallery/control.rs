@@ -85,7 +85,7 @@ fn row(ui: &mut Ui, state: &mut GalleryState, index: usize, sample: &Sample, ope
         reason: "the head is turned by −12.4°",
     };
     let freshness = match index {
-        4 => Freshness::Stale(Duration::from_millis(2_400)),
+        4 => Freshness::Stale(Some(Duration::from_millis(2_400))),
         8 => Freshness::NoAnswer { from: "servo 43", since: Some(Duration::from_secs(3)) },
         _ => Freshness::Live,
     };

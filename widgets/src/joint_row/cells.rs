@@ -69,7 +69,8 @@ pub(super) fn present(row: &JointRow<'_>, ui: &Ui, rect: Rect) {
     }
 }
 
-fn old(age: Duration) -> String {
+fn old(age: Option<Duration>) -> String {
+    let Some(age) = age else { return "not read".to_owned() };
     if age.as_secs() < 1 { format!("{} ms old", age.as_millis()) } else { format!("{} s old", age.as_secs()) }
 }
 

@@ -50,7 +50,7 @@ pub enum Freshness<'a> {
     /// From the last cycle.
     Live,
     /// Nothing newer for so long.
-    Stale(Duration),
+    Stale(Option<Duration>),
     /// Does not answer.
     NoAnswer {
         /// Who: "servo 31".

@@ -154,10 +154,9 @@ fn freshness<'a>(robot: &RobotView, joint: &JointView, servo: &'a str) -> Freshn
     if robot.bus.missing.contains(&joint.servo) {
         return Freshness::NoAnswer { from: servo, since: joint.age };
     }
-    let age = joint.age.unwrap_or_default();
     match joint.age {
-        _ if !robot.connection.is_connected() => Freshness::Stale(age),
-        Some(age) if age > OLD => Freshness::Stale(age),
+        _ if !robot.connection.is_connected() => Freshness::Stale(joint.age),
+        Some(age) if age > OLD => Freshness::Stale(Some(age)),
         _ => Freshness::Live,
     }
 }
