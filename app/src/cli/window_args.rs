@@ -1,6 +1,7 @@
 //! What the command line says about the window.
 
 mod robot_steps;
+mod touch_steps;
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -29,7 +30,7 @@ pub struct WindowArgs {
     /// Colors of the window, in place of the remembered ones.
     #[arg(long, value_enum)]
     theme: Option<ThemeChoice>,
-    /// Screen to start with: live, collect, judge, accept, mount or robot.
+    /// Screen to start with: live, collect, judge, accept, mount, touch, models or robot.
     #[arg(long, value_name = "SCREEN", value_parser = screen)]
     screen: Option<Screen>,
     /// Size of the window in points: 1280x800.
@@ -53,7 +54,10 @@ pub struct WindowArgs {
     /// twin-board-at:X,Y,DEGREES,
     /// twin-board-away, twin-toy:NAME,X,Y, twin-toy-away:NAME, twin-warm-up:MINUTES, twin-cool,
     /// twin-fault:NAME=on, twin-reset, mount-plan, mount-tour, mount-capture, mount-solve,
-    /// mount-accept, mount-discard.
+    /// mount-accept, mount-discard; touch, models, touch-plan-corners, touch-plan-quick,
+    /// touch-plan-train, touch-plan-rich, touch-plan-check, touch-correct:METHOD, touch-start,
+    /// touch-pause, touch-resume, touch-skip, touch-prepared, touch-finish, touch-close,
+    /// touch-accept-screen, touch-discard-screen, touch-nominal-screen, touch-window.
     #[arg(long = "do", value_name = "STEPS", value_delimiter = ';', value_parser = step, hide_short_help = true)]
     script: Vec<ScriptStep>,
     /// Writes how long the frames took, as JSON, when the window is closed.
@@ -125,8 +129,13 @@ fn screen(text: &str) -> Result<Screen, String> {
         "judge" => Ok(Screen::Judge),
         "accept" | "compare" => Ok(Screen::Accept),
         "mount" => Ok(Screen::Mount),
+        "touch" => Ok(Screen::Touch),
+        "models" => Ok(Screen::Models),
         "robot" => Ok(Screen::Robot),
-        _ => Err("there are the screens live, collect, judge, accept, mount and robot".to_owned()),
+        _ => {
+            Err("there are the screens live, collect, judge, accept, mount, touch, models and robot"
+                .to_owned())
+        }
     }
 }
 
@@ -167,6 +176,7 @@ fn step(text: &str) -> Result<ScriptStep, String> {
         }
         "picture" if !value.is_empty() => Ok(ScriptStep::Picture(value.into())),
         other => robot_steps::step(other, value)
+            .or_else(|| touch_steps::step(other, value))
             .unwrap_or_else(|| Err(format!("\"{other}\" is not a step; plumbline --help lists them"))),
     }
 }

@@ -10,6 +10,7 @@ mod error_bars;
 mod eye;
 mod figures;
 mod files;
+mod models;
 mod mount;
 mod pairs;
 mod picture;
@@ -20,10 +21,13 @@ mod robot;
 mod source_state;
 mod start;
 mod table;
+mod touch;
 mod twin;
 mod verdict_line;
 
 pub use board::BoardDraft;
+pub use models::ModelsPanels;
+pub(crate) use models::show_inspector as show_models_inspector;
 pub(crate) use picture::key as picture_key;
 pub use probe::{ProbeState, probe_readout};
 pub(crate) use residuals::chosen_fit;
@@ -31,6 +35,8 @@ pub use robot::RobotPanels;
 pub(crate) use robot::{move_sentence, moved_name, show_inspector as show_robot_inspector};
 pub(crate) use source_state::source_age;
 pub(crate) use start::show as show_start;
+pub use touch::TouchPanels;
+pub(crate) use touch::show_inspector as show_touch_inspector;
 pub use twin::TwinPanels;
 
 use std::sync::Arc;
@@ -77,6 +83,10 @@ pub struct PanelState {
     pub robot: RobotPanels,
     /// The twin.
     pub twin: TwinPanels,
+    /// Touching the screen.
+    pub touch: TouchPanels,
+    /// Correction models.
+    pub models: ModelsPanels,
 }
 
 impl Default for PanelState {
@@ -97,6 +107,8 @@ impl Default for PanelState {
             exported: Exported::InUse,
             robot: RobotPanels::default(),
             twin: TwinPanels::default(),
+            touch: TouchPanels::default(),
+            models: ModelsPanels::default(),
         }
     }
 }
@@ -175,5 +187,12 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
         Pane::Twin => twin::show(ui, cx),
         Pane::HeadViews => mount::show_views(ui, cx),
         Pane::EyeMount => mount::show_result(ui, cx),
+        Pane::TouchPlan => touch::show_plan(ui, cx),
+        Pane::TouchMap => touch::show_map(ui, cx),
+        Pane::TouchRun => touch::show_run(ui, cx),
+        Pane::ScreenPlace => touch::show_place(ui, cx),
+        Pane::ModelTraining | Pane::ModelComparison | Pane::ModelMap | Pane::GraspTables => {
+            models::show(ui, pane, cx);
+        }
     }
 }

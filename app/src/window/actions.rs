@@ -5,8 +5,10 @@ use std::borrow::Cow;
 use plumbline_engine::view::SourceStatus;
 use plumbline_engine::{ExportFormat, Exported, View};
 
+use super::models_actions::ModelsAction;
 use super::robot_actions::{MountAction, RobotAction};
 use super::steps::Screen;
+use super::touch_actions::TouchAction;
 
 /// One thing that the operator can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +71,10 @@ pub enum Action {
     Robot(RobotAction),
     /// Something of the mount of the eyes.
     Mount(MountAction),
+    /// Something of touching the screen.
+    Touch(TouchAction),
+    /// Something of correction models.
+    Models(ModelsAction),
     /// Asks the running job to stop.
     CancelJob,
     /// Saves a picture of the window.
@@ -97,7 +103,9 @@ pub enum Action {
 pub fn all() -> impl Iterator<Item = Action> {
     let robot = RobotAction::ALL.into_iter().map(Action::Robot);
     let mount = MountAction::ALL.into_iter().map(Action::Mount);
-    ALL.iter().copied().chain(robot).chain(mount)
+    let touch = TouchAction::ALL.into_iter().map(Action::Touch);
+    let models = ModelsAction::ALL.into_iter().map(Action::Models);
+    ALL.iter().copied().chain(robot).chain(mount).chain(touch).chain(models)
 }
 
 const ALL: &[Action] = &[
@@ -119,6 +127,8 @@ const ALL: &[Action] = &[
     Action::Go(Screen::Judge),
     Action::Go(Screen::Accept),
     Action::Go(Screen::Mount),
+    Action::Go(Screen::Touch),
+    Action::Go(Screen::Models),
     Action::Go(Screen::Robot),
     Action::RecognizeBoard,
     Action::UseSeenBoard,
@@ -172,9 +182,13 @@ impl Action {
             Self::Go(Screen::Judge) => "Go to Eyes: judge",
             Self::Go(Screen::Accept) => "Go to Eyes: accept",
             Self::Go(Screen::Mount) => "Go to Mount",
+            Self::Go(Screen::Touch) => "Go to Touch",
+            Self::Go(Screen::Models) => "Go to Models",
             Self::Go(Screen::Robot) => "Go to Robot",
             Self::Robot(action) => action.label(),
             Self::Mount(action) => action.label(),
+            Self::Touch(action) => action.label(),
+            Self::Models(action) => action.label(),
             Self::RecognizeBoard => "Recognize the board",
             Self::UseSeenBoard => "Use the recognized board",
             Self::Capture => "Capture pair",
@@ -230,6 +244,8 @@ impl Action {
             Self::Export(Exported::Proposal, _) => when(eyes.proposal.is_some(), "nothing is proposed"),
             Self::Robot(action) => action.refusal(view),
             Self::Mount(action) => action.refusal(view),
+            Self::Touch(action) => action.refusal(view),
+            Self::Models(action) => action.refusal(view),
             Self::CancelJob => when(view.running_job().is_some(), "no job is running"),
             _ => None,
         }

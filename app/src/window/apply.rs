@@ -8,7 +8,7 @@ use std::time::Instant;
 use plumbline_engine::view::{JobState, SourceStatus};
 use plumbline_engine::{
     Command, Destination, EyesCommand, FileLength, JobCommand, LiveCommand, MountCommand, NoticeCommand,
-    NoticeLevel, ProbePoint, RobotCommand, SourceCommand, TwinCommand,
+    NoticeLevel, ProbePoint, RobotCommand, SourceCommand, TouchCommand, TwinCommand,
 };
 use plumbline_model::Eye;
 use plumbline_model::robot::JointIndex;
@@ -61,7 +61,12 @@ impl PlumblineWindow {
 
     /// Hands a command over; one that begins a motion keeps the window drawing.
     pub(super) fn send(&mut self, command: Command) {
-        if matches!(command, Command::Robot(RobotCommand::RunPreview) | Command::Mount(MountCommand::Tour)) {
+        if matches!(
+            command,
+            Command::Robot(RobotCommand::RunPreview)
+                | Command::Mount(MountCommand::Tour)
+                | Command::Touch(TouchCommand::Start | TouchCommand::Resume)
+        ) {
             self.motion_asked = Some(Instant::now());
         }
         self.backend.send(command);
@@ -148,6 +153,8 @@ impl PlumblineWindow {
             Action::Discard => EyesCommand::Discard.into(),
             Action::Robot(action) => return action.command(&self.view),
             Action::Mount(action) => action.command(),
+            Action::Touch(action) => return action.command(&self.view),
+            Action::Models(action) => return action.command(&self.view),
             Action::CancelJob => JobCommand::Cancel(self.view.running_job()?.id).into(),
             _ => return None,
         })

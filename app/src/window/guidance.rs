@@ -1,6 +1,8 @@
 //! What is happening and what to do next, in one sentence and one button.
 
+mod models;
 mod robot;
+mod touch;
 
 use plumbline_engine::View;
 use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
@@ -48,13 +50,15 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
         Screen::Judge => judge(&view.eyes),
         Screen::Accept => accept(&view.eyes),
         Screen::Mount => robot::mount(view),
+        Screen::Touch => touch::touch(view),
+        Screen::Models => models::models(view),
         Screen::Robot => robot::robot(view),
     }
 }
 
 /// What only looks goes on while STOP is latched; what moves says so.
 fn stopped(view: &View, screen: Screen) -> Option<Guidance> {
-    let moves = matches!(screen, Screen::Live | Screen::Mount | Screen::Robot);
+    let moves = matches!(screen, Screen::Live | Screen::Mount | Screen::Touch | Screen::Robot);
     let connected = view.robot.connection.is_connected();
     (moves && connected && view.robot.stopped)
         .then(|| say("Stopped: nothing moves until you press Release STOP, at the top right.").warn())

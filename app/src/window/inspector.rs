@@ -13,7 +13,9 @@ use plumbline_widgets::theme::{self, Role, group_heading, space};
 use super::outbox::Outbox;
 use super::steps::Screen;
 use super::{PlumblineWindow, hint_text};
-use crate::panels::{PanelState, chosen_fit, probe_readout, show_robot_inspector};
+use crate::panels::{
+    PanelState, chosen_fit, probe_readout, show_models_inspector, show_robot_inspector, show_touch_inspector,
+};
 
 pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let margin = egui::Margin::symmetric(space::M as i8, space::S as i8);
@@ -28,6 +30,8 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
             Screen::Judge => judged_pair(ui, &view, state, outbox),
             Screen::Accept => provenance(ui, &view),
             Screen::Mount => mount(ui, &view),
+            Screen::Touch => show_touch_inspector(ui, &view, state, outbox),
+            Screen::Models => show_models_inspector(ui, &view, state, outbox),
             Screen::Robot => show_robot_inspector(ui, &view, &mut state.robot, outbox),
         });
     });

@@ -2,7 +2,7 @@
 
 use egui::{Panel, TextStyle, Ui};
 use plumbline_engine::View;
-use plumbline_engine::view::{Connection, EyesView, JobState, StepState as EngineStep};
+use plumbline_engine::view::{Connection, EyesView, JobState, StepState as EngineStep, TouchPhase};
 use plumbline_widgets::format;
 use plumbline_widgets::rail::{RailStep, StepState};
 use plumbline_widgets::theme::{self, space};
@@ -37,6 +37,15 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
             let mount = RailStep::new("Mount", step_state(&view.mount.step)).number(2);
             if mount.selected(screen == Screen::Mount).show(ui).clicked() {
                 outbox.act(Action::Go(Screen::Mount));
+            }
+            for (name, number, state, target) in [
+                ("Touch", 3, touch_state(view), Screen::Touch),
+                ("Models", 4, models_state(view), Screen::Models),
+            ] {
+                let step = RailStep::new(name, state).number(number).selected(screen == target);
+                if step.show(ui).clicked() {
+                    outbox.act(Action::Go(target));
+                }
             }
             ui.add_space(space::S);
             let robot = RailStep::new("Robot", robot_state(view)).selected(screen == Screen::Robot).show(ui);
@@ -159,6 +168,23 @@ fn eyes_state(view: &View) -> StepState<'_> {
         return StepState::Running(*fraction as f32);
     }
     step_state(&view.eyes.step)
+}
+
+/// A run says how far it is.
+fn touch_state(view: &View) -> StepState<'_> {
+    let counts = &view.touch.counts;
+    let wanted = counts.planned.saturating_sub(counts.unreachable);
+    match view.touch.phase {
+        TouchPhase::Running { .. } | TouchPhase::Paused { .. } | TouchPhase::Waiting { .. } if wanted > 0 => {
+            let ended = counts.touched + counts.missed + counts.skipped + counts.rejected;
+            StepState::Running((ended as f32 / wanted as f32).min(1.0))
+        }
+        _ => step_state(&view.touch.step),
+    }
+}
+
+fn models_state(view: &View) -> StepState<'_> {
+    step_state(&view.models.step)
 }
 
 /// The robot is no step of the work; it only says when it needs to be looked at.

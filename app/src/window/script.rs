@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use plumbline_engine::view::{Connection, MotionState, SourceStatus, StepState};
+use plumbline_engine::view::{Connection, MotionState, SourceStatus, StepState, TouchPhase};
 use plumbline_engine::{Command, View};
 
 use super::actions::Action;
@@ -65,6 +65,8 @@ impl Script {
         let busy = view.running_job().is_some()
             || matches!(view.robot.connection, Connection::Connecting { .. })
             || matches!(view.robot.motion, MotionState::Moving { .. })
+            || matches!(view.touch.phase, TouchPhase::Running { .. } | TouchPhase::Planning)
+            || view.models.training
             || view.mount.step == StepState::Running
             || view.source.status == SourceStatus::Opening
             || self.waiting_for_picture.load(Ordering::Relaxed)

@@ -26,6 +26,8 @@ impl Action {
             Self::Go(Screen::Accept) => command(Key::Num4),
             Self::Go(Screen::Mount) => command(Key::Num5),
             Self::Go(Screen::Robot) => command(Key::Num6),
+            Self::Go(Screen::Touch) => command(Key::Num7),
+            Self::Go(Screen::Models) => command(Key::Num8),
             Self::Capture => plain(Key::C),
             Self::DeleteLast => plain(Key::Backspace),
             Self::Undo => command(Key::Z),

@@ -18,14 +18,26 @@ pub enum Screen {
     Accept,
     /// Calibrating how the eyes sit in the head.
     Mount,
+    /// Touching the screen: planning, running, placing the screen.
+    Touch,
+    /// Correction models, and the tables of grasp height and yaw.
+    Models,
     /// The robot: its joints, moving it.
     Robot,
 }
 
 impl Screen {
     /// All of them, in the order of work.
-    pub const ALL: [Self; 6] =
-        [Self::Live, Self::Collect, Self::Judge, Self::Accept, Self::Mount, Self::Robot];
+    pub const ALL: [Self; 8] = [
+        Self::Live,
+        Self::Collect,
+        Self::Judge,
+        Self::Accept,
+        Self::Mount,
+        Self::Touch,
+        Self::Models,
+        Self::Robot,
+    ];
 
     /// Whether it belongs to the step "Eyes".
     pub fn is_eyes(self) -> bool {
@@ -85,6 +97,22 @@ pub enum Pane {
     HeadViews,
     /// How the eyes sit in the head: nominal, in use, proposed.
     EyeMount,
+    /// What shall be touched, and what that will tell.
+    TouchPlan,
+    /// Targets and touches on the glass.
+    TouchMap,
+    /// The run under way, its figures, its last touches.
+    TouchRun,
+    /// Where the screen lies: nominal, in use, proposed.
+    ScreenPlace,
+    /// Training correction models.
+    ModelTraining,
+    /// All methods on the same held-out touches.
+    ModelComparison,
+    /// A model over the table, before and after, and its border.
+    ModelMap,
+    /// The tables of grasp height and yaw.
+    GraspTables,
 }
 
 impl Pane {
@@ -115,6 +143,14 @@ impl Pane {
             Self::Twin => "Twin",
             Self::HeadViews => "Views",
             Self::EyeMount => "Mount of the eyes",
+            Self::TouchPlan => "Plan",
+            Self::TouchMap => "Touches",
+            Self::TouchRun => "Run",
+            Self::ScreenPlace => "Place of the screen",
+            Self::ModelTraining => "Training",
+            Self::ModelComparison => "Models compared",
+            Self::ModelMap => "Model over the table",
+            Self::GraspTables => "Grasp height and yaw",
         }
     }
 }
@@ -128,6 +164,8 @@ pub fn default_arrangement(screen: Screen) -> Tree<Pane> {
         Screen::Judge => judge(&mut tiles),
         Screen::Accept => accept(&mut tiles),
         Screen::Mount => mount(&mut tiles),
+        Screen::Touch => touch(&mut tiles),
+        Screen::Models => models(&mut tiles),
         Screen::Robot => robot(&mut tiles),
     };
     Tree::new(egui::Id::unique(("tiles", screen)), root, tiles)
@@ -186,6 +224,26 @@ fn mount(tiles: &mut Tiles<Pane>) -> TileId {
     let top = row(tiles, &[(left, 1.0), (right, 1.0)]);
     let bottom = row(tiles, &[(views, 1.0), (result, 1.35), (scene, 0.85)]);
     column(tiles, &[(top, 0.9), (bottom, 1.2)])
+}
+
+fn touch(tiles: &mut Tiles<Pane>) -> TileId {
+    let plan = tabs(tiles, &[Pane::TouchPlan]);
+    let map = tabs(tiles, &[Pane::TouchMap]);
+    let run = tabs(tiles, &[Pane::TouchRun]);
+    let place = tabs(tiles, &[Pane::ScreenPlace, Pane::Scene, Pane::Twin]);
+    let left = column(tiles, &[(plan, 1.55), (place, 1.0)]);
+    let right = column(tiles, &[(map, 1.15), (run, 1.0)]);
+    row(tiles, &[(left, 1.0), (right, 1.15)])
+}
+
+fn models(tiles: &mut Tiles<Pane>) -> TileId {
+    let training = tabs(tiles, &[Pane::ModelTraining]);
+    let comparison = tabs(tiles, &[Pane::ModelComparison]);
+    let map = tabs(tiles, &[Pane::ModelMap]);
+    let tables = tabs(tiles, &[Pane::GraspTables]);
+    let left = column(tiles, &[(training, 1.0), (comparison, 1.0)]);
+    let right = column(tiles, &[(map, 1.2), (tables, 1.0)]);
+    row(tiles, &[(left, 1.0), (right, 1.2)])
 }
 
 fn robot(tiles: &mut Tiles<Pane>) -> TileId {

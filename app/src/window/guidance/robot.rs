@@ -11,7 +11,7 @@ use crate::window::robot_actions::{MountAction, RobotAction};
 use crate::window::steps::Screen;
 
 /// What keeps the robot from being moved; `None` when it is connected and stands.
-fn trouble(robot: &RobotView) -> Option<Guidance> {
+pub(super) fn trouble(robot: &RobotView) -> Option<Guidance> {
     let connect = Action::Robot(RobotAction::Connect);
     match &robot.connection {
         Connection::None => {

@@ -1,0 +1,70 @@
+//! Steps of a script that speak of touching the screen and of correction models.
+
+use plumbline_engine::TouchCommand;
+use plumbline_engine::correction::Method;
+
+use crate::window::{Action, ModelsAction, Preset, Screen, ScriptStep, TouchAction};
+
+type Step = Result<ScriptStep, String>;
+
+/// The step of this name; `None` when there is none.
+pub(super) fn step(name: &str, value: &str) -> Option<Step> {
+    if name == "touch-correct" {
+        return Some(correct_with(value));
+    }
+    action(name).map(|action| Ok(ScriptStep::Act(action)))
+}
+
+fn action(name: &str) -> Option<Action> {
+    let plan = |preset| Action::Touch(TouchAction::Plan(preset));
+    Some(match name {
+        "touch" => Action::Go(Screen::Touch),
+        "models" => Action::Go(Screen::Models),
+        "touch-plan-corners" => plan(Preset::Corners),
+        "touch-plan-quick" => plan(Preset::Quick),
+        "touch-plan-train" => plan(Preset::First),
+        "touch-plan-rich" => plan(Preset::Rich),
+        "touch-plan-check" => plan(Preset::Check),
+        "touch-start" => Action::Touch(TouchAction::Start),
+        "touch-pause" => Action::Touch(TouchAction::Pause),
+        "touch-resume" => Action::Touch(TouchAction::Resume),
+        "touch-skip" => Action::Touch(TouchAction::Skip),
+        "touch-prepared" => Action::Touch(TouchAction::Prepared),
+        "touch-finish" => Action::Touch(TouchAction::Finish),
+        "touch-close" => Action::Touch(TouchAction::Close),
+        "touch-accept-screen" => Action::Touch(TouchAction::AcceptScreen),
+        "touch-discard-screen" => Action::Touch(TouchAction::DiscardScreen),
+        "touch-nominal-screen" => Action::Touch(TouchAction::NominalScreen),
+        "touch-window" => Action::Touch(TouchAction::ToggleWindow),
+        "models-list" => Action::Models(ModelsAction::ListSessions),
+        "models-train" => Action::Models(ModelsAction::TrainAll),
+        "models-accept" => Action::Models(ModelsAction::AcceptShown),
+        "models-discard" => Action::Models(ModelsAction::Discard),
+        "models-undo" => Action::Models(ModelsAction::Undo),
+        "models-none" => Action::Models(ModelsAction::UseNone),
+        _ => return None,
+    })
+}
+
+fn correct_with(value: &str) -> Step {
+    let method = Method::ALL.into_iter().find(|method| method.name().eq_ignore_ascii_case(value));
+    if method.is_none() && value != "none" {
+        return Err("touch-correct:METHOD wants M1, M2, M3 or none".to_owned());
+    }
+    Ok(ScriptStep::Send(TouchCommand::CorrectWith(method).into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_say_what_they_want() {
+        let start = ScriptStep::Act(Action::Touch(TouchAction::Start));
+        assert_eq!(step("touch-start", ""), Some(Ok(start)));
+        let with = TouchCommand::CorrectWith(Some(Method::M3));
+        assert_eq!(step("touch-correct", "m3"), Some(Ok(ScriptStep::Send(with.into()))));
+        assert!(step("touch-correct", "M4").expect("known").expect_err("no method").contains("none"));
+        assert_eq!(step("touch-dance", ""), None);
+    }
+}

@@ -1,0 +1,138 @@
+//! What to do next with touching the screen: one button, named by what it does.
+
+use plumbline_engine::View;
+use plumbline_engine::view::{PlanView, TouchCounts, TouchPhase, TouchView};
+use plumbline_model::touch_plan::Purpose;
+use plumbline_widgets::format;
+
+use super::{Guidance, robot, say};
+use crate::window::actions::Action;
+use crate::window::steps::Screen;
+use crate::window::touch_actions::{Preset, TouchAction, is_under_way};
+
+pub(super) fn touch(view: &View) -> Guidance {
+    let touch = &view.touch;
+    match &touch.phase {
+        TouchPhase::Running { number, doing } => running(touch, *number, doing),
+        TouchPhase::Waiting { what, prepare } => waiting(what, prepare.is_some()),
+        _ => {
+            if let Some(trouble) = robot::trouble(&view.robot).or_else(|| robot::under_way(view)) {
+                return trouble;
+            }
+            standing(view)
+        }
+    }
+}
+
+/// The arm stands: what begins, or goes on, or is read.
+fn standing(view: &View) -> Guidance {
+    let touch = &view.touch;
+    match &touch.phase {
+        TouchPhase::Planning => say("Looks which targets the arm reaches. Nothing moves."),
+        TouchPhase::Planned => touch.plan.as_deref().map_or_else(|| first(view), planned),
+        TouchPhase::Paused { why } => paused(touch, why.as_deref()),
+        TouchPhase::Finished => finished(view),
+        _ => first(view),
+    }
+}
+
+fn running(touch: &TouchView, number: usize, doing: &str) -> Guidance {
+    let counts = touch.counts;
+    let left = touch.remaining.map_or_else(String::new, |left| format!(" {}.", format::time_left(left)));
+    say(format!("{} of {}: {doing}.{left} Esc or space stops.", number, counts.planned))
+        .then("Pause", Action::Touch(TouchAction::Pause))
+}
+
+fn waiting(what: &str, prepare: bool) -> Guidance {
+    let guidance = say(what).warn();
+    if prepare { guidance.then("Done, go on", Action::Touch(TouchAction::Prepared)) } else { guidance }
+}
+
+/// What moves, and what stays.
+pub fn what_moves(plan: &PlanView) -> String {
+    let touches = if plan.reachable == 1 { "once".to_owned() } else { format!("{} times", plan.reachable) };
+    format!(
+        "The right arm touches the glass {touches}, about {}; the head and the left arm stay.",
+        minutes(plan.duration)
+    )
+}
+
+/// In the precision that an estimate has: "40 s", "9 min".
+pub fn minutes(duration: std::time::Duration) -> String {
+    let seconds = duration.as_secs();
+    if seconds < 90 { format!("{seconds} s") } else { format!("{} min", (seconds + 30) / 60) }
+}
+
+fn planned(plan: &PlanView) -> Guidance {
+    if plan.reachable == 0 {
+        return say("The arm reaches none of these targets: choose another area.").warn();
+    }
+    say(what_moves(plan)).then(start_label(plan), Action::Touch(TouchAction::Start))
+}
+
+/// What starting does: "Touch 80 targets".
+pub fn start_label(plan: &PlanView) -> String {
+    match plan.options.purpose {
+        Purpose::PlaceScreen => format!("Touch the corners, {} touches", plan.reachable),
+        Purpose::Train | Purpose::Check => format!("Touch {}", format::count(plan.reachable, "target")),
+    }
+}
+
+fn paused(touch: &TouchView, why: Option<&str>) -> Guidance {
+    let done = done_of(touch.counts);
+    let next = done + 1;
+    let why =
+        why.map_or_else(String::new, |why| format!(" {}.", super::capitalized(why.trim_end_matches('.'))));
+    let guidance =
+        say(format!("Paused after {done} of {}; all touches are on disk.{why}", wanted(touch.counts)))
+            .then(format!("Go on with touch {next}"), Action::Touch(TouchAction::Resume));
+    if why.is_empty() { guidance } else { guidance.warn() }
+}
+
+/// Touches that can be done.
+pub fn wanted(counts: TouchCounts) -> usize {
+    counts.planned.saturating_sub(counts.unreachable)
+}
+
+/// Touches that are behind.
+pub fn done_of(counts: TouchCounts) -> usize {
+    counts.touched + counts.missed + counts.skipped + counts.rejected
+}
+
+fn finished(view: &View) -> Guidance {
+    let touch = &view.touch;
+    if touch.placement_proposal.is_some() {
+        return say("The screen was measured. Look at how far it moved, then use it.")
+            .then("Use this place of the screen", Action::Touch(TouchAction::AcceptScreen));
+    }
+    let purpose = touch.plan.as_ref().map(|plan| plan.options.purpose);
+    let touched = format::count(touch.counts.touched, "touch").replace("touchs", "touches");
+    match purpose {
+        Some(Purpose::PlaceScreen) => {
+            say("The place of the screen is in use. Next: touch targets to train models.")
+                .then("Plan a first calibration", Action::Touch(TouchAction::Plan(Preset::First)))
+        }
+        Some(Purpose::Check) => say(format!("{touched} checked; the figures say how well the finger lands."))
+            .then("Plan new targets", Action::Touch(TouchAction::Plan(Preset::Check))),
+        Some(Purpose::Train) | None => say(format!("{touched} are on disk. Next: train models on them."))
+            .then("Train models", Action::Go(Screen::Models)),
+    }
+}
+
+fn first(view: &View) -> Guidance {
+    let touch = &view.touch;
+    debug_assert!(!is_under_way(&touch.phase));
+    if touch.placement_proposal.is_some() {
+        return finished(view);
+    }
+    if !touch.unfinished.is_empty() {
+        return say("A run was begun and not finished. It goes on exactly where it was.")
+            .then("Open the unfinished run", Action::Touch(TouchAction::OpenUnfinished));
+    }
+    if touch.placement.is_none() {
+        return say("First measure where the screen lies: touch its corners. Planning moves nothing.")
+            .then("Plan to touch the corners", Action::Touch(TouchAction::Plan(Preset::Corners)));
+    }
+    say("Plan what shall be touched; planning moves nothing.")
+        .then("Plan a first calibration", Action::Touch(TouchAction::Plan(Preset::First)))
+}

@@ -1,0 +1,258 @@
+//! What can be asked for by name of touching the screen.
+
+use std::borrow::Cow;
+
+use plumbline_engine::view::TouchPhase;
+use plumbline_engine::{Command, TouchCommand, View};
+use plumbline_model::session::Touchscreen;
+use plumbline_model::touch_plan::{PlanOptions, TouchArea};
+
+/// Of touching the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TouchAction {
+    /// Plans touches. Moves nothing.
+    Plan(Preset),
+    /// Begins the planned run. The arm moves.
+    Start,
+    /// Holds after the touch that is under way.
+    Pause,
+    /// Goes on where it was. The arm moves.
+    Resume,
+    /// Leaves the touch out that is under way or next.
+    Skip,
+    /// Says that screen and hand are as the plan asks.
+    Prepared,
+    /// Ends the run with what there is.
+    Finish,
+    /// Forgets the plan.
+    Close,
+    /// Goes on with the newest run that was not finished.
+    OpenUnfinished,
+    /// Makes the proposed place of the screen the one in use.
+    AcceptScreen,
+    /// Forgets the proposed place.
+    DiscardScreen,
+    /// Goes back to the place in the rig file.
+    NominalScreen,
+    /// Opens the touch window, or closes it.
+    ToggleWindow,
+}
+
+/// Plans that are good to start with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preset {
+    /// Where the screen lies.
+    Corners,
+    /// The least a model can be trained on.
+    Quick,
+    /// A first calibration.
+    First,
+    /// Sides, heights and weights, to tell causes apart.
+    Rich,
+    /// New targets, to see how well a model reaches.
+    Check,
+}
+
+/// Panels err at their edges and fingers slip off there: this much is left out.
+const MARGIN_M: f64 = 0.02;
+/// Targets of a check.
+const CHECKED: usize = 20;
+/// Random targets of a check lie elsewhere than those of training.
+const CHECK_SEED: u64 = 7;
+
+impl Preset {
+    /// All of them, in the order of work.
+    pub const ALL: [Self; 5] = [Self::Corners, Self::Quick, Self::First, Self::Rich, Self::Check];
+
+    /// Its options on this screen.
+    pub fn options(self, area: TouchArea) -> PlanOptions {
+        match self {
+            Self::Corners => PlanOptions::place_screen(area),
+            Self::Quick => PlanOptions::quick(area),
+            Self::First => PlanOptions::first(area),
+            Self::Rich => PlanOptions::rich(area),
+            Self::Check => PlanOptions::check_reach(area, CHECKED, CHECK_SEED),
+        }
+    }
+}
+
+/// The whole screen but its border.
+pub fn whole_area(screen: &Touchscreen) -> TouchArea {
+    TouchArea::within(screen, MARGIN_M)
+}
+
+/// The screen that is touched: as it is taken to lie, else as the rig file has it.
+pub fn screen_of(view: &View) -> Option<&Touchscreen> {
+    let nominal = || view.robot.rig.as_ref().map(|rig| &rig.touchscreen);
+    view.touch.screen.as_ref().or_else(nominal)
+}
+
+type Refusal = Option<Cow<'static, str>>;
+
+fn when(possible: bool, why: &'static str) -> Refusal {
+    (!possible).then_some(Cow::Borrowed(why))
+}
+
+/// Whether a run has been begun and not ended.
+pub fn is_under_way(phase: &TouchPhase) -> bool {
+    matches!(phase, TouchPhase::Waiting { .. } | TouchPhase::Running { .. } | TouchPhase::Paused { .. })
+}
+
+impl TouchAction {
+    /// All of them, in the palette's order.
+    pub const ALL: [Self; 17] = [
+        Self::Plan(Preset::Corners),
+        Self::Plan(Preset::Quick),
+        Self::Plan(Preset::First),
+        Self::Plan(Preset::Rich),
+        Self::Plan(Preset::Check),
+        Self::Start,
+        Self::Pause,
+        Self::Resume,
+        Self::Skip,
+        Self::Prepared,
+        Self::Finish,
+        Self::Close,
+        Self::OpenUnfinished,
+        Self::AcceptScreen,
+        Self::DiscardScreen,
+        Self::NominalScreen,
+        Self::ToggleWindow,
+    ];
+
+    /// What it is called everywhere.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Plan(Preset::Corners) => "Plan: place the screen",
+            Self::Plan(Preset::Quick) => "Plan: quick training",
+            Self::Plan(Preset::First) => "Plan: first calibration",
+            Self::Plan(Preset::Rich) => "Plan: tell causes apart",
+            Self::Plan(Preset::Check) => "Plan: check a model",
+            Self::Start => "Touch the planned targets",
+            Self::Pause => "Pause touching",
+            Self::Resume => "Go on touching",
+            Self::Skip => "Skip this touch",
+            Self::Prepared => "Screen and weight are as asked",
+            Self::Finish => "Finish touching",
+            Self::Close => "Close the run",
+            Self::OpenUnfinished => "Open the unfinished run",
+            Self::AcceptScreen => "Use this place of the screen",
+            Self::DiscardScreen => "Discard the proposed place of the screen",
+            Self::NominalScreen => "Use the nominal place of the screen",
+            Self::ToggleWindow => "Touch window",
+        }
+    }
+
+    /// Why it cannot be done now.
+    pub fn refusal(self, view: &View) -> Refusal {
+        let touch = &view.touch;
+        match self {
+            Self::Plan(_) => plan_refusal(view),
+            Self::Start => start_refusal(view),
+            Self::Resume => resume_refusal(view),
+            Self::Pause => {
+                when(matches!(touch.phase, TouchPhase::Running { .. }), "nothing is being touched")
+            }
+            Self::Skip | Self::Finish => when(is_under_way(&touch.phase), "no run is under way"),
+            Self::Prepared => when(
+                matches!(touch.phase, TouchPhase::Waiting { prepare: Some(_), .. }),
+                "nothing has to be prepared",
+            ),
+            Self::Close if is_under_way(&touch.phase) => Some("a run is under way: finish it first".into()),
+            Self::Close => when(touch.plan.is_some() || touch.session.is_some(), "no run is open"),
+            Self::OpenUnfinished if is_under_way(&touch.phase) => Some("a run is under way".into()),
+            Self::OpenUnfinished => when(!touch.unfinished.is_empty(), "all runs were finished"),
+            Self::AcceptScreen | Self::DiscardScreen => {
+                when(touch.placement_proposal.is_some(), "no place of the screen is proposed")
+            }
+            Self::NominalScreen => when(touch.placement.is_some(), "the nominal place is in use"),
+            Self::ToggleWindow => {
+                when(screen_of(view).is_some(), "the robot's description has no touchscreen")
+            }
+        }
+    }
+
+    /// The command that it stands for; `None` where the window does it by itself.
+    pub fn command(self, view: &View) -> Option<Command> {
+        let touch = &view.touch;
+        Some(
+            match self {
+                Self::Plan(preset) => TouchCommand::Plan(preset.options(whole_area(screen_of(view)?))),
+                Self::Start => TouchCommand::Start,
+                Self::Pause => TouchCommand::Pause,
+                Self::Resume => TouchCommand::Resume,
+                Self::Skip => TouchCommand::Skip,
+                Self::Prepared => {
+                    let TouchPhase::Waiting { prepare: Some((screen_height_m, payload_kg)), .. } =
+                        touch.phase
+                    else {
+                        return None;
+                    };
+                    TouchCommand::Prepared { screen_height_m, payload_kg }
+                }
+                Self::Finish => TouchCommand::Finish,
+                Self::Close => TouchCommand::Close,
+                Self::OpenUnfinished => {
+                    TouchCommand::Open { session: touch.unfinished.first()?.session.clone() }
+                }
+                Self::AcceptScreen => TouchCommand::AcceptPlacement,
+                Self::DiscardScreen => TouchCommand::DiscardPlacement,
+                Self::NominalScreen => TouchCommand::UseNominalPlacement,
+                Self::ToggleWindow => return None,
+            }
+            .into(),
+        )
+    }
+}
+
+fn plan_refusal(view: &View) -> Refusal {
+    match &view.touch.phase {
+        TouchPhase::Planning => Some("a plan is being made".into()),
+        phase if is_under_way(phase) => Some("a run is under way: finish it first".into()),
+        _ => when(screen_of(view).is_some(), "the robot's description has no touchscreen"),
+    }
+}
+
+/// What keeps the arm from touching.
+fn arm_refusal(view: &View) -> Refusal {
+    if !view.robot.connection.is_connected() {
+        return Some("no robot is connected".into());
+    }
+    when(!view.robot.stopped, "STOP is latched: release it first")
+}
+
+fn start_refusal(view: &View) -> Refusal {
+    let touch = &view.touch;
+    match &touch.phase {
+        TouchPhase::Planned => {}
+        TouchPhase::Planning => return Some("the plan is being made".into()),
+        phase if is_under_way(phase) => return Some("a run is under way".into()),
+        _ => return Some("nothing is planned".into()),
+    }
+    if touch.plan.as_ref().is_none_or(|plan| plan.reachable == 0) {
+        return Some("no target can be reached: choose another area".into());
+    }
+    arm_refusal(view)
+}
+
+fn resume_refusal(view: &View) -> Refusal {
+    if !matches!(view.touch.phase, TouchPhase::Paused { .. }) {
+        return Some("no run is paused".into());
+    }
+    arm_refusal(view)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_a_robot_the_reasons_are_said() {
+        let view = View::default();
+        let why = |action: TouchAction| action.refusal(&view).expect("cannot be done");
+        assert!(why(TouchAction::Plan(Preset::First)).contains("no touchscreen"));
+        assert_eq!(why(TouchAction::Start), "nothing is planned");
+        assert_eq!(why(TouchAction::AcceptScreen), "no place of the screen is proposed");
+        assert_eq!(TouchAction::Plan(Preset::Quick).command(&view), None);
+    }
+}

@@ -1,0 +1,1 @@
+//! The touch window: a second window, full screen on the touch monitor.
