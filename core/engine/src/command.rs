@@ -10,10 +10,10 @@ use plumbline_hardware::SourceSpec;
 use plumbline_model::{CalibrationOptions, Eye};
 use serde::{Deserialize, Serialize};
 
+pub use robot::{Destination, JOG_DEADLINE_MS, JogRates, MountCommand, RobotCommand, TwinCommand};
 pub use touch::{
     ContactWith, GraspTable, ModelsCommand, ScreenContact, ScreenWindow, TablesCommand, TouchCommand,
 };
-pub use robot::{Destination, JOG_DEADLINE_MS, JogRates, MountCommand, RobotCommand, TwinCommand};
 
 /// Anything that the window (or a script) can ask of the engine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -22,9 +22,9 @@ use plumbline_model::frame::{Head, LeftCamera, Pose};
 use plumbline_model::session::Touchscreen;
 
 pub use thread::{RobotThread, Wires as RobotWires};
+pub use touch_order::{TouchMeasurement, TouchNews, TouchOrder, TouchRun, TouchStage};
 pub use twin_desk::TwinDesk;
 pub use twin_eyes::TwinEyesPlug;
-pub use touch_order::{TouchMeasurement, TouchNews, TouchOrder, TouchRun, TouchStage};
 pub use worker::{News, Worker};
 
 use crate::command::{RobotCommand, TwinCommand};

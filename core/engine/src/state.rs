@@ -186,10 +186,7 @@ impl State {
         self.use_mount();
     }
 
-    fn with_touch(
-        &mut self,
-        act: impl FnOnce(&mut TouchWorkflow, &TouchSurroundings<'_>, &mut Context<'_>),
-    ) {
+    fn with_touch(&mut self, act: impl FnOnce(&mut TouchWorkflow, &TouchSurroundings<'_>, &mut Context<'_>)) {
         self.with_touch_of(self.arm_of, act);
     }
 
@@ -258,7 +255,7 @@ impl State {
         if self.live.rig().touchscreen == screen {
             return;
         }
-        let mut rig = (*self.live.rig()).clone();
+        let mut rig = Rig::clone(self.live.rig());
         rig.touchscreen = screen.clone();
         self.live.set_rig(Arc::new(rig));
         self.eyes.set_workspace(self.live.workspace());
@@ -274,7 +271,7 @@ impl State {
         if self.live.rig().eyes.head_from_left == head_from_left {
             return;
         }
-        let mut rig = (*self.live.rig()).clone();
+        let mut rig = Rig::clone(self.live.rig());
         rig.eyes.head_from_left = head_from_left;
         self.live.set_rig(Arc::new(rig));
         self.eyes.set_workspace(self.live.workspace());

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use plumbline_correction::{Comparison, CorrectionModel, LossPoint, Method, TouchData};
 use plumbline_correction::tables::{HeightTable, YawTable};
+use plumbline_correction::{Comparison, CorrectionModel, LossPoint, Method, TouchData};
 use plumbline_model::robot::Rig;
 
 use super::StepState;
