@@ -9,8 +9,10 @@
 //! - M2: an MLP for x and y; the height of M1.
 //! - M3: an MLP for x, y and z.
 
+pub mod border;
 pub mod data;
 pub mod method;
+pub mod tables;
 
 pub use data::{DataError, Touch, TouchData};
 pub use method::{Correction, Method};

@@ -1,0 +1,319 @@
+//! How far the true correction at a new touch may lie from a model's answer.
+
+use nalgebra::Vector2;
+use plumbline_model::Pixel;
+use plumbline_model::session::Screen;
+use serde::{Deserialize, Serialize};
+
+use super::Border;
+use super::growth::{Evidence, PARTS, dot, parts, student_factor};
+use super::region::MARGIN;
+
+/// Reach of the weights of the local part, in spacings.
+const LOCAL_REACH: f64 = 1.5;
+/// The residuals of all touches count like this many near ones.
+const GLOBAL_WEIGHT: f64 = 20.0;
+/// A stated rate counts like this many residuals.
+const FALLBACK_WEIGHT: f64 = 2.0;
+/// Between touches a model interpolates: errors grow less there than outside.
+const GAP_SHARE: f64 = 0.5;
+
+/// Standard deviation per axis of (true correction at a new touch − model's answer).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    border: Border,
+    /// Touches that residuals are known of.
+    anchors: Vec<Anchor>,
+    /// Corners of the convex hull of the touches.
+    hull_px: Vec<[f64; 2]>,
+    /// Per axis: variance (m²) of the parts local, gap, near and far, at a spacing's distance.
+    parts_m2: [[f64; PARTS]; 3],
+}
+
+/// A touch, how much it tells of the local part, and its squared residuals over the variance
+/// that all touches together make expected there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Anchor {
+    pixel: [f64; 2],
+    weight: f64,
+    relative: [f64; 3],
+}
+
+/// Why nothing can be said about the spread of a model.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SpreadError {
+    /// Not the same number of everything.
+    #[error(
+        "{pixels} touches have {residuals} residuals and {blocks} blocks: cross-validate the model on all touches"
+    )]
+    Lengths {
+        /// Number of touches.
+        pixels: usize,
+        /// Number of residuals.
+        residuals: usize,
+        /// Number of labels of blocks.
+        blocks: usize,
+    },
+    /// Too few for a standard deviation.
+    #[error("{found} cross-validated residuals tell no spread: touch at least 3 places")]
+    TooFew {
+        /// Number of residuals.
+        found: usize,
+    },
+    /// A residual that is no number.
+    #[error("the residual of touch {index} (counted from 0) is no number: train the model again without it")]
+    NotFinite {
+        /// Which one.
+        index: usize,
+    },
+}
+
+impl Spread {
+    /// Growth of the standard deviation outside of the touches as long as left-out blocks tell
+    /// nothing of it: 5 mm per 100 px. That is a fifth of the distance on a screen of 0.25 mm per
+    /// pixel, as if nothing were known about how the correction goes on but that its slope is 0.2
+    /// at most.
+    pub const FALLBACK_RATE_M_PER_PX: f64 = 5e-5;
+
+    /// From residuals (true − answered, m) of touches whose model had been trained without them,
+    /// but with others close by: the growth with distance is the fallback's.
+    ///
+    /// # Errors
+    /// For fewer than three residuals, or one that is no number.
+    pub fn fit(
+        pixels: &[Pixel<Screen>],
+        residuals_m: &[[f64; 3]],
+        border: &Border,
+    ) -> Result<Self, SpreadError> {
+        Self::check(pixels, residuals_m, pixels.len())?;
+        let near_others = vec![Distance { gap: 0.0, hull: 0.0 }; pixels.len()];
+        Ok(Self::learned(pixels, residuals_m, &near_others, 0, border))
+    }
+
+    /// From residuals (true − answered, m) of touches whose model had been trained without their
+    /// whole block: `blocks` labels the block of each touch. The growth with distance is learned
+    /// from how far the blocks lie from the touches that had remained.
+    ///
+    /// # Errors
+    /// For fewer than three residuals, or one that is no number.
+    pub fn fit_blocked(
+        pixels: &[Pixel<Screen>],
+        residuals_m: &[[f64; 3]],
+        blocks: &[usize],
+        border: &Border,
+    ) -> Result<Self, SpreadError> {
+        Self::check(pixels, residuals_m, blocks.len())?;
+        let spacing = border.spacing_px();
+        let mut distances = vec![Distance { gap: 0.0, hull: 0.0 }; pixels.len()];
+        let mut labels = blocks.to_vec();
+        labels.sort_unstable();
+        labels.dedup();
+        let mut outside = 0;
+        for label in labels {
+            let remaining: Vec<_> =
+                pixels.iter().zip(blocks).filter(|&(_, &b)| b != label).map(|(p, _)| p.vector()).collect();
+            if remaining.is_empty() {
+                continue; // One block only: no model can have been trained without it.
+            }
+            let hull = convex_hull(&remaining);
+            let mut farthest: f64 = 0.0;
+            for (i, pixel) in pixels.iter().enumerate().filter(|&(i, _)| blocks[i] == label) {
+                distances[i] = Distance::new(pixel.vector(), &remaining, &hull, spacing);
+                farthest = farthest.max(distances[i].hull);
+            }
+            outside += usize::from(farthest > MARGIN);
+        }
+        Ok(Self::learned(pixels, residuals_m, &distances, outside, border))
+    }
+
+    fn check(pixels: &[Pixel<Screen>], residuals_m: &[[f64; 3]], blocks: usize) -> Result<(), SpreadError> {
+        if pixels.len() != residuals_m.len() || pixels.len() != blocks {
+            let (pixels, residuals) = (pixels.len(), residuals_m.len());
+            return Err(SpreadError::Lengths { pixels, residuals, blocks });
+        }
+        if pixels.len() < 3 {
+            return Err(SpreadError::TooFew { found: pixels.len() });
+        }
+        let is_finite =
+            |i: usize| residuals_m[i].iter().chain(pixels[i].vector().iter()).all(|value| value.is_finite());
+        match (0..pixels.len()).find(|&i| !is_finite(i)) {
+            Some(index) => Err(SpreadError::NotFinite { index }),
+            None => Ok(()),
+        }
+    }
+
+    /// `outside` blocks lay outside of the hull of what remained.
+    fn learned(
+        pixels: &[Pixel<Screen>],
+        residuals_m: &[[f64; 3]],
+        distances: &[Distance],
+        outside: usize,
+        border: &Border,
+    ) -> Self {
+        let points: Vec<_> = pixels.iter().map(Pixel::vector).collect();
+        let fitted: [[f64; PARTS]; 3] =
+            std::array::from_fn(|axis| fitted_parts(residuals_m, axis, distances, border.spacing_px()));
+        let anchors = (0..points.len()).map(|i| {
+            let growth = distances[i].growth();
+            let expected = |axis: usize| dot(&fitted[axis], &growth).max(f64::MIN_POSITIVE);
+            let local = (0..3).map(|axis| fitted[axis][0] / expected(axis)).sum::<f64>() / 3.0;
+            Anchor {
+                pixel: [points[i].x, points[i].y],
+                // A residual far from what remained tells of growth, not of this place.
+                weight: local,
+                relative: std::array::from_fn(|axis| residuals_m[i][axis].powi(2) / expected(axis)),
+            }
+        });
+        Self {
+            border: border.clone(),
+            anchors: anchors.collect(),
+            hull_px: convex_hull(&points).iter().map(|p| [p.x, p.y]).collect(),
+            parts_m2: fitted.map(|parts| widened(parts, points.len(), outside)),
+        }
+    }
+
+    /// Standard deviation per axis (m) at a pixel: the true correction at a new touch lies within
+    /// 1.96 of it about the model's answer in 95 of 100 cases, and outside of the border at least.
+    pub fn sd_m(&self, pixel: Pixel<Screen>) -> [f64; 3] {
+        self.sd_m_with(pixel, [0.0; 3])
+    }
+
+    /// The same when an ensemble of models disagrees with this standard deviation (m) at the
+    /// pixel: where that is more than the growth learned from distances it takes its place. The
+    /// residuals behind the local part hold the disagreement near the touches already.
+    pub fn sd_m_with(&self, pixel: Pixel<Screen>, model_sd_m: [f64; 3]) -> [f64; 3] {
+        let growth = self.distance(pixel).growth();
+        let local = self.local(pixel);
+        std::array::from_fn(|axis| {
+            let parts = self.parts_m2[axis];
+            let grown = dot(&[0.0, parts[1], parts[2], parts[3]], &growth);
+            (parts[0] * local[axis] + grown.max(model_sd_m[axis].powi(2))).sqrt()
+        })
+    }
+
+    fn distance(&self, pixel: Pixel<Screen>) -> Distance {
+        let touches: Vec<_> = self.anchors.iter().map(|anchor| Vector2::from(anchor.pixel)).collect();
+        let hull: Vec<_> = self.hull_px.iter().map(|&corner| Vector2::from(corner)).collect();
+        let spacing = self.border.spacing_px();
+        let distance = Distance::new(pixel.vector(), &touches, &hull, spacing);
+        // An outlier has a touch, but lies outside.
+        Distance { gap: distance.gap.max(self.border.distance_outside_px(pixel) / spacing), ..distance }
+    }
+
+    /// Factor on the local variance, per axis; outside that of the nearest place inside, or of
+    /// all touches where that is larger.
+    fn local(&self, pixel: Pixel<Screen>) -> [f64; 3] {
+        let spacing = self.border.spacing_px();
+        let place = self.border.nearest_inside(pixel).vector();
+        let mut weights = GLOBAL_WEIGHT;
+        let mut sums = [GLOBAL_WEIGHT; 3];
+        for anchor in &self.anchors {
+            let distance = (Vector2::from(anchor.pixel) - place).norm() / (LOCAL_REACH * spacing);
+            let weight = anchor.weight * (-0.5 * distance.powi(2)).exp();
+            weights += weight;
+            for (sum, relative) in sums.iter_mut().zip(anchor.relative) {
+                *sum += weight * relative;
+            }
+        }
+        let far = ((place - pixel.vector()).norm() / spacing).min(1.0);
+        sums.map(|sum| {
+            let here = sum / weights;
+            here + far * (1.0 - here).max(0.0)
+        })
+    }
+}
+
+/// Distances of a pixel from touches, in spacings.
+#[derive(Clone, Copy)]
+struct Distance {
+    /// From the nearest touch, beyond the margin.
+    gap: f64,
+    /// Outside of the convex hull.
+    hull: f64,
+}
+
+impl Distance {
+    fn new(point: Vector2<f64>, touches: &[Vector2<f64>], hull: &[Vector2<f64>], spacing: f64) -> Self {
+        let nearest = touches.iter().map(|touch| (touch - point).norm()).fold(f64::INFINITY, f64::min);
+        Self {
+            gap: (nearest / spacing - MARGIN).max(0.0),
+            hull: distance_outside_hull(point, hull) / spacing,
+        }
+    }
+
+    /// What each part of the variance is multiplied by.
+    fn growth(self) -> [f64; PARTS] {
+        [1.0, self.gap.powi(2), self.hull.powi(2), self.hull.powi(4)]
+    }
+}
+
+fn fitted_parts(
+    residuals_m: &[[f64; 3]],
+    axis: usize,
+    distances: &[Distance],
+    spacing_px: f64,
+) -> [f64; PARTS] {
+    let residual = |(residual, distance): (&[f64; 3], &Distance)| Evidence {
+        squared: residual[axis].powi(2),
+        growth: distance.growth(),
+        weight: 1.0,
+    };
+    let fallback = (Spread::FALLBACK_RATE_M_PER_PX * spacing_px).powi(2);
+    let stated = |squared: f64, growth: [f64; PARTS]| Evidence { squared, growth, weight: FALLBACK_WEIGHT };
+    let mut evidence: Vec<_> = residuals_m.iter().zip(distances).map(residual).collect();
+    evidence.push(stated(GAP_SHARE.powi(2) * fallback, [0.0, 1.0, 0.0, 0.0]));
+    evidence.push(stated(fallback, [0.0, 0.0, 1.0, 0.0]));
+    parts(&evidence)
+}
+
+/// Variances from few residuals, and growth from few blocks, are widened as Student's t demands.
+fn widened(parts: [f64; PARTS], touches: usize, outside: usize) -> [f64; PARTS] {
+    let local = student_factor(touches as f64 - 1.0).powi(2);
+    // The fallback is a statement, not an estimate.
+    let growth = if outside == 0 { 1.0 } else { student_factor((outside as f64 - 1.0).max(2.0)).powi(2) };
+    [parts[0] * local, parts[1] * growth, parts[2] * growth, parts[3] * growth]
+}
+
+/// Corners of the convex hull, counter-clockwise (Andrew's monotone chain).
+fn convex_hull(points: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
+    let mut sorted = points.to_vec();
+    sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    sorted.dedup();
+    if sorted.len() < 3 {
+        return sorted;
+    }
+    let mut hull = half_hull(sorted.iter());
+    hull.pop();
+    let mut upper = half_hull(sorted.iter().rev());
+    upper.pop();
+    hull.extend(upper);
+    hull
+}
+
+fn half_hull<'a>(points: impl Iterator<Item = &'a Vector2<f64>>) -> Vec<Vector2<f64>> {
+    let mut half: Vec<Vector2<f64>> = Vec::new();
+    for &point in points {
+        while let [.., a, b] = half[..] {
+            if (b - a).perp(&(point - b)) > 0.0 {
+                break;
+            }
+            half.pop();
+        }
+        half.push(point);
+    }
+    half
+}
+
+/// Distance from a convex polygon, or from the segment or point that is left of it; 0 inside.
+fn distance_outside_hull(point: Vector2<f64>, hull: &[Vector2<f64>]) -> f64 {
+    let sides = (0..hull.len()).map(|i| (hull[i], hull[(i + 1) % hull.len()]));
+    if hull.len() > 2 && sides.clone().all(|(a, b)| (b - a).perp(&(point - a)) >= 0.0) {
+        return 0.0;
+    }
+    let from_side = |(a, b): (Vector2<f64>, Vector2<f64>)| {
+        let along = b - a;
+        let share = (point - a).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
+        (a + share.clamp(0.0, 1.0) * along - point).norm()
+    };
+    sides.map(from_side).fold(f64::INFINITY, f64::min)
+}
