@@ -14,6 +14,7 @@ pub mod image_pair;
 pub mod job;
 pub mod measured_data;
 pub mod pixel;
+pub mod predict;
 pub mod robot;
 pub mod session;
 pub mod stereo;
