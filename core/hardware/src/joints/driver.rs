@@ -140,6 +140,12 @@ impl ArmDriver {
         lock(&self.shared.ring).posture_at(at)
     }
 
+    /// What was commanded at a moment of the last four seconds, interpolated between cycles: for
+    /// the time of a contact. `None` when no state covers it.
+    pub fn commanded_at(&self, at: Instant) -> Option<Posture> {
+        lock(&self.shared.ring).commanded_at(at)
+    }
+
     /// The stop of this arm.
     pub fn stop_switch(&self) -> &StopSwitch {
         &self.stop
