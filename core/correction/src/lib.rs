@@ -9,10 +9,28 @@
 //! - M2: an MLP for x and y; the height of M1.
 //! - M3: an MLP for x, y and z.
 
+pub mod blocks;
 pub mod border;
 pub mod data;
+pub mod errors;
+pub mod heights;
 pub mod method;
+pub mod model;
+pub mod network;
+pub mod options;
+pub mod placement;
+pub mod repeats;
 pub mod tables;
+pub mod train;
 
+pub use blocks::{BlockBy, Blocks};
 pub use data::{DataError, Touch, TouchData};
+pub use errors::{Errors, distance_2d_m};
+pub use heights::HeightGrid;
 pub use method::{Correction, Method};
+pub use model::{CorrectionModel, CrossValidation, Provenance, TrainedTouch};
+pub use network::Activation;
+pub use options::{Recipe, TrainOptions};
+pub use placement::{M1, Placement, PlacementFrom};
+pub use repeats::{Repeats, spread_of_repeats};
+pub use train::{Compared, Comparison, LossPoint, TrainError, compare, cross_validate, train};
