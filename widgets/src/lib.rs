@@ -14,10 +14,12 @@ pub mod ghost;
 pub mod glyph;
 pub mod history;
 pub mod image_view;
+pub mod intervals;
 pub mod jog_pad;
 pub mod joint_row;
 pub mod key_value;
 pub mod lamp;
+pub mod loss_curves;
 pub mod notifications;
 pub mod overlay;
 pub mod pose_list;
@@ -28,6 +30,7 @@ pub mod scene3d;
 pub mod table_map;
 pub mod texture;
 pub mod theme;
+pub mod touch_pattern;
 
 pub use bars::{BarRef, BarsResponse, PairBar, PairBars};
 pub use buttons::{ArmState, choice, primary_button, stop_button, stop_keys, stop_pressed};
@@ -38,12 +41,14 @@ pub use format::Quantity;
 pub use ghost::{Ghost, ghost};
 pub use history::{History, Sparkline};
 pub use image_view::{Content, ImageTransform, ImageView, ImageViewResponse, ViewState};
+pub use intervals::{IntervalRow, Intervals, Level};
 pub use jog_pad::{JogIntent, JogPad, JogPadResponse, JogSpeed};
 pub use joint_row::{
     Freshness, JointHistory, JointRow, JointRowResponse, JointState, ReducedRange, joint_header,
 };
 pub use key_value::{KeyValue, big_figure, key_value_grid};
 pub use lamp::{Health, Lamp};
+pub use loss_curves::{LossCurve, LossCurves, loss_legend, loss_range};
 pub use notifications::{Notification, Notifications, Severity};
 pub use overlay::{Ink, Mark, Overlay, PointShape};
 pub use pose_list::{PoseCard, PoseIntent, PoseList};
@@ -51,6 +56,10 @@ pub use progress::{ProgressAction, ProgressLine, progress_bar};
 pub use rail::{RailStep, StepState};
 pub use residuals::{arrow_scale, residual_arrows};
 pub use scene3d::{Scene, Scene3d, Scene3dResponse, SceneCamera};
-pub use table_map::{Outline, Place, ScalarField, TableMap, TableMapResponse, TableMark, TableScene};
+pub use table_map::{
+    BeforeAfter, Border, Outline, Place, PointsResponse, ScalarField, TableMap, TableMapResponse, TableMark,
+    TablePoint, TableScene,
+};
 pub use texture::{Picture, Sampling, TextureCache};
 pub use theme::Role;
+pub use touch_pattern::{PatternArea, TouchMark, TouchMarkState, TouchPattern, TouchPatternResponse};

@@ -2,10 +2,12 @@
 
 mod control;
 mod controls;
+mod models;
 mod pictures;
 mod robot;
 mod sample;
 mod tables;
+mod touch;
 
 use egui::{ScrollArea, Ui};
 
@@ -59,6 +61,14 @@ pub struct GalleryState {
     pub jog: Option<JogIntent>,
     /// Name of a new pose.
     pub pose_name: String,
+    /// Chosen point of the table, and the points.
+    pub chosen_point: Option<usize>,
+    /// Where the points of the table were dragged to, meters.
+    pub points_m: Vec<[f64; 2]>,
+    /// The area of the touch pattern.
+    pub touch_area: Option<crate::touch_pattern::PatternArea>,
+    /// The chosen touch.
+    pub touch: Option<usize>,
     /// The last thing that was done, in words.
     pub last: String,
 }
@@ -72,7 +82,7 @@ pub struct Page {
 }
 
 /// All pages.
-pub const PAGES: [Page; 18] = [
+pub const PAGES: [Page; 21] = [
     Page { name: "Window", draw: controls::window },
     Page { name: "Theme", draw: theme_page },
     Page { name: "Image views", draw: pictures::linked },
@@ -84,6 +94,9 @@ pub const PAGES: [Page; 18] = [
     Page { name: "Bars", draw: tables::bars },
     Page { name: "Coverage", draw: tables::coverage },
     Page { name: "Table map", draw: tables::table_map },
+    Page { name: "Training", draw: models::training },
+    Page { name: "Model map and points", draw: models::map },
+    Page { name: "Touch pattern", draw: touch::pattern },
     Page { name: "Scene", draw: robot::scene },
     Page { name: "Scene states", draw: robot::scene_states },
     Page { name: "Joints", draw: control::joints },

@@ -44,6 +44,24 @@ impl ScalarField {
         field
     }
 
+    /// Values that are there already: row by row from the first x, in each row from the first y.
+    /// `None` when they do not fill whole rows, at least two of two.
+    pub fn of_grid(
+        name: impl Into<String>,
+        quantity: Quantity,
+        x_m: [f64; 2],
+        y_m: [f64; 2],
+        columns: usize,
+        values: &[Option<f64>],
+    ) -> Option<Self> {
+        let rows = values.len().checked_div(columns)?;
+        if rows < 2 || columns < 2 || rows * columns != values.len() {
+            return None;
+        }
+        let values = values.iter().map(|value| value.filter(|value| value.is_finite())).collect();
+        Some(Self { name: name.into(), quantity, x_m, y_m, rows, columns, values })
+    }
+
     /// Its name on the scale.
     pub fn name(&self) -> &str {
         &self.name
@@ -112,6 +130,25 @@ mod tests {
     fn a_plane_is_reproduced_between_the_nodes() {
         let value = plane().at([0.313, -0.171]).expect("inside");
         assert!((value - (2.0 * 0.313 + 3.0 * 0.171 + 1.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_grid_that_is_there_is_the_one_that_was_sampled() {
+        let sampled = plane();
+        let again = |columns| {
+            ScalarField::of_grid(
+                "plane",
+                Quantity::Length,
+                sampled.x_m,
+                sampled.y_m,
+                columns,
+                &sampled.values,
+            )
+        };
+        assert_eq!(again(9).as_ref(), Some(&sampled));
+        for wrong in [0, 1, 7, 45] {
+            assert_eq!(again(wrong), None, "{wrong}");
+        }
     }
 
     #[test]

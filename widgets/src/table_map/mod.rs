@@ -1,18 +1,22 @@
 //! The table from above, as the robot sees it: x forward is up, y left is left. One widget for
 //! everything that happens on the table.
 
+mod border;
 mod contour;
 mod field;
 mod paint;
+mod points;
 
+pub use border::Border;
 pub use field::ScalarField;
+pub use points::{PointsResponse, TablePoint};
 
 use egui::{Pos2, Rect, Response, Sense, Ui, Vec2, WidgetInfo, vec2};
 
 use crate::colormap::{ColorScale, Orientation, ScaleBar};
 use crate::format;
 use crate::overlay::Ink;
-use crate::theme::space;
+use crate::theme::{Role, space};
 
 /// What an outline on the table is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +66,24 @@ pub struct TableMark {
     pub text: String,
 }
 
+/// An error at a place of the table in two states: as it was, and as it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BeforeAfter {
+    /// Where (x forward, y left), meters.
+    pub at_m: [f64; 2],
+    /// As it was, meters; `None` draws none.
+    pub before_m: Option<[f64; 2]>,
+    /// As it is, meters; `None` draws none.
+    pub after_m: Option<[f64; 2]>,
+}
+
+impl BeforeAfter {
+    /// Color of the arrows as it was.
+    pub const BEFORE: Role = Role::Difference;
+    /// Color of the arrows as it is, at places that were held out.
+    pub const AFTER: Role = Role::HeldOut;
+}
+
 /// What lies on the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableScene {
@@ -73,8 +95,12 @@ pub struct TableScene {
     pub outlines: Vec<Outline>,
     /// Points and arrows.
     pub marks: Vec<TableMark>,
-    /// Magnification of the vectors of `marks`.
+    /// Errors in two states, drawn with the same magnification.
+    pub before_after: Vec<BeforeAfter>,
+    /// Magnification of the vectors of `marks` and `before_after`.
     pub vector_scale: f64,
+    /// Where the data end; outside of it the map is hatched.
+    pub border: Option<Border>,
 }
 
 impl TableScene {
@@ -85,7 +111,9 @@ impl TableScene {
             y_m: [-0.50, 0.50],
             outlines: Vec::new(),
             marks: Vec::new(),
+            before_after: Vec::new(),
             vector_scale: 1.0,
+            border: None,
         }
     }
 }
@@ -101,6 +129,9 @@ pub struct TableMap<'a> {
     label: &'a str,
     scene: &'a TableScene,
     field: Option<(&'a ScalarField, ColorScale)>,
+    points: &'a [TablePoint],
+    chosen: Option<usize>,
+    words: Option<&'a dyn Fn([f64; 2]) -> String>,
     height: Option<f32>,
 }
 
@@ -110,8 +141,10 @@ pub struct TableMapResponse {
     pub response: Response,
     /// Where the pointer is on the table (x forward, y left), meters.
     pub hover_m: Option<[f64; 2]>,
-    /// Where it was clicked.
+    /// Where it was clicked, beside the points.
     pub clicked_m: Option<[f64; 2]>,
+    /// What was done to the points.
+    pub points: PointsResponse,
 }
 
 /// Maps the table to the screen.
@@ -159,7 +192,21 @@ impl TableTransform {
 impl<'a> TableMap<'a> {
     /// A map that keeps the proportions of its scene.
     pub fn new(label: &'a str, scene: &'a TableScene) -> Self {
-        Self { label, scene, field: None, height: None }
+        Self { label, scene, field: None, points: &[], chosen: None, words: None, height: None }
+    }
+
+    /// Points that can be chosen, dragged, and pushed with the arrow keys; which one is chosen.
+    pub fn points(mut self, points: &'a [TablePoint], chosen: Option<usize>) -> Self {
+        self.points = points;
+        self.chosen = chosen;
+        self
+    }
+
+    /// What is said about the place under the pointer, after its coordinates; instead of the value
+    /// of the field.
+    pub fn words(mut self, words: &'a dyn Fn([f64; 2]) -> String) -> Self {
+        self.words = Some(words);
+        self
     }
 
     /// A quantity over the table as colors and contour lines, with its scale beside the map.
@@ -215,17 +262,26 @@ impl<'a> TableMap<'a> {
         let hover_m = at(response.hover_pos());
         let clicked_m = at(response.interact_pointer_pos().filter(|_| response.clicked()));
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, self.label));
+        let points = points::interact(ui, response.id, on_map, transform, self.scene, self.points);
         if ui.is_rect_visible(rect) {
-            paint::map(ui, on_map, transform, self.scene, self.field);
+            let map = paint::map(ui, on_map, transform, self.scene, self.field);
+            map.points(self.points, self.chosen, &points);
             let text = hover_m.map(|at_m| self.readout(at_m));
             paint::frame(ui, on_map, &response, text.as_deref());
         }
-        TableMapResponse { response, hover_m, clicked_m }
+        TableMapResponse { response, hover_m, clicked_m, points }
+    }
+
+    pub(crate) fn position(at_m: [f64; 2]) -> String {
+        format!("x {}, y {}", format::mm(at_m[0]), format::mm(at_m[1]))
     }
 
     /// "x 412 mm, y −35.2 mm: 1.23 mm".
     fn readout(&self, at_m: [f64; 2]) -> String {
-        let position = format!("x {}, y {}", format::mm(at_m[0]), format::mm(at_m[1]));
+        let position = Self::position(at_m);
+        if let Some(words) = self.words {
+            return format!("{position}: {}", words(at_m));
+        }
         match self.field {
             None => position,
             Some((field, _)) => {

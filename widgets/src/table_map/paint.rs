@@ -6,7 +6,7 @@ use egui::{
     pos2, vec2,
 };
 
-use super::{Outline, Place, ScalarField, TableMark, TableScene, TableTransform, contour};
+use super::{BeforeAfter, Outline, Place, ScalarField, TableMark, TableScene, TableTransform, contour};
 use crate::axis;
 use crate::colormap::ColorScale;
 use crate::format;
@@ -21,31 +21,40 @@ pub(super) const TOP_LEFT: egui::Vec2 = vec2(34.0, 18.0);
 /// Half width and half depth of the torso, meters; a sign, not a measurement.
 const TORSO_M: [f64; 2] = [0.11, 0.05];
 
+/// Draws everything but the points, which come last.
 pub(super) fn map(
     ui: &Ui,
     rect: Rect,
     transform: TableTransform,
     scene: &TableScene,
     field: Option<(&ScalarField, ColorScale)>,
-) {
+) -> Map {
     let tokens = theme::tokens(ui);
     let font = theme::font(ui, &TextStyle::Small);
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 0.0, tokens.backdrop);
-    let map = Map { painter: &painter, transform, tokens, font };
+    let map = Map { painter, transform, tokens, font };
     if let Some((field, scale)) = field {
         map.cells(field, scale);
     }
+    if let Some(border) = &scene.border {
+        map.hatch(rect, border);
+    }
     map.grid(ui.painter(), rect);
     map.torso();
-    let names: Vec<Rect> =
+    let mut names: Vec<Rect> =
         scene.outlines.iter().filter_map(|outline| map.outline(outline, field.is_some())).collect();
+    names.extend(scene.border.as_ref().and_then(|border| map.border(border)));
     if let Some((field, scale)) = field {
         map.contours(field, scale, names);
+    }
+    for error in &scene.before_after {
+        map.before_after(error, scene.vector_scale, field.is_some());
     }
     for mark in &scene.marks {
         map.mark(mark, scene.vector_scale, field.is_some());
     }
+    map
 }
 
 /// The focus ring and the words under the pointer.
@@ -65,14 +74,14 @@ pub(super) fn frame(ui: &Ui, rect: Rect, response: &Response, readout: Option<&s
     }
 }
 
-struct Map<'a> {
-    painter: &'a Painter,
-    transform: TableTransform,
-    tokens: &'static Tokens,
+pub(super) struct Map {
+    pub(super) painter: Painter,
+    pub(super) transform: TableTransform,
+    pub(super) tokens: &'static Tokens,
     font: FontId,
 }
 
-impl Map<'_> {
+impl Map {
     /// Round lines with their numbers left of and below the map.
     fn grid(&self, outside: &Painter, rect: Rect) {
         let near = self.transform.to_table(rect.right_bottom());
@@ -214,7 +223,7 @@ impl Map<'_> {
         let color = mark.ink.color(tokens);
         if let Some(vector) = mark.vector_m {
             let vector = self.transform.vector(vector) * vector_scale as f32;
-            overlay::arrow(self.painter, at, vector, Stroke::new(1.5, color), Some(rim));
+            overlay::arrow(&self.painter, at, vector, Stroke::new(1.5, color), Some(rim));
         }
         let radius = if mark.vector_m.is_some() { 1.5 } else { 3.5 };
         self.painter.circle(at, radius, color, Stroke::new(1.0, rim));
@@ -223,8 +232,25 @@ impl Map<'_> {
         }
     }
 
+    /// As it was below, as it is above.
+    fn before_after(&self, error: &BeforeAfter, vector_scale: f64, on_field: bool) {
+        let tokens = if on_field { &theme::ON_IMAGE } else { self.tokens };
+        let rim = if on_field { theme::RIM } else { Color32::TRANSPARENT };
+        let at = self.transform.to_screen(error.at_m);
+        for (vector_m, role) in [(error.before_m, BeforeAfter::BEFORE), (error.after_m, BeforeAfter::AFTER)] {
+            let Some(vector_m) = vector_m else { continue };
+            let vector = self.transform.vector(vector_m) * vector_scale as f32;
+            overlay::arrow(&self.painter, at, vector, Stroke::new(1.5, role.color(tokens)), Some(rim));
+        }
+        self.painter.circle(at, 1.5, tokens.text, Stroke::new(1.0, rim));
+    }
+
+    pub(super) fn width_of(&self, text: &str) -> f32 {
+        self.painter.layout_no_wrap(text.to_owned(), self.font.clone(), Color32::WHITE).size().x
+    }
+
     /// A word that can be read on every color.
-    fn chip(&self, at: Pos2, text: &str) -> Rect {
+    pub(super) fn chip(&self, at: Pos2, text: &str) -> Rect {
         let ink = theme::ON_IMAGE.text_strong;
         let galley = self.painter.layout_no_wrap(text.to_owned(), self.font.clone(), ink);
         let rect = Rect::from_min_size(at, galley.size() + vec2(8.0, 2.0));
