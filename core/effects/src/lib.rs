@@ -7,6 +7,8 @@
 //! - [`observability`]: scores a plan of touches by the effects it will be able to tell apart.
 
 pub mod arm;
+#[cfg(test)]
+mod laws;
 pub mod library;
 pub mod observability;
 

@@ -11,9 +11,9 @@ use crate::arm::{Arm, Deviation};
 
 /// A tooth has two flanks: gravity has chosen one when it is clearly larger than this, N m.
 const SEATING_TORQUE_NM: f64 = 0.02;
-/// How far a usual joint gives under load, rad/(N m): a servo of 30 N m/rad. Only needed to see
-/// a wrong mass, which shows through what gives way under it.
-const USUAL_COMPLIANCE_RAD_PER_NM: f64 = 1.0 / 30.0;
+/// How far a usual bracket gives under load, rad/(N m). Only needed to see a wrong mass, which
+/// shows through what gives way under it.
+const USUAL_COMPLIANCE_RAD_PER_NM: f64 = 0.015;
 /// Links shorter than this have no length that could be wrong, m.
 const SHORTEST_LINK_M: f64 = 0.02;
 

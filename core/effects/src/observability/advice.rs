@@ -72,8 +72,15 @@ pub(super) struct Scene<'a> {
 
 pub(super) fn advice(scene: &Scene<'_>, contacts: &[PlannedContact], plan: &Information) -> Vec<Advice> {
     let before = plan.spectrum().directions();
+    let with = |added: &[PlannedContact]| {
+        let mut both = plan.clone();
+        both += &Information::of(scene.arm, scene.surface, scene.effects, added, scene.noise);
+        both.spectrum().directions()
+    };
     let every = contacts.len().div_ceil(MOST_ADDED);
     let some: Vec<&PlannedContact> = contacts.iter().step_by(every.max(1)).collect();
+    // More touches of the same kind bring something, too: what is advised must bring more.
+    let repeated = with(&some.iter().copied().cloned().collect::<Vec<_>>());
     let mut advice: Vec<Advice> = Addition::ALL
         .into_iter()
         .filter_map(|addition| {
@@ -85,11 +92,9 @@ pub(super) fn advice(scene: &Scene<'_>, contacts: &[PlannedContact], plan: &Info
             if added.is_empty() {
                 return None;
             }
-            let mut both = plan.clone();
-            both += &Information::of(scene.arm, scene.surface, scene.effects, &added, scene.noise);
-            let after = both.spectrum().directions();
+            let after = with(&added);
             let sentence = addition.sentence(added.len(), before, after);
-            (after > before).then_some(Advice { addition, sentence, directions_after: after })
+            (after > repeated).then_some(Advice { addition, sentence, directions_after: after })
         })
         .collect();
     advice.sort_by_key(|advice| std::cmp::Reverse(advice.directions_after));

@@ -50,7 +50,9 @@ impl Information {
         let count = starts[starts.len() - 1];
         let tangents: Vec<ContactTangent> = contacts
             .par_iter()
-            .map(|contact| ContactTangent::of(arm, surface, effects, contact, STEP))
+            .map(|contact| {
+                ContactTangent::of(arm, surface, effects, contact, noise.encoder_rad.is_some(), STEP)
+            })
             .collect();
         let weigh = Matrix3::from_diagonal(&Vector3::new(
             1.0 / noise.in_plane_m,

@@ -21,7 +21,16 @@ pub(super) struct ContactTangent {
 }
 
 impl ContactTangent {
-    pub fn of(arm: &Arm, surface: &Surface, effects: &[Effect], contact: &PlannedContact, step: f64) -> Self {
+    /// `from_encoders`: the prediction starts from encoder angles, in which a servo that gives way
+    /// shows itself; else from commanded ones, and the touch has to show it.
+    pub fn of(
+        arm: &Arm,
+        surface: &Surface,
+        effects: &[Effect],
+        contact: &PlannedContact,
+        from_encoders: bool,
+        step: f64,
+    ) -> Self {
         let situation = Situation::new(
             arm,
             &contact.angles_rad,
@@ -41,17 +50,19 @@ impl ContactTangent {
             let parameters = effect.parameters();
             for (k, parameter) in parameters.iter().enumerate() {
                 let mut values = vec![0.0; parameters.len()];
+                if from_encoders && effect.kind == Kind::ServoDroop {
+                    columns.push(Vector3::zeros());
+                    let mut deviation = none.clone();
+                    effect.deviate(&situation, &[parameter.typical], &mut deviation);
+                    encoder_rad
+                        .push(deviation.joint_rad.iter().map(|angle| angle * angle).sum::<f64>().sqrt());
+                    continue;
+                }
                 values[k] = step * parameter.typical;
                 let ahead = seen(effect, &values);
                 values[k] = -step * parameter.typical;
                 columns.push((ahead - seen(effect, &values)) / (2.0 * step));
-                encoder_rad.push(if effect.kind == Kind::ServoDroop {
-                    let mut deviation = none.clone();
-                    effect.deviate(&situation, &[parameter.typical], &mut deviation);
-                    deviation.joint_rad.iter().map(|angle| angle * angle).sum::<f64>().sqrt()
-                } else {
-                    0.0
-                });
+                encoder_rad.push(0.0);
             }
         }
         let tip = arm.tip_m(&contact.angles_rad, &none);

@@ -1,0 +1,142 @@
+//! Laws of the arm and the library.
+
+use nalgebra::Point3;
+use plumbline_model::robot::Rig;
+use plumbline_model::{Pixel, Point};
+
+use crate::arm::{Arm, Deviation};
+use crate::library::{Effect, Kind, Situation, Surface};
+
+const ANGLES: [f64; 6] = [-0.2, 1.1, 0.5, 1.7, -0.3, 0.2];
+
+fn arm() -> (Rig, Arm) {
+    let rig = Rig::built_in("nico").expect("comes with the program");
+    let arm = Arm::of_rig(&rig, "right_index_tip").expect("a tip of the rig");
+    (rig, arm)
+}
+
+#[test]
+fn nothing_deviating_is_the_nominal_chain() {
+    let (rig, arm) = arm();
+    let chain = rig.chain("right_index_tip").expect("a tip of the rig");
+    let nominal = chain.robot_from_tip(&ANGLES).translation_m();
+    let here = arm.tip_m(&ANGLES, &Deviation::none(6));
+    assert!((here.coords - nominal).norm() < 1e-12);
+    assert!((arm.frames(&ANGLES).robot_from_tip.translation.vector - nominal).norm() < 1e-12);
+    assert_eq!(arm.parts.iter().map(|part| part.joint.clone()).collect::<Vec<_>>(), chain.names());
+}
+
+#[test]
+fn an_effect_of_size_zero_changes_nothing() {
+    let (rig, arm) = arm();
+    let surface = Surface::of(&rig.touchscreen);
+    let situation = Situation::new(&arm, &ANGLES, &[1.0; 6], 0.25, surface.normal());
+    let nominal = surface.touch_m(arm.tip_m(&ANGLES, &Deviation::none(6)), 0.0, &Deviation::none(6));
+    for effect in Effect::all(&arm) {
+        let count = effect.parameters().len();
+        let mut deviation = Deviation::none(6);
+        effect.deviate(&situation, &vec![0.0; count], &mut deviation);
+        let same = surface.touch_m(arm.tip_m(&ANGLES, &deviation), 0.0, &deviation);
+        assert!((same - nominal).norm() < 1e-15, "{} at {}", effect.id(), effect.site);
+        // And one of usual size changes something.
+        let values: Vec<f64> = effect.parameters().iter().map(|parameter| parameter.typical).collect();
+        effect.deviate(&situation, &values, &mut deviation);
+        let other = surface.touch_m(arm.tip_m(&ANGLES, &deviation), 0.0, &deviation);
+        let upright = effect.joint_site_bears_nothing();
+        assert!(upright || (other - nominal).norm() > 1e-7, "{} at {}", effect.id(), effect.site);
+    }
+}
+
+impl Effect {
+    /// The first joint turns about the vertical: gravity does not load it.
+    fn joint_site_bears_nothing(&self) -> bool {
+        let loaded = matches!(self.kind, Kind::GravityBacklash | Kind::ServoDroop | Kind::JointSag);
+        loaded && self.site == "r_shoulder_z"
+    }
+}
+
+#[test]
+fn torques_are_the_slope_of_the_potential_energy() {
+    let (_, arm) = arm();
+    let energy_j = |angles: &[f64], payload_kg: f64| {
+        let frames = arm.frames(angles);
+        let parts = arm.parts.iter().zip(&frames.robot_from_joint);
+        let own: f64 = parts.map(|(part, place)| part.mass_kg * (place * part.center_m).z).sum();
+        let held = payload_kg * (frames.robot_from_joint[5] * arm.palm_m).z;
+        9.80665 * (own + held)
+    };
+    for payload_kg in [0.0, 0.25] {
+        let situation = Situation::new(&arm, &ANGLES, &[0.0; 6], payload_kg, &nalgebra::Vector3::z());
+        for (j, torque_nm) in situation.torques_nm().iter().enumerate() {
+            let at = |step: f64| {
+                let mut angles = ANGLES;
+                angles[j] += step;
+                energy_j(&angles, payload_kg)
+            };
+            let slope = (at(1e-5) - at(-1e-5)) / 2e-5;
+            assert!((torque_nm + slope).abs() < 1e-8, "joint {j}: {torque_nm} against {slope}");
+        }
+        assert!(situation.torques_nm()[0].abs() < 1e-12, "the first axis is upright");
+    }
+}
+
+#[test]
+fn the_masses_of_the_arm_are_those_of_the_description() {
+    let (rig, arm) = arm();
+    let own: f64 = arm.parts.iter().map(|part| part.mass_kg).sum();
+    let all: f64 =
+        rig.description.links().iter().filter_map(|link| link.inertia).map(|inertia| inertia.mass_kg).sum();
+    assert!(own > 0.2 && own < 0.5 * all, "{own} of {all} kg");
+}
+
+#[test]
+fn a_touch_is_where_the_screen_says() {
+    let (rig, _) = arm();
+    let screen = &rig.touchscreen;
+    let surface = Surface::of(screen);
+    let [u_m, v_m] = screen.pitch_m();
+    let (middle, pixel) = (screen.middle(), Pixel::new(1200.0, 300.0));
+    let at = screen.raised(0.06).point_at(pixel);
+    let touch = surface.touch_m(at.coords, 0.06, &Deviation::none(6));
+    assert!((touch.x - (pixel.u_px - middle.u_px) * u_m).abs() < 1e-12);
+    assert!((touch.y - (pixel.v_px - middle.v_px) * v_m).abs() < 1e-12);
+    assert!(touch.z.abs() < 1e-12);
+}
+
+#[test]
+fn the_gauge_is_the_motion_of_the_screen() {
+    let (rig, _) = arm();
+    let surface = Surface::of(&rig.touchscreen);
+    let tip = Point3::new(0.4, -0.1, 0.08);
+    let middle = rig.touchscreen.point_at(rig.touchscreen.middle()).coords.coords;
+    let gauge = surface.gauge(tip);
+    let none = Deviation::none(0);
+    let axes = [rig.touchscreen.u_axis, rig.touchscreen.v_axis, rig.touchscreen.normal()];
+    for (k, axis) in axes.iter().enumerate() {
+        let step = 1e-6;
+        let moved = tip + axis.vector() * step;
+        let turn = nalgebra::UnitQuaternion::from_scaled_axis(axis.vector() * step);
+        let turned = Point3::from(middle + turn * (tip.coords - middle));
+        for (column, other) in [(k, moved), (k + 3, turned)] {
+            let slope = (surface.touch_m(other, 0.0, &none) - surface.touch_m(tip, 0.0, &none)) / step;
+            assert!((slope - gauge.column(column)).norm() < 1e-6, "column {column}");
+        }
+    }
+    assert!(rig.touchscreen.height_above_m(Point::from(tip)) > 0.0);
+}
+
+#[test]
+fn names_are_those_of_the_command_line() {
+    let known = "joint-zero joint-scale joint-eccentricity tooth-ripple backlash gravity-backlash stiction \
+        servo-droop joint-sag sideways-give link-bending creep early-log torque-limit servo-warm-up slipped-horn \
+        joint-coupling axis-skew link-length tip-offset finger-bend finger-roll touch-drag base-tilt torso-lean \
+        payload-mass screen-bumped screen-scale screen-tilt screen-bow panel-edge";
+    let known: Vec<&str> = known.split_whitespace().collect();
+    let mut before = None;
+    for kind in Kind::ALL {
+        let place = known.iter().position(|id| *id == kind.id());
+        assert!(place > before, "{} is unknown or out of order", kind.id());
+        before = place;
+        assert!(kind.parameters().iter().all(|parameter| parameter.typical > 0.0));
+    }
+}
