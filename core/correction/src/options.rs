@@ -1,5 +1,6 @@
 //! What can be chosen about training.
 
+use plumbline_model::session::Touchscreen;
 use serde::{Deserialize, Serialize};
 
 use crate::blocks::BlockBy;
@@ -42,6 +43,34 @@ pub struct TrainOptions {
     pub session: String,
     /// Name and version of the program, for the provenance.
     pub software: String,
+    /// Short name of the robot, for the provenance; empty when not known.
+    pub rig: String,
+    /// Size of the touchscreen, for the provenance.
+    pub screen: Option<ScreenSize>,
+}
+
+/// Size of a touchscreen that a model belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScreenSize {
+    /// Pixels across.
+    pub width_px: u32,
+    /// Pixels down.
+    pub height_px: u32,
+    /// Visible width, m.
+    pub width_m: f64,
+    /// Visible height, m.
+    pub height_m: f64,
+}
+
+impl From<&Touchscreen> for ScreenSize {
+    fn from(screen: &Touchscreen) -> Self {
+        Self {
+            width_px: screen.width_px,
+            height_px: screen.height_px,
+            width_m: screen.width_m,
+            height_m: screen.height_m,
+        }
+    }
 }
 
 impl Default for TrainOptions {
@@ -57,6 +86,8 @@ impl Default for TrainOptions {
             placement: PlacementFrom::default(),
             session: String::new(),
             software: String::new(),
+            rig: String::new(),
+            screen: None,
         }
     }
 }
