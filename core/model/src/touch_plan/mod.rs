@@ -13,6 +13,7 @@ mod options;
 mod order;
 mod pattern;
 mod random;
+mod reach;
 #[cfg(test)]
 mod tests;
 

@@ -211,3 +211,31 @@ fn plans_that_cannot_be_made_say_what_to_do() {
     let line = Pattern::Lines { horizontal: 1, vertical: 0, diagonal: 0, points: 5 };
     says(PlanOptions { purpose: Purpose::PlaceScreen, ..with(vec![line]) }, "on a line");
 }
+
+#[test]
+fn the_largest_rectangle_is_found() {
+    // Everything but the far left corner: either what is right of it or what is near of it.
+    let corner = |pixel: Pixel<Screen>| pixel.u_px < 300.0 && pixel.v_px < 700.0;
+    let area = TouchArea::largest_where(&screen(), |pixel| !corner(pixel)).expect("an area");
+    assert!(area.u_px[0] > 300.0 && area.u_px[0] < 450.0, "{area:?}");
+    assert!(area.u_px[1] > 1850.0 && area.v_px[0] < 60.0 && area.v_px[1] > 1020.0, "{area:?}");
+    assert!(TouchArea::largest_where(&screen(), |_| false).is_none());
+    let mut one = false;
+    let single = TouchArea::largest_where(&screen(), |_| !std::mem::replace(&mut one, true));
+    assert!(single.is_none(), "a single place is no area");
+    let whole = TouchArea::largest_where(&screen(), |_| true).expect("an area");
+    assert_eq!(whole, TouchArea::within(&screen(), 0.01));
+}
+
+#[test]
+fn arms_reach_their_own_side() {
+    let rig = Rig::built_in("nico").expect("comes with the program");
+    let start = std::time::Instant::now();
+    let right = TouchArea::reached_by(&rig, "right_index_tip").expect("a tip").expect("an area");
+    println!("the right finger reaches {right:?}, found in {:.0?}", start.elapsed());
+    let left = TouchArea::reached_by(&rig, "left_index_tip").expect("a tip").expect("an area");
+    let middle = |area: &TouchArea| 0.5 * (area.u_px[0] + area.u_px[1]);
+    assert!(middle(&right) > middle(&left), "{right:?} and {left:?}");
+    assert!(TouchPlan::make(&PlanOptions::first(right), &screen()).is_ok());
+    assert!(TouchArea::reached_by(&rig, "nose").is_err());
+}

@@ -287,3 +287,39 @@ fn broken_placements_are_refused() {
     }
     assert!(ScreenPlacement::read(&folder.path().join("none.toml"), "nico").is_err());
 }
+
+#[test]
+fn the_real_screen_is_placed_as_well_as_a_rigid_motion_can() {
+    let folder = match crate::measured_data::folder("nico-touch/touch-245") {
+        Ok(folder) => folder,
+        Err(skipped) => return println!("{skipped}"),
+    };
+    let session = crate::session::Session::read(&folder).expect("a session");
+    let rig = Rig::built_in("nico").expect("comes with the program");
+    let chain = rig.chain("right_index_tip").expect("a tip of the rig");
+    let table = session.touches.expect("touches");
+    let fingertip = |row: &crate::session::TouchRow| {
+        let angles_rad: Option<Vec<f64>> = row.commanded_rad.iter().copied().collect();
+        let tip = chain.robot_from_tip(&angles_rad?).translation_m();
+        Some((row.touch?, Point::new(tip.x, tip.y, tip.z)))
+    };
+    let some: Vec<_> = table.rows().filter_map(|row| fingertip(&row)).collect();
+    let screen = session.manifest.touchscreen.expect("a touchscreen");
+    let placed = place_screen(&screen, &some).expect("a screen");
+    let [u_m, v_m] = placed.screen.pitch_m();
+    let miss_m = |(pixel, tip): &(Pixel<Screen>, Point<Robot>)| {
+        let predicted = placed.screen.pixel_at(*tip);
+        ((predicted.u_px - pixel.u_px) * u_m).hypot((predicted.v_px - pixel.v_px) * v_m)
+    };
+    let mean_m = some.iter().map(miss_m).sum::<f64>() / some.len() as f64;
+    println!(
+        "{} touches: mean 2D {:.2} mm, 3D rms {:.2} mm, moved {:?} m, turned {:?} rad",
+        some.len(),
+        mean_m * 1e3,
+        placed.rms_m * 1e3,
+        placed.moved_m,
+        placed.turned_rad
+    );
+    // What a rigid placement is known to leave on these touches: 6.7 mm.
+    assert!((6.0e-3..7.4e-3).contains(&mean_m), "{mean_m}");
+}
