@@ -16,6 +16,9 @@ pub struct Arm {
     /// Where a weight is held, in the last joint's turned frame, m; the tip where the rig names
     /// no palm.
     pub palm_m: Point3<f64>,
+    /// Where the finger that ends in the tip points, in the last joint's turned frame: from the
+    /// nearest joint of the hand to the tip, or from the last joint where the rig names no hand.
+    pub finger: Unit<Vector3<f64>>,
 }
 
 /// A joint of the arm and the rigid body that it carries up to the next one.
@@ -129,8 +132,11 @@ impl Arm {
             .map(|joint| joint.child)
             .collect();
         lump_masses(rig, &carriers, &mut parts);
-        let palm_m = palm(rig, tip, &carriers).unwrap_or_else(|| Point3::from(rest.translation.vector));
-        Ok(Self { parts, last_from_tip: rest, palm_m })
+        let tip_m = rest.translation.vector;
+        let palm_m = palm(rig, tip, &carriers).unwrap_or_else(|| Point3::from(tip_m));
+        let finger_m = tip_m - knuckle(rig, tip, &carriers, tip_m).unwrap_or_default();
+        let finger = Unit::try_new(finger_m, 1e-9).unwrap_or(-Vector3::z_axis());
+        Ok(Self { parts, last_from_tip: rest, palm_m, finger })
     }
 
     /// Number of joints.
@@ -243,4 +249,17 @@ fn palm(rig: &Rig, tip: &str, carriers: &[LinkIndex]) -> Option<Point3<f64>> {
     let poses = rig.description.forward(&rig.home());
     let last = poses.of(*carriers.last()?).isometry;
     Some(Point3::from((last.inverse() * poses.of(palm).isometry).translation.vector))
+}
+
+/// The joint of the hand that is nearest to the tip, in the last joint's frame. Fingers are rigid
+/// parts of the way to the tip, so their joints are not on the chain.
+fn knuckle(rig: &Rig, tip: &str, carriers: &[LinkIndex], tip_m: Vector3<f64>) -> Option<Vector3<f64>> {
+    let arm = rig.arms.iter().find(|arm| arm.tips.iter().any(|known| known.link == tip))?;
+    let poses = rig.description.forward(&rig.home());
+    let last = poses.of(*carriers.last()?).isometry.inverse();
+    arm.hand
+        .iter()
+        .map(|joint| (last * poses.of(rig.description.joint(*joint).child).isometry).translation.vector)
+        .filter(|knuckle| (knuckle - tip_m).norm() > 1e-6)
+        .min_by(|a, b| (a - tip_m).norm().total_cmp(&(b - tip_m).norm()))
 }

@@ -140,3 +140,27 @@ fn names_are_those_of_the_command_line() {
         assert!(kind.parameters().iter().all(|parameter| parameter.typical > 0.0));
     }
 }
+
+#[test]
+fn a_round_pad_touches_with_its_lowest_point() {
+    let (rig, arm) = arm();
+    let normal = rig.touchscreen.normal().vector();
+    let situation = Situation::new(&arm, &ANGLES, &[0.0; 6], 0.0, &normal);
+    let radius_m = 0.006;
+    let mut deviation = Deviation::none(6);
+    let all = Effect::all(&arm);
+    let roll = all.iter().find(|effect| effect.kind == Kind::FingerRoll).expect("a candidate");
+    roll.deviate(&situation, &[radius_m], &mut deviation);
+    // The pad's center lies one radius before the tip, on the line from the knuckle. The index
+    // finger's joint is where the rig says, whatever its angle.
+    let mut posture = rig.home();
+    for (part, angle_rad) in arm.parts.iter().zip(ANGLES) {
+        posture[part.index] = angle_rad;
+    }
+    let joint = rig.description.find_joint("r_indexfinger_x").expect("a joint of the hand");
+    let knuckle = rig.description.forward(&posture).of(rig.description.joint(joint).child).translation_m();
+    let tip = arm.tip_m(&ANGLES, &Deviation::none(6));
+    let center = tip.coords - (tip.coords - knuckle).normalize() * radius_m;
+    let lowest = center - normal * radius_m;
+    assert!((arm.tip_m(&ANGLES, &deviation).coords - lowest).norm() < 1e-12);
+}

@@ -381,7 +381,7 @@ impl<'a> Situation<'a> {
             torques_nm,
             sideways_nm,
             lean_nm,
-            roll: roll(&frames.robot_from_joint, tip, normal),
+            roll: roll(arm, &frames.robot_from_joint, normal),
             sweep: sweep(&frames.robot_from_joint, &frames.axes, direction, tip, normal),
         }
     }
@@ -394,10 +394,9 @@ impl<'a> Situation<'a> {
 
 /// A round pad touches with its lowest point, the model's tip lies at its end: per meter of
 /// radius the contact moves by −(finger + normal).
-fn roll(joints: &[Isometry3<f64>], tip: Point3<f64>, normal: &Vector3<f64>) -> Vector3<f64> {
+fn roll(arm: &Arm, joints: &[Isometry3<f64>], normal: &Vector3<f64>) -> Vector3<f64> {
     let Some(last) = joints.last() else { return Vector3::zeros() };
-    let finger = (tip.coords - last.translation.vector).try_normalize(1e-9).unwrap_or(-*normal);
-    -(finger + normal)
+    -(last.rotation * arm.finger.into_inner() + normal)
 }
 
 fn sweep(

@@ -106,6 +106,30 @@ pub struct PlanScore {
     pub information_bits: f64,
 }
 
+impl PlanScore {
+    /// What the plan will tell, in a sentence.
+    pub fn sentence(&self) -> String {
+        let seen = self.seen.iter().filter(|effect| effect.is_seen()).count();
+        let alike = match self.alike.len() {
+            0 => "each looks different".to_owned(),
+            1 => "one group of them looks alike".to_owned(),
+            count => format!("{count} groups of them look alike"),
+        };
+        format!(
+            "{} independent directions; {seen} of {} possible effects would be noticed, {alike}.",
+            self.directions, self.candidates
+        )
+    }
+
+    /// What an effect is and where, for people.
+    pub fn title(&self, id: &str, site: &str) -> Option<&str> {
+        self.seen
+            .iter()
+            .find(|effect| effect.id == id && effect.site == site)
+            .map(|effect| effect.title.as_str())
+    }
+}
+
 /// Why a plan was not scored.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ScoreError {

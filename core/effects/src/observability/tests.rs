@@ -175,6 +175,11 @@ fn richer_plans_tell_more() {
         before = Some(score);
     }
     let rich = before.expect("four plans");
+    println!("{}", rich.sentence());
+    assert!(rich.sentence().starts_with(&format!("{} independent", rich.directions)));
+    for (id, site) in rich.alike.iter().flatten() {
+        assert!(rich.title(id, site).is_some(), "{id} at {site}");
+    }
     assert!((18..=30).contains(&rich.directions), "{}", rich.directions);
 }
 

@@ -19,6 +19,10 @@ const TELLING_FREEDOM: usize = 9;
 const LEAST_SPREAD_M: f64 = 0.02;
 /// A placement that leaves more than this (rms) is no placement, m.
 const LARGEST_RMS_M: f64 = 0.03;
+/// Touches that disagree by more than this (per axis) show errors of the arm, m.
+const ARM_ERROR_M: f64 = 3e-3;
+/// No screen on a table leans more than this.
+const LARGEST_LEAN_RAD: f64 = 0.05;
 /// A screen turned farther than this from where it nominally lies was touched in another order.
 const LARGEST_TURN_RAD: f64 = std::f64::consts::FRAC_PI_4;
 
@@ -179,6 +183,7 @@ pub fn place_screen(
     let rms_m = (sum / touches.len() as f64).sqrt();
     let (noise_m, mut remarks) = noise(sum, touches.len());
     remarks.extend(outlying(&residuals, noise_m));
+    remarks.extend(errors_of_the_arm(nominal, &screen, noise_m));
     let middle = screen.point_at(screen.middle()).coords.coords;
     let places = touches.iter().map(|(pixel, _)| screen.point_at(*pixel).coords.coords - middle);
     let sd = standard_deviations(places, noise_m).ok_or(PlacementError::OnALine { spread_m: 0.0 })?;
@@ -314,6 +319,26 @@ fn outlying(residuals: &[Vector3<f64>], noise_m: f64) -> Vec<String> {
         format!("touch {} lies {:.1} mm beside the placed screen: touch that place again", i + 1, off_m * 1e3)
     })
     .collect()
+}
+
+/// What only an arm that errs can explain. A rigid placement takes in what it can of that.
+fn errors_of_the_arm(nominal: &Touchscreen, screen: &Touchscreen, noise_m: f64) -> Vec<String> {
+    let mut remarks = vec![];
+    if noise_m > ARM_ERROR_M {
+        remarks.push(format!(
+            "the touches disagree by {:.1} mm per axis, which is more than a fingertip's: the arm itself errs, and \
+             the placement is the best compromise over the touched places",
+            noise_m * 1e3
+        ));
+    }
+    let lean_rad = screen.normal().angle_rad(&nominal.normal());
+    if lean_rad > LARGEST_LEAN_RAD {
+        remarks.push(format!(
+            "the screen seems to lean by {:.1}° against the rig file: if it does not, errors of the arm look like that",
+            lean_rad.to_degrees()
+        ));
+    }
+    remarks
 }
 
 /// Standard deviations of a shift of the middle (m) and of a turn about it (rad), from the places

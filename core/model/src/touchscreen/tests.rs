@@ -158,6 +158,7 @@ fn exact_touches_place_exactly() {
     }
     assert_eq!(placed.touches, 3);
     assert!(placed.remarks[0].contains("too few to judge"), "{:?}", placed.remarks);
+    assert_eq!(placed.remarks.len(), 1, "nothing else to say");
     assert!(placed.sd_m.iter().all(|sd_m| (0.5e-3..3e-3).contains(sd_m)), "{:?}", placed.sd_m);
 }
 
@@ -320,6 +321,8 @@ fn the_real_screen_is_placed_as_well_as_a_rigid_motion_can() {
         placed.moved_m,
         placed.turned_rad
     );
+    let says = |words: &str| placed.remarks.iter().any(|remark| remark.contains(words));
+    assert!(says("the arm itself errs") && says("lean"), "{:?}", placed.remarks);
     // What a rigid placement is known to leave on these touches: 6.7 mm.
     assert!((6.0e-3..7.4e-3).contains(&mean_m), "{mean_m}");
 }
