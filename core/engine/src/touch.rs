@@ -3,7 +3,19 @@
 //! [`TouchWorkflow`] is driven by commands, by what the robot reports and by finished work; it owns
 //! no thread and reads no clock.
 
+mod figures;
+pub mod path;
+mod placement;
+mod plan;
+mod record;
+mod run;
 mod state;
+mod store;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
+mod view;
 pub mod work;
 
 pub use state::{Surroundings, TouchWorkflow};

@@ -387,3 +387,28 @@ fn measured_sessions_are_read_and_written_without_loss() {
         }
     }
 }
+
+#[test]
+fn columns_that_the_format_does_not_define_are_written_and_come_back() {
+    let row = |angle_rad: f64| TouchRow {
+        commanded_rad: vec![Some(angle_rad), Some(0.1 / 3.0)],
+        touch: Some(Pixel::new(960.0, 540.5)),
+        ..TouchRow::default()
+    };
+    let rows = [row(0.1), row(0.2)];
+    let joints = vec!["a".to_owned(), "b".to_owned()];
+    let later = |row: usize| (row == 1).then_some(0.1 / 3.0);
+    let empty = |_: usize| None;
+    let table = TouchTable::from_rows_with(
+        joints.clone(),
+        &rows,
+        &[("later_a_rad".to_owned(), &later), ("later_b_rad".to_owned(), &empty)],
+    );
+    let folder = folder();
+    let file = folder.path().join("touches.csv");
+    table.write(&file).expect("written");
+    let read = TouchTable::read(&file, &joints).expect("read");
+    assert_eq!(read.rows().collect::<Vec<_>>(), rows);
+    assert_eq!(read.extra_numbers("later_a_rad"), Some(vec![None, Some(0.1 / 3.0)]));
+    assert_eq!(read.extra_numbers("later_b_rad"), None, "a column without a value is left out");
+}

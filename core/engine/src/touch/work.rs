@@ -3,10 +3,22 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use jiff::Timestamp;
 use plumbline_model::JobContext;
-use plumbline_model::robot::Rig;
+use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::touchscreen::ScreenPlacement;
 
+use super::path::{Planner, TouchPace, TouchPath};
+use super::placement::{self, Proposal};
+use super::plan::{self, Aim, PlanRequest, RunPlan, TIP};
+use super::record::{Progress, TouchRecord};
+use super::store::{self, Runs, Stored};
 use crate::jobs::JobError;
+use crate::robot::TouchOrder;
+use crate::text::sentence;
+
+/// The place of the screen in use, in the world's folder.
+pub const PLACEMENT_FILE: &str = "screen.toml";
 
 /// Work of this workflow.
 #[derive(Clone, Debug)]
@@ -18,35 +30,281 @@ pub enum TouchWork {
         /// The robot that they must be of.
         rig: Arc<Rig>,
     },
+    /// Plans touches and looks which can be reached.
+    Plan(PlanRequest),
+    /// Makes the folder of a new session.
+    Begin {
+        /// Where sessions are kept.
+        sessions: PathBuf,
+        /// The robot, its screen where it is taken to lie without a block.
+        rig: Arc<Rig>,
+        /// What will be done.
+        plan: Arc<RunPlan>,
+    },
+    /// Reads a run that was begun earlier.
+    Open {
+        /// Its folder.
+        session: PathBuf,
+        /// The robot that it must be of.
+        rig: Arc<Rig>,
+    },
+    /// Writes what happened in a run.
+    Write {
+        /// Its folder.
+        session: PathBuf,
+        /// Joints of its chain.
+        joints: Vec<String>,
+        /// What happened.
+        progress: Arc<Progress>,
+        /// Counts changes of it.
+        revision: u64,
+    },
+    /// Looks for the way to the next target.
+    Route(RouteRequest),
+    /// Measures where the screen lies, from touches.
+    Place {
+        /// The run that they are of.
+        session: PathBuf,
+        /// The robot, its screen where it nominally lies.
+        rig: Arc<Rig>,
+        /// Joints of the run's chain.
+        joints: Vec<String>,
+        /// Touches that count.
+        touches: Vec<TouchRecord>,
+    },
+    /// Makes a measured place of the screen the one in use.
+    Accept {
+        /// The file that keeps it.
+        file: PathBuf,
+        /// The place.
+        placement: Arc<ScreenPlacement>,
+    },
+    /// Removes the file, so that the nominal place is used again.
+    Forget {
+        /// Which.
+        file: PathBuf,
+    },
+}
+
+/// The way to a target.
+#[derive(Clone, Debug)]
+pub struct RouteRequest {
+    /// The robot, its screen where it lies, on its block.
+    pub rig: Arc<Rig>,
+    /// Made for that place of the screen before; `None`: to be made.
+    pub planner: Option<Arc<Planner>>,
+    /// The target.
+    pub aim: Box<Aim>,
+    /// Where the arm stands.
+    pub from: Posture,
+    /// Counts orders.
+    pub order: u64,
+    /// How fast.
+    pub pace: TouchPace,
 }
 
 /// What came out.
 #[derive(Clone, Debug)]
 pub enum TouchResult {
     /// What was accepted before.
-    Restored,
+    Restored {
+        /// The place of the screen in use, or why it cannot be used; `None`: nominal.
+        placement: Option<Result<Arc<ScreenPlacement>, String>>,
+        /// Runs of earlier starts.
+        runs: Runs,
+    },
+    /// A plan, of a screen that lies where this rig has it.
+    Planned(Arc<RunPlan>, Arc<Rig>),
+    /// A new session.
+    Begun {
+        /// Its folder.
+        session: PathBuf,
+        /// The run as it stands there.
+        stored: Box<Stored>,
+    },
+    /// A run of earlier.
+    Opened {
+        /// Its folder.
+        session: PathBuf,
+        /// The run.
+        stored: Box<Stored>,
+    },
+    /// What happened is on disk, or why it is not.
+    Written {
+        /// Up to this change.
+        revision: u64,
+        /// Why not.
+        problem: Option<String>,
+    },
+    /// The way to a target, or why there is none.
+    Routed {
+        /// Number of the planned touch.
+        number: usize,
+        /// For the next target.
+        planner: Option<Arc<Planner>>,
+        /// The order.
+        order: Result<Box<TouchOrder>, String>,
+    },
+    /// A measured place of the screen, or why the touches do not tell.
+    Placed(Result<Proposal, String>),
+    /// It is in use from now on.
+    Saved(Arc<ScreenPlacement>),
+    /// The nominal place is in use.
+    Forgotten,
 }
 
 impl TouchWork {
     /// What it does, for people.
     pub fn title(&self) -> String {
-        "Read the place of the screen".to_owned()
+        match self {
+            Self::Restore { .. } => "Read the place of the screen".to_owned(),
+            Self::Plan(_) => "Plan touches".to_owned(),
+            Self::Begin { .. } => "Begin a session".to_owned(),
+            Self::Open { .. } => "Open the run".to_owned(),
+            Self::Write { .. } => "Write the touches".to_owned(),
+            Self::Route(request) => format!("Look for the way to target {}", request.aim.touch.number),
+            Self::Place { touches, .. } => format!("Place the screen from {} touches", touches.len()),
+            Self::Accept { .. } => "Use this place of the screen".to_owned(),
+            Self::Forget { .. } => "Go back to the nominal place of the screen".to_owned(),
+        }
     }
 
     /// Whether it is over so soon that it needs no line when it is done.
     pub fn is_quiet(&self) -> bool {
-        true
+        matches!(
+            self,
+            Self::Restore { .. }
+                | Self::Begin { .. }
+                | Self::Open { .. }
+                | Self::Write { .. }
+                | Self::Route(_)
+                | Self::Place { .. }
+        )
     }
 
     /// Does it, on the thread of the caller.
-    pub fn run(self, _context: &dyn JobContext) -> Result<TouchResult, JobError> {
-        Ok(TouchResult::Restored)
+    pub fn run(self, context: &dyn JobContext) -> Result<TouchResult, JobError> {
+        match self {
+            Self::Restore { folder, rig } => Ok(restore(&folder, &rig)),
+            Self::Plan(request) => {
+                let plan = plan::make(&request, context)?;
+                Ok(TouchResult::Planned(Arc::new(plan), request.rig))
+            }
+            Self::Begin { sessions, rig, plan } => begin(&sessions, &rig, &plan).map_err(JobError::Failed),
+            Self::Open { session, rig } => {
+                let stored = open(&session, &rig).map_err(JobError::Failed)?;
+                Ok(TouchResult::Opened { session, stored: Box::new(stored) })
+            }
+            Self::Write { session, joints, progress, revision } => {
+                let problem = store::write(&session, &joints, &progress).err();
+                Ok(TouchResult::Written { revision, problem })
+            }
+            Self::Route(request) => Ok(route(request)),
+            Self::Place { session, rig, joints, touches } => {
+                let placed = placement::place(&rig, &joints, &touches);
+                let proposal = |placement| Proposal { placement: Arc::new(placement), session };
+                Ok(TouchResult::Placed(placed.map(proposal)))
+            }
+            Self::Accept { file, placement } => {
+                let words = |error: &dyn std::fmt::Display| JobError::Failed(sentence(&error.to_string()));
+                if let Some(folder) = file.parent() {
+                    std::fs::create_dir_all(folder).map_err(|error| words(&error))?;
+                }
+                placement.write(&file).map_err(|error| words(&error))?;
+                Ok(TouchResult::Saved(placement))
+            }
+            Self::Forget { file } => match std::fs::remove_file(&file) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(JobError::Failed(format!(
+                    "{} cannot be removed: {error}. Remove it by hand.",
+                    file.display()
+                ))),
+                _ => Ok(TouchResult::Forgotten),
+            },
+        }
+    }
+}
+
+fn restore(folder: &std::path::Path, rig: &Rig) -> TouchResult {
+    let file = folder.join(PLACEMENT_FILE);
+    let placement = file.exists().then(|| {
+        let read = ScreenPlacement::read(&file, &rig.name);
+        read.map(Arc::new).map_err(|error| {
+            format!("{} Until then the nominal place is used.", sentence(&error.to_string()))
+        })
+    });
+    TouchResult::Restored { placement, runs: store::list(&folder.join("sessions")) }
+}
+
+fn begin(sessions: &std::path::Path, rig: &Rig, plan: &Arc<RunPlan>) -> Result<TouchResult, String> {
+    let chain = rig.chain(TIP).map_err(|error| sentence(&error.to_string()))?;
+    let started = Timestamp::now();
+    let joints = chain.names().to_vec();
+    let manifest = store::manifest(&rig.name, &rig.touchscreen, &joints, plan, started);
+    let progress = Progress::new(plan.options.purpose, started, plan.reachable());
+    let session = store::begin(sessions, &manifest, plan, &progress)?;
+    let stored = Stored { plan: (**plan).clone(), progress, screen: rig.touchscreen.clone(), joints };
+    Ok(TouchResult::Begun { session, stored: Box::new(stored) })
+}
+
+fn open(session: &std::path::Path, rig: &Rig) -> Result<Stored, String> {
+    let stored = store::read(session)?;
+    let chain = rig.chain(TIP).map_err(|error| sentence(&error.to_string()))?;
+    if stored.joints != chain.names() {
+        return Err("The run was made with another arm than this robot's, so it cannot go on with it. \
+                    What it has touched can still be learned from in step Models."
+            .to_owned());
+    }
+    Ok(stored)
+}
+
+fn route(request: RouteRequest) -> TouchResult {
+    let number = request.aim.touch.number;
+    let planner = match &request.planner {
+        Some(planner) => planner.clone(),
+        None => match Planner::new(&request.rig, TIP) {
+            Ok(planner) => Arc::new(planner),
+            Err(reason) => return TouchResult::Routed { number, planner: None, order: Err(reason) },
+        },
+    };
+    let RouteRequest { aim, from, order, pace, rig, .. } = request;
+    let path = planner.plan(aim.touch.target, aim.sent(), aim.touch.side, &from);
+    let [u_m, v_m] = rig.touchscreen.pitch_m();
+    let plausible_px = pace.plausible_m / (0.5 * (u_m + v_m));
+    let order = path.map(|path| Box::new(order_of(path, number, order, &pace, plausible_px)));
+    TouchResult::Routed { number, planner: Some(planner), order }
+}
+
+fn order_of(path: TouchPath, number: usize, order: u64, pace: &TouchPace, plausible_px: f64) -> TouchOrder {
+    TouchOrder {
+        number,
+        order,
+        tip: TIP.to_owned(),
+        approach: path.approach,
+        lower: path.lower,
+        lower_tip: path.lower_tip,
+        lower_speed_m_s: pace.lower_speed_m_s,
+        speed_rad_s: pace.speed_rad_s,
+        dwell: pace.dwell,
+        target: path.target,
+        plausible_px,
     }
 }
 
 impl TouchResult {
     /// The result in a sentence.
     pub fn summary(&self) -> String {
-        "Read.".to_owned()
+        match self {
+            Self::Restored { .. } => "The place of the screen was read.".to_owned(),
+            Self::Planned(plan, _) => {
+                format!("{} of {} targets can be touched.", plan.reachable(), plan.touches.len())
+            }
+            Self::Begun { .. } => "The session has begun.".to_owned(),
+            Self::Opened { .. } => "The run is open.".to_owned(),
+            Self::Written { .. } => "The touches are on disk.".to_owned(),
+            Self::Routed { .. } => "The way to the next target was looked for.".to_owned(),
+            Self::Placed(_) => "The place of the screen was measured.".to_owned(),
+            Self::Saved(_) => "The measured place of the screen is in use.".to_owned(),
+            Self::Forgotten => "The nominal place of the screen is in use.".to_owned(),
+        }
     }
 }

@@ -18,6 +18,12 @@ impl<'a, R> ColumnBuilder<'a, R> {
         self.columns.push(Column { name: name.into(), values });
     }
 
+    /// Values by the number of the row, counted from 0.
+    pub fn indexed(&mut self, name: &str, value: impl Fn(usize) -> Option<f64>) {
+        let values = ColumnValues::Numbers((0..self.rows.len()).map(value).collect());
+        self.columns.push(Column { name: name.to_owned(), values });
+    }
+
     pub fn text(&mut self, name: &str, value: impl Fn(&R) -> Option<String>) {
         let cells = self.rows.iter().map(|row| value(row).filter(|text| !text.is_empty())).collect();
         self.columns.push(Column { name: name.to_owned(), values: ColumnValues::Texts(cells) });

@@ -29,7 +29,7 @@ pub use manifest::{Chain, Manifest, RigReference, Touchscreen};
 pub use poses::{External, PoseRow, PoseTable};
 pub use stereo_images::{StereoImagePair, StereoImages, UnpairedImage};
 pub use table::{Column, ColumnValues, Table};
-pub use touches::{Screen, TouchRow, TouchTable};
+pub use touches::{ExtraColumn, Screen, TouchRow, TouchTable};
 
 /// File names inside a session folder.
 pub mod names {

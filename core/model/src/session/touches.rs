@@ -54,6 +54,9 @@ pub struct TouchRow {
     pub load: Vec<Option<f64>>,
 }
 
+/// Name of a column that the format does not define, and its value in a row, counted from 0.
+pub type ExtraColumn<'a> = (String, &'a dyn Fn(usize) -> Option<f64>);
+
 /// All touches of a session.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TouchTable {
@@ -86,6 +89,12 @@ impl TouchTable {
 
     /// A table from rows; columns that no row has are left out.
     pub fn from_rows(joints: Vec<String>, rows: &[TouchRow]) -> Self {
+        Self::from_rows_with(joints, rows, &[])
+    }
+
+    /// The same with columns of numbers that the format does not define: each a name and the value
+    /// of a row, counted from 0. The names must differ from each other and from those of the format.
+    pub fn from_rows_with(joints: Vec<String>, rows: &[TouchRow], extra: &[ExtraColumn<'_>]) -> Self {
         let mut columns = ColumnBuilder::new(rows);
         columns.text("group", |row| row.group.clone());
         columns.text("approach", |row| row.approach.clone());
@@ -103,9 +112,30 @@ impl TouchTable {
         columns.number("t_secs", |row| row.t_secs);
         columns.joints(&joints, JointColumn::TEMPERATURE, |row| &row.temperature_c);
         columns.joints(&joints, JointColumn::LOAD, |row| &row.load);
+        for (name, value) in extra {
+            columns.indexed(name, value);
+        }
         let table =
             columns.finish(|name| TOUCH.contains(&name) || JointColumn::COMMANDED.is_of(name, &joints));
         Self { joints, table }
+    }
+
+    /// Writes `touches.csv`, or another table of the same columns, in one step.
+    ///
+    /// # Errors
+    /// When the file cannot be written; what was there before is unchanged.
+    pub fn write(&self, file: &Path) -> Result<(), SessionError> {
+        self.table.write(file)
+    }
+
+    /// A column that the format does not define, as numbers: `None` where the cell is empty or holds
+    /// no number; `None` altogether if there is no such column.
+    pub fn extra_numbers(&self, name: &str) -> Option<Vec<Option<f64>>> {
+        if let Some(numbers) = self.table.numbers(name) {
+            return Some(numbers.to_vec());
+        }
+        let number = |text: &Option<String>| text.as_ref().and_then(|text| text.trim().parse().ok());
+        Some(self.table.texts(name)?.iter().map(number).collect())
     }
 
     /// Joints of the chain, from base to tip.

@@ -1,0 +1,48 @@
+//! Where the screen lies, from touches of a run.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use plumbline_model::robot::Rig;
+use plumbline_model::session::Screen;
+use plumbline_model::touchscreen::{ScreenPlacement, place_screen};
+use plumbline_model::{Pixel, Point, Robot};
+
+use super::plan::TIP;
+use super::record::TouchRecord;
+use crate::text::sentence;
+
+/// A measured place of the screen and the run that it was found from.
+#[derive(Clone, Debug)]
+pub struct Proposal {
+    /// The place.
+    pub placement: Arc<ScreenPlacement>,
+    /// Folder of the run.
+    pub session: PathBuf,
+}
+
+/// Places the screen; `rig` has it where it nominally lies.
+///
+/// # Errors
+/// A sentence: why the touches do not tell.
+pub fn place(rig: &Rig, joints: &[String], touches: &[TouchRecord]) -> Result<ScreenPlacement, String> {
+    let chain = rig.chain(TIP).map_err(|error| sentence(&error.to_string()))?;
+    let order: Option<Vec<usize>> =
+        chain.names().iter().map(|name| joints.iter().position(|joint| joint == name)).collect();
+    let order = order.ok_or("The run was made with another arm than this robot's.")?;
+    let fingertip = |touch: &TouchRecord| -> Option<(Pixel<Screen>, Point<Robot>)> {
+        let of = |angles: &[Option<f64>]| -> Option<Vec<f64>> {
+            order.iter().map(|place| angles.get(*place).copied().flatten()).collect()
+        };
+        // Encoders say where the joints were; what was commanded differs from that by what the
+        // servos gave way, by several millimeters at the tip.
+        let angles_rad = of(&touch.encoder_rad).or_else(|| of(&touch.commanded_rad))?;
+        let tip = chain.robot_from_tip(&angles_rad).translation_m();
+        Some((touch.touched, Point::new(tip.x, tip.y, tip.z)))
+    };
+    // On a block the screen lies elsewhere; a weight bends the arm.
+    let as_it_lies = |touch: &&TouchRecord| touch.screen_height_m == 0.0 && touch.payload_kg == 0.0;
+    let fingertips: Vec<_> = touches.iter().filter(as_it_lies).filter_map(fingertip).collect();
+    let placed = place_screen(&rig.touchscreen, &fingertips);
+    placed.map(|placement| placement.of_rig(&rig.name)).map_err(|error| sentence(&error.to_string()))
+}

@@ -1,0 +1,218 @@
+//! A plan with everything that a run needs of it, as it is kept in the session's folder, and how it
+//! is made.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Duration;
+
+use plumbline_correction::{CorrectionModel, Method};
+use plumbline_effects::observability::{Noise, PlanScore, PlannedContact, score};
+use plumbline_model::JobContext;
+use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::touch_plan::{PlanOptions, PlannedTouch, TouchPlan};
+use plumbline_model::{Point, Robot};
+use serde::{Deserialize, Serialize};
+
+use super::path::{Planner, TouchPace};
+use crate::jobs::JobError;
+use crate::text::sentence;
+use crate::view::PlanView;
+
+/// The tip that touches.
+pub const TIP: &str = "right_index_tip";
+/// Version of the plan's file.
+pub const FORMAT: u32 = 1;
+
+/// A planned touch with the point that is sent for it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Aim {
+    /// The planned touch.
+    pub touch: PlannedTouch,
+    /// Place of its pixel on the glass, on its block; robot frame, m.
+    pub place_m: [f64; 3],
+    /// The point that is sent; robot frame, m.
+    pub sent_m: [f64; 3],
+    /// Whether the model that corrects knows this part of the screen; true without a model.
+    pub inside: bool,
+    /// Why it cannot be touched.
+    pub refusal: Option<String>,
+    /// Posture at the contact; `None` when it cannot be touched.
+    pub posture: Option<Posture>,
+}
+
+impl Aim {
+    /// The point that is sent.
+    pub fn sent(&self) -> Point<Robot> {
+        point(self.sent_m)
+    }
+
+    /// Place of its pixel on the glass.
+    pub fn place(&self) -> Point<Robot> {
+        point(self.place_m)
+    }
+
+    /// Height of the block under the screen (m) and mass in the hand (kg) that it needs.
+    pub fn preparation(&self) -> [f64; 2] {
+        [self.touch.screen_height_m, self.touch.payload_kg]
+    }
+}
+
+/// A whole plan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunPlan {
+    /// Version of the file.
+    pub format: u32,
+    /// What it was made from.
+    pub options: PlanOptions,
+    /// In the order in which they are made.
+    pub touches: Vec<Aim>,
+    /// Model that corrected the targets.
+    pub corrected_with: Option<Method>,
+    /// How long it takes, estimated, s.
+    pub duration_s: f64,
+    /// What it will be able to tell apart; not kept on disk.
+    #[serde(skip)]
+    pub score: Option<PlanScore>,
+}
+
+impl RunPlan {
+    /// A touch by its number, from 1.
+    pub fn aim(&self, number: usize) -> Option<&Aim> {
+        self.touches.get(number.checked_sub(1)?).filter(|aim| aim.touch.number == number)
+    }
+
+    /// Number of touches that can be made.
+    pub fn reachable(&self) -> usize {
+        self.touches.iter().filter(|aim| aim.refusal.is_none()).count()
+    }
+
+    /// What the window shows of it.
+    pub fn view(&self) -> PlanView {
+        PlanView {
+            options: self.options.clone(),
+            reachable: self.reachable(),
+            refusals: refusals(&self.touches),
+            duration: Duration::try_from_secs_f64(self.duration_s).unwrap_or_default(),
+            score: self.score.clone(),
+            postures: self.touches.iter().map(|aim| aim.posture.clone()).collect(),
+        }
+    }
+}
+
+/// What is to be planned.
+#[derive(Clone, Debug)]
+pub struct PlanRequest {
+    /// The robot, its screen where it is taken to lie without a block under it.
+    pub rig: Arc<Rig>,
+    /// What the operator chose.
+    pub options: PlanOptions,
+    /// Model that targets are corrected with.
+    pub model: Option<Arc<CorrectionModel>>,
+}
+
+/// Plans every touch, in order, by an arm that begins ready to touch.
+pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, JobError> {
+    let PlanRequest { rig, options, model } = request;
+    let words = |error: &dyn std::fmt::Display| JobError::failed(sentence(&error.to_string()));
+    let plan = TouchPlan::make(options, &rig.touchscreen).map_err(|error| words(&error))?;
+    let (pace, count) = (TouchPace::default(), plan.touches.len());
+    let mut duration = Duration::ZERO;
+    let mut planner: Option<(f64, Planner)> = None;
+    let mut stands: Option<Posture> = None;
+    let mut touches: Vec<Aim> = vec![];
+    let mut contacts = vec![];
+    for touch in plan.touches {
+        context.checkpoint()?;
+        let done = touches.len() as f64 / count.max(1) as f64;
+        context.report(0.9 * done, &format!("target {} of {count}", touches.len() + 1));
+        let height_m = touch.screen_height_m;
+        let planner = match &mut planner {
+            Some((of_m, planner)) if *of_m == height_m => &*planner,
+            slot => {
+                let on_block = Arc::new(raised(rig, height_m));
+                let made = Planner::new(&on_block, TIP).map_err(|reason| words(&reason))?;
+                &slot.insert((height_m, made)).1
+            }
+        };
+        let from = stands.take().unwrap_or_else(|| planner.ready(&rig.home()));
+        let mut aim = aim(rig, model.as_deref(), touch);
+        let path = planner.plan(aim.touch.target, aim.sent(), aim.touch.side, &from);
+        stands = Some(match path {
+            Ok(path) => {
+                duration += path.duration(&pace);
+                contacts.push(PlannedContact {
+                    angles_rad: path.contact.of(planner.chain().joints()),
+                    direction: path.direction.iter().map(|sign| f64::from(*sign)).collect(),
+                    screen_height_m: height_m,
+                    payload_kg: aim.touch.payload_kg,
+                    group: aim.touch.group.clone(),
+                });
+                aim.posture = Some(path.contact.clone());
+                path.above().clone()
+            }
+            Err(reason) => {
+                aim.refusal = Some(reason);
+                from
+            }
+        });
+        touches.push(aim);
+    }
+    context.checkpoint()?;
+    context.report(0.9, "what the touches will tell");
+    // A plan without a score is still a plan.
+    let score = score(rig, TIP, &contacts, &Noise::default())
+        .map_err(|error| log::info!("the plan was not scored: {error}"))
+        .ok();
+    Ok(RunPlan {
+        format: FORMAT,
+        options: options.clone(),
+        touches,
+        corrected_with: model.as_ref().map(|model| model.method()),
+        duration_s: duration.as_secs_f64(),
+        score,
+    })
+}
+
+/// The point that is sent for a planned touch. A model speaks of the screen without a block: what it
+/// adds is added on the block, too.
+fn aim(rig: &Rig, model: Option<&CorrectionModel>, touch: PlannedTouch) -> Aim {
+    let screen = rig.touchscreen.raised(touch.screen_height_m);
+    let place = screen.point_at(touch.target);
+    let (sent, inside) = match model {
+        None => (place, true),
+        Some(model) => {
+            let correction = model.correct(touch.target);
+            let up_m = rig.touchscreen.normal().vector() * touch.screen_height_m;
+            (Point::from(correction.target.coords + up_m), correction.inside)
+        }
+    };
+    Aim {
+        touch,
+        place_m: place.coords.coords.into(),
+        sent_m: sent.coords.coords.into(),
+        inside,
+        refusal: None,
+        posture: None,
+    }
+}
+
+/// The robot with its screen on a block of this height.
+pub fn raised(rig: &Rig, height_m: f64) -> Rig {
+    Rig { touchscreen: rig.touchscreen.raised(height_m), ..rig.clone() }
+}
+
+/// Reasons that differ only in their numbers count as one; the first of them speaks for all.
+fn refusals(touches: &[Aim]) -> Vec<(String, usize)> {
+    let mut kinds: BTreeMap<String, (String, usize)> = BTreeMap::new();
+    for reason in touches.iter().filter_map(|aim| aim.refusal.as_ref()) {
+        let kind: String = reason.chars().filter(|c| !c.is_ascii_digit()).collect();
+        kinds.entry(kind).or_insert_with(|| (reason.clone(), 0)).1 += 1;
+    }
+    let mut refusals: Vec<(String, usize)> = kinds.into_values().collect();
+    refusals.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    refusals
+}
+
+fn point([x, y, z]: [f64; 3]) -> Point<Robot> {
+    Point::new(x, y, z)
+}

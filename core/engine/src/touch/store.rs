@@ -1,0 +1,268 @@
+//! The files of a run: written so that a crash leaves the old file or the new one, read again after
+//! a restart.
+//!
+//! `progress.json` holds everything that happened and is written first; `touches.csv` (what counts)
+//! and `rejected.csv` (what does not) follow from it and are written anew before a run goes on.
+
+use std::path::{Path, PathBuf};
+
+use jiff::Timestamp;
+use plumbline_model::formats::Replacement;
+use plumbline_model::session::{Chain, ExtraColumn, Manifest, RigReference, TouchTable, Touchscreen, names};
+use plumbline_model::touch_plan::Purpose;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::plan::{self, RunPlan, TIP};
+use super::record::{self, Progress, Standing, TouchRecord};
+use crate::text::sentence;
+use crate::view::UnfinishedRun;
+
+/// The plan, in a session's folder.
+pub const PLAN: &str = "plan.json";
+/// What happened so far.
+pub const PROGRESS: &str = "progress.json";
+/// Touches that do not count; the same columns as `touches.csv`.
+pub const REJECTED: &str = "rejected.csv";
+
+/// A run as it was read.
+#[derive(Clone, Debug)]
+pub struct Stored {
+    /// The plan.
+    pub plan: RunPlan,
+    /// What happened.
+    pub progress: Progress,
+    /// The screen where it was taken to lie, without a block.
+    pub screen: Touchscreen,
+    /// Joints of the chain.
+    pub joints: Vec<String>,
+}
+
+/// Runs in a folder of sessions.
+#[derive(Clone, Debug, Default)]
+pub struct Runs {
+    /// Not finished, newest first.
+    pub unfinished: Vec<UnfinishedRun>,
+    /// The newest finished one that was made for training.
+    pub trained: Option<TrainedRun>,
+}
+
+/// A finished run for training.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrainedRun {
+    /// Its folder.
+    pub session: PathBuf,
+    /// The screen where it was taken to lie.
+    pub screen: Touchscreen,
+    /// When a place of the screen was found from it.
+    pub gave_placement: Option<Timestamp>,
+}
+
+/// Makes a session's folder with its manifest, its plan, and no progress.
+pub fn begin(
+    sessions: &Path,
+    manifest: &Manifest,
+    plan: &RunPlan,
+    progress: &Progress,
+) -> Result<PathBuf, String> {
+    let kind = match plan.options.purpose {
+        Purpose::Train => "touch",
+        Purpose::PlaceScreen => "corners",
+        Purpose::Check => "check",
+    };
+    let name = format!("{}_{kind}", manifest.started.strftime("%Y-%m-%dT%H-%M-%S"));
+    let session = free_folder(sessions, &name).map_err(|error| unwritable(&sessions.join(&name), &error))?;
+    manifest.write(&session.join(names::MANIFEST)).map_err(|error| sentence(&error.to_string()))?;
+    write_json(&session.join(PLAN), plan)?;
+    // Last: a folder without it was never begun.
+    write_json(&session.join(PROGRESS), progress)?;
+    make_durable(&session)?;
+    make_durable(sessions)?;
+    Ok(session)
+}
+
+/// What `session.toml` says of a run.
+pub fn manifest(
+    rig: &str,
+    screen: &Touchscreen,
+    joints: &[String],
+    plan: &RunPlan,
+    started: Timestamp,
+) -> Manifest {
+    let mut extra = toml::Table::new();
+    extra.insert("software".to_owned(), crate::software().into());
+    let purpose = match plan.options.purpose {
+        Purpose::Train => "train",
+        Purpose::PlaceScreen => "place-screen",
+        Purpose::Check => "check",
+    };
+    extra.insert("purpose".to_owned(), purpose.into());
+    if let Some(method) = plan.corrected_with {
+        extra.insert("corrected_with".to_owned(), method.name().into());
+    }
+    Manifest {
+        rig: RigReference::Named(rig.to_owned()),
+        started,
+        operator: String::new(),
+        notes: String::new(),
+        touchscreen: Some(screen.clone()),
+        chain: Some(Chain { tip: TIP.to_owned(), joints: joints.to_vec() }),
+        extra,
+    }
+}
+
+/// Writes what happened; everything is on disk when it returns.
+pub fn write(session: &Path, joints: &[String], progress: &Progress) -> Result<(), String> {
+    write_json(&session.join(PROGRESS), progress)?;
+    let of = |counts: bool| {
+        progress.records.iter().filter(move |record| (record.standing == Standing::Counts) == counts)
+    };
+    write_table(&session.join(names::TOUCHES), joints, &of(true).collect::<Vec<_>>())?;
+    write_table(&session.join(REJECTED), joints, &of(false).collect::<Vec<_>>())?;
+    make_durable(session)
+}
+
+fn write_table(file: &Path, joints: &[String], records: &[&TouchRecord]) -> Result<(), String> {
+    if records.is_empty() {
+        return match std::fs::remove_file(file) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(unwritable(file, &error)),
+            _ => Ok(()),
+        };
+    }
+    let rows: Vec<_> = records.iter().map(|record| record.row()).collect();
+    let of_joint = |i: usize| {
+        let later = move |row: usize| records[row].later_encoder_rad.get(i).copied().flatten();
+        let direction = move |row: usize| records[row].direction.get(i).copied().map(f64::from);
+        (later, direction)
+    };
+    let columns: Vec<_> = (0..joints.len()).map(of_joint).collect();
+    let (planned, target_u, target_v) = (
+        |row: usize| Some(records[row].number as f64),
+        |row: usize| Some(records[row].target.u_px),
+        |row: usize| Some(records[row].target.v_px),
+    );
+    let mut extra: Vec<ExtraColumn<'_>> = vec![
+        ("planned".to_owned(), &planned),
+        ("target_u_px".to_owned(), &target_u),
+        ("target_v_px".to_owned(), &target_v),
+    ];
+    for (joint, (later, _)) in joints.iter().zip(&columns) {
+        extra.push((format!("later_{joint}_rad"), later));
+    }
+    for (joint, (_, direction)) in joints.iter().zip(&columns) {
+        extra.push((format!("dir_{joint}"), direction));
+    }
+    let table = TouchTable::from_rows_with(joints.to_vec(), &rows, &extra);
+    table.write(file).map_err(|error| sentence(&error.to_string()))
+}
+
+/// Reads a run.
+///
+/// # Errors
+/// A sentence: which file, what is wrong with it, and what can still be done.
+pub fn read(session: &Path) -> Result<Stored, String> {
+    let still = "The run cannot go on, but what it has touched can still be learned from in step Models.";
+    let manifest = Manifest::read(&session.join(names::MANIFEST));
+    let manifest = manifest.map_err(|error| format!("{} {still}", sentence(&error.to_string())))?;
+    let plan: RunPlan = read_json(&session.join(PLAN)).map_err(|reason| format!("{reason} {still}"))?;
+    let progress: Progress =
+        read_json(&session.join(PROGRESS)).map_err(|reason| format!("{reason} {still}"))?;
+    if plan.format != plan::FORMAT || progress.format != record::FORMAT {
+        return Err(format!("{} was written by another version of this program. {still}", session.display()));
+    }
+    let numbered = plan.touches.iter().enumerate().all(|(i, aim)| aim.touch.number == i + 1);
+    let known = progress.records.iter().all(|record| plan.aim(record.number).is_some());
+    if !(numbered && known) {
+        return Err(format!("Plan and touches of {} do not belong together. {still}", session.display()));
+    }
+    let (Some(screen), Some(chain)) = (manifest.touchscreen, manifest.chain) else {
+        return Err(format!(
+            "{} does not say which screen was touched with which arm. {still}",
+            session.join(names::MANIFEST).display()
+        ));
+    };
+    Ok(Stored { plan, progress, screen, joints: chain.joints })
+}
+
+/// Looks which runs there are. Folders without a run, or with one that cannot be read, are passed
+/// over: opening them says why.
+pub fn list(sessions: &Path) -> Runs {
+    let mut runs = Runs::default();
+    let Ok(folders) = std::fs::read_dir(sessions) else { return runs };
+    let mut found: Vec<(PathBuf, Progress)> = folders
+        .flatten()
+        .map(|entry| entry.path())
+        .filter_map(|session| Some((session.clone(), read_json(&session.join(PROGRESS)).ok()?)))
+        .collect();
+    found.sort_by_key(|(session, progress)| std::cmp::Reverse((progress.started, session.clone())));
+    for (session, progress) in found {
+        if !progress.finished {
+            runs.unfinished.push(unfinished(&session, &progress));
+        } else if runs.trained.is_none() && progress.purpose == Purpose::Train {
+            runs.trained = trained(&session, &progress);
+        }
+    }
+    runs
+}
+
+/// A run as it stands in the list of those that were not finished.
+pub fn unfinished(session: &Path, progress: &Progress) -> UnfinishedRun {
+    UnfinishedRun {
+        session: session.to_owned(),
+        started: progress.started,
+        purpose: progress.purpose,
+        touched: progress.counted().count(),
+        planned: progress.planned,
+    }
+}
+
+fn trained(session: &Path, progress: &Progress) -> Option<TrainedRun> {
+    let manifest = Manifest::read(&session.join(names::MANIFEST)).ok()?;
+    (progress.counted().count() > 0).then_some(TrainedRun {
+        session: session.to_owned(),
+        screen: manifest.touchscreen?,
+        gave_placement: progress.gave_placement,
+    })
+}
+
+fn free_folder(sessions: &Path, name: &str) -> std::io::Result<PathBuf> {
+    std::fs::create_dir_all(sessions)?;
+    for count in 1.. {
+        let name = if count == 1 { name.to_owned() } else { format!("{name}-{count}") };
+        let folder = sessions.join(name);
+        match std::fs::create_dir(&folder) {
+            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
+            other => return other.map(|()| folder),
+        }
+    }
+    Err(std::io::ErrorKind::AlreadyExists.into())
+}
+
+fn write_json(file: &Path, value: &impl Serialize) -> Result<(), String> {
+    let text = serde_json::to_string_pretty(value).map_err(|error| {
+        format!("{} cannot be put into words ({error}). Please report it.", file.display())
+    })?;
+    let replacement = Replacement::of(file);
+    replacement.fill(&text).and_then(|()| replacement.commit()).map_err(|error| sentence(&error.to_string()))
+}
+
+fn read_json<T: DeserializeOwned>(file: &Path) -> Result<T, String> {
+    let text = std::fs::read_to_string(file)
+        .map_err(|error| format!("{} cannot be read ({error}).", file.display()))?;
+    serde_json::from_str(&text).map_err(|error| format!("{} is damaged ({error}).", file.display()))
+}
+
+/// New names in a folder survive a loss of power only when the folder was written, too.
+fn make_durable(folder: &Path) -> Result<(), String> {
+    #[cfg(unix)]
+    std::fs::File::open(folder)
+        .and_then(|file| file.sync_all())
+        .map_err(|error| unwritable(folder, &error))?;
+    #[cfg(not(unix))]
+    let _ = folder;
+    Ok(())
+}
+
+fn unwritable(path: &Path, error: &std::io::Error) -> String {
+    format!("{} cannot be written ({error}). Make room or give the right to write there.", path.display())
+}
