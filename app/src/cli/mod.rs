@@ -4,12 +4,15 @@ mod bench;
 mod bench_window;
 mod calibrate;
 mod common;
+mod correct;
 mod disparity;
 mod doctor;
 mod ik;
 mod locate;
 mod output;
+mod predict;
 mod sample;
+mod train;
 mod window_args;
 
 use std::process::ExitCode;
@@ -45,6 +48,12 @@ enum Verb {
     Locate(WithJson<locate::Locate>),
     /// Finds the joint angles that bring a tip of the robot to targets.
     Ik(WithJson<ik::Ik>),
+    /// Trains a correction model from the touches of a session.
+    Train(WithJson<train::Train>),
+    /// Says which points must be sent so that the fingertip lands on pixels of the touchscreen.
+    Correct(WithJson<correct::Correct>),
+    /// Says what the model of the robot expects each row of a session to have measured.
+    Predict(WithJson<predict::Predict>),
     /// Computes the disparity of a pair.
     Disparity(WithJson<disparity::Disparity>),
     /// Says what works on this machine: libraries, graphics, cameras, serial ports, folders.
@@ -97,6 +106,9 @@ pub fn run() -> ExitCode {
                 Verb::Calibrate(Calibrate::Check(verb)) => verb.run(calibrate::check),
                 Verb::Locate(verb) => verb.run(locate::run),
                 Verb::Ik(verb) => verb.run(ik::run),
+                Verb::Train(verb) => verb.run(train::run),
+                Verb::Correct(verb) => verb.run(correct::run),
+                Verb::Predict(verb) => verb.run(predict::run),
                 Verb::Disparity(verb) => verb.run(disparity::run),
                 Verb::Doctor(verb) => verb.run(doctor::run),
                 Verb::Sample(verb) => verb.run(sample::run),

@@ -8,19 +8,26 @@
 mod bench;
 mod calibrate;
 mod check;
+mod correct;
 mod disparity;
 mod error;
 mod ik;
 mod locate;
 mod pairs;
+mod predict;
 mod sample;
+pub(crate) mod session;
 mod table;
+mod train;
 
 pub use bench::{BenchReport, Figure, Peer, bench};
 pub use calibrate::{CalibrateArgs, CalibrateReport, LeftOutCorner, PairErrors, Rejected, calibrate_stereo};
 pub use check::{CheckArgs, CheckReport, check};
+pub use correct::{CorrectArgs, CorrectReport, CorrectedPoint, correct};
 pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};
 pub use error::OfflineError;
 pub use ik::{IkArgs, IkReport, IkSolution, ik};
 pub use locate::{LocateArgs, LocateReport, LocatedPoint, locate};
+pub use predict::{ImagePoints, PredictArgs, PredictReport, PredictedRow, TableGap, predict};
 pub use sample::{SampleArgs, SampleReport, write_sample};
+pub use train::{TrainArgs, TrainReport, train};

@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use plumbline_hardware::{ImageProblem, SourceError};
-use plumbline_model::robot::RigError;
+use plumbline_correction::{DataError, FileError, TrainError};
+use plumbline_model::predict::PredictError;
+use plumbline_model::robot::{DescriptionError, RigError};
 use plumbline_model::robot::ik::{IkError, SolverError};
-use plumbline_model::{AimError, BoardError, Cancelled, FormatError};
+use plumbline_model::{AimError, BoardError, Cancelled, FormatError, PlacementError, SessionError};
 use plumbline_vision::calibrate::SolveError;
 use plumbline_vision::disparity::DisparityError;
 use plumbline_vision::locate::NoBaseline;
@@ -103,6 +105,47 @@ pub enum OfflineError {
         /// The columns that are there.
         given: String,
     },
+    /// A session cannot be read.
+    #[error(transparent)]
+    Session(#[from] SessionError),
+    /// Nothing can be learned from a session.
+    #[error(transparent)]
+    Touches(#[from] DataError),
+    /// A model cannot be trained.
+    #[error(transparent)]
+    Train(#[from] TrainError),
+    /// A model file cannot be read or written.
+    #[error(transparent)]
+    Model(#[from] FileError),
+    /// A session cannot be predicted.
+    #[error(transparent)]
+    Predict(#[from] PredictError),
+    /// A placement of the screen cannot be used.
+    #[error(transparent)]
+    Placement(#[from] PlacementError),
+    /// Neither a rig file nor a placement.
+    #[error(
+        "{file} is neither a rig file nor a screen placement ({reason}): give the rig.toml of a robot, or the screen.toml that was written when the touchscreen was placed"
+    )]
+    RigModel {
+        /// The file.
+        file: PathBuf,
+        /// What it is instead.
+        reason: String,
+    },
+    /// A placement of a screen of another size.
+    #[error(
+        "the rig model has a touchscreen of {found}, the session one of {expected}: give the rig model of the robot that was measured"
+    )]
+    OtherScreen {
+        /// Size in the session.
+        expected: String,
+        /// Size in the rig model.
+        found: String,
+    },
+    /// The robot of a session has no such tip.
+    #[error("the session and its robot do not fit together: {0}")]
+    Chain(#[from] DescriptionError),
     /// Left and right image of a pair differ in size.
     #[error("the left image is {left} px and the right one {right} px: give the two images of one pair")]
     EyesDiffer {

@@ -118,16 +118,18 @@ pub struct Field {
 pub struct TablesView {
     /// Height over (x, y); `None`: none was read or made yet.
     pub height: Option<Arc<HeightTable>>,
-    /// Leave-one-out error of each of its points, m.
+    /// Leave-one-out error of each of its points, m; empty while it is being computed or cannot be.
     pub height_errors_m: Vec<f64>,
     /// Interpolated over the table.
     pub height_field: Field,
     /// Yaw over (x, y, z).
     pub yaw: Option<Arc<YawTable>>,
-    /// Leave-one-out error of each of its points, rad.
+    /// Leave-one-out error of each of its points, rad; empty while it is being computed or cannot be.
     pub yaw_errors_rad: Vec<f64>,
     /// Whether a change can be taken back.
     pub can_undo: bool,
+    /// What the operator should know, a sentence each: a table that cannot be used yet, and why.
+    pub remarks: Vec<String>,
     /// Where the palm is now, robot frame, m, and its yaw, rad; `None` when not connected.
     pub palm: Option<([f64; 3], f64)>,
 }

@@ -1,0 +1,214 @@
+//! Accepted models on disk. Each stays in a file of its own for ever; a small file says in which
+//! order they were in use, so that taking back goes to exactly the one before, also after a restart.
+//! `in-use.json` is a copy of the one in use, for other programs.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use jiff::Timestamp;
+use plumbline_correction::{CorrectionModel, Method};
+use plumbline_model::formats::Replacement;
+use serde::{Deserialize, Serialize};
+
+use super::files;
+use super::screen::Corners;
+
+/// Version of the list.
+const FORMAT: u32 = 1;
+
+/// Accepted models in a folder.
+#[derive(Clone, Debug)]
+pub struct Store {
+    folder: PathBuf,
+}
+
+/// What was in use, oldest first; the last one is in use.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct History {
+    format: u32,
+    /// Short name of the robot.
+    pub rig: String,
+    /// Oldest first.
+    pub entries: Vec<Entry>,
+}
+
+/// Something that was accepted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Entry {
+    /// The model and its file's name; `None`: no model.
+    pub model: Option<Kept>,
+    /// When it was accepted.
+    pub accepted: Timestamp,
+}
+
+/// A model on disk.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Kept {
+    /// Name of its file in `history`, without extension.
+    pub file: String,
+    /// Its kind.
+    pub method: Method,
+    /// Where the screen was taken to lie when it was trained or imported, robot frame, m.
+    pub screen_m: Corners,
+}
+
+impl History {
+    /// Nothing was accepted yet.
+    pub fn new(rig: &str) -> Self {
+        Self { format: FORMAT, rig: rig.to_owned(), entries: Vec::new() }
+    }
+
+    /// What is in use.
+    pub fn in_use(&self) -> Option<&Kept> {
+        self.entries.last()?.model.as_ref()
+    }
+}
+
+impl Store {
+    /// In this folder, which is made when something is accepted.
+    pub fn new(folder: PathBuf) -> Self {
+        Self { folder }
+    }
+
+    /// What was accepted before, and the model in use.
+    ///
+    /// # Errors
+    /// A sentence, when there is something that cannot be read or is another robot's.
+    pub fn read(&self, rig: &str) -> Result<(History, Option<Arc<CorrectionModel>>), String> {
+        let list = self.list();
+        if !list.exists() {
+            return Ok((History::new(rig), None));
+        }
+        let unusable = |reason: String| {
+            format!(
+                "{} cannot be used ({reason}). No model is in use; move the file away, train or import one and accept it.",
+                list.display()
+            )
+        };
+        let text = std::fs::read_to_string(&list).map_err(|error| unusable(error.to_string()))?;
+        let history: History = serde_json::from_str(&text).map_err(|error| unusable(error.to_string()))?;
+        if history.format != FORMAT {
+            return Err(unusable(format!("format {}, this program reads {FORMAT}", history.format)));
+        }
+        if history.rig != rig {
+            return Err(unusable(format!("it belongs to the robot \"{}\", not to \"{rig}\"", history.rig)));
+        }
+        let model = history.in_use().map(|kept| self.load(kept)).transpose()?;
+        // A crash may have left the copy behind.
+        self.copy(history.in_use())?;
+        Ok((history, model))
+    }
+
+    /// Keeps a model (`None`: none) and makes it the one in use.
+    ///
+    /// # Errors
+    /// A sentence; then what was in use stays so.
+    pub fn accept(
+        &self,
+        history: &History,
+        model: Option<(&CorrectionModel, Corners)>,
+    ) -> Result<History, String> {
+        let folder = self.history();
+        std::fs::create_dir_all(&folder).map_err(|error| cannot(&folder, &error.to_string()))?;
+        let accepted = Timestamp::now();
+        let mut next = history.clone();
+        if next.entries.is_empty() {
+            next.entries.push(Entry { model: None, accepted });
+        }
+        let kept = model.map(|(model, screen_m)| {
+            let file = self.free_name(accepted, model.method());
+            files::write(model, &self.file(&file)).map(|()| Kept { file, method: model.method(), screen_m })
+        });
+        next.entries.push(Entry { model: kept.transpose()?, accepted });
+        self.write(&next)?;
+        Ok(next)
+    }
+
+    /// Goes back to what was in use before.
+    ///
+    /// # Errors
+    /// A sentence; then what was in use stays so.
+    pub fn undo(&self, history: &History) -> Result<(History, Option<Arc<CorrectionModel>>), String> {
+        let mut before = history.clone();
+        before.entries.pop();
+        let model = before.in_use().map(|kept| self.load(kept)).transpose()?;
+        self.write(&before)?;
+        Ok((before, model))
+    }
+
+    fn load(&self, kept: &Kept) -> Result<Arc<CorrectionModel>, String> {
+        let file = self.file(&kept.file);
+        // A name from a file may be anything; it must not lead out of the folder.
+        if file.parent() != Some(&self.history()) {
+            return Err(cannot(&file, "its name leads out of the folder"));
+        }
+        files::read_own(&file).map(Arc::new)
+    }
+
+    fn write(&self, history: &History) -> Result<(), String> {
+        let list = self.list();
+        let text =
+            serde_json::to_string_pretty(history).map_err(|error| cannot(&list, &error.to_string()))?;
+        replace(&list, &text)?;
+        self.copy(history.in_use())
+    }
+
+    /// `in-use.json` for other programs.
+    fn copy(&self, in_use: Option<&Kept>) -> Result<(), String> {
+        let copy = self.folder.join("in-use.json");
+        let Some(kept) = in_use else {
+            return match std::fs::remove_file(&copy) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                    Err(cannot(&copy, &error.to_string()))
+                }
+                _ => Ok(()),
+            };
+        };
+        let text = std::fs::read_to_string(self.file(&kept.file));
+        let text = text.map_err(|error| cannot(&self.file(&kept.file), &error.to_string()))?;
+        if std::fs::read_to_string(&copy).is_ok_and(|present| present == text) {
+            return Ok(());
+        }
+        replace(&copy, &text)
+    }
+
+    fn list(&self) -> PathBuf {
+        self.folder.join("history.json")
+    }
+
+    fn history(&self) -> PathBuf {
+        self.folder.join("history")
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.history().join(format!("{name}.json"))
+    }
+
+    fn free_name(&self, accepted: Timestamp, method: Method) -> String {
+        let name = format!("{}_{}", accepted.strftime("%Y-%m-%dT%H-%M-%SZ"), method.name().to_lowercase());
+        let taken = |name: &String| self.file(name).exists();
+        std::iter::once(name.clone())
+            .chain((2..).map(|n| format!("{name}_{n:03}")))
+            .find(|name| !taken(name))
+            .unwrap_or(name)
+    }
+}
+
+fn replace(file: &Path, text: &str) -> Result<(), String> {
+    let write = || {
+        let replacement = Replacement::of(file);
+        replacement.fill(text)?;
+        replacement.commit()
+    };
+    write().map_err(|error| cannot(file, &error.to_string()))
+}
+
+fn cannot(file: &Path, reason: &str) -> String {
+    format!(
+        "{} cannot be used ({reason}). Check that the disk has free space and can be written; the model in use stays.",
+        file.display()
+    )
+}

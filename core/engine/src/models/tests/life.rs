@@ -1,0 +1,179 @@
+//! From a session to an accepted model, and back.
+
+use plumbline_model::{Cancelled, ScreenPlacement, place_screen};
+
+use super::*;
+use crate::models::screen::corners;
+use crate::models::{ModelsWorkflow, Surroundings};
+use crate::view::{RobotView, StepState};
+
+#[test]
+fn a_session_becomes_models_maps_and_one_in_use() {
+    let mut lab = Lab::new();
+    let before = lab.view();
+    assert_eq!(before.sessions.len(), 1);
+    assert_eq!(before.session, Some(lab.session()), "the only one is chosen");
+    assert!(matches!(&before.data, Some(Ok(data)) if data.len() == 63));
+    assert!(before.step == StepState::NotDone && before.next.contains("63 touches"), "{}", before.next);
+
+    let trained = lab.tell(train(&[Method::M2, Method::M3]));
+    let methods: Vec<Method> = trained.proposals.iter().map(|model| model.method()).collect();
+    assert_eq!(methods, [Method::M2, Method::M3]);
+    let comparison = trained.comparison.as_ref().expect("compared");
+    let compared: Vec<Method> = comparison.methods.iter().map(|compared| compared.method).collect();
+    assert_eq!(compared, Method::ALL, "all on the same touches");
+    let blocks = |i: usize| &comparison.methods[i].held_out.blocks;
+    assert!(blocks(0) == blocks(1) && blocks(1) == blocks(2));
+    assert!(!trained.losses.is_empty() && trained.losses.len() <= 500);
+    let screen = nico().touchscreen;
+    let error_m = mean_error_m(&trained.proposals[1], &screen);
+    assert!(error_m < 0.001, "{error_m}: the lab shifts by 1 to 2 cm");
+    assert_eq!(trained.shown, Some(Method::M3));
+    assert!(trained.in_use.is_none() && trained.next.contains("accept"), "{}", trained.next);
+
+    let accepted = lab.tell(ModelsCommand::Accept(Method::M3));
+    assert_eq!(accepted.in_use.as_ref().map(|model| model.method()), Some(Method::M3));
+    assert_eq!(accepted.step, StepState::Done);
+    assert_eq!(accepted.proposals.len(), 1, "the other one still waits");
+    assert!(!accepted.map.as_ref().expect("a map").proposed);
+    assert!(lab.path("models/in-use.json").is_file());
+    let earlier: Vec<_> = accepted.earlier.iter().map(|earlier| earlier.method).collect();
+    assert_eq!(earlier, [None], "before it there was no model");
+}
+
+#[test]
+fn the_map_shows_what_the_model_gains_and_where_it_ends() {
+    let mut lab = Lab::new();
+    let view = lab.tell(train(&[Method::M3]));
+    let map = view.map.clone().expect("a map");
+    assert!(map.proposed && map.method == Some(Method::M3));
+    assert_eq!(map.touches.len(), 63);
+    let mean = |of: fn(&crate::view::MapTouch) -> [f64; 3]| {
+        map.touches.iter().map(|touch| of(touch)[0].hypot(of(touch)[1])).sum::<f64>() / 63.0
+    };
+    let (before_m, after_m) = (mean(|touch| touch.before_m), mean(|touch| touch.after_m));
+    assert!(before_m > 0.01 && after_m < 0.25 * before_m, "{before_m} {after_m}");
+    let [x_m, y_m] = [map.sd.x_m, map.sd.y_m];
+    assert!(map.screen_m.iter().all(|[x, y]| x - x_m[0] > 0.07 && y_m[1] - y > 0.07), "8 cm around");
+    assert_eq!(map.sd.values_m.len(), map.shift.values_m.len());
+    assert!(map.border_m.len() > 3);
+    // The corner of the map lies far outside of the touches, its middle among them.
+    let values: Vec<f64> = map.sd.values_m.iter().copied().flatten().collect();
+    assert_eq!(values.len(), map.sd.values_m.len());
+    let middle = values[(values.len() / map.sd.columns / 2) * map.sd.columns + map.sd.columns / 2];
+    assert!(values[0] > 3.0 * middle, "{} {middle}", values[0]);
+    let (Some(inside_m), Some(outside_m)) = map.mean_shift_m else { panic!("both") };
+    assert!((0.005..0.03).contains(&inside_m) && outside_m > 0.0, "{inside_m} {outside_m}");
+}
+
+#[test]
+fn undo_goes_back_exactly_also_after_a_restart() {
+    let mut lab = Lab::new();
+    lab.tell(train(&[Method::M1, Method::M3]));
+    let m1 = lab.tell(ModelsCommand::Accept(Method::M1)).in_use.clone().expect("in use");
+    let m3 = lab.tell(ModelsCommand::Accept(Method::M3)).in_use.clone().expect("in use");
+    let mut lab = lab.restarted();
+    assert_eq!(lab.view().in_use, Some(m3), "every number of it");
+    assert_eq!(lab.view().earlier.len(), 2);
+    let kept = std::fs::read(lab.path("models/in-use.json")).expect("a copy for others");
+    lab.tell(ModelsCommand::UseNone);
+    assert!(lab.view().in_use.is_none() && !lab.path("models/in-use.json").exists());
+    lab.tell(ModelsCommand::Undo);
+    assert_eq!(std::fs::read(lab.path("models/in-use.json")).expect("back"), kept);
+    let mut lab = lab.restarted();
+    assert_eq!(lab.tell(ModelsCommand::Undo).in_use, Some(m1));
+    assert!(lab.tell(ModelsCommand::Undo).in_use.is_none());
+    let mut lab = lab.restarted();
+    assert!(lab.view().in_use.is_none() && lab.view().earlier.is_empty());
+    lab.tell(ModelsCommand::Undo);
+    assert!(lab.said().contains("Nothing was in use before"), "{}", lab.said());
+    assert_eq!(files_in(&lab.path("models/history")), 2, "files of models stay");
+}
+
+/// Cancels at some checkpoint.
+struct CancelAfter(std::sync::atomic::AtomicUsize);
+
+impl JobContext for CancelAfter {
+    fn checkpoint(&self) -> Result<(), Cancelled> {
+        use std::sync::atomic::Ordering::Relaxed;
+        let left = self.0.fetch_update(Relaxed, Relaxed, |left| left.checked_sub(1));
+        left.map(|_| ()).map_err(|_| Cancelled)
+    }
+
+    fn report(&self, _: f64, _: &str) {}
+}
+
+#[test]
+fn cancelled_training_leaves_everything_as_it_was() {
+    let mut lab = Lab::new();
+    let before = lab.tell(train(&[Method::M1]));
+    for checkpoints in [0, 1, 3, 20] {
+        lab.state.apply(Command::Models(train(&[Method::M2, Method::M3])));
+        assert!(lab.view().training && lab.view().step == StepState::Running);
+        lab.work(&CancelAfter(checkpoints.into()));
+        let after = lab.view();
+        assert!(lab.said().contains("cancelled"), "{}", lab.said());
+        assert_eq!(after.proposals, before.proposals);
+        assert_eq!(after.comparison, before.comparison);
+        assert_eq!(after.losses, before.losses);
+        assert_eq!((after.shown, &after.step, after.training), (before.shown, &before.step, false));
+    }
+    assert_eq!(lab.tell(train(&[Method::M3])).proposals.len(), 2, "and training still works");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_model() {
+    let mut lab = Lab::new();
+    let parameters = |view: &ModelsView| {
+        view.proposals.iter().map(|model| model.correct(Pixel::new(801.0, 407.0))).collect::<Vec<_>>()
+    };
+    let first = parameters(&lab.tell(train(&[Method::M3])));
+    assert_eq!(parameters(&lab.tell(train(&[Method::M3]))), first);
+    let other = ModelsCommand::Train { methods: vec![Method::M3], seed: 2, published_recipe: false };
+    assert_ne!(parameters(&lab.tell(other)), first);
+}
+
+#[test]
+fn a_screen_that_was_placed_anew_makes_the_model_stale() {
+    let mut lab = Lab::new();
+    lab.tell(train(&[Method::M3]));
+    lab.tell(ModelsCommand::Accept(Method::M3));
+    // The same files seen with the screen elsewhere.
+    let mut moved = nico();
+    moved.touchscreen = placed(&moved.touchscreen).screen;
+    assert!(corners(&moved.touchscreen) != corners(&nico().touchscreen));
+    let mut workflow = ModelsWorkflow::new(lab.folder.path());
+    let robot = RobotView::default();
+    let view_on = |workflow: &ModelsWorkflow, rig: Rig| {
+        workflow.view(&Surroundings { rig: &Arc::new(rig), robot: &robot, newest_session: None })
+    };
+    restore(&mut workflow, &robot);
+    assert_eq!(view_on(&workflow, nico()).step, StepState::Done);
+    let StepState::Stale { why } = view_on(&workflow, moved).step else { panic!("stale") };
+    assert!(why.contains("5.0 mm") && why.contains("M3") && why.contains("Train again"), "{why}");
+}
+
+/// The screen 5 mm farther away.
+fn placed(nominal: &Touchscreen) -> ScreenPlacement {
+    let moved = nominal.moved(&nalgebra::Isometry3::translation(0.005, 0.0, 0.0));
+    let pixels = [(60.0, 60.0), (1860.0, 60.0), (1860.0, 1020.0), (60.0, 1020.0)];
+    let touches =
+        pixels.map(|(u_px, v_px)| Pixel::new(u_px, v_px)).map(|pixel| (pixel, moved.point_at(pixel)));
+    place_screen(nominal, &touches).expect("placed")
+}
+
+/// Hands a workflow what is on disk, without the rest of the state.
+fn restore(workflow: &mut ModelsWorkflow, robot: &RobotView) {
+    let rig = Arc::new(nico());
+    let result = workflow.restore(&rig).run(&Unattended).expect("read");
+    let (mut notices, mut jobs, mut actions) = Default::default();
+    let mut context = crate::context::Context {
+        notices: &mut notices,
+        newest: None,
+        source: &Default::default(),
+        jobs: &mut jobs,
+        actions: &mut actions,
+    };
+    let around = Surroundings { rig: &rig, robot, newest_session: None };
+    workflow.work_done(crate::command::JobId(1), result, &around, &mut context);
+}
