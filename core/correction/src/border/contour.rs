@@ -1,10 +1,10 @@
-//! Closed polygons around the area where a function is positive, by marching squares.
+//! Closed polygons around an area that is known point by point, by marching squares.
 
 use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
 
-/// Nodes at which the function is evaluated.
+/// Nodes at which the area is asked for.
 pub(super) struct Lattice {
     pub origin: Vector2<f64>,
     pub cell: f64,
@@ -15,20 +15,20 @@ pub(super) struct Lattice {
 /// Edge of a cell: the node it starts at, and whether it goes along y.
 type Edge = (usize, usize, bool);
 
-/// Bisections of a crossing: to a millionth of a cell.
-const BISECTIONS: usize = 20;
+/// Bisections of a crossing: to a thousandth of a cell.
+const BISECTIONS: usize = 10;
 
 impl Lattice {
     fn node(&self, i: usize, j: usize) -> Vector2<f64> {
         self.origin + self.cell * Vector2::new(i as f64, j as f64)
     }
 
-    /// Polygons with the positive side on the left where y points up. The function must be
-    /// negative on the rim of the lattice.
-    pub fn rings(&self, value: impl Fn(Vector2<f64>) -> f64) -> Vec<Vec<Vector2<f64>>> {
+    /// Polygons with the area on the left where y points up. The rim of the lattice must lie
+    /// outside of it.
+    pub fn rings(&self, is_inside: impl Fn(Vector2<f64>) -> bool) -> Vec<Vec<Vector2<f64>>> {
         let (width, height) = self.size;
         let is_in: Vec<bool> =
-            (0..width * height).map(|k| value(self.node(k % width, k / width)) >= 0.0).collect();
+            (0..width * height).map(|k| is_inside(self.node(k % width, k / width))).collect();
         let mut next = BTreeMap::new();
         for j in 0..height - 1 {
             for i in 0..width - 1 {
@@ -36,7 +36,7 @@ impl Lattice {
                     [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| is_in[j * width + i]);
                 if corners.contains(&true) && corners.contains(&false) {
                     let middle = self.node(i, j) + Vector2::repeat(self.cell / 2.0);
-                    link(i, j, corners, || value(middle) >= 0.0, &mut next);
+                    link(i, j, corners, || is_inside(middle), &mut next);
                 }
             }
         }
@@ -45,7 +45,7 @@ impl Lattice {
             let mut ring = Vec::new();
             let mut edge = start;
             while let Some(following) = next.remove(&edge) {
-                ring.push(self.crossing(edge, &value));
+                ring.push(self.crossing(edge, &is_inside));
                 edge = following;
             }
             rings.push(ring);
@@ -53,14 +53,14 @@ impl Lattice {
         rings
     }
 
-    /// Where the function changes its sign on an edge.
-    fn crossing(&self, (i, j, along_y): Edge, value: impl Fn(Vector2<f64>) -> f64) -> Vector2<f64> {
+    /// Where the area ends on an edge, from inside.
+    fn crossing(&self, (i, j, along_y): Edge, is_inside: impl Fn(Vector2<f64>) -> bool) -> Vector2<f64> {
         let start = self.node(i, j);
         let end = if along_y { self.node(i, j + 1) } else { self.node(i + 1, j) };
-        let (mut inside, mut outside) = if value(start) >= 0.0 { (start, end) } else { (end, start) };
+        let (mut inside, mut outside) = if is_inside(start) { (start, end) } else { (end, start) };
         for _ in 0..BISECTIONS {
             let middle = (inside + outside) / 2.0;
-            if value(middle) >= 0.0 {
+            if is_inside(middle) {
                 inside = middle;
             } else {
                 outside = middle;

@@ -25,11 +25,27 @@ impl Discs {
     }
 
     /// Distance to the edge of the union; negative outside.
-    pub fn depth(&self, point: Vector2<f64>) -> f64 {
-        let distance =
-            self.edge.iter().map(|arc| arc.distance(point, self.radius)).fold(f64::INFINITY, f64::min);
-        let covered = self.places.iter().any(|place| (place - point).norm_squared() <= self.radius.powi(2));
-        if covered { distance } else { -distance }
+    fn depth(&self, point: Vector2<f64>) -> f64 {
+        let mut distance = f64::INFINITY;
+        for arc in &self.edge {
+            // The circle is at least as near as its arc, and quicker to measure.
+            if ((point - arc.center).norm() - self.radius).abs() < distance {
+                distance = distance.min(arc.distance(point, self.radius));
+            }
+        }
+        if self.nearest_squared(point) <= self.radius.powi(2) { distance } else { -distance }
+    }
+
+    /// Whether the edge is at least `depth` away, from inside.
+    pub fn is_deep(&self, point: Vector2<f64>, depth: f64) -> bool {
+        let nearest = self.nearest_squared(point);
+        // From the place itself the edge is a radius away.
+        nearest <= (self.radius - depth).powi(2)
+            || (nearest <= self.radius.powi(2) && self.depth(point) >= depth)
+    }
+
+    fn nearest_squared(&self, point: Vector2<f64>) -> f64 {
+        self.places.iter().map(|place| (place - point).norm_squared()).fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -63,7 +79,9 @@ fn uncovered(places: &[Vector2<f64>], i: usize, radius: f64) -> Vec<Arc> {
     }
     covered.sort_by(|a, b| a.0.total_cmp(&b.0));
     let first = covered[0].0;
-    let mut reached = covered[0].1;
+    // An interval that goes on past the start of the circle covers its beginning.
+    let around = covered.iter().map(|interval| interval.1 - TAU).fold(f64::NEG_INFINITY, f64::max);
+    let mut reached = covered[0].1.max(around);
     let mut arcs = Vec::new();
     for &(from, to) in covered[1..].iter().chain(&[(first + TAU, first + TAU)]) {
         if from > reached {

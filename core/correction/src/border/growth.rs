@@ -3,37 +3,33 @@
 /// Parts of the variance: local, gap, near, far.
 pub(super) const PARTS: usize = 4;
 
-const UPDATES: usize = 1000;
+const UPDATES: usize = 500;
 /// Of a standard normal distribution; 95 % lie within it.
-const Z_95: f64 = 1.96;
+pub(super) const Z_95: f64 = 1.96;
 
-/// A squared residual, what each part of the variance is multiplied by there, and how much it
-/// counts.
+/// A squared residual, and what each part of the variance is multiplied by there.
 pub(super) struct Evidence {
     pub squared: f64,
     pub growth: [f64; PARTS],
-    pub weight: f64,
 }
 
 /// Non-negative parts of greatest likelihood under zero-mean normal residuals, by multiplicative
-/// updates (each of them raises the likelihood). A part that no evidence speaks of is 0.
-pub(super) fn parts(evidence: &[Evidence]) -> [f64; PARTS] {
-    let mut parts = [0.0; PARTS];
-    for (k, part) in parts.iter_mut().enumerate() {
-        let sum = |of: &dyn Fn(&Evidence) -> f64| evidence.iter().map(|e| e.weight * of(e)).sum::<f64>();
-        let growth = sum(&|e| e.growth[k]);
-        if growth > 0.0 {
-            *part = sum(&|e| e.squared) / growth / PARTS as f64;
-        }
-    }
+/// updates (each of them raises the likelihood). A part that no evidence speaks of is 0, so are
+/// those not `allowed`.
+pub(super) fn parts(evidence: &[Evidence], allowed: [bool; PARTS]) -> [f64; PARTS] {
+    let squares: f64 = evidence.iter().map(|e| e.squared).sum();
+    let mut parts: [f64; PARTS] = std::array::from_fn(|k| {
+        let growth: f64 = evidence.iter().map(|e| e.growth[k]).sum();
+        if allowed[k] && growth > 0.0 { squares / growth / PARTS as f64 } else { 0.0 }
+    });
     for _ in 0..UPDATES {
         let (mut pull, mut push) = ([0.0; PARTS], [0.0; PARTS]);
         for e in evidence {
             let variance = dot(&parts, &e.growth);
             if variance > 0.0 {
                 for k in 0..PARTS {
-                    pull[k] += e.weight * e.growth[k] * e.squared / variance.powi(2);
-                    push[k] += e.weight * e.growth[k] / variance;
+                    pull[k] += e.growth[k] * e.squared / variance.powi(2);
+                    push[k] += e.growth[k] / variance;
                 }
             }
         }
@@ -44,6 +40,15 @@ pub(super) fn parts(evidence: &[Evidence]) -> [f64; PARTS] {
         }
     }
     parts
+}
+
+/// Twice the negative logarithm of the likelihood of the parts, less a constant.
+pub(super) fn deviance(evidence: &[Evidence], parts: &[f64; PARTS]) -> f64 {
+    let term = |e: &Evidence| {
+        let variance = dot(parts, &e.growth).max(f64::MIN_POSITIVE);
+        variance.ln() + e.squared / variance
+    };
+    evidence.iter().map(term).sum()
 }
 
 pub(super) fn dot(a: &[f64; PARTS], b: &[f64; PARTS]) -> f64 {
@@ -73,25 +78,25 @@ mod tests {
         }
     }
 
-    /// Squares that equal a sum of parts exactly are explained by these parts.
+    /// Squares that equal a sum of parts exactly are explained by parts of the same sum; a part
+    /// that is 0 is approached slowly.
     #[test]
-    fn parts_are_recovered() {
+    fn variances_are_recovered() {
         let truth = [2.0, 0.5, 0.0, 0.1];
         let evidence: Vec<Evidence> = (0..200)
             .map(|i| {
                 let (g, h) = (f64::from(i % 7) / 2.0, f64::from(i % 11) / 3.0);
                 let growth = [1.0, g.powi(2), h.powi(2), h.powi(4)];
-                Evidence { squared: dot(&truth, &growth), growth, weight: 1.0 }
+                Evidence { squared: dot(&truth, &growth), growth }
             })
             .collect();
-        let found = parts(&evidence);
-        for k in 0..PARTS {
-            assert!(
-                (found[k] - truth[k]).abs() < 0.02 * (1.0 + truth[k]),
-                "part {k}: {} for {}",
-                found[k],
-                truth[k]
-            );
+        let found = parts(&evidence, [true; PARTS]);
+        for Evidence { squared, growth } in evidence {
+            let variance = dot(&found, &growth);
+            assert!((variance / squared - 1.0).abs() < 0.06, "{growth:?}: {variance} for {squared}");
         }
+        let near = Evidence { squared: 4.0, growth: [1.0, 0.0, 0.0, 0.0] };
+        let [local, growth @ ..] = parts(&[near], [true; PARTS]);
+        assert!((local - 4.0).abs() < 1e-9 && growth == [0.0; PARTS - 1]);
     }
 }

@@ -10,13 +10,13 @@
 //! 1. *Places.* Repeats of one target become one place. The spacing of the places is the median
 //!    over them of the third nearest among the nearest neighbors to the right, below, to the left
 //!    and above: in a grid its pitch, between dense parallel lines the distance of the lines. A
-//!    place that has fewer than two others within two spacings is an outlier and has no say.
+//!    place that has fewer than two others within three spacings is an outlier and has no say.
 //! 2. *Closing.* The area is the set of pixels from which an empty disc, one that holds no place,
-//!    of a radius of 1.5 spacings cannot come nearer than its radius less half a spacing. It is
+//!    of a radius of two spacings cannot come nearer than its radius less half a spacing. It is
 //!    the union of discs about the places, closed by a disc and eroded to a margin of half a
 //!    spacing. An empty disc of that size fits into no ordinary gap of the data, but it rolls
 //!    into a bay and into a hole, which are outside.
-//! 3. *Outline.* The level set of the distance to that union's edge, which is known exactly, is
+//! 3. *Outline.* The distance to that union's edge is known exactly; where the area ends is
 //!    traced by marching squares. Rings inside rings are holes.
 //!
 //! The union of discs as an estimate of a support is that of Devroye and Wise (1980, SIAM J.
@@ -32,7 +32,7 @@
 //! trained on:
 //!
 //! ```text
-//! variance(q) = local(q) + gap · g(q)² + near · h(q)² + far · h(q)⁴
+//! variance(q) = local(q) + gap · g(q)² + near · h(q)² + far · h(q)⁴ + rate² · max(h(q) − reach, 0)²
 //! ```
 //!
 //! g is the distance to the nearest touch beyond half a spacing, or the distance outside of the
@@ -41,10 +41,17 @@
 //! the data that remained ([`Spread::fit_blocked`]), by maximum likelihood of zero-mean normal
 //! residuals with the multiplicative updates of Févotte, Bertin and Durrieu (2009, Neural
 //! Computation 21, 793–830), so that a model which extrapolates badly into a block shows it
-//! outside of the border too. What blocks cannot tell comes from a stated physical rate
-//! ([`Spread::FALLBACK_RATE_M_PER_PX`]). Few blocks tell little about growth: its variance is
+//! outside of the border too. Beyond the `reach` of what blocks tell (9 of 10 of their touches that
+//! lay outside of what remained are nearer) a stated physical rate is added
+//! ([`Spread::FALLBACK_RATE_M_PER_PX`]). Growth in gaps is told from chance by Akaike's
+//! criterion: if it does not pass, the local part is fitted without it. Few blocks tell little about growth outside: its variance is
 //! widened as Student's t demands for their number. The local part is a mean of squared
-//! residuals weighted by a Gaussian of their distance and blended with that of all touches.
+//! residuals weighted by a Gaussian of their distance and blended with that of all touches. It is
+//! scaled so that 1.96 standard deviations hold 95 % of the residuals themselves, each judged by
+//! the others: errors of a model that is too stiff have shorter tails than a normal distribution,
+//! those of touches longer ones (split conformal prediction with local weights: Lei, G'Sell,
+//! Rinaldo, Tibshirani and Wasserman 2018, J. Am. Stat. Assoc. 113, 1094–1111). From fewer than
+//! 34 touches it is widened by Student's t instead.
 
 mod contour;
 mod discs;

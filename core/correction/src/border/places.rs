@@ -9,7 +9,7 @@ const REPEAT_SHARE: f64 = 0.2;
 /// Touches whose scatter across is less than this share of that along lie on a line.
 const LINE_SHARE: f64 = 0.03;
 /// An outlier has fewer than [`CORE_NEIGHBORS`] others within this many spacings.
-const CORE_RADIUS: f64 = 2.0;
+const CORE_RADIUS: f64 = 3.0;
 const CORE_NEIGHBORS: usize = 2;
 
 /// Places without outliers, and their spacing.

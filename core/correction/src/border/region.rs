@@ -8,11 +8,11 @@ use super::discs::Discs;
 use super::places::Places;
 
 /// An empty disc of this radius, in spacings, separates.
-const EMPTY_DISC: f64 = 1.5;
+const EMPTY_DISC: f64 = 2.0;
 /// The area goes this far beyond its outermost places, in spacings.
 pub(super) const MARGIN: f64 = 0.5;
 /// Cells of the tracing lattice per spacing, and the most along one side.
-const CELLS_PER_SPACING: f64 = 8.0;
+const CELLS_PER_SPACING: f64 = 6.0;
 const MOST_CELLS: f64 = 600.0;
 
 /// Polygons: edges of parts of the area, and of holes in them.
@@ -30,7 +30,7 @@ impl Region {
         let lattice = lattice(&places, spacing);
         let discs = Discs::new(places, radius);
         let depth = radius - MARGIN * spacing;
-        Self::from_rings(lattice.rings(|point| discs.depth(point) - depth), spacing)
+        Self::from_rings(lattice.rings(|point| discs.is_deep(point, depth)), spacing)
     }
 
     /// From its edges.

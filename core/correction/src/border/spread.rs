@@ -6,15 +6,20 @@ use plumbline_model::session::Screen;
 use serde::{Deserialize, Serialize};
 
 use super::Border;
-use super::growth::{Evidence, PARTS, dot, parts, student_factor};
+use super::growth::{Evidence, PARTS, Z_95, deviance, dot, parts, student_factor};
 use super::region::MARGIN;
 
 /// Reach of the weights of the local part, in spacings.
 const LOCAL_REACH: f64 = 1.5;
 /// The residuals of all touches count like this many near ones.
 const GLOBAL_WEIGHT: f64 = 20.0;
-/// A stated rate counts like this many residuals.
-const FALLBACK_WEIGHT: f64 = 2.0;
+/// From fewer residuals (of all axes) an interval is not calibrated: its ends would rest on two
+/// of them or less.
+const FEWEST_SCORES: usize = 100;
+/// From fewer blocks growth outside is not learned alone.
+const FEWEST_BLOCKS: usize = 3;
+/// One more part has to lower the deviance by this much (Akaike's criterion).
+const SIGNIFICANT: f64 = 2.0;
 /// Between touches a model interpolates: errors grow less there than outside.
 const GAP_SHARE: f64 = 0.5;
 
@@ -28,6 +33,8 @@ pub struct Spread {
     hull_px: Vec<[f64; 2]>,
     /// Per axis: variance (m²) of the parts local, gap, near and far, at a spacing's distance.
     parts_m2: [[f64; PARTS]; 3],
+    /// Distance outside of the hull, in spacings, that left-out blocks tell of.
+    reach: f64,
 }
 
 /// A touch, how much it tells of the local part, and its squared residuals over the variance
@@ -69,8 +76,8 @@ pub enum SpreadError {
 }
 
 impl Spread {
-    /// Growth of the standard deviation outside of the touches as long as left-out blocks tell
-    /// nothing of it: 5 mm per 100 px. That is a fifth of the distance on a screen of 0.25 mm per
+    /// Growth of the standard deviation outside of the touches, beyond the distance that left-out
+    /// blocks tell of: 5 mm per 100 px. That is a fifth of the distance on a screen of 0.25 mm per
     /// pixel, as if nothing were known about how the correction goes on but that its slope is 0.2
     /// at most.
     pub const FALLBACK_RATE_M_PER_PX: f64 = 5e-5;
@@ -87,7 +94,7 @@ impl Spread {
     ) -> Result<Self, SpreadError> {
         Self::check(pixels, residuals_m, pixels.len())?;
         let near_others = vec![Distance { gap: 0.0, hull: 0.0 }; pixels.len()];
-        Ok(Self::learned(pixels, residuals_m, &near_others, 0, border))
+        Ok(Self::learned(pixels, residuals_m, &near_others, Telling::default(), border))
     }
 
     /// From residuals (true − answered, m) of touches whose model had been trained without their
@@ -108,7 +115,7 @@ impl Spread {
         let mut labels = blocks.to_vec();
         labels.sort_unstable();
         labels.dedup();
-        let mut outside = 0;
+        let mut telling = Telling::default();
         for label in labels {
             let remaining: Vec<_> =
                 pixels.iter().zip(blocks).filter(|&(_, &b)| b != label).map(|(p, _)| p.vector()).collect();
@@ -116,14 +123,16 @@ impl Spread {
                 continue; // One block only: no model can have been trained without it.
             }
             let hull = convex_hull(&remaining);
-            let mut farthest: f64 = 0.0;
+            let mut farthest = Distance { gap: 0.0, hull: 0.0 };
             for (i, pixel) in pixels.iter().enumerate().filter(|&(i, _)| blocks[i] == label) {
                 distances[i] = Distance::new(pixel.vector(), &remaining, &hull, spacing);
-                farthest = farthest.max(distances[i].hull);
+                farthest.gap = farthest.gap.max(distances[i].gap);
+                farthest.hull = farthest.hull.max(distances[i].hull);
             }
-            outside += usize::from(farthest > MARGIN);
+            telling.gap += usize::from(farthest.gap > MARGIN);
+            telling.outside += usize::from(farthest.hull > MARGIN);
         }
-        Ok(Self::learned(pixels, residuals_m, &distances, outside, border))
+        Ok(Self::learned(pixels, residuals_m, &distances, telling, border))
     }
 
     fn check(pixels: &[Pixel<Screen>], residuals_m: &[[f64; 3]], blocks: usize) -> Result<(), SpreadError> {
@@ -142,17 +151,16 @@ impl Spread {
         }
     }
 
-    /// `outside` blocks lay outside of the hull of what remained.
     fn learned(
         pixels: &[Pixel<Screen>],
         residuals_m: &[[f64; 3]],
         distances: &[Distance],
-        outside: usize,
+        blocks: Telling,
         border: &Border,
     ) -> Self {
         let points: Vec<_> = pixels.iter().map(Pixel::vector).collect();
         let fitted: [[f64; PARTS]; 3] =
-            std::array::from_fn(|axis| fitted_parts(residuals_m, axis, distances, border.spacing_px()));
+            std::array::from_fn(|axis| fitted_parts(residuals_m, axis, distances));
         let anchors = (0..points.len()).map(|i| {
             let growth = distances[i].growth();
             let expected = |axis: usize| dot(&fitted[axis], &growth).max(f64::MIN_POSITIVE);
@@ -164,12 +172,32 @@ impl Spread {
                 relative: std::array::from_fn(|axis| residuals_m[i][axis].powi(2) / expected(axis)),
             }
         });
-        Self {
+        let mut spread = Self {
             border: border.clone(),
             anchors: anchors.collect(),
             hull_px: convex_hull(&points).iter().map(|p| [p.x, p.y]).collect(),
-            parts_m2: fitted.map(|parts| widened(parts, points.len(), outside)),
+            reach: reach(distances, blocks),
+            parts_m2: fitted,
+        };
+        let local = spread.calibration().unwrap_or(student_factor(points.len() as f64 - 1.0)).powi(2);
+        for parts in &mut spread.parts_m2 {
+            *parts = widened(*parts, local, blocks, border.spacing_px());
         }
+        spread
+    }
+
+    /// Factor on the local standard deviation with which 1.96 of it hold 95 % of the residuals
+    /// that tell of it, each judged by the others; `None` if they are too few to say.
+    fn calibration(&self) -> Option<f64> {
+        let mut scores: Vec<f64> = Vec::new();
+        for (i, anchor) in self.anchors.iter().enumerate().filter(|(_, anchor)| anchor.weight > 0.5) {
+            let local = self.local(Vector2::from(anchor.pixel), Some(i));
+            scores.extend((0..3).map(|axis| (anchor.relative[axis] / local[axis]).sqrt()));
+        }
+        scores.sort_by(f64::total_cmp);
+        // The rank of split conformal prediction.
+        let rank = (0.95 * (scores.len() as f64 + 1.0)).ceil() as usize;
+        (scores.len() >= FEWEST_SCORES).then(|| scores[rank - 1] / Z_95)
     }
 
     /// Standard deviation per axis (m) at a pixel: the true correction at a new touch lies within
@@ -182,11 +210,16 @@ impl Spread {
     /// pixel: where that is more than the growth learned from distances it takes its place. The
     /// residuals behind the local part hold the disagreement near the touches already.
     pub fn sd_m_with(&self, pixel: Pixel<Screen>, model_sd_m: [f64; 3]) -> [f64; 3] {
-        let growth = self.distance(pixel).growth();
-        let local = self.local(pixel);
+        let distance = self.distance(pixel);
+        let growth = distance.growth();
+        let untold = fallback_m2((distance.hull - self.reach).max(0.0), self.border.spacing_px());
+        let place = self.border.nearest_inside(pixel);
+        let outside = (place.distance_px(&pixel) / self.border.spacing_px()).min(1.0);
+        // Outside as at the nearest place inside, or as everywhere where that is larger.
+        let local = self.local(place.vector(), None).map(|here| here + outside * (1.0 - here).max(0.0));
         std::array::from_fn(|axis| {
             let parts = self.parts_m2[axis];
-            let grown = dot(&[0.0, parts[1], parts[2], parts[3]], &growth);
+            let grown = dot(&[0.0, parts[1], parts[2], parts[3]], &growth) + untold;
             (parts[0] * local[axis] + grown.max(model_sd_m[axis].powi(2))).sqrt()
         })
     }
@@ -195,32 +228,39 @@ impl Spread {
         let touches: Vec<_> = self.anchors.iter().map(|anchor| Vector2::from(anchor.pixel)).collect();
         let hull: Vec<_> = self.hull_px.iter().map(|&corner| Vector2::from(corner)).collect();
         let spacing = self.border.spacing_px();
-        let distance = Distance::new(pixel.vector(), &touches, &hull, spacing);
-        // An outlier has a touch, but lies outside.
-        Distance { gap: distance.gap.max(self.border.distance_outside_px(pixel) / spacing), ..distance }
+        let of = |pixel: Pixel<Screen>| Distance::new(pixel.vector(), &touches, &hull, spacing);
+        let outside_px = self.border.distance_outside_px(pixel);
+        if outside_px == 0.0 {
+            return of(pixel);
+        }
+        // Counted from the border: near an outlier, too, less is known than there.
+        let at_border = of(self.border.nearest_inside(pixel));
+        Distance { gap: at_border.gap + outside_px / spacing, hull: at_border.hull.max(of(pixel).hull) }
     }
 
-    /// Factor on the local variance, per axis; outside that of the nearest place inside, or of
-    /// all touches where that is larger.
-    fn local(&self, pixel: Pixel<Screen>) -> [f64; 3] {
-        let spacing = self.border.spacing_px();
-        let place = self.border.nearest_inside(pixel).vector();
+    /// Factor on the local variance, per axis, from the touches around a place but one.
+    fn local(&self, place: Vector2<f64>, except: Option<usize>) -> [f64; 3] {
+        let reach_px = LOCAL_REACH * self.border.spacing_px();
         let mut weights = GLOBAL_WEIGHT;
         let mut sums = [GLOBAL_WEIGHT; 3];
-        for anchor in &self.anchors {
-            let distance = (Vector2::from(anchor.pixel) - place).norm() / (LOCAL_REACH * spacing);
+        for (_, anchor) in self.anchors.iter().enumerate().filter(|&(i, _)| Some(i) != except) {
+            let distance = (Vector2::from(anchor.pixel) - place).norm() / reach_px;
             let weight = anchor.weight * (-0.5 * distance.powi(2)).exp();
             weights += weight;
             for (sum, relative) in sums.iter_mut().zip(anchor.relative) {
                 *sum += weight * relative;
             }
         }
-        let far = ((place - pixel.vector()).norm() / spacing).min(1.0);
-        sums.map(|sum| {
-            let here = sum / weights;
-            here + far * (1.0 - here).max(0.0)
-        })
+        sums.map(|sum| sum / weights)
     }
+}
+
+/// Left-out blocks that tell of growth: so many reached into a gap, or out of the hull, of the
+/// touches that remained.
+#[derive(Clone, Copy, Default)]
+struct Telling {
+    gap: usize,
+    outside: usize,
 }
 
 /// Distances of a pixel from touches, in spacings.
@@ -247,31 +287,43 @@ impl Distance {
     }
 }
 
-fn fitted_parts(
-    residuals_m: &[[f64; 3]],
-    axis: usize,
-    distances: &[Distance],
-    spacing_px: f64,
-) -> [f64; PARTS] {
+/// The parts of the variance along one axis, before they are widened for few data.
+fn fitted_parts(residuals_m: &[[f64; 3]], axis: usize, distances: &[Distance]) -> [f64; PARTS] {
     let residual = |(residual, distance): (&[f64; 3], &Distance)| Evidence {
         squared: residual[axis].powi(2),
         growth: distance.growth(),
-        weight: 1.0,
     };
-    let fallback = (Spread::FALLBACK_RATE_M_PER_PX * spacing_px).powi(2);
-    let stated = |squared: f64, growth: [f64; PARTS]| Evidence { squared, growth, weight: FALLBACK_WEIGHT };
-    let mut evidence: Vec<_> = residuals_m.iter().zip(distances).map(residual).collect();
-    evidence.push(stated(GAP_SHARE.powi(2) * fallback, [0.0, 1.0, 0.0, 0.0]));
-    evidence.push(stated(fallback, [0.0, 0.0, 1.0, 0.0]));
-    parts(&evidence)
+    let evidence: Vec<_> = residuals_m.iter().zip(distances).map(residual).collect();
+    let all = parts(&evidence, [true; PARTS]);
+    let gapless = parts(&evidence, [true, false, true, true]);
+    if deviance(&evidence, &gapless) - deviance(&evidence, &all) > SIGNIFICANT {
+        return all;
+    }
+    // Noise that happens to be larger in gaps must not make it smaller elsewhere.
+    [gapless[0], all[1], gapless[2], gapless[3]]
 }
 
-/// Variances from few residuals, and growth from few blocks, are widened as Student's t demands.
-fn widened(parts: [f64; PARTS], touches: usize, outside: usize) -> [f64; PARTS] {
-    let local = student_factor(touches as f64 - 1.0).powi(2);
-    // The fallback is a statement, not an estimate.
-    let growth = if outside == 0 { 1.0 } else { student_factor((outside as f64 - 1.0).max(2.0)).powi(2) };
-    [parts[0] * local, parts[1] * growth, parts[2] * growth, parts[3] * growth]
+/// Parts as they are used: the local variance by a factor; growth outside from few blocks is
+/// widened as Student's t demands; the fallback holds where blocks tell nothing of a gap.
+fn widened(parts: [f64; PARTS], factor: f64, blocks: Telling, spacing_px: f64) -> [f64; PARTS] {
+    let [local, gap, near, far] = parts;
+    let gap = if blocks.gap == 0 { fallback_m2(GAP_SHARE, spacing_px) } else { gap };
+    let outside = student_factor((blocks.outside as f64 - 1.0).max(2.0)).powi(2);
+    [local * factor, gap, outside * near, outside * far]
+}
+
+/// Variance after so many spacings at the stated rate.
+fn fallback_m2(spacings: f64, spacing_px: f64) -> f64 {
+    (spacings * spacing_px * Spread::FALLBACK_RATE_M_PER_PX).powi(2)
+}
+
+/// How far outside of the hull left-out blocks tell of: 9 of 10 touches that were out lay nearer;
+/// no distance if they are in fewer than three blocks.
+fn reach(distances: &[Distance], blocks: Telling) -> f64 {
+    let mut out: Vec<f64> =
+        distances.iter().map(|distance| distance.hull).filter(|&hull| hull > 0.0).collect();
+    out.sort_by(f64::total_cmp);
+    if blocks.outside < FEWEST_BLOCKS || out.is_empty() { 0.0 } else { out[(out.len() - 1) * 9 / 10] }
 }
 
 /// Corners of the convex hull, counter-clockwise (Andrew's monotone chain).
