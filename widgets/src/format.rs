@@ -156,9 +156,10 @@ pub fn percent(fraction: f64) -> String {
     if fraction.is_finite() { format!("{:.0} %", 100.0 * fraction) } else { NONE.to_owned() }
 }
 
-/// A count with its noun: `1 pair`, `30 pairs`.
+/// A count with its noun: `1 pair`, `30 pairs`, `80 touches`.
 pub fn count(n: usize, singular: &str) -> String {
-    format!("{n} {singular}{}", if n == 1 { "" } else { "s" })
+    let ending = if singular.ends_with("ch") { "es" } else { "s" };
+    format!("{n} {singular}{}", if n == 1 { "" } else { ending })
 }
 
 /// A pixel position: `(312.4, 87.0)`; one decimal is what a pointer can tell.
@@ -308,6 +309,7 @@ mod tests {
     fn counts_and_positions() {
         assert_eq!(count(1, "pair"), "1 pair");
         assert_eq!(count(30, "pair"), "30 pairs");
+        assert_eq!(count(2, "touch"), "2 touches");
         assert_eq!(pixel_position([312.44, -0.01]), "(312.4, 0.0)");
         assert_eq!(position_mm([0.412, -0.035_2, 0.0]), "x 412 mm, y −35.2 mm, z 0 mm");
     }

@@ -27,7 +27,7 @@ mod verdict_line;
 
 pub use board::BoardDraft;
 pub use models::ModelsPanels;
-pub(crate) use models::show_inspector as show_models_inspector;
+pub(crate) use models::{Standing, show_inspector as show_models_inspector, standing};
 pub(crate) use picture::key as picture_key;
 pub use probe::{ProbeState, probe_readout};
 pub(crate) use residuals::chosen_fit;
@@ -37,6 +37,7 @@ pub(crate) use source_state::source_age;
 pub(crate) use start::show as show_start;
 pub use touch::TouchPanels;
 pub(crate) use touch::show_inspector as show_touch_inspector;
+pub(crate) use touch::{ghost as touch_ghost, next_touch};
 pub use twin::TwinPanels;
 
 use std::sync::Arc;

@@ -7,8 +7,9 @@ use std::time::Instant;
 
 use plumbline_engine::view::{JobState, SourceStatus};
 use plumbline_engine::{
-    Command, Destination, EyesCommand, FileLength, JobCommand, LiveCommand, MountCommand, NoticeCommand,
-    NoticeLevel, ProbePoint, RobotCommand, SourceCommand, TouchCommand, TwinCommand,
+    Command, Destination, EyesCommand, FileLength, JobCommand, LiveCommand, ModelsCommand, MountCommand,
+    NoticeCommand, NoticeLevel, ProbePoint, RobotCommand, SourceCommand, TablesCommand, TouchCommand,
+    TwinCommand,
 };
 use plumbline_model::Eye;
 use plumbline_model::robot::JointIndex;
@@ -19,12 +20,14 @@ use super::ask::{Ask, Asked};
 use super::dialogs::{Answer, Question};
 use super::frame_time::{FrameTimes, resident_mb};
 use super::jogging::RENEW;
+use super::models_actions::ModelsAction;
 use super::outbox::Outbox;
 use super::robot_actions::RobotAction;
 use super::saving::save_picture;
 use super::script::ScriptStep;
 use super::settings::ThemeChoice;
 use super::steps::{Screen, default_arrangement};
+use super::touch_actions::{Preset, TouchAction};
 
 /// A message of the window itself.
 pub(super) fn warning(text: impl Into<String>) -> Command {
@@ -88,6 +91,9 @@ impl PlumblineWindow {
         }
         match action {
             Action::Stop => self.stop(),
+            Action::Touch(TouchAction::ToggleWindow) => {
+                self.panels.touch.window_open = !self.panels.touch.window_open;
+            }
             Action::Next => {
                 if let Some(next) = super::guidance::guidance(&self.view, self.settings.screen).next {
                     self.act(ctx, next.action);
@@ -111,6 +117,7 @@ impl PlumblineWindow {
             Action::Import => self.ask_for(ctx, Question::Import),
             Action::Export(what, format) => self.ask_for(ctx, Question::Export(what, format)),
             Action::SaveWindow => self.ask_for(ctx, Question::SaveWindow),
+            Action::Models(action) => self.act_on_models(ctx, action),
             Action::Go(screen) => self.settings.screen = screen,
             Action::Palette => self.palette.toggle(),
             Action::ToggleInspector => self.settings.inspector_open = !self.settings.inspector_open,
@@ -121,6 +128,26 @@ impl PlumblineWindow {
             Action::ResetAllArrangements => Screen::ALL.into_iter().for_each(|s| self.reset_arrangement(s)),
             Action::ToggleFrameTimes => self.frame_times_open = !self.frame_times_open,
             Action::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            _ => {}
+        }
+    }
+
+    /// The actions on models that ask for a file, or go somewhere else.
+    fn act_on_models(&mut self, ctx: &egui::Context, action: ModelsAction) {
+        match action {
+            ModelsAction::OpenSession => self.ask_for(ctx, Question::TouchSession),
+            ModelsAction::Import => self.ask_for(ctx, Question::ImportModel),
+            ModelsAction::Export { method, onnx } => self.ask_for(ctx, Question::ExportModel(method, onnx)),
+            ModelsAction::ImportTable(table) => self.ask_for(ctx, Question::ImportTable(table)),
+            ModelsAction::ExportTable(table) => self.ask_for(ctx, Question::ExportTable(table)),
+            ModelsAction::Check => {
+                let method = self.view.models.in_use.as_ref().map(|model| model.method());
+                self.settings.screen = Screen::Touch;
+                self.send(TouchCommand::CorrectWith(method).into());
+                if let Some(plan) = TouchAction::Plan(Preset::Check).command(&self.view) {
+                    self.send(plan);
+                }
+            }
             _ => {}
         }
     }
@@ -161,7 +188,7 @@ impl PlumblineWindow {
     }
 
     /// The arm first; then jobs, replay, automatic capture and the tour of the board.
-    fn stop(&mut self) {
+    pub(super) fn stop(&mut self) {
         self.backend.stop();
         self.stopped_at = Some(Instant::now());
         for job in self.view.jobs.iter().filter(|job| job.state.is_running()) {
@@ -211,6 +238,23 @@ impl PlumblineWindow {
                 }
                 (Question::Export(what, format), _) => {
                     self.backend.send(EyesCommand::Export { what, format, file: paths.remove(0) }.into());
+                }
+                (Question::TouchSession, _) => {
+                    self.send(ModelsCommand::ChooseSession { session: paths.remove(0) }.into());
+                }
+                (Question::ImportModel, _) => {
+                    self.send(ModelsCommand::Import { file: paths.remove(0) }.into());
+                }
+                (Question::ExportModel(method, onnx), _) => {
+                    self.send(ModelsCommand::Export { method, onnx, file: paths.remove(0) }.into());
+                }
+                (Question::ImportTable(table), _) => {
+                    let import = TablesCommand::Import { table, file: paths.remove(0) };
+                    self.send(ModelsCommand::Tables(import).into());
+                }
+                (Question::ExportTable(table), _) => {
+                    let export = TablesCommand::Export { table, file: paths.remove(0) };
+                    self.send(ModelsCommand::Tables(export).into());
                 }
                 (Question::SaveWindow, _) => self.save_window(ctx, paths.remove(0)),
                 (Question::SaveView, _) => {

@@ -99,11 +99,7 @@ fn paths(ui: &mut Ui, question: Question, typed: &mut [String]) -> Asked {
         entered |= edit.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));
     }
     let filled = typed.iter().take(question.required()).all(|text| !text.trim().is_empty());
-    let verb = if matches!(question, Question::Export(..) | Question::SaveWindow | Question::SaveView) {
-        "Save"
-    } else {
-        "Open"
-    };
+    let verb = if question.saves() { "Save" } else { "Open" };
     match buttons(ui, verb, filled) {
         Some(false) => Asked::Closed,
         Some(true) => answer(question, typed),

@@ -6,7 +6,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Sender, bounded};
-use plumbline_engine::{ExportFormat, Exported};
+use plumbline_engine::correction::Method;
+use plumbline_engine::{ExportFormat, Exported, GraspTable};
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +22,16 @@ pub enum Question {
     Import,
     /// Where a calibration is written.
     Export(Exported, ExportFormat),
+    /// The folder of a session with touches.
+    TouchSession,
+    /// A correction model to read.
+    ImportModel,
+    /// Where a correction model is written, as ONNX or as JSON.
+    ExportModel(Method, bool),
+    /// A table of grasp height or yaw to read.
+    ImportTable(GraspTable),
+    /// Where a table is written.
+    ExportTable(GraspTable),
     /// Where a picture of the window is saved.
     SaveWindow,
     /// Where a picture of one view is saved.
@@ -50,6 +61,13 @@ impl Question {
             Self::TwoVideos => "Open two videos: left eye, right eye",
             Self::Import => "Import a calibration",
             Self::Export(..) => "Export the calibration",
+            Self::TouchSession => "Open a session with touches",
+            Self::ImportModel => "Import a correction model",
+            Self::ExportModel(..) => "Export the correction model",
+            Self::ImportTable(GraspTable::Height) => "Import grasp heights",
+            Self::ImportTable(GraspTable::Yaw) => "Import yaw angles",
+            Self::ExportTable(GraspTable::Height) => "Export grasp heights",
+            Self::ExportTable(GraspTable::Yaw) => "Export yaw angles",
             Self::SaveWindow => "Save a picture of the window",
             Self::SaveView => "Save a picture of the view",
         }
@@ -58,11 +76,17 @@ impl Question {
     /// Names of the paths that are asked for.
     pub fn fields(self) -> &'static [&'static str] {
         match self {
-            Self::Folder => &["Folder"],
+            Self::Folder | Self::TouchSession => &["Folder"],
             Self::TwoFolders => &["Left folder", "Right folder"],
             Self::TwoVideos => &["Left video", "Right video"],
             Self::Import => &["File", "Right eye's file, if there are two"],
-            Self::Export(..) | Self::SaveWindow | Self::SaveView => &["File"],
+            Self::Export(..)
+            | Self::ImportModel
+            | Self::ExportModel(..)
+            | Self::ImportTable(_)
+            | Self::ExportTable(_)
+            | Self::SaveWindow
+            | Self::SaveView => &["File"],
         }
     }
 
@@ -79,10 +103,29 @@ impl Question {
             Self::Export(_, ExportFormat::OpenCv) => "stereo-opencv.yml",
             Self::Export(_, ExportFormat::Kalibr) => "camchain.yaml",
             Self::Export(_, ExportFormat::MrcalCorners) => "corners.vnl",
+            Self::ExportModel(Method::M1, _) => "m1.json",
+            Self::ExportModel(Method::M2, false) => "m2.json",
+            Self::ExportModel(Method::M3, false) => "m3.json",
+            Self::ExportModel(Method::M2, true) => "m2.onnx",
+            Self::ExportModel(Method::M3, true) => "m3.onnx",
+            Self::ExportTable(GraspTable::Height) => "grasp-height.csv",
+            Self::ExportTable(GraspTable::Yaw) => "grasp-yaw.csv",
             Self::SaveWindow => "plumbline.png",
             Self::SaveView => "view.png",
             _ => "",
         }
+    }
+
+    /// Whether a new file is written rather than something read.
+    pub fn saves(self) -> bool {
+        matches!(
+            self,
+            Self::Export(..)
+                | Self::ExportModel(..)
+                | Self::ExportTable(_)
+                | Self::SaveWindow
+                | Self::SaveView
+        )
     }
 
     /// Asks the desktop; blocks, so not for the window's thread.
@@ -92,7 +135,13 @@ impl Question {
         let video =
             |title: &str| titled(title).add_filter("Videos", &["mp4", "avi", "mkv", "mov", "webm", "m4v"]);
         match self {
-            Self::Folder => dialog().pick_folder().map(|folder| vec![folder]),
+            Self::Folder | Self::TouchSession => dialog().pick_folder().map(|folder| vec![folder]),
+            Self::ImportModel => {
+                dialog().add_filter("Models", &["json", "onnx"]).pick_file().map(|file| vec![file])
+            }
+            Self::ImportTable(_) => {
+                dialog().add_filter("Tables", &["csv"]).pick_file().map(|file| vec![file])
+            }
             Self::TwoFolders => {
                 let left = titled("Folder of the left eye").pick_folder()?;
                 let right = titled("Folder of the right eye").pick_folder()?;
@@ -104,7 +153,11 @@ impl Question {
                 Some(vec![left, right])
             }
             Self::Import => dialog().add_filter("Calibrations", &["yaml", "yml", "xml"]).pick_files(),
-            Self::Export(..) | Self::SaveWindow | Self::SaveView => {
+            Self::Export(..)
+            | Self::ExportModel(..)
+            | Self::ExportTable(_)
+            | Self::SaveWindow
+            | Self::SaveView => {
                 dialog().set_file_name(self.suggested_name()).save_file().map(|file| vec![file])
             }
         }

@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 
 use plumbline_engine::correction::Method;
-use plumbline_engine::{Command, ModelsCommand, View};
+use plumbline_engine::{Command, GraspTable, ModelsCommand, View};
+
+use super::touch_actions::{Preset, TouchAction};
 
 /// Of correction models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,8 +14,29 @@ pub enum ModelsAction {
     ListSessions,
     /// Trains all three and compares them.
     TrainAll,
+    /// Chooses the folder of a session.
+    OpenSession,
     /// Puts the proposal that is shown in use.
     AcceptShown,
+    /// Puts a proposal in use.
+    Accept(Method),
+    /// Shows the map and numbers of a model.
+    Show(Method),
+    /// Goes to touching, with the model in use and new targets.
+    Check,
+    /// Reads a model file (asks which).
+    Import,
+    /// Writes a model file (asks where to).
+    Export {
+        /// Which; a proposal goes before the one in use.
+        method: Method,
+        /// As ONNX rather than as JSON.
+        onnx: bool,
+    },
+    /// Reads a table from a CSV file (asks which).
+    ImportTable(GraspTable),
+    /// Writes a table to a CSV file (asks where to).
+    ExportTable(GraspTable),
     /// Forgets the proposals.
     Discard,
     /// Back to the model before.
@@ -24,15 +47,43 @@ pub enum ModelsAction {
 
 impl ModelsAction {
     /// All of them, in the palette's order.
-    pub const ALL: [Self; 6] =
-        [Self::ListSessions, Self::TrainAll, Self::AcceptShown, Self::Discard, Self::Undo, Self::UseNone];
+    pub const ALL: [Self; 13] = [
+        Self::ListSessions,
+        Self::OpenSession,
+        Self::TrainAll,
+        Self::AcceptShown,
+        Self::Check,
+        Self::Discard,
+        Self::Undo,
+        Self::UseNone,
+        Self::Import,
+        Self::ImportTable(GraspTable::Height),
+        Self::ImportTable(GraspTable::Yaw),
+        Self::ExportTable(GraspTable::Height),
+        Self::ExportTable(GraspTable::Yaw),
+    ];
 
     /// What it is called everywhere.
     pub fn label(self) -> &'static str {
         match self {
             Self::ListSessions => "Look for touch sessions",
             Self::TrainAll => "Train M1, M2 and M3",
+            Self::OpenSession => "Open a session with touches…",
             Self::AcceptShown => "Accept the shown model",
+            Self::Accept(Method::M1) => "Use M1",
+            Self::Accept(Method::M2) => "Use M2",
+            Self::Accept(Method::M3) => "Use M3",
+            Self::Show(Method::M1) => "Show M1",
+            Self::Show(Method::M2) => "Show M2",
+            Self::Show(Method::M3) => "Show M3",
+            Self::Check => "Check the model in use with new touches",
+            Self::Import => "Import a model…",
+            Self::Export { onnx: false, .. } => "Export the model as JSON…",
+            Self::Export { onnx: true, .. } => "Export the model as ONNX…",
+            Self::ImportTable(GraspTable::Height) => "Import grasp heights from CSV…",
+            Self::ImportTable(GraspTable::Yaw) => "Import yaw angles from CSV…",
+            Self::ExportTable(GraspTable::Height) => "Export grasp heights as CSV…",
+            Self::ExportTable(GraspTable::Yaw) => "Export yaw angles as CSV…",
             Self::Discard => "Discard the proposed models",
             Self::Undo => "Go back to the model before",
             Self::UseNone => "Use no model",
@@ -44,13 +95,26 @@ impl ModelsAction {
         let models = &view.models;
         let when = |possible: bool, why| (!possible).then_some(Cow::Borrowed(why));
         match self {
-            Self::ListSessions => None,
+            Self::ListSessions | Self::OpenSession | Self::Import | Self::ImportTable(_) => None,
             Self::TrainAll if models.training => Some("models are being trained".into()),
             Self::TrainAll => match &models.data {
                 None => Some("no session with touches is chosen".into()),
                 Some(Err(why)) => Some(why.clone().into()),
                 Some(Ok(_)) => None,
             },
+            Self::Accept(method) => when(is_proposed(view, method), "this model is not proposed"),
+            Self::Show(method) | Self::Export { method, .. } => {
+                let in_use = models.in_use.as_ref().is_some_and(|model| model.method() == method);
+                when(in_use || is_proposed(view, method), "this model was not trained")
+            }
+            Self::Check if models.in_use.is_none() => Some("no model is in use".into()),
+            Self::Check => TouchAction::Plan(Preset::Check).refusal(view),
+            Self::ExportTable(GraspTable::Height) => {
+                when(models.tables.height.is_some(), "there are no grasp heights")
+            }
+            Self::ExportTable(GraspTable::Yaw) => {
+                when(models.tables.yaw.is_some(), "there are no yaw angles")
+            }
             Self::AcceptShown => when(shown_proposal(view).is_some(), "nothing is proposed"),
             Self::Discard => when(!models.proposals.is_empty(), "nothing is proposed"),
             Self::Undo => when(!models.earlier.is_empty(), "there was no other model before"),
@@ -58,7 +122,7 @@ impl ModelsAction {
         }
     }
 
-    /// The command that it stands for.
+    /// The command that it stands for; `None` where the window has to ask or to go first.
     pub fn command(self, view: &View) -> Option<Command> {
         Some(
             match self {
@@ -67,6 +131,14 @@ impl ModelsAction {
                     ModelsCommand::Train { methods: Method::ALL.to_vec(), seed: 1, published_recipe: false }
                 }
                 Self::AcceptShown => ModelsCommand::Accept(shown_proposal(view)?),
+                Self::Accept(method) => ModelsCommand::Accept(method),
+                Self::Show(method) => ModelsCommand::Show(method),
+                Self::OpenSession
+                | Self::Check
+                | Self::Import
+                | Self::Export { .. }
+                | Self::ImportTable(_)
+                | Self::ExportTable(_) => return None,
                 Self::Discard => ModelsCommand::Discard,
                 Self::Undo => ModelsCommand::Undo,
                 Self::UseNone => ModelsCommand::UseNone,
@@ -74,6 +146,10 @@ impl ModelsAction {
             .into(),
         )
     }
+}
+
+fn is_proposed(view: &View, method: Method) -> bool {
+    view.models.proposals.iter().any(|model| model.method() == method)
 }
 
 /// The method whose map is shown, when it is proposed.

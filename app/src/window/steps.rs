@@ -239,11 +239,10 @@ fn touch(tiles: &mut Tiles<Pane>) -> TileId {
 fn models(tiles: &mut Tiles<Pane>) -> TileId {
     let training = tabs(tiles, &[Pane::ModelTraining]);
     let comparison = tabs(tiles, &[Pane::ModelComparison]);
-    let map = tabs(tiles, &[Pane::ModelMap]);
-    let tables = tabs(tiles, &[Pane::GraspTables]);
+    // Both are maps of the table that want height, and nobody looks at both at once.
+    let maps = tabs(tiles, &[Pane::ModelMap, Pane::GraspTables]);
     let left = column(tiles, &[(training, 1.0), (comparison, 1.0)]);
-    let right = column(tiles, &[(map, 1.2), (tables, 1.0)]);
-    row(tiles, &[(left, 1.0), (right, 1.2)])
+    row(tiles, &[(left, 1.0), (maps, 1.15)])
 }
 
 fn robot(tiles: &mut Tiles<Pane>) -> TileId {

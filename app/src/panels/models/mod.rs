@@ -1,24 +1,125 @@
 //! Correction models: training, comparison, maps, and the tables of grasp height and yaw.
 
-use egui::Ui;
-use plumbline_engine::View;
-use plumbline_widgets::empty::{EmptyState, Message};
-use plumbline_widgets::theme;
+mod comparison;
+mod inspector;
+mod map;
+mod sessions;
+mod tables;
+mod training;
+mod verdict;
 
-use super::{PanelContext, PanelState};
-use crate::window::{Outbox, Pane};
+pub use inspector::show as show_inspector;
+pub(crate) use verdict::{Standing, standing};
+
+use std::sync::Arc;
+
+use egui::{Button, Ui};
+use plumbline_engine::correction::Method;
+
+use super::PanelContext;
+use crate::window::{Action, ModelsAction, Pane};
 
 /// How models are looked at: kept from frame to frame, never saved.
-#[derive(Clone, Debug, Default)]
-pub struct ModelsPanels {}
-
-/// Draws one of the panes of this step.
-pub fn show(ui: &mut Ui, _pane: Pane, _cx: &mut PanelContext<'_>) {
-    EmptyState::empty(Message::new("No model yet", "Touch the screen first; models learn from touches."))
-        .show(ui);
+#[derive(Debug)]
+pub struct ModelsPanels {
+    /// Methods to train.
+    pub methods: [bool; 3],
+    /// Seed of the training.
+    pub seed: u64,
+    /// Whether the published recipe is followed.
+    pub published_recipe: bool,
+    /// Which errors the map shows.
+    pub errors: map::Errors,
+    /// Which field the map shows.
+    pub field: map::Shown,
+    /// How the tables are looked at.
+    pub tables: tables::TablesPanel,
+    map: Memo<map::Drawn>,
+    standing: Memo<verdict::Facts>,
 }
 
-/// What is known of the model that is shown.
-pub fn show_inspector(ui: &mut Ui, _view: &View, _state: &mut PanelState, _outbox: &mut Outbox) {
-    ui.label(theme::weak(ui, "Models learn from touches."));
+impl Default for ModelsPanels {
+    fn default() -> Self {
+        Self {
+            methods: [true; 3],
+            seed: 1,
+            published_recipe: false,
+            errors: map::Errors::Both,
+            field: map::Shown::Uncertainty,
+            tables: tables::TablesPanel::default(),
+            map: Memo::default(),
+            standing: Memo::default(),
+        }
+    }
+}
+
+/// Draws one of the panes of this step.
+pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
+    match pane {
+        Pane::ModelComparison => comparison::show(ui, cx),
+        Pane::ModelMap => map::show(ui, cx),
+        Pane::GraspTables => tables::show(ui, cx),
+        _ => training::show(ui, cx),
+    }
+}
+
+/// What was made from a snapshot, kept as long as the snapshot stays the same.
+#[derive(Debug)]
+struct Memo<T> {
+    of: usize,
+    made: Option<Arc<T>>,
+}
+
+impl<T> Default for Memo<T> {
+    fn default() -> Self {
+        Self { of: 0, made: None }
+    }
+}
+
+impl<T> Memo<T> {
+    /// The keys are addresses of what it is made from; whoever made it holds them, so that none is
+    /// used again for something else meanwhile.
+    fn get(&mut self, of: usize, make: impl FnOnce() -> T) -> Arc<T> {
+        match &self.made {
+            Some(made) if self.of == of => made.clone(),
+            _ => {
+                let made = Arc::new(make());
+                self.of = of;
+                self.made = Some(made.clone());
+                made
+            }
+        }
+    }
+}
+
+/// What is told about all methods.
+fn facts(cx: &mut PanelContext<'_>) -> Arc<verdict::Facts> {
+    let models = &cx.view.models;
+    cx.state.models.standing.get(verdict::Facts::key(models), || verdict::Facts::of(models))
+}
+
+/// A button of one of the actions, with its reason where it cannot be pressed.
+fn action_button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: ModelsAction, text: &str) {
+    let why = action.refusal(cx.view);
+    let button = ui.add_enabled(why.is_none(), Button::new(text)).on_hover_text(action.label());
+    if button.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
+        cx.outbox.act(Action::Models(action));
+    }
+}
+
+/// "14:02", or the day before it when that is not today.
+pub(crate) fn clock(at: jiff::Timestamp) -> String {
+    let zone = jiff::tz::TimeZone::system();
+    let (at, now) = (at.to_zoned(zone.clone()), jiff::Timestamp::now().to_zoned(zone));
+    let format = if at.date() == now.date() { "%H:%M" } else { "%-d %b %Y, %H:%M" };
+    at.strftime(format).to_string()
+}
+
+/// What the network of a method looks like as published, or what it is instead.
+fn about(method: Method) -> &'static str {
+    match method {
+        Method::M1 => "screen placement, measured height between grid points",
+        Method::M2 => "network 2–16–2 for x and y, height of M1",
+        Method::M3 => "network 2–64–3 for x, y and z",
+    }
 }

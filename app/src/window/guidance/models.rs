@@ -1,12 +1,64 @@
-//! What to do next with correction models.
+//! What to do next with correction models: one button, named by what it does.
 
 use plumbline_engine::View;
+use plumbline_engine::correction::Method;
+use plumbline_engine::view::StepState;
+use plumbline_widgets::format;
 
 use super::{Guidance, say};
+use crate::panels::{Standing, standing};
+use crate::window::actions::Action;
+use crate::window::models_actions::ModelsAction;
+use crate::window::steps::Screen;
 
 pub(super) fn models(view: &View) -> Guidance {
-    if view.models.next.is_empty() {
-        return say("Models learn from touches: touch the screen first.");
+    let models = &view.models;
+    match standing(models) {
+        Standing::NothingTouched => say("Models learn from touches. Touch the screen first (step 3).")
+            .then("Go to Touch", Action::Go(Screen::Touch)),
+        Standing::NotChosen => say(next_or(view, "Choose the session of touches to learn from.")),
+        Standing::Unusable(why) => say(why).warn().then("Go to Touch", Action::Go(Screen::Touch)),
+        Standing::Recorded(count) => {
+            let touches = format::count(count, "touch");
+            say(next_or(view, &format!("{touches} are recorded. Next: train models on them. Nothing moves.")))
+                .then(format!("Train M1, M2 and M3 on {touches}"), Action::Models(ModelsAction::TrainAll))
+        }
+        Standing::Training => say("The models are being trained; nothing is used before you accept it."),
+        Standing::Proposed(method, error_m) => proposed(view, method, error_m),
+        Standing::InUse(method) => in_use(view, method),
     }
-    say(view.models.next.clone())
+}
+
+fn proposed(view: &View, method: Method, error_m: Option<f64>) -> Guidance {
+    let name = method.name();
+    let said = match error_m {
+        Some(error_m) => format!(
+            "{name} is best: {} on touches that it had not seen. Look at its map, then use it.",
+            format::mm(error_m)
+        ),
+        None => format!("{name} was imported. How well it fits this robot is not known: check it after use."),
+    };
+    say(next_or(view, &said)).then(format!("Use {name}"), Action::Models(ModelsAction::Accept(method)))
+}
+
+fn in_use(view: &View, method: Method) -> Guidance {
+    let name = method.name();
+    if let StepState::Stale { why } = &view.models.step {
+        let guidance = say(why.clone()).warn();
+        // Training again helps where there are touches.
+        return match &view.models.data {
+            Some(Ok(data)) => guidance.then(
+                format!("Train M1, M2 and M3 on {}", format::count(data.len(), "touch")),
+                Action::Models(ModelsAction::TrainAll),
+            ),
+            _ => guidance.then("Go to Touch", Action::Go(Screen::Touch)),
+        };
+    }
+    say(next_or(view, &format!("{name} is in use. Next: check it with new touches. Nothing moves yet.")))
+        .then(format!("Check {name} with new touches"), Action::Models(ModelsAction::Check))
+}
+
+/// The engine's own sentence, where it has one.
+fn next_or(view: &View, otherwise: &str) -> String {
+    if view.models.next.is_empty() { otherwise.to_owned() } else { view.models.next.clone() }
 }

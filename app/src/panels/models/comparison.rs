@@ -1,0 +1,224 @@
+//! All methods on the same held-out touches, which one is proposed, which one is in use.
+
+use egui::{Grid, RichText, ScrollArea, Ui};
+use plumbline_engine::ModelsCommand;
+use plumbline_engine::correction::{CorrectionModel, Method};
+use plumbline_engine::view::{ModelsView, StepState};
+use plumbline_widgets::empty::{EmptyState, Message};
+use plumbline_widgets::format::{self, Quantity};
+use plumbline_widgets::glyph::{self, Glyph};
+use plumbline_widgets::intervals::{IntervalRow, Intervals, Level};
+use plumbline_widgets::theme::{self, Role, space};
+
+use super::verdict::Facts;
+use super::{action_button, clock, facts};
+use crate::panels::{PanelContext, padded};
+use crate::window::{Action, ModelsAction};
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let models = &cx.view.models;
+    if models.proposals.is_empty() && models.in_use.is_none() && models.comparison.is_none() {
+        if models.training {
+            EmptyState::loading("The models are being trained.").show(ui);
+            return;
+        }
+        let message = Message::new(
+            "No model yet",
+            "Targets are sent as they are. Train models on touches, or import one that was trained before.",
+        );
+        if EmptyState::empty(message.button("Import a model…")).show(ui) {
+            cx.outbox.act(Action::Models(ModelsAction::Import));
+        }
+        return;
+    }
+    let facts = facts(cx);
+    padded(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            state(ui, models);
+            if let Some(headline) = facts.headline() {
+                ui.label(theme::strong(ui, headline));
+            }
+            for sentence in &facts.apart {
+                ui.label(theme::small(ui, sentence));
+            }
+            ui.add_space(space::S);
+            chart(ui, cx, &facts);
+            figures(ui, &facts);
+            ui.add_space(space::S);
+            decide(ui, cx);
+            ui.add_space(space::S);
+            in_use(ui, cx);
+            ui.add_space(space::S);
+            files(ui, cx);
+        });
+    });
+}
+
+/// Why the model in use should not be trusted any more.
+fn state(ui: &mut Ui, models: &ModelsView) {
+    let StepState::Stale { why } = &models.step else { return };
+    let tokens = theme::tokens(ui);
+    let color = Role::Warning.color(tokens);
+    ui.horizontal_top(|ui| {
+        let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 20.0), egui::Sense::hover());
+        glyph::paint(ui.painter(), rect.center(), 14.0, Glyph::Warning, color);
+        ui.add(egui::Label::new(RichText::new(why).color(color)).wrap());
+    });
+    ui.add_space(space::XS);
+}
+
+/// Means with intervals; the band is the best one's.
+fn chart(ui: &mut Ui, cx: &mut PanelContext<'_>, facts: &Facts) {
+    if facts.judged.is_empty() {
+        return;
+    }
+    let models = &cx.view.models;
+    let mut rows: Vec<IntervalRow> = facts
+        .judged
+        .iter()
+        .map(|judged| IntervalRow {
+            name: judged.method.name().to_owned(),
+            note: note(models, judged.method).to_owned(),
+            mean: Some(judged.errors.mean_2d_m),
+            interval: Some(judged.interval_m),
+            role: Role::HeldOut,
+        })
+        .collect();
+    let methods: Vec<Method> = facts.judged.iter().map(|judged| judged.method).collect();
+    rows.extend(facts.without_m.map(|mean| IntervalRow {
+        name: "No model".to_owned(),
+        note: String::new(),
+        mean: Some(mean),
+        interval: None,
+        role: Role::Difference,
+    }));
+    let floor = facts.noise.as_ref().map(|noise| Level {
+        name: "noise floor",
+        value: noise.rms_2d_m,
+        role: Role::NoiseFloor,
+    });
+    let levels: Vec<Level<'_>> = floor.into_iter().collect();
+    let shown = models.shown.and_then(|shown| methods.iter().position(|method| *method == shown));
+    let band = facts.best.filter(|_| facts.judged.len() > 1);
+    let clicked = Intervals::new("Mean error on held-out touches", &rows, Quantity::Length)
+        .levels(&levels)
+        .band(band)
+        .selected(shown)
+        .show(ui);
+    if let Some(method) = clicked.and_then(|row| methods.get(row)) {
+        cx.outbox.send(ModelsCommand::Show(*method));
+    }
+    let words = "Mean distance in the plane at touches whose whole set was held out, with its 95 % interval.";
+    ui.label(theme::small(ui, words));
+}
+
+fn note(models: &ModelsView, method: Method) -> &'static str {
+    let proposed = models.proposals.iter().any(|model| model.method() == method);
+    let in_use = models.in_use.as_ref().is_some_and(|model| model.method() == method);
+    match (proposed, in_use) {
+        (true, true) => "proposed anew",
+        (true, false) => "proposed",
+        (false, true) => "in use",
+        (false, false) => "",
+    }
+}
+
+/// What the chart does not show: rms in the plane and of the height.
+fn figures(ui: &mut Ui, facts: &Facts) {
+    if facts.judged.is_empty() {
+        return;
+    }
+    ui.add_space(space::XS);
+    let spacing = [space::L, 2.0];
+    Grid::new("figures of the models").num_columns(3).spacing(spacing).min_row_height(18.0).show(ui, |ui| {
+        for heading in ["", "rms", "height rms"] {
+            ui.label(theme::small(ui, heading));
+        }
+        ui.end_row();
+        for judged in &facts.judged {
+            ui.label(theme::weak(ui, judged.method.name()));
+            ui.label(format::mm(judged.errors.rms_2d_m));
+            ui.label(format::mm(judged.errors.rms_z_m));
+            ui.end_row();
+        }
+        if let Some(noise) = &facts.noise {
+            ui.label(theme::weak(ui, "repeats"));
+            ui.label(format::mm(noise.rms_2d_m));
+            ui.label(theme::weak(ui, format::NONE));
+            ui.end_row();
+        }
+    });
+}
+
+/// One button per proposal, the best first.
+fn decide(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let models = &cx.view.models;
+    if models.proposals.is_empty() {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        for model in &models.proposals {
+            let method = model.method();
+            let text = format!("Use {}", method.name());
+            if ui.button(text).on_hover_text(provenance(model)).clicked() {
+                cx.outbox.send(ModelsCommand::Accept(method));
+            }
+        }
+        action_button(ui, cx, ModelsAction::Discard, "Discard proposals");
+    });
+}
+
+fn in_use(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let models = &cx.view.models;
+    let said = match &models.in_use {
+        Some(model) => format!("In use: {}", provenance(model)),
+        None => "No model is in use: targets are sent as they are.".to_owned(),
+    };
+    ui.label(said);
+    ui.horizontal_wrapped(|ui| {
+        if let Some(before) = models.earlier.first() {
+            let at = clock(before.accepted);
+            let text = match before.method {
+                Some(method) => format!("Back to {} of {at}", method.name()),
+                None => format!("Back to no model of {at}"),
+            };
+            action_button(ui, cx, ModelsAction::Undo, &text);
+        }
+        if models.in_use.is_some() {
+            action_button(ui, cx, ModelsAction::UseNone, "Use none");
+        }
+    });
+}
+
+/// "M3 of 14:02, from 80 touches".
+fn provenance(model: &CorrectionModel) -> String {
+    let from = model.provenance();
+    let touches = match from.touches.len() {
+        0 => format!("imported from {}", from.session),
+        n => format!("from {}", format::count(n, "touch")),
+    };
+    format!("{} of {}, {touches}", model.method().name(), clock(from.made))
+}
+
+fn files(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let models = &cx.view.models;
+    let mut methods: Vec<Method> = models.proposals.iter().map(|model| model.method()).collect();
+    methods.extend(models.in_use.as_ref().map(|model| model.method()));
+    methods.sort_unstable();
+    methods.dedup();
+    ui.horizontal_wrapped(|ui| {
+        if ui
+            .button("Import a model…")
+            .on_hover_text("Own JSON, ONNX, or published weights as JSON")
+            .clicked()
+        {
+            cx.outbox.act(Action::Models(ModelsAction::Import));
+        }
+        let shown = models.shown.filter(|shown| methods.contains(shown)).or(methods.last().copied());
+        let Some(method) = shown else { return };
+        for (onnx, kind) in [(false, "JSON"), (true, "ONNX")] {
+            let export = ModelsAction::Export { method, onnx };
+            action_button(ui, cx, export, &format!("Export {} as {kind}…", method.name()));
+        }
+    });
+}

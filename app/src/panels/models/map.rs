@@ -1,0 +1,350 @@
+//! A model over the table: what it corrects, what remains, and where the data end.
+
+use egui::{RichText, Ui, WidgetText};
+use plumbline_engine::ModelsCommand;
+use plumbline_engine::correction::Method;
+use plumbline_engine::view::{Field, ModelMap, ModelsView};
+use plumbline_widgets::axis;
+use plumbline_widgets::buttons::choice;
+use plumbline_widgets::colormap::{ColorScale, Colormap};
+use plumbline_widgets::empty::{EmptyState, Message};
+use plumbline_widgets::format::{self, Quantity};
+use plumbline_widgets::table_map::{BeforeAfter, Border, Outline, Place, ScalarField, TableMap, TableScene};
+use plumbline_widgets::theme::{self, Role, space};
+
+use crate::panels::{PanelContext, padded};
+
+/// Which errors are drawn as arrows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Errors {
+    /// Without a model.
+    Before,
+    /// With the model, each touch held out.
+    After,
+    /// Both.
+    Both,
+}
+
+/// Which field is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    /// Standard deviation of the correction.
+    Uncertainty,
+    /// Length of the correction.
+    Correction,
+}
+
+/// Half of the arrows are longer than this on the table, m.
+const ARROW_M: f64 = 0.018;
+
+/// What is drawn of a map, made once per map.
+#[derive(Debug)]
+pub struct Drawn {
+    of: std::sync::Arc<ModelMap>,
+    sd: Option<(ScalarField, ColorScale)>,
+    shift: Option<(ScalarField, ColorScale)>,
+    border: Border,
+    /// Mean lengths before and after, m.
+    means_m: Option<[f64; 2]>,
+    scale: f64,
+    headline: String,
+}
+
+impl Drawn {
+    fn of(map: &std::sync::Arc<ModelMap>) -> Self {
+        let border = Border { name: "the data end here".to_owned(), corners_m: map.border_m.clone() };
+        let sd = scalar("Uncertainty", &map.sd);
+        let shift = scalar("Correction", &map.shift);
+        // Far outside the deviation grows without end: the colors tell apart what may be trusted.
+        let inside = largest_inside(&map.sd, &border);
+        let sd_end = inside.map(|m| 3.0 * m).or(sd.as_ref().and_then(|sd| Some(sd.extent()?[1])));
+        let shift_end = shift.as_ref().and_then(|shift| Some(shift.extent()?[1]));
+        let colors = |field: Option<ScalarField>, end_m: Option<f64>| {
+            let end_m = axis::round_up(end_m? * 1e3) * 1e-3;
+            Some((field?, ColorScale::new(Colormap::Viridis, [0.0, end_m as f32])))
+        };
+        Self {
+            sd: colors(sd, sd_end),
+            shift: colors(shift, shift_end),
+            means_m: means_m(map),
+            scale: arrow_scale(map),
+            headline: headline(map),
+            border,
+            of: map.clone(),
+        }
+    }
+
+    fn scene(&self, errors: Errors) -> TableScene {
+        let map = &self.of;
+        let range = |range: [f64; 2], axis: usize| {
+            if range[1] > range[0] { range } else { around(&map.screen_m, axis) }
+        };
+        let plane = |error: [f64; 3]| [error[0], error[1]];
+        TableScene {
+            x_m: range(map.sd.x_m, 0),
+            y_m: range(map.sd.y_m, 1),
+            outlines: vec![Outline {
+                place: Place::Touchscreen,
+                name: "touchscreen".to_owned(),
+                corners_m: map.screen_m.clone(),
+            }],
+            before_after: map
+                .touches
+                .iter()
+                .map(|touch| BeforeAfter {
+                    at_m: touch.at_m,
+                    before_m: (errors != Errors::After).then_some(plane(touch.before_m)),
+                    after_m: (errors != Errors::Before).then_some(plane(touch.after_m)),
+                })
+                .collect(),
+            vector_scale: self.scale,
+            border: Some(self.border.clone()),
+            ..TableScene::new()
+        }
+    }
+
+    /// "corrected by 21.3 mm ± 1.92 mm, inside the data".
+    fn words(&self, at_m: [f64; 2]) -> String {
+        let of = |field: &Option<(ScalarField, ColorScale)>| field.as_ref().and_then(|(f, _)| f.at(at_m));
+        let shift = match of(&self.shift) {
+            Some(shift) => format!("corrected by {}", format::mm(shift)),
+            None => "correction not known".to_owned(),
+        };
+        let sd = of(&self.sd).map_or_else(String::new, |sd| format!(", sd {}", format::mm(sd)));
+        let inside = if self.border.contains(at_m) { "inside the data" } else { "outside the data" };
+        format!("{shift}{sd}, {inside}")
+    }
+}
+
+fn scalar(name: &str, field: &Field) -> Option<ScalarField> {
+    let found =
+        ScalarField::of_grid(name, Quantity::Length, field.x_m, field.y_m, field.columns, &field.values_m)?;
+    found.extent().is_some().then_some(found)
+}
+
+fn around(corners_m: &[[f64; 2]], axis: usize) -> [f64; 2] {
+    let values = corners_m.iter().map(|corner| corner[axis]);
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    if low < high { [low - 0.08, high + 0.08] } else { [-0.5, 0.7] }
+}
+
+fn largest_inside(field: &Field, border: &Border) -> Option<f64> {
+    let rows = field.values_m.len().checked_div(field.columns)?;
+    let at = |range: [f64; 2], i: usize, n: usize| {
+        range[0] + (range[1] - range[0]) * i as f64 / (n.max(2) - 1) as f64
+    };
+    let nodes = field.values_m.iter().enumerate().filter_map(|(i, value)| {
+        let place = [at(field.x_m, i / field.columns, rows), at(field.y_m, i % field.columns, field.columns)];
+        value.filter(|value| value.is_finite() && border.contains(place))
+    });
+    nodes.reduce(f64::max)
+}
+
+fn length(error_m: [f64; 3]) -> f64 {
+    error_m[0].hypot(error_m[1])
+}
+
+fn means_m(map: &ModelMap) -> Option<[f64; 2]> {
+    let count = map.touches.len() as f64;
+    let mean = |lengths: &mut dyn Iterator<Item = f64>| lengths.sum::<f64>() / count;
+    (count > 0.0).then(|| {
+        [
+            mean(&mut map.touches.iter().map(|touch| length(touch.before_m))),
+            mean(&mut map.touches.iter().map(|touch| length(touch.after_m))),
+        ]
+    })
+}
+
+/// A round magnification: 1, 2, 5, 10, …; the same before and after, so that they compare.
+fn arrow_scale(map: &ModelMap) -> f64 {
+    let mut lengths: Vec<f64> = map.touches.iter().map(|touch| length(touch.before_m)).collect();
+    lengths.sort_by(f64::total_cmp);
+    let median = lengths.get(lengths.len() / 2).copied().filter(|median| *median > 0.0);
+    let wanted = median.map_or(1.0, |median| (ARROW_M / median).clamp(1.0, 100.0));
+    [100.0, 50.0, 20.0, 10.0, 5.0, 2.0].into_iter().find(|scale| *scale <= wanted).unwrap_or(1.0)
+}
+
+/// "Inside the border targets shift 21 mm on average, outside 54 mm: do not trust it there."
+fn headline(map: &ModelMap) -> String {
+    if map.border_m.len() < 3 {
+        return "Nobody knows where its data end, because it came without its touches: trust it nowhere unchecked."
+            .to_owned();
+    }
+    match map.mean_shift_m {
+        (Some(inside), Some(outside)) => format!(
+            "Inside the border targets shift {} on average, outside {}: do not trust it there.",
+            format::mm(inside),
+            format::mm(outside)
+        ),
+        (Some(inside), None) => {
+            format!("Inside the border targets shift {} on average.", format::mm(inside))
+        }
+        _ => "No place of the table lies inside its border: do not trust it.".to_owned(),
+    }
+}
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let models = &cx.view.models;
+    let Some(map) = &models.map else {
+        if models.training {
+            EmptyState::loading("The map comes when the models are trained.").show(ui);
+            return;
+        }
+        EmptyState::empty(Message::new(
+            "No model to show",
+            "Train models: this map then shows what they correct, what remains, and where the data end.",
+        ))
+        .show(ui);
+        return;
+    };
+    let key = std::sync::Arc::as_ptr(map) as usize;
+    let drawn = cx.state.models.map.get(key, || Drawn::of(map));
+    padded(ui, |ui| {
+        header(ui, cx, models);
+        let warn = drawn.of.mean_shift_m.1.is_some() || drawn.of.border_m.len() < 3;
+        let text = theme::strong(ui, &drawn.headline);
+        let color = Role::Warning.color(theme::tokens(ui));
+        ui.label(if warn { text.color(color) } else { text });
+        ui.add_space(space::XS);
+        let legend_height = 40.0;
+        let height = (ui.available_height() - legend_height).max(160.0);
+        draw(ui, cx, &drawn, height);
+        legend(ui, cx.state.models.errors, &drawn);
+    });
+}
+
+/// Which model, which errors, which field.
+fn header(ui: &mut Ui, cx: &mut PanelContext<'_>, models: &ModelsView) {
+    let shown = models.map.as_ref().and_then(|map| map.method).or(models.shown);
+    let mut methods: Vec<Method> = models.proposals.iter().map(|model| model.method()).collect();
+    methods.extend(models.in_use.as_ref().map(|model| model.method()));
+    methods.sort_unstable();
+    methods.dedup();
+    ui.horizontal_wrapped(|ui| {
+        if let Some(mut method) = shown {
+            let options: Vec<(Method, &str)> =
+                methods.iter().map(|method| (*method, method.name())).collect();
+            if choice(ui, "Model on the map", &mut method, &options) {
+                cx.outbox.send(ModelsCommand::Show(method));
+            }
+            let proposed = models.map.as_ref().is_some_and(|map| map.proposed);
+            ui.label(theme::small(ui, if proposed { "proposed" } else { "in use" }));
+            ui.add_space(space::S);
+        }
+        let state = &mut cx.state.models;
+        let errors = [(Errors::Before, "Before"), (Errors::After, "After"), (Errors::Both, "Both")];
+        choice(ui, "Errors", &mut state.errors, &errors);
+        ui.add_space(space::S);
+        let fields = [(Shown::Uncertainty, "Uncertainty"), (Shown::Correction, "Correction")];
+        choice(ui, "Field", &mut state.field, &fields);
+    });
+}
+
+fn draw(ui: &mut Ui, cx: &PanelContext<'_>, drawn: &Drawn, height: f32) {
+    let state = &cx.state.models;
+    let scene = drawn.scene(state.errors);
+    let words = |at_m| drawn.words(at_m);
+    let map = TableMap::new("Model over the table", &scene).words(&words).height(height);
+    let field = match state.field {
+        Shown::Uncertainty => &drawn.sd,
+        Shown::Correction => &drawn.shift,
+    };
+    match field {
+        Some((field, scale)) => map.field(field, *scale).show(ui),
+        None => map.show(ui),
+    };
+}
+
+/// What the arrows mean, in their colors, with their magnification and means.
+fn legend(ui: &mut Ui, errors: Errors, drawn: &Drawn) {
+    let Some([before, after]) = drawn.means_m else {
+        ui.label(theme::small(ui, "The touches of this model are not known, so no errors can be drawn."));
+        return;
+    };
+    let tokens = theme::tokens(ui);
+    let entry = |role: Role, text: String| -> WidgetText {
+        RichText::new(text).text_style(egui::TextStyle::Small).color(role.color(tokens)).into()
+    };
+    ui.horizontal_wrapped(|ui| {
+        ui.label(theme::small(ui, format!("Arrows {}× longer than the error.", drawn.scale)));
+        if errors != Errors::After {
+            let text = format!("Before, without a model: {} on average.", format::mm(before));
+            ui.label(entry(BeforeAfter::BEFORE, text));
+        }
+        if errors != Errors::Before {
+            let text = format!("After, each touch held out: {} on average.", format::mm(after));
+            ui.label(entry(BeforeAfter::AFTER, text));
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use plumbline_engine::view::MapTouch;
+
+    use super::*;
+
+    fn map() -> ModelMap {
+        let touch = |x: f64, before: f64, after: f64| MapTouch {
+            at_m: [x, 0.0],
+            before_m: [before, 0.0, 0.3],
+            after_m: [0.0, after, 0.3],
+        };
+        let field = Field {
+            x_m: [0.2, 0.6],
+            y_m: [-0.4, 0.4],
+            columns: 3,
+            values_m: vec![Some(0.02), Some(0.02), Some(0.02), Some(0.02), Some(0.001), Some(0.02)],
+        };
+        ModelMap {
+            method: Some(Method::M3),
+            proposed: true,
+            touches: vec![touch(0.3, 0.02, 0.004), touch(0.4, 0.022, 0.002)],
+            border_m: vec![[0.5, -0.1], [0.7, -0.1], [0.7, 0.1], [0.5, 0.1]],
+            screen_m: vec![[0.25, -0.2], [0.45, -0.2], [0.45, 0.2], [0.25, 0.2]],
+            sd: field.clone(),
+            shift: field,
+            mean_shift_m: (Some(0.0214), Some(0.0545)),
+        }
+    }
+
+    #[test]
+    fn the_headline_warns_of_what_lies_outside() {
+        assert_eq!(
+            headline(&map()),
+            "Inside the border targets shift 21.4 mm on average, outside 54.5 mm: do not trust it there."
+        );
+        let unknown = ModelMap { border_m: vec![], ..map() };
+        assert!(headline(&unknown).contains("trust it nowhere"));
+    }
+
+    #[test]
+    fn colors_tell_apart_what_is_inside() {
+        let drawn = Drawn::of(&Arc::new(map()));
+        let (_, scale) = drawn.sd.as_ref().expect("a field");
+        assert!((scale.range[1] - 0.003).abs() < 1e-6, "{:?}", scale.range);
+    }
+
+    #[test]
+    fn the_words_say_whether_a_place_is_inside() {
+        let drawn = Drawn::of(&Arc::new(map()));
+        assert_eq!(drawn.words([0.6, 0.0]), "corrected by 1.00 mm, sd 1.00 mm, inside the data");
+        assert!(drawn.words([0.25, 0.0]).ends_with("outside the data"));
+        assert!(drawn.words([0.0, 0.0]).starts_with("correction not known"));
+    }
+
+    #[test]
+    fn arrows_before_and_after_have_one_round_scale_and_leave_the_height_out() {
+        let drawn = Drawn::of(&Arc::new(map()));
+        assert_eq!(drawn.scale, 1.0);
+        let [before, after] = drawn.means_m.expect("touches");
+        assert!((before - 0.021).abs() < 1e-12 && (after - 0.003).abs() < 1e-12);
+        let mut small = map();
+        small.touches.iter_mut().for_each(|touch| touch.before_m = [0.003, 0.0, 0.0]);
+        assert_eq!(arrow_scale(&small), 5.0);
+        let before = drawn.scene(Errors::Before).before_after;
+        assert!(before.iter().all(|error| error.before_m.is_some() && error.after_m.is_none()));
+    }
+}
