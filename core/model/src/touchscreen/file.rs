@@ -5,7 +5,7 @@ use std::path::Path;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use super::place::{PlacementError, ScreenPlacement};
+use super::{PlacementError, ScreenPlacement};
 use crate::formats::text_file;
 use crate::frame::{Direction, Point, Robot};
 use crate::robot::Rig;

@@ -3,6 +3,7 @@
 //! A touch pixel has its origin at the center of the top-left pixel; [`Touchscreen::origin`] is
 //! the outer corner of that pixel, half a pixel up and left of it.
 
+mod error;
 mod file;
 mod place;
 #[cfg(test)]
@@ -14,7 +15,8 @@ use crate::frame::{Direction, Point, Robot};
 use crate::pixel::Pixel;
 use crate::session::{Screen, Touchscreen};
 
-pub use place::{PlacementError, ScreenPlacement, place_screen};
+pub use error::PlacementError;
+pub use place::{ScreenPlacement, USUAL_NOISE_M, place_screen};
 
 impl Touchscreen {
     /// Distance of neighboring pixels along u and v, m.

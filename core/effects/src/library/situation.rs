@@ -1,0 +1,92 @@
+//! What effects depend on: loads, directions, where the finger points.
+
+use nalgebra::{Isometry3, Point3, Vector3};
+
+use crate::arm::Arm;
+
+/// All that effects depend on, in one pose of the arm on the screen.
+#[derive(Clone, Debug)]
+pub struct Situation<'a> {
+    pub(super) arm: &'a Arm,
+    pub(super) angles_rad: &'a [f64],
+    pub(super) direction: &'a [f64],
+    /// Gravity about each axis.
+    pub(super) torques_nm: Vec<f64>,
+    /// The same for one kilogram at the palm.
+    pub(super) torques_per_kg_nm: Vec<f64>,
+    /// Gravity across each axis, own frame.
+    pub(super) sideways_nm: Vec<Vector3<f64>>,
+    /// Gravity about the base, level part, robot frame.
+    pub(super) lean_nm: Vector3<f64>,
+    /// Shift of the contact per meter of pad radius, robot frame.
+    pub(super) roll: Vector3<f64>,
+    /// Direction of the last motion along the glass, robot frame; zero if unknown.
+    pub(super) sweep: Vector3<f64>,
+}
+
+impl<'a> Situation<'a> {
+    /// Of one pose: angles at contact (rad) and last direction of motion (−1, 0, 1) per joint.
+    pub fn new(
+        arm: &'a Arm,
+        angles_rad: &'a [f64],
+        direction: &'a [f64],
+        payload_kg: f64,
+        normal: &Vector3<f64>,
+    ) -> Self {
+        let frames = arm.frames(angles_rad);
+        let moments = arm.gravity_moments_nm(&frames, payload_kg);
+        let heavier = arm.gravity_moments_nm(&frames, payload_kg + 1.0);
+        let along = |moments: &[Vector3<f64>]| -> Vec<f64> {
+            moments.iter().zip(&frames.axes).map(|(moment, axis)| moment.dot(axis)).collect()
+        };
+        let (torques_nm, torques_heavier) = (along(&moments), along(&heavier));
+        let sideways_nm = (0..arm.len())
+            .map(|j| {
+                let across = moments[j] - frames.axes[j] * torques_nm[j];
+                frames.robot_from_joint[j].rotation.inverse() * across
+            })
+            .collect();
+        let tip = Point3::from(frames.robot_from_tip.translation.vector);
+        let lean_nm = moments.first().map_or(Vector3::zeros(), |m| Vector3::new(m.x, m.y, 0.0));
+        Self {
+            arm,
+            angles_rad,
+            direction,
+            torques_per_kg_nm: torques_heavier.iter().zip(&torques_nm).map(|(a, b)| a - b).collect(),
+            torques_nm,
+            sideways_nm,
+            lean_nm,
+            roll: roll(arm, &frames.robot_from_joint, normal),
+            sweep: sweep(&frames.robot_from_joint, &frames.axes, direction, tip, normal),
+        }
+    }
+
+    /// Gravity about each axis, N m.
+    pub fn torques_nm(&self) -> &[f64] {
+        &self.torques_nm
+    }
+}
+
+/// A round pad touches with its lowest point, the model's tip lies at its end: per meter of
+/// radius the contact moves by −(finger + normal).
+fn roll(arm: &Arm, joints: &[Isometry3<f64>], normal: &Vector3<f64>) -> Vector3<f64> {
+    let Some(last) = joints.last() else { return Vector3::zeros() };
+    -(last.rotation * arm.finger.into_inner() + normal)
+}
+
+fn sweep(
+    joints: &[Isometry3<f64>],
+    axes: &[Vector3<f64>],
+    direction: &[f64],
+    tip: Point3<f64>,
+    normal: &Vector3<f64>,
+) -> Vector3<f64> {
+    let velocity: Vector3<f64> = joints
+        .iter()
+        .zip(axes)
+        .zip(direction)
+        .map(|((joint, axis), sign)| axis.cross(&(tip.coords - joint.translation.vector)) * *sign)
+        .sum();
+    let along = velocity - normal * normal.dot(&velocity);
+    along.try_normalize(1e-6).unwrap_or_default()
+}

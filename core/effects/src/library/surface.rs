@@ -1,0 +1,54 @@
+//! Where the screen sees a touch.
+
+use nalgebra::{Point3, Vector3};
+use plumbline_model::session::Touchscreen;
+
+use crate::arm::Deviation;
+
+/// The screen as predictions need it.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    middle_m: Point3<f64>,
+    u: Vector3<f64>,
+    v: Vector3<f64>,
+    normal: Vector3<f64>,
+}
+
+impl Surface {
+    /// Of a touchscreen.
+    pub fn of(screen: &Touchscreen) -> Self {
+        Self {
+            middle_m: screen.point_at(screen.middle()).coords,
+            u: screen.u_axis.vector(),
+            v: screen.v_axis.vector(),
+            normal: screen.normal().vector(),
+        }
+    }
+
+    /// Direction out of the glass.
+    pub fn normal(&self) -> &Vector3<f64> {
+        &self.normal
+    }
+
+    /// Where a touch is seen along u and v from the middle of the image, and how high the model
+    /// puts the fingertip over a glass that lies on a block of `raised_m`; m.
+    pub fn touch_m(&self, tip: Point3<f64>, raised_m: f64, deviation: &Deviation) -> Vector3<f64> {
+        let offset = tip - self.middle_m;
+        let (u_m, v_m) = (offset.dot(&self.u), offset.dot(&self.v));
+        let [scale_u, scale_v] = deviation.screen_scale;
+        let [bow_u, bow_v] = deviation.screen_bow_per_m;
+        let glass_m = raised_m + bow_u * u_m * u_m + bow_v * v_m * v_m;
+        Vector3::new(u_m / (1.0 + scale_u), v_m / (1.0 + scale_v), offset.dot(&self.normal) - glass_m)
+    }
+
+    /// How that changes when the screen is moved rigidly: shift along and turn about u, v and the
+    /// normal, one column each (m/m, m/rad).
+    pub fn gauge(&self, tip: Point3<f64>) -> nalgebra::Matrix3x6<f64> {
+        let axes = [self.u, self.v, self.normal];
+        let lever = tip - self.middle_m;
+        nalgebra::Matrix3x6::from_fn(|row, column| match column {
+            0..3 => axes[column].dot(&axes[row]),
+            _ => axes[column - 3].cross(&lever).dot(&axes[row]),
+        })
+    }
+}
