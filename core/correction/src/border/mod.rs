@@ -56,6 +56,7 @@
 mod contour;
 mod discs;
 mod growth;
+mod hull;
 mod places;
 mod region;
 mod spread;

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Border;
 use super::growth::{Evidence, PARTS, Z_95, deviance, dot, parts, student_factor};
+use super::hull::{convex_hull, distance_outside};
 use super::region::MARGIN;
 
 /// Reach of the weights of the local part, in spacings.
@@ -275,10 +276,7 @@ struct Distance {
 impl Distance {
     fn new(point: Vector2<f64>, touches: &[Vector2<f64>], hull: &[Vector2<f64>], spacing: f64) -> Self {
         let nearest = touches.iter().map(|touch| (touch - point).norm()).fold(f64::INFINITY, f64::min);
-        Self {
-            gap: (nearest / spacing - MARGIN).max(0.0),
-            hull: distance_outside_hull(point, hull) / spacing,
-        }
+        Self { gap: (nearest / spacing - MARGIN).max(0.0), hull: distance_outside(point, hull) / spacing }
     }
 
     /// What each part of the variance is multiplied by.
@@ -324,48 +322,4 @@ fn reach(distances: &[Distance], blocks: Telling) -> f64 {
         distances.iter().map(|distance| distance.hull).filter(|&hull| hull > 0.0).collect();
     out.sort_by(f64::total_cmp);
     if blocks.outside < FEWEST_BLOCKS || out.is_empty() { 0.0 } else { out[(out.len() - 1) * 9 / 10] }
-}
-
-/// Corners of the convex hull, counter-clockwise (Andrew's monotone chain).
-fn convex_hull(points: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
-    let mut sorted = points.to_vec();
-    sorted.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    sorted.dedup();
-    if sorted.len() < 3 {
-        return sorted;
-    }
-    let mut hull = half_hull(sorted.iter());
-    hull.pop();
-    let mut upper = half_hull(sorted.iter().rev());
-    upper.pop();
-    hull.extend(upper);
-    hull
-}
-
-fn half_hull<'a>(points: impl Iterator<Item = &'a Vector2<f64>>) -> Vec<Vector2<f64>> {
-    let mut half: Vec<Vector2<f64>> = Vec::new();
-    for &point in points {
-        while let [.., a, b] = half[..] {
-            if (b - a).perp(&(point - b)) > 0.0 {
-                break;
-            }
-            half.pop();
-        }
-        half.push(point);
-    }
-    half
-}
-
-/// Distance from a convex polygon, or from the segment or point that is left of it; 0 inside.
-fn distance_outside_hull(point: Vector2<f64>, hull: &[Vector2<f64>]) -> f64 {
-    let sides = (0..hull.len()).map(|i| (hull[i], hull[(i + 1) % hull.len()]));
-    if hull.len() > 2 && sides.clone().all(|(a, b)| (b - a).perp(&(point - a)) >= 0.0) {
-        return 0.0;
-    }
-    let from_side = |(a, b): (Vector2<f64>, Vector2<f64>)| {
-        let along = b - a;
-        let share = (point - a).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
-        (a + share.clamp(0.0, 1.0) * along - point).norm()
-    };
-    sides.map(from_side).fold(f64::INFINITY, f64::min)
 }
