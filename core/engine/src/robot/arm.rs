@@ -1,9 +1,10 @@
 //! What the robot's thread needs of a connected arm, so that tests can bring their own.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use plumbline_hardware::joints::{JointState, Move, MoveId, Refusal, Setpoint};
-use plumbline_model::robot::JointIndex;
+use plumbline_model::robot::{JointIndex, Posture};
 
 /// Who is on the bus.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -20,6 +21,10 @@ pub struct Census {
 pub trait Arm: Send {
     /// The newest state; `None` before the first cycle.
     fn state(&self) -> Option<Arc<JointState>>;
+
+    /// Angles commanded and measured at a moment of the last seconds, interpolated; `None` when
+    /// nothing is known of that moment.
+    fn at(&self, when: Instant) -> Option<(Posture, Posture)>;
 
     /// Begins a move in place of whatever runs.
     fn begin(&self, motion: Move) -> Result<MoveId, Refusal>;

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use plumbline_hardware::dynamixel::{
     BusCounts, BusScan, BusTiming, FaultKind, latency_hint, list_ports, open_port,
 };
 use plumbline_hardware::joints::{ArmDriver, ArmOptions, JointState, Move, MoveId, Refusal, Setpoint};
-use plumbline_model::robot::{JointIndex, Rig};
+use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 use super::Switches;
 use super::arm::{Arm, Census};
@@ -75,9 +75,15 @@ impl Arm for DrivenArm {
         Some(self.driver.state())
     }
 
+    fn at(&self, when: Instant) -> Option<(Posture, Posture)> {
+        self.driver.commanded_at(when).zip(self.driver.posture_at(when))
+    }
+
     fn begin(&self, motion: Move) -> Result<MoveId, Refusal> {
         // Said before it is queued: which joint, which limit.
         self.driver.check(&motion)?;
+        // A setpoint that has not expired would take the place of the move.
+        self.driver.end_following();
         self.driver.start_move(motion)
     }
 

@@ -1,10 +1,10 @@
 //! Whether the way from one posture to another is free, and how long it takes.
 
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError, RwLock};
 use std::time::Duration;
 
 use plumbline_hardware::joints::{Guard, Refusal};
-use plumbline_model::robot::collision::{CollisionModel, PathCheck as Found};
+use plumbline_model::robot::collision::{Allowance, CollisionModel, PathCheck as Found};
 use plumbline_model::robot::{Posture, Rig};
 
 use crate::text::sentence;
@@ -14,22 +14,46 @@ use crate::view::PathCheck;
 /// reason to refuse what leads back.
 const LIMIT_SLACK_RAD: f64 = 0.03;
 
-/// Checks ways of one robot.
+/// Checks ways of one robot. Clones share what is around it and what may be touched: the guard in
+/// the bus's thread is such a clone.
 #[derive(Clone)]
 pub struct Paths {
-    model: Arc<CollisionModel>,
+    around: Arc<RwLock<Around>>,
     rig: Arc<Rig>,
+}
+
+/// Bodies, and what of them may meet at this moment.
+struct Around {
+    model: Arc<CollisionModel>,
+    allowances: Arc<[Allowance]>,
 }
 
 impl Paths {
     /// For a robot on its table.
     pub fn new(rig: &Arc<Rig>) -> Self {
-        Self { model: Arc::new(CollisionModel::of_rig(rig)), rig: rig.clone() }
+        let around = Around { model: Arc::new(CollisionModel::of_rig(rig)), allowances: Arc::from([]) };
+        Self { around: Arc::new(RwLock::new(around)), rig: rig.clone() }
     }
 
     /// The robot's bodies.
     pub fn model(&self) -> Arc<CollisionModel> {
-        self.model.clone()
+        self.look().0
+    }
+
+    /// The same robot among things that lie elsewhere.
+    pub fn place(&self, rig: &Rig) {
+        let model = Arc::new(CollisionModel::of_rig(rig));
+        self.around.write().unwrap_or_else(PoisonError::into_inner).model = model;
+    }
+
+    /// What may meet from now on: a finger and the screen, while it is touched; usually nothing.
+    pub fn allow(&self, allowances: Vec<Allowance>) {
+        self.around.write().unwrap_or_else(PoisonError::into_inner).allowances = allowances.into();
+    }
+
+    fn look(&self) -> (Arc<CollisionModel>, Arc<[Allowance]>) {
+        let around = self.around.read().unwrap_or_else(PoisonError::into_inner);
+        (around.model.clone(), around.allowances.clone())
     }
 
     /// The smallest distance on the straight way in joint space, or a sentence that says what
@@ -37,7 +61,9 @@ impl Paths {
     pub fn check(&self, from: &Posture, to: &Posture) -> Result<PathCheck, String> {
         let from = self.without_slack(from);
         let to = self.without_slack(to);
-        let found = self.model.check_path(&from, &to, &[]).map_err(|error| sentence(&error.to_string()))?;
+        let (model, allowances) = self.look();
+        let found =
+            model.check_path(&from, &to, &allowances).map_err(|error| sentence(&error.to_string()))?;
         match found {
             Found::Clear { smallest_m, between, .. } => Ok(PathCheck {
                 smallest_m,

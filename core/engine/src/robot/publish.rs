@@ -58,6 +58,9 @@ impl Worker {
     }
 
     fn motion(&self, state: &JointState) -> MotionState {
+        if let Some(what) = self.touching.title() {
+            return MotionState::Moving { what, fraction: None, remaining: None };
+        }
         match &state.motion {
             Motion::Limp => MotionState::Limp,
             // These are how it should be; anything else is worth a word.

@@ -52,6 +52,10 @@ impl Arm for FakeArm {
         }))
     }
 
+    fn at(&self, _when: Instant) -> Option<(Posture, Posture)> {
+        Some((self.posture.clone(), self.posture.clone()))
+    }
+
     fn begin(&self, motion: Move) -> Result<MoveId, Refusal> {
         self.note(Asked::Move(motion));
         Ok(MoveId(1))

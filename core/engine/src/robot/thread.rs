@@ -16,6 +16,8 @@ use crate::slot::Putter;
 const WAITING: usize = 256;
 /// While connected, it looks at the joints this often.
 const TICK: Duration = Duration::from_millis(33);
+/// While a finger is lowered onto the screen.
+const LOWERING: Duration = Duration::from_millis(5);
 /// Otherwise.
 const IDLE: Duration = Duration::from_millis(500);
 
@@ -68,8 +70,13 @@ impl Drop for RobotThread {
 fn run(mut worker: Worker, controls: &Receiver<RobotControl>, wires: &Wires) {
     tell(&mut worker, wires);
     let mut next = Instant::now();
+    let mut told = next;
     loop {
-        let period = if worker.is_awake() { TICK } else { IDLE };
+        let period = match () {
+            () if worker.is_lowering() => LOWERING,
+            () if worker.is_awake() => TICK,
+            () => IDLE,
+        };
         match controls.recv_timeout(next.saturating_duration_since(Instant::now())) {
             Ok(control) => {
                 // Connecting takes seconds; meanwhile the window says so.
@@ -81,8 +88,13 @@ fn run(mut worker: Worker, controls: &Receiver<RobotControl>, wires: &Wires) {
                 next = next.min(Instant::now() + period);
             }
             Err(RecvTimeoutError::Timeout) => {
-                worker.tick(Instant::now());
-                tell(&mut worker, wires);
+                let now = Instant::now();
+                worker.tick(now);
+                // The window needs no news as often as the finger is looked after.
+                if now.saturating_duration_since(told) >= TICK || !worker.is_lowering() {
+                    tell(&mut worker, wires);
+                    told = now;
+                }
                 next = Instant::now() + period;
             }
             Err(RecvTimeoutError::Disconnected) => return,

@@ -2,9 +2,11 @@
 
 use std::time::{Duration, Instant};
 
-use plumbline_model::robot::Posture;
-use plumbline_model::session::Screen;
+use plumbline_model::robot::{Chain, Posture};
+use plumbline_model::session::{Screen, Touchscreen};
 use plumbline_model::{Pixel, Point, Robot};
+
+use crate::touch::path::{TouchPace, TouchPath};
 
 /// One touch: go above, wait until the arm stands, lower until something is felt, log, go up.
 /// Only the joints of one arm move.
@@ -29,10 +31,50 @@ pub struct TouchOrder {
     pub speed_rad_s: f64,
     /// Time after the contact until the encoders are read once more.
     pub dwell: Duration,
-    /// A contact outside of this many pixels of the target is somebody else's; `None` accepts any.
+    /// Pixel to be touched.
     pub target: Pixel<Screen>,
-    /// Largest distance of a plausible contact from the target, px.
+    /// A contact farther than this from the target is somebody else's, px.
     pub plausible_px: f64,
+}
+
+impl TouchOrder {
+    /// The touch along a planned path.
+    pub fn along(
+        path: TouchPath,
+        chain: &Chain,
+        screen: &Touchscreen,
+        pace: &TouchPace,
+        number: usize,
+        order: u64,
+    ) -> Self {
+        let [u_m, v_m] = screen.pitch_m();
+        Self {
+            number,
+            order,
+            tip: chain.tip().to_owned(),
+            approach: path.approach,
+            lower: path.lower,
+            lower_tip: path.lower_tip,
+            lower_speed_m_s: pace.lower_speed_m_s,
+            speed_rad_s: pace.speed_rad_s,
+            dwell: pace.dwell,
+            target: path.target,
+            plausible_px: pace.plausible_m / u_m.min(v_m),
+        }
+    }
+}
+
+impl TouchStage {
+    /// For people, after the number of the touch.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Approaching => "on the way",
+            Self::Settling => "settling",
+            Self::Lowering => "lowering",
+            Self::Dwelling => "on the glass",
+            Self::Retreating => "going up",
+        }
+    }
 }
 
 /// What the arm does in a touch.

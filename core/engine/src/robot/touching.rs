@@ -1,16 +1,68 @@
-//! Touching the screen once: above, settle, lower, log, up.
+//! Touching the screen once: above, settle, lower until something is felt, log, up.
+//!
+//! Whatever moves goes through [`super::arm::Arm`] and with it through all limits. What cannot go
+//! on without the operator ends the touch where the arm stands; what is merely no touch (nothing
+//! felt, a contact of somebody else, too much load) ends it above the screen.
 
+mod contacts;
+mod lowering;
+mod run;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
 use std::time::Instant;
 
-use plumbline_hardware::joints::Touch;
+use plumbline_hardware::joints::{FloorGuard, JointState, Touch, TouchSource};
+use plumbline_model::robot::Rig;
 
-use super::touch_order::{TouchNews, TouchOrder, TouchRun};
+use self::contacts::WindowContacts;
+use self::run::{Run, Step};
+use super::RobotControl;
+use super::touch_order::{TouchNews, TouchOrder, TouchRun, TouchStage};
 use super::worker::Worker;
+use crate::command::RobotCommand;
+use crate::notice::NoticeLevel;
+use crate::text::sentence;
+use crate::touch::path::touch_allowances;
+use crate::view::Connection;
 
-/// The touch that is under way.
-#[derive(Debug, Default)]
+/// The touch that is under way, and how touches did.
+#[derive(Default)]
 pub struct Touching {
     news: Vec<TouchNews>,
+    run: Option<Run>,
+    window: WindowContacts,
+}
+
+impl Touching {
+    /// What it does just now, for people; `None` when no touch is under way.
+    pub fn title(&self) -> Option<String> {
+        self.run.as_ref().map(Run::title)
+    }
+
+    /// Whether a command would get in the way of the touch.
+    pub fn forbids(&self, control: &RobotControl) -> bool {
+        use RobotCommand::{Jog, Preview, RunPreview, Scan};
+        let moves = match control {
+            RobotControl::Robot(command) => {
+                matches!(command, Preview(_) | RunPreview | Jog(_) | Scan)
+            }
+            RobotControl::TurnHead { .. } => true,
+            _ => false,
+        };
+        moves && self.run.is_some()
+    }
+
+    /// Why it was forbidden.
+    pub fn busy(&self) -> String {
+        let title = self.title().unwrap_or_default();
+        format!("The arm is busy ({title}). Pause the run of touches first.")
+    }
+
+    fn tell(&mut self, order: &TouchOrder, state: TouchRun) {
+        self.news.push(TouchNews { order: order.order, number: order.number, state });
+    }
 }
 
 impl Worker {
@@ -19,14 +71,137 @@ impl Worker {
         std::mem::take(&mut self.touching.news)
     }
 
-    pub(super) fn begin_touch(&mut self, order: TouchOrder, _now: Instant) {
-        let state = TouchRun::Interrupted("Touching is not there yet.".to_owned());
-        self.touching.news.push(TouchNews { order: order.order, number: order.number, state });
+    /// Whether a finger is on its way to the glass or on it: it has to be looked after often.
+    pub fn is_lowering(&self) -> bool {
+        let stage = self.touching.run.as_ref().map(Run::stage);
+        matches!(stage, Some(TouchStage::Lowering | TouchStage::Dwelling))
     }
 
-    pub(super) fn abandon_touch(&mut self) {}
+    pub(super) fn begin_touch(&mut self, order: TouchOrder, now: Instant) {
+        let of_twin = matches!(self.connection, Connection::Connected { twin: true, .. });
+        let glass = self.desk.touchscreen().filter(|_| of_twin);
+        if glass.is_some() && self.touching.run.is_none() {
+            self.desk.free_screen(&self.rig);
+        }
+        let source: Box<dyn TouchSource> = match glass {
+            Some(glass) => Box::new(glass),
+            None => Box::new(self.touching.window.clone()),
+        };
+        self.begin_touch_with(order, source, now);
+    }
 
-    pub(super) fn felt_by_window(&mut self, _contact: Touch) {}
+    fn begin_touch_with(&mut self, order: TouchOrder, source: Box<dyn TouchSource>, now: Instant) {
+        if let Err(reason) = self.may_touch(&order) {
+            return self.touching.tell(&order, TouchRun::Interrupted(reason));
+        }
+        let refusals = self.state().and_then(|state| state.refusal.as_ref().map(|(number, _)| *number));
+        match Run::new(&self.rig, order.clone(), source, refusals.unwrap_or_default(), now) {
+            Ok(run) => {
+                (self.preview, self.refusal) = (None, None);
+                self.touching.tell(&order, TouchRun::Doing(run.stage()));
+                self.touching.run = Some(run);
+                self.step_touch(now);
+            }
+            Err(reason) => self.touching.tell(&order, TouchRun::Interrupted(reason)),
+        }
+    }
 
-    pub(super) fn step_touch(&mut self, _now: Instant) {}
+    fn may_touch(&self, order: &TouchOrder) -> Result<(), String> {
+        if self.touching.run.is_some() {
+            return Err(self.touching.busy());
+        }
+        self.arm()?;
+        if self.switches.stop.is_pressed() {
+            return Err("STOP is pressed. Release it, then go on.".to_owned());
+        }
+        if self.jog.is_some() || self.running.is_some() {
+            return Err("Something else moves the arm. Wait until it stands, then go on.".to_owned());
+        }
+        if self.present().is_none() {
+            return Err("The joints have not been read yet. Wait a moment, then go on.".to_owned());
+        }
+        let fits = |posture: &plumbline_model::robot::Posture| {
+            posture.len() == self.rig.description.movable_count() && posture.is_finite()
+        };
+        let whole = order.lower.len() >= 2
+            && order.lower.len() == order.lower_tip.len()
+            && order.approach.iter().chain(&order.lower).all(fits);
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        let paced = positive(order.lower_speed_m_s) && positive(order.speed_rad_s);
+        if !(whole && paced && positive(order.plausible_px)) {
+            return Err("The planned touch has no way that could be gone. Plan anew.".to_owned());
+        }
+        Ok(())
+    }
+
+    /// Up again, if the finger is down; the touch then counts as missed.
+    pub(super) fn abandon_touch(&mut self) {
+        let Some(mut run) = self.touching.run.take() else { return };
+        let step = run.abandon(self);
+        self.went(run, step);
+    }
+
+    pub(super) fn felt_by_window(&mut self, contact: Touch) {
+        self.touching.window.felt(contact);
+    }
+
+    pub(super) fn step_touch(&mut self, now: Instant) {
+        let Some(mut run) = self.touching.run.take() else { return };
+        let step = run.step(self, now);
+        self.went(run, step);
+    }
+
+    /// Ends a touch from outside: it cannot go on.
+    pub(super) fn interrupt_touch(&mut self, reason: &str) {
+        if let Some(run) = self.touching.run.take() {
+            self.went(run, Err(sentence(reason)));
+        }
+    }
+
+    fn went(&mut self, run: Run, step: Result<Step, String>) {
+        match step {
+            Ok(Step::Same) => self.touching.run = Some(run),
+            Ok(Step::Next) => {
+                self.touching.tell(run.order(), TouchRun::Doing(run.stage()));
+                self.touching.run = Some(run);
+            }
+            Ok(Step::End(end)) => {
+                self.paths.allow(vec![]);
+                self.touching.tell(run.order(), end);
+            }
+            Err(reason) => {
+                // Goals below the glass become where the finger is: the next move starts outside.
+                let _ = self.arm().map(|arm| arm.hold());
+                self.paths.allow(vec![]);
+                let text = format!(
+                    "Touch {} was interrupted ({}). {reason} The arm stands where it is; when its way is free, resume.",
+                    run.order().number,
+                    run.stage().name()
+                );
+                self.touching.tell(run.order(), TouchRun::Interrupted(text));
+            }
+        }
+    }
+
+    /// The newest state of the arm.
+    fn state(&self) -> Option<Arc<JointState>> {
+        self.arm.as_ref().and_then(|arm| arm.state())
+    }
+
+    fn warn(&mut self, text: String) {
+        self.note(NoticeLevel::Warning, text);
+    }
+
+    /// From now on the finger may meet the glass.
+    fn allow_touch(&self, order: &TouchOrder) {
+        let Ok(chain) = self.rig.chain(&order.tip) else { return };
+        let floor = FloorGuard::new(&self.rig);
+        self.paths.allow(touch_allowances(&self.paths.model(), &floor, &chain, &order.lower[0]));
+    }
+}
+
+/// Joints of the arm of a tip, its hand included.
+fn joints_of(rig: &Rig, tip: &str) -> Option<Vec<plumbline_model::robot::JointIndex>> {
+    let arm = rig.arms.iter().find(|arm| arm.tips.iter().any(|known| known.link == tip))?;
+    Some([arm.joints.clone(), arm.hand.clone()].concat())
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use plumbline_model::Point;
 use plumbline_model::frame::{Board, Pose, Robot};
 use plumbline_model::robot::Rig;
-use plumbline_twin::{Fault, Scenario, Toy, Twin, TwinSettings, board_presets};
+use plumbline_twin::{Fault, Scenario, Toy, Twin, TwinSettings, TwinTouchscreen, board_presets};
 
 use super::twin_eyes::TwinEyesPlug;
 use crate::command::TwinCommand;
@@ -18,6 +18,8 @@ use crate::view::{FaultView, ToyView, TwinView};
 /// While the board is shown at all places it stays at each for this long: long enough to be
 /// found still, sharp and new.
 const AT_EACH_PLACE: Duration = Duration::from_millis(1600);
+/// So much around the touchscreen is kept free of toys while it is touched: a hand is broad, m.
+const BESIDE_SCREEN_M: f64 = 0.06;
 const NOT_RUNNING: &str = "The twin is not running. Connect to it first.";
 /// The same twin every time.
 const SEED: u64 = 1;
@@ -55,6 +57,11 @@ impl TwinDesk {
     /// Where its servos are reached.
     pub fn port(&self) -> Option<PathBuf> {
         self.twin.as_ref().map(Twin::port)
+    }
+
+    /// Its touchscreen.
+    pub fn touchscreen(&self) -> Option<TwinTouchscreen> {
+        self.twin.as_ref().map(Twin::touchscreen)
     }
 
     /// Messages since the last call.
@@ -197,6 +204,31 @@ impl TwinDesk {
         }
         if !away.is_empty() {
             let text = format!("Put away to make room for the board: {}.", away.join(", "));
+            self.notes.push((NoticeLevel::Info, text));
+        }
+    }
+
+    /// Puts toys away that lie on the touchscreen or near it: a finger would land on them.
+    pub fn free_screen(&mut self, rig: &Rig) {
+        let Some(twin) = &self.twin else { return };
+        let screen = &rig.touchscreen;
+        let mut away = vec![];
+        for (toy, place) in &twin.state().toys {
+            let Some(place) = place else { continue };
+            let pixel = screen.pixel_at(Point::from(nalgebra::Point3::from(*place)));
+            let near = |at_px: f64, count: u32, size_m: f64| {
+                let at_m = at_px * size_m / f64::from(count);
+                at_m > -BESIDE_SCREEN_M && at_m < size_m + BESIDE_SCREEN_M
+            };
+            if near(pixel.u_px, screen.width_px, screen.width_m)
+                && near(pixel.v_px, screen.height_px, screen.height_m)
+            {
+                twin.send(plumbline_twin::TwinCommand::RemoveObject { toy: *toy });
+                away.push(toy.name());
+            }
+        }
+        if !away.is_empty() {
+            let text = format!("Put away, so that the screen can be touched: {}.", away.join(", "));
             self.notes.push((NoticeLevel::Info, text));
         }
     }

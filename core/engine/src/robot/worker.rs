@@ -50,7 +50,7 @@ pub(super) struct Running {
 
 /// Jogging: what is asked, until when, and where that leads.
 #[derive(Clone, Debug)]
-struct Jog {
+pub(super) struct Jog {
     rates: JogRates,
     until: Instant,
     last: Instant,
@@ -69,10 +69,10 @@ pub struct Worker {
     pub(super) tip: String,
     pub(super) chain: Chain,
     reach: Option<Reach>,
-    paths: Paths,
+    pub(super) paths: Paths,
     pub(super) preview: Option<(Resolved, Preview)>,
     pub(super) running: Option<Running>,
-    jog: Option<Jog>,
+    pub(super) jog: Option<Jog>,
     pub(super) refusal: Option<String>,
     seen_refusal: u64,
     pub(super) speed: f64,
@@ -158,6 +158,7 @@ impl Worker {
     /// Does what the operator asked.
     pub fn control(&mut self, control: RobotControl) {
         let result = match control {
+            control if self.touching.forbids(&control) => Err(self.touching.busy()),
             RobotControl::Robot(command) => self.robot(command),
             RobotControl::Twin(command) => self.desk.control(command, &self.rig),
             RobotControl::TurnHead { pan_rad, tilt_rad } => self.turn_head(pan_rad, tilt_rad),
@@ -175,6 +176,8 @@ impl Worker {
             }
             RobotControl::PlaceScreen(screen) => {
                 Arc::make_mut(&mut self.rig).touchscreen = screen;
+                self.paths.place(&self.rig);
+                self.reach = Reach::with_model(&self.rig, &self.tip, self.paths.model()).ok();
                 Ok(())
             }
             RobotControl::PlaceEyes { head_from_left } => {
@@ -186,6 +189,10 @@ impl Worker {
             Ok(()) => {}
             Err(reason) => self.refuse(reason),
         }
+    }
+
+    pub(super) fn note(&mut self, level: NoticeLevel, text: String) {
+        self.notes.push((level, text));
     }
 
     fn refuse(&mut self, reason: String) {
@@ -278,6 +285,7 @@ impl Worker {
     }
 
     fn disconnect(&mut self) {
+        self.interrupt_touch("the robot was disconnected: connect it again");
         if let Some(arm) = self.arm.take() {
             // If it cannot be told to hold it is gone already.
             let _ = arm.hold();
@@ -304,7 +312,7 @@ impl Worker {
         }
     }
 
-    fn arm(&self) -> Result<&dyn Arm, String> {
+    pub(super) fn arm(&self) -> Result<&dyn Arm, String> {
         self.arm
             .as_deref()
             .ok_or_else(|| "Nothing is connected, so nothing can move. Connect first.".to_owned())

@@ -18,6 +18,7 @@ pub trait Guard: Send + Sync {
 }
 
 /// No part of an arm below a height.
+#[derive(Clone, Debug)]
 pub struct FloorGuard {
     description: Arc<Description>,
     parts: Vec<LinkIndex>,
@@ -47,6 +48,16 @@ impl FloorGuard {
         let poses = self.description.forward(posture);
         let height = |link: &LinkIndex| (*link, lowest_m(&self.description, *link, &poses.all()[link.0]));
         self.parts.iter().map(height).min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Of some links those with shapes, with the height of their lowest points (m), lowest first.
+    pub fn heights(&self, posture: &Posture, links: &[LinkIndex]) -> Vec<(LinkIndex, f64)> {
+        let poses = self.description.forward(posture);
+        let has_shapes = |link: &&LinkIndex| !self.description.links()[link.0].collisions.is_empty();
+        let height = |link: &LinkIndex| (*link, lowest_m(&self.description, *link, &poses.all()[link.0]));
+        let mut heights: Vec<_> = links.iter().filter(has_shapes).map(height).collect();
+        heights.sort_by(|a, b| a.1.total_cmp(&b.1));
+        heights
     }
 }
 

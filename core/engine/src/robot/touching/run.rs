@@ -1,0 +1,406 @@
+//! The stages of one touch.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use plumbline_hardware::joints::{
+    HoldReason, JointState, Motion, Move, MoveId, MoveOutcome, Pace, Setpoint, SetpointKind, Touch,
+    TouchSource,
+};
+use plumbline_model::Pixel;
+use plumbline_model::robot::{JointIndex, Posture, Rig};
+
+use super::joints_of;
+use super::lowering::Descent;
+use crate::robot::touch_order::{TouchMeasurement, TouchOrder, TouchRun, TouchStage};
+use crate::robot::worker::Worker;
+use crate::text::sentence;
+
+/// Above the target the encoders have to stand still for this long.
+const STILL: Duration = Duration::from_millis(150);
+/// A joint that changes by fewer ticks stands still: an encoder may flicker by one.
+const STILL_TICKS: f64 = 1.5;
+/// They get this long.
+const SETTLE: Duration = Duration::from_secs(3);
+/// Ticks of a whole turn of a motor.
+const TICKS_PER_TURN: f64 = 4096.0;
+/// Share of the gate's load at which lowering ends: the gate itself would stop the arm.
+const LOAD_SHARE: f64 = 0.9;
+/// A goal on the way down is followed for this long when nothing newer comes.
+const VALID: Duration = Duration::from_millis(300);
+/// After the last goal the arm gets this long to reach the lowest place.
+const LAST: Duration = Duration::from_millis(800);
+/// Angles around a contact have been read after this long.
+const READ: Duration = Duration::from_millis(60);
+/// Joints nearer to their goal need not move, rad.
+const THERE_RAD: f64 = 5e-4;
+/// An arm that holds is believed so many cycles after it was told to follow.
+const CYCLES: u64 = 4;
+
+/// What a look at a touch leads to; `Err`: it was interrupted, and why.
+pub(super) enum Step {
+    /// Nothing new.
+    Same,
+    /// A new stage.
+    Next,
+    /// It is over.
+    End(TouchRun),
+}
+
+type Stepped = Result<Step, String>;
+
+enum Stage {
+    Approaching { next: usize, moving: Option<MoveId> },
+    Settling { since: Instant, still: Still },
+    Lowering(Down),
+    Dwelling { down: Down, measured: Box<TouchMeasurement>, since: Instant, read: bool },
+    Retreating { moving: Option<MoveId>, end: TouchRun },
+}
+
+/// Since when which angles have not changed.
+struct Still {
+    since: Instant,
+    angles_rad: Vec<Option<f64>>,
+}
+
+/// On the way down.
+#[derive(Clone, Copy)]
+struct Down {
+    since: Instant,
+    /// Number of the bus's cycle in which it began.
+    cycle: u64,
+}
+
+/// A touch that is under way.
+pub(super) struct Run {
+    order: TouchOrder,
+    stage: Stage,
+    /// All joints that may move.
+    joints: Vec<JointIndex>,
+    /// Joints between base and tip.
+    chain: Vec<JointIndex>,
+    descent: Descent,
+    source: Box<dyn TouchSource>,
+    /// Refusals up to this number are older than the touch.
+    refusals: u64,
+}
+
+impl Run {
+    pub fn new(
+        rig: &Rig,
+        order: TouchOrder,
+        source: Box<dyn TouchSource>,
+        refusals: u64,
+        _now: Instant,
+    ) -> Result<Self, String> {
+        let unknown = || format!("The robot has no arm with the tip {}. Plan anew.", order.tip);
+        let joints = joints_of(rig, &order.tip).ok_or_else(unknown)?;
+        let chain = rig.chain(&order.tip).map_err(|_| unknown())?.joints().to_vec();
+        let descent =
+            Descent::new(&order).ok_or("The planned touch does not lead down. Plan anew.".to_owned())?;
+        let stage = Stage::Approaching { next: 0, moving: None };
+        Ok(Self { order, stage, joints, chain, descent, source, refusals })
+    }
+
+    pub fn order(&self) -> &TouchOrder {
+        &self.order
+    }
+
+    pub fn stage(&self) -> TouchStage {
+        match &self.stage {
+            Stage::Approaching { .. } => TouchStage::Approaching,
+            Stage::Settling { .. } => TouchStage::Settling,
+            Stage::Lowering(_) => TouchStage::Lowering,
+            Stage::Dwelling { .. } => TouchStage::Dwelling,
+            Stage::Retreating { .. } => TouchStage::Retreating,
+        }
+    }
+
+    /// For people: "touch 35: lowering".
+    pub fn title(&self) -> String {
+        format!("touch {}: {}", self.order.number, self.stage().name())
+    }
+
+    /// Looks at the arm and the screen, and goes on.
+    pub fn step(&mut self, worker: &mut Worker, now: Instant) -> Stepped {
+        let state = self.checked_state(worker)?;
+        match &mut self.stage {
+            Stage::Approaching { .. } => self.approach(worker, &state, now),
+            Stage::Settling { .. } => self.settle(worker, &state, now),
+            Stage::Lowering(down) => {
+                let down = *down;
+                self.lower(worker, &state, down, now)
+            }
+            Stage::Dwelling { .. } => self.dwell(worker, &state, now),
+            Stage::Retreating { moving, end } => match *moving {
+                Some(id) if !has_arrived(&state, id)? => Ok(Step::Same),
+                _ => Ok(Step::End(end.clone())),
+            },
+        }
+    }
+
+    /// The operator does not want it any more.
+    pub fn abandon(&mut self, worker: &Worker) -> Stepped {
+        let end = TouchRun::Missed("The touch was left out.".to_owned());
+        match &self.stage {
+            Stage::Approaching { moving, .. } => {
+                if moving.is_some() {
+                    worker.arm()?.hold().map_err(|refusal| sentence(&refusal.to_string()))?;
+                }
+                Ok(Step::End(end))
+            }
+            Stage::Settling { .. } => Ok(Step::End(end)),
+            Stage::Lowering(_) | Stage::Dwelling { .. } => self.retreat(worker, end),
+            Stage::Retreating { .. } => Ok(Step::Same),
+        }
+    }
+
+    /// The newest state, unless it says that the touch cannot go on.
+    fn checked_state(&self, worker: &Worker) -> Result<Arc<JointState>, String> {
+        let state = worker.state().ok_or("The arm does not answer. Look at its cable and power.")?;
+        if let Some(reason) = &state.gone {
+            return Err(sentence(reason));
+        }
+        if worker.switches.stop.is_pressed() || state.stopped {
+            return Err("STOP was pressed. Release it first.".to_owned());
+        }
+        if let Some((number, refusal)) = &state.refusal
+            && *number > self.refusals
+        {
+            return Err(sentence(&refusal.to_string()));
+        }
+        let limp = |joint: &&JointIndex| state.of(**joint).is_some_and(|r| r.torque_on == Some(false));
+        if let Some(joint) = self.chain.iter().find(limp) {
+            let name = worker.rig.servo_of(*joint).map_or("a joint", |servo| servo.title.as_str());
+            return Err(format!("{name} has no torque. Switch its torque on."));
+        }
+        let down = match &self.stage {
+            Stage::Lowering(down) | Stage::Dwelling { down, .. } => Some(down),
+            _ => None,
+        };
+        if let (Some(down), Motion::Holding(reason)) = (down, &state.motion)
+            && state.stamp.seq > down.cycle + CYCLES
+            && !matches!(reason, HoldReason::JogEnded | HoldReason::Asked | HoldReason::Arrived)
+        {
+            return Err(sentence(&reason.to_string()));
+        }
+        Ok(state)
+    }
+
+    fn approach(&mut self, worker: &mut Worker, state: &JointState, now: Instant) -> Stepped {
+        let Stage::Approaching { next, moving } = &mut self.stage else { return Ok(Step::Same) };
+        if let Some(id) = *moving {
+            if !has_arrived(state, id)? {
+                return Ok(Step::Same);
+            }
+            (*next, *moving) = (*next + 1, None);
+        }
+        while let Some(posture) = self.order.approach.get(*next) {
+            if let Some(id) = go(worker, state, posture, &self.joints, self.order.speed_rad_s)? {
+                *moving = Some(id);
+                return Ok(Step::Same);
+            }
+            *next += 1;
+        }
+        let still = Still { since: now, angles_rad: self.angles_rad(state) };
+        self.stage = Stage::Settling { since: now, still };
+        Ok(Step::Next)
+    }
+
+    fn settle(&mut self, worker: &mut Worker, state: &JointState, now: Instant) -> Stepped {
+        let angles_rad = self.angles_rad(state);
+        let ticks_rad: Vec<f64> = self.chain.iter().map(|joint| tick_rad(&worker.rig, *joint)).collect();
+        let Stage::Settling { since, still } = &mut self.stage else { return Ok(Step::Same) };
+        let (since, waited) = (*since, now.saturating_duration_since(*since));
+        let moved = still.angles_rad.iter().zip(&angles_rad).zip(&ticks_rad).any(|((before, now), tick)| {
+            match (before, now) {
+                (Some(before), Some(now)) => (now - before).abs() > STILL_TICKS * tick,
+                (None, None) => false,
+                _ => true,
+            }
+        });
+        if moved {
+            *still = Still { since: now, angles_rad };
+        }
+        if now.saturating_duration_since(still.since) < STILL && waited < SETTLE {
+            return Ok(Step::Same);
+        }
+        if waited >= SETTLE {
+            worker.warn(format!(
+                "Touch {}: the arm did not stand still within {} s above the target; it is lowered all the same. Look whether a servo trembles.",
+                self.order.number,
+                SETTLE.as_secs()
+            ));
+        }
+        // A palm or a sleeve on the screen would be taken for the finger.
+        let early = self.newest()?.filter(|contact| contact.is_down || contact.at >= since);
+        if early.is_some() {
+            return Ok(Step::End(TouchRun::Missed(
+                "Something touched the screen before the finger was lowered. Keep the screen free."
+                    .to_owned(),
+            )));
+        }
+        worker.allow_touch(&self.order);
+        let down = Down { since: now, cycle: state.stamp.seq };
+        self.stage = Stage::Lowering(down);
+        self.lower(worker, state, down, now).map(|_| Step::Next)
+    }
+
+    fn lower(&mut self, worker: &mut Worker, state: &JointState, down: Down, now: Instant) -> Stepped {
+        if let Some(contact) = self.newest()?.filter(|contact| contact.at >= down.since) {
+            return self.felt(worker, state, down, contact, now);
+        }
+        let limit = LOAD_SHARE * worker.rig.gate.load;
+        let heavy = state.joints.iter().filter(|reading| self.joints.contains(&reading.joint));
+        if let Some((joint, load)) = heavy
+            .filter_map(|reading| Some((reading.joint, reading.load?.abs())))
+            .find(|(_, load)| *load > limit)
+        {
+            let name = worker.rig.servo_of(joint).map_or("a joint", |servo| servo.title.as_str());
+            let end = TouchRun::Missed(format!(
+                "{name} pushed against something with {:.0} % of its strength before the screen felt a touch. Look whether the screen works and what is in the way.",
+                load * 100.0
+            ));
+            return self.retreat(worker, end);
+        }
+        let lasted = now.saturating_duration_since(down.since);
+        let whole = Duration::try_from_secs_f64(self.descent.length_m() / self.order.lower_speed_m_s)
+            .unwrap_or(Duration::MAX);
+        if lasted >= whole.saturating_add(LAST) {
+            let end = TouchRun::Missed(
+                "The lowest place was reached and the screen felt nothing. Measure where the screen lies, or look whether it works."
+                    .to_owned(),
+            );
+            return self.retreat(worker, end);
+        }
+        let posture = self.descent.at(lasted.as_secs_f64() * self.order.lower_speed_m_s);
+        self.follow(worker, &posture, VALID)?;
+        Ok(Step::Same)
+    }
+
+    /// The screen felt something while the finger was lowered.
+    fn felt(
+        &mut self,
+        worker: &mut Worker,
+        state: &JointState,
+        down: Down,
+        contact: Touch,
+        now: Instant,
+    ) -> Stepped {
+        let (u_px, v_px) = (contact.u_px - self.order.target.u_px, contact.v_px - self.order.target.v_px);
+        let far_px = u_px.hypot(v_px);
+        if far_px.is_nan() || far_px > self.order.plausible_px {
+            let end = TouchRun::Missed(format!(
+                "Something touched the screen {far_px:.0} px from the target, which cannot be the finger. Keep the screen free, or measure where it lies."
+            ));
+            return self.retreat(worker, end);
+        }
+        // The goals stay as they are, so that the arm neither pushes on nor sinks.
+        let goals =
+            state.commanded.as_ref().ok_or("The goals of the joints are not known. Connect again.")?;
+        self.follow(worker, goals, self.order.dwell + Duration::from_secs(1))?;
+        let of = |value: fn(&plumbline_hardware::joints::JointReading) -> Option<f64>| -> Vec<Option<f64>> {
+            self.chain.iter().map(|joint| state.of(*joint).and_then(value)).collect()
+        };
+        let moved = contact.at.saturating_duration_since(down.since);
+        let way_m = moved.as_secs_f64() * self.order.lower_speed_m_s;
+        let connected = worker.connected_at.map(|since| contact.at.saturating_duration_since(since));
+        let nothing = vec![None; self.chain.len()];
+        let measured = TouchMeasurement {
+            pixel: Pixel::new(contact.u_px, contact.v_px),
+            at: contact.at,
+            commanded_rad: nothing.clone(),
+            encoder_rad: nothing.clone(),
+            later_encoder_rad: nothing,
+            direction: self.descent.direction(way_m, &self.chain),
+            temperature_c: of(|reading| reading.temperature_c),
+            load: of(|reading| reading.load),
+            move_secs: moved.as_secs_f64(),
+            connected_secs: connected.unwrap_or_default().as_secs_f64(),
+        };
+        self.stage = Stage::Dwelling { down, measured: Box::new(measured), since: now, read: false };
+        Ok(Step::Next)
+    }
+
+    fn dwell(&mut self, worker: &mut Worker, state: &JointState, now: Instant) -> Stepped {
+        let later_rad = self.angles_rad(state);
+        let Stage::Dwelling { measured, since, read, .. } = &mut self.stage else { return Ok(Step::Same) };
+        let lasted = now.saturating_duration_since(*since);
+        if !*read && lasted >= READ {
+            *read = true;
+            if let Some((commanded, encoders)) = worker.arm()?.at(measured.at) {
+                let angles =
+                    |posture: &Posture| self.chain.iter().map(|joint| Some(posture[*joint])).collect();
+                (measured.commanded_rad, measured.encoder_rad) = (angles(&commanded), angles(&encoders));
+            }
+        }
+        if !*read || lasted < self.order.dwell {
+            return Ok(Step::Same);
+        }
+        measured.later_encoder_rad = later_rad;
+        let end = TouchRun::Touched(measured.clone());
+        self.retreat(worker, end)
+    }
+
+    fn retreat(&mut self, worker: &Worker, end: TouchRun) -> Stepped {
+        let state = self.checked_state(worker)?;
+        let moving = go(worker, &state, &self.order.lower[0], &self.chain, self.order.speed_rad_s)?;
+        self.stage = Stage::Retreating { moving, end };
+        Ok(Step::Next)
+    }
+
+    fn follow(&self, worker: &Worker, posture: &Posture, valid_for: Duration) -> Result<(), String> {
+        let joints = self.chain.iter().map(|joint| (*joint, posture[*joint])).collect();
+        let setpoint = Setpoint { kind: SetpointKind::Position, joints, valid_for };
+        worker.arm()?.follow(setpoint).map_err(|refusal| sentence(&refusal.to_string()))
+    }
+
+    fn newest(&mut self) -> Result<Option<Touch>, String> {
+        self.source.newest().map_err(|reason| sentence(&reason))
+    }
+
+    /// Encoders of the chain.
+    fn angles_rad(&self, state: &JointState) -> Vec<Option<f64>> {
+        self.chain.iter().map(|joint| state.of(*joint).and_then(|reading| reading.angle_rad)).collect()
+    }
+}
+
+/// Begins the move of some joints to a posture; `None` when they are there.
+fn go(
+    worker: &Worker,
+    state: &JointState,
+    posture: &Posture,
+    joints: &[JointIndex],
+    speed_rad_s: f64,
+) -> Result<Option<MoveId>, String> {
+    let known = state.measured.as_ref().zip(state.commanded.as_ref());
+    let (present, commanded) = known.ok_or("The joints are not known. Look at cables and power.")?;
+    let away = |joint: &&JointIndex| (commanded[**joint] - posture[**joint]).abs() > THERE_RAD;
+    let goals: Vec<(JointIndex, f64)> =
+        joints.iter().filter(away).map(|joint| (*joint, posture[*joint])).collect();
+    if goals.is_empty() {
+        return Ok(None);
+    }
+    let end = present.with(joints, &posture.of(joints));
+    worker.paths.check(present, &end)?;
+    let pace = Pace::PeakSpeed(speed_rad_s.min(worker.rig.gate.speed_rad_s));
+    let id = worker.arm()?.begin(Move { goals, pace });
+    id.map(Some).map_err(|refusal| sentence(&refusal.to_string()))
+}
+
+/// Whether a move is done; `Err`: it will never be.
+fn has_arrived(state: &JointState, id: MoveId) -> Result<bool, String> {
+    match state.outcome(id) {
+        None => Ok(false),
+        Some(MoveOutcome::Arrived { .. }) => Ok(true),
+        Some(MoveOutcome::Refused(refusal)) => Err(sentence(&refusal.to_string())),
+        Some(MoveOutcome::Held(reason)) => Err(sentence(&reason.to_string())),
+        Some(MoveOutcome::Replaced) => Err("Something else moved the arm.".to_owned()),
+    }
+}
+
+/// The smallest turn that a joint's encoder tells, rad.
+fn tick_rad(rig: &Rig, joint: JointIndex) -> f64 {
+    let ratio = rig.servo_of(joint).map_or(1.0, |servo| servo.ratio.abs());
+    std::f64::consts::TAU / TICKS_PER_TURN / ratio
+}

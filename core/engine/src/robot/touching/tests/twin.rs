@@ -1,0 +1,117 @@
+//! The same on the twin, through its pseudo-terminal: the physics says where the glass is touched.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use plumbline_model::Pixel;
+use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::touch_plan::Side;
+
+use crate::bell::Bell;
+use crate::command::RobotCommand;
+use crate::robot::touch_order::{TouchNews, TouchOrder, TouchRun};
+use crate::robot::{News, RobotControl, RobotThread, RobotWires, Switches, TwinDesk, TwinEyesPlug, Worker};
+use crate::slot::{Taker, newest_value_slot};
+use crate::touch::path::{Planner, TouchPace};
+
+const PATIENCE: Duration = Duration::from_secs(30);
+
+struct Bench {
+    thread: RobotThread,
+    news: Taker<News>,
+    touches: crossbeam_channel::Receiver<TouchNews>,
+    notes: crossbeam_channel::Receiver<(crate::notice::NoticeLevel, String)>,
+    switches: Switches,
+    rig: Arc<Rig>,
+    measured: Option<Posture>,
+    _folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn start(scenario: &str) -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let rig = Arc::new(Rig::built_in("nico").expect("the rig that comes with the program"));
+        let switches = Switches::default();
+        let desk = TwinDesk::new(TwinEyesPlug::default());
+        let worker = Worker::new(rig.clone(), folder.path(), switches.clone(), desk);
+        let (news_in, news) = newest_value_slot();
+        let (touches_in, touches) = crossbeam_channel::bounded(64);
+        let (notes_in, notes) = crossbeam_channel::bounded(64);
+        let (bell, _) = Bell::new();
+        let wires = RobotWires { news: news_in, touches: touches_in, notes: notes_in, bell };
+        let thread = RobotThread::start(worker, wires).expect("a thread");
+        let scenario = scenario.to_owned();
+        assert!(thread.control(RobotCommand::ConnectTwin { scenario }.into()));
+        Self { thread, news, touches, notes, switches, rig, measured: None, _folder: folder }
+    }
+
+    fn look(&mut self) {
+        self.switches.heartbeat.beat();
+        if let Some(news) = self.news.take() {
+            self.measured = news.robot.measured.clone();
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+
+    fn present(&mut self) -> Posture {
+        let began = Instant::now();
+        while self.measured.is_none() {
+            self.look();
+            assert!(began.elapsed() < PATIENCE, "{:?}", self.notes.try_iter().collect::<Vec<_>>());
+        }
+        self.measured.clone().expect("just seen")
+    }
+
+    /// How the touch ended.
+    fn touch(&mut self, order: TouchOrder) -> TouchRun {
+        assert!(self.thread.control(RobotControl::Touch(Box::new(order))));
+        let began = Instant::now();
+        loop {
+            self.look();
+            for news in self.touches.try_iter() {
+                match news.state {
+                    TouchRun::Doing(_) => {}
+                    end => return end,
+                }
+            }
+            assert!(began.elapsed() < PATIENCE, "{:?}", self.notes.try_iter().collect::<Vec<_>>());
+        }
+    }
+}
+
+#[test]
+fn on_a_robot_as_described_the_finger_lands_where_it_is_sent() {
+    let began = Instant::now();
+    let mut bench = Bench::start("perfect");
+    let planner = Planner::new(&bench.rig, "right_index_tip").expect("it can point at the screen");
+    let pace = TouchPace::default();
+    let pitch_m = bench.rig.touchscreen.pitch_m();
+    let targets =
+        [([700.0, 800.0], Side::Above), ([960.0, 600.0], Side::Left), ([1500.0, 450.0], Side::Right)];
+    for (i, ([u_px, v_px], side)) in targets.into_iter().enumerate() {
+        let target = Pixel::new(u_px, v_px);
+        let sent = bench.rig.touchscreen.point_at(target);
+        let from = bench.present();
+        let path = planner.plan(target, sent, side, &from).expect("in reach");
+        let estimated = path.duration(&pace);
+        let chain = planner.chain().clone();
+        let order = TouchOrder::along(path, &chain, &bench.rig.touchscreen, &pace, i + 1, i as u64 + 1);
+        let touched = Instant::now();
+        let end = bench.touch(order);
+        let took = touched.elapsed();
+        let TouchRun::Touched(measured) = end else { panic!("{end:?}") };
+        let error_m = [(measured.pixel.u_px - u_px) * pitch_m[0], (measured.pixel.v_px - v_px) * pitch_m[1]];
+        let commanded: Vec<f64> = measured.commanded_rad.iter().map(|a| a.expect("commanded")).collect();
+        let tip = chain.robot_from_tip(&commanded).translation_m();
+        println!(
+            "{side:?}: {:.2} mm beside the target, commanded {:.2} mm below the glass, {took:.1?} (estimated {estimated:.1?})",
+            1e3 * error_m[0].hypot(error_m[1]),
+            1e3 * (sent.coords.z - tip.z)
+        );
+        assert!(error_m[0].hypot(error_m[1]) < 2e-3, "{error_m:?}");
+        assert!((tip.z - sent.coords.z).abs() < 3e-3, "{}", tip.z - sent.coords.z);
+        assert!(measured.encoder_rad.iter().all(Option::is_some), "{measured:?}");
+        assert!(measured.later_encoder_rad.iter().all(Option::is_some), "{measured:?}");
+    }
+    assert!(began.elapsed() < Duration::from_secs(60), "{:?}", began.elapsed());
+}
