@@ -13,7 +13,7 @@ mod state;
 mod store;
 pub mod tables;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod view;
 pub mod work;
 

@@ -18,6 +18,8 @@ mod predict;
 mod sample;
 pub(crate) mod session;
 mod table;
+#[cfg(test)]
+mod touch_tests;
 mod train;
 
 pub use bench::{BenchReport, Figure, Peer, bench};

@@ -21,19 +21,19 @@ use crate::jobs::{JobError, Outcome};
 use crate::state::State;
 use crate::view::{ModelsView, View};
 
-fn nico() -> Rig {
+pub(crate) fn nico() -> Rig {
     Rig::built_in("nico").expect("the rig that comes with the program is tested")
 }
 
 /// What must be sent for a pixel of the made-up lab: up to 20 mm beside its place, smoothly.
-fn needed(screen: &Touchscreen, pixel: Pixel<Screen>) -> Point<Robot> {
+pub(crate) fn needed(screen: &Touchscreen, pixel: Pixel<Screen>) -> Point<Robot> {
     let (u, v) = (pixel.u_px / 1920.0 - 0.5, pixel.v_px / 1080.0 - 0.5);
     let shift = Vector3::new(0.012 + 0.03 * u * v, -0.008 + 0.02 * u * u, 0.004 - 0.01 * v * v);
     Point::from(screen.point_at(pixel).coords + shift)
 }
 
 /// A session of 9 × 7 touches, in rows of 9 that were touched one after the other.
-fn made_up_session(rig: &Rig) -> Session {
+pub(crate) fn made_up_session(rig: &Rig) -> Session {
     let screen = &rig.touchscreen;
     let arm = &rig.arms[0];
     let joints: Vec<String> =

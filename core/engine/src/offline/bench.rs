@@ -2,6 +2,7 @@
 //!
 //! Data that are not at hand leave their figures out, with the reason.
 
+mod correction;
 mod robot;
 
 use std::path::Path;
@@ -114,6 +115,9 @@ pub fn bench(context: &dyn JobContext) -> Result<BenchReport, OfflineError> {
     context.checkpoint()?;
     context.report(0.8, "timing the live pipeline against the published one");
     figures.extend(pipeline()?);
+    context.checkpoint()?;
+    context.report(0.85, "correction models");
+    figures.extend(correction::figures());
     context.checkpoint()?;
     context.report(0.9, "kinematics, servo bus and the twin's eyes");
     figures.extend(robot::figures());

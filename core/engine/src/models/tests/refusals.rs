@@ -128,11 +128,6 @@ fn models_go_out_and_come_back_unless_they_are_another_screens() {
     let back = lab.tell(ModelsCommand::Import { file: onnx });
     let place = |view: &ModelsView| answer(view, Method::M3).target;
     assert!(place(&back).distance_m(&place(&trained)) < 1e-6);
-    assert!(!answer(&back, Method::M3).inside, "ONNX has no border");
-    lab.tell(ModelsCommand::Accept(Method::M3));
-    let map = lab.view().map.clone().expect("a map");
-    assert!(map.touches.is_empty() && map.sd.values_m.iter().all(Option::is_none));
-
     lab.tell(ModelsCommand::Discard);
     for (from, to, said) in [
         ("\"width_px\":1920", "\"width_px\":1280", "touchscreen of 1280×1080 px"),
@@ -146,6 +141,26 @@ fn models_go_out_and_come_back_unless_they_are_another_screens() {
         assert!(lab.said().contains(said), "{}", lab.said());
         assert!(lab.view().proposals.is_empty());
     }
+}
+
+#[test]
+fn published_weights_are_used_without_a_border() {
+    let mut lab = Lab::new();
+    let file = lab.path("weights.json");
+    // x = 0.1 + 1e-4 u, y = 0.2 - 1e-4 v, from two units.
+    let weights = r#"{"kernel": [[1e-4, 0.0], [0.0, 1e-4]], "bias": [0.0, 0.0],
+        "kernel_out": [[1.0, 0.0], [0.0, -1.0]], "bias_out": [0.1, 0.2],
+        "input_mean": 0.0, "input_std": 1.0, "output_mean": 0.0, "output_std": 1.0}"#;
+    std::fs::write(&file, weights).expect("written");
+    lab.tell(ModelsCommand::Import { file });
+    let view = lab.tell(ModelsCommand::Accept(Method::M2));
+    let model = view.in_use.as_ref().unwrap_or_else(|| panic!("{}", lab.said()));
+    let answer = model.correct(Pixel::new(1000.0, 500.0));
+    assert!((answer.target.coords.xy() - nalgebra::Point2::new(0.2, 0.15)).norm() < 1e-9, "{answer:?}");
+    assert!(!answer.inside);
+    let map = view.map.as_ref().expect("a map");
+    assert!(map.touches.is_empty() && map.border_m.is_empty());
+    assert!(map.sd.values_m.iter().all(Option::is_none) && map.shift.values_m.iter().all(Option::is_some));
 }
 
 #[test]

@@ -36,13 +36,13 @@ fn points_are_added_changed_removed_and_every_change_is_taken_back() {
         filled.height_errors_m
     );
     assert!(filled.height_field.values_m.iter().any(Option::is_some));
-    let change = TablesCommand::Change { table: HEIGHT, point: 7, at_m: [0.31, 0.02, 0.0], value: 0.2 };
+    let change = TablesCommand::Change { table: HEIGHT, point: 5, at_m: [0.315, -0.2, 0.0], value: 0.2 };
     let changed = tell(&mut lab, change);
-    let point = changed.height.as_ref().expect("a table").points[7];
-    assert_eq!((point.x_m, point.y_m, point.height_m), (0.31, 0.02, 0.2));
+    let point = changed.height.as_ref().expect("a table").points[5];
+    assert_eq!((point.x_m, point.y_m, point.height_m), (0.315, -0.2, 0.2));
     let worst = changed.height_errors_m.iter().map(|error_m| error_m.abs()).fold(0.0, f64::max);
-    assert!(worst == changed.height_errors_m[7].abs() && worst > 0.03, "a wrong point stands out");
-    tell(&mut lab, TablesCommand::Remove { table: HEIGHT, point: 7 });
+    assert!(worst == changed.height_errors_m[5].abs() && worst > 0.03, "{:?}", changed.height_errors_m);
+    tell(&mut lab, TablesCommand::Remove { table: HEIGHT, point: 5 });
     // Fifty steps and more go back.
     let mut back = lab.view().tables.clone();
     for _ in 0..22 {
