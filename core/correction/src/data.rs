@@ -85,15 +85,16 @@ pub enum DataError {
     },
     /// All touches lie on a line.
     #[error(
-        "all {found} touches lie on a line (spread across it {across_px:.1} px, along it {along_px:.0} px): touch places to both sides of it"
+        "all {found} touches lie on a line (spread across it {:.1} mm, along it {:.0} mm): touch places to both sides of it",
+        1e3 * .across_m, 1e3 * .along_m
     )]
     OnALine {
         /// Number of touches.
         found: usize,
-        /// Standard deviation along the line, px.
-        along_px: f64,
-        /// Standard deviation across the line, px.
-        across_px: f64,
+        /// Standard deviation along the line, m.
+        along_m: f64,
+        /// Standard deviation across the line, m.
+        across_m: f64,
     },
     /// The chain is another one than the session's.
     #[error(
@@ -162,9 +163,14 @@ impl TouchData {
         if touches.len() < FEWEST_TOUCHES {
             return Err(DataError::TooFew { found: touches.len(), needed: FEWEST_TOUCHES, left_out });
         }
-        let (along_px, across_px) = spread_px(&touches);
-        if across_px <= LINE_RATIO * along_px {
-            return Err(DataError::OnALine { found: touches.len(), along_px, across_px });
+        // A line that was commanded can be touched as a crooked one: neither may be a line.
+        let pitch_m = pixel_pitch_m(&screen);
+        let touched = touches.iter().map(|touch| touch.pixel.vector().component_mul(&pitch_m));
+        let sent = touches.iter().map(|touch| touch.sent.coords.coords.xy());
+        for (along_m, across_m) in [spread_m(touched), spread_m(sent)] {
+            if across_m <= LINE_RATIO * along_m {
+                return Err(DataError::OnALine { found: touches.len(), along_m, across_m });
+            }
         }
         Ok(Self { touches, screen, left_out })
     }
@@ -230,15 +236,17 @@ fn commonest(numbers: impl Iterator<Item = Option<f64>>) -> u64 {
     best.map_or(0, |(bits, _)| bits)
 }
 
-/// Standard deviations of the touched pixels along and across their main direction, px.
-fn spread_px(touches: &[Touch]) -> (f64, f64) {
-    let count = touches.len() as f64;
-    let mean: Vector2<f64> = touches.iter().map(|touch| touch.pixel.vector()).sum::<Vector2<f64>>() / count;
-    let scatter: Matrix2<f64> = touches
-        .iter()
-        .map(|touch| touch.pixel.vector() - mean)
-        .map(|offset| offset * offset.transpose() / count)
-        .sum();
+/// Width and height of a pixel, m.
+pub(crate) fn pixel_pitch_m(screen: &Touchscreen) -> Vector2<f64> {
+    Vector2::new(screen.width_m / f64::from(screen.width_px), screen.height_m / f64::from(screen.height_px))
+}
+
+/// Standard deviations of places along and across their main direction, m.
+fn spread_m(places: impl ExactSizeIterator<Item = Vector2<f64>> + Clone) -> (f64, f64) {
+    let count = places.len() as f64;
+    let mean: Vector2<f64> = places.clone().sum::<Vector2<f64>>() / count;
+    let offsets = places.map(|place| place - mean);
+    let scatter: Matrix2<f64> = offsets.map(|offset| offset * offset.transpose() / count).sum();
     let eigenvalues = scatter.symmetric_eigenvalues();
     (eigenvalues.max().max(0.0).sqrt(), eigenvalues.min().max(0.0).sqrt())
 }
@@ -264,7 +272,7 @@ impl RowReader<'_> {
             return Ok(Err("touched a place off the screen"));
         }
         let Some(sent) = self.sent(row)? else {
-            return Ok(Err("have neither the point sent nor all commanded angles"));
+            return Ok(Err("had neither the point sent nor all commanded angles"));
         };
         finite(&[sent.coords.x, sent.coords.y, sent.coords.z], "the point sent", index)?;
         Ok(Ok(Touch { pixel, sent, set: row.set.clone(), group: row.group.clone(), row: index }))

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use nalgebra::Vector3;
+use nalgebra::Vector2;
 
-use crate::data::{Touch, TouchData};
+use crate::data::{Touch, TouchData, pixel_pitch_m};
 
 /// Spread of touches that repeat the same command from the same side, within their groups.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,16 +30,11 @@ pub fn spread_of_repeats(data: &TouchData) -> Option<Repeats> {
         }
     }
     groups.retain(|_, touches| touches.len() >= 2);
-    let pitch_m = [
-        data.screen.width_m / f64::from(data.screen.width_px),
-        data.screen.height_m / f64::from(data.screen.height_px),
-    ];
+    let pitch_m = pixel_pitch_m(&data.screen);
     let (mut squares, mut touches) = ([0.0; 2], 0);
     for group in groups.values() {
-        let places = group
-            .iter()
-            .map(|touch| Vector3::new(touch.pixel.u_px * pitch_m[0], touch.pixel.v_px * pitch_m[1], 0.0));
-        let mean = places.clone().sum::<Vector3<f64>>() / group.len() as f64;
+        let places = group.iter().map(|touch| touch.pixel.vector().component_mul(&pitch_m));
+        let mean = places.clone().sum::<Vector2<f64>>() / group.len() as f64;
         for offset in places.map(|place| place - mean) {
             squares[0] += offset.x * offset.x;
             squares[1] += offset.y * offset.y;

@@ -7,6 +7,8 @@ mod adam;
 mod evidence;
 mod lbfgs;
 mod objective;
+#[cfg(test)]
+mod tests;
 
 pub use adam::{Adam, fit_published};
 pub use evidence::{EvidenceOptions, fit_evidence};
@@ -22,7 +24,7 @@ pub enum Activation {
     /// max(0, a), as published: straight lines outside of the data.
     #[default]
     Relu,
-    /// Hyperbolic tangent: constant far outside of the data.
+    /// Hyperbolic tangent: smooth, and what bends is constant far outside of the data.
     Tanh,
 }
 
@@ -66,6 +68,11 @@ impl Scaling {
         let channels = rows.first().map_or(0, Vec::len);
         let (mean, sd) = mean_and_sd(rows.iter().flatten().copied());
         Self { mean: vec![mean; channels], sd: vec![sd; channels] }
+    }
+
+    /// Leaves everything as it is.
+    pub fn none(channels: usize) -> Self {
+        Self { mean: vec![0.0; channels], sd: vec![1.0; channels] }
     }
 
     /// Scaled.
@@ -134,6 +141,26 @@ impl Network {
             }
         }
         self.output.undo(&scaled)
+    }
+
+    /// The same network with other scalings: its weights make up for them.
+    pub fn scaled_as(&self, input: &Scaling, output: &Scaling) -> Self {
+        let mut hidden = self.hidden.clone();
+        for unit in &mut hidden {
+            for channel in 0..2 {
+                let (mean, sd) = (self.input.mean[channel], self.input.sd[channel]);
+                unit[2] += unit[channel] * (input.mean[channel] - mean) / sd;
+                unit[channel] *= input.sd[channel] / sd;
+            }
+        }
+        let (mut weights, mut bias) = (self.weights.clone(), self.bias.clone());
+        for (channel, (weights, bias)) in weights.iter_mut().zip(&mut bias).enumerate() {
+            let ratio = self.output.sd[channel] / output.sd[channel];
+            weights.iter_mut().for_each(|weight| *weight *= ratio);
+            *bias = *bias * ratio + (self.output.mean[channel] - output.mean[channel]) / output.sd[channel];
+        }
+        let (input, output) = (input.clone(), output.clone());
+        Self { activation: self.activation, input, output, hidden, weights, bias }
     }
 
     /// Why the network cannot be used; `None` when it can.

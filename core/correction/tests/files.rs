@@ -1,0 +1,201 @@
+//! Models survive being written and read; files that are none are refused with what to do.
+
+mod common;
+
+use std::path::Path;
+
+use common::{data, places};
+use plumbline_correction::{CorrectionModel, FileError, Method, TrainOptions, train};
+use plumbline_model::{Pixel, Unattended};
+use serde_json::{Value, json};
+use tempfile::tempdir;
+
+fn trained(method: Method) -> CorrectionModel {
+    let options = TrainOptions {
+        session: "made up".to_owned(),
+        software: "test 1".to_owned(),
+        ..TrainOptions::default()
+    };
+    train(&data(60, 1e-3, 1), method, &options, &Unattended, &mut |_| ()).expect("it trains")
+}
+
+fn largest_difference_m(a: &CorrectionModel, b: &CorrectionModel) -> f64 {
+    let distance = |place: [f64; 2]| {
+        let pixel = Pixel::new(place[0], place[1]);
+        let (a, b) = (a.correct(pixel), b.correct(pixel));
+        assert_eq!(a.inside, b.inside);
+        a.target.distance_m(&b.target)
+    };
+    places(200, 8).into_iter().chain([[-500.0, 2000.0]]).map(distance).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_model_is_read_as_it_was_written() {
+    let folder = tempdir().expect("a folder");
+    for method in Method::ALL {
+        let file = folder.path().join(format!("{}.json", method.name()));
+        let model = trained(method);
+        model.write(&file).expect("written");
+        let read = CorrectionModel::read(&file).expect("read");
+        assert_eq!(read.method(), method);
+        assert!(largest_difference_m(&model, &read) < 1e-14);
+        assert_eq!(read.provenance().session, "made up");
+        assert_eq!(read.provenance().touches.len(), 60);
+        assert_eq!(read.provenance().options, model.provenance().options);
+        let pixel = Pixel::new(900.0, 700.0);
+        for (a, b) in model.correct(pixel).sd_m.iter().zip(read.correct(pixel).sd_m) {
+            assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
+        }
+        assert!(CorrectionModel::import(&file).is_ok());
+    }
+    let names = std::fs::read_dir(folder.path()).expect("a folder").count();
+    assert_eq!(names, 3, "no temporary file is left");
+}
+
+fn changed(model: &Path, to: &Path, change: impl FnOnce(&mut Value)) -> FileError {
+    let text = std::fs::read(model).expect("it was written");
+    let mut value: Value = serde_json::from_slice(&text).expect("it is JSON");
+    change(&mut value);
+    std::fs::write(to, value.to_string()).expect("written");
+    CorrectionModel::read(to).expect_err("it was spoiled")
+}
+
+#[test]
+fn spoiled_files_are_refused_in_a_sentence() {
+    let folder = tempdir().expect("a folder");
+    let (file, spoiled) = (folder.path().join("m3.json"), folder.path().join("spoiled.json"));
+    trained(Method::M3).write(&file).expect("written");
+    let version = changed(&file, &spoiled, |value| value["version"] = json!(2));
+    assert!(version.to_string().contains("newer program"), "{version}");
+    let null =
+        changed(&file, &spoiled, |value| value["answer"]["network"]["members"][0]["bias"][1] = Value::Null);
+    assert!(matches!(null, FileError::Damaged { .. }), "{null}");
+    let short = changed(&file, &spoiled, |value| {
+        value["answer"]["network"]["members"][1]["hidden"].as_array_mut().expect("a list").pop();
+    });
+    assert!(short.to_string().contains("2–63–3"), "{short}");
+    let other = changed(&file, &spoiled, |value| value["format"] = json!("something else"));
+    assert!(matches!(other, FileError::NotAModel { .. }), "{other}");
+    let m2 = changed(&file, &spoiled, |value| value["answer"]["method"] = json!("m2"));
+    assert!(matches!(m2, FileError::Damaged { .. }), "{m2}");
+    std::fs::write(&spoiled, "{").expect("written");
+    assert!(CorrectionModel::read(&spoiled).expect_err("cut off").to_string().contains("no JSON"));
+    let absent = CorrectionModel::import(&folder.path().join("absent.json")).expect_err("absent");
+    assert!(matches!(absent, FileError::Unreadable { .. }));
+}
+
+#[test]
+fn onnx_keeps_the_answers_the_border_and_the_heights() {
+    let folder = tempdir().expect("a folder");
+    for method in [Method::M2, Method::M3] {
+        let file = folder.path().join(format!("{}.onnx", method.name()));
+        let model = trained(method);
+        model.write_onnx(&file).expect("written");
+        let read = CorrectionModel::import(&file).expect("read");
+        assert_eq!(read.method(), method);
+        assert_eq!(read.network_shape(), model.network_shape());
+        let difference_m = largest_difference_m(&model, &read);
+        assert!(difference_m < 1e-6, "{difference_m}");
+        assert!(read.provenance().touches.is_empty());
+    }
+    let m1 = trained(Method::M1).write_onnx(&folder.path().join("m1.onnx")).expect_err("no network");
+    assert!(m1.to_string().contains("JSON"));
+    let file = folder.path().join("none.onnx");
+    std::fs::write(&file, b"this is no graph").expect("written");
+    assert!(matches!(CorrectionModel::read_onnx(&file), Err(FileError::NotAModel { .. })));
+    std::fs::write(&file, b"").expect("written");
+    assert!(matches!(CorrectionModel::read_onnx(&file), Err(FileError::Graph { .. })));
+}
+
+/// Kernel and bias of a network 2–H–K in the order of Keras.
+fn weights(units: usize, outputs: usize) -> [Value; 4] {
+    let number = |index: usize| (index as f64 * 0.7).sin();
+    let matrix = |rows: usize, columns: usize| {
+        json!(
+            (0..rows)
+                .map(|r| (0..columns).map(|c| number(r * columns + c)).collect::<Vec<_>>())
+                .collect::<Vec<_>>()
+        )
+    };
+    let vector = |length: usize| json!((0..length).map(|i| number(i + 5)).collect::<Vec<_>>());
+    [matrix(2, units), vector(units), matrix(units, outputs), vector(outputs)]
+}
+
+/// The answer of those weights, as Keras computes it.
+fn keras(weights: &[Value; 4], x: [f64; 2]) -> Vec<f64> {
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let units = weights[1].as_array().expect("a list").len();
+    let outputs = weights[3].as_array().expect("a list").len();
+    let hidden: Vec<f64> = (0..units)
+        .map(|h| (0..2).map(|i| x[i] * number(&weights[0][i][h])).sum::<f64>() + number(&weights[1][h]))
+        .map(|sum| sum.max(0.0))
+        .collect();
+    (0..outputs)
+        .map(|k| {
+            (0..units).map(|h| hidden[h] * number(&weights[2][h][k])).sum::<f64>() + number(&weights[3][k])
+        })
+        .collect()
+}
+
+#[test]
+fn published_weights_are_read_in_every_dress() {
+    let folder = tempdir().expect("a folder");
+    let file = folder.path().join("weights.json");
+    let w = weights(64, 3);
+    let dresses = [
+        json!(w),
+        json!({"dense": {"kernel": w[0], "bias": w[1]}, "dense_1": {"kernel": w[2], "bias": w[3]}}),
+        json!({"layers": [{"name": "hidden", "weights": [w[0], w[1]]}, {"name": "output", "weights": [w[2], w[3]]}]}),
+        json!({"output/bias:0": w[3], "hidden/kernel:0": w[0], "output/kernel:0": w[2], "hidden/bias:0": w[1]}),
+    ];
+    let scaled = [(700.0 - 799.52245) / 363.95520, (500.0 - 799.52245) / 363.95520];
+    let expected: Vec<f64> = keras(&w, scaled).iter().map(|y| y * 0.175916 + 0.141192).collect();
+    for dress in dresses {
+        std::fs::write(&file, dress.to_string()).expect("written");
+        let model = CorrectionModel::import(&file).expect("published weights");
+        let answer = model.correct(Pixel::new(700.0, 500.0));
+        for (a, b) in answer.target.coords.iter().zip(&expected) {
+            assert!((a - b).abs() < 1e-12, "{a} {b}");
+        }
+        assert!(!answer.inside && answer.sd_m[0].is_infinite());
+        assert!(
+            model.provenance().remarks[0].contains("published 2–64–3"),
+            "{:?}",
+            model.provenance().remarks
+        );
+    }
+}
+
+#[test]
+fn normalization_in_the_file_goes_before_the_published_one() {
+    let folder = tempdir().expect("a folder");
+    let file = folder.path().join("weights.json");
+    let w = weights(16, 2);
+    let document = json!({"weights": w, "input_mean": 800.0, "input_std": [300.0, 200.0], "output": {"mean": 0.1, "std": 0.2}});
+    std::fs::write(&file, document.to_string()).expect("written");
+    let model = CorrectionModel::read_published(&file).expect("published weights");
+    assert_eq!(model.method(), Method::M2);
+    let expected = keras(&w, [(700.0 - 800.0) / 300.0, (500.0 - 800.0) / 200.0]);
+    let answer = model.correct(Pixel::new(700.0, 500.0)).target.coords;
+    assert!((answer.x - (0.1 + 0.2 * expected[0])).abs() < 1e-12);
+    assert!((answer.y - (0.1 + 0.2 * expected[1])).abs() < 1e-12);
+    assert!(model.provenance().remarks.iter().any(|remark| remark.contains("published table")));
+}
+
+#[test]
+fn weights_of_another_shape_name_the_shapes() {
+    let folder = tempdir().expect("a folder");
+    let file = folder.path().join("weights.json");
+    let refused = |document: Value| {
+        std::fs::write(&file, document.to_string()).expect("written");
+        CorrectionModel::read_published(&file).expect_err("another shape")
+    };
+    let joints = refused(json!(weights(128, 6)));
+    assert!(joints.to_string().contains("2×128, 128×6, 128, 6"), "{joints}");
+    let [kernel, bias, output, _] = weights(64, 3);
+    assert!(matches!(refused(json!([kernel, bias, output])), FileError::Shapes { .. }));
+    assert!(refused(json!({})).to_string().contains("none"));
+    let unpublished = refused(json!(weights(32, 3)));
+    assert!(matches!(unpublished, FileError::NoNormalization { .. }), "{unpublished}");
+    assert!(unpublished.to_string().contains("2–32–3"));
+}
