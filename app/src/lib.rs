@@ -7,5 +7,5 @@ mod window;
 pub use cli::run;
 pub use window::{
     Action, Backend, LaunchOptions, LogStore, Outbox, Pane, PlumblineWindow, Screen, ScriptStep, ThemeChoice,
-    WindowOptions, WindowSettings, launch, start_log,
+    TouchSurface, WindowOptions, WindowSettings, launch, start_log, touch_surface,
 };

@@ -4,6 +4,8 @@ mod models;
 mod robot;
 mod touch;
 
+pub use touch::{done_of, minutes, wanted, what_moves};
+
 use plumbline_engine::View;
 use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
 use plumbline_widgets::format;

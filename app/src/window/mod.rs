@@ -39,7 +39,7 @@ mod status_line;
 mod steps;
 mod tiles;
 mod touch_actions;
-pub(crate) mod touch_window;
+mod touch_window;
 mod transport;
 mod world_menu;
 
@@ -54,6 +54,7 @@ pub use actions::{Action, format_name};
 pub use backend::Backend;
 pub use gamepad::GamepadState;
 pub use guidance::{Verdict, capitalized, hint_text, other_board, verdict};
+pub(crate) use guidance::{done_of, minutes, wanted, what_moves};
 pub use launch::{LaunchOptions, launch};
 pub use log_lines::{LogStore, start as start_log};
 pub use models_actions::ModelsAction;
@@ -64,6 +65,8 @@ pub use settings::{ThemeChoice, WindowSettings};
 pub(crate) use source_menu::short_name as source_name;
 pub use steps::{Pane, Screen};
 pub use touch_actions::{Preset, TouchAction};
+pub(crate) use touch_actions::{is_under_way, screen_of, whole_area};
+pub use touch_window::{Monitor, TouchSurface, touch_surface, window_problem};
 
 use crate::panels::PanelState;
 use ask::Ask;
@@ -75,6 +78,7 @@ use log_panel::LogPanel;
 use notices::NoticeList;
 use palette::Palette;
 use script::Script;
+use touch_window::TouchWindow;
 
 /// What the window is made with.
 pub struct WindowOptions {
@@ -140,6 +144,9 @@ pub struct PlumblineWindow {
     jogging: Jogging,
     /// When a motion was asked for last.
     motion_asked: Option<Instant>,
+    touch_window: TouchWindow,
+    /// When monitors were looked for last, by the clock of the window, s.
+    monitors_found_s: f64,
 }
 
 /// The arm holds without a sign of life from the window; this often it gets one while something
@@ -181,6 +188,8 @@ impl PlumblineWindow {
             gamepads: Gamepads::new(options.gamepads),
             jogging: Jogging::default(),
             motion_asked: None,
+            touch_window: TouchWindow::default(),
+            monitors_found_s: f64::NEG_INFINITY,
         }
     }
 
@@ -250,6 +259,7 @@ impl PlumblineWindow {
             outbox.act(action);
         }
         self.draw_frame(ui, &mut outbox);
+        self.show_touch_window(&ctx);
         self.draw_sheets(&ctx, escape_pressed, &mut outbox);
         self.take_drops(&ctx, &mut outbox);
         self.carry_out(&ctx, outbox);
@@ -310,7 +320,8 @@ impl eframe::App for PlumblineWindow {
         self.before_frame(ctx);
     }
 
-    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        self.find_monitors(frame, ui.input(|input| input.time));
         self.draw(ui);
     }
 

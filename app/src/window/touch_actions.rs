@@ -2,10 +2,12 @@
 
 use std::borrow::Cow;
 
-use plumbline_engine::view::TouchPhase;
+use plumbline_engine::view::{ContactSource, TouchPhase};
 use plumbline_engine::{Command, TouchCommand, View};
 use plumbline_model::session::Touchscreen;
 use plumbline_model::touch_plan::{PlanOptions, TouchArea};
+
+use super::touch_window::window_problem;
 
 /// Of touching the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -218,7 +220,27 @@ fn arm_refusal(view: &View) -> Refusal {
     if !view.robot.connection.is_connected() {
         return Some("no robot is connected".into());
     }
-    when(!view.robot.stopped, "STOP is latched: release it first")
+    if view.robot.stopped {
+        return Some("STOP is latched: release it first".into());
+    }
+    window_refusal(view)
+}
+
+/// A real touchscreen is felt by the touch window, which has to fill it.
+fn window_refusal(view: &View) -> Refusal {
+    if view.touch.source != ContactSource::Window {
+        return None;
+    }
+    match (&view.touch.window, screen_of(view)) {
+        (None, _) => Some("the touch window is closed: open it on the touch monitor".into()),
+        (Some(window), Some(screen)) => window_problem(window, screen).map(Cow::Owned),
+        (Some(_), None) => None,
+    }
+}
+
+/// Whether the touch window has to be opened before anything can be touched.
+pub fn needs_window(view: &View) -> bool {
+    view.touch.source == ContactSource::Window && view.touch.window.is_none()
 }
 
 fn start_refusal(view: &View) -> Refusal {

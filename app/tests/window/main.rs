@@ -3,9 +3,14 @@
 mod fake;
 mod guidance;
 mod made_up;
+mod made_up_models;
+mod models;
+mod made_up_touch;
 mod mount;
 mod pictures;
 mod robot;
 mod stop;
+mod touch;
+mod touch_window;
 mod twin;
 mod words;

@@ -99,7 +99,7 @@ fn mark(painter: &Painter, transform: PatternTransform, mark: &TouchMark, scale:
             );
         }
         TouchMarkState::Unreachable => {
-            painter.circle_stroke(at, 2.5, Stroke::new(1.0, tokens.noise_floor.gamma_multiply(0.7)));
+            painter.circle_stroke(at, 2.5, Stroke::new(1.0, tokens.noise_floor));
         }
     }
 }

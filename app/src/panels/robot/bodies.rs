@@ -44,7 +44,8 @@ pub fn thing(id: PickId) -> Thing {
 /// Everything there is to see; empty until the joints were read once.
 ///
 /// `names` false leaves the names of the toys out, where there is no room for them.
-pub fn scene(view: &View, panels: &RobotPanels, names: bool) -> Scene {
+/// `ghost` is a posture to be shown while no move is.
+pub fn scene(view: &View, panels: &RobotPanels, ghost: Option<&Posture>, names: bool) -> Scene {
     let mut scene = Scene::default();
     let robot = &view.robot;
     let (Some(rig), Some(measured)) = (&robot.rig, &robot.measured) else { return scene };
@@ -54,8 +55,8 @@ pub fn scene(view: &View, panels: &RobotPanels, names: bool) -> Scene {
     let measured = steadied(measured);
     table(&mut scene, rig);
     body(&mut scene, rig, &measured, panels.chosen_joint);
-    if let Some(goal) = ghost_posture(view, &rig.description) {
-        ghost(&mut scene, rig, &measured, goal);
+    if let Some(goal) = ghost_posture(view, ghost, &rig.description) {
+        draw_ghost(&mut scene, rig, &measured, goal);
     }
     eyes(&mut scene, rig, &measured);
     if view.twin.running {
@@ -81,12 +82,17 @@ fn steadied_m(at_m: &Point3<f64>) -> Point3<f64> {
 }
 
 /// Where the robot would be: the shown move, else the goal of the one that runs.
-fn ghost_posture<'a>(view: &'a View, description: &Description) -> Option<&'a Posture> {
+fn ghost_posture<'a>(
+    view: &'a View,
+    otherwise: Option<&'a Posture>,
+    description: &Description,
+) -> Option<&'a Posture> {
     let robot = &view.robot;
     let moving = matches!(robot.motion, MotionState::Moving { .. });
     let posture = match &robot.preview {
         Some(preview) => Some(&preview.end),
-        None => robot.commanded.as_ref().filter(|_| moving),
+        None if moving => robot.commanded.as_ref(),
+        None => otherwise,
     };
     posture.filter(|posture| posture.len() == description.movable_count() && posture.is_finite())
 }
@@ -125,7 +131,7 @@ fn body(scene: &mut Scene, rig: &Rig, posture: &Posture, chosen: Option<JointInd
 }
 
 /// Only what would be elsewhere: a ghost inside of the body it belongs to would flicker.
-fn ghost(scene: &mut Scene, rig: &Rig, measured: &Posture, goal: &Posture) {
+fn draw_ghost(scene: &mut Scene, rig: &Rig, measured: &Posture, goal: &Posture) {
     let description = &rig.description;
     let (now, then) = (description.forward(measured), description.forward(goal));
     for (i, link) in description.links().iter().enumerate() {
@@ -252,7 +258,7 @@ mod tests {
         let (_, mut view) = nico();
         let robot = RobotView { measured: None, ..(*view.robot).clone() };
         view.robot = Arc::new(robot);
-        assert!(scene(&view, &RobotPanels::default(), true).is_empty());
+        assert!(scene(&view, &RobotPanels::default(), None, true).is_empty());
     }
 
     #[test]
@@ -268,7 +274,7 @@ mod tests {
             largest_turn: None,
         };
         view.robot = Arc::new(RobotView { preview: Some(preview), ..(*view.robot).clone() });
-        let scene = scene(&view, &RobotPanels::default(), true);
+        let scene = scene(&view, &RobotPanels::default(), None, true);
         let ghosts = scene.solids.iter().filter(|solid| solid.tint == Tint::Ghost).count();
         let all: usize = rig.description.links().iter().map(|link| link.visuals.len()).sum();
         assert!(ghosts > 0 && ghosts < all / 2, "{ghosts} of {all}");
@@ -278,7 +284,7 @@ mod tests {
     #[test]
     fn parts_are_picked_as_the_joint_that_moves_them() {
         let (rig, view) = nico();
-        let picks: Vec<Thing> = scene(&view, &RobotPanels::default(), true)
+        let picks: Vec<Thing> = scene(&view, &RobotPanels::default(), None, true)
             .solids
             .iter()
             .filter_map(|s| Some(thing(s.pick?)))

@@ -23,7 +23,8 @@ const NAMES_FROM: f32 = 520.0;
 const ABOVE_M: f64 = 0.08;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    let drawn = scene(cx.view, &cx.state.robot, ui.available_width() >= NAMES_FROM);
+    let ghost = crate::panels::touch_ghost(cx);
+    let drawn = scene(cx.view, &cx.state.robot, ghost, ui.available_width() >= NAMES_FROM);
     if drawn.is_empty() && super::without_joints(ui, cx, None) {
         return;
     }

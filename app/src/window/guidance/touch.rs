@@ -8,7 +8,7 @@ use plumbline_widgets::format;
 use super::{Guidance, robot, say};
 use crate::window::actions::Action;
 use crate::window::steps::Screen;
-use crate::window::touch_actions::{Preset, TouchAction, is_under_way};
+use crate::window::touch_actions::{Preset, TouchAction, is_under_way, needs_window};
 
 pub(super) fn touch(view: &View) -> Guidance {
     let touch = &view.touch;
@@ -29,6 +29,10 @@ fn standing(view: &View) -> Guidance {
     let touch = &view.touch;
     match &touch.phase {
         TouchPhase::Planning => say("Looks which targets the arm reaches. Nothing moves."),
+        TouchPhase::Planned | TouchPhase::Paused { .. } if needs_window(view) => {
+            say("The touch window shows the targets and feels the touches: it has to fill the touch monitor.")
+                .then("Open the touch window", Action::Touch(TouchAction::ToggleWindow))
+        }
         TouchPhase::Planned => touch.plan.as_deref().map_or_else(|| first(view), planned),
         TouchPhase::Paused { why } => paused(touch, why.as_deref()),
         TouchPhase::Finished => finished(view),

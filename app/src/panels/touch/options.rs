@@ -1,0 +1,205 @@
+//! The fields of a plan.
+
+use egui::{DragValue, Grid, TextEdit, Ui, WidgetInfo};
+use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose, Sides, TouchArea};
+use plumbline_widgets::buttons::choice;
+use plumbline_widgets::theme::{self, space};
+
+use super::words;
+use crate::panels::PanelContext;
+use crate::window::{screen_of, whole_area};
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, options: &PlanOptions) {
+    let mut edited = options.clone();
+    ui.spacing_mut().interact_size.y = 22.0;
+    Grid::new("plan").num_columns(2).spacing([space::M, space::XS]).show(ui, |ui| {
+        row(ui, "For", |ui| purpose(ui, &mut edited.purpose));
+        row(ui, "Area", |ui| area(ui, cx, &mut edited.area));
+        patterns(ui, &mut edited.patterns);
+        row(ui, "Each target", |ui| {
+            count(ui, "Times each target", &mut edited.repeats, 1..=20);
+            ui.label(theme::weak(ui, if edited.repeats == 1 { "time" } else { "times" }));
+        });
+        row(ui, "Coming from", |ui| {
+            let sides = [(Sides::Above, "Above"), (Sides::LeftAndRight, "Left and right")];
+            choice(ui, "Coming from", &mut edited.sides, &sides);
+        });
+        let typed = &mut cx.state.touch.draft.typed;
+        row(ui, "Screen raised by", |ui| {
+            list(ui, "Heights of the screen", "mm", &mut typed[0], &mut edited.screen_heights_m);
+        });
+        row(ui, "Weight in the hand", |ui| {
+            list(ui, "Weights", "g", &mut typed[1], &mut edited.payloads_kg);
+        });
+    });
+    cx.state.touch.draft.change(edited);
+}
+
+fn row(ui: &mut Ui, label: &str, contents: impl FnOnce(&mut Ui)) {
+    ui.label(theme::weak(ui, label));
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = space::XS;
+        contents(ui);
+    });
+    ui.end_row();
+}
+
+fn purpose(ui: &mut Ui, purpose: &mut Purpose) {
+    let all = [Purpose::PlaceScreen, Purpose::Train, Purpose::Check].map(|one| (one, words::purpose(one)));
+    choice(ui, "For", purpose, &all);
+}
+
+/// In pixels; the drawing beside drags it.
+fn area(ui: &mut Ui, cx: &PanelContext<'_>, area: &mut TouchArea) {
+    let Some(screen) = screen_of(cx.view) else { return };
+    let most = [screen.width_px, screen.height_px].map(|count| f64::from(count.saturating_sub(1)));
+    pixel(ui, "First column", &mut area.u_px[0], most[0]);
+    ui.label(theme::weak(ui, "–"));
+    pixel(ui, "Last column", &mut area.u_px[1], most[0]);
+    ui.label(theme::weak(ui, "×"));
+    pixel(ui, "First row", &mut area.v_px[0], most[1]);
+    ui.label(theme::weak(ui, "–"));
+    pixel(ui, "Last row", &mut area.v_px[1], most[1]);
+    ui.label(theme::weak(ui, "px"));
+    if ui.small_button("Whole").on_hover_text("The whole screen but its border").clicked() {
+        *area = whole_area(screen);
+    }
+}
+
+/// A drag value also rounds what it is given, which is no wish: only what was dragged or typed
+/// counts.
+fn pixel(ui: &mut Ui, label: &str, value: &mut f64, most: f64) {
+    let mut shown = value.round();
+    let drag = ui.add(DragValue::new(&mut shown).range(0.0..=most).speed(2.0).max_decimals(0));
+    drag.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, label));
+    if drag.on_hover_text(label).changed() && shown != value.round() {
+        *value = shown;
+    }
+}
+
+fn count(ui: &mut Ui, label: &str, value: &mut usize, range: std::ops::RangeInclusive<usize>) {
+    let drag = ui.add(DragValue::new(value).range(range).speed(0.05));
+    drag.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, label));
+    drag.on_hover_text(label);
+}
+
+/// One row per pattern, switched on and off by its box.
+fn patterns(ui: &mut Ui, patterns: &mut Vec<Pattern>) {
+    let defaults = [
+        Pattern::Corners,
+        Pattern::Grid { columns: 7, rows: 4 },
+        Pattern::Lines { horizontal: 2, vertical: 1, diagonal: 2, points: 7 },
+        Pattern::Random { count: 20 },
+        Pattern::Again { targets: 5, times: 4 },
+    ];
+    for default in defaults {
+        let same = |one: &Pattern| std::mem::discriminant(one) == std::mem::discriminant(&default);
+        let at = patterns.iter().position(same);
+        let mut on = at.is_some();
+        let changed = ui.checkbox(&mut on, name(&default)).changed();
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = space::XS;
+            if let Some(pattern) = at.and_then(|at| patterns.get_mut(at)) {
+                fields(ui, pattern);
+            }
+        });
+        ui.end_row();
+        match (changed, at) {
+            (true, None) => patterns.push(default),
+            (true, Some(at)) => {
+                patterns.remove(at);
+            }
+            (false, _) => {}
+        }
+    }
+}
+
+fn name(pattern: &Pattern) -> &'static str {
+    match pattern {
+        Pattern::Corners => "Corners",
+        Pattern::Grid { .. } => "Grid",
+        Pattern::Lines { .. } => "Lines",
+        Pattern::Random { .. } => "Random",
+        Pattern::Again { .. } => "Again",
+    }
+}
+
+fn fields(ui: &mut Ui, pattern: &mut Pattern) {
+    let word = |ui: &mut Ui, text: &str| {
+        ui.label(theme::weak(ui, text));
+    };
+    match pattern {
+        Pattern::Corners => word(ui, "of the area"),
+        Pattern::Grid { columns, rows } => {
+            count(ui, "Columns of the grid", columns, 1..=40);
+            word(ui, "×");
+            count(ui, "Rows of the grid", rows, 1..=40);
+            word(ui, "targets");
+        }
+        Pattern::Lines { horizontal, vertical, diagonal, points } => {
+            count(ui, "Lines across", horizontal, 0..=20);
+            word(ui, "across");
+            count(ui, "Lines down", vertical, 0..=20);
+            word(ui, "down");
+            count(ui, "Diagonals", diagonal, 0..=2);
+            word(ui, "diagonal, of");
+            count(ui, "Targets per line", points, 2..=40);
+        }
+        Pattern::Random { count: targets } => {
+            count(ui, "Random targets", targets, 1..=1000);
+            word(ui, "targets");
+        }
+        Pattern::Again { targets, times } => {
+            count(ui, "Targets touched again", targets, 1..=40);
+            word(ui, "targets");
+            count(ui, "Times more", times, 1..=20);
+            word(ui, "times more: the noise floor");
+        }
+    }
+}
+
+/// A list of numbers in thousandths, as people type it: "0, 60, 120".
+fn list(ui: &mut Ui, label: &str, unit: &str, typed: &mut Option<String>, values: &mut Vec<f64>) {
+    let mut text = typed.clone().unwrap_or_else(|| written(values));
+    let edit = ui.add(TextEdit::singleline(&mut text).desired_width(110.0));
+    edit.widget_info(|| WidgetInfo::labeled(egui::Role::TextInput, true, label));
+    ui.label(theme::weak(ui, unit));
+    if edit.changed() {
+        *typed = Some(text);
+    }
+    let Some(text) = typed.clone() else { return };
+    match (read(&text), edit.has_focus()) {
+        (Some(read), false) => {
+            *values = read;
+            *typed = None;
+        }
+        (None, false) => super::warning(ui, "numbers with commas"),
+        (_, true) => {}
+    }
+}
+
+fn written(values: &[f64]) -> String {
+    let all: Vec<String> = values.iter().map(|value| format!("{}", (value * 1e6).round() / 1e3)).collect();
+    all.join(", ")
+}
+
+fn read(text: &str) -> Option<Vec<f64>> {
+    let all: Option<Vec<f64>> = text
+        .split([',', ';'])
+        .map(|part| part.trim().parse::<f64>().ok().filter(|n| n.is_finite()).map(|n| n / 1e3))
+        .collect();
+    all.filter(|all| !all.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_of_numbers_survive_being_written_and_read() {
+        assert_eq!(written(&[0.0, 0.06, 0.12]), "0, 60, 120");
+        assert_eq!(read("0, 60 ,120"), Some(vec![0.0, 0.06, 0.12]));
+        assert_eq!(read(&written(&[0.0125])), Some(vec![0.0125]));
+        assert_eq!((read("0, a"), read(""), read("inf")), (None, None, None));
+    }
+}

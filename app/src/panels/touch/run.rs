@@ -1,0 +1,218 @@
+//! The run: how far it is, what the arm does, what was found, what was touched last.
+
+use egui::{Button, RichText, ScrollArea, Ui, vec2};
+use plumbline_engine::TouchCommand;
+use plumbline_engine::view::{TouchFigures, TouchOutcome, TouchPhase, TouchState, TouchView};
+use plumbline_widgets::empty::{EmptyState, Message};
+use plumbline_widgets::format;
+use plumbline_widgets::key_value::big_figure;
+use plumbline_widgets::progress::progress_bar;
+use plumbline_widgets::theme::{self, Role, space};
+
+use super::{action_button, error_length_m, warning, words};
+use crate::panels::{PanelContext, padded};
+use crate::window::{Action, Screen, TouchAction, done_of, is_under_way, wanted};
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let touch = &cx.view.touch;
+    match &touch.phase {
+        TouchPhase::Idle if touch.unfinished.is_empty() => {
+            EmptyState::empty(Message::new(
+                "No run yet",
+                "Plan what shall be touched. Every touch is on disk before the next one begins.",
+            ))
+            .show(ui);
+        }
+        TouchPhase::Idle => padded(ui, |ui| unfinished(ui, cx)),
+        TouchPhase::Planning => {
+            EmptyState::loading("Looks which targets the arm reaches").show(ui);
+        }
+        _ => padded(ui, |ui| {
+            head(ui, cx);
+            ui.add_space(space::S);
+            if let Some(found) = &cx.view.touch.figures {
+                figures(ui, found);
+                ui.add_space(space::S);
+            }
+            list(ui, cx);
+        }),
+    }
+}
+
+/// The state of the run in a sentence, with what can be done.
+fn head(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let touch = &cx.view.touch;
+    match &touch.phase {
+        TouchPhase::Waiting { what, prepare } => {
+            warning(ui, what);
+            ui.add_space(space::XS);
+            ui.horizontal(|ui| {
+                if prepare.is_some() {
+                    action_button(ui, cx, "Done, go on", TouchAction::Prepared);
+                }
+                action_button(ui, cx, "Skip", TouchAction::Skip);
+                finish_button(ui, cx);
+            });
+        }
+        TouchPhase::Running { number, doing } => {
+            progress(ui, touch);
+            ui.label(format!("Touch {number}: {doing}"));
+            ui.horizontal(|ui| {
+                action_button(ui, cx, "Pause", TouchAction::Pause);
+                action_button(ui, cx, "Skip", TouchAction::Skip);
+                finish_button(ui, cx);
+            });
+        }
+        TouchPhase::Paused { why } => {
+            progress(ui, touch);
+            match why {
+                Some(why) => warning(ui, why),
+                None => {
+                    ui.label(theme::weak(ui, "Paused. All touches are on disk."));
+                }
+            }
+            ui.horizontal(|ui| {
+                let label = format!("Go on with touch {}", done_of(touch.counts) + 1);
+                action_button(ui, cx, &label, TouchAction::Resume);
+                action_button(ui, cx, "Skip", TouchAction::Skip);
+                finish_button(ui, cx);
+            });
+        }
+        TouchPhase::Finished => finished(ui, cx),
+        TouchPhase::Planned | TouchPhase::Idle | TouchPhase::Planning => {
+            ui.label(theme::weak(ui, "Planned. Nothing was touched yet."));
+        }
+    }
+}
+
+fn finished(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let counts = cx.view.touch.counts;
+    let mut text = format!("Finished: {} count", words::touches(counts.touched));
+    let rest =
+        [(counts.missed, "without contact"), (counts.skipped, "skipped"), (counts.rejected, "rejected")];
+    for (count, what) in rest.into_iter().filter(|(count, _)| *count > 0) {
+        text.push_str(&format!(", {count} {what}"));
+    }
+    ui.label(RichText::new(format!("{text}.")).color(theme::tokens(ui).text_strong));
+    if let Some(name) = cx.view.touch.session.as_ref().and_then(|path| path.file_name()) {
+        ui.label(theme::small(ui, format!("Session {}", name.to_string_lossy())));
+    }
+    ui.horizontal(|ui| {
+        action_button(ui, cx, "Close the run", TouchAction::Close);
+        if ui.button("Go to Models").clicked() {
+            cx.outbox.act(Action::Go(Screen::Models));
+        }
+    });
+}
+
+/// Asks once more in place: what is left of the plan would have to be begun anew.
+fn finish_button(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let asked = cx.state.touch.finishing;
+    let text = if asked { "Finish now" } else { "Finish" };
+    if ui.button(text).on_hover_text("Ends the run with what there is; the session stays").clicked() {
+        cx.state.touch.finishing = !asked;
+        if asked {
+            cx.outbox.act(Action::Touch(TouchAction::Finish));
+        }
+    }
+    if asked && ui.button("Not yet").clicked() {
+        cx.state.touch.finishing = false;
+    }
+}
+
+fn progress(ui: &mut Ui, touch: &TouchView) {
+    let (done, wanted) = (done_of(touch.counts), wanted(touch.counts));
+    let fraction = if wanted > 0 { done as f64 / wanted as f64 } else { 0.0 };
+    ui.horizontal(|ui| {
+        ui.label(theme::strong(ui, format!("{done} of {wanted}")));
+        let width = (ui.available_width() - 90.0).clamp(60.0, 260.0);
+        progress_bar(ui, "Touches done", fraction, vec2(width, 6.0));
+        if let Some(left) = touch.remaining.filter(|_| is_under_way(&touch.phase)) {
+            ui.label(theme::weak(ui, format::time_left(left)));
+        }
+    });
+}
+
+fn figures(ui: &mut Ui, found: &TouchFigures) {
+    let [low, high] = found.mean_interval_m;
+    let [right, near] = found.bias_m;
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(space::L, space::XS);
+        let half = (high - low) / 2.0;
+        let mean =
+            big_figure(ui, "mean error, ± 95 %", &format::mm_with(found.mean_m, half), Role::Difference);
+        mean.on_hover_text(format!(
+            "Distance of touch and target in the glass over {}; between {} and {} in 95 of 100 cases",
+            words::touches(found.count),
+            format::mm(low),
+            format::mm(high)
+        ));
+        big_figure(ui, "largest", &format::mm(found.largest_m), Role::Ink);
+        let bias = format!("{}, {}", format::mm(right), format::mm(near));
+        big_figure(ui, "bias: to the right, toward the robot", &bias, Role::Ink);
+        let noise = found.noise_m.map_or("—".to_owned(), format::mm);
+        let label =
+            if found.noise_m.is_some() { "noise floor of repeats" } else { "noise floor: no repeats" };
+        big_figure(ui, label, &noise, Role::NoiseFloor);
+    });
+}
+
+/// What has become of touches, newest first; without any, what is to come.
+fn list(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let touch = cx.view.touch.clone();
+    let mut ended: Vec<&TouchState> = touch.touches.iter().filter(|one| has_ended(one)).collect();
+    // The order of work is that of the numbers; the newest is the highest of them.
+    ended.reverse();
+    if ended.is_empty() {
+        return;
+    }
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        for one in ended {
+            row(ui, cx, one);
+        }
+    });
+}
+
+fn has_ended(touch: &TouchState) -> bool {
+    matches!(
+        touch.outcome,
+        TouchOutcome::Touched | TouchOutcome::Missed(_) | TouchOutcome::Skipped | TouchOutcome::Rejected
+    )
+}
+
+fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, touch: &TouchState) {
+    let chosen = cx.state.touch.chosen == Some(touch.number);
+    let role = match touch.outcome {
+        TouchOutcome::Missed(_) => Role::Warning,
+        TouchOutcome::Touched => Role::Ink,
+        _ => Role::Weak,
+    };
+    let text = format!("{:>3}   {}", touch.number, words::outcome(touch));
+    let text = RichText::new(text).color(role.color(theme::tokens(ui)));
+    let button =
+        ui.add(Button::selectable(chosen, text).truncate().min_size(vec2(ui.available_width(), 22.0)));
+    let about = error_length_m(touch).map_or_else(String::new, |_| format!(", set {}", touch.set));
+    if button.on_hover_text(format!("Touch {}{about}", touch.number)).clicked() {
+        cx.state.touch.chosen = (!chosen).then_some(touch.number);
+    }
+}
+
+/// Runs that were begun and not finished.
+fn unfinished(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    ui.add_space(space::XS);
+    ui.label(theme::strong(ui, "Begun and not finished"));
+    ui.label(theme::weak(ui, "They go on exactly where they were."));
+    ui.add_space(space::S);
+    for run in cx.view.touch.unfinished.iter() {
+        let age = jiff::Timestamp::now().duration_since(run.started);
+        let age = format::age(std::time::Duration::try_from(age).unwrap_or_default());
+        ui.horizontal_wrapped(|ui| {
+            let label = format!("Open: {} of {}", run.touched, run.planned);
+            if ui.button(&label).clicked() {
+                cx.outbox.send(TouchCommand::Open { session: run.session.clone() });
+            }
+            ui.label(theme::weak(ui, format!("{}, begun {age}", words::purpose(run.purpose).to_lowercase())));
+        });
+    }
+}

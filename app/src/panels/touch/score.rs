@@ -1,0 +1,61 @@
+//! What a plan will be able to tell apart, in plain words.
+
+use egui::{CollapsingHeader, Ui};
+use plumbline_engine::effects::observability::{EffectVisibility, PlanScore};
+use plumbline_widgets::format;
+use plumbline_widgets::theme::{self, Role, space};
+
+/// So many rows are enough to judge by.
+const ROWS: usize = 12;
+
+pub fn show(ui: &mut Ui, score: &PlanScore) {
+    let seen = score.seen.iter().filter(|effect| effect.is_seen()).count();
+    ui.add_space(space::XS);
+    ui.label(theme::weak(ui, sentence(score, seen)));
+    if let Some(advice) = score.advice.first() {
+        ui.label(theme::weak(ui, format!("To learn more: {}", uncapitalized(&advice.sentence))));
+    }
+    let shown = CollapsingHeader::new("What the touches will tell").id_salt("plan score");
+    shown.show(ui, |ui| {
+        ui.label(theme::small(ui, "Cause, and how far a usual one stands out of the noise"));
+        for effect in score.seen.iter().take(ROWS) {
+            row(ui, effect);
+        }
+        let rest = score.seen.len().saturating_sub(ROWS);
+        if rest > 0 {
+            ui.label(theme::small(ui, format!("and {rest} that show less")));
+        }
+    });
+}
+
+fn sentence(score: &PlanScore, seen: usize) -> String {
+    if seen == 0 {
+        return "No cause of errors would stand out of the noise: more targets are needed.".to_owned();
+    }
+    let alike: usize = score.alike.iter().map(Vec::len).sum();
+    let mixed = match alike {
+        0 => "all of them look different".to_owned(),
+        n => format!("{n} of them look like another one"),
+    };
+    format!("The touches will show {seen} of {} possible causes of errors; {mixed}.", score.candidates)
+}
+
+fn row(ui: &mut Ui, effect: &EffectVisibility) {
+    ui.horizontal(|ui| {
+        let role = if effect.is_seen() { Role::Ink } else { Role::Weak };
+        let color = role.color(theme::tokens(ui));
+        let times = format!("{} ×", format::significant(effect.sigmas, 2));
+        ui.add_sized([52.0, 16.0], egui::Label::new(egui::RichText::new(times).color(color)));
+        let title = egui::Label::new(egui::RichText::new(&effect.title).color(color)).truncate();
+        ui.add(title).on_hover_text(format!(
+            "{}: doubt left when every other cause may be there, too: {}",
+            effect.title,
+            format::percent(effect.doubt_left)
+        ));
+    });
+}
+
+fn uncapitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+}

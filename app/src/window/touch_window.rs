@@ -1,1 +1,0 @@
-//! The touch window: a second window, full screen on the touch monitor.

@@ -1,0 +1,295 @@
+//! Touching the screen: each state is drawn, and each button asks for what it says.
+
+use std::sync::Arc;
+
+use egui::{Event, Modifiers, PointerButton, Pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
+use plumbline_engine::view::{ContactSource, TouchPhase, TouchView};
+use plumbline_engine::{Command, ScreenWindow, TouchCommand, View};
+use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose, TouchArea};
+
+use crate::fake::{Fake, click, says, shows};
+use crate::made_up::{connected, with_robot};
+use crate::made_up_touch::{
+    after, area, idle, next_number, placement, planned, running, screen, unfinished, with_touch,
+};
+
+fn on_touch() -> WindowSettings {
+    WindowSettings { screen: Screen::Touch, ..WindowSettings::default() }
+}
+
+fn window(view: View) -> (Fake, Harness<'static, PlumblineWindow>) {
+    let fake = Fake::over(view);
+    let window = fake.window(on_touch());
+    (fake, window)
+}
+
+fn sent(fake: &Fake) -> Vec<TouchCommand> {
+    let only = |command| if let Command::Touch(command) = command { Some(command) } else { None };
+    fake.take_sent().into_iter().filter_map(only).collect()
+}
+
+/// Presses the one button of the bottom line.
+fn press_next(window: &mut Harness<'_, PlumblineWindow>, label: &str) {
+    let found: Vec<_> = window.get_all_by_label(label).collect();
+    found.last().unwrap_or_else(|| panic!("nothing is called {label:?}")).click();
+    window.run_steps(3);
+}
+
+fn first_plan() -> TouchView {
+    planned(PlanOptions::first(area()))
+}
+
+fn paused() -> TouchView {
+    after(34, TouchPhase::Paused { why: None })
+}
+
+#[test]
+fn without_a_robot_it_says_what_to_connect() {
+    let (_, window) = window(View::default());
+    assert!(shows(&window, "No touchscreen is known"));
+    assert!(says(&window, "No robot is connected"));
+}
+
+#[test]
+fn one_button_leads_through_the_work() {
+    let proposed =
+        TouchView { placement_proposal: Some(Arc::new(placement())), ..after(8, TouchPhase::Finished) };
+    let prepare = Some((0.03, 0.0));
+    let what = "Raise the screen by 30 mm, then go on.".to_owned();
+    let reachable = first_plan().plan.expect("planned").reachable;
+    let resumed = paused();
+    let done =
+        resumed.counts.touched + resumed.counts.missed + resumed.counts.skipped + resumed.counts.rejected;
+    for (touch, button, wanted) in [
+        (
+            idle(),
+            "Plan to touch the corners".to_owned(),
+            TouchCommand::Plan(PlanOptions::place_screen(area())),
+        ),
+        (
+            TouchView { placement: Some(Arc::new(placement())), screen: Some(screen()), ..idle() },
+            "Plan a first calibration".to_owned(),
+            TouchCommand::Plan(PlanOptions::first(area())),
+        ),
+        (
+            TouchView { unfinished: Arc::from([unfinished()]), ..idle() },
+            "Open the unfinished run".to_owned(),
+            TouchCommand::Open { session: unfinished().session },
+        ),
+        (first_plan(), format!("Touch {reachable} targets"), TouchCommand::Start),
+        (running(), "Pause".to_owned(), TouchCommand::Pause),
+        (resumed, format!("Go on with touch {}", done + 1), TouchCommand::Resume),
+        (
+            after(12, TouchPhase::Waiting { what, prepare }),
+            "Done, go on".to_owned(),
+            TouchCommand::Prepared { screen_height_m: 0.03, payload_kg: 0.0 },
+        ),
+        (proposed, "Use this place of the screen".to_owned(), TouchCommand::AcceptPlacement),
+    ] {
+        let (fake, mut window) = window(with_touch(touch));
+        press_next(&mut window, &button);
+        assert_eq!(sent(&fake), [wanted], "{button}");
+    }
+}
+
+#[test]
+fn a_finished_training_run_leads_to_the_models() {
+    let (fake, mut window) = window(with_touch(after(200, TouchPhase::Finished)));
+    assert!(says(&window, "Finished: "));
+    press_next(&mut window, "Train models");
+    assert_eq!(sent(&fake), []);
+    assert!(!says(&window, "Finished: "), "another screen is open");
+}
+
+#[test]
+fn what_moves_is_said_before_it_moves() {
+    let (_, window) = window(with_touch(first_plan()));
+    assert!(says(&window, "The right arm touches the glass"));
+    assert!(says(&window, "the head and the left arm stay"));
+    assert!(says(&window, "left out: the arm is too short"), "why some are not touched");
+    assert!(says(&window, "possible causes of errors"), "what the plan will tell");
+}
+
+#[test]
+fn nothing_starts_while_stop_is_latched() {
+    let robot = plumbline_engine::view::RobotView { stopped: true, ..connected() };
+    let view = View { touch: Arc::new(first_plan()), ..with_robot(robot) };
+    let (fake, mut window) = window(view);
+    assert!(says(&window, "Stopped: nothing moves"));
+    window.key_press_modifiers(Modifiers::COMMAND, egui::Key::Enter);
+    window.run_steps(2);
+    assert_eq!(sent(&fake), []);
+}
+
+#[test]
+fn while_it_runs_the_window_says_how_far_it_is_and_stop_is_there() {
+    let (fake, mut window) = window(with_touch(running()));
+    let number = next_number(&after(30, TouchPhase::Finished));
+    assert!(says(&window, &format!("settling above target {number}")));
+    assert!(says(&window, "5:30 left"));
+    assert!(says(&window, "5.12 ± 0.40 mm") && says(&window, "noise floor of repeats"));
+    assert!(shows(&window, "STOP"));
+    click(&mut window, "Skip");
+    assert_eq!(sent(&fake), [TouchCommand::Skip]);
+    // Finishing early is asked about once more.
+    click(&mut window, "Finish");
+    assert_eq!(sent(&fake), []);
+    click(&mut window, "Finish now");
+    assert_eq!(sent(&fake), [TouchCommand::Finish]);
+    window.key_press(egui::Key::Escape);
+    window.run_steps(1);
+    assert!(fake.take_stops() > 0, "Esc stops");
+}
+
+#[test]
+fn a_pause_says_why() {
+    let why = Some("no contact three times in a row: look at the finger".to_owned());
+    let (_, window) = window(with_touch(after(20, TouchPhase::Paused { why })));
+    assert!(says(&window, "No contact three times in a row"));
+}
+
+#[test]
+fn a_touch_is_chosen_on_the_map_and_rejected_restored_done_again() {
+    let (fake, mut window) = window(with_touch(paused()));
+    let labels = |window: &Harness<'_, PlumblineWindow>, text: &str| -> String {
+        let node = window.query_all_by_label_contains(text).next().expect("on the map");
+        egui_kittest::kittest::NodeT::accesskit_node(&node).label().expect("has a label")
+    };
+    let touched = labels(&window, "mm off");
+    click(&mut window, &touched);
+    let number: usize = touched
+        .trim_start_matches("touch ")
+        .split([':', ' '])
+        .next()
+        .and_then(|number| number.trim().parse().ok())
+        .expect("begins with its number");
+    click(&mut window, &format!("Reject touch {number}"));
+    assert_eq!(sent(&fake), [TouchCommand::Reject { number }]);
+    click(&mut window, &format!("Redo touch {number}"));
+    assert_eq!(sent(&fake), [TouchCommand::Redo { number }]);
+    let rejected = labels(&window, "does not count");
+    click(&mut window, &rejected);
+    let restore = labels(&window, "Restore touch");
+    click(&mut window, &restore);
+    assert!(matches!(sent(&fake).as_slice(), [TouchCommand::Restore { .. }]));
+}
+
+#[test]
+fn changes_of_the_plan_are_planned_by_themselves() {
+    let (fake, mut window) = window(with_touch(first_plan()));
+    click(&mut window, "Check");
+    assert_eq!(sent(&fake), [TouchCommand::Plan(PlanOptions::check_reach(area(), 20, 7))]);
+    let (fake, mut window) = self::window(with_touch(first_plan()));
+    click(&mut window, "Lines");
+    let all = sent(&fake);
+    let [TouchCommand::Plan(options)] = all.as_slice() else { panic!("planned once: {all:?}") };
+    assert!(!options.patterns.iter().any(|pattern| matches!(pattern, Pattern::Lines { .. })));
+    assert_eq!(options.purpose, Purpose::Train);
+}
+
+#[test]
+fn the_area_is_dragged_on_the_drawing_of_the_screen() {
+    let (fake, mut window) = window(with_touch(first_plan()));
+    let map = window.get_by_label("Touches on the screen").rect();
+    // From the middle of the area by a fifth of its width to the right and a little down: it
+    // would leave the screen and stays on it.
+    let from = map.center();
+    let to = from + egui::vec2(0.2 * map.width(), 4.0);
+    drag(&mut window, from, to);
+    let all = sent(&fake);
+    let [TouchCommand::Plan(options)] = all.as_slice() else { panic!("planned once: {all:?}") };
+    let TouchArea { u_px, .. } = options.area;
+    assert_eq!(u_px[1], f64::from(screen().width_px - 1));
+    assert!((u_px[1] - u_px[0] - (area().u_px[1] - area().u_px[0])).abs() <= 1.0, "keeps its size");
+}
+
+fn drag(window: &mut Harness<'_, PlumblineWindow>, from: Pos2, to: Pos2) {
+    let button = |pos, pressed| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    window.event(Event::PointerMoved(from));
+    window.run_steps(2);
+    window.event(button(from, true));
+    window.run_steps(2);
+    for part in 1..=4 {
+        window.event(Event::PointerMoved(from + (to - from) * (part as f32 / 4.0)));
+        window.run_steps(1);
+    }
+    window.event(button(to, false));
+    window.run_steps(3);
+}
+
+#[test]
+fn the_place_of_the_screen_is_shown_with_its_uncertainty() {
+    let touch = TouchView {
+        placement_proposal: Some(Arc::new(placement())),
+        placement: Some(Arc::new(placement())),
+        ..after(8, TouchPhase::Finished)
+    };
+    let (fake, mut window) = window(with_touch(touch));
+    for words in ["4.20 ± 0.50", "1.146 ± 0.057", "Touch 3 fits less well"] {
+        assert!(says(&window, words), "{words}");
+    }
+    click(&mut window, "Discard proposal");
+    assert_eq!(sent(&fake), [TouchCommand::DiscardPlacement]);
+    click(&mut window, "Use nominal");
+    assert_eq!(sent(&fake), [TouchCommand::UseNominalPlacement]);
+}
+
+#[test]
+fn a_real_touchscreen_needs_the_touch_window_first() {
+    let touch = TouchView { source: ContactSource::Window, ..first_plan() };
+    let (fake, mut window) = window(with_touch(touch.clone()));
+    press_next(&mut window, "Open the touch window");
+    let all = sent(&fake);
+    let [TouchCommand::Window(Some(shown))] = all.as_slice() else { panic!("it is open: {all:?}") };
+    assert!(!shown.full_screen && shown.width_px > 100);
+    assert!(shows(&window, "Touch window"));
+    click(&mut window, "Close touch window");
+    assert_eq!(sent(&fake), [TouchCommand::Window(None)]);
+    // Not full screen: nothing begins, and it says why.
+    let shown = ScreenWindow { width_px: 960, height_px: 540, full_screen: false };
+    let (fake, mut window) = self::window(with_touch(TouchView { window: Some(shown), ..touch }));
+    assert!(says(&window, "press F11"));
+    window.key_press_modifiers(Modifiers::COMMAND, egui::Key::Enter);
+    window.run_steps(2);
+    assert_eq!(sent(&fake), []);
+}
+
+/// With `PLUMBLINE_WINDOW_PICTURES=<folder>` drawn into PNGs there.
+#[test]
+fn pictures_of_touching() {
+    let Some(folder) = std::env::var_os("PLUMBLINE_WINDOW_PICTURES").map(std::path::PathBuf::from) else {
+        return;
+    };
+    let what = "Raise the screen by 30 mm: put the block under it, then go on.".to_owned();
+    let waiting = after(12, TouchPhase::Waiting { what, prepare: Some((0.03, 0.0)) });
+    let placed = TouchView {
+        placement_proposal: Some(Arc::new(placement())),
+        placement: Some(Arc::new(placement())),
+        ..after(200, TouchPhase::Finished)
+    };
+    for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
+        for (name, touch) in [
+            ("idle", idle()),
+            ("planned", first_plan()),
+            ("running", running()),
+            ("waiting", waiting.clone()),
+            ("finished", placed.clone()),
+        ] {
+            let fake = Fake::over(with_touch(touch));
+            let settings = WindowSettings { theme, ..on_touch() };
+            let mut window = fake.window_with(settings, [1280.0, 800.0], true);
+            window.run_steps(2);
+            let image = window.render().expect("the test renderer draws");
+            let file = format!("touch {name} {theme:?}.png").to_lowercase().replace(' ', "-");
+            image.save(folder.join(file)).expect("the folder can be written");
+        }
+    }
+}
