@@ -1,5 +1,7 @@
 //! In which order targets are touched.
 
+use nalgebra::Vector2;
+
 use super::pattern::Target;
 use super::{PlanOptions, PlannedTouch, Side};
 use crate::session::Touchscreen;
@@ -55,9 +57,12 @@ fn thousandths(value: f64) -> f64 {
 fn block(options: &PlanOptions, targets: &[Target], screen: &Touchscreen) -> Vec<(usize, Side)> {
     let times = |target: usize| targets[target].times * options.repeats;
     let passes = (0..targets.len()).map(times).max().unwrap_or_default();
+    let [u_m, v_m] = screen.pitch_m();
+    let place = |target: &Target| Vector2::new(target.pixel.u_px * u_m, target.pixel.v_px * v_m);
+    let places: Vec<Vector2<f64>> = targets.iter().map(place).collect();
     let mut pass_of: Vec<Vec<usize>> = vec![vec![]; passes];
     let mut dealt = 0;
-    for target in tour(&(0..targets.len()).collect::<Vec<_>>(), targets, screen) {
+    for target in tour(&(0..targets.len()).collect::<Vec<_>>(), &places) {
         let count = times(target);
         for k in 0..count {
             // Evenly over the run; the first pass rotates from target to target.
@@ -67,7 +72,7 @@ fn block(options: &PlanOptions, targets: &[Target], screen: &Touchscreen) -> Vec
     }
     let mut order: Vec<(usize, Side)> = vec![];
     for (i, members) in pass_of.iter().enumerate() {
-        let mut way = tour(members, targets, screen);
+        let mut way = tour(members, &places);
         for (k, &side) in options.sides.all().iter().enumerate() {
             if (i + k) % 2 == 1 {
                 way.reverse();
@@ -83,46 +88,76 @@ fn block(options: &PlanOptions, targets: &[Target], screen: &Touchscreen) -> Vec
     order
 }
 
-/// A short way through targets: nearest neighbor from the far left corner, then sections are
-/// turned around while that shortens it (2-opt).
-fn tour(members: &[usize], targets: &[Target], screen: &Touchscreen) -> Vec<usize> {
-    let [u_m, v_m] = screen.pitch_m();
-    let at = |i: usize| (targets[i].pixel.u_px * u_m, targets[i].pixel.v_px * v_m);
-    let apart = |a: usize, b: usize| (at(a).0 - at(b).0).hypot(at(a).1 - at(b).1);
+/// Neighbors that are tried when a way is shortened.
+const NEIGHBORS: usize = 10;
+/// Rounds of shortening; way after way, the first few bring nearly all.
+const ROUNDS: usize = 20;
+
+/// A short way through places (m): nearest neighbor from the far left corner, then sections are
+/// turned around while that shortens it (2-opt among near neighbors). `members` are positions in
+/// `places`.
+fn tour(members: &[usize], places: &[Vector2<f64>]) -> Vec<usize> {
     let mut left = members.to_vec();
-    let corner = |&i: &usize| at(i).0 + at(i).1;
-    let Some(first) = (0..left.len()).min_by(|&a, &b| corner(&left[a]).total_cmp(&corner(&left[b]))) else {
-        return left;
-    };
-    let mut way = vec![left.swap_remove(first)];
-    while let Some(&here) = way.last() {
-        let next = (0..left.len()).min_by(|&a, &b| apart(here, left[a]).total_cmp(&apart(here, left[b])));
-        let Some(next) = next else { break };
-        way.push(left.swap_remove(next));
+    let mut way = vec![];
+    // The corner itself is not touched: the place nearest to it comes first.
+    let corner = left.iter().fold(Vector2::repeat(f64::INFINITY), |least, &i| least.inf(&places[i]));
+    let mut here = corner;
+    let apart = |here: &Vector2<f64>, i: usize| (places[i] - here).norm_squared();
+    while let Some(next) =
+        (0..left.len()).min_by(|&a, &b| apart(&here, left[a]).total_cmp(&apart(&here, left[b])))
+    {
+        let target = left.swap_remove(next);
+        here = places[target];
+        way.push(target);
     }
-    shorten(&mut way, &apart);
+    shorten(&mut way, places);
     way
 }
 
-/// Turns sections of a way around while that shortens it; its first place stays. A few rounds
-/// are enough, and bound the time for the largest plans.
-fn shorten(way: &mut [usize], apart: &dyn Fn(usize, usize) -> f64) {
-    for _ in 0..20 {
+/// Turns sections of a way around while that shortens it; its first place stays.
+fn shorten(way: &mut [usize], places: &[Vector2<f64>]) {
+    let apart = |a: usize, b: usize| (places[a] - places[b]).norm();
+    let near = neighbors(way, places);
+    let mut position = vec![0; places.len()];
+    way.iter().enumerate().for_each(|(at, &place)| position[place] = at);
+    for _ in 0..ROUNDS {
         let mut shorter = false;
-        for i in 1..way.len().saturating_sub(1) {
-            for j in i + 1..way.len() {
-                let before =
-                    apart(way[i - 1], way[i]) + way.get(j + 1).map_or(0.0, |&next| apart(way[j], next));
-                let after =
-                    apart(way[i - 1], way[j]) + way.get(j + 1).map_or(0.0, |&next| apart(way[i], next));
-                if after < before - 1e-9 {
-                    way[i..=j].reverse();
-                    shorter = true;
-                }
+        for i in 1..way.len() {
+            let (from, to) = (way[i - 1], way[i]);
+            let step = apart(from, to);
+            // Replaces from→to and other→beyond by from→other and to→beyond.
+            let better = near[from].iter().map(|&other| position[other]).find(|&j| {
+                let gained = step - apart(from, way[j]);
+                j > i
+                    && gained
+                        > way.get(j + 1).map_or(0.0, |&beyond| apart(to, beyond) - apart(way[j], beyond))
+                            + 1e-9
+            });
+            if let Some(j) = better {
+                way[i..=j].reverse();
+                (i..=j).for_each(|at| position[way[at]] = at);
+                shorter = true;
             }
         }
         if !shorter {
             return;
         }
     }
+}
+
+/// The nearest others of each member, by its position in `places`; empty for those that are none.
+fn neighbors(members: &[usize], places: &[Vector2<f64>]) -> Vec<Vec<usize>> {
+    let mut near = vec![vec![]; places.len()];
+    for &member in members {
+        let apart = |&other: &usize| (places[other] - places[member]).norm_squared();
+        let nearer = |a: &usize, b: &usize| apart(a).total_cmp(&apart(b));
+        let mut others: Vec<usize> = members.iter().copied().filter(|&other| other != member).collect();
+        if others.len() > NEIGHBORS {
+            others.select_nth_unstable_by(NEIGHBORS, nearer);
+            others.truncate(NEIGHBORS);
+        }
+        others.sort_by(nearer);
+        near[member] = others;
+    }
+    near
 }

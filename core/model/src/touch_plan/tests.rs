@@ -126,6 +126,19 @@ fn ways_are_short() {
 }
 
 #[test]
+fn the_largest_plan_is_made_quickly() {
+    let start = std::time::Instant::now();
+    let plan = plan(&PlanOptions::check_reach(area(), MOST_TOUCHES, 4));
+    let took = start.elapsed();
+    println!(
+        "{} touches are planned in {took:.0?}, a way of {:.1} m",
+        plan.touches.len(),
+        way_m(&plan.touches)
+    );
+    assert!(took.as_secs_f64() < 2.0, "{took:?}");
+}
+
+#[test]
 fn what_needs_hands_changes_rarely() {
     let plan = plan(&PlanOptions::rich(area()));
     assert_eq!(plan.changes().len(), 5, "three heights with two weights each");
