@@ -68,7 +68,7 @@ fn noise<'a>(groups: impl Iterator<Item = &'a Vec<Vector2<f64>>>) -> (Option<f64
 
 /// Two-sided 95 % quantile of Student's t distribution.
 fn student_95(freedom: usize) -> f64 {
-    const FEW: [f64; 5] = [f64::INFINITY, 12.706, 4.303, 3.182, 2.776];
+    const FEW: [f64; 8] = [f64::INFINITY, 12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365];
     if let Some(quantile) = FEW.get(freedom) {
         return *quantile;
     }
@@ -89,7 +89,9 @@ mod tests {
 
     #[test]
     fn student_quantiles_are_those_of_the_tables() {
-        for (freedom, quantile) in [(1, 12.706), (5, 2.571), (10, 2.228), (30, 2.042), (1000, 1.962)] {
+        for (freedom, quantile) in
+            [(1, 12.706), (5, 2.571), (8, 2.306), (10, 2.228), (30, 2.042), (1000, 1.962)]
+        {
             assert!((student_95(freedom) - quantile).abs() < 2e-3, "{freedom}: {}", student_95(freedom));
         }
     }

@@ -168,8 +168,13 @@ impl Run {
     pub fn changed(&mut self) {
         self.revision += 1;
         if let Phase::Stuck(_) = self.phase {
-            self.phase = Phase::Paused(None);
+            self.phase = if self.progress.finished { Phase::Finished } else { Phase::Paused(None) };
         }
+    }
+
+    /// Whether everything that happened is on disk.
+    pub fn is_on_disk(&self) -> bool {
+        self.revision == self.written
     }
 
     /// What becomes of a planned touch, as it stands now.
@@ -215,7 +220,7 @@ impl Run {
         if self.task.is_some() || self.touch.is_some() {
             return;
         }
-        if self.revision != self.written {
+        if !self.is_on_disk() {
             if !matches!(self.phase, Phase::Stuck(_)) {
                 self.write(context);
             }
@@ -316,7 +321,7 @@ impl Run {
         let wanted = self.phase == Phase::Working
             && !self.pause
             && now.trouble.is_none()
-            && self.revision == self.written
+            && self.is_on_disk()
             && self.next().is_some_and(|aim| aim.touch.number == number);
         match order {
             Ok(order) if wanted => {
@@ -445,14 +450,18 @@ impl Run {
     }
 
     /// Leaves the touch out that is under way or next.
+    ///
+    /// # Errors
+    /// A sentence, when there is none.
     pub fn skip(&mut self, context: &mut Context<'_>) -> Result<(), String> {
         if let Some(touch) = &mut self.touch {
             touch.at_end = AtEnd::Skip;
             context.actions.push(Action::Robot(RobotControl::AbandonTouch));
             return Ok(());
         }
-        let number = self.next().map(|aim| aim.touch.number);
-        let number = number.ok_or("All touches are done, so there is none to skip.")?;
+        let next = self.next().filter(|_| self.phase != Phase::Finished);
+        let number =
+            next.map(|aim| aim.touch.number).ok_or("All touches are done, so there is none to skip.")?;
         self.end(number, Ended::Skipped);
         if let Phase::Preparing(_) = self.phase {
             self.phase = Phase::Working;
@@ -469,6 +478,7 @@ impl Run {
     /// Ends the run with what there is.
     pub fn finish_now(&mut self, now: &Now<'_>, context: &mut Context<'_>) {
         match &mut self.touch {
+            _ if self.progress.finished => {}
             Some(touch) => {
                 touch.at_end = AtEnd::Finish;
                 context.actions.push(Action::Robot(RobotControl::AbandonTouch));
@@ -486,6 +496,9 @@ impl Run {
     }
 
     /// The screen stands on a block, the hand carries a weight, as they should or not.
+    ///
+    /// # Errors
+    /// A sentence, when these are no numbers.
     pub fn prepared(&mut self, preparation: [f64; 2]) -> Result<(), String> {
         if preparation.iter().any(|value| !(value.is_finite() && *value >= 0.0)) {
             return Err("Height and weight must be numbers from zero on.".to_owned());

@@ -107,10 +107,7 @@ impl TouchWorkflow {
             TouchCommand::CorrectWith(method) => self.correct_with(method, around, context),
             TouchCommand::Start => self.start(around, context),
             TouchCommand::Open { session } => self.open(session, around, context),
-            TouchCommand::Close => {
-                self.close(context);
-                Ok(())
-            }
+            TouchCommand::Close => self.close(context),
             TouchCommand::AcceptPlacement => self.accept_placement(context),
             TouchCommand::DiscardPlacement => {
                 self.proposal = None;
@@ -249,12 +246,15 @@ impl TouchWorkflow {
         Ok(())
     }
 
-    fn close(&mut self, context: &mut Context<'_>) {
+    fn close(&mut self, context: &mut Context<'_>) -> Result<(), String> {
+        if self.run.as_ref().is_some_and(|run| !run.is_on_disk()) {
+            return Err("The last change is not on disk yet. Close when it is written.".to_owned());
+        }
         if let Some(id) = self.planning.take() {
             context.cancel(id);
         }
         (self.planned, self.options) = (None, None);
-        let Some(run) = self.run.take() else { return };
+        let Some(run) = self.run.take() else { return Ok(()) };
         if run.touch.is_some() {
             context.actions.push(Action::Robot(RobotControl::AbandonTouch));
         }
@@ -262,6 +262,7 @@ impl TouchWorkflow {
             self.runs.unfinished.insert(0, store::unfinished(&run.session, &run.progress));
         }
         self.last_session = Some(run.session);
+        Ok(())
     }
 
     fn accept_placement(&mut self, context: &mut Context<'_>) -> Result<(), String> {
@@ -583,7 +584,9 @@ fn redo(run: &mut Run, number: usize) -> Result<(), String> {
 fn model_of(around: &Surroundings<'_>, method: Method) -> Result<Arc<CorrectionModel>, String> {
     let model = around.models.iter().find(|model| model.method() == method).cloned();
     model.ok_or_else(|| {
-        format!("There is no model {} to correct targets with. Train it in step Models first.", method.name())
+        format!("There is no model {} to correct targets with. Train it in step Models first, or correct with none.",
+            method.name()
+        )
     })
 }
 
