@@ -10,8 +10,8 @@ use crate::format::Quantity;
 use crate::theme::{self, Role, space};
 
 const ROW: f32 = 34.0;
-const NAME_WIDTH: f32 = 108.0;
-const FIGURE_WIDTH: f32 = 132.0;
+const NAME_WIDTH: f32 = 102.0;
+const FIGURE_WIDTH: f32 = 118.0;
 /// Room for the numbers below.
 const AXIS: f32 = 20.0;
 /// Room for the names of the lines above.
@@ -142,8 +142,17 @@ struct Chart {
 
 impl Chart {
     fn new(all: &Intervals<'_>, rect: Rect) -> Self {
-        let ends = all.rows.iter().flat_map(|row| row.mean.into_iter().chain(row.interval.map(|i| i[1])));
-        let largest = ends.chain(all.levels.iter().map(|level| level.value)).fold(0.0, f64::max);
+        // What has an interval decides the scale: something far worse would squeeze together what
+        // has to be told apart.
+        let ends = |with_interval: bool| {
+            let rows = all.rows.iter().filter(move |row| row.interval.is_some() == with_interval);
+            rows.flat_map(|row| row.mean.into_iter().chain(row.interval.map(|interval| interval[1])))
+        };
+        let levels = all.levels.iter().map(|level| level.value);
+        let mut largest = ends(true).chain(levels).fold(0.0, f64::max);
+        if ends(true).next().is_none() {
+            largest = ends(false).fold(largest, f64::max);
+        }
         let on_screen = all.quantity.on_screen(1.0);
         let plot = Rect::from_min_max(
             pos2(rect.left() + NAME_WIDTH, rect.top() + HEAD),
@@ -197,7 +206,11 @@ impl Chart {
                 painter.vline(x, (y - 5.0)..=(y + 5.0), stroke);
             }
         }
-        if let Some(mean) = row.mean {
+        if row.mean.is_some_and(|mean| mean > self.end) {
+            // Off the scale; its figure stands beside it.
+            let foot = pos2(self.plot.right() - 18.0, y);
+            painter.arrow(foot, vec2(16.0, 0.0), Stroke::new(2.0, color));
+        } else if let Some(mean) = row.mean {
             painter.circle(Pos2::new(self.x(mean), y), 4.5, color, Stroke::new(1.5, tokens.panel));
         }
         let figure = quantity.text_or_none(row.mean);
@@ -248,10 +261,20 @@ mod tests {
     #[test]
     fn everything_fits_on_the_scale_which_begins_at_zero() {
         let rows = [row(Some(0.004), Some([0.003, 0.0063])), row(None, None)];
-        let levels = [Level { name: "no model", value: 0.0213, role: Role::Weak }];
+        let levels = [Level { name: "noise floor", value: 0.0213, role: Role::Weak }];
         let all = Intervals::new("test", &rows, Quantity::Length).levels(&levels);
         let chart = Chart::new(&all, Rect::from_min_size(Pos2::ZERO, vec2(600.0, 120.0)));
         assert!((chart.x(0.0) - chart.plot.left()).abs() < 1e-3);
         assert!(chart.x(0.0213) <= chart.plot.right() && chart.end < 0.03);
+    }
+
+    #[test]
+    fn what_has_no_interval_does_not_squeeze_the_others() {
+        let rows = [row(Some(0.004), Some([0.003, 0.005])), row(Some(0.08), None)];
+        let all = Intervals::new("test", &rows, Quantity::Length);
+        let chart = |all| Chart::new(all, Rect::from_min_size(Pos2::ZERO, vec2(600.0, 120.0)));
+        assert!(chart(&all).end < 0.007);
+        let alone = Intervals::new("test", &rows[1..], Quantity::Length);
+        assert!(chart(&alone).end >= 0.08);
     }
 }

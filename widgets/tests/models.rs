@@ -94,6 +94,11 @@ fn a_click_chooses_a_point_and_beside_them_says_where() {
     harness.run_steps(2);
     assert_eq!(harness.state().chosen_point, Some(2));
     assert_eq!(harness.state().last, "", "a click moves nothing");
+    // A long press is no drag either.
+    let at = point(&harness, 4);
+    drag(&mut harness, at, at + vec2(0.5, 0.5));
+    assert_eq!(harness.state().last, "");
+    assert_eq!(harness.state().chosen_point, Some(3));
     let map = harness.get_by_label("Points of the height table").rect();
     let at = map.right_top() + vec2(-12.0, 40.0);
     harness.hover_at(at);

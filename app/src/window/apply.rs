@@ -26,7 +26,7 @@ use super::robot_actions::RobotAction;
 use super::saving::save_picture;
 use super::script::ScriptStep;
 use super::settings::ThemeChoice;
-use super::steps::{Screen, default_arrangement};
+use super::steps::{Pane, Screen, default_arrangement};
 use super::touch_actions::{Preset, TouchAction};
 
 /// A message of the window itself.
@@ -341,7 +341,22 @@ impl PlumblineWindow {
         {
             self.settings.remember_source(spec);
         }
+        self.follow_the_models();
         self.dismiss_ended_jobs();
+    }
+
+    /// Training is watched; once there are proposals, they are compared.
+    fn follow_the_models(&mut self) {
+        let models = &self.view.models;
+        let now = (models.training, models.proposals.first().map(|model| Arc::as_ptr(model) as usize));
+        let before = std::mem::replace(&mut self.panels.models.seen, now);
+        let pane = match (before, now) {
+            ((false, _), (true, _)) => Pane::ModelTraining,
+            ((_, old), (false, Some(new))) if old != Some(new) => Pane::ModelComparison,
+            _ => return,
+        };
+        let tree = self.settings.arrangement(Screen::Models);
+        tree.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(shown) if *shown == pane));
     }
 
     /// What has ended well is in the messages; only trouble stays in the bottom line.

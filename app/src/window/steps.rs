@@ -227,22 +227,18 @@ fn mount(tiles: &mut Tiles<Pane>) -> TileId {
 }
 
 fn touch(tiles: &mut Tiles<Pane>) -> TileId {
-    let plan = tabs(tiles, &[Pane::TouchPlan]);
+    let plan = tabs(tiles, &[Pane::TouchPlan, Pane::Scene, Pane::Twin]);
     let map = tabs(tiles, &[Pane::TouchMap]);
-    let run = tabs(tiles, &[Pane::TouchRun]);
-    let place = tabs(tiles, &[Pane::ScreenPlace, Pane::Scene, Pane::Twin]);
-    let left = column(tiles, &[(plan, 1.55), (place, 1.0)]);
-    let right = column(tiles, &[(map, 1.15), (run, 1.0)]);
-    row(tiles, &[(left, 1.0), (right, 1.15)])
+    let run = tabs(tiles, &[Pane::TouchRun, Pane::ScreenPlace]);
+    let right = column(tiles, &[(map, 1.1), (run, 1.0)]);
+    row(tiles, &[(plan, 1.0), (right, 1.15)])
 }
 
 fn models(tiles: &mut Tiles<Pane>) -> TileId {
-    let training = tabs(tiles, &[Pane::ModelTraining]);
-    let comparison = tabs(tiles, &[Pane::ModelComparison]);
-    // Both are maps of the table that want height, and nobody looks at both at once.
+    // All want height. Training and comparison follow each other; nobody looks at both maps at once.
+    let work = tabs(tiles, &[Pane::ModelTraining, Pane::ModelComparison]);
     let maps = tabs(tiles, &[Pane::ModelMap, Pane::GraspTables]);
-    let left = column(tiles, &[(training, 1.0), (comparison, 1.0)]);
-    row(tiles, &[(left, 1.0), (maps, 1.15)])
+    row(tiles, &[(work, 1.0), (maps, 1.15)])
 }
 
 fn robot(tiles: &mut Tiles<Pane>) -> TileId {

@@ -9,6 +9,8 @@ use crate::theme;
 
 /// Distance that is still a hit, points.
 const GRAB: f32 = 11.0;
+/// Shorter drags are trembling of the hand, points.
+const LEAST_DRAG: f32 = 2.0;
 /// A press of an arrow key moves the chosen point by so much, meters.
 const NUDGE_M: f64 = 0.001;
 
@@ -62,9 +64,11 @@ pub(super) fn interact(
         }
         let pulled = pulled(ui, id, on_map, &response, at).map(|at| transform.to_table(at));
         if let Some(at_m) = pulled {
+            // A long press that does not move is a click, not a drag.
+            let moved = transform.to_screen(at_m).distance(at) >= LEAST_DRAG;
             if response.drag_stopped() {
-                done.moved = Some((i, at_m));
-            } else {
+                done.moved = moved.then_some((i, at_m));
+            } else if moved {
                 done.dragging = Some((i, at_m));
             }
         }

@@ -1,6 +1,6 @@
 //! A model over the table: what it corrects, what remains, and where the data end.
 
-use egui::{RichText, Ui, WidgetText};
+use egui::{Sense, Stroke, Ui, vec2};
 use plumbline_engine::ModelsCommand;
 use plumbline_engine::correction::Method;
 use plumbline_engine::view::{Field, ModelMap, ModelsView};
@@ -46,7 +46,6 @@ pub struct Drawn {
     border: Border,
     /// Mean lengths before and after, m.
     means_m: Option<[f64; 2]>,
-    scale: f64,
     headline: String,
 }
 
@@ -67,7 +66,6 @@ impl Drawn {
             sd: colors(sd, sd_end),
             shift: colors(shift, shift_end),
             means_m: means_m(map),
-            scale: arrow_scale(map),
             headline: headline(map),
             border,
             of: map.clone(),
@@ -97,9 +95,19 @@ impl Drawn {
                     after_m: (errors != Errors::Before).then_some(plane(touch.after_m)),
                 })
                 .collect(),
-            vector_scale: self.scale,
+            vector_scale: self.scale(errors),
             border: Some(self.border.clone()),
             ..TableScene::new()
+        }
+    }
+
+    /// Magnification of the arrows, by the longer ones of those that are shown.
+    fn scale(&self, errors: Errors) -> f64 {
+        match errors {
+            Errors::After => arrow_scale(self.of.touches.iter().map(|touch| length(touch.after_m))),
+            Errors::Before | Errors::Both => {
+                arrow_scale(self.of.touches.iter().map(|touch| length(touch.before_m)))
+            }
         }
     }
 
@@ -155,9 +163,9 @@ fn means_m(map: &ModelMap) -> Option<[f64; 2]> {
     })
 }
 
-/// A round magnification: 1, 2, 5, 10, …; the same before and after, so that they compare.
-fn arrow_scale(map: &ModelMap) -> f64 {
-    let mut lengths: Vec<f64> = map.touches.iter().map(|touch| length(touch.before_m)).collect();
+/// A round magnification that makes half of the arrows easy to see: 1, 2, 5, 10, …
+fn arrow_scale(lengths: impl Iterator<Item = f64>) -> f64 {
+    let mut lengths: Vec<f64> = lengths.collect();
     lengths.sort_by(f64::total_cmp);
     let median = lengths.get(lengths.len() / 2).copied().filter(|median| *median > 0.0);
     let wanted = median.map_or(1.0, |median| (ARROW_M / median).clamp(1.0, 100.0));
@@ -206,7 +214,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         let color = Role::Warning.color(theme::tokens(ui));
         ui.label(if warn { text.color(color) } else { text });
         ui.add_space(space::XS);
-        let legend_height = 40.0;
+        let legend_height = 62.0;
         let height = (ui.available_height() - legend_height).max(160.0);
         draw(ui, cx, &drawn, height);
         legend(ui, cx.state.models.errors, &drawn);
@@ -220,7 +228,7 @@ fn header(ui: &mut Ui, cx: &mut PanelContext<'_>, models: &ModelsView) {
     methods.extend(models.in_use.as_ref().map(|model| model.method()));
     methods.sort_unstable();
     methods.dedup();
-    ui.horizontal_wrapped(|ui| {
+    ui.horizontal(|ui| {
         if let Some(mut method) = shown {
             let options: Vec<(Method, &str)> =
                 methods.iter().map(|method| (*method, method.name())).collect();
@@ -229,8 +237,10 @@ fn header(ui: &mut Ui, cx: &mut PanelContext<'_>, models: &ModelsView) {
             }
             let proposed = models.map.as_ref().is_some_and(|map| map.proposed);
             ui.label(theme::small(ui, if proposed { "proposed" } else { "in use" }));
-            ui.add_space(space::S);
         }
+    });
+    // Rows of their own: choices do not wrap.
+    ui.horizontal(|ui| {
         let state = &mut cx.state.models;
         let errors = [(Errors::Before, "Before"), (Errors::After, "After"), (Errors::Both, "Both")];
         choice(ui, "Errors", &mut state.errors, &errors);
@@ -244,7 +254,7 @@ fn draw(ui: &mut Ui, cx: &PanelContext<'_>, drawn: &Drawn, height: f32) {
     let state = &cx.state.models;
     let scene = drawn.scene(state.errors);
     let words = |at_m| drawn.words(at_m);
-    let map = TableMap::new("Model over the table", &scene).words(&words).height(height);
+    let map = TableMap::new("Map of the model", &scene).words(&words).height(height);
     let field = match state.field {
         Shown::Uncertainty => &drawn.sd,
         Shown::Correction => &drawn.shift,
@@ -261,20 +271,35 @@ fn legend(ui: &mut Ui, errors: Errors, drawn: &Drawn) {
         ui.label(theme::small(ui, "The touches of this model are not known, so no errors can be drawn."));
         return;
     };
-    let tokens = theme::tokens(ui);
-    let entry = |role: Role, text: String| -> WidgetText {
-        RichText::new(text).text_style(egui::TextStyle::Small).color(role.color(tokens)).into()
-    };
-    ui.horizontal_wrapped(|ui| {
-        ui.label(theme::small(ui, format!("Arrows {}× longer than the error.", drawn.scale)));
-        if errors != Errors::After {
-            let text = format!("Before, without a model: {} on average.", format::mm(before));
-            ui.label(entry(BeforeAfter::BEFORE, text));
-        }
-        if errors != Errors::Before {
-            let text = format!("After, each touch held out: {} on average.", format::mm(after));
-            ui.label(entry(BeforeAfter::AFTER, text));
-        }
+    ui.spacing_mut().item_spacing.y = 2.0;
+    let scale = drawn.scale(errors);
+    let times =
+        if scale > 1.0 { format!("{scale} times as long as the error") } else { "in true length".to_owned() };
+    ui.label(theme::small(ui, format!("Arrows {times}.")));
+    if errors != Errors::After {
+        entry(
+            ui,
+            BeforeAfter::BEFORE,
+            &format!("Before, without a model: {} on average.", format::mm(before)),
+        );
+    }
+    if errors != Errors::Before {
+        entry(
+            ui,
+            BeforeAfter::AFTER,
+            &format!("After, each touch held out: {} on average.", format::mm(after)),
+        );
+    }
+}
+
+/// A line in the color that it has on the map, and what it means.
+fn entry(ui: &mut Ui, role: Role, text: &str) {
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(26.0, 14.0), Sense::hover());
+        ui.painter().rect_filled(rect, 3.0, theme::ON_IMAGE.panel);
+        let stroke = Stroke::new(2.0, role.color(&theme::ON_IMAGE));
+        ui.painter().hline(rect.shrink(5.0).x_range(), rect.center().y, stroke);
+        ui.label(theme::small(ui, text));
     });
 }
 
@@ -338,12 +363,13 @@ mod tests {
     #[test]
     fn arrows_before_and_after_have_one_round_scale_and_leave_the_height_out() {
         let drawn = Drawn::of(&Arc::new(map()));
-        assert_eq!(drawn.scale, 1.0);
+        assert_eq!(drawn.scale(Errors::Both), 1.0);
+        assert_eq!(drawn.scale(Errors::After), 5.0);
         let [before, after] = drawn.means_m.expect("touches");
         assert!((before - 0.021).abs() < 1e-12 && (after - 0.003).abs() < 1e-12);
-        let mut small = map();
-        small.touches.iter_mut().for_each(|touch| touch.before_m = [0.003, 0.0, 0.0]);
-        assert_eq!(arrow_scale(&small), 5.0);
+        assert_eq!(arrow_scale([0.003, 0.003, 0.5].into_iter()), 5.0);
+        assert_eq!(arrow_scale([0.0].into_iter()), 1.0);
+        assert_eq!(arrow_scale([].into_iter()), 1.0);
         let before = drawn.scene(Errors::Before).before_after;
         assert!(before.iter().all(|error| error.before_m.is_some() && error.after_m.is_none()));
     }

@@ -34,6 +34,8 @@ pub struct ModelsPanels {
     pub field: map::Shown,
     /// How the tables are looked at.
     pub tables: tables::TablesPanel,
+    /// Whether training ran and which proposal came first when it was looked last.
+    pub seen: (bool, Option<usize>),
     map: Memo<map::Drawn>,
     standing: Memo<verdict::Facts>,
 }
@@ -47,6 +49,7 @@ impl Default for ModelsPanels {
             errors: map::Errors::Both,
             field: map::Shown::Uncertainty,
             tables: tables::TablesPanel::default(),
+            seen: (false, None),
             map: Memo::default(),
             standing: Memo::default(),
         }

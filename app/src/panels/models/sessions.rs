@@ -74,18 +74,15 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, session: &TouchSession) {
     };
     let usable = session.problem.is_none();
     let color = if usable { theme::tokens(ui).text } else { theme::tokens(ui).text_weak };
-    let button = Button::selectable(chosen, RichText::new(text).color(color)).truncate();
+    let sense = if usable { egui::Sense::click() } else { egui::Sense::hover() };
+    let button = Button::selectable(chosen, RichText::new(text).color(color)).truncate().sense(sense);
     let size = vec2(ui.available_width(), ROW_HEIGHT);
-    let button = ui.add_enabled_ui(usable, |ui| {
-        // Left, because the lines are read below each other.
-        ui.allocate_ui_with_layout(size, egui::Layout::top_down_justified(egui::Align::Min), |ui| {
-            ui.add(button)
-        })
-        .inner
-    });
+    // Left, because the lines are read below each other.
+    let layout = egui::Layout::top_down_justified(egui::Align::Min);
+    let response = ui.allocate_ui_with_layout(size, layout, |ui| ui.add(button)).inner;
     let folder = session.folder.display().to_string();
     let words = session.problem.clone().map_or(folder.clone(), |problem| format!("{problem}\n{folder}"));
-    let response = button.inner.on_hover_text(&words).on_disabled_hover_text(&words);
+    let response = response.on_hover_text(&words);
     if response.clicked() && !chosen {
         cx.outbox.send(ModelsCommand::ChooseSession { session: session.folder.clone() });
     }

@@ -14,7 +14,7 @@ use plumbline_widgets::buttons::choice;
 use plumbline_widgets::colormap::{ColorScale, Colormap};
 use plumbline_widgets::format::Quantity;
 use plumbline_widgets::table_map::{Outline, Place, ScalarField, TableMap, TableScene};
-use plumbline_widgets::theme::{self, space};
+use plumbline_widgets::theme::{self, Role, space};
 
 use super::action_button;
 use crate::panels::{PanelContext, padded};
@@ -52,8 +52,8 @@ struct Moved {
 /// After this time a move that was not carried out is shown where it was.
 const ANSWER_WITHIN_S: u64 = 2;
 /// The part of the table that is shown where there are no points yet.
-const X_M: [f64; 2] = [0.15, 0.60];
-const Y_M: [f64; 2] = [-0.40, 0.40];
+const X_M: [f64; 2] = [0.20, 0.56];
+const Y_M: [f64; 2] = [-0.30, 0.30];
 /// Value of a point that is added where nothing is known: a palm just above the table, m.
 const FIRST_HEIGHT_M: f64 = 0.05;
 /// Height of the fields and the list below the map, points.
@@ -73,9 +73,11 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             edit_buttons(ui, cx, &tables, &rows);
             ui.add_space(space::XS);
             ui.columns(2, |columns| {
+                // Columns are justified by themselves, which tears sentences apart.
+                let layout = egui::Layout::top_down(egui::Align::Min);
                 if let [left, right] = columns {
-                    editor::show(left, cx, &rows);
-                    list::show(right, cx, &rows);
+                    left.with_layout(layout, |ui| editor::show(ui, cx, &rows));
+                    right.with_layout(layout, |ui| list::show(ui, cx, &rows));
                 }
             });
         });
@@ -148,7 +150,10 @@ fn hint(ui: &mut Ui, cx: &PanelContext<'_>, tables: &TablesView, rows: &[PointRo
         )
     };
     ui.label(theme::small(ui, text));
-    let _ = tables;
+    let color = Role::Warning.color(theme::tokens(ui));
+    for remark in &tables.remarks {
+        ui.label(theme::small(ui, remark).color(color));
+    }
 }
 
 fn words(table: GraspTable) -> &'static str {
@@ -252,7 +257,7 @@ fn edit_buttons(ui: &mut Ui, cx: &mut PanelContext<'_>, tables: &TablesView, row
     let (table, chosen) = (cx.state.models.tables.table, cx.state.models.tables.chosen);
     ui.horizontal_wrapped(|ui| {
         let adding = &mut cx.state.models.tables.adding;
-        if ui.add(Button::selectable(*adding, "Add at a click")).clicked() {
+        if ui.add(Button::new("Add at a click").selected(*adding)).clicked() {
             *adding = !*adding;
         }
         let here = ui.add_enabled(tables.palm.is_some(), Button::new("Add the arm's present pose"));
