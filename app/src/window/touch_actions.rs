@@ -258,10 +258,12 @@ fn start_refusal(view: &View) -> Refusal {
 }
 
 fn resume_refusal(view: &View) -> Refusal {
-    if !matches!(view.touch.phase, TouchPhase::Paused { .. }) {
-        return Some("no run is paused".into());
+    match view.touch.phase {
+        TouchPhase::Paused { .. } => arm_refusal(view),
+        // Waits for the disk: writing needs no arm.
+        TouchPhase::Waiting { prepare: None, .. } => None,
+        _ => Some("no run is paused".into()),
     }
-    arm_refusal(view)
 }
 
 #[cfg(test)]

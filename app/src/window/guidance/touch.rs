@@ -13,7 +13,7 @@ use crate::window::touch_actions::{Preset, TouchAction, is_under_way, needs_wind
 pub(super) fn touch(view: &View) -> Guidance {
     let touch = &view.touch;
     match &touch.phase {
-        TouchPhase::Running { number, doing } => running(touch, *number, doing),
+        TouchPhase::Running { doing, .. } => running(touch, doing),
         TouchPhase::Waiting { what, prepare } => waiting(what, prepare.is_some()),
         _ => {
             if let Some(trouble) = robot::trouble(&view.robot).or_else(|| robot::under_way(view)) {
@@ -40,16 +40,20 @@ fn standing(view: &View) -> Guidance {
     }
 }
 
-fn running(touch: &TouchView, number: usize, doing: &str) -> Guidance {
-    let counts = touch.counts;
+fn running(touch: &TouchView, doing: &str) -> Guidance {
+    let (done, wanted) = (done_of(touch.counts), wanted(touch.counts));
     let left = touch.remaining.map_or_else(String::new, |left| format!(" {}.", format::time_left(left)));
-    say(format!("{} of {}: {doing}.{left} Esc or space stops.", number, counts.planned))
+    say(format!("{done} of {wanted} done. The arm is {doing}.{left} Esc or space stops."))
         .then("Pause", Action::Touch(TouchAction::Pause))
 }
 
 fn waiting(what: &str, prepare: bool) -> Guidance {
     let guidance = say(what).warn();
-    if prepare { guidance.then("Done, go on", Action::Touch(TouchAction::Prepared)) } else { guidance }
+    if prepare {
+        guidance.then("Done, go on", Action::Touch(TouchAction::Prepared))
+    } else {
+        guidance.then("Try again", Action::Touch(TouchAction::Resume))
+    }
 }
 
 /// What moves, and what stays.

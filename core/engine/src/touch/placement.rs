@@ -42,7 +42,10 @@ pub fn place(rig: &Rig, joints: &[String], touches: &[TouchRecord]) -> Result<Sc
     };
     // On a block the screen lies elsewhere; a weight bends the arm.
     let as_it_lies = |touch: &&TouchRecord| touch.screen_height_m == 0.0 && touch.payload_kg == 0.0;
-    let fingertips: Vec<_> = touches.iter().filter(as_it_lies).filter_map(fingertip).collect();
+    // A contact beside the image is a defect of the panel.
+    let on_image = |touch: &&TouchRecord| rig.touchscreen.contains(touch.touched);
+    let usable = touches.iter().filter(as_it_lies).filter(on_image);
+    let fingertips: Vec<_> = usable.filter_map(fingertip).collect();
     let placed = place_screen(&rig.touchscreen, &fingertips);
     placed.map(|placement| placement.of_rig(&rig.name)).map_err(|error| sentence(&error.to_string()))
 }

@@ -143,7 +143,9 @@ impl TouchWorkflow {
             TouchCommand::Pause if run.phase == Phase::Working => run.pause = true,
             TouchCommand::Pause => {}
             TouchCommand::Resume => {
-                if let (Some(trouble), false) = (&now.trouble, run.progress.finished) {
+                // Writing to disk needs no arm.
+                let needs_arm = !run.progress.finished && !matches!(run.phase, Phase::Stuck(_));
+                if let (Some(trouble), true) = (&now.trouble, needs_arm) {
                     return Err(trouble.clone());
                 }
                 if run.phase != Phase::Working || run.pause {

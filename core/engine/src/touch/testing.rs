@@ -155,6 +155,14 @@ impl Desk {
         }
     }
 
+    /// Work that was held ends as if it had been cancelled.
+    pub fn cancel(&mut self) {
+        while let Some((id, _)) = self.waiting.pop_front() {
+            self.workflow.work_ended(id);
+        }
+    }
+
+    /// Applies a command.
     pub fn apply(&mut self, command: TouchCommand) {
         self.with(|workflow, around, context| workflow.apply(command, around, context));
     }

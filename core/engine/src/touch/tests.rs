@@ -138,6 +138,8 @@ fn without_room_on_disk_nothing_moves_until_it_is_written() {
     assert_eq!(desk.view().touches[0].outcome, TouchOutcome::UnderWay, "touched means on disk");
     desk.apply(TouchCommand::Resume);
     assert!(desk.order().is_none() && matches!(desk.view().phase, TouchPhase::Waiting { .. }));
+    desk.apply(TouchCommand::Close);
+    assert!(desk.said().contains("not on disk yet") && desk.view().session.is_some());
     fs::remove_dir_all(session.join(names::TOUCHES)).expect("removed");
     desk.apply(TouchCommand::Resume);
     assert_eq!((rows(&session), desk.order().map(|order| order.number)), (1, Some(2)));
@@ -505,4 +507,61 @@ fn a_plan_that_cannot_be_made_is_told_and_so_are_targets_out_of_reach() {
     assert!(!plan.refusals.is_empty() && plan.score.is_none());
     desk.apply(TouchCommand::Start);
     assert!(desk.said().contains("reaches none"), "{}", desk.said());
+}
+
+/// Asks to stop at the n-th checkpoint.
+struct StopsAt(std::sync::atomic::AtomicUsize);
+
+impl plumbline_model::JobContext for StopsAt {
+    fn checkpoint(&self) -> Result<(), plumbline_model::Cancelled> {
+        match self.0.fetch_sub(1, std::sync::atomic::Ordering::Relaxed) {
+            1 => Err(plumbline_model::Cancelled),
+            _ => Ok(()),
+        }
+    }
+    fn report(&self, _fraction: f64, _doing: &str) {}
+}
+
+#[test]
+fn planning_stops_when_asked_to() {
+    let request = super::plan::PlanRequest { rig: rig(), options: grid(2, 2), model: None };
+    let cancelled = super::plan::make(&request, &StopsAt(3.into()));
+    assert!(matches!(cancelled, Err(crate::jobs::JobError::Cancelled(_))));
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    desk.held = Some("Plan touches");
+    desk.apply(TouchCommand::Plan(grid(2, 2)));
+    assert_eq!(desk.view().phase, TouchPhase::Planning);
+    desk.cancel();
+    assert_eq!(desk.view().phase, TouchPhase::Idle);
+}
+
+#[test]
+fn a_touch_beside_the_image_does_not_spoil_the_place_of_the_screen() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    desk.start(PlanOptions { repeats: 2, ..PlanOptions::place_screen(area()) });
+    let order = desk.order().expect("first");
+    let mut measured = desk.measure(&order);
+    measured.pixel = Pixel::new(-40.0, 500.0);
+    desk.say(&order, TouchRun::Touched(Box::new(measured)));
+    desk.touch_all();
+    let proposal = desk.view().placement_proposal.expect("from the others");
+    assert_eq!(proposal.touches, 7);
+}
+
+#[test]
+fn the_time_left_follows_the_pace() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    desk.start(grid(2, 2));
+    let estimated = desk.view().plan.expect("a plan").duration;
+    let left = desk.view().remaining.expect("estimated");
+    assert!((left.as_secs_f64() - estimated.as_secs_f64()).abs() < 0.1, "{left:?} {estimated:?}");
+    for _ in 0..3 {
+        let order = desk.order().expect("an order");
+        desk.touch(&order);
+    }
+    // The made-up robot takes nine seconds for each.
+    assert_eq!(desk.view().remaining.map(|left| left.as_secs()), Some(5 * 9));
 }
