@@ -51,7 +51,8 @@
 //! the others: errors of a model that is too stiff have shorter tails than a normal distribution,
 //! those of touches longer ones (split conformal prediction with local weights: Lei, G'Sell,
 //! Rinaldo, Tibshirani and Wasserman 2018, J. Am. Stat. Assoc. 113, 1094–1111). From fewer than
-//! 34 touches it is widened by Student's t instead.
+//! 34 touches it is widened by Student's t instead. Outside of the border its standard deviation
+//! counts [`Spread::OUTSIDE_FACTOR`] times: there the interval may be too wide, not too narrow.
 
 mod contour;
 mod discs;
