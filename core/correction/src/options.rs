@@ -82,7 +82,7 @@ impl Default for TrainOptions {
             block_by: BlockBy::default(),
             members: 3,
             iterations: 8,
-            activation: Activation::default(),
+            activation: Activation::Tanh,
             placement: PlacementFrom::default(),
             session: String::new(),
             software: String::new(),

@@ -22,7 +22,8 @@ use crate::placement::M1;
 /// Fewest touches that a network is trained on: less than that a plane explains better.
 pub const FEWEST_FOR_A_NETWORK: usize = 20;
 /// Standard deviation of the draw of the hidden layer.
-const DRAW_SD: f64 = 0.5;
+/// Small: over the touches the units bend gently, as the arm's error does.
+const DRAW_SD: f64 = 0.2;
 /// Loss points that may wait for their receiver.
 const WAITING: usize = 256;
 

@@ -74,14 +74,14 @@ pub fn fit_evidence(
     let mut objective = fit.objective(&row_weights, &draw);
     for _ in 0..ROUNDS {
         job.checkpoint()?;
-        objective.estimate_precision(&draw);
+        objective.estimate_precision(&draw, &fit.output.sd);
         let layer = objective.evaluate(&draw).ok_or(FitError::Diverged { iteration: 0 })?;
         row_weights = fit.row_weights(&fit.residuals(&objective, &layer)?);
         let precision = objective.precision.clone();
         objective = fit.objective(&row_weights, &draw);
         objective.precision = precision;
     }
-    objective.estimate_precision(&draw);
+    objective.estimate_precision(&draw, &fit.output.sd);
     let evaluate = |place: DMatrix<f64>| {
         let layer = objective.evaluate(&place)?;
         Some(At { value: layer.value, gradient: layer.gradient.clone(), place, evaluation: layer })
@@ -194,38 +194,81 @@ impl Fit {
 
 impl Objective<'_> {
     /// Estimates the precisions for a hidden layer: those under which the outputs are likeliest.
-    fn estimate_precision(&mut self, hidden: &DMatrix<f64>) {
+    /// x and y share the precision of their weights, in meters: the same table bends both. `unit_m`
+    /// is the size of a scaled output.
+    fn estimate_precision(&mut self, hidden: &DMatrix<f64>, unit_m: &[f64]) {
         let (_, features) = self.features(hidden);
         let bent = self.bent(&features);
         let transposed = bent.transpose();
         let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(&transposed * &bent);
         let along = eigenvectors.transpose() * (&transposed * &self.bend);
-        let rows = bent.nrows() as f64;
         let largest = eigenvalues.max().max(f64::MIN_POSITIVE);
-        let bounds = (LEAST_RIDGE * largest, LARGEST_RIDGE * largest);
-        let mut precision = Precision { noise: vec![], weights: vec![] };
-        for output in 0..self.bend.ncols() {
-            let square = self.bend.column(output).norm_squared();
-            let spectrum: Vec<(f64, f64)> =
-                eigenvalues.iter().zip(along.column(output).iter()).map(|(e, a)| (e.max(0.0), *a)).collect();
-            let mut ridge = self.precision.weights[output] / self.precision.noise[output];
-            let mut noise = 1.0;
+        let limits =
+            Limits { rows: bent.nrows() as f64, ridge: (LEAST_RIDGE * largest, LARGEST_RIDGE * largest) };
+        let precision = &self.precision;
+        let outputs = (0..self.bend.ncols()).map(|output| Output {
+            spectrum: eigenvalues
+                .iter()
+                .zip(along.column(output).iter())
+                .map(|(e, a)| (e.max(0.0), *a))
+                .collect(),
+            square: self.bend.column(output).norm_squared(),
+            unit_m: unit_m[output],
+            ridge: precision.weights[output] / precision.noise[output],
+            noise: precision.noise[output],
+        });
+        let mut outputs: Vec<Output> = outputs.collect();
+        let (plane, height) = outputs.split_at_mut(2);
+        for shared in [plane, height] {
             for _ in 0..EVIDENCE_UPDATES {
-                let update = Update::at(&spectrum, square, ridge.clamp(bounds.0, bounds.1));
-                noise = (rows - 3.0 - update.effective).max(1.0)
-                    / update.residual.max(rows * LEAST_NOISE * LEAST_NOISE);
-                ridge = (update.effective / (noise * update.length).max(f64::MIN_POSITIVE))
-                    .clamp(bounds.0, bounds.1);
+                update(shared, &limits);
             }
-            precision.noise.push(noise);
-            precision.weights.push(ridge * noise);
         }
-        self.precision = precision;
+        self.precision = Precision {
+            noise: outputs.iter().map(|output| output.noise).collect(),
+            weights: outputs.iter().map(|output| output.ridge * output.noise).collect(),
+        };
+    }
+}
+
+/// One output while its precisions are estimated.
+struct Output {
+    /// Eigenvalues of the features' Gram matrix, and what of the output lies along each.
+    spectrum: Vec<(f64, f64)>,
+    /// Squared length of what the plane leaves.
+    square: f64,
+    unit_m: f64,
+    /// α / β.
+    ridge: f64,
+    /// β, scaled.
+    noise: f64,
+}
+
+struct Limits {
+    rows: f64,
+    ridge: (f64, f64),
+}
+
+/// MacKay's update for outputs that share the precision of their weights in meters.
+fn update(shared: &mut [Output], limits: &Limits) {
+    let (mut effective, mut length_m2) = (0.0, 0.0);
+    for output in shared.iter_mut() {
+        let at =
+            Solution::at(&output.spectrum, output.square, output.ridge.clamp(limits.ridge.0, limits.ridge.1));
+        effective += at.effective;
+        length_m2 += at.length * output.unit_m * output.unit_m;
+        let least = limits.rows * LEAST_NOISE * LEAST_NOISE;
+        output.noise = (limits.rows - 3.0 - at.effective).max(1.0) / at.residual.max(least);
+    }
+    let weights_per_m2 = effective / length_m2.max(f64::MIN_POSITIVE);
+    for output in shared {
+        let noise_per_m2 = output.noise / (output.unit_m * output.unit_m);
+        output.ridge = (weights_per_m2 / noise_per_m2).clamp(limits.ridge.0, limits.ridge.1);
     }
 }
 
 /// One output at one ridge.
-struct Update {
+struct Solution {
     /// Parameters that the data determine (MacKay's γ).
     effective: f64,
     /// Squared length of the weights.
@@ -234,16 +277,16 @@ struct Update {
     residual: f64,
 }
 
-impl Update {
+impl Solution {
     fn at(spectrum: &[(f64, f64)], square: f64, ridge: f64) -> Self {
-        let mut update = Self { effective: 0.0, length: 0.0, residual: square };
+        let mut solution = Self { effective: 0.0, length: 0.0, residual: square };
         for (eigenvalue, along) in spectrum {
             let weight = along / (eigenvalue + ridge);
-            update.effective += eigenvalue / (eigenvalue + ridge);
-            update.length += weight * weight;
-            update.residual += weight * (weight * eigenvalue - 2.0 * along);
+            solution.effective += eigenvalue / (eigenvalue + ridge);
+            solution.length += weight * weight;
+            solution.residual += weight * (weight * eigenvalue - 2.0 * along);
         }
-        update
+        solution
     }
 }
 
