@@ -37,6 +37,7 @@ pub struct LossCurves<'a> {
     quantity: Quantity,
     range: Option<[f64; 2]>,
     running: bool,
+    step: &'a str,
     size: Option<egui::Vec2>,
 }
 
@@ -59,7 +60,7 @@ fn can_be_drawn((epoch, loss): (f64, f64)) -> bool {
 impl<'a> LossCurves<'a> {
     /// A chart that fits its scales to the curves, whose losses are such a quantity (SI).
     pub fn new(label: &'a str, curves: &'a [LossCurve], quantity: Quantity) -> Self {
-        Self { label, caption: "", curves, quantity, range: None, running: false, size: None }
+        Self { label, caption: "", curves, quantity, range: None, running: false, step: "epoch", size: None }
     }
 
     /// What came of it, in a few words: "held out 4.31 mm".
@@ -77,6 +78,12 @@ impl<'a> LossCurves<'a> {
     /// Whether more is to come.
     pub fn running(mut self, running: bool) -> Self {
         self.running = running;
+        self
+    }
+
+    /// What is counted to the right, instead of epochs.
+    pub fn step(mut self, step: &'a str) -> Self {
+        self.step = step;
         self
     }
 
@@ -119,6 +126,8 @@ impl<'a> LossCurves<'a> {
             return;
         };
         scales.axes(painter, tokens, &font, self.quantity);
+        let below = pos2(plot.center().x, plot.bottom() + 16.0);
+        painter.text(below, Align2::CENTER_TOP, self.step, font.clone(), tokens.text_weak);
         let clipped = ui.painter_at(plot);
         for (draw, role) in [(Draw::Solid, Role::Predicted), (Draw::Dashed, Role::HeldOut)] {
             for curve in self.curves {
@@ -127,7 +136,7 @@ impl<'a> LossCurves<'a> {
             }
         }
         if let Some(at) = pointer.filter(|at| plot.contains(*at)) {
-            if let Some((at, words)) = scales.nearest(self.curves, at, self.quantity) {
+            if let Some((at, words)) = scales.nearest(self.curves, at, self) {
                 readout(&clipped, plot, tokens, &font, (at, words));
             }
         }
@@ -210,8 +219,6 @@ impl Scales {
             let at = pos2(x, self.plot.bottom() + 3.0);
             painter.text(at, Align2::CENTER_TOP, text, font.clone(), tokens.text_weak);
         }
-        let below = pos2(self.plot.center().x, self.plot.bottom() + 16.0);
-        painter.text(below, Align2::CENTER_TOP, "epoch", font.clone(), tokens.text_weak);
     }
 
     fn line(&self, painter: &Painter, points: &[(f64, f64)], draw: Draw, color: egui::Color32, of: usize) {
@@ -233,14 +240,15 @@ impl Scales {
     }
 
     /// The point of a curve that is nearest to the pointer, and its words.
-    fn nearest(&self, curves: &[LossCurve], at: Pos2, quantity: Quantity) -> Option<(Pos2, String)> {
+    fn nearest(&self, curves: &[LossCurve], at: Pos2, of: &LossCurves<'_>) -> Option<(Pos2, String)> {
         let near = curves
             .iter()
             .flat_map(|curve| points(curve).map(move |point| (curve, point)))
             .map(|(curve, point)| (curve, point, self.at(point).distance(at)))
             .min_by(|a, b| a.2.total_cmp(&b.2));
         let (curve, (epoch, loss), _) = near.filter(|(.., distance)| *distance < 40.0)?;
-        let text = format!("{}, epoch {}: {}", curve.name, format::fixed(epoch, 0), quantity.text(loss));
+        let text =
+            format!("{}, {} {}: {}", curve.name, of.step, format::fixed(epoch, 0), of.quantity.text(loss));
         Some((self.at((epoch, loss)), text))
     }
 }
@@ -326,7 +334,11 @@ mod tests {
         let curves = [curve(&[(0.0, 0.1), (100.0, 0.001)], &[])];
         let scales = Scales::of(&curves, None, plot).expect("curves");
         let end = scales.at((100.0, 0.001));
-        let words = |at| scales.nearest(&curves, at, Quantity::Length).map(|(_, words)| words);
+        let words = |at| {
+            scales
+                .nearest(&curves, at, &LossCurves::new("M3", &curves, Quantity::Length))
+                .map(|(_, words)| words)
+        };
         assert_eq!(words(end - vec2(3.0, 3.0)).as_deref(), Some("network 1, epoch 100: 1.00 mm"));
         assert_eq!(words(pos2(100.0, 0.0)), None);
     }

@@ -26,7 +26,7 @@ mod twin;
 mod verdict_line;
 
 pub use board::BoardDraft;
-pub use models::ModelsPanels;
+pub use models::{MapErrors, ModelsPanels};
 pub(crate) use models::{Standing, show_inspector as show_models_inspector, standing};
 pub(crate) use picture::key as picture_key;
 pub use probe::{ProbeState, probe_readout};

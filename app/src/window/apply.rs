@@ -292,6 +292,8 @@ impl PlumblineWindow {
             ScriptStep::Probe([u_px, v_px]) => {
                 self.panels.probe.pinned = Some(ProbePoint::Raw { eye: Eye::Left, u_px, v_px });
             }
+            ScriptStep::ShowPane(pane) => self.show_pane(self.settings.screen, pane),
+            ScriptStep::ShowErrors(errors) => self.panels.models.errors = errors,
             ScriptStep::PairsPerSecond(rate) => self.backend.send(SourceCommand::PairsPerSecond(rate).into()),
             ScriptStep::Measure => {
                 self.frame_times = FrameTimes::default();
@@ -355,7 +357,12 @@ impl PlumblineWindow {
             ((_, old), (false, Some(new))) if old != Some(new) => Pane::ModelComparison,
             _ => return,
         };
-        let tree = self.settings.arrangement(Screen::Models);
+        self.show_pane(Screen::Models, pane);
+    }
+
+    /// Brings a pane to the front of its tabs.
+    fn show_pane(&mut self, screen: Screen, pane: Pane) {
+        let tree = self.settings.arrangement(screen);
         tree.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(shown) if *shown == pane));
     }
 

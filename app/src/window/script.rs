@@ -11,6 +11,8 @@ use plumbline_engine::view::{Connection, MotionState, SourceStatus, StepState, T
 use plumbline_engine::{Command, View};
 
 use super::actions::Action;
+use super::steps::Pane;
+use crate::panels::MapErrors;
 
 /// One thing to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +27,10 @@ pub enum ScriptStep {
     ChooseJoint(String),
     /// Chooses the pair with this place in the list.
     ChoosePair(usize),
+    /// Brings a pane of the open screen to the front.
+    ShowPane(Pane),
+    /// Which errors the map of a model shows.
+    ShowErrors(MapErrors),
     /// Keeps measuring at this pixel of the raw left image.
     Probe([f64; 2]),
     /// Forgets the frame times so far.

@@ -14,7 +14,7 @@ pub use points::{PointsResponse, TablePoint};
 use egui::{Pos2, Rect, Response, Sense, Ui, Vec2, WidgetInfo, vec2};
 
 use crate::colormap::{ColorScale, Orientation, ScaleBar};
-use crate::format;
+use crate::format::{self, Quantity};
 use crate::overlay::Ink;
 use crate::theme::{Role, space};
 
@@ -129,6 +129,7 @@ pub struct TableMap<'a> {
     label: &'a str,
     scene: &'a TableScene,
     field: Option<(&'a ScalarField, ColorScale)>,
+    scale: Option<(&'a str, ColorScale, Quantity)>,
     points: &'a [TablePoint],
     chosen: Option<usize>,
     words: Option<&'a dyn Fn([f64; 2]) -> String>,
@@ -192,7 +193,7 @@ impl TableTransform {
 impl<'a> TableMap<'a> {
     /// A map that keeps the proportions of its scene.
     pub fn new(label: &'a str, scene: &'a TableScene) -> Self {
-        Self { label, scene, field: None, points: &[], chosen: None, words: None, height: None }
+        Self { label, scene, field: None, scale: None, points: &[], chosen: None, words: None, height: None }
     }
 
     /// Points that can be chosen, dragged, and pushed with the arrow keys; which one is chosen.
@@ -215,6 +216,12 @@ impl<'a> TableMap<'a> {
         self
     }
 
+    /// A scale beside the map although there is no field: points carry its colors.
+    pub fn scale(mut self, name: &'a str, scale: ColorScale, quantity: Quantity) -> Self {
+        self.scale = Some((name, scale, quantity));
+        self
+    }
+
     /// At most this height in points, instead of all that is available.
     pub fn height(mut self, height: f32) -> Self {
         self.height = Some(height);
@@ -223,9 +230,10 @@ impl<'a> TableMap<'a> {
 
     /// Draws it, as large as the available space allows.
     pub fn show(self, ui: &mut Ui) -> TableMapResponse {
-        let bar = self.field.map(|(field, scale)| {
-            ScaleBar::new(field.name(), scale, field.quantity(), Orientation::Vertical)
-        });
+        let of_field = self.field.map(|(field, scale)| (field.name(), scale, field.quantity()));
+        let bar = of_field
+            .or(self.scale)
+            .map(|(name, scale, quantity)| ScaleBar::new(name, scale, quantity, Orientation::Vertical));
         let bar_width = bar.as_ref().map_or(0.0, |bar| bar.width(ui) + space::M);
         let room = vec2(ui.available_width() - bar_width, self.height.unwrap_or(ui.available_height()));
         let size = self.size(room);
@@ -233,8 +241,9 @@ impl<'a> TableMap<'a> {
             ui.spacing_mut().item_spacing.x = space::M;
             let (rect, response) = ui.allocate_exact_size(size, Sense::click());
             let shown = self.map(ui, rect, response);
-            if let (Some((field, _)), Some(bar)) = (self.field, bar) {
-                let under_pointer = shown.hover_m.and_then(|at_m| field.at(at_m)).map(|v| v as f32);
+            if let Some(bar) = bar {
+                let value = |at_m| self.field.and_then(|(field, _)| field.at(at_m));
+                let under_pointer = shown.hover_m.and_then(value).map(|v| v as f32);
                 ui.allocate_ui(vec2(bar_width - space::M, size.y), |ui| {
                     ui.set_height(size.y);
                     bar.marker(under_pointer).show(ui)

@@ -3,7 +3,8 @@
 use plumbline_engine::TouchCommand;
 use plumbline_engine::correction::Method;
 
-use crate::window::{Action, ModelsAction, Preset, Screen, ScriptStep, TouchAction};
+use crate::panels::MapErrors;
+use crate::window::{Action, ModelsAction, Pane, Preset, Screen, ScriptStep, TouchAction};
 
 type Step = Result<ScriptStep, String>;
 
@@ -12,7 +13,22 @@ pub(super) fn step(name: &str, value: &str) -> Option<Step> {
     if name == "touch-correct" {
         return Some(correct_with(value));
     }
-    action(name).map(|action| Ok(ScriptStep::Act(action)))
+    let shown = look(name).map(Ok);
+    shown.or_else(|| action(name).map(|action| Ok(ScriptStep::Act(action))))
+}
+
+/// What is only looked at differently.
+fn look(name: &str) -> Option<ScriptStep> {
+    Some(match name {
+        "models-training" => ScriptStep::ShowPane(Pane::ModelTraining),
+        "models-compared" => ScriptStep::ShowPane(Pane::ModelComparison),
+        "models-map" => ScriptStep::ShowPane(Pane::ModelMap),
+        "models-tables" => ScriptStep::ShowPane(Pane::GraspTables),
+        "models-map-before" => ScriptStep::ShowErrors(MapErrors::Before),
+        "models-map-after" => ScriptStep::ShowErrors(MapErrors::After),
+        "models-map-both" => ScriptStep::ShowErrors(MapErrors::Both),
+        _ => return None,
+    })
 }
 
 fn action(name: &str) -> Option<Action> {
@@ -72,6 +88,9 @@ mod tests {
         let with = TouchCommand::CorrectWith(Some(Method::M3));
         assert_eq!(step("touch-correct", "m3"), Some(Ok(ScriptStep::Send(with.into()))));
         assert!(step("touch-correct", "M4").expect("known").expect_err("no method").contains("none"));
+        assert_eq!(step("models-map-after", ""), Some(Ok(ScriptStep::ShowErrors(MapErrors::After))));
+        let use_m3 = ScriptStep::Act(Action::Models(ModelsAction::Accept(Method::M3)));
+        assert_eq!(step("models-accept-m3", ""), Some(Ok(use_m3)));
         assert_eq!(step("touch-dance", ""), None);
     }
 }

@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             chart(ui, cx, &facts);
             figures(ui, &facts);
             ui.add_space(space::S);
-            decide(ui, cx);
+            decide(ui, cx, &facts);
             ui.add_space(space::S);
             in_use(ui, cx);
             ui.add_space(space::S);
@@ -151,13 +151,16 @@ fn figures(ui: &mut Ui, facts: &Facts) {
 }
 
 /// One button per proposal, the best first.
-fn decide(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+fn decide(ui: &mut Ui, cx: &mut PanelContext<'_>, facts: &Facts) {
     let models = &cx.view.models;
     if models.proposals.is_empty() {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        for model in &models.proposals {
+        let best = facts.best.map(|best| facts.judged[best].method);
+        let mut proposals: Vec<_> = models.proposals.iter().collect();
+        proposals.sort_by_key(|model| (Some(model.method()) != best, std::cmp::Reverse(model.method())));
+        for model in proposals {
             let method = model.method();
             let text = format!("Use {}", method.name());
             if ui.button(text).on_hover_text(provenance(model)).clicked() {

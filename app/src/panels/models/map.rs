@@ -209,7 +209,8 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let drawn = cx.state.models.map.get(key, || Drawn::of(map));
     padded(ui, |ui| {
         header(ui, cx, models);
-        let warn = drawn.of.mean_shift_m.1.is_some() || drawn.of.border_m.len() < 3;
+        // A border is nothing to worry about; that there is none is.
+        let warn = drawn.of.border_m.len() < 3;
         let text = theme::strong(ui, &drawn.headline);
         let color = Role::Warning.color(theme::tokens(ui));
         ui.label(if warn { text.color(color) } else { text });
@@ -294,6 +295,7 @@ fn legend(ui: &mut Ui, errors: Errors, drawn: &Drawn) {
 
 /// A line in the color that it has on the map, and what it means.
 fn entry(ui: &mut Ui, role: Role, text: &str) {
+    ui.spacing_mut().interact_size.y = 14.0;
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(26.0, 14.0), Sense::hover());
         ui.painter().rect_filled(rect, 3.0, theme::ON_IMAGE.panel);

@@ -9,6 +9,7 @@ mod training;
 mod verdict;
 
 pub use inspector::show as show_inspector;
+pub use map::Errors as MapErrors;
 pub(crate) use verdict::{Standing, standing};
 
 use std::sync::Arc;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use egui::{Button, RichText, ScrollArea, Ui, vec2};
+use egui::{Button, Label, RichText, ScrollArea, Ui, vec2};
 use plumbline_engine::ModelsCommand;
 use plumbline_engine::correction::{Repeats, TouchData};
 use plumbline_engine::view::TouchSession;
@@ -16,7 +16,7 @@ use crate::window::ModelsAction;
 
 /// Sessions that are seen without scrolling.
 const ROWS: usize = 4;
-const ROW_HEIGHT: f32 = 24.0;
+const ROW_HEIGHT: f32 = 28.0;
 
 pub(super) fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
@@ -74,12 +74,23 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, session: &TouchSession) {
     };
     let usable = session.problem.is_none();
     let color = if usable { theme::tokens(ui).text } else { theme::tokens(ui).text_weak };
-    let sense = if usable { egui::Sense::click() } else { egui::Sense::hover() };
-    let button = Button::selectable(chosen, RichText::new(text).color(color)).truncate().sense(sense);
+    let button = Button::selectable(chosen, RichText::new(&text).color(color)).truncate();
     let size = vec2(ui.available_width(), ROW_HEIGHT);
     // Left, because the lines are read below each other.
     let layout = egui::Layout::top_down_justified(egui::Align::Min);
-    let response = ui.allocate_ui_with_layout(size, layout, |ui| ui.add(button)).inner;
+    let response = ui
+        .allocate_ui_with_layout(size, layout, |ui| {
+            if usable {
+                return ui.add(button);
+            }
+            ui.set_height(ROW_HEIGHT);
+            ui.horizontal_centered(|ui| {
+                ui.add_space(ui.spacing().button_padding.x);
+                ui.add(Label::new(RichText::new(text).color(color)).truncate())
+            })
+            .inner
+        })
+        .inner;
     let folder = session.folder.display().to_string();
     let words = session.problem.clone().map_or(folder.clone(), |problem| format!("{problem}\n{folder}"));
     let response = response.on_hover_text(&words);
@@ -117,7 +128,6 @@ fn has(ui: &mut Ui, data: &TouchData, noise: Option<&Repeats>) {
             KeyValue::text("sets", sets)
                 .help("Touches of one set are held out together: a line, a grid, a day."),
             KeyValue::optional("noise floor", Quantity::Length, noise.map(|noise| noise.rms_2d_m))
-                .role(Role::NoiseFloor)
                 .help(noise_help),
         ],
     );

@@ -153,6 +153,7 @@ fn curves(ui: &mut Ui, models: &ModelsView) {
                 .caption(&caption)
                 .range(range.filter(|_| !curves.is_empty()))
                 .running(models.training)
+                .step("step")
                 .size(vec2(width, CHART_HEIGHT))
                 .show(ui);
         }

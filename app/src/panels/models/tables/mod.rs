@@ -57,7 +57,7 @@ const Y_M: [f64; 2] = [-0.30, 0.30];
 /// Value of a point that is added where nothing is known: a palm just above the table, m.
 const FIRST_HEIGHT_M: f64 = 0.05;
 /// Height of the fields and the list below the map, points.
-const BELOW: f64 = 236.0;
+const BELOW: f32 = 244.0;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     padded(ui, |ui| {
@@ -68,7 +68,8 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             forget_what_is_gone(cx, &tables, rows.len());
             layer(ui, cx, &rows);
             hint(ui, cx, &tables, &rows);
-            let height = (ui.available_height() - BELOW as f32).max(190.0);
+            let below = if cx.state.models.tables.table == GraspTable::Yaw { BELOW + 32.0 } else { BELOW };
+            let height = (ui.available_height() - below).max(190.0);
             map(ui, cx, &tables, &rows, height);
             edit_buttons(ui, cx, &tables, &rows);
             ui.add_space(space::XS);
@@ -201,6 +202,7 @@ fn map(ui: &mut Ui, cx: &mut PanelContext<'_>, tables: &TablesView, rows: &[Poin
     };
     let shown = match (&field, scale) {
         (Some(field), Some(scale)) => map.field(field, scale).show(ui),
+        (None, Some(scale)) => map.scale(scale_name(panel), scale, quantity(panel.table)).show(ui),
         _ => map.show(ui),
     };
     let panel = &mut cx.state.models.tables;
@@ -230,6 +232,14 @@ fn map(ui: &mut Ui, cx: &mut PanelContext<'_>, tables: &TablesView, rows: &[Poin
             panel.chosen = None;
             panel.draft = None;
         }
+    }
+}
+
+fn scale_name(panel: &TablesPanel) -> &'static str {
+    match (panel.by_error, panel.table) {
+        (true, _) => "Left out",
+        (false, GraspTable::Height) => "Height",
+        (false, GraspTable::Yaw) => "Yaw",
     }
 }
 
