@@ -40,7 +40,7 @@ impl Losses {
 impl Curve {
     fn add(&mut self, point: LossPoint) {
         self.every = self.every.max(1);
-        if self.seen % self.every == 0 {
+        if self.seen.is_multiple_of(self.every) {
             if self.points.len() >= MOST / Method::ALL.len() {
                 let mut kept = 0;
                 self.points.retain(|_| {
@@ -49,7 +49,7 @@ impl Curve {
                 });
                 self.every *= 2;
             }
-            if self.seen % self.every == 0 {
+            if self.seen.is_multiple_of(self.every) {
                 self.points.push(point);
             }
         }

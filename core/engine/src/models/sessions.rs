@@ -27,7 +27,7 @@ pub fn list(folder: &Path) -> Result<Vec<TouchSession>, String> {
     };
     let folders = listing.flatten().map(|entry| entry.path());
     let with_touches = folders.filter(|path| path.join(names::TOUCHES).is_file());
-    let mut sessions: Vec<TouchSession> = with_touches.map(|path| listed(path)).collect();
+    let mut sessions: Vec<TouchSession> = with_touches.map(listed).collect();
     sessions.sort_by(|a, b| (b.started, &b.folder).cmp(&(a.started, &a.folder)));
     Ok(sessions)
 }

@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use plumbline_hardware::{ImageProblem, SourceError};
 use plumbline_correction::{DataError, FileError, TrainError};
+use plumbline_hardware::{ImageProblem, SourceError};
 use plumbline_model::predict::PredictError;
-use plumbline_model::robot::{DescriptionError, RigError};
 use plumbline_model::robot::ik::{IkError, SolverError};
+use plumbline_model::robot::{DescriptionError, RigError};
 use plumbline_model::{AimError, BoardError, Cancelled, FormatError, PlacementError, SessionError};
 use plumbline_vision::calibrate::SolveError;
 use plumbline_vision::disparity::DisparityError;

@@ -1,5 +1,6 @@
 //! Training, correcting and predicting without a window: what comes out, and what is said to files
 //! that cannot be used.
+#![allow(clippy::print_stdout, reason = "a skipped test says why")]
 
 use std::path::{Path, PathBuf};
 

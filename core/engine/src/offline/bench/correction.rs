@@ -144,6 +144,7 @@ fn judged(model: &CorrectionModel, touches: &[Judged]) -> Figure {
 }
 
 #[cfg(test)]
+#[allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
 mod tests {
     use super::*;
 
