@@ -57,7 +57,10 @@ pub struct WindowArgs {
     /// mount-accept, mount-discard; touch, models, touch-plan-corners, touch-plan-quick,
     /// touch-plan-train, touch-plan-rich, touch-plan-check, touch-correct:METHOD, touch-start,
     /// touch-pause, touch-resume, touch-skip, touch-prepared, touch-finish, touch-close,
-    /// touch-accept-screen, touch-discard-screen, touch-nominal-screen, touch-window.
+    /// touch-accept-screen, touch-discard-screen, touch-nominal-screen, touch-window;
+    /// models-list, models-train, models-accept, models-accept-m1 (m2, m3), models-show-m1 (m2, m3),
+    /// models-discard, models-undo, models-none, models-check, models-training, models-compared,
+    /// models-map, models-map-before, models-map-after, models-map-both, models-tables.
     #[arg(long = "do", value_name = "STEPS", value_delimiter = ';', value_parser = step, hide_short_help = true)]
     script: Vec<ScriptStep>,
     /// Writes how long the frames took, as JSON, when the window is closed.
