@@ -110,7 +110,7 @@ fn what_moves_is_said_before_it_moves() {
     assert!(says(&window, "The right arm touches the glass"));
     assert!(says(&window, "the head and the left arm stay"));
     assert!(says(&window, "left out: the arm is too short"), "why some are not touched");
-    assert!(says(&window, "possible causes of errors"), "what the plan will tell");
+    assert!(says(&window, "causes it can notice"), "what the plan will tell");
 }
 
 #[test]
@@ -233,9 +233,11 @@ fn the_place_of_the_screen_is_shown_with_its_uncertainty() {
         ..after(8, TouchPhase::Finished)
     };
     let (fake, mut window) = window(with_touch(touch));
+    click(&mut window, "Place of the screen");
     for words in ["4.20 ± 0.50", "1.146 ± 0.057", "Touch 3 fits less well"] {
         assert!(says(&window, words), "{words}");
     }
+    assert_eq!(sent(&fake), []);
     click(&mut window, "Discard proposal");
     assert_eq!(sent(&fake), [TouchCommand::DiscardPlacement]);
     click(&mut window, "Use nominal");

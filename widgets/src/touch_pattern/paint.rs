@@ -7,6 +7,8 @@ use crate::format;
 use crate::overlay;
 use crate::theme::{self, Tokens, space};
 
+/// Arrows may reach so far beyond the glass: fingers slip off.
+const REACH: f32 = 12.0;
 /// Room below for a line of words.
 pub(super) const BELOW: f32 = 20.0;
 
@@ -24,7 +26,7 @@ pub(super) fn pattern(
     if let Some(area) = area {
         self::area(painter, transform, area, pattern.editable, tokens);
     }
-    let drawing = painter.with_clip_rect(transform.rect.intersect(ui.clip_rect()));
+    let drawing = painter.with_clip_rect(transform.rect.expand(REACH).intersect(ui.clip_rect()));
     // What was touched lies above what is to come.
     let mut marks: Vec<&TouchMark> = pattern.marks.iter().collect();
     marks.sort_by_key(|mark| order(mark.state));

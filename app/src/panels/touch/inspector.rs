@@ -40,8 +40,10 @@ fn chosen(ui: &mut Ui, view: &View, one: &TouchState, next: bool, outbox: &mut O
         warning(ui, "outside of what the model knows");
     }
     key_value_grid(ui, "touch", &rows(one));
-    ui.add_space(space::S);
-    ui.horizontal_wrapped(|ui| buttons(ui, view, one, outbox));
+    if !matches!(one.outcome, TouchOutcome::Waiting | TouchOutcome::UnderWay | TouchOutcome::Unreachable(_)) {
+        ui.add_space(space::S);
+        ui.horizontal_wrapped(|ui| buttons(ui, view, one, outbox));
+    }
 }
 
 fn rows(one: &TouchState) -> Vec<KeyValue> {

@@ -16,7 +16,7 @@ use crate::panels::{PanelContext, padded};
 use crate::window::{is_under_way, screen_of};
 
 /// The longest error is drawn this long, as a share of the screen's width.
-const LONGEST_SHARE: f64 = 0.07;
+const LONGEST_SHARE: f64 = 0.1;
 /// A click on the table chooses a touch within this distance, m.
 const NEAR_M: f64 = 0.012;
 
@@ -54,6 +54,9 @@ fn legend(ui: &mut Ui, touch: &TouchView) {
         (counts.unreachable, "out of reach", Role::NoiseFloor),
     ];
     ui.spacing_mut().item_spacing.x = space::XS;
+    if touch.touches.is_empty() {
+        ui.label(theme::small(ui, "Nothing is planned."));
+    }
     for (count, name, role) in all.into_iter().filter(|(count, ..)| *count > 0) {
         let text = format!("{count} {name}");
         let width = ui.painter().layout_no_wrap(text.clone(), small(ui), egui::Color32::WHITE).size().x;

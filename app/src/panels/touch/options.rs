@@ -14,7 +14,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, options: &PlanOptions) {
     ui.spacing_mut().interact_size.y = 22.0;
     Grid::new("plan").num_columns(2).spacing([space::M, space::XS]).show(ui, |ui| {
         row(ui, "For", |ui| purpose(ui, &mut edited.purpose));
-        row(ui, "Area", |ui| area(ui, cx, &mut edited.area));
+        area(ui, cx, &mut edited.area);
         patterns(ui, &mut edited.patterns);
         row(ui, "Each target", |ui| {
             count(ui, "Times each target", &mut edited.repeats, 1..=20);
@@ -53,17 +53,22 @@ fn purpose(ui: &mut Ui, purpose: &mut Purpose) {
 fn area(ui: &mut Ui, cx: &PanelContext<'_>, area: &mut TouchArea) {
     let Some(screen) = screen_of(cx.view) else { return };
     let most = [screen.width_px, screen.height_px].map(|count| f64::from(count.saturating_sub(1)));
-    pixel(ui, "First column", &mut area.u_px[0], most[0]);
-    ui.label(theme::weak(ui, "–"));
-    pixel(ui, "Last column", &mut area.u_px[1], most[0]);
-    ui.label(theme::weak(ui, "×"));
-    pixel(ui, "First row", &mut area.v_px[0], most[1]);
-    ui.label(theme::weak(ui, "–"));
-    pixel(ui, "Last row", &mut area.v_px[1], most[1]);
-    ui.label(theme::weak(ui, "px"));
-    if ui.small_button("Whole").on_hover_text("The whole screen but its border").clicked() {
-        *area = whole_area(screen);
-    }
+    row(ui, "Columns", |ui| {
+        pixel(ui, "First column", &mut area.u_px[0], most[0]);
+        ui.label(theme::weak(ui, "to"));
+        pixel(ui, "Last column", &mut area.u_px[1], most[0]);
+        ui.label(theme::weak(ui, "px"));
+    });
+    row(ui, "Rows", |ui| {
+        pixel(ui, "First row", &mut area.v_px[0], most[1]);
+        ui.label(theme::weak(ui, "to"));
+        pixel(ui, "Last row", &mut area.v_px[1], most[1]);
+        ui.label(theme::weak(ui, "px"));
+        ui.add_space(space::S);
+        if ui.button("Whole screen").on_hover_text("All of it but its border").clicked() {
+            *area = whole_area(screen);
+        }
+    });
 }
 
 /// A drag value also rounds what it is given, which is no wish: only what was dragged or typed
@@ -137,13 +142,21 @@ fn fields(ui: &mut Ui, pattern: &mut Pattern) {
             word(ui, "targets");
         }
         Pattern::Lines { horizontal, vertical, diagonal, points } => {
-            count(ui, "Lines across", horizontal, 0..=20);
-            word(ui, "across");
-            count(ui, "Lines down", vertical, 0..=20);
-            word(ui, "down");
-            count(ui, "Diagonals", diagonal, 0..=2);
-            word(ui, "diagonal, of");
-            count(ui, "Targets per line", points, 2..=40);
+            ui.vertical(|ui| {
+                ui.spacing_mut().item_spacing.y = space::XS;
+                ui.horizontal(|ui| {
+                    count(ui, "Lines across", horizontal, 0..=20);
+                    word(ui, "across,");
+                    count(ui, "Lines down", vertical, 0..=20);
+                    word(ui, "down,");
+                });
+                ui.horizontal(|ui| {
+                    count(ui, "Diagonals", diagonal, 0..=2);
+                    word(ui, "diagonal,");
+                    count(ui, "Targets per line", points, 2..=40);
+                    word(ui, "targets each");
+                });
+            });
         }
         Pattern::Random { count: targets } => {
             count(ui, "Random targets", targets, 1..=1000);
@@ -153,7 +166,7 @@ fn fields(ui: &mut Ui, pattern: &mut Pattern) {
             count(ui, "Targets touched again", targets, 1..=40);
             word(ui, "targets");
             count(ui, "Times more", times, 1..=20);
-            word(ui, "times more: the noise floor");
+            word(ui, "times more");
         }
     }
 }

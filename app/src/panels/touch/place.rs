@@ -51,7 +51,7 @@ fn shown(touch: &TouchView) -> Option<(&ScreenPlacement, &'static str)> {
     proposed.or_else(|| touch.placement.as_deref().map(|placement| (placement, "in use")))
 }
 
-fn figures(ui: &mut Ui, placement: &ScreenPlacement, what: &str) {
+pub(super) fn figures(ui: &mut Ui, placement: &ScreenPlacement, what: &str) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = space::L;
         big_figure(ui, &format!("moved, {what}"), &format::mm(norm(placement.moved_m)), Role::Difference);

@@ -15,7 +15,7 @@ use crate::window::{Action, Preset, TouchAction, is_under_way, minutes, screen_o
 const PRESETS: [(Preset, &str, &str); 5] = [
     (
         Preset::Corners,
-        "Place the screen",
+        "Place screen",
         "Its corners, each twice: measures where the screen lies. Do this first.",
     ),
     (Preset::Quick, "Quick", "24 touches: the least that a model can be trained on."),
@@ -26,7 +26,7 @@ const PRESETS: [(Preset, &str, &str); 5] = [
     ),
     (
         Preset::Rich,
-        "Tell causes apart",
+        "Find causes",
         "Two sides, three heights, with and without a weight: shows why the finger misses.",
     ),
     (Preset::Check, "Check", "20 new targets: how well the finger lands with the model in use."),
@@ -55,6 +55,8 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             ui.add_space(space::S);
             result(ui, cx);
             ui.add_space(space::S);
+            // A preset may have been chosen just now.
+            let options = cx.state.touch.draft.options().cloned().unwrap_or(options);
             ui.add_enabled_ui(!locked, |ui| options::show(ui, cx, &options));
         });
     });

@@ -49,6 +49,8 @@ fn head(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             ui.horizontal(|ui| {
                 if prepare.is_some() {
                     action_button(ui, cx, "Done, go on", TouchAction::Prepared);
+                } else {
+                    action_button(ui, cx, "Try again", TouchAction::Resume);
                 }
                 action_button(ui, cx, "Skip", TouchAction::Skip);
                 finish_button(ui, cx);
@@ -96,6 +98,15 @@ fn finished(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.label(RichText::new(format!("{text}.")).color(theme::tokens(ui).text_strong));
     if let Some(name) = cx.view.touch.session.as_ref().and_then(|path| path.file_name()) {
         ui.label(theme::small(ui, format!("Session {}", name.to_string_lossy())));
+    }
+    if let Some(placement) = cx.view.touch.placement_proposal.clone() {
+        ui.add_space(space::XS);
+        super::place::figures(ui, &placement, "proposed");
+        ui.horizontal(|ui| {
+            action_button(ui, cx, "Use this place", TouchAction::AcceptScreen);
+            action_button(ui, cx, "Discard proposal", TouchAction::DiscardScreen);
+        });
+        return;
     }
     ui.horizontal(|ui| {
         action_button(ui, cx, "Close the run", TouchAction::Close);

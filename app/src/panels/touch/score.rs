@@ -11,7 +11,9 @@ const ROWS: usize = 12;
 pub fn show(ui: &mut Ui, score: &PlanScore) {
     let seen = score.seen.iter().filter(|effect| effect.is_seen()).count();
     ui.add_space(space::XS);
-    ui.label(theme::weak(ui, sentence(score, seen)));
+    if let Some(sentence) = sentence(score, seen) {
+        ui.label(theme::weak(ui, sentence));
+    }
     if let Some(advice) = score.advice.first() {
         ui.label(theme::weak(ui, format!("To learn more: {}", uncapitalized(&advice.sentence))));
     }
@@ -28,16 +30,12 @@ pub fn show(ui: &mut Ui, score: &PlanScore) {
     });
 }
 
-fn sentence(score: &PlanScore, seen: usize) -> String {
+fn sentence(score: &PlanScore, seen: usize) -> Option<String> {
     if seen == 0 {
-        return "No cause of errors would stand out of the noise: more targets are needed.".to_owned();
+        return Some("No cause of errors would stand out of the noise: more targets are needed.".to_owned());
     }
     let alike: usize = score.alike.iter().map(Vec::len).sum();
-    let mixed = match alike {
-        0 => "all of them look different".to_owned(),
-        n => format!("{n} of them look like another one"),
-    };
-    format!("The touches will show {seen} of {} possible causes of errors; {mixed}.", score.candidates)
+    (alike > 0).then(|| format!("{alike} of these causes look like another one on the glass."))
 }
 
 fn row(ui: &mut Ui, effect: &EffectVisibility) {

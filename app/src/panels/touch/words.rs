@@ -33,9 +33,9 @@ pub fn side(side: Side) -> &'static str {
 /// What a run is for.
 pub fn purpose(purpose: Purpose) -> &'static str {
     match purpose {
-        Purpose::PlaceScreen => "Place the screen",
+        Purpose::PlaceScreen => "Place screen",
         Purpose::Train => "Train",
-        Purpose::Check => "Check a model",
+        Purpose::Check => "Check",
     }
 }
 

@@ -54,6 +54,11 @@ impl ContactFilter {
         }
     }
 
+    /// What holds the glass down does not count, and neither does its end.
+    pub fn forget(&mut self) {
+        self.held = None;
+    }
+
     fn touch(&mut self, finger: Held, phase: TouchPhase, at: Pos2) -> Option<Contact> {
         let contact = |down| Some(Contact { at, with: ContactWith::Touch, down });
         match phase {

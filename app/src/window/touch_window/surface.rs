@@ -78,6 +78,8 @@ pub fn touch_surface(
     surface: &mut TouchSurface,
 ) -> Vec<TouchCommand> {
     let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+    // Pixels of the monitor count from its corner, whatever stands around `ui`.
+    let rect = if window.full_screen { ui.ctx().viewport_rect() } else { rect };
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Touch window"));
     ui.painter().rect_filled(rect, 0.0, Color32::BLACK);
     let Some(screen) = screen else {
@@ -97,8 +99,8 @@ pub fn touch_surface(
     words(ui, rect, anchor, &head, &below);
     if let Some(problem) = window_problem(window, screen) {
         let at = rect.right_bottom() - vec2(space::L, space::L);
-        let text = crate::window::capitalized(&problem);
-        ui.painter().text(at, Align2::RIGHT_BOTTOM, text, font(ui, TextStyle::Body), ON_IMAGE.warning);
+        let problem = crate::window::capitalized(&problem);
+        text(ui, at, Align2::RIGHT_BOTTOM, &problem, font(ui, TextStyle::Body), ON_IMAGE.warning);
     }
     commands
 }
@@ -107,8 +109,14 @@ fn feel(ui: &Ui, glass: Glass, now_s: f64, surface: &mut TouchSurface) -> Vec<To
     let contacts: Vec<Contact> = ui.input(|input| {
         input.events.iter().filter_map(|event| surface.filter.contact(event, now_s)).collect()
     });
-    let on_glass = contacts.into_iter().filter(|contact| !contact.down || glass.rect.contains(contact.at));
-    on_glass
+    // What begins beside the glass (in what stands around a window that is tried out) is none.
+    let beside = |contact: &Contact| contact.down && !glass.rect.contains(contact.at);
+    if contacts.iter().any(beside) {
+        surface.filter.forget();
+        return Vec::new();
+    }
+    contacts
+        .into_iter()
         .map(|contact| {
             let at_px = glass.to_px(contact.at);
             surface.felt = Some(Felt { at_px, is_down: contact.down, at_s: now_s });
@@ -202,9 +210,16 @@ fn words(ui: &Ui, rect: Rect, anchor: Align2, head: &str, below: &str) {
     } else {
         rect.bottom() - space::L - line - size::BODY
     };
-    let painter = ui.painter();
-    painter.text(pos2(x, top), Align2::LEFT_TOP, head, heading, ON_IMAGE.text);
-    painter.text(pos2(x, top + line), Align2::LEFT_TOP, below, body, ON_IMAGE.text_weak);
+    text(ui, pos2(x, top), Align2::LEFT_TOP, head, heading, ON_IMAGE.text);
+    text(ui, pos2(x, top + line), Align2::LEFT_TOP, below, body, ON_IMAGE.text_weak);
+}
+
+/// Words on black, whatever lies below.
+fn text(ui: &Ui, at: Pos2, anchor: Align2, text: &str, font: FontId, color: Color32) {
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, color);
+    let rect = anchor.anchor_size(at, galley.size());
+    ui.painter().rect_filled(rect.expand2(vec2(space::S, 2.0)), 0.0, Color32::BLACK);
+    ui.painter().galley(rect.min, galley, color);
 }
 
 fn font(ui: &Ui, style: TextStyle) -> FontId {
