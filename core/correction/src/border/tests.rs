@@ -164,3 +164,16 @@ fn a_border_is_the_same_after_it_was_stored() {
     let error = serde_json::from_str::<Border>(damaged).expect_err("two corners are no area");
     assert!(error.to_string().contains("train the model again"), "{error}");
 }
+
+#[test]
+fn two_areas_are_two_parts() {
+    let far = |p: &Pixel<Screen>| Pixel::new(p.u_px + 1200.0, p.v_px);
+    let left = grid(5, 5, 100.0);
+    let both: Vec<_> = left.iter().copied().chain(left.iter().map(far)).collect();
+    let border = border(&both);
+    assert_eq!(border.rings().len(), 2);
+    assert!(both.iter().all(|&pixel| border.contains(pixel)));
+    let between = Pixel::new(800.0, 200.0);
+    assert!(!border.contains(between));
+    assert!((border.distance_outside_px(between) - 350.0).abs() < 10.0);
+}
