@@ -350,11 +350,10 @@ impl PlumblineWindow {
     /// Training is watched; once there are proposals, they are compared.
     fn follow_the_models(&mut self) {
         let models = &self.view.models;
-        let now = (models.training, models.proposals.first().map(|model| Arc::as_ptr(model) as usize));
-        let before = std::mem::replace(&mut self.panels.models.seen, now);
-        let pane = match (before, now) {
-            ((false, _), (true, _)) => Pane::ModelTraining,
-            ((_, old), (false, Some(new))) if old != Some(new) => Pane::ModelComparison,
+        let trained_before = std::mem::replace(&mut self.panels.models.training_seen, models.training);
+        let pane = match (trained_before, models.training) {
+            (false, true) => Pane::ModelTraining,
+            (true, false) if !models.proposals.is_empty() => Pane::ModelComparison,
             _ => return,
         };
         self.show_pane(Screen::Models, pane);

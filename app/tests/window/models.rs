@@ -37,6 +37,12 @@ fn press_next(window: &mut Harness<'_, PlumblineWindow>, label: &str) {
     window.run_steps(3);
 }
 
+fn on_comparison(fake: &Fake) -> Harness<'static, PlumblineWindow> {
+    let mut window = fake.window_of_size(on_models(), TALL);
+    click(&mut window, "Models compared");
+    window
+}
+
 /// A short press with the pointer.
 fn click_at(window: &mut Harness<'_, PlumblineWindow>, at: Pos2) {
     window.hover_at(at);
@@ -141,7 +147,7 @@ fn a_training_that_failed_says_why() {
 #[test]
 fn methods_are_compared_in_figures_and_in_words() {
     let fake = Fake::over(with(trained()));
-    let window = fake.window_of_size(on_models(), TALL);
+    let window = on_comparison(&fake);
     assert!(says(&window, "is best:"), "a headline");
     assert!(says(&window, "95 %"), "whether the others can be told apart");
     for method in Method::ALL {
@@ -156,7 +162,7 @@ fn methods_are_compared_in_figures_and_in_words() {
 #[test]
 fn every_button_of_the_comparison_asks_for_what_it_says() {
     let fake = Fake::over(with(trained()));
-    let mut window = fake.window_of_size(on_models(), TALL);
+    let mut window = on_comparison(&fake);
     for (button, wanted) in [
         ("Use M1", ModelsCommand::Accept(Method::M1)),
         ("Use M2", ModelsCommand::Accept(Method::M2)),
@@ -181,7 +187,7 @@ fn every_button_of_the_comparison_asks_for_what_it_says() {
 #[test]
 fn files_are_asked_for_and_then_read_or_written() {
     let fake = Fake::over(with(trained()));
-    let mut window = fake.window_of_size(on_models(), TALL);
+    let mut window = on_comparison(&fake);
     let type_path = |window: &mut Harness<'_, PlumblineWindow>, button: &str| {
         click(window, button);
         window.event(egui::Event::Text("here".to_owned()));
@@ -205,12 +211,13 @@ fn proposals_bring_the_comparison_to_the_front_and_training_its_curves() {
     let fake = Fake::over(with(recorded()));
     let mut window = fake.window(on_models());
     assert!(says(&window, "touches to learn from"));
-    fake.show(with(trained()));
-    window.run_steps(3);
-    assert!(says(&window, "is best:") && !says(&window, "touches to learn from"));
+    click(&mut window, "Models compared");
     fake.show(with(training()));
     window.run_steps(3);
-    assert!(says(&window, "touches to learn from"));
+    assert!(says(&window, "touches to learn from"), "its curves");
+    fake.show(with(trained()));
+    window.run_steps(3);
+    assert!(!says(&window, "touches to learn from") && shows(&window, "Discard proposals"));
 }
 
 #[test]
@@ -224,6 +231,16 @@ fn the_best_proposal_is_used_by_the_button_of_the_step() {
     window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Enter);
     window.run_steps(2);
     assert_eq!(models(&fake), [ModelsCommand::Accept(best)]);
+}
+
+#[test]
+fn the_models_that_were_not_chosen_ask_for_nothing_any_more() {
+    let others = trained().proposals.into_iter().filter(|model| model.method() != Method::M3).collect();
+    let fake = Fake::over(with(ModelsView { proposals: others, ..in_use() }));
+    let mut window = fake.window(on_models());
+    assert!(shows(&window, "Check M3 with new touches"));
+    click(&mut window, "Models compared");
+    assert!(shows(&window, "Use M1"), "but they can still be used");
 }
 
 #[test]
@@ -401,9 +418,9 @@ fn pictures_of_the_models() {
     let stale = StepState::Stale { why: "the screen was moved after these touches".to_owned() };
     let states = [
         ("empty", ModelsView::default(), None),
+        ("compared", trained(), Some("Models compared")),
         ("recorded", recorded(), None),
         ("training", training(), None),
-        ("trained", trained(), None),
         ("stale", ModelsView { step: stale, ..in_use() }, None),
         ("height", recorded(), Some("Height")),
         ("yaw", recorded(), Some("Yaw")),
@@ -412,7 +429,9 @@ fn pictures_of_the_models() {
         for (name, view, table) in &states {
             let fake = Fake::over(with(view.clone()));
             let mut window = fake.window_with(WindowSettings { theme, ..on_models() }, [1280.0, 800.0], true);
-            if let Some(table) = table {
+            if let Some("Models compared") = table {
+                click(&mut window, "Models compared");
+            } else if let Some(table) = table {
                 click(&mut window, "Grasp height and yaw");
                 click(&mut window, table);
                 let at = point(&window, 9);

@@ -35,8 +35,8 @@ pub struct ModelsPanels {
     pub field: map::Shown,
     /// How the tables are looked at.
     pub tables: tables::TablesPanel,
-    /// Whether training ran and which proposal came first when it was looked last.
-    pub seen: (bool, Option<usize>),
+    /// Whether training ran in the last frame.
+    pub training_seen: bool,
     map: Memo<map::Drawn>,
     standing: Memo<verdict::Facts>,
 }
@@ -50,7 +50,7 @@ impl Default for ModelsPanels {
             errors: map::Errors::Both,
             field: map::Shown::Uncertainty,
             tables: tables::TablesPanel::default(),
-            seen: (false, None),
+            training_seen: false,
             map: Memo::default(),
             standing: Memo::default(),
         }

@@ -86,7 +86,7 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, session: &TouchSession) {
             ui.set_height(ROW_HEIGHT);
             ui.horizontal_centered(|ui| {
                 ui.add_space(ui.spacing().button_padding.x);
-                ui.add(Label::new(RichText::new(text).color(color)).truncate())
+                ui.add(Label::new(RichText::new(text).color(color)).truncate().selectable(false))
             })
             .inner
         })
@@ -94,7 +94,7 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, session: &TouchSession) {
     let folder = session.folder.display().to_string();
     let words = session.problem.clone().map_or(folder.clone(), |problem| format!("{problem}\n{folder}"));
     let response = response.on_hover_text(&words);
-    if response.clicked() && !chosen {
+    if usable && !chosen && response.clicked() {
         cx.outbox.send(ModelsCommand::ChooseSession { session: session.folder.clone() });
     }
 }

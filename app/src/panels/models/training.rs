@@ -117,6 +117,9 @@ fn listed(methods: &[Method]) -> String {
 
 /// How the last training ended, when it did not end well.
 fn failed(ui: &mut Ui, cx: &PanelContext<'_>) {
+    if cx.view.models.training || !cx.view.models.proposals.is_empty() {
+        return;
+    }
     let job = cx.view.jobs.iter().rev().find(|job| job.title.starts_with("Train"));
     let reason = match job.map(|job| &job.state) {
         Some(JobState::Failed { reason }) => reason.clone(),

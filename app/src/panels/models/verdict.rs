@@ -162,7 +162,7 @@ pub fn standing(models: &ModelsView) -> Standing {
     if models.training {
         return Standing::Training;
     }
-    if let Some(proposed) = best_proposal(models) {
+    if let Some(proposed) = best_proposal(models).filter(|_| !is_decided(models)) {
         return proposed;
     }
     if let Some(model) = &models.in_use {
@@ -177,15 +177,23 @@ pub fn standing(models: &ModelsView) -> Standing {
     }
 }
 
-/// Of several the one with the least error on unseen touches; an imported one has no error.
-fn best_proposal(models: &ModelsView) -> Option<Standing> {
-    let error_m = |method: Method| {
-        let held_out = models.comparison.as_ref().and_then(|comparison| comparison.of(method));
-        held_out.map(|held_out| held_out.errors.mean_2d_m)
+/// Whether one of the models that were proposed together is in use: the others stay proposed, to be
+/// looked at, but nothing has to be decided any more.
+fn is_decided(models: &ModelsView) -> bool {
+    let (Some(comparison), Some(in_use)) = (&models.comparison, &models.in_use) else { return false };
+    let judged = |model: &CorrectionModel| {
+        let own = model.provenance().cross_validation.as_ref();
+        own.is_some() && comparison.of(model.method()) == own
     };
-    let best = models.proposals.iter().map(|model| model.method()).min_by(|a, b| {
-        let or_last = |method| error_m(method).unwrap_or(f64::INFINITY);
-        or_last(*a).total_cmp(&or_last(*b))
-    })?;
-    Some(Standing::Proposed(best, error_m(best)))
+    judged(in_use) && models.proposals.iter().all(|model| judged(model) && model.method() != in_use.method())
+}
+
+/// Of several the one with the least error on unseen touches; an imported one may have none.
+fn best_proposal(models: &ModelsView) -> Option<Standing> {
+    let error_m = |model: &CorrectionModel| {
+        model.provenance().cross_validation.as_ref().map(|held_out| held_out.errors.mean_2d_m)
+    };
+    let or_last = |model: &CorrectionModel| error_m(model).unwrap_or(f64::INFINITY);
+    let best = models.proposals.iter().min_by(|a, b| or_last(a).total_cmp(&or_last(b)))?;
+    Some(Standing::Proposed(best.method(), error_m(best)))
 }

@@ -20,16 +20,16 @@ pub(super) fn models(view: &View) -> Guidance {
         Standing::Unusable(why) => say(why).warn().then("Go to Touch", Action::Go(Screen::Touch)),
         Standing::Recorded(count) => {
             let touches = format::count(count, "touch");
-            say(next_or(view, &format!("{touches} are recorded. Next: train models on them. Nothing moves.")))
+            say(format!("{touches} are recorded. Next: train models on them. Nothing moves."))
                 .then(format!("Train M1, M2 and M3 on {touches}"), Action::Models(ModelsAction::TrainAll))
         }
         Standing::Training => say("The models are being trained; nothing is used before you accept it."),
-        Standing::Proposed(method, error_m) => proposed(view, method, error_m),
+        Standing::Proposed(method, error_m) => proposed(method, error_m),
         Standing::InUse(method) => in_use(view, method),
     }
 }
 
-fn proposed(view: &View, method: Method, error_m: Option<f64>) -> Guidance {
+fn proposed(method: Method, error_m: Option<f64>) -> Guidance {
     let name = method.name();
     let said = match error_m {
         Some(error_m) => format!(
@@ -38,7 +38,7 @@ fn proposed(view: &View, method: Method, error_m: Option<f64>) -> Guidance {
         ),
         None => format!("{name} was imported. How well it fits this robot is not known: check it after use."),
     };
-    say(next_or(view, &said)).then(format!("Use {name}"), Action::Models(ModelsAction::Accept(method)))
+    say(said).then(format!("Use {name}"), Action::Models(ModelsAction::Accept(method)))
 }
 
 fn in_use(view: &View, method: Method) -> Guidance {
