@@ -127,6 +127,9 @@ pub struct TouchMeasurement {
     pub at: Instant,
     /// Angles commanded at that moment, rad.
     pub commanded_rad: Vec<Option<f64>>,
+    /// Place of the tip, by the model, at these angles: where it really was sent. It lies above the
+    /// planned point where the arm sags; from a side it lies beside it, too. `None`: not known.
+    pub commanded_tip: Option<Point<Robot>>,
     /// Encoders at that moment, rad.
     pub encoder_rad: Vec<Option<f64>>,
     /// Encoders after the dwell, rad.

@@ -71,6 +71,13 @@ impl Default for TouchPace {
     }
 }
 
+impl TouchPace {
+    /// At a share of the usual speeds.
+    pub fn at(self, share: f64) -> Self {
+        Self { speed_rad_s: self.speed_rad_s * share, lower_speed_m_s: self.lower_speed_m_s * share, ..self }
+    }
+}
+
 /// Postures of one touch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TouchPath {

@@ -37,8 +37,9 @@ pub struct TouchRecord {
     pub touched: Pixel<Screen>,
     /// Pixel that was to be touched.
     pub target: Pixel<Screen>,
-    /// The point that was sent, robot frame, m.
-    pub sent_m: [f64; 3],
+    /// The point that was sent, robot frame, m: where the tip was commanded at the contact. `None`
+    /// when that was not logged: the planned point may lie a centimeter below it.
+    pub sent_m: Option<[f64; 3]>,
     /// Label of repeats.
     pub group: String,
     /// Label for blocking.
@@ -83,7 +84,12 @@ impl TouchRecord {
             standing: Standing::Counts,
             touched: pixel,
             target: touch.target,
-            sent_m: aim.sent_m,
+            // The screen is met above or beside the planned point: what is learned is where the tip
+            // was sent when it met it.
+            sent_m: measured
+                .commanded_tip
+                .map(|tip| tip.coords.coords.into())
+                .filter(|sent_m: &[f64; 3]| sent_m.iter().all(|m| m.is_finite())),
             group: touch.group.clone(),
             set: touch.set.clone(),
             side: touch.side,
@@ -112,7 +118,6 @@ impl TouchRecord {
 
     /// As a row of the session.
     pub fn row(&self) -> TouchRow {
-        let [x, y, z] = self.sent_m;
         TouchRow {
             commanded_rad: self.commanded_rad.clone(),
             encoder_rad: self.encoder_rad.clone(),
@@ -124,7 +129,7 @@ impl TouchRecord {
             payload_kg: Some(self.payload_kg),
             move_secs: self.move_secs,
             t_secs: self.connected_secs,
-            target: Some(Point::<Robot>::new(x, y, z)),
+            target: self.sent_m.map(|[x, y, z]| Point::<Robot>::new(x, y, z)),
             temperature_c: self.temperature_c.clone(),
             load: self.load.clone(),
         }

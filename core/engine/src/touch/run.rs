@@ -267,12 +267,11 @@ impl Run {
             Some((_, planner)) => planner.rig().clone(),
             None => Arc::new(Rig { touchscreen: screen, ..(**now.rig).clone() }),
         };
-        let usual = TouchPace::default();
         let request = RouteRequest {
             rig,
             planner: planner.map(|(_, planner)| planner.clone()),
             order: next_order(),
-            pace: TouchPace { speed_rad_s: usual.speed_rad_s * speed(now.robot), ..usual },
+            pace: TouchPace::default().at(speed(now.robot)),
             from,
             aim: Box::new(aim),
         };

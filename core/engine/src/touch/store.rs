@@ -239,7 +239,7 @@ fn free_folder(sessions: &Path, name: &str) -> std::io::Result<PathBuf> {
 }
 
 fn write_json(file: &Path, value: &impl Serialize) -> Result<(), String> {
-    let text = serde_json::to_string_pretty(value).map_err(|error| {
+    let text = serde_json::to_string(value).map_err(|error| {
         format!("{} cannot be put into words ({error}). Please report it.", file.display())
     })?;
     let replacement = Replacement::of(file);

@@ -565,3 +565,23 @@ fn the_time_left_follows_the_pace() {
     // The made-up robot takes nine seconds for each.
     assert_eq!(desk.view().remaining.map(|left| left.as_secs()), Some(5 * 9));
 }
+
+#[test]
+fn a_touch_of_which_the_commanded_angles_are_not_known_claims_no_point_that_was_sent() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    desk.start(grid(2, 2));
+    let order = desk.order().expect("first");
+    let mut measured = desk.measure(&order);
+    measured.commanded_tip = None;
+    for list in [&mut measured.commanded_rad, &mut measured.encoder_rad] {
+        list.iter_mut().for_each(|angle| *angle = None);
+    }
+    desk.say(&order, TouchRun::Touched(Box::new(measured)));
+    desk.touch_all();
+    let session = Session::read(&only_session(folder.path())).expect("readable");
+    let row = session.touches.as_ref().and_then(|table| table.row(0)).expect("a row");
+    assert_eq!((row.target, row.commanded_rad[0], row.touch.is_some()), (None, None, true));
+    let data = TouchData::of_session(&session, &rig().chain(super::plan::TIP).expect("the tip"));
+    assert_eq!(data.expect("can be learned from").len(), 7, "that touch is left out");
+}

@@ -8,7 +8,7 @@ use plumbline_model::JobContext;
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::touchscreen::ScreenPlacement;
 
-use super::path::{Planner, TouchPace, TouchPath};
+use super::path::{Planner, TouchPace};
 use super::placement::{self, Proposal};
 use super::plan::{self, Aim, PlanRequest, RunPlan, TIP};
 use super::record::{Progress, TouchRecord};
@@ -268,26 +268,9 @@ fn route(request: RouteRequest) -> TouchResult {
     };
     let RouteRequest { aim, from, order, pace, rig, .. } = request;
     let path = planner.plan(aim.touch.target, aim.sent(), aim.touch.side, &from);
-    let [u_m, v_m] = rig.touchscreen.pitch_m();
-    let plausible_px = pace.plausible_m / (0.5 * (u_m + v_m));
-    let order = path.map(|path| Box::new(order_of(path, number, order, &pace, plausible_px)));
+    let along = |path| TouchOrder::along(path, planner.chain(), &rig.touchscreen, &pace, number, order);
+    let order = path.map(|path| Box::new(along(path)));
     TouchResult::Routed { number, planner: Some(planner), order }
-}
-
-fn order_of(path: TouchPath, number: usize, order: u64, pace: &TouchPace, plausible_px: f64) -> TouchOrder {
-    TouchOrder {
-        number,
-        order,
-        tip: TIP.to_owned(),
-        approach: path.approach,
-        lower: path.lower,
-        lower_tip: path.lower_tip,
-        lower_speed_m_s: pace.lower_speed_m_s,
-        speed_rad_s: pace.speed_rad_s,
-        dwell: pace.dwell,
-        target: path.target,
-        plausible_px,
-    }
 }
 
 impl TouchResult {

@@ -7,8 +7,8 @@ use plumbline_hardware::joints::{
     HoldReason, JointState, Motion, Move, MoveId, MoveOutcome, Pace, Setpoint, SetpointKind, Touch,
     TouchSource,
 };
-use plumbline_model::Pixel;
 use plumbline_model::robot::{JointIndex, Posture, Rig};
+use plumbline_model::{Pixel, Point};
 
 use super::joints_of;
 use super::lowering::Descent;
@@ -310,6 +310,7 @@ impl Run {
             pixel: Pixel::new(contact.u_px, contact.v_px),
             at: contact.at,
             commanded_rad: nothing.clone(),
+            commanded_tip: None,
             encoder_rad: nothing.clone(),
             later_encoder_rad: nothing,
             direction: self.descent.direction(way_m, &self.chain),
@@ -327,11 +328,16 @@ impl Run {
         let Stage::Dwelling { measured, since, read, .. } = &mut self.stage else { return Ok(Step::Same) };
         let lasted = now.saturating_duration_since(*since);
         if !*read && lasted >= READ {
-            *read = true;
-            if let Some((commanded, encoders)) = worker.arm()?.at(measured.at) {
+            let known = worker.arm()?.at(measured.at);
+            // A servo that was asked in vain answers some cycles later: ask for that moment again.
+            *read = known.is_some() || lasted >= self.order.dwell;
+            if let Some((commanded, encoders)) = known {
                 let angles =
                     |posture: &Posture| self.chain.iter().map(|joint| Some(posture[*joint])).collect();
                 (measured.commanded_rad, measured.encoder_rad) = (angles(&commanded), angles(&encoders));
+                let tip = worker.rig.chain(&self.order.tip).map(|chain| chain.robot_from_tip_in(&commanded));
+                measured.commanded_tip =
+                    tip.ok().map(|tip| Point::from(nalgebra::Point3::from(tip.translation_m())));
             }
         }
         if !*read || lasted < self.order.dwell {

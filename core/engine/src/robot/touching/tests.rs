@@ -29,6 +29,8 @@ fn a_touch_goes_through_its_stages_and_measures_at_the_contact() {
     let beside_m = (tip.x - bench.sent.coords.x).hypot(tip.y - bench.sent.coords.y);
     assert!(beside_m < 1e-4, "{beside_m}");
     assert!((tip.z - bench.sent.coords.z).abs() < 5e-4, "{}", tip.z);
+    let told = measured.commanded_tip.expect("known").coords.coords;
+    assert!((told - tip).norm() < 1e-12, "{told}");
     for list in [&measured.encoder_rad, &measured.later_encoder_rad, &measured.load, &measured.temperature_c]
     {
         assert_eq!(list.iter().flatten().count(), 6, "{list:?}");
