@@ -15,7 +15,7 @@ pub struct FitTimes {
     /// One fit with the default options, all its networks.
     pub ours_s: f64,
     /// One fit in the published way (Adam, 1e-3, batches of 16, 200 epochs), by this program. What
-    /// the same takes in Python is told by `benchmarks/train_m3_sklearn.py`.
+    /// the same takes in Python the benchmark command measures beside it.
     pub published_s: f64,
     /// A training with the default options, cross-validation, border and spread included.
     pub whole_training_s: f64,

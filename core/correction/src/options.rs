@@ -81,7 +81,7 @@ impl Default for TrainOptions {
             folds: 12,
             block_by: BlockBy::default(),
             members: 3,
-            iterations: 8,
+            iterations: 4,
             activation: Activation::Tanh,
             placement: PlacementFrom::default(),
             session: String::new(),

@@ -25,7 +25,7 @@ fn samples(count: usize, noise_m: f64, seed: u64) -> Samples {
 }
 
 const OPTIONS: EvidenceOptions =
-    EvidenceOptions { units: 64, activation: Activation::Tanh, iterations: 8, draw_sd: 0.2 };
+    EvidenceOptions { units: 64, activation: Activation::Tanh, iterations: 4, draw_sd: 0.2 };
 
 fn fit(samples: &Samples, options: &EvidenceOptions, seed: u64) -> Network {
     fit_evidence(samples, None, options, seed, &Unattended, &mut |_| ()).expect("it trains")
