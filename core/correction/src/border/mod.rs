@@ -35,8 +35,8 @@
 //! variance(q) = local(q) + gap · g(q)² + near · h(q)² + far · h(q)⁴ + rate² · max(h(q) − reach, 0)²
 //! ```
 //!
-//! g is the distance to the nearest touch beyond half a spacing, or the distance outside of the
-//! border where that is larger; h is the distance outside of the convex hull of the touches. The
+//! g is the distance to the nearest touch beyond half a spacing; outside, that of the nearest place
+//! inside and the distance from it. h is the distance outside of the convex hull of the touches. The
 //! four parts are fitted together to the residuals of left-out blocks and *their* distances to
 //! the data that remained ([`Spread::fit_blocked`]), by maximum likelihood of zero-mean normal
 //! residuals with the multiplicative updates of Févotte, Bertin and Durrieu (2009, Neural
@@ -44,9 +44,11 @@
 //! outside of the border too. Beyond the `reach` of what blocks tell (9 of 10 of their touches that
 //! lay outside of what remained are nearer) a stated physical rate is added
 //! ([`Spread::FALLBACK_RATE_M_PER_PX`]). Growth in gaps is told from chance by Akaike's
-//! criterion: if it does not pass, the local part is fitted without it. Few blocks tell little about growth outside: its variance is
-//! widened as Student's t demands for their number. The local part is a mean of squared
-//! residuals weighted by a Gaussian of their distance and blended with that of all touches. It is
+//! criterion: if it does not pass, the local part is fitted without it. Few blocks tell little
+//! about growth outside: its variance is widened as Student's t demands for their number.
+//!
+//! The local part is a mean of squared residuals weighted by a Gaussian of their distance and
+//! blended with that of all touches. It is
 //! scaled so that 1.96 standard deviations hold 95 % of the residuals themselves, each judged by
 //! the others: errors of a model that is too stiff have shorter tails than a normal distribution,
 //! those of touches longer ones (split conformal prediction with local weights: Lei, G'Sell,

@@ -14,8 +14,8 @@ use super::region::MARGIN;
 const LOCAL_REACH: f64 = 1.5;
 /// The residuals of all touches count like this many near ones.
 const GLOBAL_WEIGHT: f64 = 20.0;
-/// From fewer residuals (of all axes) an interval is not calibrated: its ends would rest on two
-/// of them or less.
+/// From fewer residuals (of all axes) an interval is not calibrated: its ends would rest on the
+/// largest five or less.
 const FEWEST_SCORES: usize = 100;
 /// From fewer blocks growth outside is not learned alone.
 const FEWEST_BLOCKS: usize = 3;
