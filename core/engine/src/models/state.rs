@@ -10,6 +10,7 @@ use plumbline_model::robot::Rig;
 use super::learn::Trained;
 use super::losses::Losses;
 use super::screen::Corners;
+use super::sessions::is_for_training;
 use super::store::{History, Store};
 use super::tables::TablesEditor;
 use super::work::{ModelsResult, ModelsWork, Restored, screen_of};
@@ -174,7 +175,8 @@ impl ModelsWorkflow {
         if methods.is_empty() {
             return context.refuse("Choose at least one of M1, M2 and M3 to train.");
         }
-        let session = self.session.clone().or_else(|| around.newest_session.map(Path::to_owned));
+        let newest = around.newest_session.filter(|newest| is_for_training(newest));
+        let session = self.session.clone().or_else(|| newest.map(Path::to_owned));
         let Some(session) = session else {
             return context
                 .refuse("Choose a session with touches first, or touch the screen: step 3, Touch.");
@@ -293,8 +295,9 @@ impl ModelsWorkflow {
     /// The first session that can be used is chosen, so that there is something to train on.
     fn listed(&mut self, sessions: Vec<TouchSession>, around: &Surroundings<'_>, context: &mut Context<'_>) {
         self.sessions = sessions;
-        let first = self.sessions.iter().find(|session| session.problem.is_none());
-        let first = around.newest_session.or(first.map(|session| session.folder.as_path()));
+        let usable = self.sessions.iter().filter(|session| session.problem.is_none());
+        let first = usable.map(|session| session.folder.as_path()).find(|folder| is_for_training(folder));
+        let first = around.newest_session.filter(|newest| is_for_training(newest)).or(first);
         if let (None, Some(session)) = (&self.session, first.map(Path::to_owned)) {
             self.choose(session, around, context);
         }

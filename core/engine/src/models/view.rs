@@ -5,6 +5,7 @@ use std::sync::Arc;
 use plumbline_correction::Method;
 
 use super::screen::{corners, moved_m};
+use super::sessions::is_for_training;
 use super::state::{ModelsWorkflow, Surroundings};
 use crate::view::{EarlierModel, ModelMap, ModelsView, StepState};
 
@@ -106,10 +107,12 @@ impl ModelsWorkflow {
 
     fn next_with_model(&self, around: &Surroundings<'_>) -> String {
         let name = self.in_use.as_ref().map_or("The model", |in_use| in_use.model.method().name());
-        let newer = around.newest_session.filter(|newest| self.session.as_deref() != Some(*newest));
+        let newer = around
+            .newest_session
+            .filter(|newest| self.session.as_deref() != Some(*newest) && is_for_training(newest));
         match newer.and_then(|newest| newest.file_name()) {
             Some(newest) => format!(
-                "{name} is in use. The screen was touched since: choose {} to train on it, or check {name} with it.",
+                "{name} is in use. The screen was touched since: choose {} to train on it.",
                 newest.to_string_lossy()
             ),
             None => format!("{name} is in use. Check it by touching new targets with it: step 3, Touch."),

@@ -37,6 +37,20 @@ fn a_broken_session_is_listed_with_its_problem() {
 }
 
 #[test]
+fn corners_and_checks_are_listed_but_not_chosen_by_themselves() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    for name in ["2026-05-01T10-00-00_touch", "2026-05-03T10-00-00_corners", "2026-05-04T10-00-00_check"] {
+        made_up_session(&nico()).write(&folder.path().join("sessions").join(name)).expect("written");
+    }
+    let mut lab = Lab::on(folder);
+    assert_eq!(lab.view().sessions.len(), 3);
+    assert_eq!(lab.view().session, Some(lab.session()));
+    let check = lab.path("sessions/2026-05-04T10-00-00_check");
+    let chosen = lab.tell(ModelsCommand::ChooseSession { session: check.clone() });
+    assert!(chosen.session == Some(check) && matches!(chosen.data, Some(Ok(_))), "who asks for it gets it");
+}
+
+#[test]
 fn sessions_that_nothing_can_be_learned_from_are_refused_with_a_sentence() {
     for (what, change, said) in [
         ("one touch", (|text| only_rows(&text, |row| row == 0)) as fn(String) -> String, "1 of"),
