@@ -66,7 +66,9 @@ pub(super) fn frame(ui: &Ui, rect: Rect, response: &Response, readout: Option<&s
     }
     if let Some(text) = readout {
         let font = theme::font(ui, &TextStyle::Small);
-        let galley = ui.painter().layout_no_wrap(text.to_owned(), font, tokens.text_strong);
+        // Long words get a second line rather than leaving the map.
+        let width = rect.width() - 2.0 * space::XS - 12.0;
+        let galley = ui.painter().layout(text.to_owned(), font, tokens.text_strong, width);
         let corner = rect.left_bottom() + vec2(space::XS, -space::XS);
         let chip = Align2::LEFT_BOTTOM.anchor_size(corner, galley.size() + vec2(12.0, 6.0));
         ui.painter().rect_filled(chip, 4.0, tokens.panel);

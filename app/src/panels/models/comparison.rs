@@ -15,6 +15,9 @@ use super::{action_button, clock, facts};
 use crate::panels::{PanelContext, padded};
 use crate::window::{Action, ModelsAction};
 
+/// Less is nothing, m.
+const LEAST_HEIGHT_M: f64 = 5e-7;
+
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let models = &cx.view.models;
     if models.proposals.is_empty() && models.in_use.is_none() && models.comparison.is_none() {
@@ -138,7 +141,9 @@ fn figures(ui: &mut Ui, facts: &Facts) {
         for judged in &facts.judged {
             ui.label(theme::weak(ui, judged.method.name()));
             ui.label(format::mm(judged.errors.rms_2d_m));
-            ui.label(format::mm(judged.errors.rms_z_m));
+            // All touches may have been sent to one height; what remains is dust of the numbers.
+            let height_m = judged.errors.rms_z_m;
+            ui.label(format::mm(if height_m < LEAST_HEIGHT_M { 0.0 } else { height_m }));
             ui.end_row();
         }
         if let Some(noise) = &facts.noise {
@@ -183,7 +188,7 @@ fn in_use(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             let at = clock(before.accepted);
             let text = match before.method {
                 Some(method) => format!("Back to {} of {at}", method.name()),
-                None => format!("Back to no model of {at}"),
+                None => "Back to no model".to_owned(),
             };
             action_button(ui, cx, ModelsAction::Undo, &text);
         }
