@@ -7,8 +7,8 @@ use std::time::Instant;
 use common::touch_245;
 use plumbline_correction::bench::fit_times;
 use plumbline_correction::{
-    CorrectionModel, Errors, HeightGrid, Method, Recipe, TouchData, TrainOptions, compare, distance_2d_m,
-    spread_of_repeats, train,
+    Activation, BlockBy, CorrectionModel, Errors, HeightGrid, Method, Recipe, TouchData, TrainOptions,
+    compare, cross_validate, distance_2d_m, spread_of_repeats, train,
 };
 use plumbline_model::session::Screen;
 use plumbline_model::{Pixel, Unattended, measured_data};
@@ -41,6 +41,26 @@ fn held_out_errors_order_the_methods() {
     assert!(low > 1e-3, "M3 is better than M1 by {low} m at least");
     let m3 = comparison.of(Method::M3).expect("compared").errors;
     assert!(m3.mean_2d_m < 4.6e-3 && m3.rms_z_m < 0.7e-3, "{m3:?}");
+}
+
+/// Whether what was chosen about training still is what whole areas held out ask for.
+#[test]
+fn gently_bending_units_go_on_best_into_areas_that_are_held_out() {
+    let Some(data) = touch_245() else { return };
+    let mean_m = |activation: Activation| {
+        let of = |folds: usize| {
+            let options =
+                TrainOptions { activation, block_by: BlockBy::Area, folds, ..TrainOptions::default() };
+            cross_validate(&data, Method::M3, &options, &Unattended).expect("it trains").errors
+        };
+        let of_folds = [8, 12, 20].map(of);
+        for errors in &of_folds {
+            eprintln!("{activation:?}, areas held out: {}", mm(errors));
+        }
+        of_folds.iter().map(|errors| errors.mean_2d_m).sum::<f64>() / 3.0
+    };
+    let (tanh, relu) = (mean_m(Activation::Tanh), mean_m(Activation::Relu));
+    assert!(tanh < relu + 0.1e-3 && tanh < 4.9e-3, "{tanh} {relu}");
 }
 
 #[test]
