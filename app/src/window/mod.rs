@@ -65,7 +65,7 @@ pub use settings::{ThemeChoice, WindowSettings};
 pub(crate) use source_menu::short_name as source_name;
 pub use steps::{Pane, Screen};
 pub use touch_actions::{Preset, TouchAction};
-pub(crate) use touch_actions::{is_under_way, screen_of, whole_area};
+pub(crate) use touch_actions::{is_under_way, screen_of, usual_area};
 pub use touch_window::{Monitor, TouchSurface, touch_surface, window_problem};
 
 use crate::panels::PanelState;

@@ -57,6 +57,8 @@ pub enum Preset {
 
 /// Panels err at their edges and fingers slip off there: this much is left out.
 const MARGIN_M: f64 = 0.02;
+/// What is reached is taken this much smaller on each side.
+const REACH_INSET_M: f64 = 0.006;
 /// Targets of a check.
 const CHECKED: usize = 20;
 /// Random targets of a check lie elsewhere than those of training.
@@ -78,9 +80,17 @@ impl Preset {
     }
 }
 
-/// The whole screen but its border.
-pub fn whole_area(screen: &Touchscreen) -> TouchArea {
-    TouchArea::within(screen, MARGIN_M)
+/// What the arm reaches of the screen, as far as that is known; else all of it but its border.
+pub fn usual_area(view: &View) -> Option<TouchArea> {
+    let screen = screen_of(view)?;
+    let whole = TouchArea::within(screen, MARGIN_M);
+    let Some(reach) = view.touch.reach else { return Some(whole) };
+    // The real screen lies some millimeters beside where reach was looked for.
+    let inset = screen.pitch_m().map(|pitch_m| (REACH_INSET_M / pitch_m).round());
+    let inner = |reach: [f64; 2], inset: f64| [(reach[0] + inset).round(), (reach[1] - inset).round()];
+    let area = TouchArea { u_px: inner(reach.u_px, inset[0]), v_px: inner(reach.v_px, inset[1]) };
+    let has_size = area.u_px[0] < area.u_px[1] && area.v_px[0] < area.v_px[1];
+    Some(if has_size { area } else { reach })
 }
 
 /// The screen that is touched: as it is taken to lie, else as the rig file has it.
@@ -179,7 +189,7 @@ impl TouchAction {
         let touch = &view.touch;
         Some(
             match self {
-                Self::Plan(preset) => TouchCommand::Plan(preset.options(whole_area(screen_of(view)?))),
+                Self::Plan(preset) => TouchCommand::Plan(preset.options(usual_area(view)?)),
                 Self::Start => TouchCommand::Start,
                 Self::Pause => TouchCommand::Pause,
                 Self::Resume => TouchCommand::Resume,

@@ -7,7 +7,7 @@ use plumbline_widgets::theme::{self, space};
 
 use super::words;
 use crate::panels::PanelContext;
-use crate::window::{screen_of, whole_area};
+use crate::window::{screen_of, usual_area};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, options: &PlanOptions) {
     let mut edited = options.clone();
@@ -65,8 +65,11 @@ fn area(ui: &mut Ui, cx: &PanelContext<'_>, area: &mut TouchArea) {
         pixel(ui, "Last row", &mut area.v_px[1], most[1]);
         ui.label(theme::weak(ui, "px"));
         ui.add_space(space::S);
-        if ui.button("Whole screen").on_hover_text("All of it but its border").clicked() {
-            *area = whole_area(screen);
+        let usual = usual_area(cx.view);
+        let text = if cx.view.touch.reach.is_some() { "In reach" } else { "All" };
+        let button = ui.button(text).on_hover_text("The part of the screen that the arm reaches");
+        if let (true, Some(usual)) = (button.clicked(), usual) {
+            *area = usual;
         }
     });
 }

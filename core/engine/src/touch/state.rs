@@ -9,7 +9,7 @@ use plumbline_hardware::joints::Touch;
 use plumbline_model::Pixel;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::Touchscreen;
-use plumbline_model::touch_plan::{PlanOptions, Purpose};
+use plumbline_model::touch_plan::{PlanOptions, Purpose, TouchArea};
 use plumbline_model::touchscreen::ScreenPlacement;
 
 use super::placement::Proposal;
@@ -38,6 +38,8 @@ pub struct Surroundings<'a> {
 #[derive(Clone, Debug)]
 pub struct TouchWorkflow {
     folder: PathBuf,
+    /// The part of the screen that the finger reaches, once that was looked for.
+    pub(super) reach: Option<TouchArea>,
     pub(super) placement: Option<Arc<ScreenPlacement>>,
     pub(super) proposal: Option<Proposal>,
     pub(super) correct_with: Option<Method>,
@@ -66,6 +68,7 @@ impl TouchWorkflow {
     pub fn new(folder: &Path) -> Self {
         Self {
             folder: folder.to_owned(),
+            reach: None,
             placement: None,
             proposal: None,
             correct_with: None,
@@ -361,12 +364,16 @@ impl TouchWorkflow {
         context: &mut Context<'_>,
     ) {
         match result {
-            TouchResult::Restored { placement, runs } => self.restored(placement, runs, context),
+            TouchResult::Restored { placement, runs, reach } => {
+                self.reach = reach;
+                self.restored(placement, runs, context);
+            }
             TouchResult::Planned(plan, rig) if self.planning == Some(id) => {
                 self.planning = None;
                 self.leave_run();
                 self.planned = Some((plan, rig.touchscreen.clone()));
             }
+            TouchResult::NotPlanned => self.planning = self.planning.filter(|known| *known != id),
             TouchResult::Begun { session, stored } if self.starting == Some(id) => {
                 self.starting = None;
                 self.planned = None;

@@ -117,6 +117,7 @@ impl TouchWorkflow {
             session: self.run.as_ref().map(|run| run.session.clone()),
             unfinished: self.runs.unfinished.as_slice().into(),
             screen: Some(self.screen().unwrap_or(&around.rig.touchscreen).clone()),
+            reach: self.reach,
             placement: self.placement.clone(),
             placement_proposal: self.proposal.as_ref().map(|proposal| proposal.placement.clone()),
             correct_with: self.correct_with,

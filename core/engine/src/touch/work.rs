@@ -6,6 +6,7 @@ use std::sync::Arc;
 use jiff::Timestamp;
 use plumbline_model::JobContext;
 use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::touch_plan::TouchArea;
 use plumbline_model::touchscreen::ScreenPlacement;
 
 use super::path::{Planner, TouchPace};
@@ -112,9 +113,13 @@ pub enum TouchResult {
         placement: Option<Result<Arc<ScreenPlacement>, String>>,
         /// Runs of earlier starts.
         runs: Runs,
+        /// The part of the screen that the finger reaches.
+        reach: Option<TouchArea>,
     },
     /// A plan, of a screen that lies where this rig has it.
     Planned(Arc<RunPlan>, Arc<Rig>),
+    /// It was cancelled, mostly because the next plan is wanted already: not worth a message.
+    NotPlanned,
     /// A new session.
     Begun {
         /// Its folder.
@@ -174,6 +179,7 @@ impl TouchWork {
         matches!(
             self,
             Self::Restore { .. }
+                | Self::Plan(_)
                 | Self::Begin { .. }
                 | Self::Open { .. }
                 | Self::Write { .. }
@@ -186,10 +192,11 @@ impl TouchWork {
     pub fn run(self, context: &dyn JobContext) -> Result<TouchResult, JobError> {
         match self {
             Self::Restore { folder, rig } => Ok(restore(&folder, &rig)),
-            Self::Plan(request) => {
-                let plan = plan::make(&request, context)?;
-                Ok(TouchResult::Planned(Arc::new(plan), request.rig))
-            }
+            Self::Plan(request) => match plan::make(&request, context) {
+                Ok(plan) => Ok(TouchResult::Planned(Arc::new(plan), request.rig)),
+                Err(JobError::Cancelled(_)) => Ok(TouchResult::NotPlanned),
+                Err(error) => Err(error),
+            },
             Self::Begin { sessions, rig, plan } => begin(&sessions, &rig, &plan).map_err(JobError::Failed),
             Self::Open { session, rig } => {
                 let stored = open(&session, &rig).map_err(JobError::Failed)?;
@@ -232,7 +239,9 @@ fn restore(folder: &std::path::Path, rig: &Rig) -> TouchResult {
             format!("{} Until then the nominal place is used.", sentence(&error.to_string()))
         })
     });
-    TouchResult::Restored { placement, runs: store::list(&folder.join("sessions")) }
+    // A rig without this finger cannot touch anyway; planning says so.
+    let reach = TouchArea::reached_by(rig, TIP).ok().flatten();
+    TouchResult::Restored { placement, runs: store::list(&folder.join("sessions")), reach }
 }
 
 fn begin(sessions: &std::path::Path, rig: &Rig, plan: &Arc<RunPlan>) -> Result<TouchResult, String> {
@@ -281,6 +290,7 @@ impl TouchResult {
             Self::Planned(plan, _) => {
                 format!("{} of {} targets can be touched.", plan.reachable(), plan.touches.len())
             }
+            Self::NotPlanned => "The plan was cancelled.".to_owned(),
             Self::Begun { .. } => "The session has begun.".to_owned(),
             Self::Opened { .. } => "The run is open.".to_owned(),
             Self::Written { .. } => "The touches are on disk.".to_owned(),

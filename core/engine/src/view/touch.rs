@@ -8,7 +8,7 @@ use plumbline_correction::Method;
 use plumbline_effects::observability::PlanScore;
 use plumbline_model::robot::Posture;
 use plumbline_model::session::{Screen, Touchscreen};
-use plumbline_model::touch_plan::{PlanOptions, Purpose, Side};
+use plumbline_model::touch_plan::{PlanOptions, Purpose, Side, TouchArea};
 use plumbline_model::touchscreen::ScreenPlacement;
 use plumbline_model::{Pixel, Point, Robot};
 
@@ -40,6 +40,9 @@ pub struct TouchView {
     pub unfinished: Arc<[UnfinishedRun]>,
     /// The screen as it is taken to lie now.
     pub screen: Option<Touchscreen>,
+    /// The largest rectangle of the screen that the finger reaches, nothing in its way; `None`:
+    /// not known yet, or none.
+    pub reach: Option<TouchArea>,
     /// Its measured place in use; `None`: nominal, from the rig file.
     pub placement: Option<Arc<ScreenPlacement>>,
     /// A measured place that waits to be accepted.
