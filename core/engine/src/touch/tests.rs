@@ -534,6 +534,12 @@ fn planning_stops_when_asked_to() {
     assert_eq!(desk.view().phase, TouchPhase::Planning);
     desk.cancel();
     assert_eq!(desk.view().phase, TouchPhase::Idle);
+    // A plan in place of one that is being made: only the newer one counts, without a word.
+    desk.apply(TouchCommand::Plan(grid(2, 2)));
+    desk.apply(TouchCommand::Plan(grid(3, 2)));
+    desk.release();
+    assert_eq!((desk.view().phase, desk.view().counts.planned), (TouchPhase::Planned, 10));
+    assert!(desk.said().is_empty(), "{}", desk.said());
 }
 
 #[test]
