@@ -22,9 +22,9 @@ pub trait Arm: Send {
     /// The newest state; `None` before the first cycle.
     fn state(&self) -> Option<Arc<JointState>>;
 
-    /// Angles commanded and measured at a moment of the last seconds, interpolated; `None` when
-    /// nothing is known of that moment.
-    fn at(&self, when: Instant) -> Option<(Posture, Posture)>;
+    /// Angles commanded, and angles measured, at a moment of the last seconds, interpolated; `None`
+    /// when that moment is not, or not yet, covered.
+    fn at(&self, when: Instant) -> (Option<Posture>, Option<Posture>);
 
     /// Begins a move in place of whatever runs.
     fn begin(&self, motion: Move) -> Result<MoveId, Refusal>;

@@ -75,8 +75,8 @@ impl Arm for DrivenArm {
         Some(self.driver.state())
     }
 
-    fn at(&self, when: Instant) -> Option<(Posture, Posture)> {
-        self.driver.commanded_at(when).zip(self.driver.posture_at(when))
+    fn at(&self, when: Instant) -> (Option<Posture>, Option<Posture>) {
+        (self.driver.commanded_at(when), self.driver.posture_at(when))
     }
 
     fn begin(&self, motion: Move) -> Result<MoveId, Refusal> {

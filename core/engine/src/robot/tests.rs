@@ -52,8 +52,8 @@ impl Arm for FakeArm {
         }))
     }
 
-    fn at(&self, _when: Instant) -> Option<(Posture, Posture)> {
-        Some((self.posture.clone(), self.posture.clone()))
+    fn at(&self, _when: Instant) -> (Option<Posture>, Option<Posture>) {
+        (Some(self.posture.clone()), Some(self.posture.clone()))
     }
 
     fn begin(&self, motion: Move) -> Result<MoveId, Refusal> {

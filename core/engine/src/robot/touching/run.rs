@@ -32,6 +32,8 @@ const VALID: Duration = Duration::from_millis(300);
 const LAST: Duration = Duration::from_millis(800);
 /// Angles around a contact have been read after this long.
 const READ: Duration = Duration::from_millis(60);
+/// What is not known of a contact after this long never will be.
+const READ_AT_LAST: Duration = Duration::from_millis(800);
 /// Joints nearer to their goal need not move, rad.
 const THERE_RAD: f64 = 5e-4;
 /// An arm that holds is believed so many cycles after it was told to follow.
@@ -328,16 +330,20 @@ impl Run {
         let Stage::Dwelling { measured, since, read, .. } = &mut self.stage else { return Ok(Step::Same) };
         let lasted = now.saturating_duration_since(*since);
         if !*read && lasted >= READ {
-            let known = worker.arm()?.at(measured.at);
-            // A servo that was asked in vain answers some cycles later: ask for that moment again.
-            *read = known.is_some() || lasted >= self.order.dwell;
-            if let Some((commanded, encoders)) = known {
+            let (commanded, encoders) = worker.arm()?.at(measured.at);
+            // A servo that answers late is waited for.
+            *read = (commanded.is_some() && encoders.is_some()) || lasted >= READ_AT_LAST;
+            if *read {
                 let angles =
                     |posture: &Posture| self.chain.iter().map(|joint| Some(posture[*joint])).collect();
-                (measured.commanded_rad, measured.encoder_rad) = (angles(&commanded), angles(&encoders));
-                let tip = worker.rig.chain(&self.order.tip).map(|chain| chain.robot_from_tip_in(&commanded));
-                measured.commanded_tip =
-                    tip.ok().map(|tip| Point::from(nalgebra::Point3::from(tip.translation_m())));
+                let nothing = || vec![None; self.chain.len()];
+                measured.commanded_rad = commanded.as_ref().map_or_else(nothing, angles);
+                measured.encoder_rad = encoders.as_ref().map_or_else(nothing, angles);
+                let tip = |posture| Some(worker.rig.chain(&self.order.tip).ok()?.robot_from_tip_in(posture));
+                measured.commanded_tip = commanded
+                    .as_ref()
+                    .and_then(tip)
+                    .map(|tip| Point::from(nalgebra::Point3::from(tip.translation_m())));
             }
         }
         if !*read || lasted < self.order.dwell {

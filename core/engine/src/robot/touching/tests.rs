@@ -47,6 +47,25 @@ fn a_touch_goes_through_its_stages_and_measures_at_the_contact() {
 }
 
 #[test]
+fn encoders_that_are_read_late_are_waited_for_and_do_not_cost_the_goals() {
+    let measured_with = |silent| {
+        let mut bench = Bench::new();
+        bench.order.dwell = Duration::from_millis(100);
+        bench.arm().silent = silent;
+        bench.start();
+        match bench.until_end(|bench| bench.touch_at_the_glass()) {
+            TouchRun::Touched(measured) => measured,
+            other => panic!("{other:?}"),
+        }
+    };
+    let late = measured_with(Duration::from_millis(400));
+    assert!(late.encoder_rad.iter().all(Option::is_some), "{late:?}");
+    let never = measured_with(Duration::from_secs(60));
+    assert!(never.encoder_rad.iter().all(Option::is_none), "{never:?}");
+    assert!(never.commanded_rad.iter().all(Option::is_some) && never.commanded_tip.is_some());
+}
+
+#[test]
 fn only_joints_of_the_arm_move_and_the_tip_stays_on_its_line() {
     let mut bench = Bench::new();
     bench.start();

@@ -54,6 +54,8 @@ pub struct Made {
     pub load: f64,
     pub torque_on: bool,
     pub tremble_rad: f64,
+    /// Encoders are read so long after the moment.
+    pub silent: Duration,
     outcomes: Vec<(MoveId, MoveOutcome)>,
     past: Vec<(Instant, Posture)>,
     now: Instant,
@@ -107,10 +109,12 @@ impl Arm for FakeArm {
         }))
     }
 
-    fn at(&self, when: Instant) -> Option<(Posture, Posture)> {
+    fn at(&self, when: Instant) -> (Option<Posture>, Option<Posture>) {
         let made = self.made();
-        let (_, commanded) = made.past.iter().rev().find(|(at, _)| *at <= when)?;
-        Some((commanded.clone(), sagging(commanded, SAG_RAD)))
+        let commanded = made.past.iter().rev().find(|(at, _)| *at <= when).map(|(_, past)| past.clone());
+        let read = made.now >= when + made.silent;
+        let measured = commanded.as_ref().map(|commanded| sagging(commanded, SAG_RAD)).filter(|_| read);
+        (commanded, measured)
     }
 
     fn begin(&self, motion: Move) -> Result<MoveId, Refusal> {
@@ -209,6 +213,7 @@ impl Bench {
             load: 0.1,
             torque_on: true,
             tremble_rad: 0.0,
+            silent: Duration::ZERO,
             outcomes: vec![],
             past: vec![],
             now,
