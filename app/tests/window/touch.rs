@@ -6,7 +6,7 @@ use egui::{Event, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::view::{ContactSource, TouchPhase, TouchView};
+use plumbline_engine::view::{ContactSource, TouchOutcome, TouchPhase, TouchView};
 use plumbline_engine::{Command, ScreenWindow, TouchCommand, View};
 use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose, TouchArea};
 
@@ -111,6 +111,36 @@ fn what_moves_is_said_before_it_moves() {
     assert!(says(&window, "the head and the left arm stay"));
     assert!(says(&window, "left out: the arm is too short"), "why some are not touched");
     assert!(says(&window, "causes it can notice"), "what the plan will tell");
+}
+
+#[test]
+fn presets_stay_where_the_arm_reaches() {
+    let reach = TouchArea { u_px: [200.0, 1700.0], v_px: [450.0, 1040.0] };
+    let (fake, mut window) = window(with_touch(TouchView { reach: Some(reach), ..idle() }));
+    press_next(&mut window, "Plan to touch the corners");
+    let all = sent(&fake);
+    let [TouchCommand::Plan(options)] = all.as_slice() else { panic!("planned: {all:?}") };
+    assert!(options.area.corners().into_iter().all(|corner| reach.contains(corner)), "{:?}", options.area);
+}
+
+#[test]
+fn two_corners_do_not_place_a_screen() {
+    let mut touch = planned(PlanOptions::place_screen(area()));
+    let mut touches = touch.touches.to_vec();
+    for one in touches.iter_mut().filter(|one| one.target.v_px < 500.0) {
+        one.outcome = TouchOutcome::Unreachable("too far".to_owned());
+    }
+    touch.touches = touches.into();
+    let (fake, mut window) = window(with_touch(touch));
+    assert!(says(&window, "three corners are needed"));
+    window.key_press_modifiers(Modifiers::COMMAND, egui::Key::Enter);
+    window.run_steps(2);
+    assert!(!sent(&fake).contains(&TouchCommand::Start));
+    // Touched all the same, and it could not be placed: it does not say that it was.
+    let options = PlanOptions::place_screen(area());
+    let failed = TouchView { phase: TouchPhase::Finished, ..planned(options) };
+    let (_, window) = self::window(with_touch(failed));
+    assert!(says(&window, "could not be placed"));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What to do next with touching the screen: one button, named by what it does.
 
 use plumbline_engine::View;
-use plumbline_engine::view::{PlanView, TouchCounts, TouchPhase, TouchView};
+use plumbline_engine::view::{PlanView, TouchCounts, TouchOutcome, TouchPhase, TouchView};
 use plumbline_model::touch_plan::Purpose;
 use plumbline_widgets::format;
 
@@ -33,7 +33,7 @@ fn standing(view: &View) -> Guidance {
             say("The touch window shows the targets and feels the touches: it has to fill the touch monitor.")
                 .then("Open the touch window", Action::Touch(TouchAction::ToggleWindow))
         }
-        TouchPhase::Planned => touch.plan.as_deref().map_or_else(|| first(view), planned),
+        TouchPhase::Planned => touch.plan.as_deref().map_or_else(|| first(view), |plan| planned(touch, plan)),
         TouchPhase::Paused { why } => paused(touch, why.as_deref()),
         TouchPhase::Finished => finished(view),
         _ => first(view),
@@ -71,9 +71,28 @@ pub fn minutes(duration: std::time::Duration) -> String {
     if seconds < 90 { format!("{seconds} s") } else { format!("{} min", (seconds + 30) / 60) }
 }
 
-fn planned(plan: &PlanView) -> Guidance {
+/// Places of the glass that are touched; repeats count once.
+fn places(touch: &TouchView) -> usize {
+    let reached = touch.touches.iter().filter(|one| !matches!(one.outcome, TouchOutcome::Unreachable(_)));
+    let mut places: Vec<(u64, u64)> =
+        reached.map(|one| (one.target.u_px.to_bits(), one.target.v_px.to_bits())).collect();
+    places.sort_unstable();
+    places.dedup();
+    places.len()
+}
+
+fn planned(touch: &TouchView, plan: &PlanView) -> Guidance {
     if plan.reachable == 0 {
         return say("The arm reaches none of these targets: choose another area.").warn();
+    }
+    let placing = plan.options.purpose == Purpose::PlaceScreen;
+    if placing && places(touch) < 3 {
+        let text = format!(
+            "The arm reaches {} of these places; three corners are needed to tell how the screen lies. Make the area smaller.",
+            places(touch)
+        );
+        let corners = Action::Touch(TouchAction::Plan(Preset::Corners));
+        return say(text).warn().then("Plan to touch the corners", corners);
     }
     say(what_moves(plan)).then(start_label(plan), Action::Touch(TouchAction::Start))
 }
@@ -116,6 +135,11 @@ fn finished(view: &View) -> Guidance {
     let purpose = touch.plan.as_ref().map(|plan| plan.options.purpose);
     let touched = format::count(touch.counts.touched, "touch").replace("touchs", "touches");
     match purpose {
+        Some(Purpose::PlaceScreen) if touch.placement.is_none() => {
+            say("The screen could not be placed from these touches; the messages say why. Touch its corners again.")
+                .warn()
+                .then("Plan to touch the corners", Action::Touch(TouchAction::Plan(Preset::Corners)))
+        }
         Some(Purpose::PlaceScreen) => {
             say("The place of the screen is in use. Next: touch targets to train models.")
                 .then("Plan a first calibration", Action::Touch(TouchAction::Plan(Preset::First)))
