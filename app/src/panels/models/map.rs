@@ -366,7 +366,7 @@ mod tests {
     fn arrows_before_and_after_have_one_round_scale_and_leave_the_height_out() {
         let drawn = Drawn::of(&Arc::new(map()));
         assert_eq!(drawn.scale(Errors::Both), 1.0);
-        assert_eq!(drawn.scale(Errors::After), 5.0);
+        assert_eq!(drawn.scale(Errors::After), 2.0);
         let [before, after] = drawn.means_m.expect("touches");
         assert!((before - 0.021).abs() < 1e-12 && (after - 0.003).abs() < 1e-12);
         assert_eq!(arrow_scale([0.003, 0.003, 0.5].into_iter()), 5.0);
