@@ -393,6 +393,9 @@ fn columns_that_the_format_does_not_define_are_written_and_come_back() {
     let row = |angle_rad: f64| TouchRow {
         commanded_rad: vec![Some(angle_rad), Some(0.1 / 3.0)],
         touch: Some(Pixel::new(960.0, 540.5)),
+        encoder_rad: vec![None; 2],
+        temperature_c: vec![None; 2],
+        load: vec![None; 2],
         ..TouchRow::default()
     };
     let rows = [row(0.1), row(0.2)];
