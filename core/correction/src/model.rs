@@ -36,6 +36,29 @@ pub(crate) enum Parts {
 pub(crate) struct Trust {
     pub border: Border,
     pub spread: Spread,
+    /// Factor on the spread per axis, at least 1: touches of sets that were held out are off by what
+    /// their whole set is off by, which areas held out do not show.
+    pub widened: [f64; 3],
+}
+
+impl Trust {
+    /// The spread learned from areas, widened until it holds held-out residuals (m) of the touches.
+    pub(crate) fn new(border: Border, spread: Spread, data: &TouchData, residuals_m: &[[f64; 3]]) -> Self {
+        let count = residuals_m.len().max(1) as f64;
+        let mut squares = [0.0; 3];
+        for (touch, residual) in data.touches.iter().zip(residuals_m) {
+            let sd_m = spread.sd_m(touch.pixel);
+            for axis in 0..3 {
+                squares[axis] += (residual[axis] / sd_m[axis].max(f64::MIN_POSITIVE)).powi(2) / count;
+            }
+        }
+        Self { border, spread, widened: squares.map(|square| square.sqrt().max(1.0)) }
+    }
+
+    fn sd_m(&self, pixel: Pixel<Screen>, disagreement_m: [f64; 3]) -> [f64; 3] {
+        let sd_m = self.spread.sd_m_with(pixel, disagreement_m);
+        std::array::from_fn(|axis| self.widened[axis] * sd_m[axis])
+    }
 }
 
 /// Where a model comes from; enough to train it again.
@@ -184,7 +207,7 @@ impl CorrectionModel {
             Some(trust) => Correction {
                 target,
                 inside: trust.border.contains(pixel),
-                sd_m: trust.spread.sd_m_with(pixel, self.parts.disagreement_m(pixel)),
+                sd_m: trust.sd_m(pixel, self.parts.disagreement_m(pixel)),
             },
         }
     }

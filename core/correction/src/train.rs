@@ -119,6 +119,7 @@ pub fn train(
     job.checkpoint()?;
     let errors = of_areas_m.iter().map(|residual| residual.map(|m| -m)).collect::<Vec<_>>();
     let spread = Spread::fit_blocked(&data.pixels(), &errors, &areas.of_touch, &border)?;
+    let trust = Trust::new(border, spread, data, &residuals_m);
     let provenance = Provenance {
         session: options.session.clone(),
         software: options.software.clone(),
@@ -130,7 +131,7 @@ pub fn train(
         cross_validation: cross_validation(residuals_m, blocks, options.seed),
         remarks: vec![],
     };
-    Ok(CorrectionModel { parts, trust: Some(Trust { border, spread }), provenance })
+    Ok(CorrectionModel { parts, trust: Some(trust), provenance })
 }
 
 /// Errors of a method on touches whose block was held out from training.
