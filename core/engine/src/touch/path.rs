@@ -16,6 +16,9 @@ use plumbline_model::session::Screen;
 use plumbline_model::touch_plan::Side;
 use plumbline_model::{Pixel, Point, Robot};
 
+/// The heading over a place of the table is found at this height above the table, m: about that of a
+/// fingertip on the glass.
+const HEADING_ABOVE_M: f64 = 0.02;
 /// The tip waits this high above the glass, or above the point that is sent where that is higher, m.
 pub const ABOVE_M: f64 = 0.04;
 /// Postures while lowering are this far apart, m.
@@ -174,9 +177,12 @@ impl Planner {
             ready,
             allowances: vec![],
         };
-        let middle = rig.touchscreen.middle();
-        let glass = rig.touchscreen.point_at(middle);
-        let (solution, _) = planner.upright(raised(glass, ABOVE_M), middle)?;
+        let screen = &rig.touchscreen;
+        let over_screen = raised(screen.point_at(screen.middle()), ABOVE_M);
+        // Where the screen was measured to lie must not change how the arm is held.
+        let solution = planner
+            .upright(planner.over_patch(), screen.middle())
+            .or_else(|_| planner.upright(over_screen, screen.middle()))?;
         planner.middle = planner.ready.with(planner.solver.joints(), &solution.joints);
         planner.allowances =
             touch_allowances(&planner.model, &planner.floor, &planner.chain, &planner.middle);
@@ -213,9 +219,8 @@ impl Planner {
         if !(numbers.iter().all(|number| number.is_finite()) && from.is_finite()) {
             return Err("The target or the present posture is not a number. Plan anew.".to_owned());
         }
-        let (solution, upright) = self.upright(sent, target)?;
-        let contact = self.posture(from, &solution);
-        let heading_rad = self.heading_rad(&contact);
+        let (contact, heading_rad) = self.contact(sent, target, from)?;
+        let upright = self.inclination(&contact);
         let lowering = self.lowering(target, sent, side, &contact, heading_rad)?;
         self.check_lowering(target, &lowering)?;
         let (approach, turns_rad) = self.approach(target, from, &lowering[0])?;
@@ -235,9 +240,44 @@ impl Planner {
         })
     }
 
-    /// The arm with its tip at a point, the finger as upright as it can be; always from the same
-    /// start, so that the same point is always touched in the same posture.
-    fn upright(&self, point: Point<Robot>, target: Pixel<Screen>) -> Result<(Solution, f64), String> {
+    /// Above the middle of the patch of the table that is worked on.
+    fn over_patch(&self) -> Point<Robot> {
+        let middle = |range: [f64; 2]| 0.5 * (range[0] + range[1]);
+        let patch = &self.rig.work_patch;
+        let z_m = self.rig.table.height_m + ABOVE_M;
+        Point::new(middle(patch.x_range_m), middle(patch.y_range_m), z_m)
+    }
+
+    /// The arm with its tip at a point, and the heading of its tip. What the arm errs by depends on
+    /// how it is held, so each place of the table is always touched with the same heading, whatever
+    /// its height, the place of the screen, and what was touched before.
+    fn contact(
+        &self,
+        sent: Point<Robot>,
+        target: Pixel<Screen>,
+        from: &Posture,
+    ) -> Result<(Posture, f64), String> {
+        let over = Point::new(sent.coords.x, sent.coords.y, self.rig.table.height_m + HEADING_ABOVE_M);
+        let held = self.posture(from, &self.upright(over, target)?);
+        let heading_rad = self.heading_rad(&held);
+        let at = Target::PositionYaw { point: sent, yaw_rad: heading_rad };
+        let options = Options { other_starts: 0, ..Options::upright() };
+        let answer = self.solver.solve_from(&at, &held, &options);
+        let answer = answer.map_err(|error| crate::text::sentence(&error.to_string()))?;
+        if !answer.is_reached() {
+            return Err(format!("{} is out of reach. Choose a smaller area.", place(target)));
+        }
+        Ok((self.posture(from, answer.best()), heading_rad))
+    }
+
+    /// Cosine of the finger's inclination, 1 straight down.
+    fn inclination(&self, posture: &Posture) -> f64 {
+        (self.chain.robot_from_tip_in(posture).isometry.rotation * Vector3::z()).z
+    }
+
+    /// The arm with its tip at a point, the finger as upright as it can be, always from the same
+    /// start.
+    fn upright(&self, point: Point<Robot>, target: Pixel<Screen>) -> Result<Solution, String> {
         let start = self.middle.of(self.solver.joints());
         let answer = self.solver.solve(&Target::Position(point), &start, &Options::upright());
         let answer = answer.map_err(|error| crate::text::sentence(&error.to_string()))?;
@@ -258,7 +298,7 @@ impl Planner {
                 upright.clamp(-1.0, 1.0).acos().to_degrees()
             ));
         }
-        Ok((best, upright))
+        Ok(best)
     }
 
     /// A solution as a posture of the whole robot, the fingers pointing.

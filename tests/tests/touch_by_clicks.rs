@@ -1,0 +1,113 @@
+//! An operator calibrates the arm on the touchscreen, by clicks in a window over the real engine
+//! and the real twin: the screen is placed, targets are touched, models are trained on them, M3
+//! is taken into use, and new targets are touched through it.
+
+use std::time::Duration;
+
+use plumbline_engine::correction::Method;
+use plumbline_engine::view::{StepState, TouchFigures, TouchPhase};
+use plumbline_model::session::Session;
+use plumbline_tests::{Window, click, click_containing, for_a_while, until, view, window};
+
+/// Waits for the end of a run; a run that a busy machine interrupted goes on by a click.
+fn finish_run(window: &mut Window, what: &str) {
+    until(window, what, |window| {
+        matches!(view(window).touch.phase, TouchPhase::Running { .. } | TouchPhase::Paused { .. })
+    });
+    loop {
+        until(window, what, |window| {
+            matches!(view(window).touch.phase, TouchPhase::Finished | TouchPhase::Paused { .. })
+        });
+        if view(window).touch.phase == TouchPhase::Finished {
+            return;
+        }
+        click_containing(window, "Go on with touch");
+        for_a_while(window, Duration::from_millis(300));
+    }
+}
+
+fn figures(window: &Window) -> TouchFigures {
+    view(window).touch.figures.expect("there are touches")
+}
+
+fn place_the_screen(window: &mut Window) {
+    click_containing(window, "Plan to touch the corners");
+    until(window, "the plan", |window| view(window).touch.phase == TouchPhase::Planned);
+    assert!(view(window).touch.counts.touched == 0, "planning touches nothing");
+    click_containing(window, "Touch the corners");
+    finish_run(window, "the corners");
+    until(window, "the place of the screen", |window| view(window).touch.placement_proposal.is_some());
+    assert!(view(window).touch.placement.is_none(), "a proposal is not in use before it is accepted");
+    click(window, "Use this place of the screen");
+    until(window, "it in use", |window| view(window).touch.placement.is_some());
+}
+
+fn touch_targets(window: &mut Window) -> TouchFigures {
+    click(window, "Quick");
+    until(window, "the plan", |window| {
+        let touch = &view(window).touch;
+        touch.phase == TouchPhase::Planned
+            && touch.plan.as_ref().is_some_and(|plan| plan.options.screen_heights_m.len() == 1)
+    });
+    let reachable = view(window).touch.plan.as_ref().expect("just seen").reachable;
+    assert!(reachable >= 12, "only {reachable} in reach");
+    click(window, &format!("Touch {reachable} targets"));
+
+    // Paused in the middle, and gone on with.
+    until(window, "three touches", |window| view(window).touch.counts.touched >= 3);
+    click_containing(window, "Pause");
+    until(window, "the pause", |window| matches!(view(window).touch.phase, TouchPhase::Paused { .. }));
+    let done = view(window).touch.counts.touched;
+    for_a_while(window, Duration::from_secs(2));
+    assert_eq!(view(window).touch.counts.touched, done, "nothing goes on by itself");
+    click_containing(window, "Go on with touch");
+    finish_run(window, "the targets");
+
+    let folder = view(window).touch.session.clone().expect("a run has a session");
+    let session = Session::read(&folder).expect("a session that can be read");
+    let rows = session.touches.as_ref().map_or(0, |table| table.row_count());
+    assert_eq!(rows, view(window).touch.counts.touched, "every touch is on disk");
+    figures(window)
+}
+
+fn train_and_use_m3(window: &mut Window) {
+    // Measured once more with more touches: the first place stays.
+    if view(window).touch.placement_proposal.is_some() {
+        click_containing(window, "Discard proposal");
+    }
+    click_containing(window, "Train models");
+    click_containing(window, "Train M1, M2 and M3 on");
+    until(window, "the models", |window| view(window).models.comparison.is_some());
+    assert!(view(window).models.in_use.is_none(), "nothing is used before it is accepted");
+    click(window, "Use M3");
+    until(window, "M3 in use", |window| {
+        view(window).models.in_use.as_ref().is_some_and(|model| model.method() == Method::M3)
+    });
+    until(window, "the map", |window| view(window).models.map.is_some());
+    assert_eq!(view(window).models.step, StepState::Done);
+    for errors in ["Before", "After"] {
+        click(window, errors);
+    }
+}
+
+#[test]
+fn the_screen_is_placed_touched_learned_and_touched_better() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut window = window(&folder.path().join("data"), Some("lab"));
+    until(&mut window, "the twin's joints", |window| view(window).robot.measured.is_some());
+    click_containing(&mut window, "Touch");
+    place_the_screen(&mut window);
+    let before = touch_targets(&mut window);
+    train_and_use_m3(&mut window);
+
+    click_containing(&mut window, "Check M3 with new touches");
+    until(&mut window, "the plan of the check", |window| {
+        view(window).touch.phase == TouchPhase::Planned && view(window).touch.correct_with == Some(Method::M3)
+    });
+    let reachable = view(&window).touch.plan.as_ref().expect("just seen").reachable;
+    click(&mut window, &format!("Touch {reachable} targets"));
+    finish_run(&mut window, "the check");
+    let after = figures(&window);
+    println!("mean error {:.2} mm before, {:.2} mm with M3", before.mean_m * 1e3, after.mean_m * 1e3);
+    assert!(after.mean_m < 0.6 * before.mean_m, "{before:?} {after:?}");
+}
