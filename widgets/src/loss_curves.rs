@@ -135,10 +135,9 @@ impl<'a> LossCurves<'a> {
                 scales.line(&clipped, points, draw, role.color(tokens), self.curves.len());
             }
         }
-        if let Some(at) = pointer.filter(|at| plot.contains(*at)) {
-            if let Some((at, words)) = scales.nearest(self.curves, at, self) {
-                readout(&clipped, plot, tokens, &font, (at, words));
-            }
+        let near = pointer.filter(|at| plot.contains(*at));
+        if let Some((at, words)) = near.and_then(|at| scales.nearest(self.curves, at, self)) {
+            readout(&clipped, plot, tokens, &font, (at, words));
         }
     }
 }
@@ -167,8 +166,12 @@ enum Draw {
 impl Draw {
     fn line(self, painter: &Painter, points: &[Pos2], stroke: Stroke) {
         match self {
-            Self::Solid => drop(painter.line(points.to_vec(), stroke)),
-            Self::Dashed => drop(painter.extend(Shape::dashed_line(points, stroke, 5.0, 3.5))),
+            Self::Solid => {
+                painter.line(points.to_vec(), stroke);
+            }
+            Self::Dashed => {
+                painter.extend(Shape::dashed_line(points, stroke, 5.0, 3.5));
+            }
         }
     }
 }
