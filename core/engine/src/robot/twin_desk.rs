@@ -133,7 +133,8 @@ impl TwinDesk {
                 send(To::HideBoard)
             }
             TwinCommand::PrepareTouch { screen_height_m, payload_kg } => {
-                self.clear_screen(rig);
+                self.tour = None;
+                self.free_screen(rig);
                 let twin = self.twin.as_ref().ok_or(NOT_RUNNING)?;
                 twin.send(To::HideBoard);
                 twin.send(To::PrepareTouch { screen_height_m, payload_kg });
@@ -155,32 +156,6 @@ impl TwinDesk {
                 self.tour = None;
                 send(To::Reset)
             }
-        }
-    }
-
-    /// Puts toys away that stand on the touchscreen or near it: the arm would push them.
-    fn clear_screen(&mut self, rig: &Rig) {
-        let Some(twin) = &self.twin else { return };
-        let mut away = vec![];
-        for (toy, place) in &twin.state().toys {
-            let Some(place) = place else { continue };
-            let on_glass = rig.touchscreen.pixel_at(Point::new(place.x, place.y, place.z));
-            let pitch_m = rig.touchscreen.pitch_m();
-            // The hand is wider than its finger.
-            let reach_m = 0.12 + toy.radius_m();
-            let near = |at_px: f64, size_px: u32, pitch_m: f64| {
-                at_px * pitch_m > -reach_m && (at_px - f64::from(size_px)) * pitch_m < reach_m
-            };
-            if near(on_glass.u_px, rig.touchscreen.width_px, pitch_m[0])
-                && near(on_glass.v_px, rig.touchscreen.height_px, pitch_m[1])
-            {
-                twin.send(plumbline_twin::TwinCommand::RemoveObject { toy: *toy });
-                away.push(toy.name());
-            }
-        }
-        if !away.is_empty() {
-            let text = format!("Put away to make room on the touchscreen: {}.", away.join(", "));
-            self.notes.push((NoticeLevel::Info, text));
         }
     }
 

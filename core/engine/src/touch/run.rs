@@ -13,10 +13,10 @@ use super::plan::{Aim, RunPlan};
 use super::record::{Ended, Fate, Progress, TouchRecord};
 use super::store::Stored;
 use super::work::{RouteRequest, TouchWork};
-use crate::command::JobId;
+use crate::command::{JobId, TwinCommand};
 use crate::context::{Action, Context};
 use crate::robot::{RobotControl, TouchNews, TouchOrder, TouchRun, TouchStage};
-use crate::view::RobotView;
+use crate::view::{Connection, RobotView};
 
 /// After so many touches without a contact, one after the other, something is wrong.
 pub const MISSES: usize = 5;
@@ -492,6 +492,15 @@ impl Run {
         self.ended = true;
         self.changed();
         self.go_on(now, context);
+    }
+
+    /// The twin has no operator who puts a block under its screen: it does so by itself.
+    pub fn tell_twin(&self, robot: &RobotView, context: &mut Context<'_>) {
+        if matches!(robot.connection, Connection::Connected { twin: true, .. }) {
+            let [screen_height_m, payload_kg] = self.progress.prepared;
+            let command = TwinCommand::PrepareTouch { screen_height_m, payload_kg };
+            context.actions.push(Action::Robot(RobotControl::Twin(command)));
+        }
     }
 
     /// The screen stands on a block, the hand carries a weight, as they should or not.

@@ -141,6 +141,7 @@ impl TouchWorkflow {
     ) -> Result<(), String> {
         let screen = self.placed_screen(around.rig);
         let now = self.now(around, &screen);
+        let prepares = matches!(command, TouchCommand::Resume | TouchCommand::Prepared { .. });
         let run = self.run.as_mut().ok_or("No run is open. Plan touches, or open an unfinished run.")?;
         match command {
             TouchCommand::Pause if run.phase == Phase::Working => run.pause = true,
@@ -170,6 +171,9 @@ impl TouchWorkflow {
                 return Err(format!("Target {number} has no rejected touch that could count again."));
             }
             _ => {}
+        }
+        if prepares {
+            run.tell_twin(around.robot, context);
         }
         run.go_on(&now, context);
         Ok(())
@@ -378,7 +382,8 @@ impl TouchWorkflow {
                 self.starting = None;
                 self.planned = None;
                 self.leave_run();
-                self.run = Some(Run::begun(session, *stored));
+                let run = self.run.insert(Run::begun(session, *stored));
+                run.tell_twin(around.robot, context);
             }
             TouchResult::Opened { session, stored } if self.starting == Some(id) => {
                 self.starting = None;
