@@ -1,7 +1,7 @@
 //! Everything the engine knows, driven by commands and events; owns no thread.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -43,6 +43,8 @@ pub struct State {
     arm_of: World,
     touches: BTreeMap<World, TouchWorkflow>,
     models: BTreeMap<World, ModelsWorkflow>,
+    /// The finished session of touches that models were told of last, with its revision.
+    learned_from: BTreeMap<World, (PathBuf, u64)>,
     /// Work belongs to the world it was started for, whatever is shown when it ends.
     started_by: BTreeMap<JobId, World>,
     jobs: JobList,
@@ -78,6 +80,7 @@ impl State {
                 .into_iter()
                 .map(|world| (world, ModelsWorkflow::new(&world.folder(data_dir))))
                 .collect(),
+            learned_from: BTreeMap::new(),
             started_by: BTreeMap::new(),
             jobs: JobList::default(),
             notices: Notices::default(),
@@ -201,8 +204,17 @@ impl State {
         let mut context = Context { notices, newest: live.newest(), source: source.view(), jobs, actions };
         let usable = models.usable();
         act(touch, &TouchSurroundings { rig, robot, models: &usable }, &mut context);
+        let finished = touch.finished_session().map(|(session, revision)| (session.to_owned(), revision));
         self.note_world(world, before);
         self.use_screen();
+        if let Some(finished) = finished
+            && self.learned_from.get(&world) != Some(&finished)
+        {
+            self.with_models_of(world, |models, around, context| {
+                models.touched(&finished.0, around, context);
+            });
+            self.learned_from.insert(world, finished);
+        }
     }
 
     fn with_models(

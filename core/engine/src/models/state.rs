@@ -156,6 +156,14 @@ impl ModelsWorkflow {
         self.usable().into_iter().find(|model| model.method() == method)
     }
 
+    /// A run of touches is finished: it is learned from next, and is in the list.
+    pub fn touched(&mut self, session: &Path, around: &Surroundings<'_>, context: &mut Context<'_>) {
+        context.start(ModelsWork::List { folder: self.folder.join("sessions") });
+        if is_for_training(session) {
+            self.choose(session.to_owned(), around, context);
+        }
+    }
+
     fn choose(&mut self, session: PathBuf, around: &Surroundings<'_>, context: &mut Context<'_>) {
         self.session = Some(session.clone());
         self.data = None;
