@@ -5,6 +5,8 @@
 
 mod figures;
 pub mod path;
+#[cfg(test)]
+mod path_tests;
 mod placement;
 mod plan;
 mod record;

@@ -19,14 +19,20 @@ use plumbline_model::{Pixel, Point, Robot};
 /// The heading over a place of the table is found at this height above the table, m: about that of a
 /// fingertip on the glass.
 const HEADING_ABOVE_M: f64 = 0.02;
-/// The tip waits this high above the glass, or above the point that is sent where that is higher, m.
-pub const ABOVE_M: f64 = 0.04;
+/// The arm is held over the middle as it is held this high above the table there, m.
+const MIDDLE_ABOVE_M: f64 = 0.04;
+/// The tip waits this high above the glass, or above the point that is sent where that is higher, m;
+/// it always gets at least as high.
+const ABOVE_MEASURED_M: f64 = 0.04;
+/// So high while the screen was not measured: the real finger may meet it up to 40 mm above its
+/// nominal place, m.
+const ABOVE_NOMINAL_M: f64 = 0.06;
 /// Postures while lowering are this far apart, m.
 const STEP_M: f64 = 0.002;
 /// Lowering goes on to this far below the glass or the point that is sent, m, if the floor lets it.
 const BELOW_M: f64 = 0.012;
-/// From a side the tip comes slanted, from this far beside the point, m.
-const ASIDE_M: f64 = 0.02;
+/// From a side the tip comes slanted, this far aside per meter of height: 20 mm on the last 40.
+const SLANT: f64 = 0.5;
 /// The finger's shape may enter the screen by this much: it is softer and thinner than drawn, m.
 pub const TOUCH_DEPTH_M: f64 = 0.015;
 /// Lowering keeps this far from the floor, m: encoders and ticks round.
@@ -38,8 +44,8 @@ const LEAST_UPRIGHT: f64 = 0.85;
 /// Neighboring postures of a lowering that differ by more belong to different ways to hold the
 /// arm, rad.
 const JUMP_RAD: f64 = 0.06;
-/// On the way from target to target the tip keeps this far above the glass, m.
-const CLEARANCE_M: f64 = 0.02;
+/// On the way from target to target the tip comes lower than where it waits by no more than this, m.
+const DIP_M: f64 = 0.02;
 /// A way that is not free goes over a place this much higher, m.
 const RAISE_M: f64 = 0.06;
 /// Fingers that are farther from the pointing pose are brought there first, rad.
@@ -48,6 +54,25 @@ const POINTING_RAD: f64 = 0.05;
 const SAMPLES: usize = 16;
 /// Joints that turn by less over the last steps count as standing, rad.
 const STANDING_RAD: f64 = 1e-5;
+
+/// Where the screen is taken to lie, which decides how far the finger stays away from the glass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ScreenPlace {
+    /// Where the rig's description has it: real touches may come much earlier.
+    Nominal,
+    /// Where touches have shown that it lies.
+    Measured,
+}
+
+impl ScreenPlace {
+    /// The tip waits this high above the glass where the arm gets so high, m.
+    pub fn above_m(self) -> f64 {
+        match self {
+            Self::Nominal => ABOVE_NOMINAL_M,
+            Self::Measured => ABOVE_MEASURED_M,
+        }
+    }
+}
 
 /// How a touch is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,10 +151,20 @@ impl TouchPath {
     }
 }
 
+/// A way down.
+struct Lowering {
+    /// From above to the lowest, [`STEP_M`] apart.
+    postures: Vec<Posture>,
+    /// So many of the first ones are higher than the tip has to wait.
+    dispensable: usize,
+}
+
 /// Plans touches of one tip. Made once per place of the screen, used for many targets.
 #[derive(Clone, Debug)]
 pub struct Planner {
     rig: Arc<Rig>,
+    /// The tip waits this high above the glass where the arm gets so high, m.
+    above_m: f64,
     solver: Solver,
     chain: Chain,
     model: Arc<CollisionModel>,
@@ -145,11 +180,12 @@ pub struct Planner {
 }
 
 impl Planner {
-    /// For a tip of a rig, whose touchscreen lies where it is taken to lie.
+    /// For a tip of a rig, whose touchscreen lies where it is taken to lie; `place` says whether that
+    /// was measured.
     ///
     /// # Errors
     /// When the tip is no tip of an arm, or cannot point at the screen.
-    pub fn new(rig: &Arc<Rig>, tip: &str) -> Result<Self, String> {
+    pub fn new(rig: &Arc<Rig>, tip: &str, place: ScreenPlace) -> Result<Self, String> {
         let arm = rig.arms.iter().find(|arm| arm.tips.iter().any(|known| known.link == tip));
         let arm = arm.ok_or_else(|| {
             format!("{tip} is no tip of an arm of this robot. Choose the tip of an index finger.")
@@ -167,6 +203,7 @@ impl Planner {
         let ready = home.with(&joints, &pose.applied_to(&home).of(&joints));
         let mut planner = Self {
             rig: rig.clone(),
+            above_m: place.above_m(),
             solver,
             chain,
             model,
@@ -178,7 +215,7 @@ impl Planner {
             allowances: vec![],
         };
         let screen = &rig.touchscreen;
-        let over_screen = raised(screen.point_at(screen.middle()), ABOVE_M);
+        let over_screen = raised(screen.point_at(screen.middle()), MIDDLE_ABOVE_M);
         // Where the screen was measured to lie must not change how the arm is held.
         let solution = planner
             .upright(planner.over_patch(), screen.middle())
@@ -221,9 +258,8 @@ impl Planner {
         }
         let (contact, heading_rad) = self.contact(sent, target, from)?;
         let upright = self.inclination(&contact);
-        let lowering = self.lowering(target, sent, side, &contact, heading_rad)?;
-        self.check_lowering(target, &lowering)?;
-        let (approach, turns_rad) = self.approach(target, from, &lowering[0])?;
+        let down = self.lowering(target, sent, side, &contact, heading_rad)?;
+        let (lowering, approach, turns_rad) = self.highest_free(target, from, down)?;
         let tips: Vec<Point<Robot>> = lowering.iter().map(|posture| self.tip(posture)).collect();
         Ok(TouchPath {
             target,
@@ -244,7 +280,7 @@ impl Planner {
     fn over_patch(&self) -> Point<Robot> {
         let middle = |range: [f64; 2]| 0.5 * (range[0] + range[1]);
         let patch = &self.rig.work_patch;
-        let z_m = self.rig.table.height_m + ABOVE_M;
+        let z_m = self.rig.table.height_m + MIDDLE_ABOVE_M;
         Point::new(middle(patch.x_range_m), middle(patch.y_range_m), z_m)
     }
 
@@ -315,6 +351,32 @@ impl Planner {
         Point::from(nalgebra::Point3::from(self.chain.robot_from_tip_in(posture).translation_m()))
     }
 
+    /// The way down from as high as it is free, and a free way to there.
+    fn highest_free(
+        &self,
+        target: Pixel<Screen>,
+        from: &Posture,
+        down: Lowering,
+    ) -> Result<(Vec<Posture>, Vec<Posture>, Vec<f64>), String> {
+        let Lowering { postures, dispensable } = down;
+        let mut refusal = None;
+        let mut tried = None;
+        for skip in [0, dispensable / 2, dispensable] {
+            if tried.replace(skip) == Some(skip) {
+                continue;
+            }
+            let lowering = &postures[skip..];
+            let free = self
+                .check_lowering(target, lowering)
+                .and_then(|()| self.approach(target, from, &lowering[0]));
+            match free {
+                Ok((approach, turns_rad)) => return Ok((lowering.to_vec(), approach, turns_rad)),
+                Err(reason) => refusal = Some(reason),
+            }
+        }
+        Err(refusal.unwrap_or_default())
+    }
+
     /// Postures from above to the lowest, on one line through the point.
     fn lowering(
         &self,
@@ -323,15 +385,16 @@ impl Planner {
         side: Side,
         contact: &Posture,
         heading_rad: f64,
-    ) -> Result<Vec<Posture>, String> {
+    ) -> Result<Lowering, String> {
         let glass_m = self.rig.touchscreen.point_at(target).coords.z;
-        let top_m = sent.coords.z.max(glass_m) + ABOVE_M - sent.coords.z;
+        let upper_m = sent.coords.z.max(glass_m) - sent.coords.z;
+        let (top_m, least_m) = (upper_m + self.above_m, upper_m + ABOVE_MEASURED_M);
         let bottom_m = sent.coords.z - sent.coords.z.min(glass_m) + BELOW_M;
         // How far the line leads aside per meter of height.
         let slant = match side {
             Side::Above => 0.0,
-            Side::Left => ASIDE_M / ABOVE_M,
-            Side::Right => -ASIDE_M / ABOVE_M,
+            Side::Left => SLANT,
+            Side::Right => -SLANT,
         };
         let at = |height_m: f64| {
             let place = sent.coords + Vector3::new(0.0, slant * height_m, height_m);
@@ -339,7 +402,8 @@ impl Planner {
         };
         let steps = |length_m: f64| (length_m / STEP_M).ceil() as usize;
         let up = self.follow(contact, steps(top_m), |step| at(top_m.min(step as f64 * STEP_M)));
-        if up.len() < steps(top_m) {
+        let least = steps(least_m);
+        if up.len() < least {
             return Err(format!(
                 "Above {} the arm gets only {:.0} mm high. Choose a smaller area.",
                 place(target),
@@ -359,7 +423,9 @@ impl Planner {
                 (sent.coords.z - self.rig.gate.floor_m) * 1e3
             ));
         }
-        Ok(up.into_iter().rev().chain([contact.clone()]).chain(down).collect())
+        let dispensable = up.len() - least;
+        let postures = up.into_iter().rev().chain([contact.clone()]).chain(down).collect();
+        Ok(Lowering { postures, dispensable })
     }
 
     /// Postures of neighboring targets, each from the one before, as long as they are reached
@@ -459,8 +525,10 @@ impl Planner {
 
     fn leg(&self, from: &Posture, to: &Posture) -> Result<(), String> {
         let glass_m = self.rig.touchscreen.corners().iter().map(|corner| corner.coords.z).fold(0.0, f64::max);
-        let least_m =
-            (glass_m + CLEARANCE_M).min(self.tip(from).coords.z - 1e-4).min(self.tip(to).coords.z - 1e-4);
+        let lower_end_m = self.tip(from).coords.z.min(self.tip(to).coords.z);
+        // Where the arm does not get as high as it should wait, it keeps what it can.
+        let clearance_m = (lower_end_m - glass_m).clamp(ABOVE_MEASURED_M, self.above_m) - DIP_M;
+        let least_m = (glass_m + clearance_m).min(lower_end_m - 1e-4);
         for sample in 1..SAMPLES {
             let height_m = self.tip(&from.toward(to, sample as f64 / SAMPLES as f64)).coords.z;
             if height_m < least_m {

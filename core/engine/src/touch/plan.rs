@@ -13,7 +13,7 @@ use plumbline_model::touch_plan::{PlanOptions, PlannedTouch, TouchPlan};
 use plumbline_model::{Point, Robot};
 use serde::{Deserialize, Serialize};
 
-use super::path::{Planner, TouchPace};
+use super::path::{Planner, ScreenPlace, TouchPace};
 use crate::jobs::JobError;
 use crate::text::sentence;
 use crate::view::PlanView;
@@ -104,6 +104,8 @@ impl RunPlan {
 pub struct PlanRequest {
     /// The robot, its screen where it is taken to lie without a block under it.
     pub rig: Arc<Rig>,
+    /// Whether that place of the screen was measured.
+    pub place: ScreenPlace,
     /// What the operator chose.
     pub options: PlanOptions,
     /// Model that targets are corrected with.
@@ -112,7 +114,7 @@ pub struct PlanRequest {
 
 /// Plans every touch, in order, by an arm that begins ready to touch.
 pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, JobError> {
-    let PlanRequest { rig, options, model } = request;
+    let PlanRequest { rig, place, options, model } = request;
     let words = |error: &dyn std::fmt::Display| JobError::failed(sentence(&error.to_string()));
     let plan = TouchPlan::make(options, &rig.touchscreen).map_err(|error| words(&error))?;
     let (pace, count) = (TouchPace::default(), plan.touches.len());
@@ -130,7 +132,7 @@ pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, 
             Some((of_m, planner)) if *of_m == height_m => &*planner,
             slot => {
                 let on_block = Arc::new(raised(rig, height_m));
-                let made = Planner::new(&on_block, TIP).map_err(|reason| words(&reason))?;
+                let made = Planner::new(&on_block, TIP, *place).map_err(|reason| words(&reason))?;
                 &slot.insert((height_m, made)).1
             }
         };

@@ -8,7 +8,7 @@ use plumbline_model::Pixel;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::{Screen, Touchscreen};
 
-use super::path::{Planner, TouchPace};
+use super::path::{Planner, ScreenPlace, TouchPace};
 use super::plan::{Aim, RunPlan};
 use super::record::{Ended, Fate, Progress, TouchRecord};
 use super::store::Stored;
@@ -78,6 +78,8 @@ pub struct Now<'a> {
     pub rig: &'a Arc<Rig>,
     /// The screen where it is taken to lie, without a block.
     pub screen: &'a Touchscreen,
+    /// Whether that place was measured.
+    pub place: ScreenPlace,
     /// The robot now.
     pub robot: &'a RobotView,
     /// Why nothing can be touched, and what to do; a sentence.
@@ -269,6 +271,7 @@ impl Run {
         };
         let request = RouteRequest {
             rig,
+            place: now.place,
             planner: planner.map(|(_, planner)| planner.clone()),
             order: next_order(),
             pace: TouchPace::default().at(speed(now.robot)),
@@ -492,6 +495,11 @@ impl Run {
         self.ended = true;
         self.changed();
         self.go_on(now, context);
+    }
+
+    /// Grows with every change of what is on disk.
+    pub fn revision(&self) -> u64 {
+        self.revision
     }
 
     /// The twin has no operator who puts a block under its screen: it does so by itself.

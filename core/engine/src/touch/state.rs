@@ -12,6 +12,7 @@ use plumbline_model::session::Touchscreen;
 use plumbline_model::touch_plan::{PlanOptions, Purpose, TouchArea};
 use plumbline_model::touchscreen::ScreenPlacement;
 
+use super::path::ScreenPlace;
 use super::placement::Proposal;
 use super::plan::{PlanRequest, RunPlan};
 use super::run::{Now, Phase, Run};
@@ -95,6 +96,12 @@ impl TouchWorkflow {
     /// The session that is written or shown; after it was closed, still the newest one.
     pub fn session(&self) -> Option<&Path> {
         self.run.as_ref().map(|run| run.session.as_path()).or(self.last_session.as_deref())
+    }
+
+    /// The session of a run that is finished and on disk, with a number that grows with its changes.
+    pub fn finished_session(&self) -> Option<(&Path, u64)> {
+        let run = self.run.as_ref().filter(|run| run.phase == Phase::Finished && run.is_on_disk())?;
+        Some((run.session.as_path(), run.revision()))
     }
 
     /// The screen where it was measured to lie, on its block while a run has put it on one; `None`:
@@ -196,7 +203,12 @@ impl TouchWorkflow {
         let screen = self.placed_screen(around.rig);
         let rig = Arc::new(Rig { touchscreen: screen, ..(**around.rig).clone() });
         self.options = Some(options.clone());
-        self.planning = Some(context.start(TouchWork::Plan(PlanRequest { rig, options, model })));
+        self.planning = Some(context.start(TouchWork::Plan(PlanRequest {
+            rig,
+            place: self.screen_place(),
+            options,
+            model,
+        })));
         Ok(())
     }
 
@@ -557,8 +569,19 @@ impl TouchWorkflow {
         self.placement.as_ref().map_or(&rig.touchscreen, |placement| &placement.screen).clone()
     }
 
+    /// Whether the place of the screen was measured.
+    fn screen_place(&self) -> ScreenPlace {
+        if self.placement.is_some() { ScreenPlace::Measured } else { ScreenPlace::Nominal }
+    }
+
     fn now<'a>(&self, around: &Surroundings<'a>, screen: &'a Touchscreen) -> Now<'a> {
-        Now { rig: around.rig, screen, robot: around.robot, trouble: self.trouble(around) }
+        Now {
+            rig: around.rig,
+            screen,
+            place: self.screen_place(),
+            robot: around.robot,
+            trouble: self.trouble(around),
+        }
     }
 
     /// Why nothing can be touched now, and what to do.

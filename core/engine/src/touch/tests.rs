@@ -524,7 +524,12 @@ impl plumbline_model::JobContext for StopsAt {
 
 #[test]
 fn planning_stops_when_asked_to() {
-    let request = super::plan::PlanRequest { rig: rig(), options: grid(2, 2), model: None };
+    let request = super::plan::PlanRequest {
+        rig: rig(),
+        place: super::path::ScreenPlace::Nominal,
+        options: grid(2, 2),
+        model: None,
+    };
     let cancelled = super::plan::make(&request, &StopsAt(3.into()));
     assert!(matches!(cancelled, Err(crate::jobs::JobError::Cancelled(_))));
     let folder = folder();

@@ -9,7 +9,7 @@ use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::touch_plan::TouchArea;
 use plumbline_model::touchscreen::ScreenPlacement;
 
-use super::path::{Planner, TouchPace};
+use super::path::{Planner, ScreenPlace, TouchPace};
 use super::placement::{self, Proposal};
 use super::plan::{self, Aim, PlanRequest, RunPlan, TIP};
 use super::record::{Progress, TouchRecord};
@@ -92,6 +92,8 @@ pub enum TouchWork {
 pub struct RouteRequest {
     /// The robot, its screen where it lies, on its block.
     pub rig: Arc<Rig>,
+    /// Whether that place of the screen was measured.
+    pub place: ScreenPlace,
     /// Made for that place of the screen before; `None`: to be made.
     pub planner: Option<Arc<Planner>>,
     /// The target.
@@ -270,7 +272,7 @@ fn route(request: RouteRequest) -> TouchResult {
     let number = request.aim.touch.number;
     let planner = match &request.planner {
         Some(planner) => planner.clone(),
-        None => match Planner::new(&request.rig, TIP) {
+        None => match Planner::new(&request.rig, TIP, request.place) {
             Ok(planner) => Arc::new(planner),
             Err(reason) => return TouchResult::Routed { number, planner: None, order: Err(reason) },
         },

@@ -13,7 +13,7 @@ use plumbline_model::{Pixel, Point, Robot, Stamp};
 
 use crate::robot::arm::{Arm, Census};
 use crate::robot::{Switches, TouchOrder, TouchRun, TouchStage, TwinDesk, TwinEyesPlug, Worker};
-use crate::touch::path::{Planner, TouchPace};
+use crate::touch::path::{Planner, ScreenPlace, TouchPace};
 use crate::view::Connection;
 
 pub const TARGET: [f64; 2] = [960.0, 700.0];
@@ -193,7 +193,8 @@ impl Bench {
         let switches = Switches::default();
         let desk = TwinDesk::new(TwinEyesPlug::default());
         let mut worker = Worker::new(rig.clone(), folder.path(), switches.clone(), desk);
-        let planner = Planner::new(&rig, "right_index_tip").expect("it can point at the screen");
+        let planner =
+            Planner::new(&rig, "right_index_tip", ScreenPlace::Measured).expect("it can point at the screen");
         let ready = planner.ready(&rig.home());
         let target = Pixel::new(TARGET[0], TARGET[1]);
         let sent = rig.touchscreen.point_at(target);

@@ -13,7 +13,7 @@ use crate::command::RobotCommand;
 use crate::robot::touch_order::{TouchNews, TouchOrder, TouchRun};
 use crate::robot::{News, RobotControl, RobotThread, RobotWires, Switches, TwinDesk, TwinEyesPlug, Worker};
 use crate::slot::{Taker, newest_value_slot};
-use crate::touch::path::{Planner, TouchPace};
+use crate::touch::path::{Planner, ScreenPlace, TouchPace};
 
 /// Beside other tests the physics of the twin is slower than its clock.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -84,7 +84,8 @@ impl Bench {
 #[test]
 fn on_a_robot_as_described_the_finger_lands_where_it_is_sent() {
     let mut bench = Bench::start("perfect");
-    let planner = Planner::new(&bench.rig, "right_index_tip").expect("it can point at the screen");
+    let planner = Planner::new(&bench.rig, "right_index_tip", ScreenPlace::Measured)
+        .expect("it can point at the screen");
     let pace = TouchPace::default().at(2.0);
     let pitch_m = bench.rig.touchscreen.pitch_m();
     let targets =

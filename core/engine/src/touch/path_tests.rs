@@ -1,0 +1,128 @@
+//! How high the finger stays above the glass.
+
+use std::sync::Arc;
+
+use plumbline_model::Pixel;
+use plumbline_model::robot::Posture;
+use plumbline_model::touch_plan::{PlanOptions, Side, TouchArea};
+use plumbline_model::{Point, Robot, Unattended};
+
+use super::path::{Planner, ScreenPlace, TouchPath};
+use super::plan::{self, PlanRequest, TIP};
+use super::testing::rig;
+
+/// Rounding of inverse kinematics, m.
+const ROUNDING_M: f64 = 2e-4;
+
+fn planner(place: ScreenPlace) -> Planner {
+    Planner::new(&rig(), TIP, place).expect("it can point at the screen")
+}
+
+/// Height of the tip above the glass.
+fn height_m(planner: &Planner, posture: &Posture) -> f64 {
+    let tip = planner.chain().robot_from_tip_in(posture).translation_m();
+    planner.rig().touchscreen.height_above_m(Point::<Robot>::new(tip.x, tip.y, tip.z))
+}
+
+fn touches(planner: &Planner) -> Vec<TouchPath> {
+    let mut from = planner.ready(&planner.rig().home());
+    let places = [
+        ([950.0, 550.0], Side::Above),
+        ([1250.0, 820.0], Side::Left),
+        ([1000.0, 800.0], Side::Right),
+        ([1280.0, 520.0], Side::Above),
+    ];
+    let plan = |([u_px, v_px], side): ([f64; 2], Side)| {
+        let target = Pixel::new(u_px, v_px);
+        let sent = planner.rig().touchscreen.point_at(target);
+        let path = planner.plan(target, sent, side, &from).expect("in reach");
+        from = path.above().clone();
+        path
+    };
+    places.into_iter().map(plan).collect()
+}
+
+#[test]
+fn the_finger_stays_higher_until_the_screen_was_measured_and_touches_alike() {
+    let (nominal, measured) = (planner(ScreenPlace::Nominal), planner(ScreenPlace::Measured));
+    for (high, low) in touches(&nominal).iter().zip(touches(&measured)) {
+        assert!((height_m(&nominal, high.above()) - 0.06).abs() < ROUNDING_M);
+        assert!((height_m(&measured, low.above()) - 0.04).abs() < ROUNDING_M);
+        // The posture at the contact, how it is come to and what follows depend on the place alone.
+        assert_eq!((&high.contact, high.heading_rad), (&low.contact, low.heading_rad));
+        assert_eq!((high.upright, &high.direction), (low.upright, &low.direction));
+        let last = low.lower.len() - 2;
+        assert_eq!(high.lower[high.lower.len() - last..], low.lower[low.lower.len() - last..]);
+    }
+}
+
+#[test]
+fn on_the_way_the_finger_stays_two_centimeters_below_where_it_waits_or_higher() {
+    for (place, least_m) in [(ScreenPlace::Nominal, 0.04), (ScreenPlace::Measured, 0.02)] {
+        let planner = planner(place);
+        let touches = touches(&planner);
+        for (before, next) in touches.iter().zip(&touches[1..]) {
+            let mut from = before.above();
+            for to in &next.approach {
+                let heights = (0..=40).map(|i| height_m(&planner, &from.toward(to, f64::from(i) / 40.0)));
+                let lowest_m = heights.fold(f64::INFINITY, f64::min);
+                assert!(lowest_m > least_m - ROUNDING_M, "{place:?}: {lowest_m}");
+                from = to;
+            }
+        }
+    }
+}
+
+#[test]
+fn staying_higher_costs_no_target_of_the_default_plans() {
+    let rig = rig();
+    let area = TouchArea::reached_by(&rig, TIP).expect("a tip").expect("it reaches a part");
+    let rich = PlanOptions::rich(area);
+    for (name, options) in [("first", PlanOptions::first(area)), ("rich", rich)] {
+        let of = |place| {
+            let request = PlanRequest { rig: rig.clone(), place, options: options.clone(), model: None };
+            plan::make(&request, &Unattended).expect("a plan")
+        };
+        let (high, low) = (of(ScreenPlace::Nominal), of(ScreenPlace::Measured));
+        println!(
+            "{name}: {} of {} touched from 60 mm in {:.0} s, {} from 40 mm in {:.0} s",
+            high.reachable(),
+            high.touches.len(),
+            high.duration_s,
+            low.reachable(),
+            low.duration_s
+        );
+        for (high, low) in high.touches.iter().zip(&low.touches) {
+            assert_eq!(high.posture, low.posture, "{:?}", high.touch);
+        }
+    }
+}
+
+#[test]
+fn where_the_arm_does_not_get_so_high_it_waits_as_high_as_it_gets() {
+    let raised = Arc::new(plan::raised(&rig(), 0.12));
+    let planner = |place| Planner::new(&raised, TIP, place).expect("it can point at the screen");
+    let (nominal, measured) = (planner(ScreenPlace::Nominal), planner(ScreenPlace::Measured));
+    let from = nominal.ready(&raised.home());
+    let (mut full, mut less, mut lost) = (0, 0, 0);
+    for i in 0..24_u32 {
+        for j in 0..14_u32 {
+            let target = Pixel::new(40.0 + 80.0 * f64::from(i), 40.0 + 77.0 * f64::from(j));
+            let sent = raised.touchscreen.point_at(target);
+            let of = |planner: &Planner| planner.plan(target, sent, Side::Above, &from).ok();
+            match (of(&nominal), of(&measured)) {
+                (Some(high), _) => {
+                    let height_m = height_m(&nominal, high.above());
+                    assert!((0.04 - ROUNDING_M..0.06 + ROUNDING_M).contains(&height_m), "{height_m}");
+                    if height_m < 0.06 - ROUNDING_M { less += 1 } else { full += 1 }
+                }
+                (None, Some(_)) => lost += 1,
+                (None, None) => {}
+            }
+        }
+    }
+    println!(
+        "on a block of 120 mm: {full} from 60 mm, {less} from less, {lost} only from 40 mm without need"
+    );
+    assert!(full > 20 && less > 0 && lost == 0, "{full} {less} {lost}");
+}
