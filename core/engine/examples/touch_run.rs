@@ -9,6 +9,7 @@
 //! - `area=150,1750,420,1040`: first and last column, first and last row.
 //! - `correct=m3`: trains on the newest session of the data folder, and corrects with this model.
 //! - `data=FOLDER`: where sessions are kept; without, they are forgotten.
+//! - `resume=yes`: goes on with the newest run of the data folder that was not finished.
 //! - `speed=1`: of the arm.
 //! - `place=yes`: takes the place of the screen that the touches gave into use at the end.
 #![allow(clippy::print_stdout)]
@@ -28,7 +29,7 @@ use plumbline_model::{Pattern, PlanOptions, TouchArea};
 
 const PATIENCE: Duration = Duration::from_secs(120);
 /// A run that stops is told to go on so many times.
-const RESUMES: usize = 10;
+const RESUMES: usize = 100;
 
 fn main() {
     let arguments: BTreeMap<String, String> = std::env::args()
@@ -43,6 +44,10 @@ fn main() {
     let speed: f64 = text("speed", "1").parse().expect("speed is a number");
     bench.engine.send(RobotCommand::Speed(speed));
     bench.until("the speed", |view| (view.robot.speed - speed).abs() < 1e-9);
+    if arguments.contains_key("resume") {
+        bench.resume();
+        return;
+    }
     if let Some(name) = arguments.get("correct") {
         bench.correct(name);
     }
@@ -127,6 +132,18 @@ impl Bench {
             assert!(begun.elapsed() < PATIENCE, "never: {what}; {:?}", self.engine.view().notices);
             let _ = self.woken.recv_timeout(Duration::from_millis(100));
         }
+    }
+
+    /// Goes on with the newest unfinished run, to its end.
+    fn resume(&self) {
+        self.until("an unfinished run", |view| !view.touch.unfinished.is_empty());
+        let run = self.engine.view().touch.unfinished[0].clone();
+        println!("goes on after {} of {}", run.touched, run.planned);
+        self.engine.send(TouchCommand::Open { session: run.session });
+        self.until("the run", |view| matches!(view.touch.phase, TouchPhase::Paused { .. }));
+        let begun = Instant::now();
+        self.run();
+        self.summary(begun.elapsed());
     }
 
     /// Trains all models on the newest session, says how good they are, and corrects with one.
