@@ -154,7 +154,8 @@ pub enum ModelsCommand {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TablesCommand {
-    /// Reads a table from a CSV file in place of the present one.
+    /// Reads a table from a CSV file: heights in place of all heights, yaw in place of the points at
+    /// the heights that are in the file (within 1 mm).
     Import {
         /// Which table.
         table: GraspTable,

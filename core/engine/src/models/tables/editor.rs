@@ -12,6 +12,7 @@ use super::work::{TableFigures, TablesResult, TablesWork};
 use crate::command::{GraspTable, JobId, TablesCommand};
 use crate::context::Context;
 use crate::models::work::ModelsWork;
+use crate::notice::NoticeLevel;
 use crate::text::sentence;
 use crate::view::TablesView;
 
@@ -142,10 +143,8 @@ impl TablesEditor {
                 }
             }
             TablesResult::Imported(read) => {
-                let tables = Tables {
-                    height: read.height.or_else(|| self.now.height.clone()),
-                    yaw: read.yaw.or_else(|| self.now.yaw.clone()),
-                };
+                let (tables, said) = self.now.with_read(&read);
+                context.notices.add(NoticeLevel::Success, said);
                 self.use_tables(tables, rig, context);
             }
             TablesResult::Exported(_) => {}

@@ -7,7 +7,7 @@ use plumbline_correction::tables::{HeightTable, Node, Table, TableError, YawTabl
 use plumbline_model::JobContext;
 use plumbline_model::robot::Rig;
 
-use super::Tables;
+use super::{ReadTable, Tables};
 use crate::command::GraspTable;
 use crate::jobs::JobError;
 use crate::text::sentence;
@@ -55,8 +55,8 @@ pub enum TablesWork {
 pub enum TablesResult {
     /// They are on disk.
     Kept(TableFigures),
-    /// The table that was read; the other one is `None`.
-    Imported(Tables),
+    /// The table that was read; what becomes of the points that were there is said when it is used.
+    Imported(ReadTable),
     /// Written there.
     Exported(PathBuf),
 }
@@ -86,7 +86,7 @@ impl TablesWork {
 
     /// Whether it needs no line when it is done.
     pub fn is_quiet(&self) -> bool {
-        matches!(self, Self::Keep { .. })
+        matches!(self, Self::Keep { .. } | Self::Import { .. })
     }
 
     /// Does it.
@@ -100,11 +100,11 @@ impl TablesWork {
             }
             Self::Import { table: GraspTable::Height, file } => {
                 let height = HeightTable::read(&file).map_err(words)?;
-                Ok(TablesResult::Imported(Tables { height: Some(Arc::new(height)), yaw: None }))
+                Ok(TablesResult::Imported(ReadTable::Height(Arc::new(height))))
             }
             Self::Import { table: GraspTable::Yaw, file } => {
                 let yaw = YawTable::read(&file).map_err(words)?;
-                Ok(TablesResult::Imported(Tables { height: None, yaw: Some(Arc::new(yaw)) }))
+                Ok(TablesResult::Imported(ReadTable::Yaw(Arc::new(yaw))))
             }
             Self::Export { table, file, tables } => {
                 match (table, &tables.height, &tables.yaw) {
@@ -123,11 +123,11 @@ impl TablesResult {
     pub fn summary(&self) -> String {
         match self {
             Self::Kept(_) => "The tables are kept.".to_owned(),
-            Self::Imported(Tables { height: Some(table), .. }) => {
+            Self::Imported(ReadTable::Height(table)) => {
                 format!("The height table was read: {} points.", table.points.len())
             }
-            Self::Imported(Tables { yaw, .. }) => {
-                format!("The yaw table was read: {} points.", yaw.as_ref().map_or(0, |t| t.points.len()))
+            Self::Imported(ReadTable::Yaw(table)) => {
+                format!("The yaw table was read: {} points.", table.points.len())
             }
             Self::Exported(file) => format!("The table was written to {}.", file.display()),
         }

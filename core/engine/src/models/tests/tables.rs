@@ -1,6 +1,6 @@
 //! Editing the tables of grasp height and yaw.
 
-use plumbline_correction::tables::HeightTable;
+use plumbline_correction::tables::{HeightTable, YawPoint, YawTable};
 
 use super::*;
 use crate::command::{GraspTable, TablesCommand};
@@ -96,6 +96,80 @@ fn tables_are_read_and_written_as_files() {
     tell(&mut lab, TablesCommand::Import { table: HEIGHT, file: out });
     assert!(lab.said().contains("line 1"), "{}", lab.said());
     assert!(lab.view().tables.height.is_none());
+}
+
+/// A file of yaw at one height: `count` points, all with this value.
+fn yaw_file(lab: &Lab, z_m: f64, count: u32, yaw_rad: f64) -> PathBuf {
+    let place = |i: u32| (0.2 + 0.05 * f64::from(i % 4), -0.3 + 0.05 * f64::from(i));
+    let point = |i: u32| {
+        let (x_m, y_m) = place(i);
+        YawPoint { x_m, y_m, z_m, yaw_rad }
+    };
+    let file = lab.path("layer.csv");
+    YawTable::new((0..count).map(point).collect()).expect("a good table").write(&file).expect("written");
+    file
+}
+
+#[test]
+fn yaw_is_brought_together_from_files_of_one_height_each() {
+    let mut lab = Lab::new();
+    let import = |lab: &mut Lab, z_m: f64, count: u32, yaw_rad: f64| {
+        let file = yaw_file(lab, z_m, count, yaw_rad);
+        let read = tell(lab, TablesCommand::Import { table: GraspTable::Yaw, file });
+        (read.yaw.as_ref().map_or(0, |table| table.points.len()), lab.said())
+    };
+    let first = "Yaw table: 6 points at 70 mm read, 0 at other heights kept.";
+    assert_eq!(import(&mut lab, 0.07, 6, 0.1), (6, first.to_owned()));
+    let second = "Yaw table: 5 points at 120 mm read, 6 at other heights kept.";
+    assert_eq!(import(&mut lab, 0.12, 5, 0.2), (11, second.to_owned()));
+    let told = lab.whole_view().notices.iter().filter(|notice| notice.text.contains("read")).count();
+    assert_eq!(told, 2, "each import is told once");
+    // 1 mm beside is the same height, more is another one.
+    let again = "Yaw table: 4 points at 71 mm read, 6 replaced, 5 at other heights kept.";
+    assert_eq!(import(&mut lab, 0.071, 4, 0.3), (9, again.to_owned()));
+    let beside = "Yaw table: 4 points at 72.2 mm read, 9 at other heights kept.";
+    assert_eq!(import(&mut lab, 0.0722, 4, 0.4), (13, beside.to_owned()));
+    let tables = lab.view().tables.clone();
+    let yaws = |z_m: f64| -> Vec<f64> {
+        let points = &tables.yaw.as_ref().expect("a table").points;
+        points.iter().filter(|point| point.z_m == z_m).map(|point| point.yaw_rad).collect()
+    };
+    assert_eq!((yaws(0.12), yaws(0.071), yaws(0.07)), (vec![0.2; 5], vec![0.3; 4], vec![]));
+    assert_eq!(tables.yaw_errors_rad.len(), 13, "the whole can be used");
+    let back = tell(&mut lab, TablesCommand::Undo);
+    assert_eq!(back.yaw.as_ref().map(|table| table.points.len()), Some(9));
+}
+
+#[test]
+fn an_import_of_heights_replaces_them_all_and_leaves_yaw_alone() {
+    let mut lab = Lab::new();
+    fill(&mut lab);
+    let file = yaw_file(&lab, 0.07, 6, 0.1);
+    tell(&mut lab, TablesCommand::Import { table: GraspTable::Yaw, file });
+    let file = lab.path("heights.csv");
+    std::fs::write(&file, "x_m,y_m,height_m\n0.2,-0.3,0.1\n0.4,-0.3,0.1\n0.2,0.1,0.1\n0.4,0.1,0.12\n")
+        .expect("written");
+    let read = tell(&mut lab, TablesCommand::Import { table: HEIGHT, file });
+    assert_eq!(read.height.as_ref().map(|table| table.points.len()), Some(4));
+    assert_eq!(read.yaw.as_ref().map(|table| table.points.len()), Some(6));
+    assert_eq!(lab.said(), "The height table was read: 4 points.");
+}
+
+#[test]
+fn the_published_yaw_files_make_one_table_in_any_order() {
+    let folder = match plumbline_model::measured_data::folder("nico-tables") {
+        Ok(folder) => folder,
+        Err(reason) => return eprintln!("{reason}"),
+    };
+    let mut lab = Lab::new();
+    for name in ["rh_yaw_z10.csv", "rh_yaw_z5.csv", "rh_yaw_z15.csv", "rh_yaw_z5.csv"] {
+        tell(&mut lab, TablesCommand::Import { table: GraspTable::Yaw, file: folder.join(name) });
+    }
+    assert_eq!(lab.said(), "Yaw table: 47 points at 70 mm read, 47 replaced, 85 at other heights kept.");
+    let tables = lab.view().tables.clone();
+    let table = tables.yaw.clone().expect("a table");
+    assert_eq!((table.points.len(), tables.yaw_errors_rad.len()), (132, 132));
+    assert!(tables.remarks.is_empty(), "{:?}", tables.remarks);
 }
 
 #[test]
