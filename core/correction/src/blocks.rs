@@ -13,7 +13,8 @@ use crate::data::TouchData;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BlockBy {
-    /// By the session's sets if it has at least three, else by area.
+    /// By the session's sets if it has at least three and none of them holds most of the touches,
+    /// else by area.
     #[default]
     SetsElseArea,
     /// By area: the touches are halved at the median of their wider extent again and again.
@@ -62,7 +63,9 @@ impl Blocks {
         for (index, touch) in data.touches.iter().enumerate() {
             sets.entry(touch.set.as_deref()?).or_default().push(index);
         }
-        if sets.len() < 3 {
+        // A model without most of the touches says little of the one with all of them.
+        let largest = sets.values().map(Vec::len).max().unwrap_or(0);
+        if sets.len() < 3 || 2 * largest > data.len() {
             return None;
         }
         // More sets than blocks: the largest first, each to the block that is smallest so far.

@@ -88,7 +88,8 @@ impl CorrectionModel {
     }
 
     pub(crate) fn sound(&self, file: &Path) -> Result<(), FileError> {
-        self.parts.fault().map_or(Ok(()), |reason| Err(FileError::damaged(file, reason)))
+        let fault = self.parts.fault().or_else(|| self.trust.as_ref().and_then(Trust::fault));
+        fault.map_or(Ok(()), |reason| Err(FileError::damaged(file, reason)))
     }
 }
 
@@ -101,7 +102,9 @@ pub(crate) fn bytes(file: &Path) -> Result<Vec<u8>, FileError> {
 }
 
 pub(crate) fn json(file: &Path) -> Result<Value, FileError> {
-    serde_json::from_slice(&bytes(file)?)
+    let bytes = bytes(file)?;
+    // Some editors put a byte-order mark first.
+    serde_json::from_slice(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes))
         .map_err(|error| FileError::not_a_model(file, format!("it is no JSON: {error}")))
 }
 

@@ -55,6 +55,12 @@ impl Trust {
         Self { border, spread, widened: squares.map(|square| square.sqrt().max(1.0)) }
     }
 
+    /// Why it cannot be used; `None` when it can. Border and spread are checked as they are read.
+    pub(crate) fn fault(&self) -> Option<String> {
+        let sound = self.widened.iter().all(|factor| factor.is_finite() && *factor >= 1.0);
+        (!sound).then(|| "a factor on the spread is below 1, or no number".to_owned())
+    }
+
     fn sd_m(&self, pixel: Pixel<Screen>, disagreement_m: [f64; 3]) -> [f64; 3] {
         let sd_m = self.spread.sd_m_with(pixel, disagreement_m);
         std::array::from_fn(|axis| self.widened[axis] * sd_m[axis])

@@ -43,7 +43,11 @@ impl CorrectionModel {
             weights,
             bias,
         };
-        let remark = found.normalize(&mut network).or_else(|| normalize_as_published(&mut network));
+        // Half a normalization is not made whole by another network's.
+        let remark = match found.normalization.is_empty() {
+            true => normalize_as_published(&mut network),
+            false => found.normalize(&mut network),
+        };
         let Some(remark) = remark else {
             let shape = network.shape();
             return Err(FileError::NoNormalization { file: file.to_path_buf(), shape });
@@ -129,7 +133,9 @@ impl Found {
             Value::Array(items) => {
                 if let Some(vector) = numbers(value) {
                     self.vectors.push(vector);
-                } else if let Some(matrix) = items.iter().map(numbers).collect::<Option<Vec<_>>>() {
+                } else if let Some(matrix) =
+                    items.iter().map(numbers).collect::<Option<Vec<_>>>().filter(|rows| !rows.is_empty())
+                {
                     let even = matrix.windows(2).all(|rows| rows[0].len() == rows[1].len());
                     if even { self.matrices.push(matrix) } else { self.ragged += 1 }
                 } else {
@@ -154,6 +160,12 @@ impl Found {
             _ => return None,
         };
         let (units, outputs) = (output.len(), output[0].len());
+        // Of a 2–H–2 the transposed kernels (H×2, 2×H, as PyTorch has them) have the shapes of these
+        // in the other order: only biases in the order of their kernels tell which they are.
+        let paired = [first, second].map(|kernel| kernel[0].len()) == [a.len(), b.len()];
+        if outputs == 2 && !paired {
+            return None;
+        }
         let (bias, output_bias) =
             match (a.len() == units && b.len() == outputs, b.len() == units && a.len() == outputs) {
                 (true, _) => (a, b),

@@ -21,6 +21,8 @@ use crate::placement::M1;
 
 /// Fewest touches that a network is trained on: less than that a plane explains better.
 pub const FEWEST_FOR_A_NETWORK: usize = 20;
+/// Fewest touches that have to be left when a block is held out: a placement and heights need them.
+const FEWEST_TO_JUDGE: usize = crate::data::FEWEST_TOUCHES - 1;
 /// Standard deviation of the draw of the hidden layer.
 /// Small: over the touches the units bend gently, as the arm's error does.
 const DRAW_SD: f64 = 0.2;
@@ -61,6 +63,22 @@ pub enum TrainError {
         /// Touches that are needed.
         needed: usize,
     },
+    /// A group of repeats is nearly all there is.
+    #[error(
+        "{largest} of the {found} touches repeat one command (column group), and without them {rest} are left to judge {} with, where at least {needed} are needed: touch more places, or correct the column group in touches.csv", .method.name()
+    )]
+    MostlyRepeats {
+        /// What was to be trained.
+        method: Method,
+        /// Touches that there are.
+        found: usize,
+        /// Touches that would be held out together.
+        largest: usize,
+        /// Touches that would be left.
+        rest: usize,
+        /// Touches that are needed.
+        needed: usize,
+    },
     /// The weights grew beyond all bounds.
     #[error(
         "training {} diverged in iteration {iteration}: look for wild values among the touches, or choose another seed or recipe", .method.name()
@@ -98,8 +116,8 @@ pub fn train(
     on_loss: &mut dyn FnMut(LossPoint),
 ) -> Result<CorrectionModel, TrainError> {
     check(data, method)?;
-    let blocks = Blocks::of(data, options.block_by, options.folds);
-    let areas = Blocks::of(data, BlockBy::Area, options.folds);
+    let blocks = judging_blocks(data, method, options.block_by, options)?;
+    let areas = judging_blocks(data, method, BlockBy::Area, options)?;
     let border = Border::around(&data.pixels())?;
     let (residuals_m, of_areas_m, parts) = listening(on_loss, |emit| {
         job.report(0.1, "cross-validating");
@@ -145,7 +163,7 @@ pub fn cross_validate(
     job: &dyn JobContext,
 ) -> Result<CrossValidation, TrainError> {
     check(data, method)?;
-    let blocks = Blocks::of(data, options.block_by, options.folds);
+    let blocks = judging_blocks(data, method, options.block_by, options)?;
     let residuals_m = held_out_residuals(data, method, options, &blocks, job, &|_| ())?;
     cross_validation(residuals_m, blocks, options.seed).ok_or(TrainError::TooFew {
         method,
@@ -216,6 +234,25 @@ fn check(data: &TouchData, method: Method) -> Result<(), TrainError> {
         return Ok(());
     }
     Err(TrainError::TooFew { method, found: data.len(), needed: FEWEST_FOR_A_NETWORK })
+}
+
+/// Blocks of which each leaves enough touches to learn from when it is held out.
+fn judging_blocks(
+    data: &TouchData,
+    method: Method,
+    by: BlockBy,
+    options: &TrainOptions,
+) -> Result<Blocks, TrainError> {
+    let blocks = Blocks::of(data, by, options.folds);
+    let (found, needed) = (data.len(), FEWEST_TO_JUDGE);
+    let sizes = (0..blocks.len()).map(|block| blocks.split(block).1.len());
+    let largest = sizes.max().unwrap_or(0);
+    let rest = found - largest;
+    if rest >= needed {
+        Ok(blocks)
+    } else {
+        Err(TrainError::MostlyRepeats { method, found, largest, rest, needed })
+    }
 }
 
 fn cross_validation(residuals_m: Vec<[f64; 3]>, blocks: Blocks, seed: u64) -> Option<CrossValidation> {

@@ -199,3 +199,60 @@ fn weights_of_another_shape_name_the_shapes() {
     assert!(matches!(unpublished, FileError::NoNormalization { .. }), "{unpublished}");
     assert!(unpublished.to_string().contains("2–32–3"));
 }
+
+#[test]
+fn weights_that_could_mean_another_network_are_refused() {
+    let folder = tempdir().expect("a folder");
+    let file = folder.path().join("weights.json");
+    let refused = |document: Value| {
+        std::fs::write(&file, document.to_string()).expect("written");
+        CorrectionModel::import(&file).expect_err("not told which network")
+    };
+    // Transposed kernels of a 2–H–2 have the shapes of its kernels in the other order.
+    let [kernel, bias, output, output_bias] = weights(16, 2);
+    let transposed = refused(json!([output, bias, kernel, output_bias]));
+    assert!(matches!(transposed, FileError::Shapes { .. }), "{transposed}");
+    // Half a normalization is not replaced by the published one.
+    for half in [
+        json!({"input_mean": 900}),
+        json!({"input_mean": [1, 2, 3], "input_std": 1, "output_mean": 0, "output_std": 1}),
+    ] {
+        let mut document = half;
+        document["weights"] = json!(weights(64, 3));
+        let message = refused(document);
+        assert!(matches!(message, FileError::NoNormalization { .. }), "{message}");
+    }
+    assert!(matches!(refused(json!([])), FileError::Shapes { .. }));
+}
+
+#[test]
+fn a_layer_may_come_before_the_one_that_it_works_on() {
+    let folder = tempdir().expect("a folder");
+    let file = folder.path().join("weights.json");
+    let [kernel, bias, output, output_bias] = weights(16, 2);
+    let answers = [json!([kernel, bias, output, output_bias]), json!([output, output_bias, kernel, bias])]
+        .map(|weights| {
+            std::fs::write(&file, weights.to_string()).expect("written");
+            CorrectionModel::import(&file).expect("weights").correct(Pixel::new(700.0, 500.0)).target
+        });
+    assert_eq!(answers[0], answers[1]);
+}
+
+#[test]
+fn a_byte_order_mark_is_no_fault_of_a_model() {
+    let folder = tempdir().expect("a folder");
+    let file = folder.path().join("weights.json");
+    std::fs::write(&file, format!("\u{feff}{}", json!(weights(64, 3)))).expect("written");
+    assert_eq!(CorrectionModel::import(&file).expect("weights").method(), Method::M3);
+}
+
+#[test]
+fn a_spread_that_was_shrunk_is_damage() {
+    let folder = tempdir().expect("a folder");
+    let file = folder.path().join("m1.json");
+    trained(Method::M1).write(&file).expect("written");
+    let mut document: Value = serde_json::from_slice(&std::fs::read(&file).expect("there")).expect("JSON");
+    document["trust"]["widened"] = json!([-1.0, 1.0, 1.0]);
+    std::fs::write(&file, document.to_string()).expect("written");
+    assert!(matches!(CorrectionModel::read(&file), Err(FileError::Damaged { .. })));
+}

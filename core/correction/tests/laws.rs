@@ -217,3 +217,34 @@ fn heights_come_from_the_sessions_grid_or_from_planes() {
         assert!((heights.at(x, y) - (0.05 + 0.04 * x - 0.02 * y)).abs() < 3e-4);
     }
 }
+
+#[test]
+fn touches_that_all_carry_one_group_are_refused() {
+    let mut alike = touches(30, 1e-3, 4);
+    alike.iter_mut().for_each(|touch| touch.group = Some("line".to_owned()));
+    // Another group of one touch leaves that one to learn from.
+    let mut nearly = alike.clone();
+    nearly[7].group = Some("other".to_owned());
+    for touches in [alike, nearly] {
+        let data = TouchData::new(touches, screen(), vec![]).expect("touches");
+        for method in [Method::M1, Method::M3] {
+            let refused = train(&data, method, &TrainOptions::default(), &Unattended, &mut |_| ());
+            assert!(matches!(refused, Err(TrainError::MostlyRepeats { found: 30, .. })), "{}", method.name());
+        }
+    }
+}
+
+#[test]
+fn a_set_with_most_of_the_touches_is_not_held_out_whole() {
+    let blocks = |of_first: usize| {
+        let mut touches = touches(60, 1e-3, 4);
+        for (index, touch) in touches.iter_mut().enumerate() {
+            let set = if index < of_first { "a" } else { ["b", "c"][index % 2] };
+            touch.set = Some(set.to_owned());
+        }
+        let data = TouchData::new(touches, screen(), vec![]).expect("touches");
+        Blocks::of(&data, BlockBy::SetsElseArea, 12)
+    };
+    assert_eq!((blocks(30).by, blocks(30).len()), (BlockBy::SetsElseArea, 3));
+    assert_eq!((blocks(31).by, blocks(31).len()), (BlockBy::Area, 12));
+}

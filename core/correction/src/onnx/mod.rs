@@ -10,6 +10,8 @@
 
 mod proto;
 mod read;
+#[cfg(test)]
+mod tests;
 mod write;
 
 /// Name of the input.

@@ -133,7 +133,7 @@ pub struct Dimension {
 }
 
 impl Tensor {
-    /// Its numbers; `None` for another element type or a wrong count.
+    /// Its numbers; `None` for another element type, a wrong count, or none at all.
     pub fn numbers(&self) -> Option<Vec<f64>> {
         let numbers: Vec<f64> = match self.data_type {
             FLOAT if self.raw.is_empty() => self.floats.iter().map(|number| f64::from(*number)).collect(),
@@ -144,7 +144,9 @@ impl Tensor {
             DOUBLE => self.raw.as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect(),
             _ => return None,
         };
-        let count: i64 = self.dims.iter().product();
-        (usize::try_from(count) == Ok(numbers.len())).then_some(numbers)
+        // Sizes of a damaged file may be negative, nothing, or too large to be multiplied.
+        let sizes = self.dims.iter().map(|dim| usize::try_from(*dim).ok().filter(|dim| *dim > 0));
+        let count = sizes.into_iter().try_fold(1_usize, |count, dim| count.checked_mul(dim?));
+        (count == Some(numbers.len())).then_some(numbers)
     }
 }

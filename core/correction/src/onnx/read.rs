@@ -31,7 +31,13 @@ impl CorrectionModel {
             let metadata = model.metadata.iter().map(|entry| (entry.key.as_str(), entry.value.as_str()));
             let given = Metadata::of(metadata);
             for member in &mut network.members {
-                let remark = given.normalize(member).or_else(|| normalize_as_published(member));
+                // A bias that was added after the output layer looks like a normalization: it goes
+                // back into the layer, so that the normalization that follows does not replace it.
+                *member = member.scaled_as(&Scaling::none(2), &Scaling::none(member.outputs()));
+                let remark = match given.0.is_empty() {
+                    true => normalize_as_published(member),
+                    false => given.normalize(member),
+                };
                 let shape = member.shape();
                 remarks.push(remark.ok_or(FileError::NoNormalization { file: file.to_path_buf(), shape })?);
             }
@@ -43,11 +49,15 @@ impl CorrectionModel {
         let trust = own(TRUST).map(|text| serde_json::from_str(text)).transpose();
         let mut imported = Self::imported(file, network, heights, remarks)?;
         imported.trust = trust.map_err(|error| FileError::damaged(file, error))?;
+        imported.sound(file)?;
         imported.provenance.software =
             format!("{} {}", model.producer_name, model.producer_version).trim().to_owned();
         Ok(imported)
     }
 }
+
+/// Why a graph whose nodes work on their own results is refused.
+const IN_A_CIRCLE: &str = "its nodes go in a circle";
 
 /// Normalization from metadata: (of the output, a spread) and numbers.
 struct Metadata(Vec<((bool, bool), Vec<f64>)>);
@@ -202,16 +212,21 @@ impl<'a> Walk<'a> {
     /// Steps back over arithmetic with constants, to the node that makes what it works on.
     fn to_node(&self, name: &str, mut affine: Affine) -> Result<(Affine, &'a Node), String> {
         let mut node = self.maker(name)?;
-        while let Some((next, from)) = self.arithmetic(node, &affine)? {
+        for _ in 0..=self.graph.nodes.len() {
+            let Some((next, from)) = self.arithmetic(node, &affine)? else { return Ok((affine, node)) };
             affine = next;
             node = self.maker(from)?;
         }
-        Ok((affine, node))
+        Err(IN_A_CIRCLE.to_owned())
     }
 
     fn input_scaling(&self, mut name: &'a str) -> Result<Scaling, String> {
-        let mut affine = Affine::none();
+        let (mut affine, mut steps) = (Affine::none(), 0);
         while let Some(node) = self.makers.get(name) {
+            steps += 1;
+            if steps > self.graph.nodes.len() {
+                return Err(IN_A_CIRCLE.to_owned());
+            }
             let step = self.arithmetic(node, &affine)?;
             (affine, name) = step.ok_or_else(|| format!("{} before the hidden layer", node.op_type))?;
         }
