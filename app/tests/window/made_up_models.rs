@@ -115,7 +115,7 @@ pub fn map(method: Method, proposed: bool) -> Arc<ModelMap> {
         touches: touches.collect(),
         border_m: model
             .border()
-            .map(|border| border.outline().iter().map(on_table).collect())
+            .map(|border| border.rings().iter().map(|ring| ring.iter().map(on_table).collect()).collect())
             .unwrap_or_default(),
         screen_m: corners.to_vec(),
         sd: field(&sd),

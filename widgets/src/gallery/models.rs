@@ -59,7 +59,7 @@ pub(super) fn training(ui: &mut Ui, state: &mut GalleryState) {
         row("M2", "proposed", 0.0047, 0.0005, Role::Predicted),
         row("M3", "proposed, best", 0.0044, 0.0005, Role::Predicted),
     ];
-    let levels = [Level { name: "noise floor", value: 0.0021, role: Role::NoiseFloor }];
+    let levels = [Level { name: "repeats, rms", value: 0.0021, role: Role::NoiseFloor }];
     let shown = Intervals::new("Mean error of the methods", &rows, Quantity::Length)
         .levels(&levels)
         .band(Some(3))
@@ -80,13 +80,9 @@ pub(super) fn map(ui: &mut Ui, state: &mut GalleryState) {
     scene.outlines.push(touchscreen());
     scene.border = Some(Border {
         name: "border of the data".to_owned(),
-        corners_m: vec![
-            [0.26, -0.15],
-            [0.25, 0.06],
-            [0.29, 0.17],
-            [0.42, 0.18],
-            [0.455, 0.02],
-            [0.43, -0.16],
+        rings_m: vec![
+            vec![[0.26, -0.15], [0.25, 0.06], [0.29, 0.17], [0.42, 0.18], [0.455, 0.02], [0.43, -0.16]],
+            vec![[0.33, 0.02], [0.33, 0.07], [0.37, 0.07], [0.37, 0.02]],
         ],
     });
     scene.vector_scale = 5.0;

@@ -51,7 +51,7 @@ pub struct Drawn {
 
 impl Drawn {
     fn of(map: &std::sync::Arc<ModelMap>) -> Self {
-        let border = Border { name: "the data end here".to_owned(), corners_m: map.border_m.clone() };
+        let border = Border { name: "the data end here".to_owned(), rings_m: map.border_m.clone() };
         let sd = scalar("Uncertainty", &map.sd);
         let shift = scalar("Correction", &map.shift);
         // Far outside the deviation grows without end: the colors tell apart what may be trusted.
@@ -66,7 +66,7 @@ impl Drawn {
             sd: colors(sd, sd_end),
             shift: colors(shift, shift_end),
             means_m: means_m(map),
-            headline: headline(map),
+            headline: headline(map, &border),
             border,
             of: map.clone(),
         }
@@ -173,8 +173,8 @@ fn arrow_scale(lengths: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// "Inside the border targets shift 21 mm on average, outside 54 mm: do not trust it there."
-fn headline(map: &ModelMap) -> String {
-    if map.border_m.len() < 3 {
+fn headline(map: &ModelMap, border: &Border) -> String {
+    if !border.is_known() {
         return "Nobody knows where its data end, because it came without its touches: trust it nowhere unchecked."
             .to_owned();
     }
@@ -210,7 +210,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     padded(ui, |ui| {
         header(ui, cx, models);
         // A border is nothing to worry about; that there is none is.
-        let warn = drawn.of.border_m.len() < 3;
+        let warn = !drawn.border.is_known();
         let text = theme::strong(ui, &drawn.headline);
         let color = Role::Warning.color(theme::tokens(ui));
         ui.label(if warn { text.color(color) } else { text });
@@ -329,7 +329,7 @@ mod tests {
             method: Some(Method::M3),
             proposed: true,
             touches: vec![touch(0.3, 0.02, 0.004), touch(0.4, 0.022, 0.002)],
-            border_m: vec![[0.5, -0.1], [0.7, -0.1], [0.7, 0.1], [0.5, 0.1]],
+            border_m: vec![vec![[0.5, -0.1], [0.7, -0.1], [0.7, 0.1], [0.5, 0.1]]],
             screen_m: vec![[0.25, -0.2], [0.45, -0.2], [0.45, 0.2], [0.25, 0.2]],
             sd: field.clone(),
             shift: field,
@@ -340,11 +340,11 @@ mod tests {
     #[test]
     fn the_headline_warns_of_what_lies_outside() {
         assert_eq!(
-            headline(&map()),
+            Drawn::of(&Arc::new(map())).headline,
             "Inside the border targets shift 21.4 mm on average, outside 54.5 mm: do not trust it there."
         );
         let unknown = ModelMap { border_m: vec![], ..map() };
-        assert!(headline(&unknown).contains("trust it nowhere"));
+        assert!(Drawn::of(&Arc::new(unknown)).headline.contains("trust it nowhere"));
     }
 
     #[test]
@@ -360,6 +360,16 @@ mod tests {
         assert_eq!(drawn.words([0.6, 0.0]), "corrected by 1.00 mm, sd 1.00 mm, inside the data");
         assert!(drawn.words([0.25, 0.0]).ends_with("outside the data"));
         assert!(drawn.words([0.0, 0.0]).starts_with("correction not known"));
+    }
+
+    #[test]
+    fn a_hole_among_the_data_is_outside_and_all_lines_are_drawn() {
+        let mut map = map();
+        map.border_m.push(vec![[0.58, -0.02], [0.62, -0.02], [0.62, 0.02], [0.58, 0.02]]);
+        let drawn = Drawn::of(&Arc::new(map));
+        assert!(drawn.words([0.6, 0.0]).ends_with("outside the data"));
+        assert!(drawn.words([0.55, 0.0]).ends_with("inside the data"));
+        assert_eq!(drawn.scene(Errors::Both).border.map(|border| border.rings_m.len()), Some(2));
     }
 
     #[test]

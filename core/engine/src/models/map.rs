@@ -46,7 +46,7 @@ pub fn model_map(model: &CorrectionModel, screen: &Touchscreen, proposed: bool) 
         touches: touches(model, screen),
         border_m: model
             .border()
-            .map(|border| border.outline().iter().map(on_table).collect())
+            .map(|border| border.rings().iter().map(|ring| ring.iter().map(on_table).collect()).collect())
             .unwrap_or_default(),
         screen_m: corners.to_vec(),
         sd,

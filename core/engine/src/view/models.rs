@@ -77,8 +77,10 @@ pub struct ModelMap {
     /// One per touch: place on the screen (x, y), error without a model, error with it held out;
     /// m. Empty when the model was imported without its touches.
     pub touches: Vec<MapTouch>,
-    /// The border of the data, on the table (x, y), m.
-    pub border_m: Vec<[f64; 2]>,
+    /// The border of the data: lines around its parts and around the holes in them, the largest part
+    /// first, each its corners on the table (x, y), m. A place inside an odd number of lines is inside.
+    /// Empty when the model was imported without its touches.
+    pub border_m: Vec<Vec<[f64; 2]>>,
     /// The touchscreen, on the table, m.
     pub screen_m: Vec<[f64; 2]>,
     /// Standard deviation in the plane over the table around the screen.

@@ -1,5 +1,6 @@
 //! From a session to an accepted model, and back.
 
+use plumbline_correction::{Touch, TouchData};
 use plumbline_model::{Cancelled, ScreenPlacement, place_screen};
 
 use super::*;
@@ -56,7 +57,7 @@ fn the_map_shows_what_the_model_gains_and_where_it_ends() {
     let [x_m, y_m] = [map.sd.x_m, map.sd.y_m];
     assert!(map.screen_m.iter().all(|[x, y]| x - x_m[0] > 0.07 && y_m[1] - y > 0.07), "8 cm around");
     assert_eq!(map.sd.values_m.len(), map.shift.values_m.len());
-    assert!(map.border_m.len() > 3);
+    assert!(map.border_m.len() == 1 && map.border_m[0].len() > 3);
     // The corner of the map lies far outside of the touches, its middle among them.
     let values: Vec<f64> = map.sd.values_m.iter().copied().flatten().collect();
     assert_eq!(values.len(), map.sd.values_m.len());
@@ -64,6 +65,40 @@ fn the_map_shows_what_the_model_gains_and_where_it_ends() {
     assert!(values[0] > 3.0 * middle, "{} {middle}", values[0]);
     let (Some(inside_m), Some(outside_m)) = map.mean_shift_m else { panic!("both") };
     assert!((0.005..0.03).contains(&inside_m) && outside_m > 0.0, "{inside_m} {outside_m}");
+}
+
+#[test]
+fn the_map_has_all_lines_of_the_border_also_those_around_holes() {
+    let rig = nico();
+    let (screen, session) = (&rig.touchscreen, made_up_session(&rig));
+    let chain = rig.chain("right_index_tip").expect("a tip");
+    let mut data = TouchData::of_session(&session, &chain).expect("can be learned from");
+    // 12 × 12 places, 4 × 4 of them in the middle never touched.
+    let touched =
+        (0..144).map(|k| (k / 12, k % 12)).filter(|(i, j)| !((4..8).contains(i) && (4..8).contains(j)));
+    let template = data.touches[0].clone();
+    let touch = |(i, j): (i32, i32)| {
+        let pixel = Pixel::new(300.0 + 110.0 * f64::from(i), 40.0 + 90.0 * f64::from(j));
+        Touch { pixel, sent: needed(screen, pixel), ..template.clone() }
+    };
+    data.touches = touched.map(touch).collect();
+    let model = plumbline_correction::train(&data, Method::M1, &Default::default(), &Unattended, &mut |_| {});
+    let model = model.expect("trained");
+    let lines = crate::models::map::model_map(&model, screen, true).border_m;
+    assert_eq!(lines.len(), 2, "the outer line and that of the hole");
+    let inside = |pixel: Pixel<Screen>| {
+        let at = screen.point_at(pixel).coords;
+        let crosses = |(a, b): (&[f64; 2], &[f64; 2])| {
+            (a[1] > at.y) != (b[1] > at.y) && at.x < a[0] + (b[0] - a[0]) * (at.y - a[1]) / (b[1] - a[1])
+        };
+        let edges = lines.iter().flat_map(|line| line.iter().zip(line.iter().cycle().skip(1)));
+        edges.filter(|edge| crosses(*edge)).count() % 2 == 1
+    };
+    let places = [(905.0, 535.0, false), (410.0, 130.0, true), (905.0, 940.0, true), (20.0, 20.0, false)];
+    for (u_px, v_px, known) in places {
+        let pixel = Pixel::new(u_px, v_px);
+        assert_eq!((inside(pixel), model.correct(pixel).inside), (known, known), "{pixel:?}");
+    }
 }
 
 #[test]
