@@ -14,7 +14,7 @@ pub(crate) use verdict::{Standing, standing};
 
 use std::sync::Arc;
 
-use egui::{Button, Ui};
+use egui::{Button, Response, Ui};
 use plumbline_engine::correction::Method;
 
 use super::PanelContext;
@@ -103,12 +103,14 @@ fn facts(cx: &mut PanelContext<'_>) -> Arc<verdict::Facts> {
 }
 
 /// A button of one of the actions, with its reason where it cannot be pressed.
-fn action_button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: ModelsAction, text: &str) {
+fn action_button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: ModelsAction, text: &str) -> Response {
     let why = action.refusal(cx.view);
     let button = ui.add_enabled(why.is_none(), Button::new(text)).on_hover_text(action.label());
-    if button.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
+    let button = button.on_disabled_hover_text(why.unwrap_or_default());
+    if button.clicked() {
         cx.outbox.act(Action::Models(action));
     }
+    button
 }
 
 /// "14:02", or the day before it when that is not today.

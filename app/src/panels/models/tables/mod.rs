@@ -104,7 +104,8 @@ fn header(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         choice(ui, "Color of the points", &mut panel.by_error, &colors);
         ui.add_space(space::S);
         let table = panel.table;
-        action_button(ui, cx, ModelsAction::ImportTable(table), "Import CSV…");
+        action_button(ui, cx, ModelsAction::ImportTable(table), "Import CSV…")
+            .on_hover_text(import_words(table));
         action_button(ui, cx, ModelsAction::ExportTable(table), "Export CSV…");
     });
 }
@@ -154,6 +155,16 @@ fn hint(ui: &mut Ui, cx: &PanelContext<'_>, tables: &TablesView, rows: &[PointRo
     let color = Role::Warning.color(theme::tokens(ui));
     for remark in &tables.remarks {
         ui.label(theme::small(ui, remark).color(color));
+    }
+}
+
+/// What an import does to the points that are there.
+fn import_words(table: GraspTable) -> &'static str {
+    match table {
+        GraspTable::Height => "Replaces the whole table.",
+        GraspTable::Yaw => {
+            "Replaces the points at the heights that are in the file and keeps the others: import one file per height."
+        }
     }
 }
 
