@@ -261,7 +261,7 @@ mod tests {
     #[test]
     fn everything_fits_on_the_scale_which_begins_at_zero() {
         let rows = [row(Some(0.004), Some([0.003, 0.0063])), row(None, None)];
-        let levels = [Level { name: "noise floor", value: 0.0213, role: Role::Weak }];
+        let levels = [Level { name: "repeats, rms", value: 0.0213, role: Role::Weak }];
         let all = Intervals::new("test", &rows, Quantity::Length).levels(&levels);
         let chart = Chart::new(&all, Rect::from_min_size(Pos2::ZERO, vec2(600.0, 120.0)));
         assert!((chart.x(0.0) - chart.plot.left()).abs() < 1e-3);

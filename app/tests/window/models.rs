@@ -66,7 +66,7 @@ fn what_was_recorded_is_trained_by_one_button() {
     let fake = Fake::over(with(recorded()));
     let mut window = fake.window_of_size(on_models(), TALL);
     assert!(says(&window, "touches to learn from: 80"));
-    assert!(says(&window, "noise floor:"));
+    assert!(says(&window, "noise floor of repeats:"));
     assert!(says(&window, "Left out: 2 rows touched nothing."));
     press_next(&mut window, "Train M1, M2 and M3 on 80 touches");
     let all = ModelsCommand::Train { methods: Method::ALL.to_vec(), seed: 1, published_recipe: false };
@@ -157,6 +157,7 @@ fn methods_are_compared_in_figures_and_in_words() {
         assert!(labels.iter().any(|label| label.contains(" mm, ") && label.contains(" to ")), "{labels:?}");
     }
     assert!(says(&window, "No model: "));
+    assert!(says(&window, "noise floor of repeats: how far"), "the dashed line is explained");
 }
 
 #[test]
@@ -392,6 +393,21 @@ fn the_yaw_table_is_seen_layer_by_layer() {
     assert_eq!(count(&window), 32);
     click(&mut window, "80.0 mm");
     assert_eq!(count(&window), 16);
+}
+
+#[test]
+fn what_an_import_replaces_is_said_at_its_button() {
+    let fake = Fake::over(with(recorded()));
+    let mut window = on_tables(&fake);
+    for (table, said) in [("Height", "Replaces the whole table."), ("Yaw", "import one file per height")] {
+        click(&mut window, table);
+        window.hover_at(egui::pos2(2.0, 2.0));
+        window.run_steps(2);
+        let button = window.get_by_label("Import CSV…").rect().center();
+        window.hover_at(button);
+        window.run_steps(60);
+        assert!(says(&window, said), "{table}");
+    }
 }
 
 #[test]

@@ -15,6 +15,12 @@ use super::{action_button, clock, facts};
 use crate::panels::{PanelContext, padded};
 use crate::window::{Action, ModelsAction};
 
+/// The line of the spread of repeats. What it is an rms of stands beside means, so it says so.
+const REPEATS: &str = "repeats, rms";
+/// What that line is, a sentence.
+const REPEATS_HELP: &str = "The dashed line is the noise floor of repeats: how far touches of the same target \
+     spread about their mean, rms in the plane.";
+
 /// Less is nothing, m.
 const LEAST_HEIGHT_M: f64 = 5e-7;
 
@@ -96,7 +102,7 @@ fn chart(ui: &mut Ui, cx: &mut PanelContext<'_>, facts: &Facts) {
         role: Role::Difference,
     }));
     let floor = facts.noise.as_ref().map(|noise| Level {
-        name: "noise floor",
+        name: REPEATS,
         value: noise.rms_2d_m,
         role: Role::NoiseFloor,
     });
@@ -113,6 +119,9 @@ fn chart(ui: &mut Ui, cx: &mut PanelContext<'_>, facts: &Facts) {
     }
     let words = "Mean distance in the plane at touches whose whole set was held out, with its 95 % interval.";
     ui.label(theme::small(ui, words));
+    if !levels.is_empty() {
+        ui.label(theme::small(ui, REPEATS_HELP));
+    }
 }
 
 fn note(models: &ModelsView, method: Method) -> &'static str {
@@ -147,7 +156,7 @@ fn figures(ui: &mut Ui, facts: &Facts) {
             ui.end_row();
         }
         if let Some(noise) = &facts.noise {
-            ui.label(theme::weak(ui, "repeats"));
+            ui.label(theme::weak(ui, "repeats")).on_hover_text(REPEATS_HELP);
             ui.label(format::mm(noise.rms_2d_m));
             ui.label(theme::weak(ui, format::NONE));
             ui.end_row();

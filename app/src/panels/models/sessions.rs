@@ -127,7 +127,7 @@ fn has(ui: &mut Ui, data: &TouchData, noise: Option<&Repeats>) {
             KeyValue::text("touches to learn from", data.len().to_string()),
             KeyValue::text("sets", sets)
                 .help("Touches of one set are held out together: a line, a grid, a day."),
-            KeyValue::optional("noise floor", Quantity::Length, noise.map(|noise| noise.rms_2d_m))
+            KeyValue::optional("noise floor of repeats", Quantity::Length, noise.map(|noise| noise.rms_2d_m))
                 .help(noise_help),
         ],
     );
