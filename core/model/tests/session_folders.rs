@@ -176,6 +176,20 @@ fn empty_cells_are_not_measured() {
 }
 
 #[test]
+fn spaces_around_a_label_do_not_make_another_label() {
+    let table = TOUCHES.replacen('\n', ",set,group\n", 1);
+    let lines = table.lines().enumerate().map(|(i, line)| match i {
+        0 => line.to_owned(),
+        _ => format!("{line}, grid ,  "),
+    });
+    let table = lines.collect::<Vec<_>>().join("\n");
+    let session = session_of(&[("session.toml", MANIFEST), ("touches.csv", &table)]).expect("read");
+    for row in session.touches.expect("there").rows() {
+        assert_eq!((row.set.as_deref(), row.group), (Some("grid"), None));
+    }
+}
+
+#[test]
 fn unknown_columns_and_keys_are_kept() {
     let folder = folder();
     let table = "color,cmd_a_rad,cmd_b_rad,touch_u_px,touch_v_px,load_note\nred,0.1,0.2,1.0,2.0,\"x, y\"\n,0.1,0.2,1.0,2.0,007\n";

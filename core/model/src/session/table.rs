@@ -202,9 +202,10 @@ impl Table {
         *self.numbers(name)?.get(row)?
     }
 
-    /// A cell of texts, same.
+    /// A cell of texts, same; without the spaces around it, which nobody sees.
     pub(crate) fn text(&self, name: &str, row: usize) -> Option<String> {
-        self.texts(name)?.get(row)?.clone()
+        let text = self.texts(name)?.get(row)?.as_deref()?.trim();
+        (!text.is_empty()).then(|| text.to_owned())
     }
 
     /// All of these numbers, or `None` if any is not there.
