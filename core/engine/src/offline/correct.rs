@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use plumbline_correction::CorrectionModel;
+use plumbline_model::session::Screen;
 use plumbline_model::{JobContext, Pixel};
 use serde::Serialize;
 
@@ -81,11 +83,26 @@ pub fn correct(args: &CorrectArgs, context: &dyn JobContext) -> Result<CorrectRe
             sigma_z_m: known(z),
         }
     };
-    let points = table.rows().iter().map(point).collect();
+    let points: Vec<CorrectedPoint> = table.rows().iter().map(point).collect();
     context.report(1.0, "corrected");
-    Ok(CorrectReport {
-        model: model.method().name().to_lowercase(),
-        points,
-        remarks: model.provenance().remarks.clone(),
+    let mut remarks = model.provenance().remarks.clone();
+    remarks.extend(off_screen(&model, &points));
+    Ok(CorrectReport { model: model.method().name().to_lowercase(), points, remarks })
+}
+
+/// What to say when pixels are not on the screen that the model was trained on: its size, since the
+/// points may be of another one.
+fn off_screen(model: &CorrectionModel, points: &[CorrectedPoint]) -> Option<String> {
+    let screen = model.provenance().options.as_ref()?.screen.as_ref()?;
+    let size = (screen.width_px, screen.height_px);
+    let off = points.iter().filter(|point| !Pixel::<Screen>::new(point.u_px, point.v_px).is_inside(size));
+    let count = off.count();
+    (count > 0).then(|| {
+        format!(
+            "{count} of the {} pixels do not lie on the touchscreen that the model was trained on, {}×{} px",
+            points.len(),
+            size.0,
+            size.1
+        )
     })
 }

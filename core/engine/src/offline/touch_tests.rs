@@ -204,3 +204,27 @@ fn localizations_come_with_what_the_model_infers() {
     let off = report.gaps.iter().find(|gap| gap.table == "localizations").expect("compared");
     assert!((off.mean_mm - 36.8).abs() < 0.5, "as its description says: {off:?}");
 }
+
+#[test]
+fn a_table_is_not_trained_for_nothing_where_a_network_is_asked_for() {
+    let desk = Desk::new();
+    let args = TrainArgs {
+        session: desk.path("no session"),
+        method: Method::M1,
+        out: desk.path("m1.onnx"),
+        seed: 1,
+        published_recipe: false,
+    };
+    // Said before the session is even looked at.
+    assert!(train(&args, &Unattended).expect_err("no network").to_string().contains("as JSON"));
+}
+
+#[test]
+fn pixels_of_another_screen_are_remarked_on() {
+    let desk = Desk::new();
+    desk.train(Method::M1).expect("trained");
+    let remarks = |points: &str| desk.correct(&desk.write("points.csv", points)).expect("answered").remarks;
+    assert!(remarks("u_px,v_px\n0,0\n1919,1079\n").is_empty());
+    let off = remarks("u_px,v_px\n0,0\n2500,3\n");
+    assert!(off[0].contains("1 of the 2 pixels") && off[0].contains("1920×1080"), "{off:?}");
+}

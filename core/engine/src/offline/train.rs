@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use plumbline_correction::{
-    CorrectionModel, CrossValidation, Errors, Method, TouchData, spread_of_repeats, train as train_model,
+    CorrectionModel, CrossValidation, Errors, FileError, Method, TouchData, spread_of_repeats,
+    train as train_model,
 };
 use plumbline_model::session::Screen;
 use plumbline_model::{JobContext, Pixel};
@@ -63,6 +64,11 @@ pub struct TrainReport {
 
 /// Trains, cross-validates, and writes the model.
 pub fn train(args: &TrainArgs, context: &dyn JobContext) -> Result<TrainReport, OfflineError> {
+    let is_onnx = args.out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("onnx"));
+    if is_onnx && args.method == Method::M1 {
+        // Said before the work, not after it.
+        return Err(FileError::NotANetwork.into());
+    }
     let (recorded, rig) = session::open(&args.session)?;
     let chain = recorded.manifest.chain.as_ref();
     // A session without touches has no use for a chain, and is told so.
@@ -72,7 +78,6 @@ pub fn train(args: &TrainArgs, context: &dyn JobContext) -> Result<TrainReport, 
     let began = Instant::now();
     let model = train_model(&data, args.method, &options, context, &mut |_| ())?;
     let seconds = began.elapsed().as_secs_f64();
-    let is_onnx = args.out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("onnx"));
     if is_onnx {
         model.write_onnx(&args.out)?
     } else {
