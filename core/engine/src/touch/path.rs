@@ -159,6 +159,13 @@ struct Lowering {
     dispensable: usize,
 }
 
+/// A way to above a target and down that nothing is in.
+struct FreeWay {
+    lowering: Vec<Posture>,
+    approach: Vec<Posture>,
+    turns_rad: Vec<f64>,
+}
+
 /// Plans touches of one tip. Made once per place of the screen, used for many targets.
 #[derive(Clone, Debug)]
 pub struct Planner {
@@ -259,7 +266,7 @@ impl Planner {
         let (contact, heading_rad) = self.contact(sent, target, from)?;
         let upright = self.inclination(&contact);
         let down = self.lowering(target, sent, side, &contact, heading_rad)?;
-        let (lowering, approach, turns_rad) = self.highest_free(target, from, down)?;
+        let FreeWay { lowering, approach, turns_rad } = self.highest_free(target, from, down)?;
         let tips: Vec<Point<Robot>> = lowering.iter().map(|posture| self.tip(posture)).collect();
         Ok(TouchPath {
             target,
@@ -352,12 +359,7 @@ impl Planner {
     }
 
     /// The way down from as high as it is free, and a free way to there.
-    fn highest_free(
-        &self,
-        target: Pixel<Screen>,
-        from: &Posture,
-        down: Lowering,
-    ) -> Result<(Vec<Posture>, Vec<Posture>, Vec<f64>), String> {
+    fn highest_free(&self, target: Pixel<Screen>, from: &Posture, down: Lowering) -> Result<FreeWay, String> {
         let Lowering { postures, dispensable } = down;
         let mut refusal = None;
         let mut tried = None;
@@ -370,7 +372,9 @@ impl Planner {
                 .check_lowering(target, lowering)
                 .and_then(|()| self.approach(target, from, &lowering[0]));
             match free {
-                Ok((approach, turns_rad)) => return Ok((lowering.to_vec(), approach, turns_rad)),
+                Ok((approach, turns_rad)) => {
+                    return Ok(FreeWay { lowering: lowering.to_vec(), approach, turns_rad });
+                }
                 Err(reason) => refusal = Some(reason),
             }
         }

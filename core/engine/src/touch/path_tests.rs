@@ -84,7 +84,7 @@ fn staying_higher_costs_no_target_of_the_default_plans() {
             plan::make(&request, &Unattended).expect("a plan")
         };
         let (high, low) = (of(ScreenPlace::Nominal), of(ScreenPlace::Measured));
-        println!(
+        eprintln!(
             "{name}: {} of {} touched from 60 mm in {:.0} s, {} from 40 mm in {:.0} s",
             high.reachable(),
             high.touches.len(),
@@ -121,7 +121,7 @@ fn where_the_arm_does_not_get_so_high_it_waits_as_high_as_it_gets() {
             }
         }
     }
-    println!(
+    eprintln!(
         "on a block of 120 mm: {full} from 60 mm, {less} from less, {lost} only from 40 mm without need"
     );
     assert!(full > 20 && less > 0 && lost == 0, "{full} {less} {lost}");
