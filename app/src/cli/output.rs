@@ -43,7 +43,7 @@ impl Output {
             Ok(()) => ExitCode::SUCCESS,
             Err(error) => {
                 if self.json {
-                    let object = serde_json::json!({ "error": format!("{error:#}") });
+                    let object = serde_json::json!({ "error": words(&error) });
                     let _ = writeln!(std::io::stdout(), "{object}");
                 }
                 failed(&error)
@@ -87,13 +87,39 @@ pub fn finish_window(result: anyhow::Result<()>) -> ExitCode {
     }
 }
 
+/// An error and its causes; a cause that is told already is not told again.
+fn words(error: &anyhow::Error) -> String {
+    let mut text = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if !text.contains(&cause) {
+            let sep = if text.is_empty() { "" } else { ": " };
+            text = format!("{text}{sep}{cause}");
+        }
+    }
+    text
+}
+
 /// Says why the work could not be done.
 fn failed(error: &anyhow::Error) -> ExitCode {
-    say(&format!("plumbline: {error:#}"));
+    say(&format!("plumbline: {}", words(error)));
     ExitCode::from(1)
 }
 
 /// Writes a line to standard error; a closed terminal is no reason to stop.
 pub fn say(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cause_is_told_once() {
+        let cause = std::io::Error::other("the disk is full");
+        let told = anyhow::Error::new(cause).context("a.csv cannot be written (the disk is full): make room");
+        assert_eq!(words(&told), "a.csv cannot be written (the disk is full): make room");
+        let not_told = anyhow::Error::new(std::io::Error::other("the disk is full")).context("no file");
+        assert_eq!(words(&not_told), "no file: the disk is full");
+    }
 }

@@ -20,15 +20,24 @@ impl Table {
         optional: &[&'static str],
         needs: &'static str,
     ) -> Result<Self, OfflineError> {
-        let text = std::fs::read_to_string(file).map_err(OfflineError::io(file))?;
+        let bytes = std::fs::read(file).map_err(OfflineError::io(file))?;
         let bad =
             |line: usize, reason: String| OfflineError::Table { file: file.to_owned(), line, reason, needs };
+        let text = String::from_utf8(bytes)
+            .map_err(|_| bad(1, "the file is no text in UTF-8: save it as CSV in UTF-8".to_owned()))?;
         // Spreadsheets put a byte-order mark first.
         let mut lines = text.trim_start_matches('\u{feff}').lines().enumerate();
         let header: Vec<&str> = match lines.next() {
             Some((_, header)) => header.split(',').map(str::trim).collect(),
             None => return Err(bad(1, "the file is empty".to_owned())),
         };
+        if let Some(twice) = needed
+            .iter()
+            .chain(optional)
+            .find(|name| header.iter().filter(|column| column == name).count() > 1)
+        {
+            return Err(bad(1, format!("the column {twice} is there twice")));
+        }
         let place = |name: &str| header.iter().position(|column| *column == name);
         if let Some(missing) = needed.iter().find(|name| place(name).is_none()) {
             let reason = format!("there is no column {missing} in the header \"{}\"", header.join(","));
