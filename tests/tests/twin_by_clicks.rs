@@ -43,9 +43,7 @@ fn calibrate_the_eyes(window: &mut Window) {
     assert!(summary.rms_stereo_px < 0.1, "{summary:?}");
     click_containing(window, "Accept calibration");
     until(window, "the calibration in use", |window| view(window).eyes.in_use.is_some());
-    until(window, "a pair through the calibrated lenses", |window| {
-        !view(window).live.nominal_lenses
-    });
+    until(window, "a pair through the calibrated lenses", |window| !view(window).live.nominal_lenses);
 }
 
 fn move_the_arm(window: &mut Window, rig: &Rig) {

@@ -27,17 +27,18 @@ pub mod view;
 pub mod work;
 
 pub use command::{
-    AimChoice, Command, ContactWith, Destination, ExportFormat, Exported, EyesCommand, FileLength, GraspTable, HeadPose,
-    JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LiveCommand, ModelsCommand, MountCommand, NoticeCommand, ProbePoint,
-    Products, RobotCommand, ScreenContact, ScreenWindow, SourceCommand, TablesCommand, TouchCommand, TwinCommand,
+    AimChoice, Command, ContactWith, Destination, ExportFormat, Exported, EyesCommand, FileLength,
+    GraspTable, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LiveCommand, ModelsCommand,
+    MountCommand, NoticeCommand, ProbePoint, Products, RobotCommand, ScreenContact, ScreenWindow,
+    SourceCommand, TablesCommand, TouchCommand, TwinCommand,
 };
 pub use context::Action;
 pub use engine::{Engine, Wake};
 pub use live::Skipped;
 pub use notice::{Notice, NoticeLevel};
 pub use plumbline_correction as correction;
-pub use plumbline_hardware::{CameraDevice, SourceSpec};
 pub use plumbline_effects as effects;
+pub use plumbline_hardware::{CameraDevice, SourceSpec};
 pub use plumbline_vision::disparity::{DisparityMap, Origin as DisparityOrigin};
 pub use settings::EngineSettings;
 pub use source::Control;

@@ -260,7 +260,8 @@ fn a_raised_screen_is_touched_higher_and_a_weight_pulls_the_hand_down() {
     let mut world = world("lab");
     let before = *world.places();
     world.raise_screen(0.06).expect("not too high");
-    let rise = world.places().robot_from_screen.translation.vector - before.robot_from_screen.translation.vector;
+    let rise =
+        world.places().robot_from_screen.translation.vector - before.robot_from_screen.translation.vector;
     assert!((rise - Vector3::z() * 0.06).norm() < 1e-12);
     assert!(world.raise_screen(0.5).is_err() && world.raise_screen(f64::NAN).is_err());
     let ready = rig.pose("touch-ready").expect("a pose").applied_to(&rig.home());
