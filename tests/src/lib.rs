@@ -28,7 +28,7 @@ pub fn window(data_dir: &Path, twin: Option<&str>) -> Window {
 
 /// What the window shows just now.
 pub fn view(window: &Window) -> Arc<View> {
-    window.state().view()
+    window.state().view().clone()
 }
 
 /// Draws frames until something holds.

@@ -2,6 +2,8 @@
 //! and the real twin: the screen is placed, targets are touched, models are trained on them, M3
 //! is taken into use, and new targets are touched through it.
 
+#![allow(clippy::print_stdout, reason = "figures of the run, with --nocapture")]
+
 use std::time::Duration;
 
 use plumbline_engine::correction::Method;

@@ -98,7 +98,7 @@ fn image_points_are_predicted_and_triangulated_to_the_place_they_show() {
     };
     let joints = vec!["head_y".to_owned(), "head_z".to_owned()];
     let mut session = empty(&rig);
-    session.localizations = Some(LocalizationTable::from_rows(joints.clone(), &[row.clone()]));
+    session.localizations = Some(LocalizationTable::from_rows(joints.clone(), std::slice::from_ref(&row)));
     let first = predict_session(&session, &rig, None).expect("predicted").localizations[0];
     assert_eq!(first.estimate, Some(truth));
     let (left, right) = first.pixels.expect("the table has image points");
