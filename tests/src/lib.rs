@@ -13,8 +13,8 @@ use plumbline_engine::{Engine, EngineSettings, View};
 /// The window, drawn in memory.
 pub type Window = Harness<'static, PlumblineWindow>;
 
-/// Drawing on the processor, beside other tests, is slow.
-const PATIENCE: Duration = Duration::from_secs(240);
+/// A run of touches takes minutes, and drawing on the processor is slow.
+const PATIENCE: Duration = Duration::from_secs(600);
 
 /// The window over the real engine; with the twin of a scenario, if one is named.
 pub fn window(data_dir: &Path, twin: Option<&str>) -> Window {
@@ -34,7 +34,7 @@ pub fn view(window: &Window) -> Arc<View> {
 /// Draws frames until something holds.
 ///
 /// # Panics
-/// When it does not within four minutes; the messages of the window are told.
+/// When it does not within ten minutes; the messages of the window are told.
 pub fn until(window: &mut Window, what: &str, holds: impl Fn(&Window) -> bool) {
     let start = Instant::now();
     loop {
