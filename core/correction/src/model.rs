@@ -44,15 +44,17 @@ pub(crate) struct Trust {
 impl Trust {
     /// The spread learned from areas, widened until it holds held-out residuals (m) of the touches.
     pub(crate) fn new(border: Border, spread: Spread, data: &TouchData, residuals_m: &[[f64; 3]]) -> Self {
-        let count = residuals_m.len().max(1) as f64;
-        let mut squares = [0.0; 3];
+        // Sums over all touches: at a single one of few the spread may be nearly zero.
+        let (mut found, mut stated) = ([0.0; 3], [f64::MIN_POSITIVE; 3]);
         for (touch, residual) in data.touches.iter().zip(residuals_m) {
             let sd_m = spread.sd_m(touch.pixel);
             for axis in 0..3 {
-                squares[axis] += (residual[axis] / sd_m[axis].max(f64::MIN_POSITIVE)).powi(2) / count;
+                found[axis] += residual[axis].powi(2);
+                stated[axis] += sd_m[axis].powi(2);
             }
         }
-        Self { border, spread, widened: squares.map(|square| square.sqrt().max(1.0)) }
+        let widened = std::array::from_fn(|axis| (found[axis] / stated[axis]).sqrt().max(1.0));
+        Self { border, spread, widened }
     }
 
     /// Why it cannot be used; `None` when it can. Border and spread are checked as they are read.
