@@ -36,16 +36,18 @@ pub(crate) enum Parts {
 pub(crate) struct Trust {
     pub border: Border,
     pub spread: Spread,
-    /// Factor on the spread per axis, at least 1: touches of sets that were held out are off by what
-    /// their whole set is off by, which areas held out do not show.
-    pub widened: [f64; 3],
+    /// Standard deviation per axis that comes to the spread, m: touches of sets that were held out are
+    /// off by what their whole set is off by, which areas held out do not show.
+    pub of_sets_m: [f64; 3],
 }
 
 impl Trust {
     /// The spread learned from areas, widened until it holds held-out residuals (m) of the touches.
     pub(crate) fn new(border: Border, spread: Spread, data: &TouchData, residuals_m: &[[f64; 3]]) -> Self {
-        // Sums over all touches: at a single one of few the spread may be nearly zero.
-        let (mut found, mut stated) = ([0.0; 3], [f64::MIN_POSITIVE; 3]);
+        let count = residuals_m.len().max(1) as f64;
+        // Added, not multiplied: where few touches tell nothing of the noise at a touch, the spread
+        // is nearly zero there and large away from it.
+        let (mut found, mut stated) = ([0.0; 3], [0.0; 3]);
         for (touch, residual) in data.touches.iter().zip(residuals_m) {
             let sd_m = spread.sd_m(touch.pixel);
             for axis in 0..3 {
@@ -53,19 +55,19 @@ impl Trust {
                 stated[axis] += sd_m[axis].powi(2);
             }
         }
-        let widened = std::array::from_fn(|axis| (found[axis] / stated[axis]).sqrt().max(1.0));
-        Self { border, spread, widened }
+        let of_sets_m = std::array::from_fn(|axis| ((found[axis] - stated[axis]) / count).max(0.0).sqrt());
+        Self { border, spread, of_sets_m }
     }
 
     /// Why it cannot be used; `None` when it can. Border and spread are checked as they are read.
     pub(crate) fn fault(&self) -> Option<String> {
-        let sound = self.widened.iter().all(|factor| factor.is_finite() && *factor >= 1.0);
-        (!sound).then(|| "a factor on the spread is below 1, or no number".to_owned())
+        let sound = self.of_sets_m.iter().all(|sd_m| sd_m.is_finite() && *sd_m >= 0.0);
+        (!sound).then(|| "a part of the spread is negative, or no number".to_owned())
     }
 
     fn sd_m(&self, pixel: Pixel<Screen>, disagreement_m: [f64; 3]) -> [f64; 3] {
         let sd_m = self.spread.sd_m_with(pixel, disagreement_m);
-        std::array::from_fn(|axis| self.widened[axis] * sd_m[axis])
+        std::array::from_fn(|axis| self.of_sets_m[axis].hypot(sd_m[axis]))
     }
 }
 

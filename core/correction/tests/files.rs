@@ -252,7 +252,7 @@ fn a_spread_that_was_shrunk_is_damage() {
     let file = folder.path().join("m1.json");
     trained(Method::M1).write(&file).expect("written");
     let mut document: Value = serde_json::from_slice(&std::fs::read(&file).expect("there")).expect("JSON");
-    document["trust"]["widened"] = json!([-1.0, 1.0, 1.0]);
+    document["trust"]["of_sets_m"] = json!([-1.0, 0.0, 0.0]);
     std::fs::write(&file, document.to_string()).expect("written");
     assert!(matches!(CorrectionModel::read(&file), Err(FileError::Damaged { .. })));
 }
