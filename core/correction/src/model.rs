@@ -31,6 +31,9 @@ pub(crate) enum Parts {
     M3 { network: Ensemble },
 }
 
+/// The spread is widened by no larger factor; what is missing then is added.
+const WIDEST: f64 = 3.0;
+
 /// Where answers may be trusted, and how far.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Trust {
@@ -39,14 +42,16 @@ pub(crate) struct Trust {
     /// Standard deviation per axis that comes to the spread, m: touches of sets that were held out are
     /// off by what their whole set is off by, which areas held out do not show.
     pub of_sets_m: [f64; 3],
+    /// Factor on the spread per axis, 1 to [`WIDEST`], for the same reason.
+    pub widened: [f64; 3],
 }
 
 impl Trust {
     /// The spread learned from areas, widened until it holds held-out residuals (m) of the touches.
     pub(crate) fn new(border: Border, spread: Spread, data: &TouchData, residuals_m: &[[f64; 3]]) -> Self {
         let count = residuals_m.len().max(1) as f64;
-        // Added, not multiplied: where few touches tell nothing of the noise at a touch, the spread
-        // is nearly zero there and large away from it.
+        // Where few touches tell nothing of the noise at a touch, the spread is nearly zero there
+        // and large away from it: no factor puts that right.
         let (mut found, mut stated) = ([0.0; 3], [0.0; 3]);
         for (touch, residual) in data.touches.iter().zip(residuals_m) {
             let sd_m = spread.sd_m(touch.pixel);
@@ -55,19 +60,23 @@ impl Trust {
                 stated[axis] += sd_m[axis].powi(2);
             }
         }
-        let of_sets_m = std::array::from_fn(|axis| ((found[axis] - stated[axis]) / count).max(0.0).sqrt());
-        Self { border, spread, of_sets_m }
+        let factor = |axis: usize| (found[axis] / stated[axis].max(f64::MIN_POSITIVE)).sqrt();
+        let widened: [f64; 3] = std::array::from_fn(|axis| factor(axis).clamp(1.0, WIDEST));
+        let rest = |axis: usize| (found[axis] - widened[axis].powi(2) * stated[axis]) / count;
+        let of_sets_m = std::array::from_fn(|axis| rest(axis).max(0.0).sqrt());
+        Self { border, spread, of_sets_m, widened }
     }
 
     /// Why it cannot be used; `None` when it can. Border and spread are checked as they are read.
     pub(crate) fn fault(&self) -> Option<String> {
         let sound = self.of_sets_m.iter().all(|sd_m| sd_m.is_finite() && *sd_m >= 0.0);
+        let sound = sound && self.widened.iter().all(|factor| (1.0..=WIDEST).contains(factor));
         (!sound).then(|| "a part of the spread is negative, or no number".to_owned())
     }
 
     fn sd_m(&self, pixel: Pixel<Screen>, disagreement_m: [f64; 3]) -> [f64; 3] {
         let sd_m = self.spread.sd_m_with(pixel, disagreement_m);
-        std::array::from_fn(|axis| self.of_sets_m[axis].hypot(sd_m[axis]))
+        std::array::from_fn(|axis| self.of_sets_m[axis].hypot(self.widened[axis] * sd_m[axis]))
     }
 }
 
