@@ -4,15 +4,23 @@
 //! - [`library`]: the effects: their names, where they may sit, their usual size, and how each
 //!   deviates the arm, the tip or the screen.
 //! - [`arm`]: the arm with such deviations, and the touch that it predicts.
+//! - [`eyes`]: the eyes with such deviations, and what they see and estimate.
+//! - [`measurements`]: rows of sessions as predictions need them.
+//! - [`forward`]: predicts a row with effects, and how it changes with each of them.
 //! - [`observability`]: scores a plan of touches by the effects it will be able to tell apart.
 
 pub mod arm;
+pub mod eyes;
+pub mod forward;
 #[cfg(test)]
 mod laws;
 pub mod library;
+pub mod measurements;
 pub mod observability;
 
+pub use forward::{Assumed, Present, Tangents};
 pub use library::{Effect, Kind, Parameter, Surface};
+pub use measurements::{Measurements, MeasurementsError, Observation, What};
 pub use observability::{
     Addition, Advice, EffectVisibility, Noise, PlanScore, PlannedContact, ScoreError, score,
 };

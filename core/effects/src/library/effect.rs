@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::{Kind, Parameter, Situation};
 use crate::arm::{Arm, Deviation};
+use crate::eyes::{EyeSituation, EyesDeviation};
 
 /// A tooth has two flanks: gravity has chosen one when it is clearly larger than this, N m.
 const SEATING_TORQUE_NM: f64 = 0.02;
@@ -124,6 +125,13 @@ impl Effect {
                 deviation.screen_bow_per_m[1] += values[1];
             }
         }
+    }
+}
+
+impl Effect {
+    /// What it does to the eyes in a situation, added to `deviation`; one value per parameter.
+    pub fn deviate_eyes(&self, situation: &EyeSituation, values: &[f64], deviation: &mut EyesDeviation) {
+        let _ = (situation, values, deviation);
     }
 }
 

@@ -3,6 +3,7 @@
 use nalgebra::{Isometry3, Point3, Vector3};
 
 use crate::arm::Arm;
+use crate::measurements::Observation;
 
 /// All that effects depend on, in one pose of the arm on the screen.
 #[derive(Clone, Debug)]
@@ -22,6 +23,9 @@ pub struct Situation<'a> {
     pub(super) roll: Vector3<f64>,
     /// Direction of the last motion along the glass, robot frame; zero if unknown.
     pub(super) sweep: Vector3<f64>,
+    /// What else is known of the row: lags, times, temperatures. `None` for a touch that is only
+    /// planned.
+    pub(super) row: Option<&'a Observation>,
 }
 
 impl<'a> Situation<'a> {
@@ -58,7 +62,18 @@ impl<'a> Situation<'a> {
             lean_nm,
             roll: roll(arm, &frames.robot_from_joint, normal),
             sweep: sweep(&frames.robot_from_joint, &frames.axes, direction, tip, normal),
+            row: None,
         }
+    }
+
+    /// The same with what was logged in a row. Measured torques take the place of those of the
+    /// description's masses.
+    pub fn during(mut self, row: &'a Observation) -> Self {
+        if let Some(torque_nm) = row.torque_nm.as_ref().filter(|t| t.len() == self.torques_nm.len()) {
+            self.torques_nm.clone_from(torque_nm);
+        }
+        self.row = Some(row);
+        self
     }
 
     /// Gravity about each axis, N m.

@@ -25,6 +25,11 @@ impl Surface {
         }
     }
 
+    /// Middle of the image, robot frame.
+    pub fn middle_m(&self) -> Point3<f64> {
+        self.middle_m
+    }
+
     /// Direction out of the glass.
     pub fn normal(&self) -> &Vector3<f64> {
         &self.normal

@@ -1,0 +1,197 @@
+//! The eyes on their neck, and what they see and estimate when something deviates.
+
+use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
+use plumbline_model::robot::{DescriptionError, Rig};
+use plumbline_model::stereo::StereoCameras;
+use plumbline_model::{Pixel, Raw};
+
+use crate::arm::{Arm, Deviation};
+use crate::measurements::Observation;
+
+/// The eyes of a robot, nominal.
+#[derive(Clone, Debug)]
+pub struct Eyes {
+    /// The joints from the torso to the head.
+    pub neck: Arm,
+    /// Place of the left eye in the head.
+    pub head_from_left: Isometry3<f64>,
+    /// Lenses and how the eyes sit to each other.
+    pub cameras: StereoCameras,
+}
+
+/// What is different from the nominal eyes. All zero is the nominal eyes exactly.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EyesDeviation {
+    /// Added to each joint of the neck, rad.
+    pub neck_rad: Vec<f64>,
+    /// Turns both eyes together: rotation vector, axes of the left camera, rad.
+    pub mount_rad: Vector3<f64>,
+    /// Shifts both eyes together, axes of the left camera, m.
+    pub mount_m: Vector3<f64>,
+    /// Turns the right eye: rotation vector, axes of that camera, rad.
+    pub right_rad: Vector3<f64>,
+    /// Shifts the image of the right eye, px.
+    pub right_shift_px: [f64; 2],
+    /// Both focal lengths are longer by this share.
+    pub focal_scale: f64,
+    /// Radial distortion left over: shift of a point in the image by this times the cube of its
+    /// distance from the middle, as a share of half the image's width, px.
+    pub distortion_px: f64,
+    /// What is matched is not the place itself: shift in the images of both eyes, px.
+    pub box_px: [f64; 2],
+    /// Shift of the match in the right image along u only (disparity), px.
+    pub disparity_px: f64,
+    /// The place that is seen lies nearer to the eyes by this, along the ray, m.
+    pub nearer_m: f64,
+    /// How much the depth is that of the background: 0 not, 1 wholly.
+    pub background_share: f64,
+}
+
+impl EyesDeviation {
+    /// The nominal eyes on a neck with this many joints.
+    pub fn none(neck: usize) -> Self {
+        Self {
+            neck_rad: vec![0.0; neck],
+            mount_rad: Vector3::zeros(),
+            mount_m: Vector3::zeros(),
+            right_rad: Vector3::zeros(),
+            right_shift_px: [0.0; 2],
+            focal_scale: 0.0,
+            distortion_px: 0.0,
+            box_px: [0.0; 2],
+            disparity_px: 0.0,
+            nearer_m: 0.0,
+            background_share: 0.0,
+        }
+    }
+}
+
+/// What effects on the eyes depend on, in one row.
+#[derive(Clone, Debug)]
+pub struct EyeSituation {
+    /// Angles of the neck, rad.
+    pub neck_rad: Vec<f64>,
+    /// The known place, robot frame, m.
+    pub truth_m: Point3<f64>,
+    /// The same in the nominal left camera, m.
+    pub in_left_m: Point3<f64>,
+    /// Time since the eyes were switched on, s.
+    pub t_secs: Option<f64>,
+    /// Distance of what lies behind, m.
+    pub background_m: Option<f64>,
+    /// Gravity about each joint of the neck, N m.
+    pub neck_torques_nm: Vec<f64>,
+}
+
+impl Eyes {
+    /// The eyes of a rig.
+    ///
+    /// # Errors
+    /// When the description has no chain to them.
+    pub fn of_rig(rig: &Rig) -> Result<Self, DescriptionError> {
+        let link = &rig.description.links()[rig.eyes.link.0].name;
+        Ok(Self {
+            neck: Arm::of_rig(rig, link)?,
+            head_from_left: rig.eyes.head_from_left.isometry,
+            cameras: rig.eyes.cameras,
+        })
+    }
+
+    /// Place of the left eye, nominal unless something deviates.
+    pub fn robot_from_left(&self, neck_rad: &[f64], deviation: &EyesDeviation) -> Isometry3<f64> {
+        let angles: Vec<f64> = neck_rad.iter().zip(&deviation.neck_rad).map(|(a, b)| a + b).collect();
+        let mount = Isometry3::from_parts(
+            Translation3::from(deviation.mount_m),
+            UnitQuaternion::from_scaled_axis(deviation.mount_rad),
+        );
+        self.neck.frames(&angles).robot_from_tip * self.head_from_left * mount
+    }
+
+    /// What effects depend on when the eyes look at a known place.
+    pub fn situation(&self, row: &Observation, truth_m: Point3<f64>) -> EyeSituation {
+        let nominal = EyesDeviation::none(self.neck.len());
+        let frames = self.neck.frames(&row.neck_rad);
+        let moments = self.neck.gravity_moments_nm(&frames, 0.0);
+        EyeSituation {
+            neck_rad: row.neck_rad.clone(),
+            truth_m,
+            in_left_m: self.robot_from_left(&row.neck_rad, &nominal).inverse() * truth_m,
+            t_secs: row.t_secs,
+            background_m: row.background_m,
+            neck_torques_nm: moments.iter().zip(&frames.axes).map(|(m, axis)| m.dot(axis)).collect(),
+        }
+    }
+
+    /// Where both eyes see a known place: u, v left, u, v right, raw px. `None` outside of their
+    /// view.
+    pub fn image_points(&self, situation: &EyeSituation, deviation: &EyesDeviation) -> Option<Vec<f64>> {
+        let mut in_left =
+            self.robot_from_left(&situation.neck_rad, deviation).inverse() * situation.truth_m;
+        let range_m = in_left.coords.norm();
+        // Depth that leaks in from behind is a mixture of disparities, that is of inverse depths.
+        if let Some(background_m) = situation.background_m.filter(|m| *m > 0.0) {
+            let mixed = (1.0 - deviation.background_share) / range_m
+                + deviation.background_share / background_m.max(range_m);
+            in_left.coords *= 1.0 / mixed / range_m;
+        }
+        in_left.coords *= 1.0 - deviation.nearer_m / range_m;
+        let turned = UnitQuaternion::from_scaled_axis(deviation.right_rad);
+        let in_right = turned * (self.cameras.right_from_left.isometry * in_left);
+        let left = self.cameras.left.project(&in_left.coords).ok()?;
+        let right = self.cameras.right.project(&in_right.coords).ok()?;
+        let left = shifted(left, &self.cameras.left, deviation, [0.0; 2]);
+        let own = [deviation.right_shift_px[0] - deviation.disparity_px, deviation.right_shift_px[1]];
+        let right = shifted(right, &self.cameras.right, deviation, own);
+        Some(vec![left.u_px, left.v_px, right.u_px, right.v_px])
+    }
+
+    /// What stereo with the nominal eyes makes of that: bearing right and down (tangents) and
+    /// baseline over depth, in the nominal left camera.
+    pub fn estimate(
+        &self,
+        row: &Observation,
+        situation: &EyeSituation,
+        deviation: &EyesDeviation,
+    ) -> Option<Vec<f64>> {
+        debug_assert_eq!(row.neck_rad.len(), situation.neck_rad.len(), "the same neck");
+        let seen = self.image_points(situation, deviation)?;
+        let in_left =
+            self.cameras.triangulate(Pixel::new(seen[0], seen[1]), Pixel::new(seen[2], seen[3]))?;
+        Some(self.natural(&in_left.coords).to_vec())
+    }
+
+    /// Bearing right and down (tangents) and baseline over depth of a point in the left camera.
+    pub fn natural(&self, in_left: &Point3<f64>) -> [f64; 3] {
+        [in_left.x / in_left.z, in_left.y / in_left.z, self.cameras.baseline_m() / in_left.z]
+    }
+
+    /// The other way: the point in the left camera, m.
+    pub fn place(&self, natural: &[f64]) -> Option<Point3<f64>> {
+        let [right, down, disparity] = natural.first_chunk::<3>()?;
+        let depth_m = self.cameras.baseline_m() / disparity;
+        (depth_m > 0.0 && depth_m.is_finite()).then(|| Point3::new(right * depth_m, down * depth_m, depth_m))
+    }
+
+    /// Nominal number of joints of the neck.
+    pub fn nominal(&self) -> (Deviation, EyesDeviation) {
+        (Deviation::none(0), EyesDeviation::none(self.neck.len()))
+    }
+}
+
+/// A pixel as the deviating camera shows it.
+fn shifted(
+    pixel: Pixel<Raw>,
+    camera: &plumbline_model::Camera,
+    deviation: &EyesDeviation,
+    own: [f64; 2],
+) -> Pixel<Raw> {
+    let middle = camera.model.principal_point();
+    let off = (pixel.vector() - middle.vector()) * (1.0 + deviation.focal_scale);
+    let half_width = 0.5 * f64::from(camera.width_px);
+    let share = off.norm() / half_width;
+    let stretched = off + off / half_width * (deviation.distortion_px * share * share);
+    Pixel::new(
+        middle.u_px + stretched.x + deviation.box_px[0] + own[0],
+        middle.v_px + stretched.y + deviation.box_px[1] + own[1],
+    )
+}

@@ -1,0 +1,330 @@
+//! From sessions to rows.
+
+use std::collections::HashMap;
+
+use nalgebra::Point3;
+use plumbline_model::Session;
+use plumbline_model::robot::Rig;
+use plumbline_model::session::{LocalizationRow, PoseRow, TouchRow};
+
+use super::{Apparatus, LeftOut, Measurements, MeasurementsError, Observation, What};
+use crate::arm::Arm;
+use crate::eyes::Eyes;
+use crate::library::Surface;
+
+impl Measurements {
+    /// The rows of sessions of one robot; each with its name for people.
+    ///
+    /// # Errors
+    /// When the sessions are of different robots, do not fit to the rig, or no row is usable.
+    pub fn of_sessions(sessions: &[(String, Session)], rig: &Rig) -> Result<Self, MeasurementsError> {
+        if sessions.is_empty() {
+            return Err(MeasurementsError::NoSession);
+        }
+        same_tip(sessions)?;
+        let mut reader = Reader { rig, rows: vec![], left_out: vec![], apparatuses: vec![], cells: HashMap::new() };
+        for (i, (title, session)) in sessions.iter().enumerate() {
+            reader.session(i, title, session)?;
+        }
+        if reader.rows.is_empty() {
+            let rows = reader.left_out.len();
+            let why = reader.left_out.first().map_or_else(|| "there is none".to_owned(), |out| out.why.clone());
+            return Err(MeasurementsError::NothingUsable { rows, why });
+        }
+        Ok(Self {
+            rig: rig.name.clone(),
+            apparatuses: reader.apparatuses,
+            rows: reader.rows,
+            left_out: reader.left_out,
+        })
+    }
+}
+
+fn same_tip(sessions: &[(String, Session)]) -> Result<(), MeasurementsError> {
+    let mut tips = sessions.iter().filter_map(|(_, session)| Some(&session.manifest.chain.as_ref()?.tip));
+    let Some(first) = tips.next() else { return Ok(()) };
+    match tips.find(|tip| *tip != first) {
+        None => Ok(()),
+        Some(other) => {
+            Err(MeasurementsError::DifferentTips { first: first.clone(), other: other.clone() })
+        }
+    }
+}
+
+struct Reader<'a> {
+    rig: &'a Rig,
+    rows: Vec<Observation>,
+    left_out: Vec<LeftOut>,
+    apparatuses: Vec<Apparatus>,
+    /// Number of each cell by what makes it.
+    cells: HashMap<String, usize>,
+}
+
+/// The arm of a session and where its joints are in the session's columns.
+struct Columns {
+    order: Vec<usize>,
+}
+
+impl Columns {
+    fn of(&self, logged: &[Option<f64>]) -> Option<Vec<f64>> {
+        self.order.iter().map(|place| logged.get(*place).copied().flatten()).collect()
+    }
+}
+
+impl Reader<'_> {
+    fn session(&mut self, number: usize, title: &str, session: &Session) -> Result<(), MeasurementsError> {
+        let missing = |section| MeasurementsError::Missing { session: title.to_owned(), section };
+        let misfit = |error| MeasurementsError::Rig { session: title.to_owned(), error };
+        let moved = session.touches.is_some() || session.poses.is_some();
+        let mut apparatus = Apparatus { title: title.to_owned(), arm: None, surface: None, eyes: None };
+        let mut columns = Columns { order: vec![] };
+        if moved {
+            let chain = session.manifest.chain.as_ref().ok_or_else(|| missing("chain"))?;
+            let arm = Arm::of_rig(self.rig, &chain.tip).map_err(misfit)?;
+            let place = |joint: &String| {
+                let not_logged = || MeasurementsError::NotLogged {
+                    session: title.to_owned(),
+                    joint: joint.clone(),
+                    tip: chain.tip.clone(),
+                };
+                chain.joints.iter().position(|name| name == joint).ok_or_else(not_logged)
+            };
+            columns.order = arm.parts.iter().map(|part| place(&part.joint)).collect::<Result<_, _>>()?;
+            apparatus.arm = Some(arm);
+        }
+        if session.touches.is_some() {
+            let screen = session.manifest.touchscreen.as_ref().ok_or_else(|| missing("touchscreen"))?;
+            apparatus.surface = Some(Surface::of(screen));
+        }
+        if session.localizations.is_some() {
+            apparatus.eyes = Some(Eyes::of_rig(self.rig).map_err(misfit)?);
+        }
+        self.apparatuses.push(apparatus);
+        if let Some(table) = &session.touches {
+            for (i, row) in table.rows().enumerate() {
+                let read = self.touch(number, i, &row, &columns, session);
+                self.take(number, What::Touch, i, read);
+            }
+        }
+        if let Some(table) = &session.poses {
+            for (i, row) in table.rows().enumerate() {
+                let read = self.pose(number, i, &row, &columns);
+                self.take(number, What::Pose, i, read);
+            }
+        }
+        if let Some(table) = &session.localizations {
+            let head = table.head_joints().to_vec();
+            for (i, row) in table.rows().enumerate() {
+                let read = self.localization(number, i, &row, &head);
+                self.take(number, What::Place, i, read);
+            }
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, session: usize, what: What, row: usize, read: Result<Observation, String>) {
+        match read {
+            Ok(observation) => self.rows.push(observation),
+            Err(why) => {
+                self.left_out.push(LeftOut { session, table: what.table().to_owned(), row, why });
+            }
+        }
+    }
+
+    fn cell(&mut self, key: String) -> usize {
+        let next = self.cells.len();
+        *self.cells.entry(key).or_insert(next)
+    }
+
+    fn touch(
+        &mut self,
+        session: usize,
+        row: usize,
+        touch: &TouchRow,
+        columns: &Columns,
+        of: &Session,
+    ) -> Result<Observation, String> {
+        let screen = of.manifest.touchscreen.as_ref().ok_or("no touchscreen")?;
+        let pixel = touch.touch.ok_or("no pixel was touched")?;
+        let commanded_rad = columns.of(&touch.commanded_rad);
+        let encoder_rad = columns.of(&touch.encoder_rad);
+        let angles = encoder_rad.as_ref().or(commanded_rad.as_ref()).ok_or("an angle is missing")?;
+        let joints = angles.len();
+        let [u_m, v_m] = screen.pitch_m();
+        let middle = screen.middle();
+        let measured = vec![(pixel.u_px - middle.u_px) * u_m, (pixel.v_px - middle.v_px) * v_m, 0.0];
+        let (height, payload) = (touch.screen_height_m.unwrap_or(0.0), touch.payload_kg.unwrap_or(0.0));
+        let cell = self.cell(cell_key(
+            session,
+            touch.group.as_deref(),
+            commanded_rad.as_deref(),
+            touch.approach.as_deref(),
+            &[height, payload],
+            ("touch", row),
+        ));
+        Ok(Observation {
+            session,
+            row,
+            what: What::Touch,
+            measured,
+            direction: direction(touch.approach.as_deref(), joints),
+            payload_kg: payload,
+            screen_height_m: height,
+            t_secs: touch.t_secs,
+            move_secs: touch.move_secs,
+            torque_nm: None,
+            temperature_c: columns.of(&touch.temperature_c),
+            neck_rad: vec![],
+            truth_m: None,
+            background_m: None,
+            object: None,
+            cell,
+            set: touch.set.clone(),
+            approach: touch.approach.clone(),
+            commanded_rad,
+            encoder_rad,
+        })
+    }
+
+    fn pose(
+        &mut self,
+        session: usize,
+        row: usize,
+        pose: &PoseRow,
+        columns: &Columns,
+    ) -> Result<Observation, String> {
+        let measured = pose.measured.ok_or("no place was measured")?;
+        let commanded_rad = columns.of(&pose.commanded_rad);
+        let encoder_rad = columns.of(&pose.encoder_rad);
+        let angles = encoder_rad.as_ref().or(commanded_rad.as_ref()).ok_or("an angle is missing")?;
+        let joints = angles.len();
+        let payload = pose.payload_kg.unwrap_or(0.0);
+        let cell = self.cell(cell_key(
+            session,
+            pose.group.as_deref(),
+            commanded_rad.as_deref(),
+            pose.approach.as_deref(),
+            &[payload],
+            ("pose", row),
+        ));
+        Ok(Observation {
+            session,
+            row,
+            what: What::Pose,
+            measured: measured.coords.iter().copied().collect(),
+            direction: direction(pose.approach.as_deref(), joints),
+            payload_kg: payload,
+            screen_height_m: 0.0,
+            t_secs: pose.t_secs,
+            move_secs: None,
+            torque_nm: columns.of(&pose.torque_nm),
+            temperature_c: None,
+            neck_rad: vec![],
+            truth_m: None,
+            background_m: None,
+            object: None,
+            cell,
+            set: pose.set.clone(),
+            approach: pose.approach.clone(),
+            commanded_rad,
+            encoder_rad,
+        })
+    }
+
+    fn localization(
+        &mut self,
+        session: usize,
+        row: usize,
+        seen: &LocalizationRow,
+        head: &[String],
+    ) -> Result<Observation, String> {
+        if !seen.valid {
+            return Err("marked as failed".to_owned());
+        }
+        let eyes = self.apparatuses[session].eyes.as_ref().ok_or("no eyes")?;
+        let truth_m = seen.truth.ok_or("the known place is missing")?.coords;
+        let home = self.rig.home();
+        let neck_rad: Vec<f64> = eyes
+            .neck
+            .parts
+            .iter()
+            .map(|part| {
+                let logged = head.iter().position(|name| *name == part.joint);
+                let logged = logged.and_then(|place| seen.head_rad.get(place).copied().flatten());
+                logged.unwrap_or(home[part.index])
+            })
+            .collect();
+        let (what, measured) = match (seen.left, seen.right, seen.estimate) {
+            (Some(left), Some(right), _) => {
+                (What::EyePoints, vec![left.u_px, left.v_px, right.u_px, right.v_px])
+            }
+            (_, _, Some(estimate)) => {
+                let nominal = crate::eyes::EyesDeviation::none(neck_rad.len());
+                let in_left: Point3<f64> =
+                    eyes.robot_from_left(&neck_rad, &nominal).inverse() * estimate.coords;
+                if in_left.z <= 0.0 {
+                    return Err("the estimate lies behind the eyes".to_owned());
+                }
+                (What::Place, eyes.natural(&in_left).to_vec())
+            }
+            _ => return Err("the eyes found nothing".to_owned()),
+        };
+        let key = seen.group.as_ref().map_or_else(|| format!("{session} eyes {row}"), |g| format!("{session} eyes {g:?}"));
+        let cell = self.cell(key);
+        Ok(Observation {
+            session,
+            row,
+            what,
+            measured,
+            commanded_rad: None,
+            encoder_rad: None,
+            direction: vec![],
+            payload_kg: 0.0,
+            screen_height_m: 0.0,
+            t_secs: seen.t_secs,
+            move_secs: None,
+            torque_nm: None,
+            temperature_c: None,
+            neck_rad,
+            truth_m: Some(truth_m),
+            background_m: seen.background_m,
+            object: seen.object.clone(),
+            cell,
+            set: seen.set.clone(),
+            approach: None,
+        })
+    }
+}
+
+/// What makes a cell: the label of its group, else the same command to a tenth of an encoder step
+/// under the same conditions, else the row by itself.
+fn cell_key(
+    session: usize,
+    group: Option<&str>,
+    commanded_rad: Option<&[f64]>,
+    approach: Option<&str>,
+    conditions: &[f64],
+    (table, row): (&str, usize),
+) -> String {
+    let conditions: Vec<i64> = conditions.iter().map(|value| (value * 1e6).round() as i64).collect();
+    if let Some(group) = group {
+        return format!("{session} {table} {group:?} {approach:?} {conditions:?}");
+    }
+    match commanded_rad {
+        Some(angles) => {
+            let command: Vec<i64> = angles.iter().map(|angle| (angle / 1.5e-4).round() as i64).collect();
+            format!("{session} {table} {command:?} {approach:?} {conditions:?}")
+        }
+        None => format!("{session} {table} row {row}"),
+    }
+}
+
+/// `plus` and `minus` say that every joint arrived moving so; what other labels mean is not known.
+fn direction(approach: Option<&str>, joints: usize) -> Vec<f64> {
+    let sign = match approach {
+        Some("plus") => 1.0,
+        Some("minus") => -1.0,
+        _ => 0.0,
+    };
+    vec![sign; joints]
+}

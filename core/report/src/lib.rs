@@ -1,0 +1,1 @@
+//! The gap on one page for a colleague, as HTML and PDF.
