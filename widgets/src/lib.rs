@@ -22,6 +22,7 @@ pub mod lamp;
 pub mod loss_curves;
 pub mod notifications;
 pub mod overlay;
+pub mod parameter;
 pub mod pose_list;
 pub mod progress;
 pub mod rail;

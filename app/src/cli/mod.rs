@@ -7,6 +7,7 @@ mod common;
 mod correct;
 mod disparity;
 mod doctor;
+mod gap;
 mod ik;
 mod locate;
 mod output;
@@ -54,6 +55,8 @@ enum Verb {
     Correct(WithJson<correct::Correct>),
     /// Says what the model of the robot expects each row of a session to have measured.
     Predict(WithJson<predict::Predict>),
+    /// Finds where model and measurement disagree, names what is missing, shows the gap shrink.
+    Gap(WithJson<gap::Gap>),
     /// Computes the disparity of a pair.
     Disparity(WithJson<disparity::Disparity>),
     /// Says what works on this machine: libraries, graphics, cameras, serial ports, folders.
@@ -109,6 +112,7 @@ pub fn run() -> ExitCode {
                 Verb::Train(verb) => verb.run(train::run),
                 Verb::Correct(verb) => verb.run(correct::run),
                 Verb::Predict(verb) => verb.run(predict::run),
+                Verb::Gap(verb) => verb.run(gap::run),
                 Verb::Disparity(verb) => verb.run(disparity::run),
                 Verb::Doctor(verb) => verb.run(doctor::run),
                 Verb::Sample(verb) => verb.run(sample::run),

@@ -38,6 +38,7 @@ pub use live::Skipped;
 pub use notice::{Notice, NoticeLevel};
 pub use plumbline_correction as correction;
 pub use plumbline_effects as effects;
+pub use plumbline_gap as gap;
 pub use plumbline_hardware::{CameraDevice, SourceSpec};
 pub use plumbline_vision::disparity::{DisparityMap, Origin as DisparityOrigin};
 pub use settings::EngineSettings;

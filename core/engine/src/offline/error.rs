@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use plumbline_correction::{DataError, FileError, TrainError};
+use plumbline_effects::MeasurementsError;
+use plumbline_gap::GapError;
 use plumbline_hardware::{ImageProblem, SourceError};
 use plumbline_model::predict::PredictError;
 use plumbline_model::robot::ik::{IkError, SolverError};
@@ -120,6 +122,12 @@ pub enum OfflineError {
     /// A session cannot be predicted.
     #[error(transparent)]
     Predict(#[from] PredictError),
+    /// The sessions cannot be looked at together.
+    #[error(transparent)]
+    Measurements(#[from] MeasurementsError),
+    /// No gap can be looked for.
+    #[error(transparent)]
+    Gap(#[from] GapError),
     /// A placement of the screen cannot be used.
     #[error(transparent)]
     Placement(#[from] PlacementError),

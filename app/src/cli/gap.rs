@@ -1,0 +1,221 @@
+//! `plumbline gap`: finds where model and measurement disagree, names what is missing, and shows the
+//! gap shrink.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use plumbline_engine::gap::Finding;
+use plumbline_engine::gap::finding::{
+    Comparison, CoordinateComparison, NamedEffect, NextExperiment, Shown, ShownUnit, Unexplained,
+};
+use plumbline_engine::offline::{self, GapArgs, GapReport};
+use plumbline_widgets::{format, parameter};
+
+use super::output::Output;
+
+/// Arguments of `gap`.
+#[derive(Debug, Args)]
+pub struct Gap {
+    /// Folders of sessions of one robot, looked at together.
+    #[arg(long, value_name = "DIR", num_args = 1.., required = true)]
+    session: Vec<PathBuf>,
+    /// What to compare with in place of what the first session names: a rig file, or the screen.toml
+    /// of a placed touchscreen.
+    #[arg(long, value_name = "FILE")]
+    rig_model: Option<PathBuf>,
+    /// The same seed gives the same answer.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+}
+
+/// Compares, finds, names, shows.
+pub fn run(arguments: Gap, output: &Output) -> anyhow::Result<()> {
+    let args = GapArgs { sessions: arguments.session, rig_model: arguments.rig_model, seed: arguments.seed };
+    let report = offline::gap(&args, output)?;
+    output.result(&report, text)
+}
+
+fn text(report: &GapReport) -> String {
+    let finding = &report.finding;
+    let mut text = format!("{}\n", finding.sentence);
+    compared(&mut text, &finding.comparison);
+    found(&mut text, finding);
+    shown(&mut text, &finding.shown);
+    unexplained(&mut text, &finding.unexplained);
+    if let Some(next) = &finding.next {
+        next_experiment(&mut text, next);
+    }
+    for warning in &finding.warnings {
+        text.push_str(&format!("Note: {warning}\n"));
+    }
+    left_out(&mut text, finding);
+    text.push_str(&format!("Searched for {}\n", format::ms(finding.seconds)));
+    text
+}
+
+/// "12.3 mm", in the unit of a natural coordinate.
+fn coordinate(of: &CoordinateComparison, value: f64) -> String {
+    use plumbline_engine::effects::measurements::Unit;
+    match of.unit {
+        Unit::Meter => format::mm(value),
+        Unit::Radian => format::degrees(value),
+        Unit::Pixel => format::px(value),
+    }
+}
+
+fn compared(text: &mut String, comparison: &Comparison) {
+    text.push_str(&format!(
+        "\nCompared: {} at {}",
+        format::count(comparison.rows, "row"),
+        format::count(comparison.cells, "distinct pose"),
+    ));
+    let outliers = comparison.rows.saturating_sub(comparison.rows_kept);
+    if outliers > 0 {
+        text.push_str(&format!(", {} set aside", format::count(outliers, "outlier")));
+    }
+    text.push('\n');
+    for kind in &comparison.kinds {
+        for of in &kind.coordinates {
+            text.push_str(&format!(
+                "  {:<22} differs by {:<10} noise {:<10} {} of the gap\n",
+                of.name,
+                coordinate(of, of.rms),
+                coordinate(of, of.floor),
+                format::percent(of.share)
+            ));
+        }
+    }
+    let floor = if comparison.floor_from_repeats { "repeats" } else { "near neighbors, approximate" };
+    text.push_str(&format!(
+        "  {} noise deviations beyond the noise (noise from {floor}), p = {}\n",
+        format::significant(comparison.size_sigmas, 2),
+        probability(comparison.p_value)
+    ));
+}
+
+/// Probabilities that are next to nothing are said so.
+fn probability(p: f64) -> String {
+    if p < 1e-4 { "less than 0.0001".to_owned() } else { format::significant(p, 2) }
+}
+
+fn found(text: &mut String, finding: &Finding) {
+    if finding.effects.is_empty() {
+        return;
+    }
+    text.push_str("\nFound:\n");
+    for effect in &finding.effects {
+        one(text, effect);
+    }
+}
+
+fn one(text: &mut String, effect: &NamedEffect) {
+    let name =
+        if effect.site.is_empty() { effect.id.clone() } else { format!("{}@{}", effect.id, effect.site) };
+    text.push_str(&format!("  {} ({name}), {} sure\n", effect.title, format::percent(effect.probability)));
+    for found in &effect.parameters {
+        let said = match &found.text {
+            Some(joint) => joint.clone(),
+            None => format!(
+                "{} ({}, 95 %)",
+                parameter::value(&found.name, found.value),
+                parameter::interval(&found.name, found.low, found.high)
+            ),
+        };
+        text.push_str(&format!("    {}: {said}\n", parameter::words(&found.name)));
+    }
+    if effect.class.len() > 1 {
+        text.push_str(&format!(
+            "    one of {} names that these data cannot tell apart ({} that it is one of them):\n",
+            effect.class.len(),
+            format::percent(effect.class_probability)
+        ));
+        for member in &effect.class {
+            text.push_str(&format!("      {} {}\n", format::percent(member.probability), member.title));
+        }
+        if let Some(split) = &effect.split_by {
+            text.push_str(&format!("    to tell them apart: {split}\n"));
+        }
+    }
+    if let Some((runner_up, margin)) = &effect.runner_up {
+        let odds = 10f64.powf(*margin);
+        let odds = if odds > 1e4 { "more than 10000".to_owned() } else { format::significant(odds, 2) };
+        text.push_str(&format!("    runner-up: {runner_up}, {odds} times less probable\n"));
+    }
+    if let Some(why) = &effect.not_addable {
+        text.push_str(&format!("    cannot be added: {why}\n"));
+    }
+}
+
+fn shown(text: &mut String, shown: &Shown) {
+    let of = |value: f64| match shown.unit {
+        ShownUnit::Millimeter => format::mm(value * 1e-3),
+        ShownUnit::Pixel => format::px(value),
+    };
+    if shown.rows == 0 {
+        return;
+    }
+    text.push_str(&format!(
+        "\nOn {} that were not used ({}): {} before, {} after; noise alone would leave {}\n",
+        format::count(shown.rows, "row"),
+        shown.blocks,
+        of(shown.before),
+        of(shown.after),
+        of(shown.floor)
+    ));
+    if let Some(closure) = shown.closure {
+        let range = shown.closure_range.map_or_else(String::new, |[low, high]| {
+            format!(" ({} to {}, 95 %)", format::percent(low), format::percent(high))
+        });
+        text.push_str(&format!("  {} of the gap is closed{range}\n", format::percent(closure)));
+    }
+    if let Some(unseen) = &shown.unseen {
+        text.push_str(&format!(
+            "  {}, held out as a whole: {} before, {} after, noise {}\n",
+            unseen.what,
+            of(unseen.before),
+            of(unseen.after),
+            of(unseen.floor)
+        ));
+    }
+}
+
+fn unexplained(text: &mut String, left: &Unexplained) {
+    text.push_str(&format!(
+        "\nUnexplained: p = {} that noise alone leaves the rest; {} that something outside of the library is at work\n",
+        probability(left.p_value),
+        format::percent(left.probability)
+    ));
+    for on in &left.depends_on {
+        let formula = on.formula.as_ref().map_or_else(String::new, |formula| format!(": {formula}"));
+        text.push_str(&format!(
+            "  {} depends on {} ({} of the rest){formula}\n",
+            on.of,
+            on.on,
+            format::percent(on.share)
+        ));
+    }
+}
+
+fn next_experiment(text: &mut String, next: &NextExperiment) {
+    text.push_str(&format!(
+        "\nNext: {} ({}, about {} min; then {} sure). {}\n",
+        next.what,
+        format::count(next.count, "measurement"),
+        format::significant(next.minutes, 2),
+        format::percent(next.expected_probability),
+        next.why
+    ));
+}
+
+fn left_out(text: &mut String, finding: &Finding) {
+    let mut reasons: Vec<(&str, usize)> = Vec::new();
+    for row in &finding.left_out {
+        match reasons.iter_mut().find(|(why, _)| *why == row.why) {
+            Some((_, count)) => *count += 1,
+            None => reasons.push((&row.why, 1)),
+        }
+    }
+    for (why, count) in reasons {
+        text.push_str(&format!("Left out: {}, {why}\n", format::count(count, "row")));
+    }
+}

@@ -1,0 +1,265 @@
+//! `plumbline gap`: finds where model and measurement disagree, names what is missing, and shows the
+//! gap shrink.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use plumbline_effects::Measurements;
+use plumbline_gap::finding::{Dependence, NamedEffect, NextExperiment, Shown, ShownUnit};
+use plumbline_gap::{Finding, Options, Verdict, find};
+use plumbline_model::robot::Rig;
+use plumbline_model::{JobContext, Session};
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::OfflineError;
+use super::session::{self, RigModel};
+
+/// Where to look for a gap.
+#[derive(Clone, Debug)]
+pub struct GapArgs {
+    /// Folders of sessions of one robot.
+    pub sessions: Vec<PathBuf>,
+    /// What to look with in place of what the first session names.
+    pub rig_model: Option<PathBuf>,
+    /// Of all that is drawn by chance.
+    pub seed: u64,
+}
+
+/// What was found, with the keys of the command line's JSON.
+#[derive(Clone, Debug, Serialize)]
+pub struct GapReport {
+    /// The answer in a word.
+    pub verdict: Verdict,
+    /// The answer in a sentence.
+    pub sentence: String,
+    /// Effects that were found, the largest first.
+    pub effects: Vec<EffectReport>,
+    /// The gap before and after on rows that were not used; lengths in the unit that the key names.
+    pub held_out: Map<String, Value>,
+    /// What stays.
+    pub unexplained: UnexplainedReport,
+    /// What to measure next; null where nothing is left to tell apart.
+    pub next_experiment: Option<NextReport>,
+    /// What is odd about the data, in words.
+    pub warnings: Vec<String>,
+    /// Rows that were left out.
+    pub left_out: usize,
+    /// Time of the search.
+    pub seconds: f64,
+    /// Everything, for people and for the window.
+    #[serde(skip)]
+    pub finding: Finding,
+}
+
+/// An effect that was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct EffectReport {
+    /// Its name.
+    pub id: String,
+    /// Where it sits.
+    pub site: String,
+    /// Probability of the name.
+    pub probability: f64,
+    /// By name.
+    pub parameters: BTreeMap<String, ParameterReport>,
+    /// `id@site` of all that cannot be told apart from it, itself first.
+    pub class: Vec<String>,
+    /// Probability of the class.
+    pub class_probability: f64,
+    /// What experiment would tell them apart.
+    pub split_by: Option<String>,
+    /// The best name outside of the class, and log₁₀ of the odds against it.
+    pub runner_up: Option<(String, f64)>,
+    /// Why it cannot be added, if so.
+    pub not_addable: Option<String>,
+}
+
+/// A parameter with its 95 % interval; some are the name of a joint.
+#[derive(Clone, Debug, Serialize)]
+#[serde(untagged)]
+pub enum ParameterReport {
+    /// A number.
+    Number {
+        /// In the unit that the name says.
+        value: f64,
+        /// Lower end.
+        low: f64,
+        /// Upper end.
+        high: f64,
+    },
+    /// A name.
+    Text(String),
+}
+
+/// What stays unexplained.
+#[derive(Clone, Debug, Serialize)]
+pub struct UnexplainedReport {
+    /// Probability of it by noise alone.
+    pub p_value: f64,
+    /// On what it depends.
+    pub depends_on: Vec<String>,
+    /// Probability of something that is not in the library.
+    pub probability: f64,
+}
+
+/// What to measure next.
+#[derive(Clone, Debug, Serialize)]
+pub struct NextReport {
+    /// In words.
+    pub what: String,
+    /// Why.
+    pub why: String,
+    /// Expected probability of the right name after it.
+    pub expected_probability: f64,
+    /// How long it takes.
+    pub minutes: f64,
+}
+
+/// Reads the sessions and looks for the gap.
+pub fn gap(args: &GapArgs, context: &dyn JobContext) -> Result<GapReport, OfflineError> {
+    let measurements = read(&args.sessions, args.rig_model.as_deref())?;
+    let options = Options { seed: args.seed, ..Options::default() };
+    let finding = find(&measurements, &options, context)?;
+    Ok(GapReport::of(finding))
+}
+
+/// Rows of all sessions, predicted by the robot of the first one or by a rig model.
+pub(crate) fn read(folders: &[PathBuf], rig_model: Option<&Path>) -> Result<Measurements, OfflineError> {
+    let sessions: Vec<(String, Session)> = folders
+        .iter()
+        .map(|folder| Ok((title_of(folder), Session::read(folder)?)))
+        .collect::<Result<_, OfflineError>>()?;
+    let Some((first, folder)) = sessions.first().zip(folders.first()) else {
+        return Err(plumbline_effects::MeasurementsError::NoSession.into());
+    };
+    let own = session::rig_of(&first.1, folder)?;
+    for ((title, other), folder) in sessions.iter().zip(folders).skip(1) {
+        same_rig(&own, &session::rig_of(other, folder)?, title)?;
+    }
+    let rig = match rig_model {
+        None => own,
+        Some(file) => match RigModel::read(file, &own)? {
+            RigModel::Rig(rig) => {
+                same_rig(&own, &rig, &file.display().to_string())?;
+                *rig
+            }
+            RigModel::Placement(placement) => {
+                let mut rig = own;
+                rig.touchscreen = placement.screen;
+                rig
+            }
+        },
+    };
+    Ok(Measurements::of_sessions(&sessions, &rig)?)
+}
+
+fn same_rig(first: &Rig, other: &Rig, whose: &str) -> Result<(), OfflineError> {
+    if first.name == other.name {
+        return Ok(());
+    }
+    Err(plumbline_effects::MeasurementsError::DifferentRigs {
+        first: first.name.clone(),
+        other: format!("{} of {whose}", other.name),
+    }
+    .into())
+}
+
+/// Name of a session for people: that of its folder.
+pub(crate) fn title_of(folder: &Path) -> String {
+    let full = folder.canonicalize();
+    let folder = full.as_deref().unwrap_or(folder);
+    folder.file_name().unwrap_or(folder.as_os_str()).to_string_lossy().into_owned()
+}
+
+impl GapReport {
+    /// The report of a finding.
+    pub fn of(finding: Finding) -> Self {
+        Self {
+            verdict: finding.verdict,
+            sentence: finding.sentence.clone(),
+            effects: finding.effects.iter().map(EffectReport::of).collect(),
+            held_out: held_out(&finding.shown),
+            unexplained: UnexplainedReport {
+                p_value: finding.unexplained.p_value,
+                depends_on: finding.unexplained.depends_on.iter().map(dependence).collect(),
+                probability: finding.unexplained.probability,
+            },
+            next_experiment: finding.next.as_ref().map(NextReport::of),
+            warnings: finding.warnings.clone(),
+            left_out: finding.left_out.len(),
+            seconds: finding.seconds,
+            finding,
+        }
+    }
+}
+
+impl EffectReport {
+    fn of(effect: &NamedEffect) -> Self {
+        let parameter = |found: &plumbline_gap::finding::FoundParameter| {
+            let value = match &found.text {
+                Some(text) => ParameterReport::Text(text.clone()),
+                None => ParameterReport::Number { value: found.value, low: found.low, high: found.high },
+            };
+            (found.name.clone(), value)
+        };
+        Self {
+            id: effect.id.clone(),
+            site: effect.site.clone(),
+            probability: effect.probability,
+            parameters: effect.parameters.iter().map(parameter).collect(),
+            class: effect.class.iter().map(|member| name(&member.id, &member.site)).collect(),
+            class_probability: effect.class_probability,
+            split_by: effect.split_by.clone(),
+            runner_up: effect.runner_up.clone(),
+            not_addable: effect.not_addable.clone(),
+        }
+    }
+}
+
+impl NextReport {
+    fn of(next: &NextExperiment) -> Self {
+        Self {
+            what: next.what.clone(),
+            why: next.why.clone(),
+            expected_probability: next.expected_probability,
+            minutes: next.minutes,
+        }
+    }
+}
+
+/// `joint-zero@r_elbow_y`; only the kind where there is one place.
+pub(crate) fn name(id: &str, site: &str) -> String {
+    if site.is_empty() { id.to_owned() } else { format!("{id}@{site}") }
+}
+
+fn dependence(on: &Dependence) -> String {
+    let formula = on.formula.as_ref().map_or_else(String::new, |formula| format!(": {formula}"));
+    format!("{} on {}{formula}", on.of, on.on)
+}
+
+/// The numbers with the unit in their keys.
+fn held_out(shown: &Shown) -> Map<String, Value> {
+    let unit = match shown.unit {
+        ShownUnit::Millimeter => "mm",
+        ShownUnit::Pixel => "px",
+    };
+    let mut keys = Map::new();
+    keys.insert("rows".to_owned(), shown.rows.into());
+    for (name, value) in [("before", shown.before), ("after", shown.after), ("floor", shown.floor)] {
+        keys.insert(format!("{name}_{unit}"), value.into());
+    }
+    keys.insert("closure".to_owned(), shown.closure.into());
+    keys.insert("closure_range".to_owned(), shown.closure_range.map(Vec::from).into());
+    keys.insert("blocks".to_owned(), shown.blocks.clone().into());
+    if let Some(unseen) = &shown.unseen {
+        let mut of = Map::new();
+        of.insert("what".to_owned(), unseen.what.clone().into());
+        of.insert("rows".to_owned(), unseen.rows.into());
+        for (name, value) in [("before", unseen.before), ("after", unseen.after), ("floor", unseen.floor)] {
+            of.insert(format!("{name}_{unit}"), value.into());
+        }
+        keys.insert("unseen".to_owned(), of.into());
+    }
+    keys
+}
