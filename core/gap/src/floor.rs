@@ -1,0 +1,31 @@
+//! The noise floor: how far repeats of the same measurement scatter.
+
+use plumbline_effects::What;
+
+/// Noise of one measurement, per kind and natural coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Floor {
+    /// Kinds that were measured.
+    pub kinds: Vec<KindFloor>,
+    /// Whether it comes from repeats; else from near neighbors, or a guess, and its scale is
+    /// estimated again along with the effects.
+    pub from_repeats: bool,
+}
+
+/// Noise of one kind of measurement.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct KindFloor {
+    /// Which.
+    pub what: What,
+    /// Standard deviation of ONE measurement, per natural coordinate, in its unit; positive.
+    pub sd: Vec<f64>,
+    /// Degrees of freedom behind it, per coordinate.
+    pub degrees_of_freedom: f64,
+}
+
+impl Floor {
+    /// Of a kind; `None` when it was not measured.
+    pub fn of(&self, what: What) -> Option<&KindFloor> {
+        self.kinds.iter().find(|kind| kind.what == what)
+    }
+}
