@@ -63,6 +63,12 @@ pub struct Deviation {
     pub screen_scale: [f64; 2],
     /// Height of the glass over its plane: per square meter from the middle, along u and v, 1/m.
     pub screen_bow_per_m: [f64; 2],
+    /// Shift of what the panel reports toward its nearest borders, at the border, m.
+    pub screen_edge_m: f64,
+    /// Shifts the screen, robot frame, m.
+    pub screen_m: Vector3<f64>,
+    /// Turns the screen about the middle of its image: rotation vector, robot frame, rad.
+    pub screen_rad: Vector3<f64>,
 }
 
 impl Deviation {
@@ -78,6 +84,9 @@ impl Deviation {
             contact_m: Vector3::zeros(),
             screen_scale: [0.0; 2],
             screen_bow_per_m: [0.0; 2],
+            screen_edge_m: 0.0,
+            screen_m: Vector3::zeros(),
+            screen_rad: Vector3::zeros(),
         }
     }
 }
@@ -195,6 +204,24 @@ impl Arm {
                 weights[i..].iter().chain(&held).map(|(at, force)| (at - about).cross(force)).sum()
             })
             .collect()
+    }
+}
+
+impl Arm {
+    /// Weight of what hangs on each joint and beyond it, robot frame, N.
+    pub fn weights_beyond_n(&self, payload_kg: f64) -> Vec<Vector3<f64>> {
+        let mut beyond_kg = payload_kg;
+        let mut weights: Vec<_> = self
+            .parts
+            .iter()
+            .rev()
+            .map(|part| {
+                beyond_kg += part.mass_kg;
+                weight_n(beyond_kg)
+            })
+            .collect();
+        weights.reverse();
+        weights
     }
 }
 

@@ -28,12 +28,15 @@ pub struct EyesDeviation {
     pub mount_rad: Vector3<f64>,
     /// Shifts both eyes together, axes of the left camera, m.
     pub mount_m: Vector3<f64>,
-    /// Turns the right eye: rotation vector, axes of that camera, rad.
+    /// Turns the right eye: rotation vector, its own axes, rad. Positive about y (down) looks
+    /// further to the right.
     pub right_rad: Vector3<f64>,
     /// Shifts the image of the right eye, px.
     pub right_shift_px: [f64; 2],
     /// Both focal lengths are longer by this share.
     pub focal_scale: f64,
+    /// The eyes stand further apart by this share.
+    pub baseline_scale: f64,
     /// Radial distortion left over: shift of a point in the image by this times the cube of its
     /// distance from the middle, as a share of half the image's width, px.
     pub distortion_px: f64,
@@ -57,6 +60,7 @@ impl EyesDeviation {
             right_rad: Vector3::zeros(),
             right_shift_px: [0.0; 2],
             focal_scale: 0.0,
+            baseline_scale: 0.0,
             distortion_px: 0.0,
             box_px: [0.0; 2],
             disparity_px: 0.0,
@@ -125,8 +129,7 @@ impl Eyes {
     /// Where both eyes see a known place: u, v left, u, v right, raw px. `None` outside of their
     /// view.
     pub fn image_points(&self, situation: &EyeSituation, deviation: &EyesDeviation) -> Option<Vec<f64>> {
-        let mut in_left =
-            self.robot_from_left(&situation.neck_rad, deviation).inverse() * situation.truth_m;
+        let mut in_left = self.robot_from_left(&situation.neck_rad, deviation).inverse() * situation.truth_m;
         let range_m = in_left.coords.norm();
         // Depth that leaks in from behind is a mixture of disparities, that is of inverse depths.
         if let Some(background_m) = situation.background_m.filter(|m| *m > 0.0) {
@@ -136,7 +139,9 @@ impl Eyes {
         }
         in_left.coords *= 1.0 - deviation.nearer_m / range_m;
         let turned = UnitQuaternion::from_scaled_axis(deviation.right_rad);
-        let in_right = turned * (self.cameras.right_from_left.isometry * in_left);
+        let mut in_right = self.cameras.right_from_left.isometry * in_left;
+        in_right += self.cameras.right_from_left.isometry.translation.vector * deviation.baseline_scale;
+        let in_right = turned.inverse() * in_right;
         let left = self.cameras.left.project(&in_left.coords).ok()?;
         let right = self.cameras.right.project(&in_right.coords).ok()?;
         let left = shifted(left, &self.cameras.left, deviation, [0.0; 2]);
@@ -155,8 +160,7 @@ impl Eyes {
     ) -> Option<Vec<f64>> {
         debug_assert_eq!(row.neck_rad.len(), situation.neck_rad.len(), "the same neck");
         let seen = self.image_points(situation, deviation)?;
-        let in_left =
-            self.cameras.triangulate(Pixel::new(seen[0], seen[1]), Pixel::new(seen[2], seen[3]))?;
+        let in_left = self.cameras.triangulate(Pixel::new(seen[0], seen[1]), Pixel::new(seen[2], seen[3]))?;
         Some(self.natural(&in_left.coords).to_vec())
     }
 

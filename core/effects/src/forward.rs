@@ -111,8 +111,7 @@ impl Measurements {
         let pivot = placement * self.pivot(session);
         let shift = Vector3::new(twist[0], twist[1], twist[2]);
         let turn = UnitQuaternion::from_scaled_axis(Vector3::new(twist[3], twist[4], twist[5]));
-        let about =
-            Translation3::from(pivot.coords + shift) * turn * Translation3::from(-pivot.coords);
+        let about = Translation3::from(pivot.coords + shift) * turn * Translation3::from(-pivot.coords);
         about * placement
     }
 
@@ -123,9 +122,10 @@ impl Measurements {
         if let Some(surface) = &apparatus.surface {
             return surface.middle_m();
         }
-        apparatus.arm.as_ref().map_or(Point3::origin(), |arm| {
-            arm.tip_m(&vec![0.0; arm.len()], &Deviation::none(arm.len()))
-        })
+        apparatus
+            .arm
+            .as_ref()
+            .map_or(Point3::origin(), |arm| arm.tip_m(&vec![0.0; arm.len()], &Deviation::none(arm.len())))
     }
 }
 
@@ -169,12 +169,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    fn predict(
-        &self,
-        arm: &Deviation,
-        eyes: &EyesDeviation,
-        placement: &Isometry3<f64>,
-    ) -> Option<Vec<f64>> {
+    fn predict(&self, arm: &Deviation, eyes: &EyesDeviation, placement: &Isometry3<f64>) -> Option<Vec<f64>> {
         match self.row.what {
             What::Touch => {
                 let tip = placement * self.apparatus.arm.as_ref()?.tip_m(self.row.angles_rad(), arm);
@@ -189,9 +184,7 @@ impl<'a> Scene<'a> {
             What::Place => {
                 self.apparatus.eyes.as_ref()?.estimate(self.row, self.eye_situation.as_ref()?, eyes)
             }
-            What::EyePoints => {
-                self.apparatus.eyes.as_ref()?.image_points(self.eye_situation.as_ref()?, eyes)
-            }
+            What::EyePoints => self.apparatus.eyes.as_ref()?.image_points(self.eye_situation.as_ref()?, eyes),
         }
     }
 }

@@ -7,6 +7,7 @@
 //! - [`eyes`]: the eyes with such deviations, and what they see and estimate.
 //! - [`measurements`]: rows of sessions as predictions need them.
 //! - [`forward`]: predicts a row with effects, and how it changes with each of them.
+//! - [`rig_model`]: a rig's model with the effects that were accepted: file, history, predictions.
 //! - [`observability`]: scores a plan of touches by the effects it will be able to tell apart.
 
 pub mod arm;
@@ -17,10 +18,12 @@ mod laws;
 pub mod library;
 pub mod measurements;
 pub mod observability;
+pub mod rig_model;
 
 pub use forward::{Assumed, Present, Tangents};
-pub use library::{Effect, Kind, Parameter, Surface};
+pub use library::{Effect, Kind, Parameter, Reported, Surface};
 pub use measurements::{Measurements, MeasurementsError, Observation, What};
 pub use observability::{
     Addition, Advice, EffectVisibility, Noise, PlanScore, PlannedContact, ScoreError, score,
 };
+pub use rig_model::{RigModel, RigModelError};

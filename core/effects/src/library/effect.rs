@@ -1,151 +1,190 @@
-//! Effects at their sites, and what they do.
+//! Effects at their sites.
 
 use nalgebra::Vector3;
 
-use super::{Kind, Parameter, Situation};
-use crate::arm::{Arm, Deviation};
-use crate::eyes::{EyeSituation, EyesDeviation};
+use super::kind::YAW_WARM_UP;
+use super::{Kind, Parameter};
+use crate::arm::Arm;
+use crate::eyes::Eyes;
 
-/// A tooth has two flanks: gravity has chosen one when it is clearly larger than this, N m.
-const SEATING_TORQUE_NM: f64 = 0.02;
-/// How far a usual bracket gives under load, rad/(N m). Only needed to see a wrong mass, which
-/// shows through what gives way under it.
-const USUAL_COMPLIANCE_RAD_PER_NM: f64 = 0.015;
 /// Links shorter than this have no length that could be wrong, m.
 const SHORTEST_LINK_M: f64 = 0.02;
 
 /// An effect at its site.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Effect {
     /// What kind.
     pub kind: Kind,
-    /// A joint, a link, `tip`, `base`, `screen`.
+    /// A joint, a link, `tip`, `base`, `screen`, `eyes`, `right`; empty: all joints alike.
     pub site: String,
     /// What it is and where, for people.
     pub title: String,
-    /// Place of the joint in the arm, for effects of a joint or link.
-    joint: usize,
+    /// What does not enter the prediction linearly, by kind; `None` where there is no such thing:
+    ///
+    /// - joint-eccentricity, tooth-ripple: periods per turn (`None`: one);
+    /// - servo-warm-up, creep: time constant, s;
+    /// - slipped-horn, screen-bumped: moment, s;
+    /// - torque-limit: largest torque that is held, N m;
+    /// - eye-yaw: `None` is constant, else it grows with time: see [`Self::growth_s`];
+    /// - focal-or-baseline: `None` is the focal length, 1 the baseline.
+    pub shape: Option<f64>,
+    /// Between which shapes the true one lies, as far as the grid of candidates tells.
+    pub shape_range: Option<[f64; 2]>,
+    /// Place of the joint in the arm (or neck), for effects of one joint or link.
+    pub(super) joint: Option<usize>,
+    /// Two directions across the axis, own frame, for a skewed axis.
+    pub(super) across: Option<[Vector3<f64>; 2]>,
+    /// The joint that pulls this one along.
+    pub(super) partner: Option<String>,
 }
 
 impl Effect {
-    /// Every effect of the library at every site of an arm.
+    /// Every effect that a plan of touches is scored by, at every site of an arm.
     pub fn all(arm: &Arm) -> Vec<Self> {
-        let mut effects = vec![];
-        for kind in Kind::ALL {
-            if kind.is_of_joint() {
-                // The first joint has none before it.
-                let first = usize::from(kind == Kind::JointCoupling);
-                effects.extend((first..arm.len()).map(|joint| {
-                    let part = &arm.parts[joint];
-                    Self::new(kind, &part.joint, &part.title, joint)
-                }));
-                continue;
-            }
-            match kind {
-                Kind::LinkLength => effects.extend(links(arm)),
-                Kind::TipOffset | Kind::FingerRoll | Kind::TouchDrag => {
-                    effects.push(Self::new(kind, "tip", "", 0));
-                }
-                Kind::PayloadMass => {
-                    let palm = arm.parts.last().map_or("tip", |part| part.link.as_str());
-                    effects.push(Self::new(kind, palm, "", 0));
-                }
-                Kind::BaseTilt | Kind::TorsoLean => effects.push(Self::new(kind, "base", "", 0)),
-                _ => effects.push(Self::new(kind, "screen", "", 0)),
-            }
-        }
-        effects
+        Kind::OF_PLANS
+            .into_iter()
+            .flat_map(|kind| Self::sites(kind, Some(arm), None))
+            .filter(|effect| !effect.site.is_empty())
+            .collect()
     }
 
-    fn new(kind: Kind, site: &str, whose: &str, joint: usize) -> Self {
+    /// A kind of effect at every site that an arm or eyes offer, in its first shape.
+    pub fn sites(kind: Kind, arm: Option<&Arm>, eyes: Option<&Eyes>) -> Vec<Self> {
+        if kind.is_of_eyes() {
+            eyes.map_or(vec![], |eyes| of_eyes(kind, eyes))
+        } else {
+            arm.map_or(vec![], |arm| of_arm(kind, arm))
+        }
+    }
+
+    /// The effect of this name at this site, as a file or the command line gives it; `None` when
+    /// the arm or the eyes have no such site. `shape` as in [`Self::shape`].
+    pub fn find(
+        id: &str,
+        site: &str,
+        shape: Option<f64>,
+        arm: Option<&Arm>,
+        eyes: Option<&Eyes>,
+    ) -> Option<Self> {
+        let found =
+            Self::sites(Kind::of_id(id)?, arm, eyes).into_iter().find(|effect| effect.site == site)?;
+        Some(found.with_shape(shape))
+    }
+
+    /// The same in another shape.
+    pub fn with_shape(mut self, shape: Option<f64>) -> Self {
+        self.shape = shape;
+        self.shape_range = None;
+        self
+    }
+
+    pub(super) fn new(kind: Kind, site: &str, whose: &str, joint: Option<usize>) -> Self {
         let title =
             if whose.is_empty() { kind.about().to_owned() } else { format!("{whose}: {}", kind.about()) };
-        Self { kind, site: site.to_owned(), title, joint }
+        Self {
+            kind,
+            site: site.to_owned(),
+            title,
+            shape: None,
+            shape_range: None,
+            joint,
+            across: None,
+            partner: None,
+        }
     }
 
-    /// Its name on the command line and in files.
+    /// Its kind's name on the command line and in files.
     pub fn id(&self) -> &'static str {
         self.kind.id()
     }
 
+    /// Kind and site: `id@site`, or the id alone where the site is empty. Shapes of one effect
+    /// have one name.
+    pub fn name(&self) -> String {
+        if self.site.is_empty() { self.id().to_owned() } else { format!("{}@{}", self.id(), self.site) }
+    }
+
     /// Its parameters.
     pub fn parameters(&self) -> &'static [Parameter] {
-        self.kind.parameters()
-    }
-
-    /// What it does to the arm in a situation, added to `deviation`; one value per parameter.
-    pub fn deviate(&self, situation: &Situation<'_>, values: &[f64], deviation: &mut Deviation) {
-        let (j, value) = (self.joint, values[0]);
-        let angle = situation.angles_rad.get(j).copied().unwrap_or_default();
-        let torque = situation.torques_nm.get(j).copied().unwrap_or_default();
-        match self.kind {
-            Kind::JointZero => deviation.joint_rad[j] += value,
-            Kind::JointScale => deviation.joint_rad[j] += value * angle,
-            Kind::JointEccentricity => {
-                deviation.joint_rad[j] += value * angle.sin() + values[1] * angle.cos()
-            }
-            Kind::Backlash => deviation.joint_rad[j] += 0.5 * value * situation.direction[j],
-            Kind::GravityBacklash => {
-                deviation.joint_rad[j] += 0.5 * value * (torque / SEATING_TORQUE_NM).tanh();
-            }
-            Kind::ServoDroop | Kind::JointSag => deviation.joint_rad[j] += value * torque,
-            Kind::SidewaysGive => deviation.skew_rad[j] += situation.sideways_nm[j] * value,
-            Kind::JointCoupling => deviation.joint_rad[j] += value * situation.angles_rad[j - 1],
-            Kind::AxisSkew => {
-                let (a, b) = across(&situation.arm.parts[j].axis);
-                deviation.skew_rad[j] += a * value + b * values[1];
-            }
-            Kind::LinkLength => {
-                deviation.shift_m[j] += situation.arm.parts[j].before.translation.vector.normalize() * value;
-            }
-            Kind::TipOffset => deviation.tip_m += Vector3::new(value, values[1], values[2]),
-            Kind::FingerRoll => deviation.contact_m += situation.roll * value,
-            Kind::TouchDrag => deviation.contact_m += situation.sweep * value,
-            Kind::BaseTilt => {
-                deviation.base_rad += Vector3::new(value, values[1], values[2]);
-                deviation.base_m += Vector3::new(values[3], values[4], values[5]);
-            }
-            Kind::TorsoLean => deviation.base_rad += situation.lean_nm * value,
-            Kind::PayloadMass => {
-                for (offset, torque) in deviation.joint_rad.iter_mut().zip(&situation.torques_per_kg_nm) {
-                    *offset += USUAL_COMPLIANCE_RAD_PER_NM * torque * value;
-                }
-            }
-            Kind::ScreenScale => {
-                deviation.screen_scale[0] += value;
-                deviation.screen_scale[1] += values[1];
-            }
-            // A screen that moves is an arm that moves the other way.
-            Kind::ScreenTilt => {
-                deviation.base_rad -= Vector3::new(value, values[1], values[2]);
-                deviation.base_m -= Vector3::new(values[3], values[4], values[5]);
-            }
-            Kind::ScreenBow => {
-                deviation.screen_bow_per_m[0] += value;
-                deviation.screen_bow_per_m[1] += values[1];
-            }
+        match (self.kind, self.shape) {
+            (Kind::EyeYaw, Some(_)) => YAW_WARM_UP,
+            _ => self.kind.parameters(),
         }
     }
-}
 
-impl Effect {
-    /// What it does to the eyes in a situation, added to `deviation`; one value per parameter.
-    pub fn deviate_eyes(&self, situation: &EyeSituation, values: &[f64], deviation: &mut EyesDeviation) {
-        let _ = (situation, values, deviation);
+    /// Time constant and delay (s) of what grows as 1 − exp(−(t − delay)/time constant). The shape
+    /// of a growing [`Kind::EyeYaw`] holds both: whole seconds of the time constant, and the delay
+    /// in thousandths of its seconds after the point (240.06: 240 s, after 60 s).
+    pub fn growth_s(&self) -> Option<(f64, f64)> {
+        let shape = self.shape?;
+        match self.kind {
+            Kind::EyeYaw => Some((shape.trunc(), (shape.fract() * 1e6).round() / 1e3)),
+            Kind::ServoWarmUp | Kind::Creep => Some((shape, 0.0)),
+            _ => None,
+        }
+    }
+
+    /// The shape of an eye that turns with this time constant and delay, s.
+    pub fn yaw_growth(time_constant_s: f64, delay_s: f64) -> f64 {
+        time_constant_s.round() + delay_s * 1e-3
     }
 }
 
-/// Lengths between the joints of an arm; the way to the tip belongs to the tip's offset.
-fn links(arm: &Arm) -> impl Iterator<Item = Effect> {
-    (1..arm.len()).filter(|&j| arm.parts[j].before.translation.vector.norm() > SHORTEST_LINK_M).map(|j| {
-        let link = &arm.parts[j - 1].link;
-        Effect::new(Kind::LinkLength, link, &link.replace('_', " "), j)
-    })
+fn of_arm(kind: Kind, arm: &Arm) -> Vec<Effect> {
+    if kind.is_of_joint() {
+        // The first joint has none before it.
+        let first = usize::from(kind == Kind::JointCoupling);
+        let single = (first..arm.len()).map(|joint| {
+            let part = &arm.parts[joint];
+            let mut effect = Effect::new(kind, &part.joint, &part.title, Some(joint));
+            match kind {
+                Kind::AxisSkew => effect.across = Some(across(&part.axis)),
+                Kind::JointCoupling => effect.partner = Some(arm.parts[joint - 1].joint.clone()),
+                _ => {}
+            }
+            effect
+        });
+        let shared = kind.is_shared().then(|| Effect::new(kind, "", "all joints alike", None));
+        return single.chain(shared).collect();
+    }
+    match kind {
+        Kind::LinkLength | Kind::LinkBending => links(kind, arm).collect(),
+        Kind::TipOffset | Kind::FingerRoll | Kind::TouchDrag | Kind::FingerBend | Kind::SpeedOvershoot => {
+            vec![Effect::new(kind, "tip", "", None)]
+        }
+        Kind::PayloadMass => {
+            let palm = arm.parts.last().map_or("tip", |part| part.link.as_str());
+            vec![Effect::new(kind, palm, "", None)]
+        }
+        Kind::BaseTilt | Kind::TorsoLean => vec![Effect::new(kind, "base", "", None)],
+        _ => vec![Effect::new(kind, "screen", "", None)],
+    }
+}
+
+fn of_eyes(kind: Kind, eyes: &Eyes) -> Vec<Effect> {
+    match kind {
+        Kind::HeadJoint => {
+            let joints = eyes.neck.parts.iter().enumerate();
+            joints.map(|(j, part)| Effect::new(kind, &part.joint, &part.title, Some(j))).collect()
+        }
+        Kind::EyeYaw | Kind::ImageShift | Kind::EyeRoll => vec![Effect::new(kind, "right", "", None)],
+        _ => vec![Effect::new(kind, "eyes", "", None)],
+    }
+}
+
+/// Links between the joints of an arm; the way to the tip belongs to the tip's offset.
+fn links(kind: Kind, arm: &Arm) -> impl Iterator<Item = Effect> {
+    (1..arm.len()).filter(|&j| arm.parts[j].before.translation.vector.norm() > SHORTEST_LINK_M).map(
+        move |j| {
+            let link = &arm.parts[j - 1].link;
+            Effect::new(kind, link, &link.replace('_', " "), Some(j))
+        },
+    )
 }
 
 /// Two directions at right angles to an axis and to each other.
-fn across(axis: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let start = Vector3::ith(axis.iamin(), 1.0);
     let a = axis.cross(&start).normalize();
-    (a, axis.cross(&a))
+    [a, axis.cross(&a)]
 }

@@ -1,14 +1,20 @@
-//! The effects that touches can show: names, sites, usual sizes, and what each does to the arm.
+//! The effects: names, sites, usual sizes, what each does to arm, screen or eyes, which of them
+//! rows can show, and their parameters as people read them.
 //!
 //! Sizes follow one rule: the standard deviation of a parameter is half of the upper end of the
 //! range that is plausible for a robot of this kind, so that none is favored.
 
+mod act;
+mod act_eyes;
+mod candidates;
 mod effect;
 mod kind;
+mod report;
 mod situation;
 mod surface;
 
 pub use effect::Effect;
 pub use kind::{Kind, Parameter};
+pub use report::Reported;
 pub use situation::Situation;
 pub use surface::Surface;

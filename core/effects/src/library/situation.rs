@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Point3, Vector3};
 
-use crate::arm::Arm;
+use crate::arm::{Arm, Frames};
 use crate::measurements::Observation;
 
 /// All that effects depend on, in one pose of the arm on the screen.
@@ -23,6 +23,16 @@ pub struct Situation<'a> {
     pub(super) roll: Vector3<f64>,
     /// Direction of the last motion along the glass, robot frame; zero if unknown.
     pub(super) sweep: Vector3<f64>,
+    /// Where the nominal joints are.
+    pub(super) frames: Frames,
+    /// Moment of gravity about each joint's origin, robot frame.
+    pub(super) moments_nm: Vec<Vector3<f64>>,
+    /// Weight of what hangs on each joint and beyond, robot frame.
+    pub(super) weights_n: Vec<Vector3<f64>>,
+    /// Out of the glass, robot frame.
+    pub(super) normal: Vector3<f64>,
+    /// Where the finger points, robot frame.
+    pub(super) finger: Vector3<f64>,
     /// What else is known of the row: lags, times, temperatures. `None` for a touch that is only
     /// planned.
     pub(super) row: Option<&'a Observation>,
@@ -62,6 +72,11 @@ impl<'a> Situation<'a> {
             lean_nm,
             roll: roll(arm, &frames.robot_from_joint, normal),
             sweep: sweep(&frames.robot_from_joint, &frames.axes, direction, tip, normal),
+            weights_n: arm.weights_beyond_n(payload_kg),
+            moments_nm: moments,
+            normal: *normal,
+            finger: frames.robot_from_joint.last().map_or(-*normal, |last| last.rotation * *arm.finger),
+            frames,
             row: None,
         }
     }

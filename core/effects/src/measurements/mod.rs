@@ -1,6 +1,7 @@
 //! What was measured, row by row, as predictions need it: one list for touches, poses and
 //! localizations of any number of sessions.
 
+mod derive;
 mod read;
 #[cfg(test)]
 mod tests;
@@ -80,12 +81,17 @@ impl What {
                 &[("along u", Unit::Meter), ("along v", Unit::Meter), ("height over the glass", Unit::Meter)]
             }
             Self::Pose => &[("x", Unit::Meter), ("y", Unit::Meter), ("z", Unit::Meter)],
-            Self::Place => {
-                &[("bearing right", Unit::Radian), ("bearing down", Unit::Radian), ("disparity", Unit::Radian)]
-            }
-            Self::EyePoints => {
-                &[("left u", Unit::Pixel), ("left v", Unit::Pixel), ("right u", Unit::Pixel), ("right v", Unit::Pixel)]
-            }
+            Self::Place => &[
+                ("bearing right", Unit::Radian),
+                ("bearing down", Unit::Radian),
+                ("disparity", Unit::Radian),
+            ],
+            Self::EyePoints => &[
+                ("left u", Unit::Pixel),
+                ("left v", Unit::Pixel),
+                ("right u", Unit::Pixel),
+                ("right v", Unit::Pixel),
+            ],
         }
     }
 
@@ -135,7 +141,13 @@ pub struct Observation {
     pub t_secs: Option<f64>,
     /// Duration of the move, s.
     pub move_secs: Option<f64>,
-    /// Measured torque of each joint, N m, where all are known.
+    /// How long the same pose had been held without a move, s; where the times of its rows say.
+    pub hold_secs: Option<f64>,
+    /// Mean speed of each joint in the move that led here, rad/s, where the last command and the
+    /// duration of the move are known.
+    pub speed_rad_s: Option<Vec<f64>>,
+    /// Measured torque of each joint, N m, where all are known; positive where it drives the joint
+    /// to larger angles, as gravity's does.
     pub torque_nm: Option<Vec<f64>>,
     /// Servo temperature of each joint, °C, where all are known.
     pub temperature_c: Option<Vec<f64>>,
@@ -221,9 +233,7 @@ pub enum MeasurementsError {
         section: &'static str,
     },
     /// The rig has no such tip or joint.
-    #[error(
-        "{session} and the robot do not fit together: {error}. Give the rig that it was recorded with"
-    )]
+    #[error("{session} and the robot do not fit together: {error}. Give the rig that it was recorded with")]
     Rig {
         /// The session.
         session: String,
@@ -231,7 +241,9 @@ pub enum MeasurementsError {
         error: DescriptionError,
     },
     /// A joint that moves the tip was not logged.
-    #[error("{session}: joint {joint} moves {tip} but is not among the joints of its chain: give the rig that it was recorded with")]
+    #[error(
+        "{session}: joint {joint} moves {tip} but is not among the joints of its chain: give the rig that it was recorded with"
+    )]
     NotLogged {
         /// The session.
         session: String,

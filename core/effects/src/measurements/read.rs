@@ -7,6 +7,7 @@ use plumbline_model::Session;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::{LocalizationRow, PoseRow, TouchRow};
 
+use super::derive;
 use super::{Apparatus, LeftOut, Measurements, MeasurementsError, Observation, What};
 use crate::arm::Arm;
 use crate::eyes::Eyes;
@@ -22,15 +23,18 @@ impl Measurements {
             return Err(MeasurementsError::NoSession);
         }
         same_tip(sessions)?;
-        let mut reader = Reader { rig, rows: vec![], left_out: vec![], apparatuses: vec![], cells: HashMap::new() };
+        let mut reader =
+            Reader { rig, rows: vec![], left_out: vec![], apparatuses: vec![], cells: HashMap::new() };
         for (i, (title, session)) in sessions.iter().enumerate() {
             reader.session(i, title, session)?;
         }
         if reader.rows.is_empty() {
             let rows = reader.left_out.len();
-            let why = reader.left_out.first().map_or_else(|| "there is none".to_owned(), |out| out.why.clone());
+            let why =
+                reader.left_out.first().map_or_else(|| "there is none".to_owned(), |out| out.why.clone());
             return Err(MeasurementsError::NothingUsable { rows, why });
         }
+        derive::complete(&mut reader.rows, &reader.apparatuses);
         Ok(Self {
             rig: rig.name.clone(),
             apparatuses: reader.apparatuses,
@@ -45,9 +49,7 @@ fn same_tip(sessions: &[(String, Session)]) -> Result<(), MeasurementsError> {
     let Some(first) = tips.next() else { return Ok(()) };
     match tips.find(|tip| *tip != first) {
         None => Ok(()),
-        Some(other) => {
-            Err(MeasurementsError::DifferentTips { first: first.clone(), other: other.clone() })
-        }
+        Some(other) => Err(MeasurementsError::DifferentTips { first: first.clone(), other: other.clone() }),
     }
 }
 
@@ -167,11 +169,18 @@ impl Reader<'_> {
             row,
             what: What::Touch,
             measured,
-            direction: direction(touch.approach.as_deref(), joints),
+            direction: direction(
+                touch.approach.as_deref(),
+                joints,
+                commanded_rad.as_deref(),
+                encoder_rad.as_deref(),
+            ),
             payload_kg: payload,
             screen_height_m: height,
             t_secs: touch.t_secs,
             move_secs: touch.move_secs,
+            hold_secs: None,
+            speed_rad_s: None,
             torque_nm: None,
             temperature_c: columns.of(&touch.temperature_c),
             neck_rad: vec![],
@@ -212,11 +221,18 @@ impl Reader<'_> {
             row,
             what: What::Pose,
             measured: measured.coords.iter().copied().collect(),
-            direction: direction(pose.approach.as_deref(), joints),
+            direction: direction(
+                pose.approach.as_deref(),
+                joints,
+                commanded_rad.as_deref(),
+                encoder_rad.as_deref(),
+            ),
             payload_kg: payload,
             screen_height_m: 0.0,
             t_secs: pose.t_secs,
             move_secs: None,
+            hold_secs: None,
+            speed_rad_s: None,
             torque_nm: columns.of(&pose.torque_nm),
             temperature_c: None,
             neck_rad: vec![],
@@ -269,7 +285,10 @@ impl Reader<'_> {
             }
             _ => return Err("the eyes found nothing".to_owned()),
         };
-        let key = seen.group.as_ref().map_or_else(|| format!("{session} eyes {row}"), |g| format!("{session} eyes {g:?}"));
+        let key = seen
+            .group
+            .as_ref()
+            .map_or_else(|| format!("{session} eyes {row}"), |g| format!("{session} eyes {g:?}"));
         let cell = self.cell(key);
         Ok(Observation {
             session,
@@ -283,6 +302,8 @@ impl Reader<'_> {
             screen_height_m: 0.0,
             t_secs: seen.t_secs,
             move_secs: None,
+            hold_secs: None,
+            speed_rad_s: None,
             torque_nm: None,
             temperature_c: None,
             neck_rad,
@@ -319,12 +340,27 @@ fn cell_key(
     }
 }
 
-/// `plus` and `minus` say that every joint arrived moving so; what other labels mean is not known.
-fn direction(approach: Option<&str>, joints: usize) -> Vec<f64> {
-    let sign = match approach {
-        Some("plus") => 1.0,
-        Some("minus") => -1.0,
-        _ => 0.0,
-    };
-    vec![sign; joints]
+/// A joint that stands nearer than this to where it was sent tells nothing of how it came there:
+/// half a step of an encoder with 4096 steps, rad.
+const STANDS_RAD: f64 = 0.5 * std::f64::consts::TAU / 4096.0;
+
+/// Last motion of each joint. `plus` and `minus` say that every joint arrived moving so. Without
+/// such a label friction tells it, where command and encoder were logged: a joint stops short of
+/// its goal on the side from which it came.
+fn direction(
+    approach: Option<&str>,
+    joints: usize,
+    commanded_rad: Option<&[f64]>,
+    encoder_rad: Option<&[f64]>,
+) -> Vec<f64> {
+    match (approach, commanded_rad, encoder_rad) {
+        (Some("plus"), ..) => vec![1.0; joints],
+        (Some("minus"), ..) => vec![-1.0; joints],
+        (_, Some(commanded), Some(encoder)) => commanded
+            .iter()
+            .zip(encoder)
+            .map(|(goal, at)| if (goal - at).abs() > STANDS_RAD { (goal - at).signum() } else { 0.0 })
+            .collect(),
+        _ => vec![0.0; joints],
+    }
 }

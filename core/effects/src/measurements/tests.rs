@@ -70,8 +70,7 @@ fn tangents_have_a_column_for_every_parameter() {
     let candidates = Effect::all(arm);
     let count: usize = candidates.iter().map(|effect| effect.parameters().len()).sum();
     let assumed = Assumed::nominal(&measurements);
-    let tangents =
-        measurements.tangents(&measurements.rows[0], &assumed, &candidates).expect("predictable");
+    let tangents = measurements.tangents(&measurements.rows[0], &assumed, &candidates).expect("predictable");
     assert_eq!(tangents.effects.shape(), (3, count));
     assert_eq!(tangents.gauge.shape(), (3, 6));
     assert!(tangents.effects.iter().chain(tangents.gauge.iter()).all(|value| value.is_finite()));

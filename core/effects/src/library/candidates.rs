@@ -1,0 +1,284 @@
+//! Which effects rows could show at all, and in which shapes.
+
+use crate::measurements::{Measurements, Observation};
+
+use super::{Effect, Kind, Situation};
+
+/// At most this many moments are tried for a step.
+const MOST_MOMENTS: usize = 15;
+/// Time constants that are tried, s.
+const TIME_CONSTANTS_S: [f64; 6] = [60.0, 120.0, 240.0, 480.0, 900.0, 1800.0];
+/// Time constants and delays that are tried for an eye that turns, s.
+const YAW_CONSTANTS_S: [f64; 4] = [120.0, 240.0, 480.0, 960.0];
+const YAW_DELAYS_S: [f64; 3] = [0.0, 90.0, 180.0];
+/// A time law needs rows over this time, s.
+const SHORTEST_SPAN_S: f64 = 60.0;
+/// Teeth per turn that are tried, if rows resolve them.
+const ORDERS: [f64; 8] = [10.0, 12.0, 16.0, 20.0, 25.0, 32.0, 40.0, 50.0];
+/// Servos hold less than this with ease: no limit is looked for, N m.
+const EASY_TORQUE_NM: f64 = 0.1;
+/// Steps in angle or height below this are no difference.
+const SAME: f64 = 1e-9;
+
+impl Effect {
+    /// Every effect, at every site and in every shape of a grid, that these rows could show: by
+    /// the columns that are there. Whether they do show it is for the tangents to say.
+    pub fn candidates(measurements: &Measurements) -> Vec<Self> {
+        let arm = measurements.apparatuses.iter().find_map(|apparatus| apparatus.arm.as_ref());
+        let eyes = measurements.apparatuses.iter().find_map(|apparatus| apparatus.eyes.as_ref());
+        let known = Known::of(measurements);
+        Kind::ALL
+            .into_iter()
+            .filter(|kind| known.shows(*kind))
+            .flat_map(|kind| Self::sites(kind, arm, eyes))
+            .flat_map(|effect| known.shapes(effect))
+            .collect()
+    }
+
+    /// Shapes around this one, between its neighbors of the grid: to pin it down once it was
+    /// found. Itself alone where its shape is not a matter of degree.
+    pub fn refined(&self, measurements: &Measurements) -> Vec<Self> {
+        let Some([low, high]) = self.shape_range.filter(|[low, high]| low < high) else {
+            return vec![self.clone()];
+        };
+        let shapes: Vec<f64> = match self.kind {
+            Kind::SlippedHorn | Kind::ScreenBumped => {
+                let moments = moments(&Known::of(measurements).arm_secs);
+                let inside: Vec<f64> = moments.into_iter().filter(|t| (low..=high).contains(t)).collect();
+                thinned(&inside, MOST_MOMENTS)
+            }
+            Kind::ServoWarmUp | Kind::Creep => {
+                (0..=6).map(|k| low * (high / low).powf(f64::from(k) / 6.0)).collect()
+            }
+            Kind::TorqueLimit => (0..=6).map(|k| low + (high - low) * f64::from(k) / 6.0).collect(),
+            Kind::ToothRipple => {
+                (low.ceil() as i64..=high.floor() as i64).map(|order| order as f64).collect()
+            }
+            _ => return vec![self.clone()],
+        };
+        if shapes.is_empty() {
+            return vec![self.clone()];
+        }
+        with_shapes(self, &shapes, [low, high])
+    }
+}
+
+/// What is known of the rows.
+struct Known {
+    touches: bool,
+    arm: bool,
+    eyes: bool,
+    background: bool,
+    /// Some row starts from commanded angles.
+    commanded: bool,
+    /// Some row has encoders that lag.
+    lag: bool,
+    directions: bool,
+    /// The side of approach is known, if only one.
+    direction: bool,
+    speeds: bool,
+    /// Times of the arm's rows in which it was held, longest, s.
+    longest_hold_s: f64,
+    /// Times of the arm's and the eyes' rows, sorted.
+    arm_secs: Vec<f64>,
+    eye_secs: Vec<f64>,
+    /// Largest torques of each joint and the angles that it took, sorted.
+    torques_nm: Vec<Vec<f64>>,
+    angles_rad: Vec<Vec<f64>>,
+}
+
+impl Known {
+    fn of(measurements: &Measurements) -> Self {
+        let rows = &measurements.rows;
+        let of_arm: Vec<&Observation> = rows.iter().filter(|row| row.what.is_placed()).collect();
+        let of_eyes: Vec<&Observation> = rows.iter().filter(|row| !row.what.is_placed()).collect();
+        let secs = |rows: &[&Observation]| sorted(rows.iter().filter_map(|row| row.t_secs));
+        let moves = |row: &&&Observation| row.move_secs.is_some();
+        let durations = sorted(of_arm.iter().filter(moves).filter_map(|row| row.move_secs));
+        let joints = of_arm.iter().map(|row| row.angles_rad().len()).max().unwrap_or(0);
+        let situations: Vec<Vec<f64>> = of_arm.iter().filter_map(|row| torques(measurements, row)).collect();
+        Self {
+            touches: measurements.has(crate::What::Touch),
+            arm: !of_arm.is_empty(),
+            eyes: !of_eyes.is_empty(),
+            background: of_eyes.iter().any(|row| row.background_m.is_some()),
+            commanded: of_arm.iter().any(|row| row.encoder_rad.is_none()),
+            lag: of_arm.iter().filter_map(|row| row.lag_rad()).flatten().any(|lag| lag.abs() > 1e-4),
+            directions: differ(of_arm.iter().map(|row| row.direction.first().copied().unwrap_or(0.0))),
+            direction: of_arm.iter().any(|row| row.direction.iter().any(|side| *side != 0.0)),
+            speeds: differ(durations.iter().copied()),
+            longest_hold_s: of_arm.iter().filter_map(|row| row.hold_secs).fold(0.0, f64::max),
+            arm_secs: secs(&of_arm),
+            eye_secs: secs(&of_eyes),
+            torques_nm: (0..joints)
+                .map(|j| sorted(situations.iter().filter_map(|nm| nm.get(j)).map(|nm| nm.abs())))
+                .collect(),
+            angles_rad: (0..joints)
+                .map(|j| sorted(of_arm.iter().filter_map(|row| row.angles_rad().get(j).copied())))
+                .collect(),
+        }
+    }
+
+    fn shows(&self, kind: Kind) -> bool {
+        match kind {
+            Kind::JointZero
+            | Kind::JointScale
+            | Kind::JointEccentricity
+            | Kind::ToothRipple
+            | Kind::GravityBacklash
+            | Kind::JointSag
+            | Kind::SidewaysGive
+            | Kind::LinkBending
+            | Kind::JointCoupling
+            | Kind::AxisSkew
+            | Kind::LinkLength
+            | Kind::TipOffset
+            | Kind::BaseTilt
+            | Kind::TorsoLean
+            | Kind::PayloadMass => self.arm,
+            Kind::Backlash => self.directions,
+            Kind::Stiction => self.directions && self.commanded,
+            Kind::ServoDroop | Kind::TorqueLimit => self.arm && self.commanded,
+            Kind::Creep => self.longest_hold_s >= SHORTEST_SPAN_S,
+            Kind::EarlyLog => self.lag,
+            Kind::ServoWarmUp => span(&self.arm_secs) >= SHORTEST_SPAN_S,
+            Kind::SlippedHorn => moments(&self.arm_secs).len() >= 4,
+            Kind::ScreenBumped => self.touches && moments(&self.arm_secs).len() >= 4,
+            Kind::FingerBend | Kind::FingerRoll => self.touches,
+            Kind::TouchDrag => self.touches && self.direction,
+            Kind::ScreenScale | Kind::ScreenTilt | Kind::ScreenBow | Kind::PanelEdge => self.touches,
+            Kind::SpeedOvershoot => self.speeds,
+            Kind::CameraMount
+            | Kind::HeadJoint
+            | Kind::EyeYaw
+            | Kind::ImageShift
+            | Kind::FocalOrBaseline
+            | Kind::EyeRoll
+            | Kind::LensDistortion
+            | Kind::SeenSurface
+            | Kind::BoxBias => self.eyes,
+            Kind::BackgroundBleed | Kind::ForegroundFattening => self.background,
+            // Steps are a sawtooth in depth, which no tangent shows; latency needs motion, which
+            // no column holds.
+            Kind::DisparitySteps | Kind::EyeLatency => false,
+        }
+    }
+
+    /// The effect in every shape that is tried.
+    fn shapes(&self, effect: Effect) -> Vec<Effect> {
+        match effect.kind {
+            Kind::JointEccentricity => vec![effect.clone(), effect.with_shape(Some(2.0))],
+            Kind::ToothRipple => {
+                let angles = effect.joint.and_then(|j| self.angles_rad.get(j));
+                let orders: Vec<f64> = angles.map_or(vec![], |angles| resolved(angles));
+                with_shapes(&effect, &orders, [orders.first().copied().unwrap_or(0.0), 60.0])
+            }
+            Kind::TorqueLimit => {
+                let torques = effect.joint.and_then(|j| self.torques_nm.get(j));
+                let limits = torques.map_or(vec![], |torques| limits(torques));
+                let most = torques.and_then(|torques| torques.last()).copied().unwrap_or(0.0);
+                with_shapes(&effect, &limits, [EASY_TORQUE_NM, most])
+            }
+            Kind::ServoWarmUp => with_shapes(&effect, &constants(span(&self.arm_secs)), [30.0, 3600.0]),
+            Kind::Creep => with_shapes(&effect, &constants(self.longest_hold_s), [30.0, 3600.0]),
+            Kind::SlippedHorn | Kind::ScreenBumped => {
+                let all = moments(&self.arm_secs);
+                let ends = [all.first(), all.last()].map(|end| end.copied().unwrap_or(0.0));
+                with_shapes(&effect, &thinned(&all, MOST_MOMENTS), ends)
+            }
+            Kind::EyeYaw if span(&self.eye_secs) >= SHORTEST_SPAN_S => {
+                let span_s = span(&self.eye_secs);
+                let grown = YAW_CONSTANTS_S
+                    .iter()
+                    .filter(|constant| **constant <= 2.0 * span_s)
+                    .flat_map(|constant| YAW_DELAYS_S.map(|delay| Effect::yaw_growth(*constant, delay)));
+                let grown: Vec<Effect> = grown.map(|shape| effect.clone().with_shape(Some(shape))).collect();
+                [vec![effect], grown].concat()
+            }
+            Kind::FocalOrBaseline => vec![effect.clone(), effect.with_shape(Some(1.0))],
+            _ => vec![effect],
+        }
+    }
+}
+
+/// One effect in several shapes, each with the range up to half of the way to its neighbors (the
+/// whole way for moments: the step may be anywhere between the rows that were tried).
+fn with_shapes(effect: &Effect, shapes: &[f64], ends: [f64; 2]) -> Vec<Effect> {
+    let at = |i: usize| shapes[i];
+    (0..shapes.len())
+        .map(|i| {
+            let low = if i == 0 { ends[0] } else { at(i - 1) };
+            let high = if i + 1 == shapes.len() { ends[1] } else { at(i + 1) };
+            let mut shaped = effect.clone().with_shape(Some(at(i)));
+            shaped.shape_range = Some([low.min(at(i)), high.max(at(i))]);
+            shaped
+        })
+        .collect()
+}
+
+fn torques(measurements: &Measurements, row: &Observation) -> Option<Vec<f64>> {
+    let arm = measurements.apparatus(row).arm.as_ref()?;
+    let up = nalgebra::Vector3::z();
+    let situation = Situation::new(arm, row.angles_rad(), &row.direction, row.payload_kg, &up).during(row);
+    Some(situation.torques_nm().to_vec())
+}
+
+fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+fn differ(mut values: impl Iterator<Item = f64>) -> bool {
+    values.next().is_some_and(|first| values.any(|value| (value - first).abs() > SAME))
+}
+
+fn span(sorted: &[f64]) -> f64 {
+    sorted.first().zip(sorted.last()).map_or(0.0, |(first, last)| last - first)
+}
+
+/// Moments between rows.
+fn moments(sorted_s: &[f64]) -> Vec<f64> {
+    sorted_s
+        .windows(2)
+        .filter(|pair| pair[1] - pair[0] > 1e-6)
+        .map(|pair| 0.5 * (pair[0] + pair[1]))
+        .collect()
+}
+
+/// At most so many of them, evenly spread over the rows, the ends left out: a step there is seen
+/// in too few rows.
+fn thinned(values: &[f64], most: usize) -> Vec<f64> {
+    if values.len() <= most {
+        return values.to_vec();
+    }
+    (1..=most).map(|k| values[k * (values.len() - 1) / (most + 1)]).collect()
+}
+
+fn constants(span_s: f64) -> Vec<f64> {
+    let kept: Vec<f64> = TIME_CONSTANTS_S.into_iter().filter(|constant| *constant <= 2.0 * span_s).collect();
+    if kept.is_empty() { vec![TIME_CONSTANTS_S[0]] } else { kept }
+}
+
+/// Orders of a ripple that these angles resolve: several periods, and enough distinct angles in
+/// each.
+fn resolved(sorted_rad: &[f64]) -> Vec<f64> {
+    let mut distinct = sorted_rad.to_vec();
+    distinct.dedup_by(|a, b| (*a - *b).abs() < 1e-4);
+    let turns = span(&distinct) / std::f64::consts::TAU;
+    ORDERS
+        .into_iter()
+        .filter(|order| turns * order >= 2.0 && distinct.len() as f64 >= 6.0 * turns * order)
+        .collect()
+}
+
+/// Torques above which a servo may give up: some rows must lie above, more below.
+fn limits(sorted_nm: &[f64]) -> Vec<f64> {
+    let at = |share: f64| sorted_nm[((sorted_nm.len() - 1) as f64 * share) as usize];
+    if sorted_nm.last().is_none_or(|most| *most < EASY_TORQUE_NM) {
+        return vec![];
+    }
+    let mut limits: Vec<f64> = [0.5, 0.7, 0.85].map(at).into_iter().filter(|nm| *nm > 0.0).collect();
+    limits.dedup_by(|a, b| (*a - *b).abs() < 1e-3);
+    limits
+}

@@ -1,0 +1,172 @@
+//! Parameters of effects as people and files read them.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{Effect, Kind};
+
+/// Standard deviations on either side of a 95 % interval.
+const NINETY_FIVE: f64 = 1.96;
+/// Stiffer than anything: the upper end of a stiffness whose compliance may be zero, N m/rad.
+const RIGID_NM_PER_RAD: f64 = 1e6;
+
+/// A parameter with its 95 % interval.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reported {
+    /// Name with the unit, as on the command line.
+    pub name: String,
+    /// Value.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// What a number cannot say (`from_joint`: the name of a joint; the value is then zero).
+    pub text: Option<String>,
+}
+
+impl Effect {
+    /// Its parameters under the names and in the units of the command line: one value per
+    /// parameter of [`Self::parameters`] and their covariance in squared units of the values.
+    pub fn report(&self, values: &[f64], covariance: &DMatrix<f64>) -> Vec<Reported> {
+        let fit = Fit { values, covariance };
+        match self.kind {
+            Kind::JointEccentricity | Kind::ToothRipple => self.wave(&fit),
+            Kind::Backlash | Kind::GravityBacklash | Kind::Stiction => vec![fit.size(0, "width_rad")],
+            Kind::ServoDroop => vec![fit.stiffness()],
+            Kind::JointCoupling => {
+                let text = self.partner.clone();
+                vec![
+                    fit.plain(0, "ratio"),
+                    Reported { name: "from_joint".to_owned(), value: 0.0, low: 0.0, high: 0.0, text },
+                ]
+            }
+            Kind::AxisSkew => self.skew(&fit),
+            Kind::TorqueLimit => vec![self.shape("torque_nm"), fit.plain(0, "give_rad_per_nm")],
+            Kind::FocalOrBaseline => {
+                let mut scale = fit.plain(0, "scale");
+                let which = if self.shape.is_some() { "distance of the eyes" } else { "focal length" };
+                scale.text = Some(which.to_owned());
+                vec![scale]
+            }
+            _ => {
+                let own = self.parameters().iter().enumerate().map(|(k, one)| fit.plain(k, one.name));
+                own.chain(self.times()).collect()
+            }
+        }
+    }
+
+    /// What its shape says about times.
+    fn times(&self) -> Vec<Reported> {
+        match self.kind {
+            Kind::SlippedHorn | Kind::ScreenBumped => vec![self.shape("t_secs")],
+            Kind::ServoWarmUp | Kind::Creep => vec![self.shape("time_constant_s")],
+            Kind::EyeYaw => self.growth_s().map_or(vec![], |(constant_s, delay_s)| {
+                let known = |name: &str, value: f64| Reported {
+                    name: name.to_owned(),
+                    value,
+                    low: value / std::f64::consts::SQRT_2,
+                    high: value * std::f64::consts::SQRT_2,
+                    text: None,
+                };
+                vec![known("time_constant_s", constant_s), known("delay_s", delay_s)]
+            }),
+            _ => vec![],
+        }
+    }
+
+    fn shape(&self, name: &str) -> Reported {
+        let value = self.shape.unwrap_or_default();
+        let [low, high] = self.shape_range.unwrap_or([value; 2]);
+        Reported { name: name.to_owned(), value, low, high, text: None }
+    }
+
+    /// a sin(k q + φ) of a sine and a cosine.
+    fn wave(&self, fit: &Fit<'_>) -> Vec<Reported> {
+        let (sine, cosine) = (fit.values[0], fit.values[1]);
+        let amplitude = sine.hypot(cosine);
+        let scale = if amplitude > 0.0 { 1.0 / amplitude } else { 0.0 };
+        let sd = fit.sd_along(&DVector::from_vec(vec![sine * scale, cosine * scale]));
+        let across = DVector::from_vec(vec![-cosine * scale * scale, sine * scale * scale]);
+        let phase_sd = if amplitude > 0.0 { fit.sd_along(&across) } else { f64::MAX };
+        let half_turn = std::f64::consts::PI;
+        let phase = cosine.atan2(sine);
+        let phase_width = (NINETY_FIVE * phase_sd).min(half_turn);
+        let order = self.shape.unwrap_or(1.0);
+        let plain = |name: &str, value: f64, width: f64| Reported {
+            name: name.to_owned(),
+            value,
+            low: value - width,
+            high: value + width,
+            text: None,
+        };
+        let mut size = plain("amplitude_rad", amplitude, NINETY_FIVE * sd);
+        size.low = size.low.max(0.0);
+        vec![size, plain("phase_rad", phase, phase_width), plain("order", order, 0.0)]
+    }
+
+    /// Turns about x, y, z of the joint of two turns across its axis; what lies along the axis
+    /// cannot be seen.
+    fn skew(&self, fit: &Fit<'_>) -> Vec<Reported> {
+        let [a, b] = self.across.unwrap_or_default();
+        let names = ["rot_x_rad", "rot_y_rad", "rot_z_rad"];
+        (0..3)
+            .filter(|&k| a[k].hypot(b[k]) > 1e-9)
+            .map(|k| {
+                let weights = DVector::from_vec(vec![a[k], b[k]]);
+                let value = a[k] * fit.values[0] + b[k] * fit.values[1];
+                let width = NINETY_FIVE * fit.sd_along(&weights);
+                let name = names[k].to_owned();
+                Reported { name, value, low: value - width, high: value + width, text: None }
+            })
+            .collect()
+    }
+}
+
+/// Values with their covariance.
+struct Fit<'a> {
+    values: &'a [f64],
+    covariance: &'a DMatrix<f64>,
+}
+
+impl Fit<'_> {
+    fn sd_along(&self, weights: &DVector<f64>) -> f64 {
+        if self.covariance.nrows() != weights.len() {
+            return 0.0;
+        }
+        weights.dot(&(self.covariance * weights)).max(0.0).sqrt()
+    }
+
+    fn plain(&self, k: usize, name: &str) -> Reported {
+        let value = self.values[k];
+        let width = NINETY_FIVE * self.covariance.get((k, k)).map_or(0.0, |square| square.max(0.0).sqrt());
+        Reported { name: name.to_owned(), value, low: value - width, high: value + width, text: None }
+    }
+
+    /// Of something whose sign says only to which side it counts.
+    fn size(&self, k: usize, name: &str) -> Reported {
+        let signed = self.plain(k, name);
+        let (low, high) =
+            if signed.value < 0.0 { (-signed.high, -signed.low) } else { (signed.low, signed.high) };
+        Reported { value: signed.value.abs(), low: low.max(0.0), high, ..signed }
+    }
+
+    /// Of a compliance.
+    fn stiffness(&self) -> Reported {
+        let give = self.plain(0, "stiffness_nm_per_rad");
+        let stiff = |compliance: f64| {
+            if compliance.abs() > 1.0 / RIGID_NM_PER_RAD {
+                1.0 / compliance
+            } else {
+                RIGID_NM_PER_RAD.copysign(give.value)
+            }
+        };
+        let (a, b) = if give.low * give.high > 0.0 {
+            (stiff(give.low), stiff(give.high))
+        } else if give.value < 0.0 {
+            (stiff(give.low), -RIGID_NM_PER_RAD)
+        } else {
+            (stiff(give.high), RIGID_NM_PER_RAD)
+        };
+        Reported { value: stiff(give.value), low: a.min(b), high: a.max(b), ..give }
+    }
+}

@@ -1,0 +1,301 @@
+//! What a model holds, as it stands in its file.
+
+use jiff::Timestamp;
+use nalgebra::Isometry3;
+use plumbline_model::robot::{DescriptionError, Rig};
+use plumbline_model::session::Touchscreen;
+use serde::{Deserialize, Serialize};
+
+use super::file::{isometry_part, screen_part};
+use crate::arm::Arm;
+use crate::eyes::Eyes;
+use crate::forward::Present;
+use crate::library::{Effect, Kind};
+
+/// How far a screen may lie from another one and still be the same, m.
+const SAME_SCREEN_M: f64 = 1e-6;
+
+/// What is in force.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Contents {
+    /// Effects, the oldest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub effects: Vec<ModelEffect>,
+    /// Where touchscreens lie for a robot with these effects, the newest last.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub screens: Vec<PlacedScreen>,
+    /// Where external devices that measured poses stand, the newest last.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub externals: Vec<PlacedExternal>,
+}
+
+/// An effect in force.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelEffect {
+    /// Its name on the command line.
+    pub id: String,
+    /// Where it sits; may be empty.
+    #[serde(default)]
+    pub site: String,
+    /// What it is and where, for people.
+    #[serde(default)]
+    pub title: String,
+    /// The tip whose arm it was found on; `None` for effects on the eyes alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tip: Option<String>,
+    /// What of it is no matter of degree: an order, a moment, a time constant; see [`Effect::shape`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shape: Option<f64>,
+    /// One value per parameter of [`Effect::parameters`].
+    pub values: Vec<f64>,
+    /// Their covariance, row by row; empty when it is not known.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub covariance: Vec<f64>,
+    /// Probability that the name is right.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub probability: Option<f64>,
+    /// Parameters as the command line names them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub parameters: Vec<ReportedParameter>,
+}
+
+/// A parameter with its 95 % interval, as the command line names it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReportedParameter {
+    /// Name with the unit.
+    pub name: String,
+    /// Value.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// A joint that the parameter speaks of, where it does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub text: Option<String>,
+}
+
+/// Where a touchscreen lies for a robot with the model's effects.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlacedScreen {
+    /// The session whose touches placed it.
+    pub session: String,
+    /// Where that session takes it to lie.
+    #[serde(with = "screen_part")]
+    pub nominal: Touchscreen,
+    /// Where it lies.
+    #[serde(with = "screen_part")]
+    pub screen: Touchscreen,
+}
+
+/// Where an external device stands that measured poses.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlacedExternal {
+    /// The session it measured.
+    pub session: String,
+    /// Takes points of the robot into its frame.
+    #[serde(with = "isometry_part")]
+    pub external_from_robot: Isometry3<f64>,
+}
+
+/// What is to be added.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Addition {
+    /// Effects that were found.
+    pub effects: Vec<ModelEffect>,
+    /// Screens, fitted together with them.
+    pub screens: Vec<PlacedScreen>,
+    /// External frames, fitted together with them.
+    pub externals: Vec<PlacedExternal>,
+    /// Whether the search began with the nominal robot: then what it found replaces all that is in
+    /// force. Otherwise it began with this model and comes in addition.
+    pub replaces: bool,
+    /// When.
+    pub at: Timestamp,
+    /// What was found, a sentence.
+    pub sentence: String,
+    /// Sessions that were searched.
+    pub sessions: Vec<String>,
+    /// Version of the program that searched.
+    pub version: String,
+    /// How far it closes the gap.
+    pub gap: Option<StepGap>,
+}
+
+/// A step of the model's history.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Step {
+    /// What was done.
+    pub kind: StepKind,
+    /// When.
+    pub at: Timestamp,
+    /// Effects that it was done to, as `id@site`.
+    pub effects: Vec<String>,
+    /// What the search said.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub sentence: String,
+    /// Sessions that were searched.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sessions: Vec<String>,
+    /// Version of the program that searched.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub version: String,
+    /// How far it closed the gap.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gap: Option<StepGap>,
+    /// Whether it was taken back later.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub undone: bool,
+    /// What was in force before.
+    #[serde(default)]
+    pub before: Contents,
+}
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum StepKind {
+    /// Effects were added.
+    Added,
+    /// One was taken out.
+    Removed,
+    /// The last step before that was not taken back yet was.
+    Undone,
+}
+
+/// The gap on rows that were not used to find the effects.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StepGap {
+    /// `mm` or `px`.
+    pub unit: String,
+    /// Rows judged.
+    pub rows: usize,
+    /// Mean error before.
+    pub before: f64,
+    /// Mean error after.
+    pub after: f64,
+    /// Mean error that noise alone would leave.
+    pub floor: f64,
+    /// (before − after) / (before − floor).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub closure: Option<f64>,
+    /// Its 95 % interval.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub closure_range: Option<[f64; 2]>,
+}
+
+impl Step {
+    pub(super) fn plain(kind: StepKind, at: Timestamp, before: Contents) -> Self {
+        Self {
+            kind,
+            at,
+            effects: vec![],
+            sentence: String::new(),
+            sessions: vec![],
+            version: String::new(),
+            gap: None,
+            undone: false,
+            before,
+        }
+    }
+
+    /// Whether it can still be taken back.
+    pub fn can_be_undone(&self) -> bool {
+        self.kind != StepKind::Undone && !self.undone
+    }
+}
+
+impl PlacedScreen {
+    /// Whether it is this session's or rig's screen: same size, taken to lie at the same place.
+    pub fn is_of(&self, nominal: &Touchscreen) -> bool {
+        let same_size =
+            (self.nominal.width_px, self.nominal.height_px) == (nominal.width_px, nominal.height_px);
+        let corners = self.nominal.corners().into_iter().zip(nominal.corners());
+        same_size && corners.into_iter().all(|(a, b)| a.distance_m(&b) < SAME_SCREEN_M)
+    }
+
+    /// A screen that touches have moved by the inverse of `placement`, which moves the robot's points
+    /// as [`crate::Assumed::placements`] does.
+    pub fn moved(session: &str, nominal: &Touchscreen, placement: &Isometry3<f64>) -> Self {
+        Self {
+            session: session.to_owned(),
+            nominal: nominal.clone(),
+            screen: nominal.moved(&placement.inverse()),
+        }
+    }
+}
+
+impl ModelEffect {
+    /// `id@site`.
+    pub fn name(&self) -> String {
+        super::name(&self.id, &self.site)
+    }
+
+    /// The effect of the library on an arm or on eyes; `None` when it has no place there.
+    pub(super) fn on(&self, arm: Option<&Arm>, eyes: Option<&Eyes>) -> Option<Present> {
+        let effect = Effect::find(&self.id, &self.site, self.shape, arm, eyes)?;
+        (effect.parameters().len() == self.values.len())
+            .then(|| Present { effect, values: self.values.clone() })
+    }
+
+    /// Whether it follows the tip and not the arm: another tip of the same hand does not have it.
+    pub(super) fn is_of_the_tip(&self) -> bool {
+        self.site == "tip"
+    }
+}
+
+impl Contents {
+    /// Whether every effect is one of the library and has a place in the rig; else why not.
+    pub(super) fn check(&self, rig: &Rig) -> Result<(), String> {
+        for effect in &self.effects {
+            let name = effect.name();
+            if Kind::of_id(&effect.id).is_none() {
+                return Err(format!(
+                    "it has the effect {name}, which this program does not know: use a newer version of the \
+                     program, or remove the effect from the file"
+                ));
+            }
+            let misfit = |reason: DescriptionError| {
+                format!(
+                    "its effect {name} does not fit to the robot {} ({reason}): remove it and search the gap again",
+                    rig.name
+                )
+            };
+            let arm = effect.tip.as_deref().map(|tip| Arm::of_rig(rig, tip)).transpose().map_err(misfit)?;
+            let eyes = Eyes::of_rig(rig).ok();
+            let Some(known) =
+                Effect::find(&effect.id, &effect.site, effect.shape, arm.as_ref(), eyes.as_ref())
+            else {
+                return Err(format!(
+                    "its effect {name} sits where the robot {} has no such place: the robot's description has \
+                     changed since, or the effect names no tip. Remove it and search the gap again",
+                    rig.name
+                ));
+            };
+            let (count, needed) = (effect.values.len(), known.parameters().len());
+            if count != needed {
+                return Err(format!("its effect {name} has {count} values instead of {needed}"));
+            }
+            let square = effect.covariance.is_empty() || effect.covariance.len() == needed * needed;
+            if !square {
+                return Err(format!(
+                    "its effect {name} has a covariance of {} numbers",
+                    effect.covariance.len()
+                ));
+            }
+            let reported = effect.parameters.iter().flat_map(|p| [p.value, p.low, p.high]);
+            let numbers = effect.values.iter().chain(&effect.covariance).chain(&effect.shape).copied();
+            if let Some(number) = numbers.chain(reported).find(|number| !number.is_finite()) {
+                return Err(format!("its effect {name} holds {number}"));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,80 @@
+//! Why a model cannot be read, written or changed.
+
+use std::path::PathBuf;
+
+use plumbline_model::formats::FormatError;
+
+/// Why a model cannot be read, written or changed.
+#[derive(Debug, thiserror::Error)]
+pub enum RigModelError {
+    /// Cannot be read.
+    #[error("{file} cannot be read ({source}): check that it is there and may be read")]
+    Unreadable {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Cannot be written.
+    #[error(transparent)]
+    Unwritable(#[from] FormatError),
+    /// Something else.
+    #[error(
+        "{file} is no model with effects that this program reads: {reason}. Search the gap and write it again"
+    )]
+    NotModel {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// Of another version of the program.
+    #[error(
+        "{file} has format {found}, this program reads {known}: use the version of the program that wrote it, or \
+         search the gap and write it again"
+    )]
+    OtherVersion {
+        /// The file.
+        file: PathBuf,
+        /// Its format.
+        found: i64,
+        /// Ours.
+        known: u32,
+    },
+    /// An effect of a file that cannot be used.
+    #[error("{file} cannot be used: {reason}")]
+    EffectOfFile {
+        /// The file.
+        file: PathBuf,
+        /// Which and why, and what to do.
+        reason: String,
+    },
+    /// An effect that cannot be added.
+    #[error("the model cannot be changed so: {0}")]
+    Effect(String),
+    /// Of another robot.
+    #[error(
+        "the model with effects belongs to the robot \"{found}\", not to \"{expected}\": give the model that was \
+         found on this robot"
+    )]
+    OtherRig {
+        /// The model's.
+        found: String,
+        /// The one at hand.
+        expected: String,
+    },
+    /// No effect was given.
+    #[error("no effect is to be added: choose at least one that was found")]
+    NothingToAdd,
+    /// Not in force.
+    #[error("{name} is not in the model, so it cannot be taken out. In the model: {present}")]
+    NotThere {
+        /// `id@site`.
+        name: String,
+        /// What is there instead.
+        present: String,
+    },
+    /// No step left.
+    #[error("there is no step left to take back: the model is as it began")]
+    NothingToUndo,
+}

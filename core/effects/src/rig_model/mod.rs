@@ -1,0 +1,133 @@
+//! The model of a rig with the effects that were found and accepted: what is added to the robot's
+//! description, where it comes from, and how it can be taken back.
+//!
+//! Without effects every prediction is exactly the nominal one.
+
+mod contents;
+mod error;
+mod file;
+#[cfg(test)]
+mod tests;
+
+use jiff::Timestamp;
+use plumbline_model::robot::Rig;
+
+pub use contents::{
+    Addition, Contents, ModelEffect, PlacedExternal, PlacedScreen, ReportedParameter, Step, StepGap, StepKind,
+};
+pub use error::RigModelError;
+pub use file::{FORMAT, is_rig_model};
+
+/// A rig's model: effects and placements in force, and how they came to be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigModel {
+    /// Short name of the rig it belongs to.
+    pub rig: String,
+    /// What is in force.
+    pub contents: Contents,
+    /// Every step that was taken, oldest first.
+    pub history: Vec<Step>,
+}
+
+impl RigModel {
+    /// The model without any effect.
+    pub fn nominal(rig: &Rig) -> Self {
+        Self { rig: rig.name.clone(), contents: Contents::default(), history: vec![] }
+    }
+
+    /// Effects in force, the oldest first.
+    pub fn effects(&self) -> &[ModelEffect] {
+        &self.contents.effects
+    }
+
+    /// Whether nothing is added: predictions are nominal.
+    pub fn is_nominal(&self) -> bool {
+        self.contents.effects.is_empty()
+    }
+
+    /// Adds effects that were found. The same effect may be added twice, when a later search has
+    /// found more of it: both parts are in force. Placements of the new sessions take the place of
+    /// older ones of the same screen or session.
+    ///
+    /// # Errors
+    /// When nothing is to be added, or an effect does not fit to the rig; then nothing is changed.
+    pub fn add(&mut self, rig: &Rig, addition: Addition) -> Result<(), RigModelError> {
+        if rig.name != self.rig {
+            return Err(RigModelError::OtherRig { found: self.rig.clone(), expected: rig.name.clone() });
+        }
+        if addition.effects.is_empty() {
+            return Err(RigModelError::NothingToAdd);
+        }
+        let before = self.contents.clone();
+        let mut contents = if addition.replaces { Contents::default() } else { before.clone() };
+        let names = addition.effects.iter().map(ModelEffect::name).collect();
+        contents.effects.extend(addition.effects);
+        for screen in addition.screens {
+            contents.screens.retain(|known| !known.is_of(&screen.nominal));
+            contents.screens.push(screen);
+        }
+        for external in addition.externals {
+            contents.externals.retain(|known| known.session != external.session);
+            contents.externals.push(external);
+        }
+        contents.check(rig).map_err(RigModelError::Effect)?;
+        self.contents = contents;
+        self.history.push(Step {
+            kind: StepKind::Added,
+            at: addition.at,
+            effects: names,
+            sentence: addition.sentence,
+            sessions: addition.sessions,
+            version: addition.version,
+            gap: addition.gap,
+            undone: false,
+            before,
+        });
+        Ok(())
+    }
+
+    /// Takes an effect out, wherever in the history it was added. Placements stay: they were fitted
+    /// together with it, so a new search is due. With the last effect they go, too.
+    ///
+    /// # Errors
+    /// When it is not in force.
+    pub fn remove(&mut self, id: &str, site: &str, at: Timestamp) -> Result<(), RigModelError> {
+        let before = self.contents.clone();
+        self.contents.effects.retain(|effect| effect.id != id || effect.site != site);
+        if self.contents.effects.len() == before.effects.len() {
+            let present = before.effects.iter().map(ModelEffect::name).collect::<Vec<_>>();
+            return Err(RigModelError::NotThere { name: name(id, site), present: present.join(", ") });
+        }
+        if self.contents.effects.is_empty() {
+            self.contents = Contents::default();
+        }
+        self.history
+            .push(Step { effects: vec![name(id, site)], ..Step::plain(StepKind::Removed, at, before) });
+        Ok(())
+    }
+
+    /// Takes back the last step that was not taken back yet: what was in force before it is in force
+    /// again, to the last bit. That it was taken back is a step of the history, too.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub fn undo(&mut self, at: Timestamp) -> Result<(), RigModelError> {
+        let last = self.history.iter().rposition(Step::can_be_undone).ok_or(RigModelError::NothingToUndo)?;
+        self.history[last].undone = true;
+        let undone = &self.history[last];
+        let effects = undone.effects.clone();
+        let before = std::mem::replace(&mut self.contents, undone.before.clone());
+        self.history.push(Step { effects, ..Step::plain(StepKind::Undone, at, before) });
+        Ok(())
+    }
+
+    /// Whether there is a step to take back.
+    pub fn can_undo(&self) -> bool {
+        self.history.iter().any(Step::can_be_undone)
+    }
+}
+
+/// `id@site`, or the id alone.
+fn name(id: &str, site: &str) -> String {
+    if site.is_empty() { id.to_owned() } else { format!("{id}@{site}") }
+}
