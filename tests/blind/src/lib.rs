@@ -1,2 +1,23 @@
 //! Hides effects in the physics, writes ordinary sessions, keeps the answers apart, and scores who
 //! finds them.
+//!
+//! - [`bench`]: the robot whose arm is simulated, as described.
+//! - [`secret`]: what can be hidden.
+//! - [`world`], [`stage`]: the physics, touch by touch.
+//! - [`design`]: plans of touches.
+//! - [`case`]: cases drawn by chance, their sessions and their answers.
+//! - [`score`], [`table`]: who found what.
+
+pub mod answer;
+pub mod bench;
+pub mod case;
+pub mod design;
+mod error;
+mod heat;
+pub mod measure;
+pub mod mix;
+pub mod secret;
+pub mod stage;
+pub mod world;
+
+pub use error::BlindError;
