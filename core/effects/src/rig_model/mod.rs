@@ -6,6 +6,12 @@
 mod contents;
 mod error;
 mod file;
+mod predict;
+#[cfg(test)]
+mod predict_laws;
+mod reach;
+#[cfg(test)]
+mod reach_laws;
 #[cfg(test)]
 mod tests;
 
@@ -17,6 +23,8 @@ pub use contents::{
 };
 pub use error::RigModelError;
 pub use file::{FORMAT, is_rig_model};
+pub use predict::predict_session_with;
+pub use reach::{Conditions, DeviatedArm, Reached, SETTLED_M};
 
 /// A rig's model: effects and placements in force, and how they came to be.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,13 +6,13 @@ use plumbline_model::robot::Rig;
 
 use super::*;
 
-const TIP: &str = "right_index_tip";
+pub(super) const TIP: &str = "right_index_tip";
 
-fn nico() -> Rig {
+pub(super) fn nico() -> Rig {
     Rig::built_in("nico").expect("comes with the program")
 }
 
-fn effect(id: &str, site: &str, values: &[f64]) -> ModelEffect {
+pub(super) fn effect(id: &str, site: &str, values: &[f64]) -> ModelEffect {
     ModelEffect {
         id: id.to_owned(),
         site: site.to_owned(),
@@ -46,6 +46,13 @@ fn addition(effects: Vec<ModelEffect>) -> Addition {
             closure_range: Some([0.7, 0.9]),
         }),
     }
+}
+
+/// The model with these effects.
+pub(super) fn with(rig: &Rig, effects: Vec<ModelEffect>) -> RigModel {
+    let mut model = RigModel::nominal(rig);
+    model.add(rig, addition(effects)).expect("fits");
+    model
 }
 
 fn elbow(rig: &Rig) -> RigModel {

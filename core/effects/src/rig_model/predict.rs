@@ -1,0 +1,243 @@
+//! What a robot with the model's effects should have measured, row by row.
+
+use nalgebra::{Isometry3, Matrix3, Vector3};
+use plumbline_model::predict::{PredictError, SessionPrediction, predict_session};
+use plumbline_model::robot::Rig;
+use plumbline_model::session::{LocalizationTable, PoseTable, Screen, Session, TouchTable, Touchscreen};
+use plumbline_model::{Pixel, Point, Raw, Robot};
+
+use super::RigModel;
+use super::contents::is_of_contact;
+use crate::arm::Arm;
+use crate::eyes::{Eyes, EyesDeviation};
+use crate::forward::{Assumed, Present};
+use crate::library::Surface;
+use crate::measurements::{Measurements, Observation, What};
+
+/// Steps of Newton's method from a measurement to the place that it means.
+const STEPS: usize = 30;
+/// Where it has converged, in natural coordinates (rad; a micrometer at 1 m is a millionth).
+const CONVERGED_RAD: f64 = 1e-9;
+/// Step of its differences, rad.
+const DIFFERENCE_RAD: f64 = 1e-5;
+
+/// Predicts every row of a session as [`predict_session`] does, with the effects of a model. Touches
+/// are projected onto `screen`, or onto the screen where the model has it for this session; poses are
+/// in the external frame where the model has one, else in the robot's. Without effects it is
+/// [`predict_session`] itself.
+///
+/// # Errors
+/// As [`predict_session`].
+pub fn predict_session_with(
+    session: &Session,
+    rig: &Rig,
+    screen: Option<&Touchscreen>,
+    model: &RigModel,
+) -> Result<SessionPrediction, PredictError> {
+    if model.is_nominal() {
+        return predict_session(session, rig, screen);
+    }
+    let own = session.manifest.touchscreen.as_ref();
+    let screen = screen.or_else(|| own.and_then(|own| model.screen(own))).or(own);
+    let mut prediction = predict_session(session, rig, screen)?;
+    let filled = filled(session, &prediction);
+    // What is wrong with the session was said already; what is left is that no row can be used.
+    let Ok(mut measurements) = Measurements::of_sessions(&[(String::new(), filled)], rig) else {
+        return Ok(prediction);
+    };
+    let tip = session.manifest.chain.as_ref().map(|chain| chain.tip.as_str());
+    let apparatus = &mut measurements.apparatuses[0];
+    if let (Some(screen), Some(_)) = (screen, &apparatus.surface) {
+        apparatus.surface = Some(Surface::of(screen));
+    }
+    let effects = model.present(tip, apparatus.arm.as_ref(), apparatus.eyes.as_ref());
+    let on_screen = Assumed { effects: effects.clone(), placements: vec![Isometry3::identity()] };
+    let outside = Assumed {
+        effects: in_the_air(&effects),
+        placements: vec![model.external().copied().unwrap_or_default()],
+    };
+    let has_pixels = session.localizations.as_ref().is_some_and(|table| table.table().has("left_u_px"));
+    let seen: Vec<_> = session.localizations.iter().flat_map(LocalizationTable::rows).collect();
+    for row in &measurements.rows {
+        match row.what {
+            What::Touch => {
+                let (Some(screen), Some(at)) = (screen, measurements.predict(row, &on_screen)) else {
+                    continue;
+                };
+                let touch = &mut prediction.touches[row.row];
+                touch.touch = pixel(screen, at[0], at[1]);
+                touch.above_glass_m = at[2];
+            }
+            What::Pose => {
+                let Some(at) = measurements.predict(row, &outside) else { continue };
+                prediction.poses[row.row].tip = Point::new(at[0], at[1], at[2]);
+            }
+            What::Place | What::EyePoints => {
+                let Some(eyes) = &measurements.apparatuses[0].eyes else { continue };
+                let looking = Looking { eyes, row, effects: &effects };
+                let located = &mut prediction.localizations[row.row];
+                let truth = seen.get(row.row).and_then(|seen| seen.truth);
+                located.estimate = truth.and_then(|truth| looking.estimate(truth));
+                located.pixels = truth.filter(|_| has_pixels).and_then(|truth| looking.pixels(truth));
+                located.corrected = located.corrected.and_then(|inferred| looking.place_of(inferred));
+            }
+        }
+    }
+    Ok(prediction)
+}
+
+impl RigModel {
+    /// Where the model has a screen that is taken to lie at `nominal`: as it was placed with that
+    /// screen, else as it was placed last with one of the same resolution. `None` without any.
+    pub fn screen(&self, nominal: &Touchscreen) -> Option<&Touchscreen> {
+        let size = |screen: &Touchscreen| (screen.width_px, screen.height_px);
+        let screens = &self.contents.screens;
+        let same = screens.iter().rev().find(|placed| placed.is_of(nominal));
+        let other = || screens.iter().rev().find(|placed| size(&placed.screen) == size(nominal));
+        same.or_else(other).map(|placed| &placed.screen)
+    }
+
+    /// Takes points of the robot into the external frame that was placed last.
+    pub fn external(&self) -> Option<&Isometry3<f64>> {
+        self.contents.externals.last().map(|placed| &placed.external_from_robot)
+    }
+
+    /// Effects that an arm which ends in `tip`, or eyes, have. Those of the other arm are left out, and
+    /// those of another tip's own.
+    pub fn present(&self, tip: Option<&str>, arm: Option<&Arm>, eyes: Option<&Eyes>) -> Vec<Present> {
+        let here = |effect: &&super::ModelEffect| {
+            !effect.is_of_the_tip() || effect.tip.as_deref().is_none_or(|own| Some(own) == tip)
+        };
+        self.effects().iter().filter(here).filter_map(|effect| effect.on(arm, eyes)).collect()
+    }
+
+    /// What a search for more effects starts with: these effects, frames where the sessions say.
+    pub fn assumed(&self, measurements: &Measurements, tip: Option<&str>) -> Assumed {
+        let arm = measurements.apparatuses.iter().find_map(|apparatus| apparatus.arm.as_ref());
+        let eyes = measurements.apparatuses.iter().find_map(|apparatus| apparatus.eyes.as_ref());
+        Assumed { effects: self.present(tip, arm, eyes), ..Assumed::nominal(measurements) }
+    }
+}
+
+/// Those that are there without a touchscreen.
+pub(super) fn in_the_air(effects: &[Present]) -> Vec<Present> {
+    effects.iter().filter(|present| !is_of_contact(&present.effect)).cloned().collect()
+}
+
+/// The pixel at this place along u and v from the middle of the image, m.
+fn pixel(screen: &Touchscreen, u_m: f64, v_m: f64) -> Pixel<Screen> {
+    let ([pitch_u_m, pitch_v_m], middle) = (screen.pitch_m(), screen.middle());
+    Pixel::new(middle.u_px + u_m / pitch_u_m, middle.v_px + v_m / pitch_v_m)
+}
+
+/// The session as if something had been measured in every row: predictions do not need it.
+fn filled(session: &Session, nominal: &SessionPrediction) -> Session {
+    let mut filled = session.clone();
+    if let (Some(table), Some(screen)) = (&session.touches, &session.manifest.touchscreen) {
+        let rows: Vec<_> = table
+            .rows()
+            .map(|mut row| {
+                row.touch = row.touch.or(Some(screen.middle()));
+                row
+            })
+            .collect();
+        filled.touches = Some(TouchTable::from_rows(table.joints().to_vec(), &rows));
+    }
+    if let Some(table) = &session.poses {
+        let rows: Vec<_> = table
+            .rows()
+            .zip(&nominal.poses)
+            .map(|(mut row, nominal)| {
+                row.measured = row.measured.or(Some(Point::from(nominal.tip.coords)));
+                row
+            })
+            .collect();
+        filled.poses = Some(PoseTable::from_rows(table.joints().to_vec(), &rows));
+    }
+    if let Some(table) = &session.localizations {
+        let rows: Vec<_> = table
+            .rows()
+            .zip(&nominal.localizations)
+            .map(|(mut row, nominal)| {
+                row.truth = row.truth.or(nominal.corrected);
+                row.estimate = row.truth;
+                (row.left, row.right, row.valid) = (None, None, true);
+                row
+            })
+            .collect();
+        filled.localizations = Some(LocalizationTable::from_rows(table.head_joints().to_vec(), &rows));
+    }
+    filled
+}
+
+/// Eyes with effects in the situation of a row.
+struct Looking<'a> {
+    eyes: &'a Eyes,
+    row: &'a Observation,
+    effects: &'a [Present],
+}
+
+impl Looking<'_> {
+    fn deviation(&self, situation: &crate::eyes::EyeSituation) -> EyesDeviation {
+        let mut deviation = EyesDeviation::none(self.eyes.neck.len());
+        for present in self.effects {
+            present.effect.deviate_eyes(situation, &present.values, &mut deviation);
+        }
+        deviation
+    }
+
+    fn robot_from_left(&self) -> Isometry3<f64> {
+        self.eyes.robot_from_left(&self.row.neck_rad, &EyesDeviation::none(self.eyes.neck.len()))
+    }
+
+    /// Where both eyes see a place, raw px.
+    fn pixels(&self, truth: Point<Robot>) -> Option<(Pixel<Raw>, Pixel<Raw>)> {
+        let situation = self.eyes.situation(self.row, truth.coords);
+        let seen = self.eyes.image_points(&situation, &self.deviation(&situation))?;
+        Some((Pixel::new(seen[0], seen[1]), Pixel::new(seen[2], seen[3])))
+    }
+
+    /// What stereo with the nominal eyes makes of a place, in their natural coordinates.
+    fn natural(&self, truth: Point<Robot>) -> Option<Vector3<f64>> {
+        let situation = self.eyes.situation(self.row, truth.coords);
+        let seen = self.eyes.estimate(self.row, &situation, &self.deviation(&situation))?;
+        Some(Vector3::new(seen[0], seen[1], seen[2]))
+    }
+
+    fn place(&self, natural: &Vector3<f64>) -> Option<Point<Robot>> {
+        Some(Point::from(self.robot_from_left() * self.eyes.place(natural.as_slice())?))
+    }
+
+    /// What stereo with the nominal eyes makes of a place.
+    fn estimate(&self, truth: Point<Robot>) -> Option<Point<Robot>> {
+        self.place(&self.natural(truth)?)
+    }
+
+    /// The other way: the place that stereo with the nominal eyes makes `inferred` of. Newton's method
+    /// in natural coordinates, where effects are nearly shifts. `None` when there is no such place.
+    fn place_of(&self, inferred: Point<Robot>) -> Option<Point<Robot>> {
+        let in_left = self.robot_from_left().inverse() * inferred.coords;
+        if in_left.z <= 0.0 {
+            return None;
+        }
+        let wanted = Vector3::from(self.eyes.natural(&in_left));
+        let off = |natural: &Vector3<f64>| Some(self.natural(self.place(natural)?)? - wanted);
+        let mut natural = wanted;
+        for _ in 0..STEPS {
+            let left = off(&natural)?;
+            if left.norm() < CONVERGED_RAD {
+                return self.place(&natural);
+            }
+            let mut slope = Matrix3::zeros();
+            for k in 0..3 {
+                let step = Vector3::ith(k, DIFFERENCE_RAD);
+                slope.set_column(
+                    k,
+                    &((off(&(natural + step))? - off(&(natural - step))?) / (2.0 * DIFFERENCE_RAD)),
+                );
+            }
+            natural -= slope.lu().solve(&left)?;
+        }
+        None
+    }
+}

@@ -1,0 +1,250 @@
+//! Sessions are predicted with the effects of a model.
+
+use nalgebra::{Isometry3, Vector3};
+use plumbline_model::predict::predict_session;
+use plumbline_model::robot::Rig;
+use plumbline_model::session::{
+    Chain, LocalizationRow, LocalizationTable, Manifest, PoseRow, PoseTable, RigReference, Session, TouchRow,
+    TouchTable, Touchscreen,
+};
+use plumbline_model::{Pixel, Point, Robot};
+
+use super::tests::{TIP, effect, nico, with};
+use super::*;
+
+const POINTING_RAD: [f64; 6] = [0.02, 0.33, 0.42, 1.62, 1.05, 0.74];
+
+fn joints() -> Vec<String> {
+    ["r_shoulder_z", "r_shoulder_y", "r_arm_x", "r_elbow_y", "r_wrist_z", "r_wrist_x"]
+        .map(str::to_owned)
+        .into()
+}
+
+fn head() -> Vec<String> {
+    vec!["head_z".to_owned(), "head_y".to_owned()]
+}
+
+fn places() -> [Point<Robot>; 3] {
+    [Point::new(0.42, -0.11, 0.05), Point::new(0.35, 0.2, 0.12), Point::new(0.55, 0.0, 0.02)]
+}
+
+/// Touches, poses and localizations; some were not measured.
+fn session(rig: &Rig) -> Session {
+    let touch = |k: usize| TouchRow {
+        commanded_rad: POINTING_RAD.map(|angle| Some(angle + 0.01 * k as f64)).into(),
+        encoder_rad: if k == 1 { POINTING_RAD.map(Some).into() } else { vec![None; 6] },
+        touch: (k != 2).then(|| Pixel::new(900.0, 500.0)),
+        screen_height_m: Some(0.03 * (k % 2) as f64),
+        approach: Some(if k % 2 == 0 { "plus" } else { "minus" }.to_owned()),
+        t_secs: Some(100.0 * k as f64),
+        ..TouchRow::default()
+    };
+    let pose = |k: usize| PoseRow {
+        encoder_rad: POINTING_RAD.map(|angle| Some(angle - 0.02 * k as f64)).into(),
+        measured: (k != 1).then(|| Point::new(1.0, 2.0, 3.0)),
+        ..PoseRow::default()
+    };
+    let seen = |place: &Point<Robot>| LocalizationRow {
+        truth: Some(*place),
+        left: Some(Pixel::new(320.0, 240.0)),
+        right: Some(Pixel::new(310.0, 240.0)),
+        head_rad: vec![Some(0.1), Some(-0.6)],
+        t_secs: Some(500.0),
+        background_m: Some(1.5),
+        ..LocalizationRow::default()
+    };
+    Session {
+        manifest: Manifest {
+            rig: RigReference::Named("nico".to_owned()),
+            started: jiff::Timestamp::UNIX_EPOCH,
+            operator: String::new(),
+            notes: String::new(),
+            touchscreen: Some(rig.touchscreen.clone()),
+            chain: Some(Chain { tip: TIP.to_owned(), joints: joints() }),
+            extra: toml::Table::new(),
+        },
+        touches: Some(TouchTable::from_rows(joints(), &[0, 1, 2, 3].map(touch))),
+        localizations: Some(LocalizationTable::from_rows(head(), &places().each_ref().map(seen))),
+        poses: Some(PoseTable::from_rows(joints(), &[0, 1].map(pose))),
+        stereo: Default::default(),
+        log: None,
+    }
+}
+
+#[test]
+fn without_effects_predictions_are_nominal_to_the_last_bit() {
+    let (rig, model) = (nico(), RigModel::nominal(&nico()));
+    let session = session(&rig);
+    let moved = rig.touchscreen.moved(&Isometry3::translation(0.01, 0.0, 0.0));
+    for screen in [None, Some(&moved)] {
+        let nominal = predict_session(&session, &rig, screen).expect("predicted");
+        assert_eq!(predict_session_with(&session, &rig, screen, &model).expect("predicted"), nominal);
+    }
+}
+
+#[test]
+fn effects_of_size_zero_change_nothing() {
+    let rig = nico();
+    let session = session(&rig);
+    let effects = vec![
+        effect("joint-zero", "r_elbow_y", &[0.0]),
+        effect("screen-scale", "screen", &[0.0, 0.0]),
+        ModelEffect { tip: None, ..effect("camera-mount", "eyes", &[0.0; 6]) },
+    ];
+    let nominal = predict_session(&session, &rig, None).expect("predicted");
+    let same = predict_session_with(&session, &rig, None, &with(&rig, effects)).expect("predicted");
+    for (a, b) in nominal.touches.iter().zip(&same.touches) {
+        assert!(a.touch.distance_px(&b.touch) < 1e-9 && (a.above_glass_m - b.above_glass_m).abs() < 1e-12);
+        assert_eq!(a.angles, b.angles);
+    }
+    for (a, b) in nominal.poses.iter().zip(&same.poses) {
+        assert!(a.tip.distance_m(&b.tip) < 1e-12);
+    }
+    for (a, b) in nominal.localizations.iter().zip(&same.localizations) {
+        let near = |a: Option<Point<Robot>>, b: Option<Point<Robot>>| {
+            a.expect("there").distance_m(&b.expect("there")) < 1e-6
+        };
+        assert!(near(a.estimate, b.estimate) && near(a.corrected, b.corrected));
+        let ((left, right), (same_left, same_right)) = (a.pixels.expect("there"), b.pixels.expect("there"));
+        assert!(left.distance_px(&same_left) < 1e-9 && right.distance_px(&same_right) < 1e-9);
+    }
+}
+
+/// A wrong zero is a wrong angle: the nominal robot with other angles is predicted the same.
+#[test]
+fn a_wrong_zero_is_the_nominal_robot_with_another_angle() {
+    let rig = nico();
+    let session = session(&rig);
+    let model = with(&rig, vec![effect("joint-zero", "r_elbow_y", &[0.04])]);
+    let predicted = predict_session_with(&session, &rig, None, &model).expect("predicted");
+    let mut turned = session.clone();
+    let turn = |angles: &mut Vec<Option<f64>>| angles[3] = angles[3].map(|angle| angle + 0.04);
+    let rows: Vec<TouchRow> = session.touches.iter().flat_map(TouchTable::rows).collect();
+    let rows: Vec<TouchRow> = rows
+        .into_iter()
+        .map(|mut row| {
+            turn(&mut row.commanded_rad);
+            turn(&mut row.encoder_rad);
+            row
+        })
+        .collect();
+    turned.touches = Some(TouchTable::from_rows(joints(), &rows));
+    let nominal = predict_session(&turned, &rig, None).expect("predicted");
+    assert_eq!(predicted.touches.len(), 4, "also rows in which nothing was touched");
+    for (a, b) in predicted.touches.iter().zip(&nominal.touches) {
+        assert!(a.touch.distance_px(&b.touch) < 1e-6 && (a.above_glass_m - b.above_glass_m).abs() < 1e-9);
+    }
+    let plain = predict_session(&session, &rig, None).expect("predicted");
+    assert!(plain.poses.iter().zip(&predicted.poses).all(|(a, b)| a.tip.distance_m(&b.tip) > 1e-3));
+}
+
+#[test]
+fn effects_follow_the_columns_of_their_row() {
+    let rig = nico();
+    let session = session(&rig);
+    let nominal = predict_session(&session, &rig, None).expect("predicted").touches;
+    let off = |effect: ModelEffect| -> Vec<bool> {
+        let model = with(&rig, vec![effect]);
+        let predicted = predict_session_with(&session, &rig, None, &model).expect("predicted").touches;
+        nominal.iter().zip(&predicted).map(|(a, b)| a.touch.distance_px(&b.touch) > 1.0).collect()
+    };
+    let slipped = ModelEffect { shape: Some(150.0), ..effect("slipped-horn", "r_elbow_y", &[0.05]) };
+    assert_eq!(off(slipped), [false, false, true, true], "rows at 0, 100, 200 and 300 s");
+    // The second row has encoders, which see what the servo gives way by.
+    assert_eq!(off(effect("servo-droop", "r_elbow_y", &[0.2])), [true, false, true, true]);
+    assert_eq!(off(effect("joint-sag", "r_elbow_y", &[0.2])), [true; 4]);
+}
+
+#[test]
+fn the_models_screen_and_external_frame_are_used() {
+    let rig = nico();
+    let session = session(&rig);
+    let motion = Isometry3::new(Vector3::new(0.02, 0.0, -0.01), Vector3::new(0.0, 0.0, 0.1));
+    let mut model = with(&rig, vec![effect("joint-zero", "r_elbow_y", &[0.04])]);
+    let without = predict_session_with(&session, &rig, None, &model).expect("predicted");
+    model.contents.screens = vec![PlacedScreen::moved("morning", &rig.touchscreen, &motion)];
+    model.contents.externals =
+        vec![PlacedExternal { session: "morning".to_owned(), external_from_robot: motion }];
+    let placed = predict_session_with(&session, &rig, None, &model).expect("predicted");
+    // The robot moved against the screen, or the screen the other way: the tip is at the same place.
+    let lies = model.screen(&rig.touchscreen).expect("placed");
+    for (k, (a, b)) in without.touches.iter().zip(&placed.touches).enumerate() {
+        let tip = |screen: &Touchscreen, touch: Pixel<_>, above_m: f64| {
+            let raised = screen.raised(0.03 * (k % 2) as f64);
+            raised.point_at(touch).coords + screen.normal().vector() * above_m
+        };
+        let (on_nominal, on_placed) =
+            (tip(&rig.touchscreen, a.touch, a.above_glass_m), tip(lies, b.touch, b.above_glass_m));
+        assert!((on_nominal - on_placed).norm() < 1e-9 && a.touch.distance_px(&b.touch) > 10.0);
+    }
+    for (a, b) in without.poses.iter().zip(&placed.poses) {
+        assert!(((motion * a.tip.coords) - b.tip.coords).norm() < 1e-12);
+    }
+    // A screen that is given is used in any case.
+    let given = predict_session_with(&session, &rig, Some(&rig.touchscreen), &model).expect("predicted");
+    assert_eq!(given.touches, without.touches);
+}
+
+#[test]
+fn places_are_inferred_through_the_deviating_eyes() {
+    let rig = nico();
+    let first = session(&rig);
+    for (id, site, shape, values) in [
+        ("camera-mount", "eyes", None, vec![0.01, -0.005, 0.008, 0.02, -0.02, 0.01]),
+        ("head-joint", "head_y", None, vec![0.03]),
+        ("image-shift", "right", None, vec![1.5, -0.5]),
+        ("eye-yaw", "right", None, vec![0.008]),
+        ("eye-yaw", "right", Some(crate::Effect::yaw_growth(240.0, 60.0)), vec![0.01]),
+        ("focal-or-baseline", "eyes", None, vec![0.02]),
+        ("background-bleed", "eyes", None, vec![0.2]),
+        ("seen-surface", "eyes", None, vec![0.02]),
+    ] {
+        let one = ModelEffect { tip: None, shape, ..effect(id, site, &values) };
+        let model = with(&rig, vec![one]);
+        let predicted = predict_session_with(&first, &rig, None, &model).expect("predicted").localizations;
+        let seen = |k: usize, pixels: bool| {
+            let (left, right) = predicted[k].pixels.expect("in view");
+            LocalizationRow {
+                truth: Some(places()[k]),
+                estimate: predicted[k].estimate.filter(|_| !pixels),
+                left: pixels.then_some(left),
+                right: pixels.then_some(right),
+                head_rad: vec![Some(0.1), Some(-0.6)],
+                t_secs: Some(500.0),
+                background_m: Some(1.5),
+                ..LocalizationRow::default()
+            }
+        };
+        for pixels in [true, false] {
+            let mut again = first.clone();
+            again.localizations =
+                Some(LocalizationTable::from_rows(head(), &[0, 1, 2].map(|k| seen(k, pixels))));
+            let nominal = predict_session(&again, &rig, None).expect("predicted").localizations;
+            let inferred = predict_session_with(&again, &rig, None, &model).expect("predicted").localizations;
+            for (k, truth) in places().iter().enumerate() {
+                let off_m = inferred[k].corrected.expect("inferred").distance_m(truth);
+                assert!(off_m < 1e-6, "{id} {k}: {off_m}");
+                let before_m = nominal[k].corrected.expect("triangulated").distance_m(truth);
+                assert!(before_m > 1e-3, "{id} does something: {before_m}");
+            }
+        }
+    }
+}
+
+#[test]
+fn effects_of_the_other_arm_and_of_another_tip_stay_there() {
+    let rig = nico();
+    let session = session(&rig);
+    let nominal = predict_session(&session, &rig, None).expect("predicted");
+    let left =
+        ModelEffect { tip: Some("left_index_tip".into()), ..effect("joint-zero", "l_elbow_y", &[0.04]) };
+    let palm = ModelEffect {
+        tip: Some("right_palm_center".into()),
+        ..effect("tip-offset", "tip", &[0.01, 0.0, 0.0])
+    };
+    let model = with(&rig, vec![left, palm]);
+    let predicted = predict_session_with(&session, &rig, None, &model).expect("predicted");
+    for (a, b) in nominal.touches.iter().zip(&predicted.touches) {
+        assert!(a.touch.distance_px(&b.touch) < 1e-9);
+    }
+}
