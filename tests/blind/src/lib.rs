@@ -16,8 +16,10 @@ mod error;
 mod heat;
 pub mod measure;
 pub mod mix;
+pub mod score;
 pub mod secret;
 pub mod stage;
+pub mod table;
 pub mod world;
 
 pub use error::BlindError;

@@ -1,0 +1,182 @@
+//! Makes blind cases, searches each, scores the answers and prints the table.
+//!
+//! `cargo run --release -p plumbline-blind --example blind_table -- [--cases N] [--seed S]
+//! [--only single,pair,…] [--plan plain|rich] [--first N] [--no-show] [--list]`
+//!
+//! Cases are kept under `target/blind`, so that a search can be repeated without the physics.
+
+#![allow(clippy::print_stdout)]
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use plumbline_blind::answer::Answer;
+use plumbline_blind::bench::Bench;
+use plumbline_blind::case::{self, Recipe};
+use plumbline_blind::design::Planner;
+use plumbline_blind::score::{Score, Verdict};
+use plumbline_blind::{mix, table};
+use plumbline_effects::Measurements;
+use plumbline_gap::{GapReport, Options};
+use plumbline_model::robot::Rig;
+use plumbline_model::session::RigReference;
+use plumbline_model::{Session, Unattended};
+
+/// Cases are made anew when the physics changes.
+const PHYSICS: &str = "v1";
+const THREADS: usize = 2;
+
+type AnyError = Box<dyn std::error::Error + Send + Sync>;
+
+struct Arguments {
+    cases: usize,
+    seed: u64,
+    only: Option<Vec<String>>,
+    plan: Option<String>,
+    first: usize,
+    show: bool,
+    list: bool,
+}
+
+fn arguments() -> Result<Arguments, AnyError> {
+    let mut read =
+        Arguments { cases: 200, seed: 1000, only: None, plan: None, first: 0, show: true, list: false };
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let mut value = || words.next().ok_or(format!("{word} needs a value"));
+        match word.as_str() {
+            "--cases" => read.cases = value()?.parse()?,
+            "--seed" => read.seed = value()?.parse()?,
+            "--only" => read.only = Some(value()?.split(',').map(str::to_owned).collect()),
+            "--plan" => read.plan = Some(value()?),
+            "--first" => read.first = value()?.parse()?,
+            "--no-show" => read.show = false,
+            "--list" => read.list = true,
+            other => return Err(format!("{other} is not known: see the head of this file").into()),
+        }
+    }
+    Ok(read)
+}
+
+fn main() -> Result<(), AnyError> {
+    let arguments = arguments()?;
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
+    let folder = target.join("blind").join(format!("{PHYSICS}-{}-{}", arguments.seed, arguments.cases));
+    let recipes: Vec<Recipe> = mix::recipes(arguments.cases, arguments.seed)
+        .into_iter()
+        .skip(arguments.first)
+        .filter(|recipe| {
+            arguments.only.as_ref().is_none_or(|only| only.contains(&table::word(recipe.family)))
+                && arguments.plan.as_ref().is_none_or(|plan| *plan == table::word(recipe.design))
+        })
+        .collect();
+    make_missing(&recipes, &folder)?;
+    let options = Options { show: arguments.show, advise: false, ..Options::default() };
+    let next = AtomicUsize::new(0);
+    let judged: Vec<Vec<(usize, Result<Verdict, String>)>> = std::thread::scope(|scope| {
+        let work = || {
+            let mut judged = vec![];
+            while let Some(recipe) = recipes.get(next.fetch_add(1, Ordering::Relaxed)) {
+                let verdict = search(&folder, recipe.number, &options).map_err(|error| error.to_string());
+                judged.push((recipe.number, verdict));
+            }
+            judged
+        };
+        let threads: Vec<_> = (0..THREADS)
+            .filter_map(|i| {
+                std::thread::Builder::new().name(format!("search-{i}")).spawn_scoped(scope, work).ok()
+            })
+            .collect();
+        threads.into_iter().filter_map(|thread| thread.join().ok()).collect()
+    });
+    let mut judged: Vec<_> = judged.into_iter().flatten().collect();
+    judged.sort_by_key(|(number, _)| *number);
+    let mut score = Score::default();
+    for (number, verdict) in &judged {
+        let Ok(answer) = Answer::read(&answer_file(&folder, *number)) else { continue };
+        match verdict {
+            Ok(verdict) => score.count(&answer, verdict),
+            Err(why) => score.count_failure(&answer, why),
+        }
+        if arguments.list {
+            list(&answer, verdict);
+        }
+    }
+    println!("{} cases, seed {}\n\n{}", score.cases, arguments.seed, table::markdown(&score));
+    Ok(())
+}
+
+fn answer_file(folder: &Path, number: usize) -> PathBuf {
+    folder.join("answers").join(format!("{number:03}.json"))
+}
+
+/// Makes the cases that are not there yet.
+fn make_missing(recipes: &[Recipe], folder: &Path) -> Result<(), AnyError> {
+    let missing: Vec<&Recipe> =
+        recipes.iter().filter(|recipe| !answer_file(folder, recipe.number).exists()).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let bench = Bench::usual()?;
+    let planner = Planner::new(&bench)?;
+    let next = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for i in 0..THREADS {
+            let work = || {
+                while let Some(recipe) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let made = case::make_or_other(&bench, &planner, recipe)
+                        .and_then(|case| case::write(&case, &folder.join("cases"), &folder.join("answers")));
+                    if let Err(error) = made {
+                        eprintln!("case {:03} was not made: {error}", recipe.number);
+                    }
+                }
+            };
+            let _ = std::thread::Builder::new().name(format!("physics-{i}")).spawn_scoped(scope, work);
+        }
+    });
+    Ok(())
+}
+
+/// What the command line does with a session.
+fn search(folder: &Path, number: usize, options: &Options) -> Result<Verdict, AnyError> {
+    let verdicts = folder.join("verdicts");
+    let folder = folder.join("cases").join(format!("{number:03}"));
+    let session = Session::read(&folder)?;
+    let rig = match &session.manifest.rig {
+        RigReference::Named(name) => Rig::built_in(name)?,
+        RigReference::File(file) => Rig::read(&folder.join(file))?,
+    };
+    let measurements = Measurements::of_sessions(&[(format!("{number:03}"), session)], &rig)?;
+    let finding = plumbline_gap::find(&measurements, options, &Unattended)?;
+    let text = serde_json::to_string(&GapReport::of(&finding))?;
+    std::fs::create_dir_all(&verdicts)?;
+    std::fs::write(verdicts.join(format!("{number:03}.json")), &text)?;
+    Ok(serde_json::from_str(&text)?)
+}
+
+fn list(answer: &Answer, verdict: &Result<Verdict, String>) {
+    let hidden: Vec<String> =
+        answer.hidden.iter().map(|hidden| format!("{} {:.1}σ", hidden.named(), hidden.size_sigmas)).collect();
+    let said = match verdict {
+        Ok(verdict) => {
+            let names: Vec<String> = verdict
+                .effects
+                .iter()
+                .map(|f| {
+                    let others: Vec<&str> = f.class.iter().skip(1).map(String::as_str).collect();
+                    format!("{}@{} {:.2} {others:?}", f.id, f.site, f.probability)
+                })
+                .collect();
+            format!("{} {} ({:.1} s)", verdict.verdict, names.join(", "), verdict.seconds.unwrap_or(f64::NAN))
+        }
+        Err(why) => why.clone(),
+    };
+    println!(
+        "{:03} {} {}{}: {} → {said}",
+        answer.case,
+        table::word(answer.family),
+        table::word(answer.design),
+        if answer.dirt.is_empty() { "" } else { " dirt" },
+        hidden.join(", ")
+    );
+}
