@@ -148,6 +148,10 @@ pub struct NamedEffect {
     pub class_probability: f64,
     /// Parameters as the command line names them.
     pub parameters: Vec<FoundParameter>,
+    /// What of it is no matter of degree: an order, a moment, a time constant; see
+    /// [`plumbline_effects::Effect::shape`].
+    #[serde(default)]
+    pub shape: Option<f64>,
     /// Parameters as the model takes them, one per [`plumbline_effects::Effect::parameters`].
     pub values: Vec<f64>,
     /// Their covariance, row by row.
