@@ -19,6 +19,9 @@ pub struct Arm {
     /// Where the finger that ends in the tip points, in the last joint's turned frame: from the
     /// nearest joint of the hand to the tip, or from the last joint where the rig names no hand.
     pub finger: Unit<Vector3<f64>>,
+    /// The description gives no masses: every link counts as one kilogram in its middle. Loads
+    /// then have the right shape but not the right size.
+    pub masses_made_up: bool,
 }
 
 /// A joint of the arm and the rigid body that it carries up to the next one.
@@ -89,6 +92,18 @@ impl Deviation {
             screen_rad: Vector3::zeros(),
         }
     }
+
+    /// Back to the nominal arm, without giving back the memory.
+    pub(crate) fn clear(&mut self) {
+        let mut none = Self::none(0);
+        std::mem::swap(&mut none.joint_rad, &mut self.joint_rad);
+        std::mem::swap(&mut none.skew_rad, &mut self.skew_rad);
+        std::mem::swap(&mut none.shift_m, &mut self.shift_m);
+        none.joint_rad.fill(0.0);
+        none.skew_rad.fill(Vector3::zeros());
+        none.shift_m.fill(Vector3::zeros());
+        *self = none;
+    }
 }
 
 /// Joint frames of the nominal arm in one pose.
@@ -142,10 +157,14 @@ impl Arm {
             .collect();
         lump_masses(rig, &carriers, &mut parts);
         let tip_m = rest.translation.vector;
+        let masses_made_up = parts.iter().all(|part| part.mass_kg <= 0.0);
+        if masses_made_up {
+            make_up_masses(&mut parts, tip_m);
+        }
         let palm_m = palm(rig, tip, &carriers).unwrap_or_else(|| Point3::from(tip_m));
         let finger_m = tip_m - knuckle(rig, tip, &carriers, tip_m).unwrap_or_default();
         let finger = Unit::try_new(finger_m, 1e-9).unwrap_or(-Vector3::z_axis());
-        Ok(Self { parts, last_from_tip: rest, palm_m, finger })
+        Ok(Self { parts, last_from_tip: rest, palm_m, finger, masses_made_up })
     }
 
     /// Number of joints.
@@ -266,6 +285,16 @@ fn lump_masses(rig: &Rig, carriers: &[LinkIndex], parts: &mut [Part]) {
         if part.mass_kg > 0.0 {
             part.center_m = Point3::from(moment / part.mass_kg);
         }
+    }
+}
+
+/// One kilogram in the middle of every link.
+fn make_up_masses(parts: &mut [Part], tip_m: Vector3<f64>) {
+    let mut end_m = tip_m;
+    for part in parts.iter_mut().rev() {
+        part.mass_kg = 1.0;
+        part.center_m = Point3::from(0.5 * end_m);
+        end_m = part.before.translation.vector;
     }
 }
 

@@ -5,7 +5,7 @@ use plumbline_model::robot::{DescriptionError, Rig};
 use plumbline_model::stereo::StereoCameras;
 use plumbline_model::{Pixel, Raw};
 
-use crate::arm::{Arm, Deviation};
+use crate::arm::Arm;
 use crate::measurements::Observation;
 
 /// The eyes of a robot, nominal.
@@ -67,6 +67,55 @@ impl EyesDeviation {
             nearer_m: 0.0,
             background_share: 0.0,
         }
+    }
+}
+
+impl EyesDeviation {
+    /// All parts in a fixed order, each with a step that is small for it.
+    pub(crate) fn parts(&self) -> Vec<(f64, f64)> {
+        let neck = self.neck_rad.iter().map(|angle| (*angle, 1e-4));
+        let fixed = [
+            (self.mount_rad.x, 1e-4),
+            (self.mount_rad.y, 1e-4),
+            (self.mount_rad.z, 1e-4),
+            (self.mount_m.x, 1e-4),
+            (self.mount_m.y, 1e-4),
+            (self.mount_m.z, 1e-4),
+            (self.right_rad.x, 1e-4),
+            (self.right_rad.y, 1e-4),
+            (self.right_rad.z, 1e-4),
+            (self.right_shift_px[0], 1e-2),
+            (self.right_shift_px[1], 1e-2),
+            (self.focal_scale, 1e-4),
+            (self.baseline_scale, 1e-4),
+            (self.distortion_px, 1e-2),
+            (self.box_px[0], 1e-2),
+            (self.box_px[1], 1e-2),
+            (self.disparity_px, 1e-2),
+            (self.nearer_m, 1e-4),
+            (self.background_share, 1e-3),
+        ];
+        neck.chain(fixed).collect()
+    }
+
+    /// The same to be changed.
+    pub(crate) fn parts_mut(&mut self) -> Vec<&mut f64> {
+        let [right_u, right_v] = &mut self.right_shift_px;
+        let [box_u, box_v] = &mut self.box_px;
+        let turns = self.mount_rad.iter_mut().chain(&mut self.mount_m).chain(&mut self.right_rad);
+        let rest = [
+            right_u,
+            right_v,
+            &mut self.focal_scale,
+            &mut self.baseline_scale,
+            &mut self.distortion_px,
+            box_u,
+            box_v,
+            &mut self.disparity_px,
+            &mut self.nearer_m,
+            &mut self.background_share,
+        ];
+        self.neck_rad.iter_mut().chain(turns).chain(rest).collect()
     }
 }
 
@@ -174,11 +223,6 @@ impl Eyes {
         let [right, down, disparity] = natural.first_chunk::<3>()?;
         let depth_m = self.cameras.baseline_m() / disparity;
         (depth_m > 0.0 && depth_m.is_finite()).then(|| Point3::new(right * depth_m, down * depth_m, depth_m))
-    }
-
-    /// Nominal number of joints of the neck.
-    pub fn nominal(&self) -> (Deviation, EyesDeviation) {
-        (Deviation::none(0), EyesDeviation::none(self.neck.len()))
     }
 }
 

@@ -6,9 +6,7 @@ use crate::arm::Deviation;
 use crate::eyes::{EyeSituation, EyesDeviation};
 use crate::library::{Effect, Situation};
 use crate::measurements::{Measurements, Observation, What};
-
-/// Difference step, in usual sizes of a parameter (see `observability`).
-const STEP: f64 = 0.01;
+use crate::slopes::{ArmSlopes, EyesSlopes};
 
 /// An effect with the values of its parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,56 +52,27 @@ impl Measurements {
     /// What a row should have measured; `None` when the model's eyes cannot see the place.
     pub fn predict(&self, row: &Observation, assumed: &Assumed) -> Option<Vec<f64>> {
         let scene = Scene::of(self, row);
-        let (mut arm, mut eyes) = scene.none();
+        let (mut arm, mut eyes) = scene.begin();
         for present in &assumed.effects {
             scene.add(&present.effect, &present.values, &mut arm, &mut eyes);
         }
         scene.predict(&arm, &eyes, &assumed.placements[row.session])
     }
 
-    /// The prediction, and its change with the session's frame and with each candidate, by central
-    /// differences around what is assumed.
+    /// The prediction, and its change with the session's frame and with each candidate, around
+    /// what is assumed.
     pub fn tangents(&self, row: &Observation, assumed: &Assumed, candidates: &[Effect]) -> Option<Tangents> {
         let scene = Scene::of(self, row);
-        let (mut arm, mut eyes) = scene.none();
+        let (mut arm, mut eyes) = scene.begin();
         for present in &assumed.effects {
             scene.add(&present.effect, &present.values, &mut arm, &mut eyes);
         }
         let placement = &assumed.placements[row.session];
-        let predicted = scene.predict(&arm, &eyes, placement)?;
-        let size = predicted.len();
-        let mut columns = Vec::with_capacity(candidates.len() * 2 * size);
-        for candidate in candidates {
-            let parameters = candidate.parameters();
-            for (k, parameter) in parameters.iter().enumerate() {
-                let mut values = vec![0.0; parameters.len()];
-                let mut at = |sign: f64| {
-                    values[k] = sign * STEP * parameter.typical;
-                    let (mut arm, mut eyes) = (arm.clone(), eyes.clone());
-                    scene.add(candidate, &values, &mut arm, &mut eyes);
-                    scene.predict(&arm, &eyes, placement)
-                };
-                let (ahead, behind) = (at(1.0)?, at(-1.0)?);
-                columns.extend(ahead.iter().zip(&behind).map(|(a, b)| (a - b) / (2.0 * STEP)));
-            }
-        }
-        let effects = DMatrix::from_vec(size, columns.len() / size.max(1), columns);
-        let mut gauge = DMatrix::zeros(size, 6);
         if row.what.is_placed() {
-            let step = 1e-4;
-            for k in 0..6 {
-                let moved = |sign: f64| {
-                    let mut twist = [0.0; 6];
-                    twist[k] = sign * step;
-                    scene.predict(&arm, &eyes, &self.moved(row.session, placement, &twist))
-                };
-                let (ahead, behind) = (moved(1.0)?, moved(-1.0)?);
-                for (i, (a, b)) in ahead.iter().zip(&behind).enumerate() {
-                    gauge[(i, k)] = (a - b) / (2.0 * step);
-                }
-            }
+            scene.arm_tangents(&arm, placement, &self.pivot(row.session), candidates)
+        } else {
+            scene.eye_tangents(&eyes, candidates)
         }
-        Some(Tangents { predicted, gauge, effects })
     }
 
     /// A placement moved by a shift (m) and a turn (rad, rotation vector) about [`Self::pivot`].
@@ -132,6 +101,8 @@ impl Measurements {
 /// One row with all that its predictions need, worked out once.
 struct Scene<'a> {
     row: &'a Observation,
+    /// Effects that the model already has.
+    present: &'a [Present],
     apparatus: &'a crate::measurements::Apparatus,
     situation: Option<Situation<'a>>,
     eye_situation: Option<EyeSituation>,
@@ -151,13 +122,18 @@ impl<'a> Scene<'a> {
             .zip(row.truth_m)
             .filter(|_| !row.what.is_placed())
             .map(|(eyes, truth_m)| eyes.situation(row, truth_m));
-        Self { row, apparatus, situation, eye_situation }
+        Self { row, present: &measurements.present, apparatus, situation, eye_situation }
     }
 
-    fn none(&self) -> (Deviation, EyesDeviation) {
+    /// What the model already has; nothing for the nominal robot.
+    fn begin(&self) -> (Deviation, EyesDeviation) {
         let joints = self.apparatus.arm.as_ref().map_or(0, |arm| arm.len());
         let neck = self.apparatus.eyes.as_ref().map_or(0, |eyes| eyes.neck.len());
-        (Deviation::none(joints), EyesDeviation::none(neck))
+        let (mut arm, mut eyes) = (Deviation::none(joints), EyesDeviation::none(neck));
+        for present in self.present {
+            self.add(&present.effect, &present.values, &mut arm, &mut eyes);
+        }
+        (arm, eyes)
     }
 
     fn add(&self, effect: &Effect, values: &[f64], arm: &mut Deviation, eyes: &mut EyesDeviation) {
@@ -167,6 +143,52 @@ impl<'a> Scene<'a> {
         if let Some(situation) = &self.eye_situation {
             effect.deviate_eyes(situation, values, eyes);
         }
+    }
+
+    fn arm_tangents(
+        &self,
+        deviation: &Deviation,
+        placement: &Isometry3<f64>,
+        pivot: &Point3<f64>,
+        candidates: &[Effect],
+    ) -> Option<Tangents> {
+        let (arm, situation) = (self.apparatus.arm.as_ref()?, self.situation.as_ref()?);
+        let surface = match self.row.what {
+            What::Touch => Some((self.apparatus.surface.as_ref()?, self.row.screen_height_m)),
+            _ => None,
+        };
+        let pivot = (placement * pivot).coords;
+        let slopes = ArmSlopes::of(arm, surface, self.row.angles_rad(), deviation, placement, &pivot);
+        let mut scratch = Deviation::none(arm.len());
+        let mut columns = Vec::with_capacity(candidates.len() * 6);
+        for_each_parameter(candidates, |candidate, values| {
+            if candidate.kind.is_of_eyes() {
+                columns.extend([0.0; 3]);
+            } else {
+                scratch.clear();
+                candidate.deviate(situation, values, &mut scratch);
+                columns.extend(slopes.along(&scratch).iter());
+            }
+        });
+        let mut gauge = DMatrix::zeros(3, 6);
+        gauge.columns_mut(0, 3).copy_from(&slopes.shifts);
+        gauge.columns_mut(3, 3).copy_from(&slopes.turns);
+        let effects = DMatrix::from_vec(3, columns.len() / 3, columns);
+        Some(Tangents { predicted: slopes.predicted.iter().copied().collect(), gauge, effects })
+    }
+
+    fn eye_tangents(&self, deviation: &EyesDeviation, candidates: &[Effect]) -> Option<Tangents> {
+        let (eyes, situation) = (self.apparatus.eyes.as_ref()?, self.eye_situation.as_ref()?);
+        let slopes = EyesSlopes::of(eyes, self.row, situation, deviation)?;
+        let size = slopes.predicted.len();
+        let mut columns = Vec::with_capacity(candidates.len() * 2 * size);
+        for_each_parameter(candidates, |candidate, values| {
+            let mut scratch = EyesDeviation::none(eyes.neck.len());
+            candidate.deviate_eyes(situation, values, &mut scratch);
+            slopes.along(&scratch, &mut columns);
+        });
+        let effects = DMatrix::from_vec(size, columns.len() / size.max(1), columns);
+        Some(Tangents { predicted: slopes.predicted, gauge: DMatrix::zeros(size, 6), effects })
     }
 
     fn predict(&self, arm: &Deviation, eyes: &EyesDeviation, placement: &Isometry3<f64>) -> Option<Vec<f64>> {
@@ -185,6 +207,19 @@ impl<'a> Scene<'a> {
                 self.apparatus.eyes.as_ref()?.estimate(self.row, self.eye_situation.as_ref()?, eyes)
             }
             What::EyePoints => self.apparatus.eyes.as_ref()?.image_points(self.eye_situation.as_ref()?, eyes),
+        }
+    }
+}
+
+/// One parameter after the other at its usual size, the others of its effect at zero.
+fn for_each_parameter(candidates: &[Effect], mut act: impl FnMut(&Effect, &[f64])) {
+    let mut values = [0.0; 8];
+    for candidate in candidates {
+        let parameters = candidate.parameters();
+        for (k, parameter) in parameters.iter().enumerate() {
+            values[k] = parameter.typical;
+            act(candidate, &values[..parameters.len()]);
+            values[k] = 0.0;
         }
     }
 }

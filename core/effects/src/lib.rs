@@ -15,13 +15,20 @@ pub mod eyes;
 pub mod forward;
 #[cfg(test)]
 mod laws;
+#[cfg(test)]
+mod laws_candidates;
+#[cfg(test)]
+mod laws_other_robots;
 pub mod library;
 pub mod measurements;
 pub mod observability;
 pub mod rig_model;
+mod slopes;
 
+pub use arm::Part;
+pub use eyes::EyesDeviation;
 pub use forward::{Assumed, Present, Tangents};
-pub use library::{Effect, Kind, Parameter, Reported, Surface};
+pub use library::{Effect, Kind, Parameter, Reported, Situation, Surface};
 pub use measurements::{Measurements, MeasurementsError, Observation, What};
 pub use observability::{
     Addition, Advice, EffectVisibility, Noise, PlanScore, PlannedContact, ScoreError, score,

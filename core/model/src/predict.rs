@@ -83,6 +83,9 @@ pub enum PredictError {
         "the session and the robot do not fit together: {0}. Give the rig that the session was recorded with"
     )]
     Rig(#[from] DescriptionError),
+    /// The rig was only measured and has no such part.
+    #[error(transparent)]
+    Lacks(#[from] crate::robot::RigError),
     /// A joint that moves the tip was not logged.
     #[error(
         "joint {joint} moves {tip} but is not among the joints of the session's chain: give the rig that the session was recorded with"
@@ -136,6 +139,7 @@ pub fn predict_session(
         prediction.touches = touches(table, &Arm::of(rig, chain()?)?, screen)?;
     }
     if let Some(table) = &session.localizations {
+        rig.need(crate::robot::RigPart::Eyes)?;
         prediction.localizations = localizations(table, rig)?;
     }
     if let Some(table) = &session.poses {
@@ -214,6 +218,12 @@ struct Arm {
 impl Arm {
     fn of(rig: &Rig, logged: &SessionChain) -> Result<Self, PredictError> {
         let chain = rig.chain(&logged.tip)?;
+        for joint in &logged.joints {
+            if let Some(kind) = rig.description.held_kind(joint) {
+                let (joint, kind) = (joint.clone(), kind.to_owned());
+                return Err(DescriptionError::Kind { joint, kind }.into());
+            }
+        }
         let place = |name: &String| {
             let found = logged.joints.iter().position(|joint| joint == name);
             found.ok_or_else(|| PredictError::NotLogged { joint: name.clone(), tip: logged.tip.clone() })

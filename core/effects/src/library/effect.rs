@@ -33,7 +33,7 @@ pub struct Effect {
     /// Place of the joint in the arm (or neck), for effects of one joint or link.
     pub(super) joint: Option<usize>,
     /// Two directions across the axis, own frame, for a skewed axis.
-    pub(super) across: Option<[Vector3<f64>; 2]>,
+    pub(crate) across: Option<[Vector3<f64>; 2]>,
     /// The joint that pulls this one along.
     pub(super) partner: Option<String>,
 }

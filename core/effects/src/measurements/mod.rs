@@ -8,7 +8,7 @@ mod tests;
 
 use nalgebra::{Isometry3, Point3};
 use plumbline_model::predict::Angles;
-use plumbline_model::robot::DescriptionError;
+use plumbline_model::robot::{DescriptionError, RigError};
 
 use crate::arm::Arm;
 use crate::eyes::Eyes;
@@ -25,6 +25,9 @@ pub struct Measurements {
     pub rows: Vec<Observation>,
     /// Rows that cannot.
     pub left_out: Vec<LeftOut>,
+    /// Effects that the model already has, by [`crate::RigModel`]: every prediction holds them, so
+    /// that a search finds what comes in addition. Empty: the nominal robot.
+    pub present: Vec<crate::Present>,
 }
 
 /// What a session was measured with, nominal.
@@ -32,7 +35,9 @@ pub struct Measurements {
 pub struct Apparatus {
     /// Name of the session.
     pub title: String,
-    /// The arm that touched or was measured from outside.
+    /// The tip that touched or was measured from outside.
+    pub tip: Option<String>,
+    /// The arm that ends in it.
     pub arm: Option<Arm>,
     /// The touchscreen.
     pub surface: Option<Surface>,
@@ -252,6 +257,14 @@ pub enum MeasurementsError {
         /// The tip.
         tip: String,
     },
+    /// The rig was only measured and has no such part.
+    #[error("{session}: {error}")]
+    Lacks {
+        /// The session.
+        session: String,
+        /// What is lacking.
+        error: RigError,
+    },
     /// Nothing left.
     #[error("none of the {rows} rows can be used. The first: {why}")]
     NothingUsable {
@@ -282,6 +295,26 @@ impl Measurements {
     pub fn only(&self, rows: impl IntoIterator<Item = usize>) -> Self {
         let rows = rows.into_iter().filter_map(|i| self.rows.get(i).cloned()).collect();
         Self { rows, ..self.clone() }
+    }
+
+    /// What is not as it should be although the rows can be used, in words.
+    pub fn remarks(&self) -> Vec<String> {
+        let arms = self.apparatuses.iter().filter_map(|apparatus| apparatus.arm.as_ref());
+        let torques = self.rows.iter().filter(|row| row.what.is_placed());
+        let mut remarks = vec![];
+        if arms.clone().any(|arm| arm.masses_made_up) {
+            let measured = torques.clone().all(|row| row.torque_nm.is_some());
+            remarks.push(if measured {
+                "The robot's description gives no masses: what gives way under load follows the measured \
+                 torques, what gives way sideways or with a weight counts every link as one kilogram."
+                    .to_owned()
+            } else {
+                "The robot's description gives no masses: every link counts as one kilogram, so what gives \
+                 way under load has the right shape but not the right size."
+                    .to_owned()
+            });
+        }
+        remarks
     }
 
     /// Frames of all sessions where they are nominally.

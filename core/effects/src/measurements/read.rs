@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use nalgebra::Point3;
 use plumbline_model::Session;
-use plumbline_model::robot::Rig;
+use plumbline_model::robot::{DescriptionError, Rig, RigPart};
 use plumbline_model::session::{LocalizationRow, PoseRow, TouchRow};
 
 use super::derive;
@@ -40,6 +40,7 @@ impl Measurements {
             apparatuses: reader.apparatuses,
             rows: reader.rows,
             left_out: reader.left_out,
+            present: vec![],
         })
     }
 }
@@ -78,7 +79,7 @@ impl Reader<'_> {
         let missing = |section| MeasurementsError::Missing { session: title.to_owned(), section };
         let misfit = |error| MeasurementsError::Rig { session: title.to_owned(), error };
         let moved = session.touches.is_some() || session.poses.is_some();
-        let mut apparatus = Apparatus { title: title.to_owned(), arm: None, surface: None, eyes: None };
+        let mut apparatus = Apparatus { title: title.to_owned(), tip: None, arm: None, surface: None, eyes: None };
         let mut columns = Columns { order: vec![] };
         if moved {
             let chain = session.manifest.chain.as_ref().ok_or_else(|| missing("chain"))?;
@@ -91,14 +92,23 @@ impl Reader<'_> {
                 };
                 chain.joints.iter().position(|name| name == joint).ok_or_else(not_logged)
             };
+            if let Some((joint, kind)) =
+                chain.joints.iter().find_map(|name| Some((name, self.rig.description.held_kind(name)?)))
+            {
+                let (joint, kind) = (joint.clone(), kind.to_owned());
+                return Err(misfit(DescriptionError::Kind { joint, kind }));
+            }
             columns.order = arm.parts.iter().map(|part| place(&part.joint)).collect::<Result<_, _>>()?;
             apparatus.arm = Some(arm);
+            apparatus.tip = Some(chain.tip.clone());
         }
         if session.touches.is_some() {
             let screen = session.manifest.touchscreen.as_ref().ok_or_else(|| missing("touchscreen"))?;
             apparatus.surface = Some(Surface::of(screen));
         }
         if session.localizations.is_some() {
+            let lacks = |error| MeasurementsError::Lacks { session: title.to_owned(), error };
+            self.rig.need(RigPart::Eyes).map_err(lacks)?;
             apparatus.eyes = Some(Eyes::of_rig(self.rig).map_err(misfit)?);
         }
         self.apparatuses.push(apparatus);

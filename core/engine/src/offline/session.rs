@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use plumbline_effects::RigModel;
+use plumbline_effects::rig_model::is_rig_model;
 use plumbline_model::Session;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::RigReference;
@@ -16,36 +18,46 @@ pub(crate) fn open(folder: &Path) -> Result<(Session, Rig), OfflineError> {
     Ok((session, rig))
 }
 
-/// The rig that a session names; a rig file lies in the session's folder.
+/// The rig that a session names; a rig file lies in the session's folder. It may be that of a robot
+/// that was only measured ([`Rig::read_measured`]).
 pub(crate) fn rig_of(session: &Session, folder: &Path) -> Result<Rig, OfflineError> {
     match &session.manifest.rig {
         RigReference::Named(name) => Ok(Rig::built_in(name)?),
-        RigReference::File(file) => Ok(Rig::read(&folder.join(file))?),
+        RigReference::File(file) => Ok(Rig::read_measured(&folder.join(file))?),
     }
 }
 
 /// What `--rig-model` may be.
 #[derive(Clone, Debug)]
-pub(super) enum RigModel {
+pub(super) enum ModelFile {
     /// A whole robot.
     Rig(Box<Rig>),
     /// Where the touchscreen was measured to lie.
     Placement(Box<ScreenPlacement>),
+    /// The robot with effects that were found.
+    Effects(Box<RigModel>),
 }
 
-impl RigModel {
-    /// Reads either of the two, told apart by their keys; `rig` is the robot that a placement
-    /// must belong to.
+impl ModelFile {
+    /// Reads any of them, told apart by their keys; `rig` is the robot that a placement or a model
+    /// with effects must belong to.
     pub fn read(file: &Path, rig: &Rig) -> Result<Self, OfflineError> {
         let text = std::fs::read_to_string(file).map_err(OfflineError::io(file))?;
         let unknown = |reason: String| OfflineError::RigModel { file: PathBuf::from(file), reason };
-        let keys: toml::Table = toml::from_str(&text)
-            .map_err(|error| unknown(format!("it is not TOML ({})", error.message())))?;
-        if keys.contains_key("servo") && keys.contains_key("description") {
-            return Ok(Self::Rig(Box::new(Rig::read(file)?)));
+        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+        if text.trim_start().starts_with('<') {
+            return Ok(Self::Rig(Box::new(Rig::read_measured(file)?)));
+        }
+        let keys: toml::Table =
+            toml::from_str(text).map_err(|error| unknown(format!("it is not TOML ({})", error.message())))?;
+        if is_rig_model(&keys) {
+            return Ok(Self::Effects(Box::new(RigModel::read(file, rig)?)));
         }
         if keys.contains_key("screen") && keys.contains_key("moved_m") {
             return Ok(Self::Placement(Box::new(ScreenPlacement::read(file, &rig.name)?)));
+        }
+        if ["description", "urdf"].iter().any(|key| keys.contains_key(*key)) {
+            return Ok(Self::Rig(Box::new(Rig::read_measured(file)?)));
         }
         let found: Vec<&str> = keys.keys().map(String::as_str).take(6).collect();
         Err(unknown(if found.is_empty() {

@@ -72,7 +72,8 @@ pub fn train(args: &TrainArgs, context: &dyn JobContext) -> Result<TrainReport, 
     let (recorded, rig) = session::open(&args.session)?;
     let chain = recorded.manifest.chain.as_ref();
     // A session without touches has no use for a chain, and is told so.
-    let tip = chain.map_or(&rig.arms[0].tips[0].link, |chain| &chain.tip);
+    let usual = || rig.arms.first().and_then(|arm| arm.tips.first()).map(|tip| tip.link.as_str());
+    let tip = chain.map(|chain| chain.tip.as_str()).or_else(usual).unwrap_or_default();
     let data = TouchData::of_session(&recorded, &rig.chain(tip)?)?;
     let options = models::options(&args.session, &rig, args.seed, args.published_recipe);
     let began = Instant::now();

@@ -23,6 +23,9 @@ pub struct Description {
     pub(super) joints: Vec<Joint>,
     /// Place in `joints` of every joint that moves by itself.
     pub(super) movable: Vec<usize>,
+    /// Joints that move in a way that is not known, held at zero, with the kind of their motion;
+    /// only where a description was read leniently.
+    pub(super) held: Vec<(String, String)>,
 }
 
 /// A rigid part.
@@ -243,6 +246,12 @@ impl Description {
     /// Joints that move by themselves, by [`JointIndex`].
     pub fn movable(&self) -> impl ExactSizeIterator<Item = &Joint> {
         self.movable.iter().map(|i| &self.joints[*i])
+    }
+
+    /// The kind of motion of a joint that is held at zero because this program cannot move it
+    /// (only of robots that are only measured).
+    pub fn held_kind(&self, joint: &str) -> Option<&str> {
+        self.held.iter().find(|(name, _)| name == joint).map(|(_, kind)| kind.as_str())
     }
 
     /// Number of joints that move by themselves.

@@ -148,4 +148,22 @@ pub enum RigError {
         /// What is wrong and what is right.
         what: String,
     },
+    /// Work that needs a part which the file of a robot that was only measured does not give.
+    #[error(
+        "the rig {rig} was read for its measurements only: its file gives no {part}, which this needs. Use a complete rig file"
+    )]
+    Lacks {
+        /// Name of the rig.
+        rig: String,
+        /// What is lacking, for people.
+        part: &'static str,
+    },
+    /// A rig file that names no description.
+    #[error(
+        "{file} names no description of the robot, and no single .urdf file lies beside it: add description = \"robot.urdf\""
+    )]
+    NoDescription {
+        /// The rig file.
+        file: String,
+    },
 }

@@ -13,12 +13,15 @@ pub mod collision;
 mod description;
 mod error;
 pub mod ik;
+mod measured;
 mod posture;
 mod reach;
 mod rig;
 mod rig_file;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_measured;
 mod urdf;
 
 pub use chain::Chain;
@@ -30,6 +33,6 @@ pub use error::{DescriptionError, RigError};
 pub use posture::Posture;
 pub use reach::{Plan, Reach, ReachError, ReachOptions, Refusal};
 pub use rig::{
-    Arm, Board, Bus, CoupledLimit, Direction as ServoDirection, EyeMount, Gate, NamedPose, Rig, Servo,
-    TableTop, TipName, WorkPatch,
+    Arm, Board, Bus, CoupledLimit, Direction as ServoDirection, EyeMount, Gate, NamedPose, Rig, RigPart,
+    Servo, TableTop, TipName, WorkPatch,
 };

@@ -6,7 +6,7 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vect
 
 use super::chain::Chain;
 use super::description::{Description, JointIndex, Limits, LinkIndex};
-use super::error::DescriptionError;
+use super::error::{DescriptionError, RigError};
 use super::posture::Posture;
 use crate::frame::{Head, LeftCamera, Point, Pose, Robot};
 use crate::session::Touchscreen;
@@ -44,6 +44,46 @@ pub struct Rig {
     pub poses: Vec<NamedPose>,
     /// What is too hot, too heavy, too fast, too low.
     pub gate: Gate,
+    /// Parts that its file does not give ([`Rig::read_measured`]); harmless stand-ins are in their
+    /// place. Empty for a rig that can be worked with.
+    pub lacking: Vec<RigPart>,
+}
+
+/// A part of a rig that may be lacking where a robot was only measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum RigPart {
+    /// The servo bus and its servos.
+    Servos,
+    /// The eyes.
+    Eyes,
+    /// The table and the patch of it that is worked on.
+    Table,
+    /// The touchscreen.
+    Touchscreen,
+    /// Arms with hands and tips.
+    Arms,
+    /// What is too hot, too heavy, too fast, too low.
+    Gate,
+    /// Limits of some joints.
+    Limits,
+    /// Masses of the links.
+    Masses,
+}
+
+impl RigPart {
+    /// Its name for people, in a sentence.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Servos => "servos",
+            Self::Eyes => "eyes",
+            Self::Table => "a table",
+            Self::Touchscreen => "a touchscreen",
+            Self::Arms => "arms with tips",
+            Self::Gate => "limits of speed, load and heat",
+            Self::Limits => "limits of all joints",
+            Self::Masses => "masses of its links",
+        }
+    }
 }
 
 /// The servo bus.
@@ -290,6 +330,22 @@ impl Rig {
             }
         }
         limits
+    }
+
+    /// Whether its file gives a part.
+    pub fn has(&self, part: RigPart) -> bool {
+        !self.lacking.contains(&part)
+    }
+
+    /// Refuses work that needs a part which its file does not give.
+    ///
+    /// # Errors
+    /// When the part is lacking.
+    pub fn need(&self, part: RigPart) -> Result<(), RigError> {
+        if self.has(part) {
+            return Ok(());
+        }
+        Err(RigError::Lacks { rig: self.name.clone(), part: part.title() })
     }
 
     /// The servo that moves a joint.

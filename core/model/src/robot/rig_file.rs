@@ -97,7 +97,7 @@ struct CoupledPart {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct EyesPart {
+pub(super) struct EyesPart {
     link: String,
     pan: String,
     tilt: String,
@@ -124,7 +124,7 @@ struct LensPart {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct TablePart {
+pub(super) struct TablePart {
     height_m: f64,
     x_range_m: [f64; 2],
     y_range_m: [f64; 2],
@@ -132,7 +132,7 @@ struct TablePart {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct WorkspacePart {
+pub(super) struct WorkspacePart {
     x_range_m: [f64; 2],
     y_range_m: [f64; 2],
     headroom_m: f64,
@@ -140,7 +140,7 @@ struct WorkspacePart {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct ScreenPart {
+pub(super) struct ScreenPart {
     width_px: u32,
     height_px: u32,
     width_m: f64,
@@ -152,7 +152,7 @@ struct ScreenPart {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct ArmPart {
+pub(super) struct ArmPart {
     name: String,
     title: String,
     joints: Vec<String>,
@@ -169,7 +169,7 @@ struct TipPart {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct PosePart {
+pub(super) struct PosePart {
     name: String,
     title: String,
     about: String,
@@ -238,9 +238,9 @@ impl Rig {
 }
 
 /// Knows where it reads, for its errors.
-struct Reader<'a> {
-    file: &'a str,
-    robot: &'a Description,
+pub(super) struct Reader<'a> {
+    pub file: &'a str,
+    pub robot: &'a Description,
 }
 
 impl Reader<'_> {
@@ -269,6 +269,7 @@ impl Reader<'_> {
             gate: self.gate(&parts.gate)?,
             name: parts.name,
             title: parts.title,
+            lacking: vec![],
         };
         for pose in &rig.poses {
             for (joint, angle_rad) in &pose.joints {
@@ -384,7 +385,7 @@ impl Reader<'_> {
         })
     }
 
-    fn eyes(&self, part: &EyesPart) -> Result<EyeMount, RigError> {
+    pub(super) fn eyes(&self, part: &EyesPart) -> Result<EyeMount, RigError> {
         let vectors = [
             part.left_position_m,
             part.left_rotation_rad,
@@ -423,7 +424,7 @@ impl Reader<'_> {
         Ok(Camera { model: CameraModel::Fisheye(lens), width_px: part.width_px, height_px: part.height_px })
     }
 
-    fn table(&self, part: &TablePart) -> Result<TableTop, RigError> {
+    pub(super) fn table(&self, part: &TablePart) -> Result<TableTop, RigError> {
         self.finite("table", &[part.height_m])?;
         self.finite("table", &[part.x_range_m, part.y_range_m].concat())?;
         if part.x_range_m[0] >= part.x_range_m[1] || part.y_range_m[0] >= part.y_range_m[1] {
@@ -432,7 +433,7 @@ impl Reader<'_> {
         Ok(TableTop { height_m: part.height_m, x_range_m: part.x_range_m, y_range_m: part.y_range_m })
     }
 
-    fn work_patch(&self, part: &WorkspacePart) -> Result<WorkPatch, RigError> {
+    pub(super) fn work_patch(&self, part: &WorkspacePart) -> Result<WorkPatch, RigError> {
         self.finite("workspace", &[part.headroom_m])?;
         self.finite("workspace", &[part.x_range_m, part.y_range_m].concat())?;
         let rising = part.x_range_m[0] < part.x_range_m[1] && part.y_range_m[0] < part.y_range_m[1];
@@ -443,7 +444,7 @@ impl Reader<'_> {
         Ok(WorkPatch { x_range_m: part.x_range_m, y_range_m: part.y_range_m, headroom_m: part.headroom_m })
     }
 
-    fn screen(&self, part: &ScreenPart) -> Result<Touchscreen, RigError> {
+    pub(super) fn screen(&self, part: &ScreenPart) -> Result<Touchscreen, RigError> {
         let axis = |name: &str, vector: [f64; 3]| {
             Axis::new(Vector3::from(vector))
                 .ok_or_else(|| self.value("touchscreen", format!("{name} has no direction")))
@@ -469,7 +470,7 @@ impl Reader<'_> {
         })
     }
 
-    fn arm(&self, part: &ArmPart) -> Result<Arm, RigError> {
+    pub(super) fn arm(&self, part: &ArmPart) -> Result<Arm, RigError> {
         let place = format!("arm {}", part.name);
         let joints =
             |names: &[String]| names.iter().map(|name| self.joint(&place, name)).collect::<Result<_, _>>();
@@ -488,7 +489,7 @@ impl Reader<'_> {
         })
     }
 
-    fn pose(&self, part: &PosePart) -> Result<NamedPose, RigError> {
+    pub(super) fn pose(&self, part: &PosePart) -> Result<NamedPose, RigError> {
         let place = format!("pose {}", part.name);
         let joint = |(name, angle_rad): (&String, &f64)| Ok((self.joint(&place, name)?, *angle_rad));
         let joints = part.joints_rad.iter().map(joint).collect::<Result<Vec<_>, RigError>>()?;

@@ -18,11 +18,28 @@ impl Description {
     /// When it is no URDF, when links form a loop or do not hang together, when a moving joint has
     /// no limits, when a name occurs twice or is not known, when a number is not finite.
     pub fn from_urdf(text: &str) -> Result<Self, Error> {
-        let robot =
-            urdf_rs::read_from_string(text).map_err(|error| Error::NotUrdf { reason: error.to_string() })?;
+        Self::from_robot(&parse(text)?)
+    }
+
+    /// Reads the text of a URDF file of a robot that is only measured: what such work does not
+    /// need may be missing. Joints without usable limits turn half a turn to either side, so do
+    /// continuous ones; joints that slide or copy an unknown joint are held at zero
+    /// ([`Self::held_kind`]); shapes are left out. Also tells whether limits were missing.
+    ///
+    /// # Errors
+    /// As [`Self::from_urdf`], for what is left.
+    pub fn from_urdf_measured(text: &str) -> Result<(Self, bool), Error> {
+        let mut robot = parse(text)?;
+        let (held, unlimited) = relax(&mut robot);
+        let mut description = Self::from_robot(&robot)?;
+        description.held = held;
+        Ok((description, unlimited))
+    }
+
+    fn from_robot(robot: &urdf_rs::Robot) -> Result<Self, Error> {
         unique("link", robot.links.iter().map(|link| &link.name))?;
         unique("joint", robot.joints.iter().map(|joint| &joint.name))?;
-        let order = Order::of(&robot)?;
+        let order = Order::of(robot)?;
         let colors = robot
             .materials
             .iter()
@@ -33,8 +50,9 @@ impl Description {
             .iter()
             .map(|(link, _)| read_link(&robot.links[*link], &colors))
             .collect::<Result<Vec<_>, _>>()?;
-        let mut description = Self { name: robot.name.clone(), links, joints: vec![], movable: vec![] };
-        description.add_joints(&robot, &order)?;
+        let mut description =
+            Self { name: robot.name.clone(), links, joints: vec![], movable: vec![], held: vec![] };
+        description.add_joints(robot, &order)?;
         Ok(description)
     }
 
@@ -58,6 +76,53 @@ impl Description {
         }
         Ok(())
     }
+}
+
+fn parse(text: &str) -> Result<urdf_rs::Robot, Error> {
+    urdf_rs::read_from_string(text).map_err(|error| Error::NotUrdf { reason: error.to_string() })
+}
+
+/// Makes of a robot what can be measured: see [`Description::from_urdf_measured`]. The joints that
+/// are held with the kind of their motion, and whether limits were missing.
+fn relax(robot: &mut urdf_rs::Robot) -> (Vec<(String, String)>, bool) {
+    let turns = |joint: &urdf_rs::Joint| {
+        matches!(joint.joint_type, JointType::Revolute | JointType::Continuous) && joint.mimic.is_none()
+    };
+    let sources: BTreeSet<String> =
+        robot.joints.iter().filter(|joint| turns(joint)).map(|joint| joint.name.clone()).collect();
+    let (mut held, mut unlimited) = (vec![], false);
+    for joint in &mut robot.joints {
+        let follows = joint.mimic.as_ref().is_some_and(|mimic| !sources.contains(&mimic.joint));
+        match joint.joint_type {
+            JointType::Fixed => {}
+            JointType::Revolute | JointType::Continuous if !follows => {
+                let limit = &mut joint.limit;
+                let usable = limit.lower < limit.upper && limit.lower.is_finite() && limit.upper.is_finite();
+                if !usable || matches!(joint.joint_type, JointType::Continuous) {
+                    unlimited = true;
+                    (limit.lower, limit.upper) = (-std::f64::consts::PI, std::f64::consts::PI);
+                }
+                joint.joint_type = JointType::Revolute;
+            }
+            _ => {
+                held.push((joint.name.clone(), format!("{:?}", joint.joint_type).to_lowercase()));
+                joint.joint_type = JointType::Fixed;
+                joint.mimic = None;
+            }
+        }
+    }
+    for link in &mut robot.links {
+        link.visual.clear();
+        link.collision.clear();
+        // A mass that is no mass is one that is not known.
+        let inertia = &link.inertial.inertia;
+        let tensor = [inertia.ixx, inertia.ixy, inertia.ixz, inertia.iyy, inertia.iyz, inertia.izz];
+        let mass = &mut link.inertial.mass.value;
+        if !(mass.is_finite() && *mass >= 0.0 && tensor.iter().all(|value| value.is_finite())) {
+            link.inertial = urdf_rs::Inertial::default();
+        }
+    }
+    (held, unlimited)
 }
 
 /// Links in an order in which parents come first, with the joint that carries each.

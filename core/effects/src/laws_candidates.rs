@@ -1,0 +1,392 @@
+//! Laws of every candidate: zero is nothing, the rest is something, tangents are the slope of the
+//! prediction, and parameters are reported as they are.
+
+// What was measured is printed.
+#![allow(clippy::print_stdout)]
+
+use std::collections::BTreeSet;
+use std::time::Instant;
+
+use nalgebra::{DMatrix, Isometry3, Point3};
+use plumbline_model::robot::Rig;
+
+use crate::arm::Arm;
+use crate::eyes::Eyes;
+use crate::forward::{Assumed, Present};
+use crate::library::{Effect, Kind, Surface};
+use crate::measurements::{Apparatus, Measurements, Observation, What};
+
+fn row(session: usize, i: usize, what: What) -> Observation {
+    Observation {
+        session,
+        row: i,
+        what,
+        measured: vec![0.0; what.len()],
+        commanded_rad: None,
+        encoder_rad: None,
+        direction: vec![],
+        payload_kg: 0.0,
+        screen_height_m: 0.0,
+        t_secs: Some(40.0 * i as f64),
+        move_secs: None,
+        hold_secs: None,
+        speed_rad_s: None,
+        torque_nm: None,
+        temperature_c: None,
+        neck_rad: vec![],
+        truth_m: None,
+        background_m: None,
+        object: None,
+        cell: i,
+        set: None,
+        approach: None,
+    }
+}
+
+/// A number of its own for every row and joint, −1 to 1.
+fn wave(i: usize, j: usize) -> f64 {
+    (0.7 + 12.9898 * (i + 1) as f64 + 78.233 * (j + 1) as f64).sin()
+}
+
+/// Rows with every column that an effect may depend on: touches from commanded angles and from
+/// encoders, held poses, estimates and image points.
+fn everything(count: usize) -> Measurements {
+    let rig = Rig::built_in("nico").expect("comes with the program");
+    let arm = Arm::of_rig(&rig, "right_index_tip").expect("a tip of the rig");
+    let eyes = Eyes::of_rig(&rig).expect("the rig has eyes");
+    let surface = Surface::of(&rig.touchscreen);
+    let moved = Apparatus {
+        title: "moved".to_owned(),
+        tip: None,
+        arm: Some(arm.clone()),
+        surface: Some(surface.clone()),
+        eyes: None,
+    };
+    let seen = Apparatus { title: "seen".to_owned(), tip: None, arm: None, surface: None, eyes: Some(eyes) };
+    let middle = [-0.2, 1.1, 0.5, 1.7, -0.3, 0.2];
+    let mut rows = vec![];
+    for i in 0..count {
+        let side = if i % 2 == 0 { 1.0 } else { -1.0 };
+        let angles: Vec<f64> = (0..6).map(|j| middle[j] + 0.35 * wave(i, j)).collect();
+        let mut moved = row(0, i, if i % 4 == 3 { What::Pose } else { What::Touch });
+        moved.encoder_rad =
+            (i % 3 == 0).then(|| angles.iter().enumerate().map(|(j, a)| a - 0.01 * wave(j, i)).collect());
+        moved.commanded_rad = Some(angles);
+        moved.direction = vec![side; 6];
+        moved.payload_kg = 0.25 * f64::from(u8::from(i % 5 == 0));
+        moved.screen_height_m = 0.06 * f64::from(u8::from(i % 7 == 0));
+        moved.move_secs = Some(1.0 + 0.5 * wave(i, 9));
+        moved.hold_secs = Some(120.0 * (i % 4) as f64);
+        rows.push(moved);
+        let mut seen = row(1, i, if i % 2 == 0 { What::Place } else { What::EyePoints });
+        seen.neck_rad = vec![0.1 * wave(i, 3), -0.6 + 0.05 * wave(i, 4)];
+        let middle = surface.middle_m();
+        seen.truth_m = Some(Point3::new(middle.x + 0.08 * wave(i, 5), middle.y + 0.1 * wave(i, 6), middle.z));
+        seen.background_m = Some(1.2 + 0.3 * wave(i, 7));
+        rows.push(seen);
+    }
+    Measurements { rig: "nico".to_owned(), apparatuses: vec![moved, seen], rows, left_out: vec![], present: vec![] }
+}
+
+/// What an effect alone changes at most, over all rows.
+fn largest_change(measurements: &Measurements, effect: &Effect, values: Vec<f64>) -> f64 {
+    let nominal = Assumed::nominal(measurements);
+    let with = Assumed { effects: vec![Present { effect: effect.clone(), values }], ..nominal.clone() };
+    let change = |row: &Observation| {
+        let (a, b) = (measurements.predict(row, &nominal)?, measurements.predict(row, &with)?);
+        Some(a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max))
+    };
+    measurements.rows.iter().map(|row| change(row).expect("in view")).fold(0.0, f64::max)
+}
+
+#[test]
+fn every_kind_is_a_candidate_where_rows_can_show_it() {
+    let measurements = everything(60);
+    let candidates = Effect::candidates(&measurements);
+    let kinds: BTreeSet<Kind> = candidates.iter().map(|effect| effect.kind).collect();
+    let never = [Kind::DisparitySteps, Kind::EyeLatency];
+    for kind in Kind::ALL {
+        let known_not = never.contains(&kind);
+        assert_eq!(kinds.contains(&kind), !known_not, "{}", kind.id());
+    }
+    let mut names = BTreeSet::new();
+    for effect in &candidates {
+        let shape = effect.shape.map(f64::to_bits);
+        assert!(names.insert((effect.name(), shape)), "{} {:?} twice", effect.name(), effect.shape);
+        if let (Some(shape), Some([low, high])) = (effect.shape, effect.shape_range) {
+            assert!(low <= shape && shape <= high, "{} {low} {shape} {high}", effect.name());
+        }
+    }
+    println!("{} candidates in {} shapes", kinds.len(), candidates.len());
+}
+
+#[test]
+fn what_no_column_shows_is_no_candidate() {
+    let mut measurements = everything(40);
+    for row in &mut measurements.rows {
+        row.t_secs = None;
+        row.hold_secs = None;
+        row.background_m = None;
+        row.move_secs = None;
+        row.encoder_rad = None;
+        row.direction.fill(1.0);
+    }
+    let kinds: BTreeSet<Kind> = Effect::candidates(&measurements).iter().map(|effect| effect.kind).collect();
+    let hidden = [
+        Kind::Backlash,
+        Kind::Stiction,
+        Kind::Creep,
+        Kind::EarlyLog,
+        Kind::ServoWarmUp,
+        Kind::SlippedHorn,
+        Kind::ScreenBumped,
+        Kind::BackgroundBleed,
+        Kind::ForegroundFattening,
+        Kind::SpeedOvershoot,
+    ];
+    assert!(hidden.iter().all(|kind| !kinds.contains(kind)), "{kinds:?}");
+    assert!(kinds.contains(&Kind::ServoDroop) && kinds.contains(&Kind::EyeYaw));
+    measurements.rows.retain(|row| !row.what.is_placed());
+    assert!(Effect::candidates(&measurements).iter().all(|effect| effect.kind.is_of_eyes()));
+}
+
+#[test]
+fn size_zero_is_the_nominal_model_and_usual_size_is_not() {
+    let measurements = everything(48);
+    for effect in Effect::candidates(&measurements) {
+        let parameters = effect.parameters();
+        let zero = largest_change(&measurements, &effect, vec![0.0; parameters.len()]);
+        assert!(zero == 0.0, "{} {:?}: {zero}", effect.name(), effect.shape);
+        for k in 0..parameters.len() {
+            let mut values = vec![0.0; parameters.len()];
+            values[k] = parameters[k].typical;
+            let change = largest_change(&measurements, &effect, values);
+            // Gravity does not load an upright axis.
+            let upright = effect.site == "r_shoulder_z"
+                && matches!(
+                    effect.kind,
+                    Kind::GravityBacklash
+                        | Kind::ServoDroop
+                        | Kind::JointSag
+                        | Kind::Creep
+                        | Kind::TorqueLimit
+                );
+            assert!(upright || change > 1e-7, "{} {:?}: {change}", effect.name(), effect.shape);
+        }
+    }
+}
+
+#[test]
+fn tangents_are_the_slope_of_the_prediction() {
+    let measurements = everything(24);
+    let candidates = Effect::candidates(&measurements);
+    // Around a model in which several parts deviate already.
+    let present = |id: &str, site: &str, values: &[f64]| {
+        let found = candidates.iter().find(|effect| effect.id() == id && effect.site == site);
+        Present { effect: found.expect("a candidate").clone(), values: values.to_vec() }
+    };
+    let mut assumed = Assumed::nominal(&measurements);
+    assumed.placements[0] = Isometry3::new([0.01, -0.02, 0.005].into(), [0.02, -0.01, 0.05].into());
+    assumed.effects = vec![
+        present("joint-zero", "r_elbow_y", &[0.05]),
+        present("axis-skew", "r_shoulder_y", &[0.04, -0.03]),
+        present("base-tilt", "base", &[0.03, -0.02, 0.01, 0.005, 0.0, 0.01]),
+        present("tip-offset", "tip", &[0.005, 0.004, -0.003]),
+        present("screen-scale", "screen", &[0.05, -0.04]),
+        present("camera-mount", "eyes", &[0.01, 0.0, -0.01, 0.02, 0.01, 0.0]),
+        present("eye-roll", "right", &[0.002, -0.001]),
+    ];
+    for row in &measurements.rows {
+        let tangents = measurements.tangents(row, &assumed, &candidates).expect("in view");
+        let predicted = measurements.predict(row, &assumed).expect("in view");
+        assert!(tangents.predicted.iter().zip(&predicted).all(|(a, b)| (a - b).abs() < 1e-12));
+        let mut column = 0;
+        for effect in &candidates {
+            let parameters = effect.parameters();
+            for (k, parameter) in parameters.iter().enumerate() {
+                let step = 0.003;
+                let at = |side: f64| {
+                    let mut values = vec![0.0; parameters.len()];
+                    values[k] = side * step * parameter.typical;
+                    let mut other = assumed.clone();
+                    other.effects.push(Present { effect: effect.clone(), values });
+                    measurements.predict(row, &other).expect("in view")
+                };
+                let (ahead, behind) = (at(1.0), at(-1.0));
+                for i in 0..predicted.len() {
+                    let slope = (ahead[i] - behind[i]) / (2.0 * step);
+                    let tangent = tangents.effects[(i, column)];
+                    let error = (slope - tangent).abs();
+                    assert!(error < 2e-3 * slope.abs() + 2e-6, "{} {k}: {slope} {tangent}", effect.name());
+                }
+                column += 1;
+            }
+        }
+        for k in 0..6 {
+            let at = |side: f64| {
+                let mut twist = [0.0; 6];
+                twist[k] = side * 1e-4;
+                let mut other = assumed.clone();
+                other.placements[row.session] =
+                    measurements.moved(row.session, &assumed.placements[row.session], &twist);
+                measurements.predict(row, &other).expect("in view")
+            };
+            let (ahead, behind) = (at(1.0), at(-1.0));
+            let placed = f64::from(u8::from(row.what.is_placed()));
+            for i in 0..predicted.len() {
+                let slope = placed * (ahead[i] - behind[i]) / 2e-4;
+                assert!((slope - tangents.gauge[(i, k)]).abs() < 1e-5, "twist {k}");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_effect_is_found_again_by_its_name_and_shape() {
+    let measurements = everything(40);
+    let arm = measurements.apparatuses[0].arm.as_ref();
+    let eyes = measurements.apparatuses[1].eyes.as_ref();
+    for effect in Effect::candidates(&measurements) {
+        let found = Effect::find(effect.id(), &effect.site, effect.shape, arm, eyes).expect("known");
+        let mut same = found;
+        same.shape_range = effect.shape_range;
+        assert_eq!(same, effect);
+        let refined = effect.refined(&measurements);
+        assert!(!refined.is_empty() && refined.iter().all(|other| other.name() == effect.name()));
+    }
+    assert!(Effect::find("joint-zero", "no_such_joint", None, arm, eyes).is_none());
+    assert!(Effect::find("no-such-kind", "", None, arm, eyes).is_none());
+}
+
+fn reported(id: &str, shape: Option<f64>, values: &[f64], sds: &[f64]) -> Vec<(String, f64, f64, f64)> {
+    let measurements = everything(40);
+    let effect = Effect::candidates(&measurements)
+        .into_iter()
+        .find(|effect| effect.id() == id && !effect.site.is_empty())
+        .expect("a candidate");
+    let effect = if shape.is_some() { effect.with_shape(shape) } else { effect };
+    let covariance =
+        DMatrix::from_fn(sds.len(), sds.len(), |i, j| if i == j { sds[i] * sds[i] } else { 0.0 });
+    effect
+        .report(values, &covariance)
+        .into_iter()
+        .map(|one| (one.name, one.value, one.low, one.high))
+        .collect()
+}
+
+#[test]
+fn parameters_are_reported_as_the_command_line_names_them() {
+    let (amplitude, phase): (f64, f64) = (0.008, 0.7);
+    let wave = reported(
+        "joint-eccentricity",
+        Some(2.0),
+        &[amplitude * phase.cos(), amplitude * phase.sin()],
+        &[0.001, 0.001],
+    );
+    assert!(wave[0].0 == "amplitude_rad" && (wave[0].1 - amplitude).abs() < 1e-12);
+    assert!((wave[0].3 - wave[0].2 - 2.0 * 1.96 * 0.001).abs() < 1e-9);
+    assert!(wave[1].0 == "phase_rad" && (wave[1].1 - phase).abs() < 1e-12);
+    assert!((wave[1].3 - wave[1].1 - 1.96 * 0.001 / amplitude).abs() < 1e-9);
+    assert!(wave[2].0 == "order" && wave[2].1 == 2.0);
+    let droop = reported("servo-droop", None, &[0.04], &[0.002]);
+    assert!(droop[0].0 == "stiffness_nm_per_rad" && (droop[0].1 - 25.0).abs() < 1e-9);
+    assert!(droop[0].2 < 25.0 && droop[0].3 > 25.0 && droop[0].3 < 28.0);
+    let play = reported("backlash", None, &[-0.006], &[0.001]);
+    assert!(play[0].0 == "width_rad" && play[0].1 == 0.006 && play[0].2 > 0.0 && play[0].3 > 0.006);
+    let warm = reported("servo-warm-up", Some(300.0), &[0.004], &[0.001]);
+    assert_eq!(
+        warm.iter().map(|one| one.0.as_str()).collect::<Vec<_>>(),
+        ["amplitude_rad", "time_constant_s"]
+    );
+    assert_eq!(warm[1].1, 300.0);
+    let yaw = reported("eye-yaw", Some(Effect::yaw_growth(240.0, 90.0)), &[0.01], &[0.001]);
+    let values: Vec<(&str, f64)> = yaw.iter().map(|one| (one.0.as_str(), one.1)).collect();
+    assert_eq!(values, [("amplitude_rad", 0.01), ("time_constant_s", 240.0), ("delay_s", 90.0)]);
+    let slip = reported("slipped-horn", Some(610.0), &[0.05], &[0.001]);
+    assert!(slip[0].0 == "step_rad" && slip[1].0 == "t_secs" && slip[1].1 == 610.0);
+    let pulled = reported("joint-coupling", None, &[0.02], &[0.001]);
+    assert!(pulled[0].0 == "ratio" && pulled[1].0 == "from_joint");
+    let limit = reported("torque-limit", Some(0.8), &[0.05], &[0.001]);
+    assert!(limit[0].0 == "torque_nm" && limit[0].1 == 0.8);
+}
+
+#[test]
+fn a_skewed_axis_is_reported_as_it_turns_the_joint() {
+    let measurements = everything(12);
+    let candidates = Effect::candidates(&measurements);
+    let skews = candidates.iter().filter(|effect| effect.kind == Kind::AxisSkew);
+    for effect in skews {
+        let [a, b] = effect.across.expect("an axis");
+        let turn = a * 0.02 - b * 0.03;
+        let zero = DMatrix::zeros(2, 2);
+        for one in effect.report(&[0.02, -0.03], &zero) {
+            let k = ["rot_x_rad", "rot_y_rad", "rot_z_rad"].iter().position(|name| *name == one.name);
+            assert!((one.value - turn[k.expect("a turn")]).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_stiffness_that_may_be_infinite_has_an_open_end() {
+    let droop = reported("servo-droop", None, &[0.002], &[0.002]);
+    assert!(droop[0].3 >= 1e6 && droop[0].2 > 0.0 && droop[0].2 < droop[0].1);
+}
+
+#[test]
+fn a_step_comes_after_its_moment_and_growth_after_its_delay() {
+    let measurements = everything(30);
+    let candidates = Effect::candidates(&measurements);
+    let slip = candidates.iter().find(|e| e.kind == Kind::SlippedHorn).expect("a candidate").clone();
+    let slip = slip.with_shape(Some(500.0));
+    let nominal = Assumed::nominal(&measurements);
+    let with = |effect: Effect, value: f64| Assumed {
+        effects: vec![Present { effect, values: vec![value] }],
+        ..nominal.clone()
+    };
+    let (slipped, turned) = (with(slip, 0.1), {
+        let yaw = candidates.iter().find(|e| e.kind == Kind::EyeYaw).expect("a candidate").clone();
+        with(yaw.with_shape(Some(Effect::yaw_growth(240.0, 90.0))), 0.01)
+    });
+    for row in &measurements.rows {
+        let t_secs = row.t_secs.expect("every row has its time");
+        let (model, late) =
+            if row.what.is_placed() { (&slipped, t_secs > 500.0) } else { (&turned, t_secs > 90.0) };
+        let changed = measurements.predict(row, model) != measurements.predict(row, &nominal);
+        assert_eq!(changed, late, "{:?} at {t_secs} s", row.what);
+    }
+}
+
+#[test]
+fn speed_of_tangents() {
+    for (rows, label) in [(245, "245 rows"), (5000, "5000 rows")] {
+        let mut measurements = everything(rows);
+        measurements.rows.retain(|row| row.what.is_placed());
+        let mut candidates = Effect::candidates(&measurements);
+        candidates.retain(|effect| effect.kind != Kind::ToothRipple);
+        for (of, count) in [("150", 150), ("all", usize::MAX)] {
+            let mut columns = 0;
+            let some: Vec<Effect> = candidates
+                .iter()
+                .take_while(|effect| {
+                    columns += effect.parameters().len();
+                    columns <= count
+                })
+                .cloned()
+                .collect();
+            let assumed = Assumed::nominal(&measurements);
+            let start = Instant::now();
+            let sum: f64 = measurements
+                .rows
+                .iter()
+                .filter_map(|row| measurements.tangents(row, &assumed, &some))
+                .map(|tangents| tangents.effects.sum())
+                .sum();
+            assert!(sum.is_finite());
+            println!(
+                "{label}, {of} columns ({} effects): {:.1} ms on one core",
+                some.len(),
+                start.elapsed().as_secs_f64() * 1e3
+            );
+        }
+    }
+}
