@@ -76,7 +76,7 @@ fn everything(count: usize) -> Measurements {
         moved.payload_kg = 0.25 * f64::from(u8::from(i % 5 == 0));
         moved.screen_height_m = 0.06 * f64::from(u8::from(i % 7 == 0));
         moved.move_secs = Some(1.0 + 0.5 * wave(i, 9));
-        moved.hold_secs = Some(120.0 * (i % 4) as f64);
+        moved.hold_secs = Some(240.0 * (i % 4) as f64);
         rows.push(moved);
         let mut seen = row(1, i, if i % 2 == 0 { What::Place } else { What::EyePoints });
         seen.neck_rad = vec![0.1 * wave(i, 3), -0.6 + 0.05 * wave(i, 4)];
@@ -85,7 +85,13 @@ fn everything(count: usize) -> Measurements {
         seen.background_m = Some(1.2 + 0.3 * wave(i, 7));
         rows.push(seen);
     }
-    Measurements { rig: "nico".to_owned(), apparatuses: vec![moved, seen], rows, left_out: vec![], present: vec![] }
+    Measurements {
+        rig: "nico".to_owned(),
+        apparatuses: vec![moved, seen],
+        rows,
+        left_out: vec![],
+        present: vec![],
+    }
 }
 
 /// What an effect alone changes at most, over all rows.

@@ -111,11 +111,19 @@ impl RigModel {
         self.effects().iter().filter(here).filter_map(|effect| effect.on(arm, eyes)).collect()
     }
 
-    /// What a search for more effects starts with: these effects, frames where the sessions say.
-    pub fn assumed(&self, measurements: &Measurements, tip: Option<&str>) -> Assumed {
+    /// Rows for a search for what comes in addition: predictions of these rows hold this model's
+    /// effects. Frames are where the sessions say, since a search places them itself.
+    pub fn put_into(&self, mut measurements: Measurements) -> Measurements {
+        measurements.present = self.present_in(&measurements);
+        measurements
+    }
+
+    /// Effects that the arm and the eyes of these rows have.
+    pub(super) fn present_in(&self, measurements: &Measurements) -> Vec<Present> {
+        let tip = measurements.apparatuses.iter().find_map(|apparatus| apparatus.tip.as_deref());
         let arm = measurements.apparatuses.iter().find_map(|apparatus| apparatus.arm.as_ref());
         let eyes = measurements.apparatuses.iter().find_map(|apparatus| apparatus.eyes.as_ref());
-        Assumed { effects: self.present(tip, arm, eyes), ..Assumed::nominal(measurements) }
+        self.present(tip, arm, eyes)
     }
 }
 

@@ -11,6 +11,7 @@ use plumbline_model::{Pixel, Point, Robot};
 
 use super::tests::{TIP, effect, nico, with};
 use super::*;
+use crate::{Assumed, Measurements};
 
 const POINTING_RAD: [f64; 6] = [0.02, 0.33, 0.42, 1.62, 1.05, 0.74];
 
@@ -246,5 +247,32 @@ fn effects_of_the_other_arm_and_of_another_tip_stay_there() {
     let predicted = predict_session_with(&session, &rig, None, &model).expect("predicted");
     for (a, b) in nominal.touches.iter().zip(&predicted.touches) {
         assert!(a.touch.distance_px(&b.touch) < 1e-9);
+    }
+}
+
+/// What a search starts with is what the model predicts.
+#[test]
+fn a_search_for_more_starts_with_the_models_effects() {
+    let rig = nico();
+    let session = session(&rig);
+    let model = with(
+        &rig,
+        vec![
+            effect("joint-zero", "r_elbow_y", &[0.04]),
+            ModelEffect { tip: None, ..effect("eye-yaw", "right", &[0.008]) },
+        ],
+    );
+    let nominal = Measurements::of_sessions(&[("one".to_owned(), session)], &rig).expect("usable");
+    let measurements = model.put_into(nominal.clone());
+    let assumed = Assumed { effects: model.present_in(&nominal), ..Assumed::nominal(&nominal) };
+    for row in &measurements.rows {
+        let here = measurements.predict(row, &Assumed::nominal(&measurements)).expect("predictable");
+        assert_eq!(Some(&here), nominal.predict(row, &assumed).as_ref());
+        let tangents =
+            measurements.tangents(row, &Assumed::nominal(&measurements), &[]).expect("predictable");
+        for (a, b) in tangents.predicted.iter().zip(&here) {
+            assert!((a - b).abs() < 1e-9, "{a} {b}");
+        }
+        assert_ne!(Some(here), nominal.predict(row, &Assumed::nominal(&nominal)));
     }
 }

@@ -91,13 +91,14 @@ impl DeviatedArm {
     fn new(arm: Arm, surface: Surface, effects: Vec<Present>) -> Self {
         let joints = arm.len();
         let apparatus =
-            Apparatus { title: String::new(), arm: Some(arm), surface: Some(surface), eyes: None };
+            Apparatus { title: String::new(), tip: None, arm: Some(arm), surface: Some(surface), eyes: None };
         Self {
             measurements: Measurements {
                 rig: String::new(),
                 apparatuses: vec![apparatus],
                 rows: vec![],
                 left_out: vec![],
+                present: vec![],
             },
             free: Assumed { effects: in_the_air(&effects), placements: vec![Isometry3::identity()] },
             touching: Assumed { effects, placements: vec![Isometry3::identity()] },
