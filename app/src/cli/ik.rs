@@ -26,6 +26,10 @@ pub struct Ik {
     /// from above.
     #[arg(long)]
     upright: bool,
+    /// Model with effects (rig-model.toml), as gap --add writes it: the angles are those that must be
+    /// commanded so that the real arm gets to the targets.
+    #[arg(long, value_name = "FILE")]
+    rig_model: Option<PathBuf>,
 }
 
 /// Solves every target of the table, each from the home pose.
@@ -35,6 +39,7 @@ pub fn run(arguments: Ik, output: &Output) -> anyhow::Result<()> {
         tip: arguments.tip,
         targets: arguments.targets,
         upright: arguments.upright,
+        rig_model: arguments.rig_model,
     };
     let report = offline::ik(&args, output)?;
     output.result(&report, text)
@@ -43,6 +48,9 @@ pub fn run(arguments: Ik, output: &Output) -> anyhow::Result<()> {
 fn text(report: &IkReport) -> String {
     let targets = format::count(report.solutions.len(), "target");
     let mut text = format!("{} of {targets} reached by {}\n", report.reached, report.tip);
+    if !report.effects.is_empty() {
+        text.push_str(&format!("  with {}\n", report.effects.join(", ")));
+    }
     for solution in &report.solutions {
         text.push_str(&line(solution));
     }

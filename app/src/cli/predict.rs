@@ -14,8 +14,8 @@ pub struct Predict {
     /// Folder of a session.
     #[arg(long, value_name = "DIR")]
     session: PathBuf,
-    /// What to predict with in place of what the session names: a rig file, or the screen.toml of a
-    /// placed touchscreen.
+    /// What to predict with in place of what the session names: a rig file, the screen.toml of a
+    /// placed touchscreen, or a model with effects (rig-model.toml, as gap --add writes it).
     #[arg(long, value_name = "FILE")]
     rig_model: Option<PathBuf>,
 }
@@ -31,6 +31,9 @@ fn text(report: &PredictReport) -> String {
     let rows = format::count(report.rows.len(), "row");
     let screen = if report.screen == "session" { "of the session" } else { "of the rig model" };
     let mut text = format!("{rows} predicted for {}, touchscreen {screen}\n", report.rig);
+    if !report.effects.is_empty() {
+        text.push_str(&format!("  with {}\n", report.effects.join(", ")));
+    }
     for (angles, of) in [("encoder", "encoder readings"), ("commanded", "commanded angles")] {
         let count = report.rows.iter().filter(|row| angles_of(row) == Some(angles)).count();
         if count > 0 {

@@ -14,6 +14,7 @@ mod models;
 mod mount;
 pub mod notice;
 pub mod offline;
+pub mod rig_models;
 pub mod robot;
 pub mod settings;
 pub mod slot;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use plumbline_correction::{DataError, FileError, TrainError};
-use plumbline_effects::MeasurementsError;
+use plumbline_effects::{MeasurementsError, RigModelError};
 use plumbline_gap::GapError;
 use plumbline_hardware::{ImageProblem, SourceError};
 use plumbline_model::predict::PredictError;
@@ -131,9 +131,15 @@ pub enum OfflineError {
     /// A placement of the screen cannot be used.
     #[error(transparent)]
     Placement(#[from] PlacementError),
-    /// Neither a rig file nor a placement.
+    /// A model with effects cannot be used.
+    #[error(transparent)]
+    Effects(#[from] RigModelError),
+    /// Effects of a finding cannot be added.
+    #[error("{0}")]
+    NotAdded(String),
+    /// Neither a rig file nor a placement nor a model with effects.
     #[error(
-        "{file} is neither a rig file nor a screen placement ({reason}): give the rig.toml of a robot, or the screen.toml that was written when the touchscreen was placed"
+        "{file} is neither a rig file nor a screen placement nor a model with effects ({reason}): give the rig.toml of a robot, the screen.toml that was written when the touchscreen was placed, or the rig-model.toml that was written when effects were added"
     )]
     RigModel {
         /// The file.

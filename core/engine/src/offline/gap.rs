@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use plumbline_effects::Measurements;
+use plumbline_effects::{Measurements, RigModel};
 use plumbline_gap::finding::{Dependence, NamedEffect, NextExperiment, Shown, ShownUnit};
 use plumbline_gap::{Finding, Options, Verdict, find};
 use plumbline_model::robot::Rig;
@@ -13,7 +13,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::OfflineError;
-use super::session::{self, RigModel};
+use super::session::{self, ModelFile};
 
 /// Where to look for a gap.
 #[derive(Clone, Debug)]
@@ -124,6 +124,31 @@ pub fn gap(args: &GapArgs, context: &dyn JobContext) -> Result<GapReport, Offlin
     Ok(GapReport::of(finding))
 }
 
+/// Rows of all sessions, which must be of this robot.
+pub(crate) fn measured(folders: &[PathBuf], rig: &Rig) -> Result<Measurements, OfflineError> {
+    let sessions: Vec<(String, Session)> = folders
+        .iter()
+        .map(|folder| {
+            let session = Session::read(folder)?;
+            same_rig(rig, &session::rig_of(&session, folder)?, &title_of(folder))?;
+            Ok((title_of(folder), session))
+        })
+        .collect::<Result<_, OfflineError>>()?;
+    Ok(Measurements::of_sessions(&sessions, rig)?)
+}
+
+/// Looks for the gap of a model.
+pub(crate) fn search(
+    measurements: &Measurements,
+    rig: &Rig,
+    model: &RigModel,
+    options: &Options,
+    context: &dyn JobContext,
+) -> Result<Finding, OfflineError> {
+    let _ = rig;
+    Ok(find(&model.put_into(measurements.clone()), options, context)?)
+}
+
 /// Rows of all sessions, predicted by the robot of the first one or by a rig model.
 pub(crate) fn read(folders: &[PathBuf], rig_model: Option<&Path>) -> Result<Measurements, OfflineError> {
     let sessions: Vec<(String, Session)> = folders
@@ -139,15 +164,19 @@ pub(crate) fn read(folders: &[PathBuf], rig_model: Option<&Path>) -> Result<Meas
     }
     let rig = match rig_model {
         None => own,
-        Some(file) => match RigModel::read(file, &own)? {
-            RigModel::Rig(rig) => {
+        Some(file) => match ModelFile::read(file, &own)? {
+            ModelFile::Rig(rig) => {
                 same_rig(&own, &rig, &file.display().to_string())?;
                 *rig
             }
-            RigModel::Placement(placement) => {
+            ModelFile::Placement(placement) => {
                 let mut rig = own;
                 rig.touchscreen = placement.screen;
                 rig
+            }
+            ModelFile::Effects(model) => {
+                let measurements = Measurements::of_sessions(&sessions, &own)?;
+                return Ok(model.put_into(measurements));
             }
         },
     };

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use plumbline_effects::RigModel;
+use plumbline_effects::rig_model::{Conditions, ModelEffect};
 use plumbline_model::robot::Rig;
-use plumbline_model::robot::ik::{Options, Solver, Target};
+use plumbline_model::robot::ik::{Options, Solver, SolverError, Target};
 use plumbline_model::{JobContext, Point, Pose};
 use serde::Serialize;
 
@@ -29,6 +31,9 @@ pub struct IkArgs {
     pub targets: PathBuf,
     /// Whether the tip's z axis shall point up as nearly as the arm can.
     pub upright: bool,
+    /// A model with effects: the angles are those that must be commanded so that the arm with these
+    /// effects gets there.
+    pub rig_model: Option<PathBuf>,
 }
 
 /// What was found.
@@ -38,6 +43,8 @@ pub struct IkReport {
     pub tip: String,
     /// Targets that are reached.
     pub reached: usize,
+    /// Effects that were solved with, as `id@site`.
+    pub effects: Vec<String>,
     /// In the order of the table.
     pub solutions: Vec<IkSolution>,
 }
@@ -51,7 +58,8 @@ pub struct IkSolution {
     pub position_error_m: f64,
     /// What is left of the orientation or heading asked for; zero when none was.
     pub orientation_error_rad: f64,
-    /// `reached`, `limited-by:<joint>` or `out-of-reach`.
+    /// `reached`, `limited-by:<joint>` or `out-of-reach`; with effects also `unsettled`: no command
+    /// was found that leads there.
     pub status: String,
 }
 
@@ -59,24 +67,31 @@ pub struct IkSolution {
 pub fn ik(args: &IkArgs, context: &dyn JobContext) -> Result<IkReport, OfflineError> {
     let rig = find_rig(&args.rig)?;
     let solver = Solver::of_rig(&rig, &args.tip)?;
+    let model = match &args.rig_model {
+        None => RigModel::nominal(&rig),
+        Some(file) => RigModel::read(file, &rig)?,
+    };
+    let arm = model.arm(&rig, &args.tip).map_err(SolverError::from)?;
     let targets = read_targets(&args.targets)?;
-    let home = rig.home();
+    let start_rad = rig.home().of(solver.joints());
     let options = if args.upright { Options::upright() } else { Options::default() };
+    let effects =
+        if arm.is_nominal() { vec![] } else { model.effects().iter().map(ModelEffect::name).collect() };
     let mut report =
-        IkReport { tip: args.tip.clone(), reached: 0, solutions: Vec::with_capacity(targets.len()) };
+        IkReport { tip: args.tip.clone(), reached: 0, effects, solutions: Vec::with_capacity(targets.len()) };
     for (k, target) in targets.iter().enumerate() {
         if k % REPORTED == 0 {
             context.checkpoint()?;
             context.report(k as f64 / targets.len() as f64, "solving");
         }
-        let answer = solver.solve_from(target, &home, &options)?;
-        let best = answer.best();
-        report.reached += usize::from(answer.is_reached());
+        let found = arm.reach(&solver, target, &start_rad, &options, &Conditions::default())?;
+        let best = found.answer.best();
+        report.reached += usize::from(found.is_reached());
         report.solutions.push(IkSolution {
             joints: solver.names().iter().cloned().zip(best.joints.iter().copied()).collect(),
-            position_error_m: best.position_error_m,
+            position_error_m: found.error_m,
             orientation_error_rad: best.orientation_error_rad,
-            status: answer.status(),
+            status: found.status(),
         });
     }
     context.report(1.0, "solved");
@@ -122,7 +137,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("temporary folder");
         let targets = folder.path().join("targets.csv");
         std::fs::write(&targets, table).expect("written");
-        let args = IkArgs { rig: "nico".to_owned(), tip: tip.to_owned(), targets, upright: false };
+        let args =
+            IkArgs { rig: "nico".to_owned(), tip: tip.to_owned(), targets, upright: false, rig_model: None };
         ik(&args, &Unattended).map_err(|error| error.to_string())
     }
 
@@ -167,6 +183,7 @@ mod tests {
             tip: "right_palm_center".to_owned(),
             targets: PathBuf::from("none.csv"),
             upright: false,
+            rig_model: None,
         };
         assert!(ik(&args, &Unattended).expect_err("no such rig").to_string().contains("there are: nico"));
     }

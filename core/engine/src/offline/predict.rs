@@ -2,22 +2,24 @@
 
 use std::path::PathBuf;
 
+use plumbline_effects::RigModel;
+use plumbline_effects::rig_model::{ModelEffect, predict_session_with};
 use plumbline_model::predict::{
-    Angles, LocalizationPrediction, PosePrediction, SessionPrediction, TouchPrediction, predict_session,
+    Angles, LocalizationPrediction, PosePrediction, SessionPrediction, TouchPrediction,
 };
 use plumbline_model::session::Touchscreen;
 use plumbline_model::{JobContext, Session};
 use serde::Serialize;
 
 use super::OfflineError;
-use super::session::{self, RigModel};
+use super::session::{self, ModelFile};
 
 /// What to predict.
 #[derive(Clone, Debug)]
 pub struct PredictArgs {
     /// Folder of the session.
     pub session: PathBuf,
-    /// A rig file or a screen placement to use in place of what the session names.
+    /// A rig file, a screen placement or a model with effects to use in place of what the session names.
     pub rig_model: Option<PathBuf>,
 }
 
@@ -28,6 +30,8 @@ pub struct PredictReport {
     pub rig: String,
     /// From where the place of the touchscreen was taken: `session`, `rig-model`.
     pub screen: &'static str,
+    /// Effects that were predicted with, as `id@site`.
+    pub effects: Vec<String>,
     /// Per table how far what was measured lies from what was predicted.
     pub gaps: Vec<TableGap>,
     /// One per row: touches, then localizations, then poses, each in their order.
@@ -38,7 +42,8 @@ pub struct PredictReport {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TableGap {
     /// `touches`: on the glass, 2D. `localizations`: place inferred from the measurement against
-    /// the known place, on the table, 2D, rows that are marked invalid left out.
+    /// the known place, on the table, 2D, rows that are marked invalid left out. `poses`: in space,
+    /// when a model says where the external frame is.
     pub table: &'static str,
     /// Rows that were compared.
     pub rows: usize,
@@ -81,7 +86,7 @@ pub enum PredictedRow {
         /// The place that the model infers from what was measured.
         corrected_z_m: Option<f64>,
     },
-    /// A pose, in the frame of the robot.
+    /// A pose: in the external frame where a model with effects has it, else in the robot's.
     Poses {
         /// Place of the tip.
         meas_x_m: f64,
@@ -108,26 +113,32 @@ pub struct ImagePoints {
 pub fn predict(args: &PredictArgs, context: &dyn JobContext) -> Result<PredictReport, OfflineError> {
     context.checkpoint()?;
     let (recorded, mut rig) = session::open(&args.session)?;
-    let mut screen = None;
+    let (mut screen, mut model) = (None, RigModel::nominal(&rig));
     if let Some(file) = &args.rig_model {
-        match RigModel::read(file, &rig)? {
-            RigModel::Rig(other) => {
+        match ModelFile::read(file, &rig)? {
+            ModelFile::Rig(other) => {
                 rig = *other;
                 screen = Some(rig.touchscreen.clone());
             }
-            RigModel::Placement(placement) => screen = Some(placement.screen),
+            ModelFile::Placement(placement) => screen = Some(placement.screen),
+            ModelFile::Effects(of_file) => model = *of_file,
         }
     }
     let own = recorded.manifest.touchscreen.as_ref().filter(|_| recorded.touches.is_some());
+    if let Some(own) = own {
+        // A nominal model is the nominal robot, whatever it was placed with before.
+        screen = screen.or_else(|| model.screen(own).filter(|_| !model.is_nominal()).cloned());
+    }
     if let (Some(own), Some(other)) = (own, &screen) {
         same_size(own, other)?;
     }
-    let predicted = predict_session(&recorded, &rig, screen.as_ref())?;
+    let predicted = predict_session_with(&recorded, &rig, screen.as_ref(), &model)?;
     context.report(1.0, "predicted");
     Ok(PredictReport {
         rig: rig.name,
         screen: if screen.is_some() { "rig-model" } else { "session" },
-        gaps: gaps(&recorded, &predicted, screen.as_ref()),
+        effects: model.effects().iter().map(ModelEffect::name).collect(),
+        gaps: gaps(&recorded, &predicted, screen.as_ref(), model.external().is_some() && !model.is_nominal()),
         rows: rows(&predicted),
     })
 }
@@ -148,7 +159,12 @@ fn same_size(own: &Touchscreen, other: &Touchscreen) -> Result<(), OfflineError>
     Err(OfflineError::OtherScreen { expected: size(own), found: size(other) })
 }
 
-fn gaps(session: &Session, predicted: &SessionPrediction, screen: Option<&Touchscreen>) -> Vec<TableGap> {
+fn gaps(
+    session: &Session,
+    predicted: &SessionPrediction,
+    screen: Option<&Touchscreen>,
+    in_external_frame: bool,
+) -> Vec<TableGap> {
     let mut gaps = Vec::new();
     let screen = screen.or(session.manifest.touchscreen.as_ref());
     if let (Some(table), Some(screen)) = (&session.touches, screen) {
@@ -163,6 +179,13 @@ fn gaps(session: &Session, predicted: &SessionPrediction, screen: Option<&Touchs
             Some((prediction.corrected?.coords.xy() - row.truth?.coords.xy()).norm())
         });
         gaps.extend(gap("localizations", off_m.collect()));
+    }
+    if let Some(table) = session.poses.as_ref().filter(|_| in_external_frame) {
+        let off_m = table
+            .rows()
+            .zip(&predicted.poses)
+            .filter_map(|(row, prediction)| Some((row.measured?.coords - prediction.tip.coords).norm()));
+        gaps.extend(gap("poses", off_m.collect()));
     }
     gaps
 }
