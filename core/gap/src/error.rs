@@ -14,10 +14,60 @@ pub enum GapError {
         /// Needed.
         needed: usize,
     },
+    /// A column is in another unit than its name says.
+    #[error(
+        "{session}: {column} seems to be {} (against the model off by a factor of {}): correct the column and \
+         look again, everything else would be nonsense",
+        unit_words(.seems), factor_words(*.factor)
+    )]
+    WrongUnit {
+        /// Which session.
+        session: String,
+        /// Its column or columns.
+        column: String,
+        /// The unit that it seems to be in ("millimeters").
+        seems: String,
+        /// Measured over predicted.
+        factor: f64,
+    },
+    /// A column that should change has one value.
+    #[error(
+        "{session}: {column} has the same value in every row although the arm moved: it was not logged. Leave the \
+         column out or measure again"
+    )]
+    DeadColumn {
+        /// Which session.
+        session: String,
+        /// Its column.
+        column: String,
+    },
+    /// The model cannot say what most rows should have measured.
+    #[error(
+        "the model sees only {predictable} of {rows} places: check the rig's eyes and the known places, which lie \
+         outside of the eyes' view"
+    )]
+    OutOfView {
+        /// Rows that can be predicted.
+        predictable: usize,
+        /// All rows.
+        rows: usize,
+    },
     /// The sessions cannot be looked at.
     #[error(transparent)]
     Measurements(#[from] MeasurementsError),
     /// Cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+fn unit_words(seems: &str) -> String {
+    if seems.contains(' ') { seems.to_owned() } else { format!("in {seems}") }
+}
+
+fn factor_words(factor: f64) -> String {
+    if factor >= 1.0 {
+        format!("{}", (factor * 10.0).round() / 10.0)
+    } else {
+        format!("1/{}", (10.0 / factor).round() / 10.0)
+    }
 }

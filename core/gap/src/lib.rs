@@ -1,29 +1,20 @@
 //! Finds where measurement and model disagree, names the missing effect, sizes it, and shows the
 //! gap shrink.
 
+mod compare;
+mod covariates;
 mod error;
+mod file;
+mod find;
 pub mod finding;
 mod floor;
 mod options;
-#[expect(dead_code, reason = "called by the finding to come")]
 mod search;
+mod sentence;
+mod show;
 
 pub use error::GapError;
+pub use file::FindingFileError;
+pub use find::find;
 pub use finding::{Finding, Verdict};
 pub use options::Options;
-
-use plumbline_effects::Measurements;
-use plumbline_model::JobContext;
-
-/// Looks for the gap, names what is missing and shows how far it closes.
-///
-/// # Errors
-/// When there is too little to look at, or the work was cancelled.
-pub fn find(
-    measurements: &Measurements,
-    options: &Options,
-    context: &dyn JobContext,
-) -> Result<Finding, GapError> {
-    let _ = (options, context);
-    Err(GapError::TooFew { rows: measurements.rows.len(), needed: usize::MAX })
-}

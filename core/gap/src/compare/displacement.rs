@@ -1,0 +1,52 @@
+//! Residuals as arrows on the table.
+
+use nalgebra::{Isometry3, Point3, Vector3};
+use plumbline_effects::EyesDeviation;
+use plumbline_effects::measurements::{Measurements, Observation, What};
+use plumbline_model::Pixel;
+
+/// Where a row was measured, robot frame, m.
+pub fn at_m(measurements: &Measurements, row: &Observation, placement: &Isometry3<f64>) -> [f64; 3] {
+    let place = match row.what {
+        What::Touch => measurements.apparatus(row).surface.as_ref().map(|surface| {
+            let [u, v, normal] = surface.axes();
+            surface.middle_m() + u * row.measured[0] + v * row.measured[1] + normal * row.screen_height_m
+        }),
+        What::Pose => Some(placement.inverse() * Point3::from_slice(&row.measured)),
+        What::Place | What::EyePoints => row.truth_m,
+    };
+    place.map_or([0.0; 3], |place| place.coords.into())
+}
+
+/// Measured less predicted natural coordinates of an arm's row as a displacement, robot frame, m:
+/// for touches in the screen's plane, and the height along its normal.
+pub fn of_arm(
+    measurements: &Measurements,
+    row: &Observation,
+    placement: &Isometry3<f64>,
+    residual: &[f64],
+) -> Option<Vector3<f64>> {
+    let residual = Vector3::new(*residual.first()?, *residual.get(1)?, *residual.get(2)?);
+    match row.what {
+        What::Touch => {
+            let [u, v, normal] = measurements.apparatus(row).surface.as_ref()?.axes();
+            Some(u * residual.x + v * residual.y + normal * residual.z)
+        }
+        What::Pose => Some(placement.rotation.inverse() * residual),
+        What::Place | What::EyePoints => None,
+    }
+}
+
+/// Where the nominal eyes put what they saw, robot frame, m.
+pub fn nominal_place_m(measurements: &Measurements, row: &Observation) -> Option<Point3<f64>> {
+    let eyes = measurements.apparatus(row).eyes.as_ref()?;
+    let in_left = match row.what {
+        What::Place => eyes.place(&row.measured)?,
+        What::EyePoints => {
+            let [left_u, left_v, right_u, right_v] = *row.measured.first_chunk::<4>()?;
+            eyes.cameras.triangulate(Pixel::new(left_u, left_v), Pixel::new(right_u, right_v))?.coords.into()
+        }
+        What::Touch | What::Pose => return None,
+    };
+    Some(eyes.robot_from_left(&row.neck_rad, &EyesDeviation::none(eyes.neck.len())) * in_left)
+}

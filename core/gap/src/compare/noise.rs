@@ -1,0 +1,180 @@
+//! The noise floor: from repeats, else from near neighbors.
+//!
+//! Repeats: spread of residuals about the mean of their cell, pooled, without what lies further out
+//! than four robust standard deviations. Near neighbors (Rice): each row less a plane through its
+//! neighbors, after a smooth fit; right only as far as effects are smooth, so it is approximate.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+use plumbline_effects::measurements::{Measurements, Unit, What};
+
+use super::neighbors::Points;
+use super::statistics::robust_sd;
+use crate::floor::{Floor, KindFloor};
+
+/// Fewer degrees of freedom than this say too little of the spread.
+const FEWEST: f64 = 8.0;
+/// Deviations beyond this many robust standard deviations are no noise.
+const FAR: f64 = 4.0;
+/// A coordinate that spreads less than this share of the others was not measured by itself: the
+/// height of a touch follows from the command.
+const NOT_MEASURED: f64 = 0.02;
+
+/// Noise with what is known of where it comes from.
+pub struct Noise {
+    /// Per kind and coordinate.
+    pub floor: Floor,
+    /// Per kind of [`Floor::kinds`] and coordinate: whether repeats say it.
+    pub repeated: Vec<Vec<bool>>,
+}
+
+/// The floor of rows with these residuals (`None`: not predictable, or an outlier).
+pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> Noise {
+    let mut kinds = vec![];
+    let mut repeated = vec![];
+    let mut from_repeats = true;
+    for what in [What::Touch, What::Pose, What::Place, What::EyePoints] {
+        if !measurements.has(what) {
+            continue;
+        }
+        let repeats = within_cells(measurements, residuals, what);
+        let nearby = near_neighbors(measurements, residuals, what);
+        let known: Vec<bool> = match &repeats {
+            Some(repeats) => {
+                let widest = repeats.sd.iter().copied().fold(0.0, f64::max);
+                repeats.sd.iter().map(|sd| *sd > NOT_MEASURED * widest).collect()
+            }
+            None => vec![false; what.len()],
+        };
+        from_repeats &= repeats.is_some();
+        let free = repeats.as_ref().map_or(nearby.degrees_of_freedom, |repeats| repeats.degrees_of_freedom);
+        let sd = (0..what.len())
+            .map(|c| match &repeats {
+                Some(repeats) if known[c] => repeats.sd[c],
+                _ => nearby.sd[c],
+            })
+            .zip(what.coordinates())
+            .map(|(sd, (_, unit))| sd.max(finest(*unit)))
+            .collect();
+        kinds.push(KindFloor { what, sd, degrees_of_freedom: free });
+        repeated.push(known);
+    }
+    Noise { floor: Floor { kinds, from_repeats }, repeated }
+}
+
+/// Nothing here is measured finer than this.
+fn finest(unit: Unit) -> f64 {
+    match unit {
+        Unit::Meter => 2e-5,
+        Unit::Radian => 2e-5,
+        Unit::Pixel => 2e-3,
+    }
+}
+
+fn within_cells(
+    measurements: &Measurements,
+    residuals: &[Option<Vec<f64>>],
+    what: What,
+) -> Option<KindFloor> {
+    let mut cells = BTreeMap::<usize, Vec<&Vec<f64>>>::new();
+    for (row, residual) in measurements.rows.iter().zip(residuals) {
+        if let Some(residual) = residual.as_ref().filter(|_| row.what == what) {
+            cells.entry(row.cell).or_default().push(residual);
+        }
+    }
+    cells.retain(|_, members| members.len() >= 2);
+    let free: f64 = cells.values().map(|members| members.len() as f64 - 1.0).sum();
+    if free < FEWEST {
+        return None;
+    }
+    let sd = (0..what.len())
+        .map(|c| {
+            let spread: Vec<f64> = cells
+                .values()
+                .flat_map(|members| {
+                    let count = members.len() as f64;
+                    let mean = members.iter().map(|residual| residual[c]).sum::<f64>() / count;
+                    let inflate = (count / (count - 1.0)).sqrt();
+                    members.iter().map(move |residual| (residual[c] - mean) * inflate)
+                })
+                .collect();
+            pooled(&spread)
+        })
+        .collect();
+    Some(KindFloor { what, sd, degrees_of_freedom: free })
+}
+
+/// Root mean square of what is not far out.
+fn pooled(spread: &[f64]) -> f64 {
+    let limit = FAR * robust_sd(spread.iter().copied());
+    let (sum, count) = spread
+        .iter()
+        .filter(|value| limit == 0.0 || value.abs() <= limit)
+        .fold((0.0, 0usize), |(sum, count), value| (sum + value * value, count + 1));
+    if count == 0 { 0.0 } else { (sum / count as f64).sqrt() }
+}
+
+fn near_neighbors(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: What) -> KindFloor {
+    // Repeats of a cell lie on the same place and would make planes of one point.
+    let mut seen = std::collections::BTreeSet::new();
+    let chosen = (0..measurements.rows.len())
+        .filter(|&i| residuals[i].is_some() && measurements.rows[i].what == what)
+        .filter(|&i| seen.insert(measurements.rows[i].cell))
+        .collect::<Vec<_>>();
+    let points = Points::of(measurements, what, chosen.into_iter());
+    let count = points.rows.len();
+    let values = DMatrix::from_fn(count, what.len(), |i, c| {
+        residuals[points.rows[i]].as_ref().and_then(|residual| residual.get(c)).copied().unwrap_or(0.0)
+    });
+    let smooth = points.quadratic().insert_column(0, 1.0);
+    let columns = smooth.ncols();
+    let values = if count >= 3 * columns { less_fit(&smooth, values) } else { values };
+    let d = points.directions();
+    let nearest = points.nearest((3 * (d + 1)).min(count.saturating_sub(1)));
+    let mut spread = vec![vec![]; what.len()];
+    for (i, around) in nearest.iter().enumerate() {
+        if around.len() < d + 2 {
+            continue;
+        }
+        let plane = DMatrix::from_fn(around.len(), d + 1, |k, c| {
+            if c == 0 { 1.0 } else { points.at[(around[k], c - 1)] - points.at[(i, c - 1)] }
+        });
+        // The value of the plane here is its constant: weights are the first row of its inverse.
+        let Ok(inverse) = plane.pseudo_inverse(1e-9) else { continue };
+        let weights = inverse.row(0);
+        let inflate = (1.0 + weights.norm_squared()).sqrt();
+        for (c, spread) in spread.iter_mut().enumerate() {
+            let here: f64 =
+                around.iter().zip(weights.iter()).map(|(&j, weight)| values[(j, c)] * weight).sum();
+            spread.push((values[(i, c)] - here) / inflate);
+        }
+    }
+    let sd = (0..what.len())
+        .map(|c| {
+            if spread[c].is_empty() {
+                values.column(c).norm() / (count.max(1) as f64).sqrt()
+            } else {
+                pooled(&spread[c])
+            }
+        })
+        .collect();
+    KindFloor { what, sd, degrees_of_freedom: (0.5 * count as f64).max(1.0) }
+}
+
+/// What a least-squares fit of these columns leaves, made as large as its degrees of freedom say.
+fn less_fit(columns: &DMatrix<f64>, values: DMatrix<f64>) -> DMatrix<f64> {
+    let scaled = DMatrix::from_columns(
+        &columns
+            .column_iter()
+            .map(|column| column / column.norm().max(1e-300))
+            .collect::<Vec<DVector<f64>>>(),
+    );
+    match scaled.clone().svd(true, true).solve(&values, 1e-9) {
+        Ok(fit) => {
+            let free = (columns.nrows() - columns.ncols()) as f64 / columns.nrows() as f64;
+            (values - scaled * fit) / free.sqrt()
+        }
+        Err(_) => values,
+    }
+}

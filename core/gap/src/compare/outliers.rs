@@ -1,0 +1,98 @@
+//! Rows that nothing around them agrees with.
+
+use plumbline_effects::measurements::{Measurements, What};
+
+use super::neighbors::Points;
+use super::statistics::{median, robust_sd};
+
+/// A row this many robust standard deviations away from its neighbors is an outlier. Far: an
+/// effect that few rows show must not be thrown away.
+const FAR: f64 = 8.0;
+/// Neighbors whose median a row is held against.
+const NEIGHBORS: usize = 9;
+/// So many in a row are no mishap but a condition: something changed.
+const A_CONDITION: usize = 5;
+
+/// Per row, whether it is an outlier.
+pub fn outliers(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> Vec<bool> {
+    let mut out = vec![false; measurements.rows.len()];
+    for what in [What::Touch, What::Pose, What::Place, What::EyePoints] {
+        let chosen = (0..residuals.len()).filter(|&i| residuals[i].is_some());
+        let points = Points::of(measurements, what, chosen);
+        if points.rows.len() < NEIGHBORS + 3 {
+            continue;
+        }
+        let nearest = points.nearest(NEIGHBORS);
+        // Twice: the first round's outliers do not speak in the second.
+        for _ in 0..2 {
+            let off = off_by(&points, &nearest, residuals, &out, what.len());
+            let scales: Vec<f64> = (0..what.len())
+                .map(|c| {
+                    let inside = off.iter().zip(&points.rows).filter(|(_, row)| !out[**row]);
+                    robust_sd(inside.map(|(off, _)| off[c]))
+                })
+                .collect();
+            let finest = 0.05 * scales.iter().copied().fold(0.0, f64::max);
+            for (off, &row) in off.iter().zip(&points.rows) {
+                out[row] =
+                    off.iter().zip(&scales).any(|(off, scale)| off.abs() > FAR * scale.max(finest).max(1e-9));
+            }
+        }
+        keep_conditions(measurements, residuals, &mut out);
+    }
+    out
+}
+
+/// Per point and coordinate, how far it lies from the median of its neighbors.
+fn off_by(
+    points: &Points,
+    nearest: &[Vec<usize>],
+    residuals: &[Option<Vec<f64>>],
+    out: &[bool],
+    size: usize,
+) -> Vec<Vec<f64>> {
+    let value = |row: usize, c: usize| residuals[row].as_ref().and_then(|residual| residual.get(c)).copied();
+    nearest
+        .iter()
+        .zip(&points.rows)
+        .map(|(around, &row)| {
+            (0..size)
+                .map(|c| {
+                    let others = around.iter().map(|&j| points.rows[j]);
+                    let inside: Vec<f64> = others.filter(|&j| !out[j]).filter_map(|j| value(j, c)).collect();
+                    let middle = median(inside).unwrap_or(0.0);
+                    value(row, c).unwrap_or(0.0) - middle
+                })
+                .collect()
+        })
+        .collect()
+}
+
+/// Rows that follow each other and are off the same way are no outliers.
+fn keep_conditions(measurements: &Measurements, residuals: &[Option<Vec<f64>>], out: &mut [bool]) {
+    let mut start = 0;
+    while start < out.len() {
+        let first = &measurements.rows[start];
+        let mut end = start;
+        while end < out.len()
+            && out[end]
+            && measurements.rows[end].session == first.session
+            && measurements.rows[end].what == first.what
+        {
+            end += 1;
+        }
+        if end - start >= A_CONDITION && alike(&residuals[start..end]) {
+            out[start..end].iter_mut().for_each(|out| *out = false);
+        }
+        start = end.max(start + 1);
+    }
+}
+
+fn alike(residuals: &[Option<Vec<f64>>]) -> bool {
+    let known: Vec<&Vec<f64>> = residuals.iter().flatten().collect();
+    let Some(size) = known.first().map(|first| first.len()) else { return false };
+    let length: f64 = known.iter().map(|r| r.iter().map(|v| v * v).sum::<f64>().sqrt()).sum();
+    let together: f64 =
+        (0..size).map(|c| known.iter().map(|r| r[c]).sum::<f64>()).map(|sum| sum * sum).sum::<f64>().sqrt();
+    together > 0.7 * length
+}

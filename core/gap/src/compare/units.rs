@@ -1,0 +1,281 @@
+//! A column in a wrong unit. Everything that follows would be nonsense, so it stops here, and says
+//! which column and which unit.
+
+use nalgebra::{DMatrix, DVector, Vector3};
+use plumbline_effects::measurements::{Measurements, Observation, What};
+use plumbline_effects::{Assumed, EyesDeviation};
+use plumbline_model::JobContext;
+
+use super::frames;
+use super::statistics::{median, robust_sd};
+use crate::error::GapError;
+
+/// Degrees in a radian.
+const DEGREES: f64 = 57.295_779_513_082_32;
+/// How far the ratio of measured and predicted may lie from a unit's factor.
+const NEAR: f64 = 1.2;
+/// No joint of an arm is found beyond this, rad.
+const FARTHEST_JOINT_RAD: f64 = 2.0 * std::f64::consts::PI;
+/// A block under the screen is lower, m; a weight in the hand is lighter, kg.
+const HIGHEST_BLOCK_M: f64 = 2.0;
+const HEAVIEST_KG: f64 = 20.0;
+/// Frames placed, a model of the right unit is not off by more, m. Below it no unit is suspected
+/// of angles that are possible in both.
+const GROSS_M: f64 = 0.04;
+/// The right unit makes residuals smaller at least by this.
+const CLEARLY: f64 = 5.0;
+
+/// Stops where a column is in another unit than its name says.
+///
+/// # Errors
+/// [`GapError::WrongUnit`], or cancelled.
+pub fn check(measurements: &Measurements, context: &dyn JobContext) -> Result<(), GapError> {
+    for session in 0..measurements.apparatuses.len() {
+        let rows: Vec<&Observation> = measurements.rows.iter().filter(|row| row.session == session).collect();
+        conditions(measurements, session, &rows)?;
+        angles_by_size(measurements, session, &rows)?;
+        places(measurements, session, &rows)?;
+        context.checkpoint()?;
+        lengths(measurements, session, &rows)?;
+        angles_by_fit(measurements, session, context)?;
+    }
+    Ok(())
+}
+
+fn wrong(measurements: &Measurements, session: usize, column: String, seems: &str, factor: f64) -> GapError {
+    let session = measurements.apparatuses[session].title.clone();
+    GapError::WrongUnit { session, column, seems: seems.to_owned(), factor }
+}
+
+/// Heights and weights.
+fn conditions(measurements: &Measurements, session: usize, rows: &[&Observation]) -> Result<(), GapError> {
+    let largest =
+        |value: fn(&Observation) -> f64| rows.iter().map(|row| value(row).abs()).fold(0.0, f64::max);
+    let height = largest(|row| row.screen_height_m);
+    if height > HIGHEST_BLOCK_M {
+        return Err(wrong(measurements, session, "screen_height_m".to_owned(), "millimeters", 1000.0));
+    }
+    if largest(|row| row.payload_kg) > HEAVIEST_KG {
+        return Err(wrong(measurements, session, "payload_kg".to_owned(), "grams", 1000.0));
+    }
+    Ok(())
+}
+
+/// Angles that no joint can have.
+fn angles_by_size(
+    measurements: &Measurements,
+    session: usize,
+    rows: &[&Observation],
+) -> Result<(), GapError> {
+    let Some(arm) = &measurements.apparatuses[session].arm else { return Ok(()) };
+    for (j, part) in arm.parts.iter().enumerate() {
+        for (prefix, is_encoder) in [("cmd", false), ("enc", true)] {
+            let angles: Vec<f64> = rows
+                .iter()
+                .filter_map(
+                    |row| if is_encoder { row.encoder_rad.as_ref() } else { row.commanded_rad.as_ref() },
+                )
+                .map(|angles| angles[j].abs())
+                .collect();
+            let beyond = angles.iter().filter(|angle| **angle > FARTHEST_JOINT_RAD).count();
+            if beyond > angles.len() / 10 {
+                return Err(wrong(
+                    measurements,
+                    session,
+                    format!("{prefix}_{}_rad", part.joint),
+                    "degrees",
+                    DEGREES,
+                ));
+            }
+        }
+        let commanded = spread(rows, |row| row.commanded_rad.as_ref().map(|angles| angles[j]));
+        let encoder = spread(rows, |row| row.encoder_rad.as_ref().map(|angles| angles[j]));
+        let (Some(commanded), Some(encoder)) = (commanded, encoder) else { continue };
+        for (column, ratio) in [("enc", encoder / commanded), ("cmd", commanded / encoder)] {
+            if near(ratio, DEGREES) && commanded.max(encoder) > 0.5 {
+                return Err(wrong(
+                    measurements,
+                    session,
+                    format!("{column}_{}_rad", part.joint),
+                    "degrees",
+                    DEGREES,
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Robust spread of a column over rows that have it.
+fn spread(rows: &[&Observation], value: impl Fn(&Observation) -> Option<f64>) -> Option<f64> {
+    let values: Vec<f64> = rows.iter().filter_map(|row| value(row)).collect();
+    let middle = median(values.iter().copied())?;
+    Some(robust_sd(values.iter().map(|value| value - middle))).filter(|spread| *spread > 0.0)
+}
+
+fn near(ratio: f64, factor: f64) -> bool {
+    ratio / factor < NEAR && factor / ratio < NEAR
+}
+
+/// Units of length by their factor against a meter.
+fn length_of(ratio: f64) -> Option<(&'static str, f64)> {
+    let units = [("millimeters", 1000.0), ("centimeters", 100.0), ("kilometers", 0.001)];
+    units.into_iter().find(|(_, factor)| near(ratio, *factor))
+}
+
+/// What the eyes estimated against the known places.
+fn places(measurements: &Measurements, session: usize, rows: &[&Observation]) -> Result<(), GapError> {
+    let Some(eyes) = &measurements.apparatuses[session].eyes else { return Ok(()) };
+    let nominal = EyesDeviation::none(eyes.neck.len());
+    let pairs: Vec<(Vector3<f64>, Vector3<f64>)> = rows
+        .iter()
+        .filter_map(|row| {
+            let in_left = match row.what {
+                What::Place => eyes.place(&row.measured)?,
+                What::EyePoints => {
+                    let [left_u, left_v, right_u, right_v] = *row.measured.first_chunk::<4>()?;
+                    let left = plumbline_model::Pixel::new(left_u, left_v);
+                    eyes.cameras.triangulate(left, plumbline_model::Pixel::new(right_u, right_v))?.coords
+                }
+                _ => return None,
+            };
+            let estimate = eyes.robot_from_left(&row.neck_rad, &nominal) * in_left;
+            Some((estimate.coords, row.truth_m?.coords))
+        })
+        .collect();
+    if pairs.len() < 6 {
+        return Ok(());
+    }
+    let are_estimates = rows.iter().any(|row| row.what == What::Place);
+    let whole =
+        median(pairs.iter().map(|(estimate, truth)| estimate.norm() / truth.norm().max(1e-9))).unwrap_or(1.0);
+    if let Some((unit, factor)) = length_of(whole).filter(|_| are_estimates) {
+        return Err(wrong(measurements, session, "est_x_m, est_y_m, est_z_m".to_owned(), unit, factor));
+    }
+    if let Some((unit, factor)) = length_of(1.0 / whole) {
+        return Err(wrong(measurements, session, "true_x_m, true_y_m, true_z_m".to_owned(), unit, factor));
+    }
+    for c in 0..3 {
+        let sizes = |of: fn(&(Vector3<f64>, Vector3<f64>)) -> Vector3<f64>| {
+            median(pairs.iter().map(|pair| of(pair)[c].abs())).unwrap_or(0.0)
+        };
+        let (estimate, truth) = (sizes(|pair| pair.0), sizes(|pair| pair.1));
+        if estimate.max(truth) < 1.5 || estimate.min(truth) < 1e-6 {
+            continue;
+        }
+        let axis = ["x", "y", "z"][c];
+        if let Some((unit, factor)) = length_of(estimate / truth).filter(|_| are_estimates) {
+            return Err(wrong(measurements, session, format!("est_{axis}_m"), unit, factor));
+        }
+        if let Some((unit, factor)) = length_of(truth / estimate) {
+            return Err(wrong(measurements, session, format!("true_{axis}_m"), unit, factor));
+        }
+    }
+    Ok(())
+}
+
+/// Measured lengths of touches and poses: regressed on the prediction, a coordinate of any rigid
+/// frame has a gradient of length one.
+fn lengths(measurements: &Measurements, session: usize, rows: &[&Observation]) -> Result<(), GapError> {
+    for (what, columns) in [
+        (What::Touch, &["the touchscreen's width_m", "the touchscreen's height_m"][..]),
+        (What::Pose, &["meas_x_m", "meas_y_m", "meas_z_m"][..]),
+    ] {
+        let assumed = Assumed::nominal(measurements);
+        let (mut predicted, mut measured) = (vec![], vec![]);
+        for row in rows.iter().filter(|row| row.what == what) {
+            if let Some(prediction) = measurements.predict(row, &assumed) {
+                predicted.push(prediction);
+                measured.push(row.measured.clone());
+            }
+        }
+        if predicted.len() < 12 {
+            continue;
+        }
+        let gradients: Vec<Option<f64>> = (0..columns.len())
+            .map(|c| gradient(&predicted, &measured.iter().map(|row| row[c]).collect::<Vec<_>>()))
+            .collect();
+        let units: Vec<Option<(&str, f64)>> = gradients.iter().map(|g| g.and_then(length_of)).collect();
+        let Some((unit, factor)) = units.iter().flatten().next().copied() else { continue };
+        let named: Vec<&str> =
+            columns.iter().zip(&units).filter(|(_, own)| own.is_some()).map(|(name, _)| *name).collect();
+        return Err(wrong(measurements, session, named.join(", "), unit, factor));
+    }
+    Ok(())
+}
+
+/// Length of the gradient of a measured coordinate over the predicted place, by robust regression;
+/// `None` where the prediction says little of it.
+fn gradient(predicted: &[Vec<f64>], measured: &[f64]) -> Option<f64> {
+    let count = predicted.len();
+    let columns = DMatrix::from_fn(count, 4, |i, c| if c == 0 { 1.0 } else { predicted[i][c - 1] });
+    let values = DVector::from_column_slice(measured);
+    let mut weights = DVector::from_element(count, 1.0);
+    let mut solution = DVector::zeros(4);
+    for _ in 0..15 {
+        let weighted = DMatrix::from_fn(count, 4, |i, c| columns[(i, c)] * weights[i]);
+        solution = weighted.svd(true, true).solve(&values.component_mul(&weights), 1e-6).ok()?;
+        let left = &values - &columns * &solution;
+        let scale = robust_sd(left.iter().copied()).max(1e-9);
+        weights = left.map(|value| (1.0 / (value / scale).abs().max(1.0)).sqrt());
+    }
+    let left = robust_sd((&values - &columns * &solution).iter().copied());
+    let middle = median(measured.iter().copied())?;
+    let whole = robust_sd(measured.iter().map(|value| value - middle));
+    (left < 0.5 * whole).then(|| solution.rows(1, 3).norm())
+}
+
+/// Angles that are possible in both units: the one that fits.
+fn angles_by_fit(
+    measurements: &Measurements,
+    session: usize,
+    context: &dyn JobContext,
+) -> Result<(), GapError> {
+    let Some(arm) = &measurements.apparatuses[session].arm else { return Ok(()) };
+    let only = measurements.only((0..measurements.rows.len()).filter(|&i| {
+        let row = &measurements.rows[i];
+        row.session == session && row.what.is_placed()
+    }));
+    if only.rows.len() < 12 {
+        return Ok(());
+    }
+    let off = typical_miss(&only, context)?;
+    if off < GROSS_M {
+        return Ok(());
+    }
+    for (j, part) in arm.parts.iter().enumerate() {
+        for factor in [DEGREES, 1.0 / DEGREES] {
+            let mut other = only.clone();
+            for row in &mut other.rows {
+                for angles in [&mut row.commanded_rad, &mut row.encoder_rad].into_iter().flatten() {
+                    angles[j] /= factor;
+                }
+            }
+            let largest = other.rows.iter().map(|row| row.angles_rad()[j].abs()).fold(0.0, f64::max);
+            if largest < FARTHEST_JOINT_RAD && CLEARLY * typical_miss(&other, context)? < off {
+                let prefix =
+                    if only.rows.iter().any(|row| row.encoder_rad.is_some()) { "enc" } else { "cmd" };
+                let seems = if factor > 1.0 { "degrees" } else { "converted to radians twice" };
+                return Err(wrong(
+                    measurements,
+                    session,
+                    format!("{prefix}_{}_rad", part.joint),
+                    seems,
+                    factor,
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Median length of the residual, frames placed, m.
+fn typical_miss(measurements: &Measurements, context: &dyn JobContext) -> Result<f64, GapError> {
+    let rows: Vec<usize> = (0..measurements.rows.len()).collect();
+    let assumed = frames::placed(measurements, &rows, context)?;
+    let misses = measurements.rows.iter().filter_map(|row| {
+        let predicted = measurements.predict(row, &assumed)?;
+        Some(row.measured.iter().zip(&predicted).map(|(m, p)| (m - p).powi(2)).sum::<f64>().sqrt())
+    });
+    Ok(median(misses).unwrap_or(0.0))
+}

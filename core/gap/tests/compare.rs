@@ -1,0 +1,140 @@
+//! Whether there is a gap: found where there is one, not where there is none.
+
+mod common;
+
+use common::{Plan, elbow_zero, places, poses, touches};
+use plumbline_effects::Measurements;
+use plumbline_gap::{Finding, GapError, Options, Verdict, find};
+use plumbline_model::{Cancelled, JobContext, Unattended};
+use rand::SeedableRng;
+use rand::rngs::StdRng;
+use rand::seq::SliceRandom;
+
+fn quick(measurements: &Measurements) -> Finding {
+    let options = Options { show: false, advise: false, ..Options::default() };
+    find(measurements, &options, &Unattended).expect("can be looked at")
+}
+
+#[test]
+fn noise_alone_is_no_gap() {
+    let (mut alarms, mut cases) = (vec![], 0);
+    for seed in 0..25 {
+        let basic = Plan { places: 40, repeats: 4, ..Plan::default() };
+        let sides = Plan { sides: vec!["plus", "minus"], heights: vec![0.0, 0.06, 0.12], ..Plan::default() };
+        let single = Plan { places: 120, repeats: 1, ..Plan::default() };
+        let made = [
+            touches(&basic, &[], seed),
+            touches(&sides, &[], seed + 1000),
+            touches(&single, &[], seed + 2000),
+            poses(&single, &[], seed + 3000),
+            places(3, &[], 1e-3, seed + 4000),
+            places(1, &[], 1e-3, seed + 5000),
+        ];
+        for (kind, measurements) in made.iter().enumerate() {
+            let finding = quick(measurements);
+            cases += 1;
+            if finding.comparison.is_gap {
+                alarms.push((seed, kind, finding.comparison.p_value, finding.comparison.size_sigmas));
+            }
+        }
+    }
+    println!("{} false alarms in {cases}: {alarms:?}", alarms.len());
+    assert!(alarms.len() * 50 <= cases, "{alarms:?}");
+}
+
+#[test]
+fn the_noise_of_repeats_and_of_neighbors_is_found() {
+    for (plan, from_repeats, tolerance) in
+        [(Plan::default(), true, 0.15), (Plan { places: 200, repeats: 1, ..Plan::default() }, false, 0.3)]
+    {
+        let finding = quick(&touches(&plan, &[elbow_zero(0.03)], 5));
+        assert_eq!(finding.comparison.floor_from_repeats, from_repeats);
+        for coordinate in &finding.comparison.kinds[0].coordinates[..2] {
+            let off = coordinate.floor / plan.noise_m - 1.0;
+            assert!(off.abs() < tolerance, "{}: {}", coordinate.name, coordinate.floor);
+        }
+        let said = finding.warnings.iter().any(|words| words.contains("near neighbors"));
+        assert_eq!(said, !from_repeats, "{:?}", finding.warnings);
+    }
+}
+
+#[test]
+fn a_wrong_zero_is_a_gap() {
+    for plan in [Plan::default(), Plan { places: 150, repeats: 1, ..Plan::default() }] {
+        for make in [touches, poses] {
+            let finding = quick(&make(&plan, &[elbow_zero(0.03)], 7));
+            assert!(finding.comparison.is_gap, "{:?}", finding.comparison.p_value);
+            assert!(finding.comparison.size_sigmas > 0.5);
+        }
+    }
+}
+
+#[test]
+fn exchanged_residuals_are_no_gap() {
+    let mut named = 0;
+    for seed in 0..10 {
+        let mut measurements =
+            touches(&Plan { places: 80, repeats: 2, ..Plan::default() }, &[elbow_zero(0.05)], seed);
+        // Residuals against the nominal model, frames as they are, dealt out anew.
+        let nominal = plumbline_effects::Assumed::nominal(&measurements);
+        let predicted: Vec<Vec<f64>> = measurements
+            .rows
+            .iter()
+            .map(|row| measurements.predict(row, &nominal).expect("predictable"))
+            .collect();
+        let mut residuals: Vec<Vec<f64>> = measurements
+            .rows
+            .iter()
+            .zip(&predicted)
+            .map(|(row, predicted)| row.measured.iter().zip(predicted).map(|(m, p)| m - p).collect())
+            .collect();
+        residuals.shuffle(&mut StdRng::seed_from_u64(seed));
+        for ((row, predicted), residual) in measurements.rows.iter_mut().zip(&predicted).zip(&residuals) {
+            row.measured = predicted.iter().zip(residual).map(|(p, r)| p + r).collect();
+        }
+        named += usize::from(!quick(&measurements).effects.is_empty());
+    }
+    assert_eq!(named, 0);
+}
+
+#[test]
+fn rows_of_another_session_name_nothing() {
+    for seed in 0..3 {
+        let mut measurements = poses(&Plan { places: 80, repeats: 1, ..Plan::default() }, &[], seed);
+        let mut measured: Vec<Vec<f64>> = measurements.rows.iter().map(|row| row.measured.clone()).collect();
+        measured.shuffle(&mut StdRng::seed_from_u64(seed));
+        measurements.rows.iter_mut().zip(measured).for_each(|(row, measured)| row.measured = measured);
+        let finding = quick(&measurements);
+        assert!(finding.effects.is_empty());
+        assert!(matches!(finding.verdict, Verdict::NoGap | Verdict::NotInLibrary));
+    }
+}
+
+#[test]
+fn work_stops_when_cancelled() {
+    struct Stopped;
+    impl JobContext for Stopped {
+        fn checkpoint(&self) -> Result<(), Cancelled> {
+            Err(Cancelled)
+        }
+        fn report(&self, _fraction: f64, _doing: &str) {}
+    }
+    let measurements = touches(&Plan::default(), &[], 1);
+    let error = find(&measurements, &Options::default(), &Stopped).expect_err("cancelled");
+    assert_eq!(error, GapError::Cancelled(Cancelled));
+}
+
+#[test]
+fn findings_are_files() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("finding.json");
+    let finding = quick(&touches(&Plan::default(), &[], 3));
+    finding.write(&file).expect("writable");
+    assert_eq!(Finding::read(&file).expect("readable"), finding);
+    std::fs::write(&file, "{\"format\": 99, \"version\": \"7.0\"}").expect("writable");
+    let error = Finding::read(&file).expect_err("of another version").to_string();
+    assert!(error.contains("format 99") && error.contains("7.0"), "{error}");
+    std::fs::write(&file, "{\"format\": 1}").expect("writable");
+    let error = Finding::read(&file).expect_err("not a finding").to_string();
+    assert!(error.contains("not a saved gap finding"), "{error}");
+}

@@ -1,0 +1,99 @@
+//! Data of the real robot, where they are at hand: held-out errors.
+
+use std::time::Instant;
+
+use plumbline_effects::Measurements;
+use plumbline_gap::{Finding, Options, find};
+use plumbline_model::robot::Rig;
+use plumbline_model::{Session, Unattended, measured_data};
+
+/// Rows of a session; none where the data are not at hand.
+fn session(name: &str) -> Option<Measurements> {
+    let folder = match measured_data::folder(name) {
+        Ok(folder) => folder,
+        Err(not_at_hand) => {
+            println!("{not_at_hand}");
+            return None;
+        }
+    };
+    let session = Session::read(&folder).expect("a session");
+    let rig = Rig::built_in("nico").expect("comes along");
+    Some(Measurements::of_sessions(&[(name.to_owned(), session)], &rig).expect("usable"))
+}
+
+fn found(measurements: &Measurements) -> Finding {
+    let start = Instant::now();
+    let options = Options { show: false, ..Options::default() };
+    let verdict = find(measurements, &options, &Unattended).expect("can be looked at");
+    println!("{} rows, verdict in {:.1} s", measurements.rows.len(), start.elapsed().as_secs_f64());
+    let start = Instant::now();
+    let finding = find(measurements, &Options::default(), &Unattended).expect("can be looked at");
+    println!("with held-out rows in {:.1} s", start.elapsed().as_secs_f64());
+    assert_eq!(verdict.verdict, finding.verdict);
+    print(&finding);
+    finding
+}
+
+fn print(finding: &Finding) {
+    println!("{:?}: {}", finding.verdict, finding.sentence);
+    let (comparison, shown) = (&finding.comparison, &finding.shown);
+    println!(
+        "p {:.2e}, {:.2} sigmas, {} of {} rows kept, {:?}",
+        comparison.p_value, comparison.size_sigmas, comparison.rows_kept, comparison.rows, finding.warnings
+    );
+    for coordinate in comparison.kinds.iter().flat_map(|kind| &kind.coordinates) {
+        println!(
+            "  {}: rms {:.5}, floor {:.5}, {:.2}",
+            coordinate.name, coordinate.rms, coordinate.floor, coordinate.share
+        );
+    }
+    for effect in &finding.effects {
+        let class: Vec<String> =
+            effect.class.iter().map(|member| format!("{}@{}", member.id, member.site)).collect();
+        println!(
+            "  {}@{} {:.3} {:?} class {class:?}",
+            effect.id, effect.site, effect.probability, effect.values
+        );
+    }
+    println!(
+        "{}: {:.2} -> {:.2}, floor {:.2} over {} rows; worst tenth {:.1?}, inside {:.2}, closure {:?} {:?}",
+        shown.blocks,
+        shown.before,
+        shown.after,
+        shown.floor,
+        shown.rows,
+        shown.worst_tenth,
+        shown.inside_95,
+        shown.closure,
+        shown.closure_range
+    );
+    let told: Vec<&str> = shown.telling.iter().map(|&c| shown.covariates[c].0.as_str()).collect();
+    println!("told by {told:?}; unexplained {:?}", finding.unexplained);
+}
+
+#[test]
+fn touches_of_the_real_arm() {
+    let Some(measurements) = session("nico-touch/touch-245") else { return };
+    let finding = found(&measurements);
+    assert!(finding.comparison.is_gap);
+    // Only the frame placed, commands: 6.7 mm.
+    assert!(finding.shown.before > 4.0 && finding.shown.before < 9.0, "{}", finding.shown.before);
+    assert!(finding.shown.after < finding.shown.before);
+}
+
+#[test]
+fn touches_of_the_real_arm_by_commands_alone() {
+    let Some(mut measurements) = session("nico-touch/touch-245") else { return };
+    measurements.rows.iter_mut().for_each(|row| row.encoder_rad = None);
+    let finding = found(&measurements);
+    assert!(finding.comparison.is_gap);
+    assert!((finding.shown.before - 6.7).abs() < 0.4, "{}", finding.shown.before);
+}
+
+#[test]
+fn places_of_the_real_eyes() {
+    let Some(measurements) = session("nico-vision/grid-z5") else { return };
+    let finding = found(&measurements);
+    assert!(finding.comparison.is_gap);
+    assert!((finding.shown.before - 36.8).abs() < 1.5, "{}", finding.shown.before);
+}
