@@ -1,13 +1,49 @@
 //! From rows and a noise floor to named effects with probabilities.
+//!
+//! - [`linear`]: whitened residuals and tangents of all rows, and what they add up to;
+//! - [`field`]: the evidence of any set of effects from those sums;
+//! - [`explore`]: the search through sets;
+//! - [`free`]: rivals that are in no library;
+//! - [`refit`]: the fit through the forward model;
+//! - [`naming`], [`knowledge`]: from sets with probabilities to names, classes, words.
+//!
+//! The method with its assumptions is described in the package's README.
+
+#[cfg(test)]
+mod bench;
+mod explore;
+mod field;
+mod finish;
+mod free;
+mod knowledge;
+mod library;
+mod linear;
+mod look;
+mod naming;
+mod refit;
+mod variants;
+mod weights;
 
 use nalgebra::DMatrix;
 use plumbline_effects::{Assumed, Effect, Measurements};
-use plumbline_model::JobContext;
+use plumbline_model::{JobContext, Unattended};
 
+use crate::compare::placed;
+use crate::covariates::Covariates;
 use crate::error::GapError;
 use crate::finding::{Candidate, NamedEffect, Unexplained, Verdict};
 use crate::floor::Floor;
 use crate::options::Options;
+use explore::Explored;
+use finish::Finish;
+use library::Library;
+use look::Look;
+use refit::refit;
+
+/// Times that the model is linearized anew, at the effects found before.
+const ROUNDS: usize = 3;
+/// Fewer rows than this name nothing.
+const FEWEST_ROWS: usize = 8;
 
 /// What a search found.
 #[derive(Clone, Debug)]
@@ -66,23 +102,51 @@ pub(crate) fn search(
     options: &Options,
     context: &dyn JobContext,
 ) -> Result<Found, GapError> {
-    let _ = (floor, options);
-    context.checkpoint()?;
-    Ok(Found {
-        assumed: Assumed::nominal(measurements),
-        verdict: Verdict::NoGap,
-        effects: vec![],
-        candidates: vec![],
-        unexplained: Unexplained { p_value: 1.0, probability: 0.0, depends_on: vec![], share: 1.0 },
-        weights: vec![1.0; measurements.rows.len()],
-        doubt: Doubt { effects: vec![], covariance: DMatrix::zeros(0, 0), dirt_sigmas: 0.0, noise_scale: 1.0 },
-        hypotheses: vec![],
-    })
+    let rows = measurements.rows.len();
+    if rows < FEWEST_ROWS {
+        return Err(GapError::TooFew { rows, needed: FEWEST_ROWS });
+    }
+    context.report(0.0, "placing frames");
+    let library = Library::of(measurements, options);
+    let covariates = Covariates::of(measurements);
+    let all: Vec<usize> = (0..rows).collect();
+    let start = placed(measurements, &all, context)?;
+    let bare = refit(measurements, floor, &start, &[], context)?;
+    let mut fitted = bare.clone();
+    let mut seeds = vec![vec![]];
+    let mut last: Option<(Look, Explored)> = None;
+    for round in 0..ROUNDS {
+        context.report(0.1 + 0.8 * round as f64 / ROUNDS as f64, "looking through sets of effects");
+        let look =
+            Look::at(measurements, floor, &fitted.assumed, &library, &covariates, &fitted.weights, context)?;
+        let explored = look.explore(&seeds, options.most_effects, context)?;
+        let top = top(&look, &explored);
+        let effects: Vec<Effect> = top.iter().map(|&block| library.effects[block].clone()).collect();
+        let same = effects.iter().eq(fitted.assumed.effects.iter().map(|present| &present.effect));
+        seeds.truncate(1);
+        seeds.extend(explored.models.iter().take(2).map(|model| model.set.clone()));
+        last = Some((look, explored));
+        if same {
+            break;
+        }
+        fitted = refit(measurements, floor, &fitted.assumed, &effects, context)?;
+    }
+    let Some((look, explored)) = last else {
+        return Err(GapError::TooFew { rows, needed: FEWEST_ROWS });
+    };
+    context.report(0.9, "naming");
+    let finish = Finish { measurements, floor, options, library: &library, look: &look, explored: &explored };
+    finish.found(&bare, &fitted, context)
+}
+
+/// Library's blocks of the most probable set.
+fn top(look: &Look, explored: &Explored) -> Vec<usize> {
+    let set = explored.models.first().map_or(&[][..], |model| &model.set);
+    set.iter().copied().filter(|&block| block < look.effects).collect()
 }
 
 /// Fits where the sessions' frames lie, with the effects of `start`, against outliers; the rest
 /// stays as it is.
 pub(crate) fn place(measurements: &Measurements, floor: &Floor, start: &Assumed) -> Assumed {
-    let _ = (measurements, floor);
-    start.clone()
+    refit::frames(measurements, floor, start, &Unattended).unwrap_or_else(|_| start.clone())
 }

@@ -1,0 +1,165 @@
+//! Looks through sets of effects, the most promising first.
+
+use std::collections::{HashMap, HashSet};
+
+use plumbline_model::JobContext;
+
+use super::field::{Field, log_sum};
+use super::library::Block;
+use crate::error::GapError;
+
+/// Sets whose odds against the best one are worse than this are forgotten (Occam's window).
+const WINDOW: f64 = 150.0;
+/// At most so many sets are looked around.
+const MOST_EXPANSIONS: usize = 24;
+/// Sets this much worse (log) than the best are not looked around.
+const NOT_PROMISING: f64 = 4.0;
+/// Variants this much worse (log) than the best one say nothing any more.
+const NEGLIGIBLE: f64 = 7.0;
+
+/// A set of blocks with what speaks for it.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Model {
+    /// Places of its blocks, growing.
+    pub set: Vec<usize>,
+    /// Evidence and prior, log, over all variants.
+    pub log_score: f64,
+    /// Among the sets of the window.
+    pub probability: f64,
+}
+
+/// The sets that are left, the most probable first.
+#[derive(Clone, Debug)]
+pub(super) struct Explored {
+    pub models: Vec<Model>,
+    /// Probability of each variant, of the fields given.
+    pub variants: Vec<f64>,
+}
+
+/// What may be looked through.
+pub(super) struct Space<'a> {
+    pub fields: &'a [Field],
+    pub blocks: &'a [Block],
+    /// Blocks that may be in a set.
+    pub allowed: &'a [usize],
+    /// At most so many.
+    pub most: usize,
+    /// Divides differences of log scores: above 1 for more doubt than the formula has.
+    pub temperature: f64,
+}
+
+impl Space<'_> {
+    fn prior(&self, set: &[usize]) -> f64 {
+        set.iter().map(|&block| self.blocks[block].log_prior).sum()
+    }
+
+    /// Scores of a set by field.
+    fn scores(&self, set: &[usize], fields: &[usize]) -> Vec<f64> {
+        let prior = self.prior(set);
+        fields.iter().map(|&f| self.fields[f].given(set, self.blocks).log_evidence + prior).collect()
+    }
+
+    /// Looks around from some sets on.
+    ///
+    /// # Errors
+    /// Cancelled.
+    pub fn explore(&self, seeds: &[Vec<usize>], context: &dyn JobContext) -> Result<Explored, GapError> {
+        let all: Vec<usize> = (0..self.fields.len()).collect();
+        let mut fields = all.clone();
+        let mut visited: HashMap<Vec<usize>, f64> = HashMap::new();
+        for seed in seeds {
+            let seed = self.usable(seed);
+            let score = log_sum(self.scores(&seed, &all).into_iter());
+            visited.insert(seed, score);
+        }
+        let mut expanded: HashSet<Vec<usize>> = HashSet::new();
+        for round in 0..MOST_EXPANSIONS {
+            context.checkpoint()?;
+            let best = visited.values().copied().fold(f64::NEG_INFINITY, f64::max);
+            let next = visited
+                .iter()
+                .filter(|(set, score)| !expanded.contains(*set) && **score > best - NOT_PROMISING)
+                .max_by(|a, b| a.1.total_cmp(b.1).then_with(|| b.0.cmp(a.0)));
+            let Some((set, _)) = next else { break };
+            let set = set.clone();
+            self.around(&set, &fields, &mut visited);
+            expanded.insert(set.clone());
+            if round >= 1 {
+                let scores = self.scores(&self.best(&visited), &all);
+                let most = scores.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                fields = all.iter().copied().filter(|&f| scores[f] > most - NEGLIGIBLE).collect();
+            }
+        }
+        Ok(self.left(visited, &all))
+    }
+
+    fn usable(&self, set: &[usize]) -> Vec<usize> {
+        let mut names = HashSet::new();
+        let mut set: Vec<usize> = set
+            .iter()
+            .copied()
+            .filter(|block| self.allowed.contains(block) && names.insert(self.blocks[*block].name))
+            .take(self.most)
+            .collect();
+        set.sort_unstable();
+        set
+    }
+
+    fn best(&self, visited: &HashMap<Vec<usize>, f64>) -> Vec<usize> {
+        let best = visited.iter().max_by(|a, b| a.1.total_cmp(b.1).then_with(|| b.0.cmp(a.0)));
+        best.map(|(set, _)| set.clone()).unwrap_or_default()
+    }
+
+    /// All sets with one block more, fewer or exchanged.
+    fn around(&self, set: &[usize], fields: &[usize], visited: &mut HashMap<Vec<usize>, f64>) {
+        self.additions(set, fields, visited);
+        for leave in 0..set.len() {
+            let mut base = set.to_vec();
+            base.remove(leave);
+            self.additions(&base, fields, visited);
+        }
+    }
+
+    fn additions(&self, base: &[usize], fields: &[usize], visited: &mut HashMap<Vec<usize>, f64>) {
+        let prior = self.prior(base);
+        let given: Vec<_> = fields.iter().map(|&f| self.fields[f].given(base, self.blocks)).collect();
+        visited.insert(base.to_vec(), prior + log_sum(given.iter().map(|given| given.log_evidence)));
+        if base.len() >= self.most {
+            return;
+        }
+        let names: HashSet<usize> = base.iter().map(|&block| self.blocks[block].name).collect();
+        for &block in self.allowed {
+            if names.contains(&self.blocks[block].name) {
+                continue;
+            }
+            let own = &self.blocks[block];
+            let score = log_sum(given.iter().map(|given| given.log_evidence + given.adds(own)));
+            let mut set = base.to_vec();
+            set.insert(set.partition_point(|&other| other < block), block);
+            visited.insert(set, prior + own.log_prior + score);
+        }
+    }
+
+    fn left(&self, visited: HashMap<Vec<usize>, f64>, fields: &[usize]) -> Explored {
+        let best = visited.values().copied().fold(f64::NEG_INFINITY, f64::max);
+        let window = self.temperature * WINDOW.ln();
+        let mut models: Vec<Model> = visited
+            .into_iter()
+            .filter(|(_, score)| *score > best - window)
+            .map(|(set, log_score)| Model {
+                set,
+                log_score,
+                probability: ((log_score - best) / self.temperature).exp(),
+            })
+            .collect();
+        models.sort_by(|a, b| b.log_score.total_cmp(&a.log_score).then_with(|| a.set.cmp(&b.set)));
+        let sum: f64 = models.iter().map(|model| model.probability).sum();
+        models.iter_mut().for_each(|model| model.probability /= sum);
+        let scores = models.first().map_or(vec![], |model| self.scores(&model.set, fields));
+        let total = log_sum(scores.iter().copied());
+        let variants =
+            scores.iter().map(|score| ((score - total) / self.temperature).exp()).collect::<Vec<_>>();
+        let sum: f64 = variants.iter().sum();
+        Explored { models, variants: variants.iter().map(|share| share / sum).collect() }
+    }
+}

@@ -1,0 +1,259 @@
+//! Evidence of any set of blocks, from sums whose size does not depend on the number of rows.
+//!
+//! The frame of each session is integrated out under a wide prior, small amounts of everything
+//! under a narrow one ("dirt"), and an own amount of every cell. What is left for a set S of
+//! blocks with standard-normal parameters is, up to a constant of the variant,
+//!   log p(y|S) = ½ bᵀ(1 + A)⁻¹b − ½ log det(1 + A)
+//! with A and b of the columns of S.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use super::library::Block;
+use super::linear::Sums;
+
+/// Standard deviation of a frame against where it was found, m and rad: wide.
+const FRAME: f64 = 0.5;
+
+/// How noise and prior sizes are taken to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Variant {
+    /// The floor's standard deviation times this is the noise.
+    pub noise: f64,
+    /// Each cell is off by its own amount of this standard deviation, in units of the noise.
+    pub cell: f64,
+    /// Small amounts of everything, together this large, in units of the floor.
+    pub dirt: f64,
+    /// How large an effect of these sessions is, in units of the floor; none is larger beforehand
+    /// than its usual size.
+    pub size: f64,
+    /// Logarithm of how probable this is beforehand.
+    pub log_prior: f64,
+}
+
+/// A variant with everything worked out but the set.
+pub(super) struct Field {
+    pub variant: Variant,
+    /// Columns per standard deviation of their prior.
+    pub a: DMatrix<f64>,
+    pub b: DVector<f64>,
+    /// Standard deviation of each column's parameter beforehand, in usual sizes.
+    pub scale: Vec<f64>,
+    /// Evidence of the empty set and the variant's prior.
+    pub constant: f64,
+    /// Sum of squares of the residual in units of noise, cells and dirt.
+    pub square: f64,
+}
+
+/// What does not depend on a variant's sizes: frames integrated out.
+pub(super) struct Framed {
+    pub a: DMatrix<f64>,
+    pub b: DVector<f64>,
+    /// Weighted sum of squares of the residual with every effect absent, frames fitted.
+    pub square: f64,
+    /// Log determinants.
+    logs: f64,
+    gauge: f64,
+    total: f64,
+}
+
+impl Framed {
+    /// Of sums, when cells are off by this variance; `present` are values (usual sizes) that the
+    /// residual was taken at, by column: they are put back.
+    pub fn of(sums: &Sums, cell_variance: f64, present: &DVector<f64>) -> Option<Self> {
+        let (gram, log_det) = sums.gram(cell_variance);
+        let last = gram.ncols() - 1;
+        let g = sums.gauge;
+        let k = last - g;
+        let mut b = gram.view((0, last), (last, 1)).clone_owned();
+        let mut square = gram[(last, last)];
+        let effects = gram.view((0, g), (last, k));
+        let back = effects * present;
+        square += 2.0 * present.dot(&b.rows(g, k).column(0)) + present.dot(&back.rows(g, k).column(0));
+        b += back;
+        let gauge = gram.view((0, 0), (g, g)) + DMatrix::from_diagonal_element(g, g, 1.0 / (FRAME * FRAME));
+        let gauge = Cholesky::new(gauge)?;
+        let mixed = gram.view((0, g), (g, k)).clone_owned();
+        let solved = gauge.solve(&mixed);
+        let turned = gauge.solve(&b.rows(0, g).clone_owned());
+        let a = gram.view((g, g), (k, k)) - mixed.tr_mul(&solved);
+        let own = DVector::from_column_slice(b.rows(g, k).clone_owned().as_slice());
+        let b_effects = own - mixed.tr_mul(&turned).column(0);
+        square -= b.rows(0, g).column(0).dot(&turned.column(0));
+        let logs = log_det + gauge.ln_determinant() + g as f64 * (FRAME * FRAME).ln();
+        Some(Self {
+            a: 0.5 * (&a + a.transpose()),
+            b: b_effects,
+            square,
+            logs,
+            gauge: g as f64,
+            total: sums.total,
+        })
+    }
+
+    /// Root mean square of what a usual size of each column does to the rows, in floors.
+    pub fn sizes(&self) -> Vec<f64> {
+        (0..self.a.ncols()).map(|k| (self.a[(k, k)].max(0.0) / self.total).sqrt()).collect()
+    }
+
+    /// With the sizes of a variant. `sizes`: root mean square per column, of plain weights;
+    /// `dirty`: columns that dirt is made of.
+    pub fn field(&self, variant: Variant, blocks: &[Block], sizes: &[f64], dirty: &[bool]) -> Option<Field> {
+        let k = self.a.ncols();
+        let noise = 1.0 / (variant.noise * variant.noise);
+        let kinds = dirty.iter().filter(|dirty| **dirty).count().max(1) as f64;
+        let mut narrow = DVector::zeros(k);
+        let mut scale = vec![1.0; k];
+        for block in blocks {
+            let columns = (block.len as f64).sqrt();
+            for c in block.columns() {
+                let reach = sizes[c] * columns;
+                scale[c] = 1.0 / (1.0 + (reach / variant.size).powi(2)).sqrt();
+                if dirty[c] && reach > 1e-9 {
+                    narrow[c] = (variant.dirt / kinds.sqrt() / sizes[c]).min(0.3 * scale[c]);
+                }
+            }
+        }
+        let small: Vec<usize> = (0..k).filter(|&c| narrow[c] > 0.0).collect();
+        let mut constant = -0.5 * (noise * self.square + self.logs + self.gauge * noise.ln())
+            - self.total * variant.noise.ln()
+            + variant.log_prior;
+        let (mut a, mut b) = (&self.a * noise, &self.b * noise);
+        let mut square = self.square * noise;
+        if !small.is_empty() {
+            let half = DMatrix::from_fn(k, small.len(), |r, c| a[(r, small[c])] * narrow[small[c]]);
+            let mut inner =
+                DMatrix::from_fn(small.len(), small.len(), |r, c| half[(small[r], c)] * narrow[small[r]]);
+            inner.fill_diagonal_add(1.0);
+            let inner = Cholesky::new(inner)?;
+            let narrow_b = DVector::from_fn(small.len(), |r, _| b[small[r]] * narrow[small[r]]);
+            let lower = inner.l();
+            let right = lower.solve_lower_triangular(&half.transpose())?;
+            let turned = lower.solve_lower_triangular(&narrow_b)?;
+            a -= right.tr_mul(&right);
+            b -= right.tr_mul(&turned);
+            constant += 0.5 * (turned.norm_squared() - inner.ln_determinant());
+            square -= turned.norm_squared();
+        }
+        for c in 0..k {
+            a.column_mut(c).scale_mut(scale[c]);
+            a.row_mut(c).scale_mut(scale[c]);
+            b[c] *= scale[c];
+        }
+        Some(Field { variant, a, b, scale, constant, square })
+    }
+}
+
+trait AddDiagonal {
+    fn fill_diagonal_add(&mut self, value: f64);
+}
+
+impl AddDiagonal for DMatrix<f64> {
+    fn fill_diagonal_add(&mut self, value: f64) {
+        for k in 0..self.nrows() {
+            self[(k, k)] += value;
+        }
+    }
+}
+
+/// A field given that some blocks are present.
+pub(super) struct Given<'a> {
+    field: &'a Field,
+    columns: Vec<usize>,
+    solved: Option<(Cholesky<f64, Dyn>, DMatrix<f64>, DVector<f64>)>,
+    /// Evidence of the set.
+    pub log_evidence: f64,
+}
+
+impl Field {
+    /// Given the blocks of a set.
+    pub fn given<'a>(&'a self, set: &[usize], blocks: &[Block]) -> Given<'a> {
+        let columns: Vec<usize> = set.iter().flat_map(|&block| blocks[block].columns()).collect();
+        if columns.is_empty() {
+            return Given { field: self, columns, solved: None, log_evidence: self.constant };
+        }
+        let mut own = DMatrix::from_fn(columns.len(), columns.len(), |r, c| self.a[(columns[r], columns[c])]);
+        own.fill_diagonal_add(1.0);
+        let b = DVector::from_iterator(columns.len(), columns.iter().map(|&c| self.b[c]));
+        match Cholesky::new(own) {
+            Some(cholesky) => {
+                let means = cholesky.solve(&b);
+                let rows = DMatrix::from_fn(columns.len(), self.a.ncols(), |r, c| self.a[(columns[r], c)]);
+                let solved = cholesky.solve(&rows);
+                let log_evidence = self.constant + 0.5 * (b.dot(&means) - cholesky.ln_determinant());
+                Given { field: self, columns, solved: Some((cholesky, solved, means)), log_evidence }
+            }
+            None => Given { field: self, columns, solved: None, log_evidence: f64::NEG_INFINITY },
+        }
+    }
+}
+
+impl Given<'_> {
+    /// How much evidence one more block adds.
+    pub fn adds(&self, block: &Block) -> f64 {
+        let (a, b) = self.rest(block);
+        gain(&a, &b)
+    }
+
+    /// A and b of a block when the set is there already.
+    fn rest(&self, block: &Block) -> (DMatrix<f64>, DVector<f64>) {
+        let at = block.start;
+        let mut a = self.field.a.view((at, at), (block.len, block.len)).clone_owned();
+        let mut b = self.field.b.rows(at, block.len).clone_owned();
+        if let Some((_, solved, means)) = &self.solved {
+            for r in 0..block.len {
+                for (i, &column) in self.columns.iter().enumerate() {
+                    let mixed = self.field.a[(at + r, column)];
+                    b[r] -= mixed * means[i];
+                    for c in 0..block.len {
+                        a[(r, c)] -= mixed * solved[(i, at + c)];
+                    }
+                }
+            }
+        }
+        (a, b)
+    }
+
+    /// Sum of squares that the set leaves, in units of noise, cells and dirt.
+    pub fn square_left(&self) -> f64 {
+        let explained = self.solved.as_ref().map_or(0.0, |(_, _, means)| {
+            self.columns.iter().zip(means.iter()).map(|(&c, mean)| self.field.b[c] * mean).sum()
+        });
+        self.field.square - explained
+    }
+
+    /// Means of the set's parameters and their covariance, in usual sizes.
+    pub fn values(&self) -> (DVector<f64>, DMatrix<f64>) {
+        let Some((cholesky, _, means)) = &self.solved else {
+            return (DVector::zeros(0), DMatrix::zeros(0, 0));
+        };
+        let scale =
+            DVector::from_iterator(self.columns.len(), self.columns.iter().map(|&c| self.field.scale[c]));
+        let mut covariance = cholesky.inverse();
+        for k in 0..scale.len() {
+            covariance.column_mut(k).scale_mut(scale[k]);
+            covariance.row_mut(k).scale_mut(scale[k]);
+        }
+        (means.component_mul(&scale), covariance)
+    }
+}
+
+/// ½ bᵀ(1 + A)⁻¹b − ½ log det(1 + A).
+fn gain(a: &DMatrix<f64>, b: &DVector<f64>) -> f64 {
+    if b.len() == 1 {
+        let one = (1.0 + a[(0, 0)]).max(1e-12);
+        return 0.5 * (b[0] * b[0] / one - one.ln());
+    }
+    let mut own = a.clone();
+    own.fill_diagonal_add(1.0);
+    Cholesky::new(own)
+        .map_or(f64::NEG_INFINITY, |cholesky| 0.5 * (b.dot(&cholesky.solve(b)) - cholesky.ln_determinant()))
+}
+
+/// log Σ exp.
+pub(super) fn log_sum(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let most = values.clone().fold(f64::NEG_INFINITY, f64::max);
+    if !most.is_finite() {
+        return most;
+    }
+    most + values.map(|value| (value - most).exp()).sum::<f64>().ln()
+}

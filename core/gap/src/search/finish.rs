@@ -1,0 +1,245 @@
+//! Puts together what a search found.
+
+use nalgebra::{Cholesky, DMatrix};
+use plumbline_effects::measurements::{Measurements, What};
+use plumbline_effects::{Assumed, Effect, Present};
+use plumbline_model::JobContext;
+
+use super::explore::{Explored, Model};
+use super::library::Library;
+use super::linear::Linear;
+use super::look::{Look, TEMPERATURE};
+use super::naming::{Evidence, Named};
+use super::refit::{Fitted, frames};
+use super::{Doubt, Found, Hypothesis, knowledge};
+use crate::error::GapError;
+use crate::finding::{Dependence, Unexplained, Verdict};
+use crate::floor::Floor;
+use crate::options::Options;
+
+/// At most so many sets are told.
+const MOST_HYPOTHESES: usize = 8;
+/// Sets less probable than this are not told.
+const LEAST_HYPOTHESIS: f64 = 0.01;
+/// At most so many covariates that the rest depends on.
+const MOST_DEPENDENCES: usize = 3;
+/// A frame's standard deviation beforehand, m and rad.
+const FRAME: f64 = 0.5;
+
+/// All that the answer is made of.
+pub(super) struct Finish<'a> {
+    pub measurements: &'a Measurements,
+    pub floor: &'a Floor,
+    pub options: &'a Options,
+    pub library: &'a Library,
+    pub look: &'a Look,
+    pub explored: &'a Explored,
+}
+
+impl Finish<'_> {
+    /// The answer. `bare`: frames alone; `fitted`: with the most probable set.
+    pub fn found(&self, bare: &Fitted, fitted: &Fitted, context: &dyn JobContext) -> Result<Found, GapError> {
+        let evidence = Evidence {
+            library: self.library,
+            look: self.look,
+            explored: self.explored,
+            floor: self.floor,
+            floor_mm: floor_mm(self.measurements, self.floor),
+            temperature: TEMPERATURE,
+        };
+        let named = evidence.name();
+        let effects: Vec<Present> = named
+            .blocks
+            .iter()
+            .zip(&named.effects)
+            .map(|(&block, effect)| Present {
+                effect: self.library.effects[block].clone(),
+                values: effect.values.clone(),
+            })
+            .collect();
+        let start = Assumed { effects, placements: fitted.assumed.placements.clone() };
+        let assumed = frames(self.measurements, self.floor, &start, context)?;
+        let doubt = self.doubt(&assumed, &fitted.weights, context)?;
+        let hypotheses = self.hypotheses(&assumed, context)?;
+        let after = self.misses(&assumed, context)?;
+        let share = share_left(&bare.misses, &after, &fitted.weights, doubt.noise_scale);
+        let unexplained = Unexplained {
+            p_value: named.p_value,
+            probability: named.unknown,
+            depends_on: self.depends_on(&named),
+            share,
+        };
+        let candidates = knowledge::candidates(self.library, self.look, &named);
+        Ok(Found {
+            assumed,
+            verdict: named.verdict,
+            effects: named.effects,
+            candidates,
+            unexplained,
+            weights: fitted.weights.clone(),
+            doubt,
+            hypotheses,
+        })
+    }
+
+    fn misses(&self, assumed: &Assumed, context: &dyn JobContext) -> Result<Vec<Option<f64>>, GapError> {
+        let linear = Linear::of(self.measurements, self.floor, assumed, &[], context)?;
+        let residual = linear.lines.column(linear.lines.ncols() - 1).clone_owned();
+        Ok(linear.misses(self.measurements.rows.len(), &residual))
+    }
+
+    /// Covariance of values and frames at the model that was found.
+    fn doubt(&self, assumed: &Assumed, weights: &[f64], context: &dyn JobContext) -> Result<Doubt, GapError> {
+        let effects: Vec<Effect> = assumed.effects.iter().map(|present| present.effect.clone()).collect();
+        let linear = Linear::of(self.measurements, self.floor, assumed, &effects, context)?;
+        let sessions = self.measurements.apparatuses.len();
+        let variant = self.look.fields.get(self.look.likely(self.explored)).map(|field| field.variant);
+        let (noise, cell, dirt) = variant.map_or((1.0, 0.0, 0.0), |v| (v.noise, v.cell, v.dirt));
+        let (gram, _) = linear.sums(weights).gram(cell * cell);
+        let own = gram.ncols() - 1;
+        let mut normal = gram.view((0, 0), (own, own)) / (noise * noise);
+        for k in 0..own {
+            normal[(k, k)] += if k < linear.gauge { 1.0 / (FRAME * FRAME) } else { 1.0 };
+        }
+        let inverse =
+            Cholesky::new(normal).map_or_else(|| DMatrix::identity(own, own), |normal| normal.inverse());
+        // From frames first, those of placed sessions only, to effects first and six per session.
+        let count = own - linear.gauge;
+        let place: Vec<usize> =
+            (0..own)
+                .map(|k| {
+                    if k < linear.gauge {
+                        count + 6 * linear.sessions[k / 6] + k % 6
+                    } else {
+                        k - linear.gauge
+                    }
+                })
+                .collect();
+        let mut covariance = DMatrix::zeros(count + 6 * sessions, count + 6 * sessions);
+        for r in 0..own {
+            for c in 0..own {
+                covariance[(place[r], place[c])] = inverse[(r, c)];
+            }
+        }
+        Ok(Doubt { effects, covariance, dirt_sigmas: cell.hypot(dirt), noise_scale: noise })
+    }
+
+    fn hypotheses(&self, best: &Assumed, context: &dyn JobContext) -> Result<Vec<Hypothesis>, GapError> {
+        if !self.options.advise {
+            return Ok(vec![]);
+        }
+        let mut merged: Vec<(Vec<usize>, f64)> = vec![];
+        for model in &self.explored.models {
+            let set = self.of_library(model);
+            match merged.iter_mut().find(|(known, _)| *known == set) {
+                Some((_, probability)) => *probability += model.probability,
+                None => merged.push((set, model.probability)),
+            }
+        }
+        merged.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let likely = &self.look.fields[self.look.likely(self.explored)];
+        merged
+            .into_iter()
+            .take(MOST_HYPOTHESES)
+            .filter(|(_, probability)| *probability >= LEAST_HYPOTHESIS)
+            .map(|(set, probability)| {
+                let (means, _) = likely.given(&set, &self.look.blocks).values();
+                let mut at = 0;
+                let effects = set
+                    .iter()
+                    .map(|&block| {
+                        let effect = self.library.effects[block].clone();
+                        let values = effect
+                            .parameters()
+                            .iter()
+                            .map(|parameter| {
+                                at += 1;
+                                means[at - 1] * parameter.typical
+                            })
+                            .collect();
+                        Present { effect, values }
+                    })
+                    .collect();
+                let names = set.iter().map(|&block| self.library.effects[block].name()).collect();
+                let start = Assumed { effects, placements: best.placements.clone() };
+                let assumed = frames(self.measurements, self.floor, &start, context)?;
+                Ok(Hypothesis { names, probability, assumed })
+            })
+            .collect()
+    }
+
+    fn of_library(&self, model: &Model) -> Vec<usize> {
+        model.set.iter().copied().filter(|&block| block < self.look.effects).collect()
+    }
+
+    /// What the rest depends on, when something unknown is at work.
+    fn depends_on(&self, named: &Named) -> Vec<Dependence> {
+        if named.verdict != Verdict::NotInLibrary {
+            return vec![];
+        }
+        let Some(top) = self.explored.models.first() else { return vec![] };
+        let set = self.of_library(top);
+        let field = &self.look.fields[self.look.likely(self.explored)];
+        let given = field.given(&set, &self.look.blocks);
+        let left = given.square_left() - self.look.within.0;
+        let free = self.look.total - self.look.within.1 - self.look.gauge as f64;
+        let mut all: Vec<Dependence> = self
+            .look
+            .allowed
+            .iter()
+            .filter(|&&block| block >= self.look.effects)
+            .map(|&block| {
+                let rival = &self.look.rivals[block - self.look.effects];
+                let mut with = set.clone();
+                with.push(block);
+                let less = field.given(&with, &self.look.blocks).square_left() - self.look.within.0;
+                let share = ((left - less) / (left - 0.8 * free).max(left - less).max(1e-9)).clamp(0.0, 1.0);
+                Dependence { on: rival.on.clone(), of: rival.of.clone(), share, formula: None }
+            })
+            .collect();
+        all.sort_by(|a, b| b.share.total_cmp(&a.share));
+        all.truncate(MOST_DEPENDENCES);
+        all
+    }
+}
+
+/// Of what lies beyond the floor, how much is left.
+fn share_left(before: &[Option<f64>], after: &[Option<f64>], weights: &[f64], noise: f64) -> f64 {
+    let beyond = |misses: &[Option<f64>]| {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (miss, weight) in misses.iter().zip(weights) {
+            if let Some(miss) = miss {
+                sum += weight * miss * miss;
+                count += weight;
+            }
+        }
+        (sum / f64::max(count, 1e-9) - noise * noise).max(0.0).sqrt()
+    };
+    let gap = beyond(before);
+    if gap > 0.0 { (beyond(after) / gap).min(1.0) } else { 0.0 }
+}
+
+/// Length of one floor on the table, mm; of eye points, px.
+fn floor_mm(measurements: &Measurements, floor: &Floor) -> f64 {
+    let Some(kind) = floor.kinds.first() else { return 0.0 };
+    let length = |sd: &[f64]| sd.iter().map(|sd| sd * sd).sum::<f64>().sqrt();
+    match kind.what {
+        What::Touch => 1e3 * length(&kind.sd[..2]),
+        What::Pose => 1e3 * length(&kind.sd),
+        What::EyePoints => length(&kind.sd),
+        What::Place => {
+            let depths = measurements.rows.iter().filter(|row| row.what == What::Place).filter_map(|row| {
+                let eyes = measurements.apparatus(row).eyes.as_ref()?;
+                Some(eyes.place(&row.measured)?.z / eyes.cameras.baseline_m())
+            });
+            // Across the view; along it the error is larger by depth over baseline.
+            let far = crate::compare::median(depths).unwrap_or(0.0);
+            let baseline = measurements
+                .apparatuses
+                .iter()
+                .find_map(|a| a.eyes.as_ref())
+                .map_or(0.0, |e| e.cameras.baseline_m());
+            1e3 * far * baseline * kind.sd[0].hypot(kind.sd[1]).hypot(far * kind.sd[2])
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Free-form rivals: what no effect of the library does, as a smooth function of something that
+//! was logged.
+
+use nalgebra::DMatrix;
+use plumbline_effects::Kind;
+use plumbline_effects::measurements::{Measurements, What};
+
+use super::library::{Block, Library};
+use super::linear::Linear;
+use crate::covariates::Covariates;
+
+/// Smooth functions of each covariate.
+const FUNCTIONS: usize = 6;
+/// How probable it is beforehand that something is at work that is not in the library.
+const UNKNOWN: f64 = 0.1;
+/// Makes columns large against what is looked for: how large a rival is says the variant alone.
+const LARGE: f64 = 100.0;
+
+/// A rival.
+#[derive(Clone, Debug)]
+pub(super) struct Rival {
+    /// What depends ("turn of the elbow", "along u").
+    pub of: String,
+    /// On what ("angle of the elbow").
+    pub on: String,
+    /// Place of the covariate.
+    pub covariate: usize,
+}
+
+/// What moves.
+enum Moved {
+    /// A column of the lines.
+    Column(usize),
+    /// The measured coordinate itself.
+    Coordinate(What, usize),
+}
+
+/// Rivals with their columns, one line as in `linear`; their blocks are numbered from the end of
+/// the library's on and share one name: only one at a time.
+pub(super) fn rivals(
+    measurements: &Measurements,
+    covariates: &Covariates,
+    library: &Library,
+    linear: &Linear,
+) -> (Vec<Rival>, Vec<Block>, DMatrix<f64>) {
+    let mut rivals = vec![];
+    let mut columns: Vec<Vec<f64>> = vec![];
+    let mut add = |of: String, moved: &Moved, covariate: usize, sided: Option<usize>| {
+        let base = base(measurements, linear, moved);
+        let Some(own) = functions(linear, covariates, &base, covariate, sided) else { return };
+        let (name, _) = &covariates.names[covariate];
+        let on = if sided.is_some() { format!("{name} and its direction") } else { name.clone() };
+        rivals.push(Rival { of, on, covariate });
+        columns.extend(own);
+    };
+    let find = |name: &str| covariates.names.iter().position(|(known, _)| known == name);
+    for (effect, block) in library.effects.iter().zip(&library.blocks) {
+        let neck = effect.kind == Kind::HeadJoint;
+        if effect.kind != Kind::JointZero && !neck {
+            continue;
+        }
+        let title = effect.title.split(':').next().unwrap_or_default().to_owned();
+        let moved = Moved::Column(linear.gauge + block.start);
+        let of = format!("turn of {title}");
+        let angle = find(&format!("angle of {title}"));
+        let direction = find(&format!("direction of {title}"));
+        for what in ["angle", "torque", "temperature"] {
+            if let Some(covariate) = find(&format!("{what} of {title}")) {
+                add(of.clone(), &moved, covariate, None);
+            }
+        }
+        if let (Some(angle), Some(direction)) = (angle, direction) {
+            add(of.clone(), &moved, angle, Some(direction));
+        }
+        if let Some(time) = find("time") {
+            add(of.clone(), &moved, time, None);
+        }
+    }
+    for (what, on) in [
+        (What::Touch, &["along u", "along v", "time", "duration of the move"][..]),
+        (What::Pose, &["time"]),
+        (What::Place, &EYES),
+        (What::EyePoints, &EYES),
+    ] {
+        if !measurements.has(what) {
+            continue;
+        }
+        for coordinate in 0..what.len() {
+            for on in on {
+                if let Some(covariate) = find(on) {
+                    let of = super::linear::coordinate_name(what, coordinate).to_owned();
+                    add(of, &Moved::Coordinate(what, coordinate), covariate, None);
+                }
+            }
+        }
+    }
+    let count = rivals.len().max(1) as f64;
+    let blocks = (0..rivals.len())
+        .map(|k| Block {
+            start: library.columns + k * FUNCTIONS,
+            len: FUNCTIONS,
+            name: library.names.len(),
+            log_prior: (UNKNOWN / count).ln(),
+        })
+        .collect();
+    let lines = linear.lines.nrows();
+    let matrix = DMatrix::from_fn(lines, columns.len(), |line, column| columns[column][line]);
+    (rivals, blocks, matrix)
+}
+
+const EYES: [&str; 6] = [
+    "distance from the eyes",
+    "distance from the middle of the image",
+    "distance of the background",
+    "along x of the table",
+    "along y of the table",
+    "time",
+];
+
+fn base(measurements: &Measurements, linear: &Linear, moved: &Moved) -> Vec<f64> {
+    match moved {
+        Moved::Column(column) => linear.lines.column(*column).iter().copied().collect(),
+        Moved::Coordinate(what, coordinate) => (0..linear.row.len())
+            .map(|line| {
+                let own = measurements.rows[linear.row[line]].what == *what;
+                f64::from(u8::from(own && linear.coordinate[line] == *coordinate))
+            })
+            .collect(),
+    }
+}
+
+/// Cosines of the covariate over its range, times what moves. `None` when too few rows know it.
+fn functions(
+    linear: &Linear,
+    covariates: &Covariates,
+    base: &[f64],
+    covariate: usize,
+    sided: Option<usize>,
+) -> Option<Vec<Vec<f64>>> {
+    let value = |line: usize| covariates.values[linear.row[line]][covariate];
+    let known: Vec<f64> = (0..base.len()).filter_map(value).collect();
+    let (low, high) = known.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
+    let mut distinct = known.clone();
+    distinct.sort_by(f64::total_cmp);
+    distinct.dedup_by(|a, b| (*a - *b).abs() < 1e-3 * (high - low));
+    if distinct.len() < FUNCTIONS + 3 || known.len() * 2 < base.len() {
+        return None;
+    }
+    let side =
+        |line: usize| sided.map_or(1.0, |sided| covariates.values[linear.row[line]][sided].unwrap_or(0.0));
+    let columns = (0..FUNCTIONS).map(|k| {
+        (0..base.len())
+            .map(|line| {
+                let Some(value) = value(line) else { return 0.0 };
+                let share = (value - low) / (high - low);
+                // With a direction, an offset is a rival, too: sides differ by more than a play.
+                let order = if sided.is_some() { k } else { k + 1 } as f64;
+                LARGE * base[line] * side(line) * (std::f64::consts::PI * order * share).cos()
+            })
+            .collect()
+    });
+    Some(columns.collect())
+}

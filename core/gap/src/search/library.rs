@@ -1,0 +1,79 @@
+//! Candidates and free-form rivals as blocks of columns.
+
+use plumbline_effects::measurements::Measurements;
+use plumbline_effects::{Effect, Kind};
+
+use crate::options::Options;
+
+/// A block of columns that is in the model or not, as a whole.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    /// First column.
+    pub start: usize,
+    /// Number of columns.
+    pub len: usize,
+    /// Number of its name. Two blocks of one name (shapes of one effect) are never in together.
+    pub name: usize,
+    /// How much it is trusted beforehand, log of the odds.
+    pub log_prior: f64,
+}
+
+impl Block {
+    /// Its columns.
+    pub fn columns(&self) -> std::ops::Range<usize> {
+        self.start..self.start + self.len
+    }
+}
+
+/// The candidates of a search.
+#[derive(Clone, Debug)]
+pub(super) struct Library {
+    /// Effects in their shapes.
+    pub effects: Vec<Effect>,
+    /// One per effect.
+    pub blocks: Vec<Block>,
+    /// Distinct names.
+    pub names: Vec<String>,
+    /// Columns in all.
+    pub columns: usize,
+}
+
+impl Library {
+    /// What the rows could show and the lab does not rule out.
+    pub fn of(measurements: &Measurements, options: &Options) -> Self {
+        let ruled_out = |effect: &Effect| {
+            options.ruled_out.iter().any(|out| *out == effect.id() || *out == effect.name())
+        };
+        Self::with(Effect::candidates(measurements).into_iter().filter(|effect| !ruled_out(effect)).collect())
+    }
+
+    /// Of these effects.
+    pub fn with(effects: Vec<Effect>) -> Self {
+        let mut names: Vec<String> = vec![];
+        let mut blocks: Vec<Block> = vec![];
+        let mut start = 0;
+        for effect in &effects {
+            let own = effect.name();
+            let name = names.iter().position(|name| *name == own).unwrap_or_else(|| {
+                names.push(own);
+                names.len() - 1
+            });
+            let len = effect.parameters().len();
+            blocks.push(Block { start, len, name, log_prior: 0.0 });
+            start += len;
+        }
+        let mut shapes = vec![0_usize; names.len()];
+        blocks.iter().for_each(|block| shapes[block.name] += 1);
+        // One expected effect in all; an effect with many shapes is not more probable for it.
+        let odds = 1.0 / (names.len() as f64).max(2.0);
+        for block in &mut blocks {
+            block.log_prior = (odds / shapes[block.name] as f64).ln();
+        }
+        Self { effects, blocks, names, columns: start }
+    }
+
+    /// Effects that the frame of a session cannot be told from, if there is one session.
+    pub fn is_frame(kind: Kind) -> bool {
+        matches!(kind, Kind::BaseTilt | Kind::ScreenTilt)
+    }
+}

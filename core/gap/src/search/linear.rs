@@ -1,0 +1,194 @@
+//! Residuals and tangents of all rows at the present model, and what they add up to.
+
+use nalgebra::{DMatrix, DVector};
+use plumbline_effects::measurements::{Measurements, What};
+use plumbline_effects::{Assumed, Effect, Tangents};
+use plumbline_model::JobContext;
+use rayon::prelude::*;
+
+use crate::error::GapError;
+use crate::floor::Floor;
+
+/// Rows between two looks at whether to stop.
+const CHUNK: usize = 256;
+
+/// Whitened by the floor: one line per coordinate of every row that is predicted.
+pub(super) struct Linear {
+    /// Gauge columns, six per session with a frame to fit; they come first.
+    pub gauge: usize,
+    /// Session of each six of them.
+    pub sessions: Vec<usize>,
+    /// Gauge columns, effects, then free-form ones if any, then the residual as the last one.
+    pub lines: DMatrix<f64>,
+    /// Row of each line.
+    pub row: Vec<usize>,
+    /// Coordinate of each line.
+    pub coordinate: Vec<usize>,
+    /// Cell of each line, counted per coordinate and kind.
+    pub cell: Vec<usize>,
+    /// Number of those.
+    pub cells: usize,
+}
+
+impl Linear {
+    /// At the model `assumed`, for these effects.
+    ///
+    /// # Errors
+    /// Cancelled.
+    pub fn of(
+        measurements: &Measurements,
+        floor: &Floor,
+        assumed: &Assumed,
+        effects: &[Effect],
+        context: &dyn JobContext,
+    ) -> Result<Self, GapError> {
+        let rows = &measurements.rows;
+        let mut tangents: Vec<Option<Tangents>> = Vec::with_capacity(rows.len());
+        for chunk in rows.chunks(CHUNK) {
+            context.checkpoint()?;
+            tangents.par_extend(
+                chunk.par_iter().with_min_len(8).map(|row| measurements.tangents(row, assumed, effects)),
+            );
+        }
+        let mut sessions: Vec<usize> =
+            rows.iter().filter(|row| row.what.is_placed()).map(|row| row.session).collect();
+        sessions.sort_unstable();
+        sessions.dedup();
+        let gauge = 6 * sessions.len();
+        let columns: usize = effects.iter().map(|effect| effect.parameters().len()).sum();
+        let used = |row: usize| Some((tangents[row].as_ref()?, floor.of(rows[row].what)?));
+        let count: usize =
+            (0..rows.len()).filter(|&i| used(i).is_some()).map(|i| rows[i].measured.len()).sum();
+        let mut lines = DMatrix::zeros(count, gauge + columns + 1);
+        let (mut row_of, mut coordinate, mut cell) = (vec![], vec![], vec![]);
+        let mut cells = std::collections::HashMap::new();
+        for (i, row) in rows.iter().enumerate() {
+            let Some((tangents, floor)) = used(i) else { continue };
+            let place = sessions.iter().position(|session| *session == row.session);
+            for c in 0..row.measured.len() {
+                let line = row_of.len();
+                let sd = floor.sd[c];
+                if let Some(place) = place.filter(|_| row.what.is_placed()) {
+                    for k in 0..6 {
+                        lines[(line, 6 * place + k)] = tangents.gauge[(c, k)] / sd;
+                    }
+                }
+                for k in 0..columns {
+                    lines[(line, gauge + k)] = tangents.effects[(c, k)] / sd;
+                }
+                lines[(line, gauge + columns)] = (row.measured[c] - tangents.predicted[c]) / sd;
+                let next = cells.len();
+                cell.push(*cells.entry((row.cell, row.what, c)).or_insert(next));
+                row_of.push(i);
+                coordinate.push(c);
+            }
+        }
+        Ok(Self { gauge, sessions, lines, row: row_of, coordinate, cell, cells: cells.len() })
+    }
+
+    /// Number of columns without gauge and residual.
+    pub fn effects(&self) -> usize {
+        self.lines.ncols() - self.gauge - 1
+    }
+
+    /// Whitened residual of each row, in units of the floor: root mean square over coordinates.
+    pub fn misses(&self, rows: usize, residual: &DVector<f64>) -> Vec<Option<f64>> {
+        let mut sums = vec![(0.0, 0_usize); rows];
+        for (line, &row) in self.row.iter().enumerate() {
+            sums[row].0 += residual[line] * residual[line];
+            sums[row].1 += 1;
+        }
+        sums.into_iter().map(|(sum, count)| (count > 0).then(|| (sum / count as f64).sqrt())).collect()
+    }
+
+    /// Puts more columns before the residual.
+    pub fn append(&mut self, more: &DMatrix<f64>) {
+        let old = self.lines.ncols();
+        let lines = std::mem::replace(&mut self.lines, DMatrix::zeros(0, 0));
+        let mut wide = lines.insert_columns(old - 1, more.ncols(), 0.0);
+        wide.columns_mut(old - 1, more.ncols()).copy_from(more);
+        self.lines = wide;
+    }
+
+    /// Sums over rows, each with its weight.
+    pub fn sums(&self, weights: &[f64]) -> Sums {
+        let mut scaled = self.lines.clone();
+        let mut counts = vec![0.0; self.cells];
+        let mut total = 0.0;
+        for line in 0..scaled.nrows() {
+            let weight = weights[self.row[line]];
+            counts[self.cell[line]] += weight;
+            total += weight;
+            scaled.row_mut(line).scale_mut(weight.sqrt());
+        }
+        let gram = scaled.tr_mul(&scaled);
+        let repeated = counts.iter().any(|count| *count > 1.0);
+        let means = if repeated {
+            let mut means = DMatrix::zeros(self.cells, self.lines.ncols());
+            for line in 0..self.lines.nrows() {
+                let weight = weights[self.row[line]];
+                let mut into = means.row_mut(self.cell[line]);
+                into.zip_apply(&self.lines.row(line), |sum, value| *sum += weight * value);
+            }
+            Some(means)
+        } else {
+            None
+        };
+        Sums { gauge: self.gauge, gram, means, counts, total }
+    }
+}
+
+/// What evidence needs of the rows; its size does not depend on their number, cells apart.
+pub(super) struct Sums {
+    /// Gauge columns.
+    pub gauge: usize,
+    gram: DMatrix<f64>,
+    /// Per cell, weighted sum of its lines; `None` when no cell has more than one.
+    means: Option<DMatrix<f64>>,
+    counts: Vec<f64>,
+    /// Sum of the weights of all lines.
+    pub total: f64,
+}
+
+impl Sums {
+    /// Gram matrix of all columns and the residual when each cell is off by an own amount of this
+    /// variance (in squares of the floor), and the logarithm of the determinant of the covariance.
+    pub fn gram(&self, cell_variance: f64) -> (DMatrix<f64>, f64) {
+        let log_det: f64 = self.counts.iter().map(|count| (1.0 + cell_variance * count).ln()).sum();
+        let shrink = |count: f64| cell_variance / (1.0 + cell_variance * count);
+        let gram = match &self.means {
+            // Cells of one line each: w/(1 + s w), nearly w/(1 + s) for the few with a weight below 1.
+            None => &self.gram / (1.0 + cell_variance),
+            Some(means) => {
+                let mut scaled = means.clone();
+                for (cell, count) in self.counts.iter().enumerate() {
+                    scaled.row_mut(cell).scale_mut(shrink(*count).sqrt());
+                }
+                &self.gram - scaled.tr_mul(&scaled)
+            }
+        };
+        (gram, log_det)
+    }
+}
+
+/// Names of coordinates, for people.
+pub(super) fn coordinate_name(what: What, coordinate: usize) -> &'static str {
+    what.coordinates()[coordinate].0
+}
+
+impl Sums {
+    /// Sum of squares of the residual about the means of cells, and its degrees of freedom.
+    pub fn within(&self) -> (f64, f64) {
+        let Some(means) = &self.means else { return (0.0, 0.0) };
+        let last = self.gram.ncols() - 1;
+        let used = self.counts.iter().filter(|count| **count > 0.0).count() as f64;
+        let between: f64 = self
+            .counts
+            .iter()
+            .enumerate()
+            .filter(|(_, count)| **count > 0.0)
+            .map(|(cell, count)| means[(cell, last)].powi(2) / count)
+            .sum();
+        ((self.gram[(last, last)] - between).max(0.0), (self.total - used).max(0.0))
+    }
+}

@@ -1,0 +1,170 @@
+//! One look at the data: everything linear at the present model.
+
+use nalgebra::DVector;
+use plumbline_effects::Assumed;
+use plumbline_effects::measurements::Measurements;
+use plumbline_model::JobContext;
+
+use super::explore::{Explored, Space};
+use super::field::{Field, Framed};
+use super::free::{Rival, rivals};
+use super::library::{Block, Library};
+use super::linear::Linear;
+use super::variants::variants;
+use crate::covariates::Covariates;
+use crate::error::GapError;
+use crate::floor::Floor;
+
+/// Effects are looked for that reach this size (floors) at this many usual sizes.
+const SMALLEST: f64 = 0.3;
+const LARGEST_VALUE: f64 = 3.0;
+/// And whose usual size stands out of the noise by so many standard deviations.
+const SEEN_SIGMAS: f64 = 1.5;
+/// Divides log odds: see the README's section on calibration.
+pub(super) const TEMPERATURE: f64 = 1.0;
+
+/// Everything at one linearization.
+pub(super) struct Look {
+    pub blocks: Vec<Block>,
+    pub rivals: Vec<Rival>,
+    /// Number of library blocks; rivals come after.
+    pub effects: usize,
+    pub fields: Vec<Field>,
+    /// Frames integrated out, rows independent.
+    pub plain: Framed,
+    /// What a usual size of each column does, in floors.
+    pub sizes: Vec<f64>,
+    /// Blocks that are looked through.
+    pub allowed: Vec<usize>,
+    /// Values in the model at this linearization, by column, usual sizes.
+    pub present: DVector<f64>,
+    /// Sum of the weights of all coordinates, and sum of squares about the cells' means.
+    pub total: f64,
+    pub within: (f64, f64),
+    pub gauge: usize,
+    pub cells: usize,
+}
+
+impl Look {
+    /// At a model.
+    ///
+    /// # Errors
+    /// Cancelled.
+    pub fn at(
+        measurements: &Measurements,
+        floor: &Floor,
+        assumed: &Assumed,
+        library: &Library,
+        covariates: &Covariates,
+        weights: &[f64],
+        context: &dyn JobContext,
+    ) -> Result<Self, GapError> {
+        let mut linear = Linear::of(measurements, floor, assumed, &library.effects, context)?;
+        let (rivals, more, columns) = rivals(measurements, covariates, library, &linear);
+        linear.append(&columns);
+        let mut blocks = library.blocks.clone();
+        blocks.extend(more);
+        context.checkpoint()?;
+        let sums = linear.sums(weights);
+        let count = linear.effects();
+        let mut present = DVector::zeros(count);
+        for one in &assumed.effects {
+            let place = library.effects.iter().position(|effect| *effect == one.effect);
+            let Some(place) = place else { continue };
+            for ((k, value), parameter) in
+                library.blocks[place].columns().zip(&one.values).zip(one.effect.parameters())
+            {
+                present[k] = value / parameter.typical;
+            }
+        }
+        let nothing =
+            || GapError::TooFew { rows: measurements.rows.len(), needed: measurements.rows.len() + 10 };
+        let plain = Framed::of(&sums, 0.0, &present).ok_or_else(nothing)?;
+        let sizes = plain.sizes();
+        let allowed: Vec<usize> = (0..blocks.len())
+            .filter(|&block| {
+                let size = blocks[block].columns().map(|c| sizes[c] * sizes[c]).sum::<f64>().sqrt();
+                let seen = size * sums.total.sqrt();
+                LARGEST_VALUE * size >= SMALLEST && seen >= SEEN_SIGMAS
+            })
+            .collect();
+        let mut dirty = vec![false; count];
+        let mut names = std::collections::HashSet::new();
+        for &block in allowed.iter().filter(|&&block| block < library.blocks.len()) {
+            if names.insert(blocks[block].name) {
+                blocks[block].columns().for_each(|c| dirty[c] = true);
+            }
+        }
+        let mut fields = vec![];
+        let mut last: Option<(f64, Framed)> = None;
+        for variant in variants(floor.from_repeats) {
+            context.checkpoint()?;
+            let again = last.take().filter(|(cell, _)| *cell == variant.cell);
+            let framed = match again {
+                Some((_, framed)) => framed,
+                None => match Framed::of(&sums, variant.cell * variant.cell, &present) {
+                    Some(framed) => framed,
+                    None => continue,
+                },
+            };
+            fields.extend(framed.field(variant, &blocks, &sizes, &dirty));
+            last = Some((variant.cell, framed));
+        }
+        let within = sums.within();
+        let (total, gauge, cells) = (sums.total, sums.gauge, linear.cells);
+        let effects = library.blocks.len();
+        Ok(Self {
+            blocks,
+            rivals,
+            effects,
+            fields,
+            plain,
+            sizes,
+            allowed,
+            present,
+            total,
+            within,
+            gauge,
+            cells,
+        })
+    }
+
+    /// Looks through sets of blocks.
+    ///
+    /// # Errors
+    /// Cancelled.
+    pub fn explore(
+        &self,
+        seeds: &[Vec<usize>],
+        most: usize,
+        context: &dyn JobContext,
+    ) -> Result<Explored, GapError> {
+        let space = Space {
+            fields: &self.fields,
+            blocks: &self.blocks,
+            allowed: &self.allowed,
+            most,
+            temperature: TEMPERATURE,
+        };
+        space.explore(seeds, context)
+    }
+
+    /// Root mean square of what values (usual sizes) of a block do to the rows, in floors.
+    pub fn does(&self, block: usize, values: &[f64]) -> f64 {
+        let columns = self.blocks[block].columns();
+        let at = columns.start;
+        let square: f64 = columns
+            .clone()
+            .flat_map(|r| columns.clone().map(move |c| (r, c)))
+            .map(|(r, c)| values[r - at] * values[c - at] * self.plain.a[(r, c)])
+            .sum();
+        (square.max(0.0) / self.total).sqrt()
+    }
+
+    /// Place of the most probable variant.
+    pub fn likely(&self, explored: &Explored) -> usize {
+        (0..self.fields.len())
+            .max_by(|&a, &b| explored.variants[a].total_cmp(&explored.variants[b]))
+            .unwrap_or(0)
+    }
+}

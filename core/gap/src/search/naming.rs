@@ -1,0 +1,281 @@
+//! From sets with probabilities to names, classes and a verdict.
+
+use nalgebra::DMatrix;
+use plumbline_effects::Effect;
+
+use super::explore::{Explored, Model};
+use super::field::log_sum;
+use super::library::Library;
+use super::look::Look;
+use super::variants::UNKNOWN_CELL;
+use crate::compare::f_tail;
+use crate::finding::{ClassMember, FoundParameter, NamedEffect, Verdict};
+use crate::floor::Floor;
+
+/// Names whose odds against the best one are no worse than this cannot be told from it.
+const SAME_CLASS_ODDS: f64 = 10.0;
+/// Effects of a class are named from this probability of the class on.
+const NAMED_FROM: f64 = 0.5;
+/// An effect that does less than this to the rows (floors) is dirt and gets no name.
+const SMALLEST: f64 = 0.3;
+/// Beyond this many usual sizes a fit is at its bound.
+const BOUND: f64 = 3.0;
+/// One name stands for its class from this probability on.
+const ONE_NAME: f64 = 0.8;
+/// Lack of fit that vetoes names: probability by chance, and how much larger than noise the rest is.
+const VETO_P: f64 = 1e-4;
+const VETO_SIZE: f64 = 0.45;
+/// Cells off by this, dirt, are no lack of fit.
+const TOLERATED_CELL: f64 = 0.2;
+
+/// What the sets say together.
+pub(super) struct Named {
+    pub verdict: Verdict,
+    pub effects: Vec<NamedEffect>,
+    /// Blocks of the effects that are named, in the same order.
+    pub blocks: Vec<usize>,
+    /// Probability of each name of the library.
+    pub names: Vec<f64>,
+    /// Probability that something is at work that no name stands for.
+    pub unknown: f64,
+    /// Of what is left by noise and dirt alone.
+    pub p_value: f64,
+}
+
+/// What the search has, for naming.
+pub(super) struct Evidence<'a> {
+    pub library: &'a Library,
+    pub look: &'a Look,
+    pub explored: &'a Explored,
+    pub floor: &'a Floor,
+    /// Length of a floor on the table, mm (px for eye points).
+    pub floor_mm: f64,
+    pub temperature: f64,
+}
+
+impl Evidence<'_> {
+    /// Names what the sets agree on.
+    pub fn name(&self) -> Named {
+        let models = &self.explored.models;
+        let names = self.of_names();
+        let top: Vec<usize> = models.first().map_or(vec![], |model| self.of_library(model));
+        let values = self.values(&top);
+        let (p_value, left) = self.lack_of_fit(models.first().map_or(&[], |model| &model.set));
+        let (p_library, left_library) = self.lack_of_fit(&top);
+        let rival: f64 =
+            models.iter().filter(|model| self.has_rival(model)).map(|model| model.probability).sum();
+        let vetoed = p_library < VETO_P && left_library > VETO_SIZE;
+        let unknown = rival.max(if vetoed { 0.95 } else { 0.0 }).max(self.white());
+        let mut found = vec![];
+        for (place, &block) in top.iter().enumerate() {
+            let (own, covariance) = &values[place];
+            let size = self.look.does(block, own);
+            if size < SMALLEST {
+                continue;
+            }
+            let effect = self.effect(&top, block, own, covariance, size, &names);
+            if effect.class_probability >= NAMED_FROM {
+                found.push((block, effect));
+            }
+        }
+        found.sort_by(|a, b| b.1.size_sigmas.total_cmp(&a.1.size_sigmas));
+        let (blocks, effects): (Vec<usize>, Vec<NamedEffect>) = found.into_iter().unzip();
+        let verdict = if unknown > 0.5 {
+            Verdict::NotInLibrary
+        } else if effects.is_empty() {
+            Verdict::NoGap
+        } else if effects.iter().all(|effect| effect.class.len() == 1 || effect.probability >= ONE_NAME) {
+            Verdict::Named
+        } else {
+            Verdict::Class
+        };
+        let _ = left;
+        Named { verdict, effects, blocks, names, unknown, p_value }
+    }
+
+    fn has_rival(&self, model: &Model) -> bool {
+        model.set.iter().any(|&block| block >= self.look.effects)
+    }
+
+    fn of_library(&self, model: &Model) -> Vec<usize> {
+        model.set.iter().copied().filter(|&block| block < self.look.effects).collect()
+    }
+
+    /// Probability of each name.
+    fn of_names(&self) -> Vec<f64> {
+        let mut names = vec![0.0; self.library.names.len()];
+        for model in &self.explored.models {
+            for block in self.of_library(model) {
+                names[self.look.blocks[block].name] += model.probability;
+            }
+        }
+        names
+    }
+
+    /// Probability that every cell is off by an own large amount.
+    fn white(&self) -> f64 {
+        let fields = self.look.fields.iter().zip(&self.explored.variants);
+        fields.filter(|(field, _)| field.variant.cell >= UNKNOWN_CELL).map(|(_, share)| share).sum()
+    }
+
+    /// Values and covariance of each block of a set, in usual sizes.
+    fn values(&self, set: &[usize]) -> Vec<(Vec<f64>, DMatrix<f64>)> {
+        let Some(field) = self.look.fields.get(self.look.likely(self.explored)) else { return vec![] };
+        let (means, covariance) = field.given(set, &self.look.blocks).values();
+        let mut at = 0;
+        set.iter()
+            .map(|&block| {
+                let len = self.look.blocks[block].len;
+                let own = means.rows(at, len).iter().copied().collect();
+                let covariance = covariance.view((at, at), (len, len)).clone_owned();
+                at += len;
+                (own, covariance)
+            })
+            .collect()
+    }
+
+    /// Lack of fit of a set: probability by noise and dirt alone, and what is left beyond noise, in
+    /// floors.
+    fn lack_of_fit(&self, set: &[usize]) -> (f64, f64) {
+        let tolerated = |cell: f64| (cell - TOLERATED_CELL).abs();
+        let field = self.look.fields.iter().min_by(|a, b| {
+            let key = |field: &super::field::Field| {
+                let variant = field.variant;
+                tolerated(variant.cell) + (variant.noise - 1.0).abs() + (variant.size - 3.0).abs()
+                    - variant.dirt
+            };
+            key(a).total_cmp(&key(b))
+        });
+        let Some(field) = field else { return (1.0, 0.0) };
+        let columns: usize = set.iter().map(|&block| self.look.blocks[block].len).sum();
+        let left = field.given(set, &self.look.blocks).square_left() - self.look.within.0;
+        let free = self.look.total - self.look.within.1 - self.look.gauge as f64 - columns as f64;
+        if free < 1.0 {
+            return (1.0, 0.0);
+        }
+        let below: f64 =
+            self.floor.kinds.iter().map(|kind| kind.degrees_of_freedom * kind.sd.len() as f64).sum();
+        let ratio = left / free;
+        let repeats = self.look.total / (self.look.total - self.look.within.1);
+        ((f_tail(ratio, free, below.max(4.0))), ((ratio - 1.0).max(0.0) / repeats).sqrt())
+    }
+
+    fn effect(
+        &self,
+        set: &[usize],
+        block: usize,
+        own: &[f64],
+        covariance: &DMatrix<f64>,
+        size: f64,
+        names: &[f64],
+    ) -> NamedEffect {
+        let effect = &self.library.effects[block];
+        let name = self.look.blocks[block].name;
+        let rivals = self.exchanged(set, block);
+        let best = rivals.iter().map(|(_, score, _)| *score).fold(f64::NEG_INFINITY, f64::max);
+        let own_score = rivals.iter().find(|(other, ..)| *other == name).map_or(best, |(_, score, _)| *score);
+        let inside = |score: f64| score > own_score - SAME_CLASS_ODDS.ln();
+        let mut members: Vec<(usize, f64, usize)> =
+            rivals.iter().copied().filter(|(other, score, _)| *other == name || inside(*score)).collect();
+        members.sort_by(|a, b| (b.0 == name).cmp(&(a.0 == name)).then(b.1.total_cmp(&a.1)));
+        let total = log_sum(members.iter().map(|(_, score, _)| *score));
+        let class: Vec<ClassMember> = members
+            .iter()
+            .map(|(_, score, block)| {
+                let effect = &self.library.effects[*block];
+                ClassMember {
+                    id: effect.id().to_owned(),
+                    site: effect.site.clone(),
+                    title: effect.title.clone(),
+                    probability: (score - total).exp(),
+                }
+            })
+            .collect();
+        let runner_up = rivals
+            .iter()
+            .filter(|(other, score, _)| *other != name && !inside(*score))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(other, score, _)| {
+                (self.library.names[*other].clone(), (score - own_score) / std::f64::consts::LN_10)
+            });
+        let class_probability: f64 = self
+            .explored
+            .models
+            .iter()
+            .filter(|model| {
+                let has = |block: &usize| {
+                    let own = self.look.blocks[*block].name;
+                    members.iter().any(|(name, ..)| *name == own)
+                };
+                model.set.iter().any(has)
+            })
+            .map(|model| model.probability)
+            .sum();
+        let typical: Vec<f64> = effect.parameters().iter().map(|parameter| parameter.typical).collect();
+        let values: Vec<f64> = own.iter().zip(&typical).map(|(value, typical)| value * typical).collect();
+        let covariance =
+            DMatrix::from_fn(own.len(), own.len(), |r, c| covariance[(r, c)] * typical[r] * typical[c]);
+        let at_bound = own.iter().any(|value| value.abs() > BOUND);
+        NamedEffect {
+            id: effect.id().to_owned(),
+            site: effect.site.clone(),
+            title: effect.title.clone(),
+            probability: names[name].min(1.0),
+            class_probability: class_probability.min(1.0),
+            parameters: parameters(effect, &values, &covariance),
+            covariance: covariance.transpose().iter().copied().collect(),
+            shape: effect.shape,
+            values,
+            size_sigmas: size,
+            size_mm: size * self.floor_mm,
+            class,
+            split_by: None,
+            runner_up,
+            not_addable: at_bound.then(|| {
+                "its fit lies beyond what is plausible for this effect, so something else is probably at work"
+                    .to_owned()
+            }),
+        }
+    }
+
+    /// Every name in the place of one block of a set: name, log score over its shapes, and its best
+    /// shape.
+    fn exchanged(&self, set: &[usize], block: usize) -> Vec<(usize, f64, usize)> {
+        let base: Vec<usize> = set.iter().copied().filter(|&other| other != block).collect();
+        let taken: Vec<usize> = base.iter().map(|&block| self.look.blocks[block].name).collect();
+        let blocks = &self.look.blocks;
+        let given: Vec<_> = self.look.fields.iter().map(|field| field.given(&base, blocks)).collect();
+        let mut found: Vec<(usize, Vec<(f64, usize)>)> = vec![];
+        for &other in self.look.allowed.iter().filter(|&&other| other < self.look.effects) {
+            let name = blocks[other].name;
+            if taken.contains(&name) {
+                continue;
+            }
+            let adds = given.iter().map(|given| given.log_evidence + given.adds(&blocks[other]));
+            let score = (blocks[other].log_prior + log_sum(adds)) / self.temperature;
+            match found.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, shapes)) => shapes.push((score, other)),
+                None => found.push((name, vec![(score, other)])),
+            }
+        }
+        found
+            .into_iter()
+            .filter_map(|(name, shapes)| {
+                let best = shapes.iter().max_by(|a, b| a.0.total_cmp(&b.0))?.1;
+                Some((name, log_sum(shapes.iter().map(|(score, _)| *score)), best))
+            })
+            .collect()
+    }
+}
+
+fn parameters(effect: &Effect, values: &[f64], covariance: &DMatrix<f64>) -> Vec<FoundParameter> {
+    let reported = effect.report(values, covariance);
+    let found = reported.into_iter().map(|one| FoundParameter {
+        name: one.name,
+        value: one.value,
+        low: one.low,
+        high: one.high,
+        text: one.text,
+    });
+    found.collect()
+}
