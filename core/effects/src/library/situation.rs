@@ -1,6 +1,6 @@
 //! What effects depend on: loads, directions, where the finger points.
 
-use nalgebra::{Isometry3, Point3, Vector3};
+use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 
 use crate::arm::{Arm, Frames};
 use crate::measurements::Observation;
@@ -15,7 +15,7 @@ pub struct Situation<'a> {
     pub(super) torques_nm: Vec<f64>,
     /// The same for one kilogram at the palm.
     pub(super) torques_per_kg_nm: Vec<f64>,
-    /// Gravity across each axis, own frame.
+    /// Gravity across each axis, own frame at angle zero.
     pub(super) sideways_nm: Vec<Vector3<f64>>,
     /// Gravity about the base, level part, robot frame.
     pub(super) lean_nm: Vector3<f64>,
@@ -57,7 +57,9 @@ impl<'a> Situation<'a> {
         let sideways_nm = (0..arm.len())
             .map(|j| {
                 let across = moments[j] - frames.axes[j] * torques_nm[j];
-                frames.robot_from_joint[j].rotation.inverse() * across
+                // A joint gives way across its axis before it turns: the frame at angle zero.
+                let turn = UnitQuaternion::from_axis_angle(&arm.parts[j].axis, angles_rad[j]);
+                turn * (frames.robot_from_joint[j].rotation.inverse() * across)
             })
             .collect();
         let tip = Point3::from(frames.robot_from_tip.translation.vector);
