@@ -153,3 +153,19 @@ fn eyes_of_a_robot_without_eyes_are_refused_in_words() {
     assert!(matches!(error, MeasurementsError::Lacks { .. }));
     assert!(error.to_string().contains("eyes"), "{error}");
 }
+
+#[test]
+fn the_order_of_poses_tells_the_last_motion_of_each_joint() {
+    let measurements = measured(true, None);
+    assert_eq!(measurements.rows[0].direction, vec![0.0; 6], "nobody knows how it began");
+    for pair in measurements.rows.windows(2) {
+        for j in 0..6 {
+            let turned = pair[1].angles_rad()[j] - pair[0].angles_rad()[j];
+            if turned.abs() > 0.01 {
+                assert_eq!(pair[1].direction[j], turned.signum());
+            }
+        }
+    }
+    let kinds = Effect::candidates(&measurements);
+    assert!(kinds.iter().any(|effect| effect.kind == Kind::Backlash));
+}

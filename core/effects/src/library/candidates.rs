@@ -13,8 +13,12 @@ const YAW_CONSTANTS_S: [f64; 4] = [120.0, 240.0, 480.0, 960.0];
 const YAW_DELAYS_S: [f64; 3] = [0.0, 90.0, 180.0];
 /// A time law needs rows over this time, s.
 const SHORTEST_SPAN_S: f64 = 60.0;
-/// Teeth per turn that are tried, if rows resolve them.
-const ORDERS: [f64; 8] = [10.0, 12.0, 16.0, 20.0, 25.0, 32.0, 40.0, 50.0];
+/// A joint must be held at least so long for it to creep, s. Repeats that follow each other closely
+/// are not held in between.
+const SHORTEST_HOLD_S: f64 = 180.0;
+/// Teeth per turn that are tried, if rows resolve them: fewest, most, and how many orders at most.
+const ORDERS: [f64; 2] = [10.0, 60.0];
+const MOST_ORDERS: usize = 16;
 /// Servos hold less than this with ease: no limit is looked for, N m.
 const EASY_TORQUE_NM: f64 = 0.1;
 /// Steps in angle or height below this are no difference.
@@ -139,7 +143,7 @@ impl Known {
             Kind::Backlash => self.directions,
             Kind::Stiction => self.directions && self.commanded,
             Kind::ServoDroop | Kind::TorqueLimit => self.arm && self.commanded,
-            Kind::Creep => self.longest_hold_s >= SHORTEST_SPAN_S,
+            Kind::Creep => self.longest_hold_s >= SHORTEST_HOLD_S,
             Kind::EarlyLog => self.lag,
             Kind::ServoWarmUp => span(&self.arm_secs) >= SHORTEST_SPAN_S,
             Kind::SlippedHorn => moments(&self.arm_secs).len() >= 4,
@@ -171,7 +175,7 @@ impl Known {
             Kind::ToothRipple => {
                 let angles = effect.joint.and_then(|j| self.angles_rad.get(j));
                 let orders: Vec<f64> = angles.map_or(vec![], |angles| resolved(angles));
-                with_shapes(&effect, &orders, [orders.first().copied().unwrap_or(0.0), 60.0])
+                with_shapes(&effect, &orders, ORDERS)
             }
             Kind::TorqueLimit => {
                 let torques = effect.joint.and_then(|j| self.torques_nm.get(j));
@@ -261,15 +265,19 @@ fn constants(span_s: f64) -> Vec<f64> {
 }
 
 /// Orders of a ripple that these angles resolve: several periods, and enough distinct angles in
-/// each.
+/// each. Neighbors differ by about two radians of phase from one end of the angles to the other.
 fn resolved(sorted_rad: &[f64]) -> Vec<f64> {
     let mut distinct = sorted_rad.to_vec();
     distinct.dedup_by(|a, b| (*a - *b).abs() < 1e-4);
-    let turns = span(&distinct) / std::f64::consts::TAU;
-    ORDERS
-        .into_iter()
+    let range_rad = span(&distinct);
+    let turns = range_rad / std::f64::consts::TAU;
+    let step = (2.0 / range_rad.max(0.1)).round().max(1.0);
+    let count = ((ORDERS[1] - ORDERS[0]) / step) as usize;
+    let all: Vec<f64> = (0..=count)
+        .map(|k| ORDERS[0] + step * k as f64)
         .filter(|order| turns * order >= 2.0 && distinct.len() as f64 >= 6.0 * turns * order)
-        .collect()
+        .collect();
+    thinned(&all, MOST_ORDERS)
 }
 
 /// Torques above which a servo may give up: some rows must lie above, more below.

@@ -5,8 +5,11 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-use super::{Apparatus, Observation};
+use super::{Apparatus, Observation, What};
 use crate::library::Situation;
+
+/// Less than this is no motion, rad.
+const LEAST_MOTION_RAD: f64 = 2e-3;
 
 /// Fills in what follows from several rows together.
 pub(super) fn complete(rows: &mut [Observation], apparatuses: &[Apparatus]) {
@@ -18,6 +21,9 @@ pub(super) fn complete(rows: &mut [Observation], apparatuses: &[Apparatus]) {
     for order in tables.values() {
         holds(rows, order);
         speeds(rows, order);
+        if rows[order[0]].what == What::Pose {
+            directions(rows, order);
+        }
         torques(rows, order, apparatuses);
     }
 }
@@ -32,6 +38,24 @@ fn holds(rows: &mut [Observation], order: &[usize]) {
         let start = since.filter(|(held, _)| *held == cell).map_or(t_secs, |(_, start)| start);
         since = Some((cell, start));
         rows[i].hold_secs = Some(t_secs - start);
+    }
+}
+
+/// An arm that is measured from outside goes from pose to pose: where no row says from which side
+/// it came, the order of the rows does. A joint that rests keeps the side of its last motion.
+fn directions(rows: &mut [Observation], order: &[usize]) {
+    if order.iter().any(|i| rows[*i].approach.is_some()) {
+        return;
+    }
+    for pair in order.windows(2) {
+        let before = rows[pair[0]].direction.clone();
+        let (from, to) = (rows[pair[0]].angles_rad(), rows[pair[1]].angles_rad());
+        let side = |(k, side): (usize, &f64)| {
+            let turned_rad = to[k] - from[k];
+            if turned_rad.abs() < LEAST_MOTION_RAD { *side } else { turned_rad.signum() }
+        };
+        let after = before.iter().enumerate().map(side).collect();
+        rows[pair[1]].direction = after;
     }
 }
 
