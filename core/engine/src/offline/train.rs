@@ -7,6 +7,7 @@ use plumbline_correction::{
     CorrectionModel, CrossValidation, Errors, FileError, Method, TouchData, spread_of_repeats,
     train as train_model,
 };
+use plumbline_model::robot::RigPart;
 use plumbline_model::session::Screen;
 use plumbline_model::{JobContext, Pixel};
 use serde::Serialize;
@@ -70,6 +71,7 @@ pub fn train(args: &TrainArgs, context: &dyn JobContext) -> Result<TrainReport, 
         return Err(FileError::NotANetwork.into());
     }
     let (recorded, rig) = session::open(&args.session)?;
+    rig.need(RigPart::Touchscreen)?;
     let chain = recorded.manifest.chain.as_ref();
     // A session without touches has no use for a chain, and is told so.
     let usual = || rig.arms.first().and_then(|arm| arm.tips.first()).map(|tip| tip.link.as_str());
