@@ -182,6 +182,49 @@ fn size_zero_is_the_nominal_model_and_usual_size_is_not() {
     }
 }
 
+/// Whatever gives way under a load lowers it: all mass at the tip, measured from outside.
+#[test]
+fn what_gives_way_gives_way_downward() {
+    let mut measurements = everything(60);
+    if let Some(arm) = &mut measurements.apparatuses[0].arm {
+        arm.parts.iter_mut().for_each(|part| part.mass_kg = 0.0);
+        arm.palm_m = Point3::from(arm.last_from_tip.translation.vector);
+    }
+    measurements.rows.retain(|row| row.what == What::Pose);
+    for row in &mut measurements.rows {
+        row.encoder_rad = None;
+        row.payload_kg = 0.5;
+    }
+    let loaded = [
+        Kind::ServoDroop,
+        Kind::JointSag,
+        Kind::SidewaysGive,
+        Kind::LinkBending,
+        Kind::Creep,
+        Kind::TorqueLimit,
+        Kind::TorsoLean,
+        Kind::PayloadMass,
+    ];
+    let nominal = Assumed::nominal(&measurements);
+    let candidates = Effect::candidates(&measurements);
+    for kind in loaded {
+        let mut lowest_m = 0.0_f64;
+        for effect in candidates.iter().filter(|effect| effect.kind == kind) {
+            // Small enough for the load not to swing past its lowest place.
+            let values = vec![0.05 * effect.parameters()[0].typical];
+            let present = Present { effect: effect.clone(), values };
+            let with = Assumed { effects: vec![present], ..nominal.clone() };
+            for row in &measurements.rows {
+                let place = |model| measurements.predict(row, model).expect("predictable")[2];
+                let rise_m = place(&with) - place(&nominal);
+                assert!(rise_m < 1e-7, "{} rises by {rise_m} m", effect.name());
+                lowest_m = lowest_m.min(rise_m);
+            }
+        }
+        assert!(lowest_m < -1e-6, "{} does not give way: {lowest_m} m", kind.id());
+    }
+}
+
 #[test]
 fn tangents_are_the_slope_of_the_prediction() {
     let measurements = everything(24);
