@@ -23,7 +23,7 @@ use plumbline_model::session::RigReference;
 use plumbline_model::{Session, Unattended};
 
 /// Cases are made anew when the physics changes.
-const PHYSICS: &str = "v1";
+const PHYSICS: &str = "v3";
 const THREADS: usize = 2;
 
 type AnyError = Box<dyn std::error::Error + Send + Sync>;
@@ -124,7 +124,7 @@ fn make_missing(recipes: &[Recipe], folder: &Path) -> Result<(), AnyError> {
         for i in 0..THREADS {
             let work = || {
                 while let Some(recipe) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let made = case::make_or_other(&bench, &planner, recipe)
+                    let made = case::make_or_smaller(&bench, &planner, recipe)
                         .and_then(|case| case::write(&case, &folder.join("cases"), &folder.join("answers")));
                     if let Err(error) = made {
                         eprintln!("case {:03} was not made: {error}", recipe.number);

@@ -16,6 +16,7 @@ use crate::bench::{Bench, RIG, TIP};
 use crate::design::{Design, Planner};
 use crate::error::BlindError;
 use crate::measure::{residual_m, sigma_m, size_sigmas};
+use crate::mix::SIZES;
 use crate::secret::{Kind, Secret};
 use crate::stage::{Cell, Met, Stage};
 
@@ -29,8 +30,10 @@ const PACE_S: f64 = 7.0;
 const START_S: f64 = 40.0;
 /// Dirt is at most so large, in sigmas.
 const DIRT_SIGMAS: f64 = 0.2;
+/// What chance does when nothing is left to it: six joints and a descent.
+const USUAL_CHANCES: [f64; 7] = [0.5; 7];
 /// Draws before a case is given up.
-const DRAWS: usize = 60;
+const DRAWS: usize = 24;
 
 /// What kind of case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -116,8 +119,9 @@ pub fn make(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) -> Result<Cas
             let secret = maker.candidate(&Kind::NAMED, &all, &mut random);
             let Some(secret) = secret else { continue };
             let found = maker.size(&secret, &order, &few, &clean, &bare)?;
-            if found > 1e-6 {
-                dirt.push(secret.with_amount(secret.amount * size / found));
+            let amount = secret.amount * size / found.max(1e-9);
+            if amount.abs() <= secret.kind.most() {
+                dirt.push(secret.with_amount(amount));
             }
         }
     }
@@ -138,17 +142,20 @@ pub fn make(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) -> Result<Cas
     Ok(Case { session, answer })
 }
 
-/// Makes a case; where the kind that was asked for cannot be as large as wanted, one of any kind.
+/// Makes a case; where a kind cannot be as large as wanted on this robot, as large as it can.
 ///
 /// # Errors
 /// When the physics does not accept it or the arm misses the screen.
-pub fn make_or_other(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) -> Result<Case, BlindError> {
-    match make(bench, planner, recipe) {
-        Err(BlindError::Plan { .. } | BlindError::Missed { .. }) if recipe.kind.is_some() => {
-            let seed = recipe.seed.wrapping_add(1);
-            make(bench, planner, &Recipe { kind: None, seed, ..recipe.clone() })
+pub fn make_or_smaller(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) -> Result<Case, BlindError> {
+    let smaller = |size: f64| SIZES.into_iter().rev().find(|smaller| *smaller < 0.9 * size);
+    let mut recipe = recipe.clone();
+    loop {
+        match make(bench, planner, &recipe) {
+            Err(BlindError::TooLarge { .. }) if smaller(recipe.size_sigmas).is_some() => {
+                recipe.size_sigmas = smaller(recipe.size_sigmas).unwrap_or(recipe.size_sigmas);
+            }
+            made => return made,
         }
-        made => made,
     }
 }
 
@@ -210,9 +217,10 @@ impl Maker<'_> {
         Ok(places
             .iter()
             .map(|&cell| {
-                let t_secs =
-                    order.touches.iter().find(|(number, _)| *number == cell).map_or(START_S, |x| x.1);
-                stage.touch(&self.cells[cell], t_secs, 0.5)
+                // One of its repeats, another one for the next cell: early and late ones.
+                let mut repeats = order.touches.iter().filter(|(number, _)| *number == cell);
+                let t_secs = repeats.nth(cell % self.design.repeats()).map_or(START_S, |touch| touch.1);
+                stage.touch(&self.cells[cell], t_secs, &USUAL_CHANCES)
             })
             .collect())
     }
@@ -282,7 +290,7 @@ impl Maker<'_> {
                 return Ok((secret, size));
             }
         }
-        Err(BlindError::Plan { found: 0, wanted: 1 })
+        Err(BlindError::TooLarge { size_sigmas: recipe.size_sigmas })
     }
 
     /// Something that this plan can show, at a usual amount.
@@ -295,6 +303,10 @@ impl Maker<'_> {
         let joint = if joints.is_empty() { 0 } else { joints[random.random_range(0..joints.len())] };
         let once = joints.is_empty() || taken.iter().any(|s| s.joint == joint && s.kind.joints().len() > 1);
         if taken.iter().any(|s| s.kind == kind && (once || s.joint == joint)) {
+            return None;
+        }
+        let leans = |kind: Kind| matches!(kind, Kind::TorsoLean | Kind::OtherArm);
+        if leans(kind) && taken.iter().any(|s| leans(s.kind)) {
             return None;
         }
         // One cable, one drive of an encoder, one play per joint.
@@ -361,7 +373,8 @@ impl Maker<'_> {
         let mut stage = self.stage(secrets, order)?;
         let (mut rows, mut residuals) = (vec![], vec![]);
         for (cell, t_secs) in &order.touches {
-            let Some(met) = stage.touch(&self.cells[*cell], *t_secs, random.random()) else { continue };
+            let chances: [f64; 7] = random.random();
+            let Some(met) = stage.touch(&self.cells[*cell], *t_secs, &chances) else { continue };
             let cell = &self.cells[*cell];
             let Some((met, pixel)) = self.log(met, random) else { continue };
             residuals.push((cell.number, residual_m(self.bench, &met, cell.height_m)));

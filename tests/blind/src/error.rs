@@ -32,6 +32,14 @@ pub enum BlindError {
         /// Wanted.
         wanted: usize,
     },
+    /// Nothing can be made so large.
+    #[error(
+        "no effect that was tried becomes as large as {size_sigmas} sigma on this robot: ask for a smaller one"
+    )]
+    TooLarge {
+        /// Wanted.
+        size_sigmas: f64,
+    },
     /// Too few fingers met the glass.
     #[error("only {met} of {tried} touches met the image: the arm misses the screen")]
     Missed {

@@ -31,7 +31,8 @@ pub fn recipes(cases: usize, seed: u64) -> Vec<Recipe> {
             let size_sigmas = match family {
                 Family::Null => 0.0,
                 Family::Single => SIZES[(number / 2) % SIZES.len()],
-                _ => [2.0, 3.0, 5.0][random.random_range(0..3)],
+                Family::OffLibrary => [2.0, 3.0, 5.0][random.random_range(0..3)],
+                _ => [1.5, 2.0, 3.0][random.random_range(0..3)],
             };
             // Every kind in its turn, in an order drawn by chance.
             let kind = match family {

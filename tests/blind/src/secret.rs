@@ -162,12 +162,19 @@ impl Kind {
         }
     }
 
-    /// Whether a plan with one side, one height and no weight can show it. Play, drag and late or
-    /// early readings are constant there; so is what never changes its sign.
+    /// Whether a plan with one side, one height and no weight can show it. Play, drag and early
+    /// readings are constant there, a finger that hardly changes its inclination hardly rolls, and
+    /// a bracket that softens in one posture is a zero that wanders.
     pub fn shows_from_one_side(self) -> bool {
         !matches!(
             self,
-            Self::Backlash | Self::GravityBacklash | Self::TouchDrag | Self::EarlyLog | Self::StickSlip
+            Self::Backlash
+                | Self::GravityBacklash
+                | Self::TouchDrag
+                | Self::EarlyLog
+                | Self::FingerRoll
+                | Self::StickSlip
+                | Self::SoftWhenWarm
         )
     }
 

@@ -11,6 +11,9 @@ use crate::world::{self, SERVO_NM_PER_RAD, STEP_S};
 
 /// Descent per step of the physics, m.
 const DESCENT_M: f64 = 1.2e-4;
+/// Friction of a moving servo, N m; between these shares of it from touch to touch.
+const FRICTION_NM: f64 = 0.09;
+const FRICTION_SHARES: [f64; 2] = [0.3, 1.0];
 /// A touch is felt from this force on, N.
 const THRESHOLD_N: f64 = 0.05;
 /// Steps to come to rest before the descent begins.
@@ -115,17 +118,15 @@ impl<'a> Stage<'a> {
         })
     }
 
-    /// Touches a cell; `jitter` (0–1) shifts the beginning of the descent by a part of a step.
-    /// `None` when the finger never met the glass.
-    pub fn touch(&mut self, cell: &Cell, t_secs: f64, jitter: f64) -> Option<Met> {
-        STARTS_M
-            .iter()
-            .find_map(|start_m| self.try_touch(cell, t_secs, start_m + jitter * DESCENT_M))
-            .flatten()
+    /// Touches a cell; `chances` (0–1, one per joint, and one more) say how much each servo rubs,
+    /// and where within a step the descent begins. `None` when the finger never met the glass.
+    pub fn touch(&mut self, cell: &Cell, t_secs: f64, chances: &[f64]) -> Option<Met> {
+        STARTS_M.iter().find_map(|start_m| self.try_touch(cell, t_secs, *start_m, chances)).flatten()
     }
 
     /// `None`: in the glass from the beginning. `Some(None)`: never met it.
-    fn try_touch(&mut self, cell: &Cell, t_secs: f64, start_m: f64) -> Option<Option<Met>> {
+    fn try_touch(&mut self, cell: &Cell, t_secs: f64, start_m: f64, chances: &[f64]) -> Option<Option<Met>> {
+        let start_m = start_m + chances.last().copied().unwrap_or_default() * DESCENT_M;
         let place = self.place_of_glass(cell, t_secs);
         let (temperature_c, warm) = heat::after(t_secs);
         let w = self.worlds.iter().position(|world| world.payload_kg == cell.payload_kg)?;
@@ -153,6 +154,7 @@ impl<'a> Stage<'a> {
                 *ctrl = plan[k] + hold[k];
             }
             world.push(&self.secrets, cell, warm);
+            world.rub(&cell.way_rad_per_m, chances);
             world.data.step();
             if early_steps > 0 {
                 logged.push(world.motors());
@@ -176,10 +178,14 @@ impl<'a> Stage<'a> {
                 break;
             }
         }
-        let (Some((commanded_rad, motors, step)), Some(at)) = (first, at) else { return Some(None) };
+        let (Some((mut commanded_rad, motors, step)), Some(at)) = (first, at) else { return Some(None) };
         let true_m =
             (self.bench.robot_from_screen().inverse() * (place * Point3::new(at.x, at.y, 0.0))).coords;
         let encoder_rad = self.readings(&motors, t_secs, warm, [true_m.x, true_m.y]);
+        // A servo follows its encoder, so what is wrong with the reading is in the command, too.
+        for ((commanded, encoder), motor) in commanded_rad.iter_mut().zip(&encoder_rad).zip(&motors) {
+            *commanded += encoder - motor;
+        }
         let scale =
             self.secrets.iter().filter(|s| s.kind == Kind::ScreenScale).fold([1.0, 1.0], |scale, s| {
                 [scale[0] * (1.0 + s.shape[0] * s.amount), scale[1] * (1.0 + s.shape[1] * s.amount)]
@@ -330,6 +336,15 @@ impl World {
                 }
                 _ => {}
             }
+        }
+    }
+
+    /// Friction holds every servo back.
+    fn rub(&mut self, way: &[f64], chances: &[f64]) {
+        for (j, hinge) in self.servo.iter().enumerate() {
+            let [least, most] = FRICTION_SHARES;
+            let share = least + (most - least) * chances.get(j).copied().unwrap_or(0.5);
+            self.data.qfrc_applied_mut()[hinge.dof] = -way[j].signum() * share * FRICTION_NM;
         }
     }
 

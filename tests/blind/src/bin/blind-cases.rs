@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for recipe in mix::recipes(cases.parse()?, seed.parse()?).into_iter().skip(first) {
         let started = Instant::now();
         let number = recipe.number;
-        match case::make_or_other(&bench, &planner, &recipe) {
+        match case::make_or_smaller(&bench, &planner, &recipe) {
             Ok(case) => {
                 case::write(&case, Path::new(out), Path::new(answers))?;
                 let hidden: Vec<String> = case
