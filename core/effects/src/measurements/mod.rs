@@ -101,6 +101,7 @@ impl What {
     }
 
     /// Number of natural coordinates.
+    #[allow(clippy::len_without_is_empty)] // Every kind measures something.
     pub fn len(self) -> usize {
         self.coordinates().len()
     }
@@ -263,7 +264,7 @@ pub enum MeasurementsError {
         /// The session.
         session: String,
         /// What is lacking.
-        error: RigError,
+        error: Box<RigError>,
     },
     /// Nothing left.
     #[error("none of the {rows} rows can be used. The first: {why}")]

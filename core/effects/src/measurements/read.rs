@@ -79,7 +79,8 @@ impl Reader<'_> {
         let missing = |section| MeasurementsError::Missing { session: title.to_owned(), section };
         let misfit = |error| MeasurementsError::Rig { session: title.to_owned(), error };
         let moved = session.touches.is_some() || session.poses.is_some();
-        let mut apparatus = Apparatus { title: title.to_owned(), tip: None, arm: None, surface: None, eyes: None };
+        let mut apparatus =
+            Apparatus { title: title.to_owned(), tip: None, arm: None, surface: None, eyes: None };
         let mut columns = Columns { order: vec![] };
         if moved {
             let chain = session.manifest.chain.as_ref().ok_or_else(|| missing("chain"))?;
@@ -107,7 +108,8 @@ impl Reader<'_> {
             apparatus.surface = Some(Surface::of(screen));
         }
         if session.localizations.is_some() {
-            let lacks = |error| MeasurementsError::Lacks { session: title.to_owned(), error };
+            let lacks =
+                |error| MeasurementsError::Lacks { session: title.to_owned(), error: Box::new(error) };
             self.rig.need(RigPart::Eyes).map_err(lacks)?;
             apparatus.eyes = Some(Eyes::of_rig(self.rig).map_err(misfit)?);
         }

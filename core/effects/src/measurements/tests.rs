@@ -17,7 +17,7 @@ fn measured(folder: &str) -> Option<(Session, Rig)> {
 #[test]
 fn without_effects_touches_are_predicted_as_the_model_does() {
     let Some((session, rig)) = measured("nico-touch/touch-245") else {
-        println!("skipped: the measured touches are not on this machine");
+        eprintln!("skipped: the measured touches are not on this machine");
         return;
     };
     let nominal = predict_session(&session, &rig, None).expect("predictable");
@@ -40,7 +40,7 @@ fn without_effects_touches_are_predicted_as_the_model_does() {
 #[test]
 fn without_effects_the_eyes_estimate_the_known_place() {
     let Some((session, rig)) = measured("nico-vision/grid-z5") else {
-        println!("skipped: the measured grid is not on this machine");
+        eprintln!("skipped: the measured grid is not on this machine");
         return;
     };
     let sessions = [("grid".to_owned(), session)];
@@ -61,7 +61,7 @@ fn without_effects_the_eyes_estimate_the_known_place() {
 #[test]
 fn tangents_have_a_column_for_every_parameter() {
     let Some((session, rig)) = measured("nico-touch/touch-245") else {
-        println!("skipped: the measured touches are not on this machine");
+        eprintln!("skipped: the measured touches are not on this machine");
         return;
     };
     let sessions = [("touches".to_owned(), session)];

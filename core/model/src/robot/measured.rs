@@ -77,8 +77,7 @@ fn named_description(table: &toml::Table) -> Option<String> {
         DESCRIPTION_ENDINGS.iter().any(|end| text.ends_with(end)) || text.trim_start().starts_with('<')
     };
     let any = || table.values().filter_map(toml::Value::as_str).find(is_description);
-    let deeper =
-        || table.values().filter_map(toml::Value::as_table).find_map(|section| named_description(section));
+    let deeper = || table.values().filter_map(toml::Value::as_table).find_map(named_description);
     known.filter(is_description).or_else(any).map(str::to_owned).or_else(deeper)
 }
 
