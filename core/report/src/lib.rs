@@ -1,1 +1,70 @@
 //! The gap on one page for a colleague, as HTML and PDF.
+//!
+//! One drawing of an A4 page is laid out (`page`) and written twice: as an inline SVG in an HTML
+//! file that needs no other file, and as a PDF. Lengths on the page are points (1/72 inch).
+
+mod drawing;
+mod font;
+mod html;
+mod page;
+mod pdf;
+pub mod sample;
+mod svg;
+mod values;
+mod words;
+
+use plumbline_gap::Finding;
+
+pub use words::{meaning, remedy};
+
+/// What the page says beyond the finding.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct ReportContext {
+    /// Day of the report as it is printed ("21 November 2026").
+    pub date: String,
+    /// Which model was compared ("nominal", "M5 with 3 effects"). May be empty.
+    pub model: String,
+    /// Earlier models with their gap, the oldest first; may be empty.
+    pub history: Vec<HistoryEntry>,
+    /// Corners of the touchscreen in the robot frame, in order around it, m: (x forward, y left).
+    pub screen_m: Option<[[f64; 2]; 4]>,
+}
+
+/// A model with its gap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HistoryEntry {
+    /// Its name ("nominal", "joint zero of the elbow added").
+    pub name: String,
+    /// Mean error on rows that were not used, in the unit of the finding (mm or px).
+    pub gap: f64,
+}
+
+/// Why no PDF was made.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ReportError {
+    /// The writer of PDF refused.
+    #[error("the PDF could not be written ({reason}): save the report as HTML and print it from a browser")]
+    Pdf {
+        /// In the writer's words.
+        reason: String,
+    },
+}
+
+/// The page as an HTML file that needs no other file: fonts and figures are inside. Prints on one
+/// A4 page.
+pub fn html(finding: &Finding, context: &ReportContext) -> String {
+    html::of(&page::draw(finding, context), finding, context)
+}
+
+/// The page as SVG, A4 portrait. The font is Inter, which the viewer must have.
+pub fn svg(finding: &Finding, context: &ReportContext) -> String {
+    svg::of(&page::draw(finding, context))
+}
+
+/// The page as a PDF file, with its fonts.
+///
+/// # Errors
+/// When the file cannot be made; HTML always can.
+pub fn pdf(finding: &Finding, context: &ReportContext) -> Result<Vec<u8>, ReportError> {
+    pdf::of(&page::draw(finding, context), finding, context)
+}

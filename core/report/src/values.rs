@@ -1,0 +1,214 @@
+//! Numbers as people read them: millimeters, degrees, grams, with the digits that the interval
+//! leaves.
+
+use plumbline_gap::finding::FoundParameter;
+
+/// A unit that is printed, and how much of it an SI unit is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Printed {
+    pub unit: &'static str,
+    pub per_si: f64,
+}
+
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
+/// Endings of parameter names with what is printed for them; the longest come first.
+const ENDINGS: [(&str, Printed); 14] = [
+    ("_nm_per_rad", Printed { unit: "N m/rad", per_si: 1.0 }),
+    ("_rad_per_nm", Printed { unit: "°/N m", per_si: DEGREES }),
+    ("_m_per_n", Printed { unit: "mm/N", per_si: 1e3 }),
+    // How far a bowed glass is off at 100 mm from its middle.
+    ("_per_m", Printed { unit: "mm at 100 mm", per_si: 10.0 }),
+    ("_rad", Printed { unit: "°", per_si: DEGREES }),
+    ("_secs", Printed { unit: "s", per_si: 1.0 }),
+    ("_kg", Printed { unit: "g", per_si: 1e3 }),
+    ("_nm", Printed { unit: "N m", per_si: 1.0 }),
+    ("_px", Printed { unit: "px", per_si: 1.0 }),
+    ("_m", Printed { unit: "mm", per_si: 1e3 }),
+    ("_s", Printed { unit: "s", per_si: 1.0 }),
+    ("ratio", Printed { unit: "%", per_si: 100.0 }),
+    ("fraction", Printed { unit: "%", per_si: 100.0 }),
+    ("weight", Printed { unit: "%", per_si: 100.0 }),
+];
+
+/// Unit of a parameter, and its name without it.
+pub fn parameter(name: &str) -> (String, Printed) {
+    if name.starts_with("scale") {
+        return (name.replace('_', " "), Printed { unit: "%", per_si: 100.0 });
+    }
+    let found = ENDINGS.iter().find(|(ending, _)| name.ends_with(ending));
+    let Some((ending, printed)) = found else {
+        return (name.replace('_', " "), Printed { unit: "", per_si: 1.0 });
+    };
+    let stem = name.strip_suffix(ending).filter(|stem| !stem.is_empty()).unwrap_or(name);
+    (stem.replace('_', " ").replace("rot ", "about "), *printed)
+}
+
+/// A parameter with its interval, `offset 1.78 ± 0.17°`; the name only where there are several.
+pub fn with_interval(found: &FoundParameter, named: bool) -> String {
+    let (name, Printed { unit, per_si }) = parameter(&found.name);
+    let label = if named { format!("{name} ") } else { String::new() };
+    if let Some(text) = &found.text {
+        return format!("{} {text}", name.replace(" joint", ""));
+    }
+    let [value, low, high] = [found.value, found.low, found.high].map(|value| value * per_si);
+    if !(low.is_finite() && high.is_finite()) {
+        return format!("{label}{}{} (interval not known)", significant(value, 3), spaced(unit));
+    }
+    let half = 0.5 * (high - low);
+    let digits = decimals(half);
+    let is_even = (0.5 * (high + low) - value).abs() <= 0.2 * half;
+    if is_even {
+        return format!("{label}{} ± {}{}", fixed(value, digits), fixed(half, digits), spaced(unit));
+    }
+    format!(
+        "{label}{}{} ({} to {})",
+        fixed(value, digits),
+        spaced(unit),
+        fixed(low, digits),
+        fixed(high, digits)
+    )
+}
+
+/// A degree sign and a percent sign stand at the number and with a thin gap.
+fn spaced(unit: &str) -> String {
+    match unit {
+        "" => String::new(),
+        _ if unit.starts_with('°') => unit.to_owned(),
+        _ => format!(" {unit}"),
+    }
+}
+
+/// Decimals that two digits of an uncertainty leave.
+fn decimals(uncertainty: f64) -> usize {
+    if !(uncertainty.is_finite() && uncertainty > 0.0) {
+        return 2;
+    }
+    (1 - uncertainty.log10().floor() as i32).clamp(0, 4) as usize
+}
+
+/// With so many decimals, and a minus sign as wide as a plus.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    if !value.is_finite() {
+        return "not known".to_owned();
+    }
+    let text = format!("{value:.decimals$}");
+    // −0.00 is zero.
+    if text.chars().all(|c| matches!(c, '-' | '0' | '.')) {
+        return text.replace('-', "");
+    }
+    text.replace('-', "−")
+}
+
+/// With so many significant digits.
+pub fn significant(value: f64, digits: i32) -> String {
+    if !value.is_finite() {
+        return "not known".to_owned();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let decimals = (digits - 1 - value.abs().log10().floor() as i32).clamp(0, 6);
+    fixed(value, decimals as usize)
+}
+
+/// A probability in percent. Never 100 % nor 0 %: no data says so.
+pub fn percent(probability: f64) -> String {
+    match probability * 100.0 {
+        value if !value.is_finite() => "not known".to_owned(),
+        value if value > 99.0 => "> 99 %".to_owned(),
+        value if value < 1.0 => "< 1 %".to_owned(),
+        value => format!("{value:.0} %"),
+    }
+}
+
+/// Share of something that can be all of it, or more.
+pub fn share(share: f64) -> String {
+    if share.is_finite() { format!("{} %", fixed(100.0 * share, 0)) } else { "not known".to_owned() }
+}
+
+/// A probability of noise alone.
+pub fn p_value(p: f64) -> String {
+    match p {
+        p if !p.is_finite() => "p not known".to_owned(),
+        p if p < 0.001 => "p < 0.001".to_owned(),
+        p if p < 0.1 => format!("p = {p:.3}"),
+        p => format!("p = {p:.2}"),
+    }
+}
+
+/// A covariate's unit as printed, from its SI unit.
+pub fn covariate(unit: &str) -> Printed {
+    match unit {
+        "rad" => Printed { unit: "°", per_si: DEGREES },
+        "m" => Printed { unit: "mm", per_si: 1e3 },
+        "kg" => Printed { unit: "g", per_si: 1e3 },
+        "s" => Printed { unit: "min", per_si: 1.0 / 60.0 },
+        "px" => Printed { unit: "px", per_si: 1.0 },
+        "N m" | "Nm" | "nm" => Printed { unit: "N m", per_si: 1.0 },
+        "°C" | "c" | "C" => Printed { unit: "°C", per_si: 1.0 },
+        "N" => Printed { unit: "N", per_si: 1.0 },
+        "rad/s" => Printed { unit: "°/s", per_si: DEGREES },
+        "m/s" => Printed { unit: "mm/s", per_si: 1e3 },
+        _ => Printed { unit: "", per_si: 1.0 },
+    }
+}
+
+/// Evenly spaced round numbers inside of a range, `about` of them.
+pub fn ticks(low: f64, high: f64, about: usize) -> Vec<f64> {
+    let span = high - low;
+    if !(span.is_finite() && span > 0.0) || about == 0 {
+        return vec![];
+    }
+    let step = round_up(span / about as f64);
+    let first = (low / step - 1e-9).ceil() as i64;
+    (first..).map(|i| i as f64 * step).take_while(|tick| *tick <= high + 1e-9 * span).collect()
+}
+
+/// The next of 1, 2, 5, 10, 20, … up.
+pub fn round_up(value: f64) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|v| *v >= value * (1.0 - 1e-9)).unwrap_or(value)
+}
+
+/// The next of 1, 2, 5, 10, 20, … down.
+pub fn round_down(value: f64) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    [5.0, 2.0, 1.0].into_iter().map(|m| m * power).find(|v| *v <= value * (1.0 + 1e-9)).unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(name: &str, value: f64, low: f64, high: f64) -> FoundParameter {
+        FoundParameter { name: name.to_owned(), value, low, high, text: None }
+    }
+
+    #[test]
+    fn parameters_are_printed_with_the_digits_that_their_interval_leaves() {
+        let offset = found("offset_rad", 0.031, 0.028, 0.034);
+        assert_eq!(with_interval(&offset, false), "1.78 ± 0.17°");
+        assert_eq!(with_interval(&found("x_m", -0.0042, -0.0047, -0.0037), true), "x −4.20 ± 0.50 mm");
+        assert_eq!(with_interval(&found("rot_x_rad", 0.01, 0.0, 0.03), true), "about x 0.57° (0.00 to 1.72)");
+        let sag = found("compliance_rad_per_nm", 0.02, 0.018, 0.022);
+        assert_eq!(with_interval(&sag, false), "1.15 ± 0.11°/N m");
+        assert_eq!(with_interval(&found("mass_kg", 0.118, 0.106, 0.13), false), "118 ± 12 g");
+        assert_eq!(with_interval(&found("scale_u", 0.012, 0.010, 0.014), true), "scale u 1.20 ± 0.20 %");
+        assert!(with_interval(&found("odd", f64::NAN, f64::NAN, 1.0), false).contains("not known"));
+    }
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        assert_eq!(ticks(-0.4, 2.1, 5), [0.0, 0.5, 1.0, 1.5, 2.0]);
+        assert_eq!(ticks(0.0, 0.0, 5), Vec::<f64>::new());
+        assert_eq!(ticks(f64::NAN, 1.0, 5), Vec::<f64>::new());
+    }
+
+    #[test]
+    fn nothing_is_certain() {
+        assert_eq!(percent(1.0), "> 99 %");
+        assert_eq!(percent(0.0), "< 1 %");
+        assert_eq!(percent(0.873), "87 %");
+    }
+}
