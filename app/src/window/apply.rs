@@ -143,7 +143,7 @@ impl PlumblineWindow {
             ModelsAction::Check => {
                 let method = self.view.models.in_use.as_ref().map(|model| model.method());
                 self.settings.screen = Screen::Touch;
-                self.send(TouchCommand::CorrectWith(method).into());
+                self.send(TouchCommand::CorrectWith(method.map(Into::into)).into());
                 if let Some(plan) = TouchAction::Plan(Preset::Check).command(&self.view) {
                     self.send(plan);
                 }

@@ -250,7 +250,7 @@ fn a_model_in_use_is_checked_with_new_touches() {
     let mut window = fake.window(on_models());
     press_next(&mut window, "Check M3 with new touches");
     let sent = fake.take_sent();
-    assert_eq!(sent[0], Command::from(TouchCommand::CorrectWith(Some(Method::M3))));
+    assert_eq!(sent[0], Command::from(TouchCommand::CorrectWith(Some(Method::M3.into()))));
     let Some(Command::Touch(TouchCommand::Plan(options))) = sent.get(1) else { panic!("{sent:?}") };
     assert_eq!(options.purpose, plumbline_model::touch_plan::Purpose::Check);
 }

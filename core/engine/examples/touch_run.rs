@@ -8,6 +8,8 @@
 //! - `count=250`, `seed=1`: of `check`, and of the random targets of `train`.
 //! - `area=150,1750,420,1040`: first and last column, first and last row.
 //! - `correct=m3`: trains on the newest session of the data folder, and corrects with this model.
+//! - `correct=effects`: corrects by the named effects of the model in use alone: inverse kinematics, no
+//!   network. `model=FILE` puts that model in use first; without, it is the one of the data folder.
 //! - `data=FOLDER`: where sessions are kept; without, they are forgotten.
 //! - `resume=yes`: goes on with the newest run of the data folder that was not finished.
 //! - `speed=1`: of the arm.
@@ -23,7 +25,8 @@ use std::time::{Duration, Instant};
 use plumbline_engine::correction::Method;
 use plumbline_engine::view::{MotionState, TouchOutcome, TouchPhase};
 use plumbline_engine::{
-    Engine, EngineSettings, ModelsCommand, RobotCommand, SourceCommand, TouchCommand, TwinCommand, View,
+    Correction, Engine, EngineSettings, ModelsCommand, RobotCommand, SourceCommand, TouchCommand,
+    TwinCommand, View,
 };
 use plumbline_model::{Pattern, PlanOptions, TouchArea};
 
@@ -39,6 +42,11 @@ fn main() {
     let text = |name: &str, usual: &str| arguments.get(name).cloned().unwrap_or_else(|| usual.to_owned());
     let forgotten = tempfile::tempdir().expect("temporary folder");
     let data_dir = arguments.get("data").map_or_else(|| forgotten.path().to_owned(), PathBuf::from);
+    if let Some(model) = arguments.get("model") {
+        let twin = data_dir.join("twin");
+        std::fs::create_dir_all(&twin).expect("the data folder can be written");
+        std::fs::copy(model, plumbline_engine::rig_models::file(&twin)).expect("the model can be read");
+    }
     let bench = Bench::start(data_dir, text("scenario", "lab"));
     bench.until("the twin's joints", |view| view.robot.measured.is_some());
     let speed: f64 = text("speed", "1").parse().expect("speed is a number");
@@ -51,7 +59,12 @@ fn main() {
         return;
     }
     if let Some(name) = arguments.get("correct") {
-        bench.correct(name);
+        if name == "effects" {
+            bench.engine.send(TouchCommand::CorrectWith(Some(Correction::Effects)));
+            bench.until("the correction", |view| view.touch.correct_with == Some(Correction::Effects));
+        } else {
+            bench.correct(name);
+        }
     }
     bench.engine.send(TouchCommand::Plan(options(&text)));
     bench.until("the plan", |view| view.touch.phase == TouchPhase::Planned && view.touch.plan.is_some());
@@ -151,7 +164,7 @@ impl Bench {
     /// Trains all models on the newest session, says how good they are, and corrects with one.
     fn correct(&self, name: &str) {
         let method = Method::ALL.into_iter().find(|method| method.name().eq_ignore_ascii_case(name));
-        let method = method.unwrap_or_else(|| panic!("correct={name}: choose m1, m2 or m3"));
+        let method = method.unwrap_or_else(|| panic!("correct={name}: choose m1, m2, m3 or effects"));
         self.engine.send(ModelsCommand::ListSessions);
         self.until("a session with touches", |view| view.models.sessions.iter().any(|s| s.touches > 3));
         let view = self.engine.view();
@@ -178,8 +191,8 @@ impl Bench {
                 );
             }
         }
-        self.engine.send(TouchCommand::CorrectWith(Some(method)));
-        self.until("the correction", |view| view.touch.correct_with == Some(method));
+        self.engine.send(TouchCommand::CorrectWith(Some(method.into())));
+        self.until("the correction", |view| view.touch.correct_with == Some(method.into()));
     }
 
     /// Follows the run to its end, and says how each touch ended.

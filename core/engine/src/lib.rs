@@ -28,8 +28,8 @@ pub mod view;
 pub mod work;
 
 pub use command::{
-    AimChoice, Command, ContactWith, Destination, ExportFormat, Exported, EyesCommand, FileLength,
-    GraspTable, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LiveCommand, ModelsCommand,
+    AimChoice, Command, ContactWith, Correction, Destination, ExportFormat, Exported, EyesCommand,
+    FileLength, GraspTable, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LiveCommand, ModelsCommand,
     MountCommand, NoticeCommand, ProbePoint, Products, RobotCommand, ScreenContact, ScreenWindow,
     SourceCommand, TablesCommand, TouchCommand, TwinCommand,
 };

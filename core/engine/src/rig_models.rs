@@ -15,6 +15,9 @@ use plumbline_model::robot::Rig;
 
 use crate::text::sentence;
 
+#[cfg(test)]
+pub(crate) mod tests;
+
 /// The file, in the folder of a world.
 pub const FILE: &str = "rig-model.toml";
 

@@ -1,7 +1,7 @@
 //! Steps of a script that speak of touching the screen and of correction models.
 
-use plumbline_engine::TouchCommand;
 use plumbline_engine::correction::Method;
+use plumbline_engine::{Correction, TouchCommand};
 
 use crate::panels::MapErrors;
 use crate::window::{Action, ModelsAction, Pane, Preset, Screen, ScriptStep, TouchAction};
@@ -70,11 +70,11 @@ fn action(name: &str) -> Option<Action> {
 }
 
 fn correct_with(value: &str) -> Step {
-    let method = Method::ALL.into_iter().find(|method| method.name().eq_ignore_ascii_case(value));
-    if method.is_none() && value != "none" {
-        return Err("touch-correct:METHOD wants M1, M2, M3 or none".to_owned());
+    let correction = Correction::of_name(value);
+    if correction.is_none() && value != "none" {
+        return Err("touch-correct:METHOD wants M1, M2, M3, effects or none".to_owned());
     }
-    Ok(ScriptStep::Send(TouchCommand::CorrectWith(method).into()))
+    Ok(ScriptStep::Send(TouchCommand::CorrectWith(correction).into()))
 }
 
 #[cfg(test)]
@@ -85,7 +85,7 @@ mod tests {
     fn steps_say_what_they_want() {
         let start = ScriptStep::Act(Action::Touch(TouchAction::Start));
         assert_eq!(step("touch-start", ""), Some(Ok(start)));
-        let with = TouchCommand::CorrectWith(Some(Method::M3));
+        let with = TouchCommand::CorrectWith(Some(Method::M3.into()));
         assert_eq!(step("touch-correct", "m3"), Some(Ok(ScriptStep::Send(with.into()))));
         assert!(step("touch-correct", "M4").expect("known").expect_err("no method").contains("none"));
         assert_eq!(step("models-map-after", ""), Some(Ok(ScriptStep::ShowErrors(MapErrors::After))));

@@ -3,7 +3,7 @@
 use egui::Ui;
 use plumbline_engine::correction::Method;
 use plumbline_engine::view::{ContactSource, TouchOutcome, TouchPhase, TouchState, TouchView};
-use plumbline_engine::{TouchCommand, View};
+use plumbline_engine::{Correction, TouchCommand, View};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, Role, group_heading, space};
@@ -104,15 +104,23 @@ fn redo(ui: &mut Ui, number: usize, button: &mut impl FnMut(&mut Ui, String, &st
 fn corrected(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
     group_heading(ui, "Targets corrected by");
     let known = known_models(view);
-    if known.is_empty() {
+    // They are offered once the panel of the gap shows which there are.
+    let has_effects = false;
+    if known.is_empty() && !has_effects {
         ui.label(theme::weak(ui, "No model yet: targets are sent as they are."));
         return;
     }
     let locked = is_under_way(&view.touch.phase) || view.touch.phase == TouchPhase::Planning;
     let mut with = view.touch.correct_with;
     ui.add_enabled_ui(!locked, |ui| {
-        let names: Vec<(Option<Method>, &str)> =
-            [(None, "None")].into_iter().chain(known.iter().map(|m| (Some(*m), m.name()))).collect();
+        let models = known.into_iter().map(Correction::Model);
+        let named = models.chain(has_effects.then_some(Correction::Effects));
+        let shown = |correction: Correction| match correction {
+            Correction::Model(method) => method.name(),
+            Correction::Effects => "Named effects",
+        };
+        let names: Vec<(Option<Correction>, &str)> =
+            [(None, "None")].into_iter().chain(named.map(|c| (Some(c), shown(c)))).collect();
         if plumbline_widgets::buttons::choice(ui, "Targets corrected by", &mut with, &names) {
             outbox.send(TouchCommand::CorrectWith(with));
         }

@@ -7,14 +7,61 @@ use plumbline_correction::Method;
 use plumbline_model::touch_plan::PlanOptions;
 use serde::{Deserialize, Serialize};
 
+/// What corrects targets before they are sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(into = "String", try_from = "String")]
+pub enum Correction {
+    /// A model that was trained from touches.
+    Model(Method),
+    /// The effects that were found, named and added to the model in use: inverse kinematics with them,
+    /// no network.
+    Effects,
+}
+
+impl Correction {
+    /// As it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Model(method) => method.name(),
+            Self::Effects => "effects",
+        }
+    }
+
+    /// The one of this name, in small letters or large ones.
+    pub fn of_name(name: &str) -> Option<Self> {
+        let models = Method::ALL.map(Self::Model);
+        models.into_iter().chain([Self::Effects]).find(|known| known.name().eq_ignore_ascii_case(name))
+    }
+}
+
+impl From<Method> for Correction {
+    fn from(method: Method) -> Self {
+        Self::Model(method)
+    }
+}
+
+impl From<Correction> for String {
+    fn from(correction: Correction) -> Self {
+        correction.name().to_lowercase()
+    }
+}
+
+impl TryFrom<String> for Correction {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, String> {
+        Self::of_name(&name).ok_or_else(|| format!("\"{name}\" corrects nothing: m1, m2, m3 or effects do"))
+    }
+}
+
 /// Touching the screen, in the order of work.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TouchCommand {
     /// Plans touches and looks which of them can be reached. Moves nothing.
     Plan(PlanOptions),
-    /// With which model targets are corrected before they are sent; `None`: with none. Plans anew.
-    CorrectWith(Option<Method>),
+    /// With what targets are corrected before they are sent; `None`: with nothing. Plans anew.
+    CorrectWith(Option<Correction>),
     /// Starts the planned run in a new session. The arm moves.
     Start,
     /// Holds after the touch that is under way.

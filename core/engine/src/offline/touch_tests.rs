@@ -228,3 +228,52 @@ fn pixels_of_another_screen_are_remarked_on() {
     let off = remarks("u_px,v_px\n0,0\n2500,3\n");
     assert!(off[0].contains("1 of the 2 pixels") && off[0].contains("1920×1080"), "{off:?}");
 }
+
+#[test]
+fn a_model_with_effects_predicts_and_solves() {
+    let desk = Desk::new();
+    let rig = nico();
+    let model = crate::rig_models::tests::model_with(&rig, &[("joint-zero", "r_elbow_y", &[0.04])]);
+    let file = desk.path("rig-model.toml");
+    model.write(&file, &rig).expect("written");
+    let (nominal, with) =
+        (desk.predict(None).expect("predicted"), desk.predict(Some(file.clone())).expect("predicted"));
+    assert_eq!((nominal.effects.len(), with.effects), (0, vec!["joint-zero@r_elbow_y".to_owned()]));
+    assert_eq!(nominal.rows.len(), with.rows.len());
+    assert!(nominal.rows.iter().zip(&with.rows).all(|(a, b)| a != b));
+    // Without effects in it the file changes nothing.
+    plumbline_effects::RigModel::nominal(&rig).write(&file, &rig).expect("written");
+    assert_eq!(desk.predict(Some(file.clone())).expect("predicted"), nominal);
+
+    model.write(&file, &rig).expect("written");
+    let targets = desk.write("targets.csv", "x_m,y_m,z_m\n0.3,-0.2,0.2\n0.35,-0.1,0.15\n3,0,0\n");
+    let solve = |rig_model: Option<PathBuf>| {
+        let tip = "right_index_tip".to_owned();
+        let args =
+            IkArgs { rig: "nico".to_owned(), tip, targets: targets.clone(), upright: false, rig_model };
+        ik(&args, &Unattended).map_err(|error| error.to_string())
+    };
+    let (own, solved) = (solve(None).expect("solved"), solve(Some(file.clone())).expect("solved"));
+    assert_eq!((own.reached, solved.reached), (2, 2));
+    let chain = rig.chain("right_index_tip").expect("a tip");
+    for (k, target) in [[0.3, -0.2, 0.2], [0.35, -0.1, 0.15]].into_iter().enumerate() {
+        let tip_m = |solution: &IkSolution, zero_rad: f64| {
+            let off = |name: &String| if name == "r_elbow_y" { zero_rad } else { 0.0 };
+            let angles: Vec<f64> =
+                chain.names().iter().map(|name| solution.joints[name] + off(name)).collect();
+            (chain.robot_from_tip(&angles).translation_m() - nalgebra::Vector3::from(target)).norm()
+        };
+        assert!(tip_m(&solved.solutions[k], 0.04) < 5e-5, "the robot with the wrong zero gets there");
+        assert!(tip_m(&own.solutions[k], 0.04) > 2e-3, "and would not without");
+    }
+    assert_eq!(solved.solutions[2].status, "out-of-reach");
+
+    let foreign = std::fs::read_to_string(&file).expect("there").replace("\"nico\"", "\"icub\"");
+    let foreign = desk.write("foreign.toml", &foreign);
+    for said in [
+        desk.predict(Some(foreign.clone())).expect_err("another's"),
+        solve(Some(foreign)).expect_err("another's"),
+    ] {
+        assert!(said.contains("belongs to the robot \"icub\""), "{said}");
+    }
+}

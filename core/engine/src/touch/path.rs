@@ -52,6 +52,8 @@ const RAISE_M: f64 = 0.06;
 const POINTING_RAD: f64 = 0.05;
 /// Places looked at along a way.
 const SAMPLES: usize = 16;
+/// So many steps before the point say in which direction joints come to it.
+const LAST_STEPS: usize = 3;
 /// Joints that turn by less over the last steps count as standing, rad.
 const STANDING_RAD: f64 = 1e-5;
 
@@ -381,6 +383,27 @@ impl Planner {
         Err(refusal.unwrap_or_default())
     }
 
+    /// The angles (rad) that the chain's joints are commanded with the tip at a point that is sent, and
+    /// the signs of their last motion when it comes there from a side.
+    ///
+    /// # Errors
+    /// A sentence that says why the point cannot be sent.
+    pub fn commanded(
+        &self,
+        target: Pixel<Screen>,
+        sent: Point<Robot>,
+        side: Side,
+        from: &Posture,
+    ) -> Result<(Vec<f64>, Vec<f64>), String> {
+        let (contact, heading_rad) = self.contact(sent, target, from)?;
+        let at = |step: usize| on_the_way(sent, side, heading_rad, step as f64 * STEP_M);
+        let above = self.follow(&contact, LAST_STEPS, at);
+        let before = above.last().unwrap_or(&contact);
+        let sign = |joint: &JointIndex| f64::from(sign(contact[*joint] - before[*joint]));
+        let joints = self.chain.joints();
+        Ok((contact.of(joints), joints.iter().map(sign).collect()))
+    }
+
     /// Postures from above to the lowest, on one line through the point.
     fn lowering(
         &self,
@@ -394,16 +417,7 @@ impl Planner {
         let upper_m = sent.coords.z.max(glass_m) - sent.coords.z;
         let (top_m, least_m) = (upper_m + self.above_m, upper_m + ABOVE_MEASURED_M);
         let bottom_m = sent.coords.z - sent.coords.z.min(glass_m) + BELOW_M;
-        // How far the line leads aside per meter of height.
-        let slant = match side {
-            Side::Above => 0.0,
-            Side::Left => SLANT,
-            Side::Right => -SLANT,
-        };
-        let at = |height_m: f64| {
-            let place = sent.coords + Vector3::new(0.0, slant * height_m, height_m);
-            Target::PositionYaw { point: Point::from(place), yaw_rad: heading_rad }
-        };
+        let at = |height_m: f64| on_the_way(sent, side, heading_rad, height_m);
         let steps = |length_m: f64| (length_m / STEP_M).ceil() as usize;
         let up = self.follow(contact, steps(top_m), |step| at(top_m.min(step as f64 * STEP_M)));
         let least = steps(least_m);
@@ -552,10 +566,8 @@ impl Planner {
     /// Signs of the joints' last motion before the point.
     fn direction(&self, lowering: &[Posture], tips: &[Point<Robot>], sent: Point<Robot>) -> Vec<i8> {
         let at = tips.iter().position(|tip| tip.distance_m(&sent) < 0.5 * STEP_M).unwrap_or(tips.len() - 1);
-        let before = &lowering[at.saturating_sub(3)];
-        let turn = |joint: &JointIndex| lowering[at][*joint] - before[*joint];
-        let sign = |turn_rad: f64| if turn_rad.abs() < STANDING_RAD { 0 } else { turn_rad.signum() as i8 };
-        self.chain.joints().iter().map(|joint| sign(turn(joint))).collect()
+        let before = &lowering[at.saturating_sub(LAST_STEPS)];
+        self.chain.joints().iter().map(|joint| sign(lowering[at][*joint] - before[*joint])).collect()
     }
 }
 
@@ -572,6 +584,23 @@ pub fn touch_allowances(
         floor.heights(posture, &hand).first().map(|(link, _)| *link).into_iter().collect();
     let to = |body| Allowance { links: links.clone(), body, depth_m: TOUCH_DEPTH_M };
     vec![to(Body::Touchscreen), to(Body::Table)]
+}
+
+/// Sign of a joint's motion.
+fn sign(turn_rad: f64) -> i8 {
+    if turn_rad.abs() < STANDING_RAD { 0 } else { turn_rad.signum() as i8 }
+}
+
+/// The tip on its line to the point that is sent, so high above it.
+fn on_the_way(sent: Point<Robot>, side: Side, heading_rad: f64, height_m: f64) -> Target {
+    // How far the line leads aside per meter of height.
+    let slant = match side {
+        Side::Above => 0.0,
+        Side::Left => SLANT,
+        Side::Right => -SLANT,
+    };
+    let place = sent.coords + Vector3::new(0.0, slant * height_m, height_m);
+    Target::PositionYaw { point: Point::from(place), yaw_rad: heading_rad }
 }
 
 fn raised(point: Point<Robot>, by_m: f64) -> Point<Robot> {

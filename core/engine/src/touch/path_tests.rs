@@ -2,14 +2,17 @@
 
 use std::sync::Arc;
 
+use plumbline_effects::rig_model::Conditions;
 use plumbline_model::Pixel;
 use plumbline_model::robot::Posture;
 use plumbline_model::touch_plan::{PlanOptions, Side, TouchArea};
 use plumbline_model::{Point, Robot, Unattended};
 
 use super::path::{Planner, ScreenPlace, TouchPath};
-use super::plan::{self, PlanRequest, TIP};
+use super::plan::{self, Corrector, PlanRequest, TIP};
 use super::testing::rig;
+use crate::command::Correction;
+use crate::rig_models::{self, tests::model_with};
 
 /// Rounding of inverse kinematics, m.
 const ROUNDING_M: f64 = 2e-4;
@@ -80,7 +83,8 @@ fn staying_higher_costs_no_target_of_the_default_plans() {
     let rich = PlanOptions::rich(area);
     for (name, options) in [("first", PlanOptions::first(area)), ("rich", rich)] {
         let of = |place| {
-            let request = PlanRequest { rig: rig.clone(), place, options: options.clone(), model: None };
+            let request =
+                PlanRequest { rig: rig.clone(), place, options: options.clone(), corrector: Corrector::None };
             plan::make(&request, &Unattended).expect("a plan")
         };
         let (high, low) = (of(ScreenPlace::Nominal), of(ScreenPlace::Measured));
@@ -125,4 +129,42 @@ fn where_the_arm_does_not_get_so_high_it_waits_as_high_as_it_gets() {
         "on a block of 120 mm: {full} from 60 mm, {less} from less, {lost} only from 40 mm without need"
     );
     assert!(full > 20 && less > 0 && lost == 0, "{full} {less} {lost}");
+}
+
+/// Inverse kinematics with the effects of the model in use: the arm that has them ends on the pixels.
+#[test]
+fn touches_are_sent_where_the_arm_with_its_effects_ends_on_the_pixel() {
+    let folder = tempfile::tempdir().expect("a folder for the test");
+    let rig = rig();
+    let area = TouchArea { u_px: [900.0, 1300.0], v_px: [500.0, 850.0] };
+    let request = |corrector| PlanRequest {
+        rig: rig.clone(),
+        place: ScreenPlace::Nominal,
+        options: PlanOptions::check_reach(area, 8, 1),
+        corrector,
+    };
+    let effects = Corrector::Effects(folder.path().to_owned());
+    let refused = plan::make(&request(effects.clone()), &Unattended).expect_err("no model").to_string();
+    assert!(refused.contains("No effect was added"), "{refused}");
+    let model =
+        model_with(&rig, &[("joint-zero", "r_elbow_y", &[0.03]), ("joint-sag", "r_shoulder_y", &[0.02])]);
+    rig_models::save(folder.path(), &model, &rig).expect("written");
+    let plan = plan::make(&request(effects), &Unattended).expect("planned");
+    assert_eq!(plan.corrected_with, Some(Correction::Effects));
+    let arm = model.arm(&rig, TIP).expect("a tip");
+    let chain = rig.chain(TIP).expect("a tip");
+    let (screen, mut touched) = (&rig.touchscreen, 0);
+    for aim in &plan.touches {
+        let Some(posture) = &aim.posture else { continue };
+        let conditions = Conditions { payload_kg: aim.touch.payload_kg, ..Conditions::default() };
+        let at = arm.touch_m(&posture.of(chain.joints()), aim.touch.screen_height_m, &conditions);
+        let ([u_m, v_m], middle) = (screen.pitch_m(), screen.middle());
+        let (target_u_m, target_v_m) =
+            ((aim.touch.target.u_px - middle.u_px) * u_m, (aim.touch.target.v_px - middle.v_px) * v_m);
+        let off_m = (at.x - target_u_m).hypot(at.y - target_v_m).hypot(at.z);
+        assert!(off_m < 1e-4, "{:.3} mm", off_m * 1e3);
+        assert!(aim.sent().distance_m(&aim.place()) > 2e-3, "it was sent elsewhere");
+        touched += 1;
+    }
+    assert!(touched >= 6, "{touched} of 8");
 }

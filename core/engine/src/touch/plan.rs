@@ -2,19 +2,24 @@
 //! is made.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use plumbline_correction::{CorrectionModel, Method};
+use plumbline_correction::CorrectionModel;
 use plumbline_effects::observability::{Noise, PlanScore, PlannedContact, score};
+use plumbline_effects::rig_model::DeviatedArm;
 use plumbline_model::JobContext;
 use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::session::Touchscreen;
 use plumbline_model::touch_plan::{PlanOptions, PlannedTouch, TouchPlan};
 use plumbline_model::{Point, Robot};
 use serde::{Deserialize, Serialize};
 
 use super::path::{Planner, ScreenPlace, TouchPace};
+use crate::command::Correction;
 use crate::jobs::JobError;
+use crate::rig_models;
 use crate::text::sentence;
 use crate::view::PlanView;
 
@@ -66,8 +71,8 @@ pub struct RunPlan {
     pub options: PlanOptions,
     /// In the order in which they are made.
     pub touches: Vec<Aim>,
-    /// Model that corrected the targets.
-    pub corrected_with: Option<Method>,
+    /// What corrected the targets.
+    pub corrected_with: Option<Correction>,
     /// How long it takes, estimated, s.
     pub duration_s: f64,
     /// What it will be able to tell apart; not kept on disk.
@@ -108,15 +113,38 @@ pub struct PlanRequest {
     pub place: ScreenPlace,
     /// What the operator chose.
     pub options: PlanOptions,
-    /// Model that targets are corrected with.
-    pub model: Option<Arc<CorrectionModel>>,
+    /// What targets are corrected with.
+    pub corrector: Corrector,
+}
+
+/// What targets are corrected with.
+#[derive(Clone, Debug, Default)]
+pub enum Corrector {
+    /// Nothing: they are sent as they are.
+    #[default]
+    None,
+    /// A model that was trained from touches.
+    Model(Arc<CorrectionModel>),
+    /// The effects of the model in use, of the world in this folder.
+    Effects(PathBuf),
+}
+
+impl Corrector {
+    fn name(&self) -> Option<Correction> {
+        match self {
+            Self::None => None,
+            Self::Model(model) => Some(model.method().into()),
+            Self::Effects(_) => Some(Correction::Effects),
+        }
+    }
 }
 
 /// Plans every touch, in order, by an arm that begins ready to touch.
 pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, JobError> {
-    let PlanRequest { rig, place, options, model } = request;
+    let PlanRequest { rig, place, options, corrector } = request;
     let words = |error: &dyn std::fmt::Display| JobError::failed(sentence(&error.to_string()));
     let plan = TouchPlan::make(options, &rig.touchscreen).map_err(|error| words(&error))?;
+    let senders = Senders::of(corrector, rig).map_err(JobError::failed)?;
     let (pace, count) = (TouchPace::default(), plan.touches.len());
     let mut duration = Duration::ZERO;
     let mut planner: Option<(f64, Planner)> = None;
@@ -137,8 +165,11 @@ pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, 
             }
         };
         let from = stands.take().unwrap_or_else(|| planner.ready(&rig.home()));
-        let mut aim = aim(rig, model.as_deref(), touch);
-        let path = planner.plan(aim.touch.target, aim.sent(), aim.touch.side, &from);
+        let mut aim = senders.aim(rig, planner, touch, &from);
+        let path = match aim.refusal.take() {
+            None => planner.plan(aim.touch.target, aim.sent(), aim.touch.side, &from),
+            Some(reason) => Err(reason),
+        };
         stands = Some(match path {
             Ok(path) => {
                 duration += path.duration(&pace);
@@ -169,32 +200,81 @@ pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, 
         format: FORMAT,
         options: options.clone(),
         touches,
-        corrected_with: model.as_ref().map(|model| model.method()),
+        corrected_with: corrector.name(),
         duration_s: duration.as_secs_f64(),
         score,
     })
 }
 
-/// The point that is sent for a planned touch. A model speaks of the screen without a block: what it
-/// adds is added on the block, too.
-fn aim(rig: &Rig, model: Option<&CorrectionModel>, touch: PlannedTouch) -> Aim {
-    let screen = rig.touchscreen.raised(touch.screen_height_m);
-    let place = screen.point_at(touch.target);
-    let (sent, inside) = match model {
-        None => (place, true),
-        Some(model) => {
-            let correction = model.correct(touch.target);
-            let up_m = rig.touchscreen.normal().vector() * touch.screen_height_m;
-            (Point::from(correction.target.coords + up_m), correction.inside)
+/// What decides where the tip is sent.
+enum Senders<'a> {
+    /// To the pixel itself.
+    Plain,
+    /// Where a trained model says. It speaks of the screen without a block: what it adds is added on
+    /// the block, too.
+    Model(&'a CorrectionModel),
+    /// Where the arm with its effects ends on the pixel.
+    Effects { arm: Box<DeviatedArm>, screen: Touchscreen },
+}
+
+impl<'a> Senders<'a> {
+    fn of(corrector: &'a Corrector, rig: &Rig) -> Result<Self, String> {
+        Ok(match corrector {
+            Corrector::None => Self::Plain,
+            Corrector::Model(model) => Self::Model(model),
+            Corrector::Effects(folder) => {
+                let model = rig_models::load(folder, rig)?;
+                if model.is_nominal() {
+                    let why = "No effect was added to the model yet. Search the gap and add what it names, or \
+                               correct with something else.";
+                    return Err(why.to_owned());
+                }
+                let arm = Box::new(model.arm(rig, TIP).map_err(|error| sentence(&error.to_string()))?);
+                let screen = model.screen(&rig.touchscreen).unwrap_or(&rig.touchscreen).clone();
+                Self::Effects { arm, screen }
+            }
+        })
+    }
+
+    /// The point that is sent for a planned touch, by an arm that stands at `from`.
+    fn aim(&self, rig: &Rig, planner: &Planner, touch: PlannedTouch, from: &Posture) -> Aim {
+        let place = rig.touchscreen.raised(touch.screen_height_m).point_at(touch.target);
+        let (mut sent, mut inside, mut refusal) = (place, true, None);
+        match self {
+            Self::Plain => {}
+            Self::Model(model) => {
+                let correction = model.correct(touch.target);
+                let up_m = rig.touchscreen.normal().vector() * touch.screen_height_m;
+                (sent, inside) = (Point::from(correction.target.coords + up_m), correction.inside);
+            }
+            Self::Effects { arm, screen } => {
+                let mut direction: Option<Vec<f64>> = None;
+                let commanded = |sent| {
+                    let (angles_rad, signs) = planner.commanded(touch.target, sent, touch.side, from)?;
+                    // A joint that nearly stands must not turn round from one point to the next.
+                    Ok::<_, String>((angles_rad, direction.get_or_insert(signs).clone()))
+                };
+                match arm.sent_for(screen, touch.target, touch.screen_height_m, touch.payload_kg, commanded) {
+                    Ok(Some(point)) => sent = point,
+                    Ok(None) => {
+                        refusal = Some(format!(
+                            "The effects of the model leave no command that leads to pixel ({:.0}, {:.0}). Choose a \
+                             smaller area, or correct with something else.",
+                            touch.target.u_px, touch.target.v_px
+                        ));
+                    }
+                    Err(reason) => refusal = Some(reason),
+                }
+            }
         }
-    };
-    Aim {
-        touch,
-        place_m: place.coords.coords.into(),
-        sent_m: sent.coords.coords.into(),
-        inside,
-        refusal: None,
-        posture: None,
+        Aim {
+            touch,
+            place_m: place.coords.coords.into(),
+            sent_m: sent.coords.coords.into(),
+            inside,
+            refusal,
+            posture: None,
+        }
     }
 }
 

@@ -14,12 +14,12 @@ use plumbline_model::touchscreen::ScreenPlacement;
 
 use super::path::ScreenPlace;
 use super::placement::Proposal;
-use super::plan::{PlanRequest, RunPlan};
+use super::plan::{Corrector, PlanRequest, RunPlan};
 use super::run::{Now, Phase, Run};
 use super::store::{self, Runs, TrainedRun};
 use super::view::Shown;
 use super::work::{PLACEMENT_FILE, TouchResult, TouchWork};
-use crate::command::{ContactWith, JobId, ScreenContact, ScreenWindow, TouchCommand};
+use crate::command::{ContactWith, Correction, JobId, ScreenContact, ScreenWindow, TouchCommand};
 use crate::context::{Action, Context};
 use crate::notice::NoticeLevel;
 use crate::robot::{RobotControl, TouchNews};
@@ -43,7 +43,7 @@ pub struct TouchWorkflow {
     pub(super) reach: Option<TouchArea>,
     pub(super) placement: Option<Arc<ScreenPlacement>>,
     pub(super) proposal: Option<Proposal>,
-    pub(super) correct_with: Option<Method>,
+    pub(super) correct_with: Option<Correction>,
     /// What was asked for last, to be planned again when something changes.
     pub(super) options: Option<PlanOptions>,
     pub(super) planning: Option<JobId>,
@@ -114,7 +114,7 @@ impl TouchWorkflow {
     pub fn apply(&mut self, command: TouchCommand, around: &Surroundings<'_>, context: &mut Context<'_>) {
         let result = match command {
             TouchCommand::Plan(options) => self.plan(options, around, context),
-            TouchCommand::CorrectWith(method) => self.correct_with(method, around, context),
+            TouchCommand::CorrectWith(correction) => self.correct_with(correction, around, context),
             TouchCommand::Start => self.start(around, context),
             TouchCommand::Open { session } => self.open(session, around, context),
             TouchCommand::Close => self.close(context),
@@ -193,9 +193,10 @@ impl TouchWorkflow {
         context: &mut Context<'_>,
     ) -> Result<(), String> {
         self.no_run_under_way()?;
-        let model = match self.correct_with {
-            None => None,
-            Some(method) => Some(model_of(around, method)?),
+        let corrector = match self.correct_with {
+            None => Corrector::None,
+            Some(Correction::Model(method)) => Corrector::Model(model_of(around, method)?),
+            Some(Correction::Effects) => Corrector::Effects(self.folder.clone()),
         };
         if let Some(earlier) = self.planning.take() {
             context.cancel(earlier);
@@ -207,7 +208,7 @@ impl TouchWorkflow {
             rig,
             place: self.screen_place(),
             options,
-            model,
+            corrector,
         })));
         Ok(())
     }
@@ -224,15 +225,15 @@ impl TouchWorkflow {
 
     fn correct_with(
         &mut self,
-        method: Option<Method>,
+        correction: Option<Correction>,
         around: &Surroundings<'_>,
         context: &mut Context<'_>,
     ) -> Result<(), String> {
         self.no_run_under_way()?;
-        if let Some(method) = method {
+        if let Some(Correction::Model(method)) = correction {
             model_of(around, method)?;
         }
-        self.correct_with = method;
+        self.correct_with = correction;
         self.plan_anew(around, context);
         Ok(())
     }

@@ -97,8 +97,8 @@ pub fn manifest(
         Purpose::Check => "check",
     };
     extra.insert("purpose".to_owned(), purpose.into());
-    if let Some(method) = plan.corrected_with {
-        extra.insert("corrected_with".to_owned(), method.name().into());
+    if let Some(correction) = plan.corrected_with {
+        extra.insert("corrected_with".to_owned(), correction.name().into());
     }
     Manifest {
         rig: RigReference::Named(rig.to_owned()),

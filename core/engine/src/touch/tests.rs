@@ -345,7 +345,7 @@ fn touches_are_stale_when_the_screen_is_placed_anew_but_not_by_themselves() {
 fn a_check_with_a_model_lands_nearer() {
     let folder = folder();
     let mut desk = Desk::new(folder.path());
-    desk.apply(TouchCommand::CorrectWith(Some(Method::M1)));
+    desk.apply(TouchCommand::CorrectWith(Some(Method::M1.into())));
     assert!(desk.said().contains("no model M1"), "{}", desk.said());
     desk.start(grid(3, 3));
     desk.touch_all();
@@ -356,11 +356,11 @@ fn a_check_with_a_model_lands_nearer() {
     let model = train(&data, Method::M1, &TrainOptions::default(), &Unattended, &mut |_| {});
     desk.models = vec![Arc::new(model.expect("trained"))];
     desk.apply(TouchCommand::Close);
-    desk.apply(TouchCommand::CorrectWith(Some(Method::M1)));
+    desk.apply(TouchCommand::CorrectWith(Some(Method::M1.into())));
     desk.start(PlanOptions { seed: 3, ..PlanOptions::check_reach(area(), 6, 3) });
     desk.touch_all();
     let view = desk.view();
-    assert_eq!((view.phase, view.correct_with), (TouchPhase::Finished, Some(Method::M1)));
+    assert_eq!((view.phase, view.correct_with), (TouchPhase::Finished, Some(Method::M1.into())));
     assert!(view.touches.iter().all(|touch| touch.sent.distance_m(&touch.target_place) > 1e-3));
     let after = view.figures.expect("touches");
     assert!(after.mean_m < 0.3 * before.mean_m, "{} {}", after.mean_m, before.mean_m);
@@ -528,7 +528,7 @@ fn planning_stops_when_asked_to() {
         rig: rig(),
         place: super::path::ScreenPlace::Nominal,
         options: grid(2, 2),
-        model: None,
+        corrector: super::plan::Corrector::None,
     };
     let cancelled = super::plan::make(&request, &StopsAt(3.into()));
     assert!(matches!(cancelled, Err(crate::jobs::JobError::Cancelled(_))));

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use plumbline_correction::Method;
 use plumbline_effects::observability::PlanScore;
 use plumbline_model::robot::Posture;
 use plumbline_model::session::{Screen, Touchscreen};
@@ -13,7 +12,7 @@ use plumbline_model::touchscreen::ScreenPlacement;
 use plumbline_model::{Pixel, Point, Robot};
 
 use super::StepState;
-use crate::command::ScreenWindow;
+use crate::command::{Correction, ScreenWindow};
 
 /// Touching the screen.
 #[derive(Clone, Debug, Default)]
@@ -47,8 +46,8 @@ pub struct TouchView {
     pub placement: Option<Arc<ScreenPlacement>>,
     /// A measured place that waits to be accepted.
     pub placement_proposal: Option<Arc<ScreenPlacement>>,
-    /// With which model targets are corrected before they are sent.
-    pub correct_with: Option<Method>,
+    /// With what targets are corrected before they are sent.
+    pub correct_with: Option<Correction>,
     /// Where contacts come from.
     pub source: ContactSource,
     /// The touch window; `None` while it is closed.

@@ -1,0 +1,192 @@
+//! The model in use on disk, and what a finding adds to it.
+
+use plumbline_effects::rig_model::{Addition, ModelEffect};
+use plumbline_gap::finding::{ClassMember, Comparison, FORMAT, FoundParameter, Unexplained, Verdict};
+use plumbline_model::session::{Manifest, RigReference, TouchTable};
+
+use super::*;
+
+fn nico() -> Rig {
+    Rig::built_in("nico").expect("comes with the program")
+}
+
+/// A model with effects of the right arm: kind, site, values.
+pub(crate) fn model_with(rig: &Rig, effects: &[(&str, &str, &[f64])]) -> RigModel {
+    let effects = effects.iter().map(|(id, site, values)| ModelEffect {
+        id: (*id).to_owned(),
+        site: (*site).to_owned(),
+        title: String::new(),
+        tip: Some("right_index_tip".to_owned()),
+        shape: None,
+        values: values.to_vec(),
+        covariance: vec![],
+        probability: None,
+        parameters: vec![],
+    });
+    let addition = Addition {
+        effects: effects.collect(),
+        screens: vec![],
+        externals: vec![],
+        replaces: false,
+        at: Timestamp::UNIX_EPOCH,
+        sentence: String::new(),
+        sessions: vec![],
+        version: String::new(),
+        gap: None,
+    };
+    let mut model = RigModel::nominal(rig);
+    model.add(rig, addition).expect("they fit");
+    model
+}
+
+fn session(rig: &Rig) -> Session {
+    let joints = rig.chain("right_index_tip").expect("a tip").names().to_vec();
+    Session {
+        manifest: Manifest {
+            rig: RigReference::Named("nico".to_owned()),
+            started: Timestamp::UNIX_EPOCH,
+            operator: String::new(),
+            notes: String::new(),
+            touchscreen: Some(rig.touchscreen.clone()),
+            chain: Some(plumbline_model::session::Chain {
+                tip: "right_index_tip".to_owned(),
+                joints: joints.clone(),
+            }),
+            extra: toml::Table::new(),
+        },
+        touches: Some(TouchTable::from_rows(joints, &[])),
+        localizations: None,
+        poses: None,
+        stereo: Default::default(),
+        log: None,
+    }
+}
+
+fn named(id: &str, site: &str, value: f64) -> NamedEffect {
+    NamedEffect {
+        id: id.to_owned(),
+        site: site.to_owned(),
+        title: format!("{site}: {id}"),
+        probability: 0.9,
+        class_probability: 0.95,
+        parameters: vec![FoundParameter {
+            name: "offset_rad".to_owned(),
+            value,
+            low: value - 0.001,
+            high: value + 0.001,
+            text: None,
+        }],
+        shape: None,
+        values: vec![value],
+        covariance: vec![1e-6],
+        size_sigmas: 3.0,
+        size_mm: 4.0,
+        class: vec![ClassMember {
+            id: id.to_owned(),
+            site: site.to_owned(),
+            title: String::new(),
+            probability: 1.0,
+        }],
+        split_by: None,
+        runner_up: None,
+        not_addable: None,
+    }
+}
+
+fn finding(effects: Vec<NamedEffect>) -> Finding {
+    Finding {
+        format: FORMAT,
+        rig: "nico".to_owned(),
+        sessions: vec!["morning".to_owned()],
+        version: "0.1.0".to_owned(),
+        seed: 1,
+        verdict: Verdict::Named,
+        sentence: "The elbow's zero is off.".to_owned(),
+        comparison: Comparison {
+            rows: 80,
+            rows_kept: 80,
+            cells: 80,
+            kinds: vec![],
+            floor_from_repeats: true,
+            p_value: 1e-9,
+            size_sigmas: 3.0,
+            is_gap: true,
+            residuals: vec![],
+        },
+        effects,
+        candidates: vec![],
+        shown: Shown {
+            blocks: "5 folds".to_owned(),
+            rows: 80,
+            unit: ShownUnit::Millimeter,
+            before: 6.7,
+            after: 3.6,
+            floor: 3.0,
+            closure: Some(0.84),
+            closure_range: None,
+            worst_tenth: [12.0, 6.0],
+            inside_95: 0.95,
+            unseen: None,
+            covariates: vec![],
+            telling: vec![],
+        },
+        unexplained: Unexplained { p_value: 0.2, probability: 0.02, depends_on: vec![], share: 0.1 },
+        next: None,
+        placements: vec![nalgebra::Isometry3::translation(0.004, -0.002, 0.001)],
+        left_out: vec![],
+        warnings: vec![],
+        seconds: 1.0,
+    }
+}
+
+#[test]
+fn accepting_and_taking_back_live_on_disk() {
+    let (rig, folder) = (nico(), tempfile::tempdir().expect("a folder for the test"));
+    let world = folder.path().join("twin");
+    assert!(load(&world, &rig).expect("nothing there").is_nominal());
+    let sessions = [session(&rig)];
+    let found = finding(vec![named("joint-zero", "r_elbow_y", 0.03), named("joint-sag", "r_arm_x", 0.01)]);
+    let one = accept(&world, &rig, (&found, &sessions), &[0], true).expect("accepted");
+    assert_eq!(one.effects().len(), 1);
+    let both = accept(&world, &rig, (&found, &sessions), &[1], false).expect("accepted");
+    assert_eq!(load(&world, &rig).expect("there").effects(), both.effects());
+    assert_eq!(both.effects().len(), 2);
+    // The robot moved by the placement is the screen moved the other way.
+    let screen = both.screen(&rig.touchscreen).expect("placed");
+    let middle = screen.point_at(screen.middle());
+    let nominal = rig.touchscreen.point_at(rig.touchscreen.middle());
+    let moved = middle.coords - nominal.coords - nalgebra::Vector3::new(-0.004, 0.002, -0.001);
+    assert!(moved.norm() < 1e-12);
+    let gaps: Vec<[f64; 2]> = history(&both).map(|(_, gap)| [gap.before, gap.after]).collect();
+    assert_eq!(gaps, [[6.7, 3.6]; 2]);
+    let back = undo(&world, &rig).expect("a step");
+    assert_eq!(back.contents.effects, one.contents.effects);
+    assert_eq!(history(&back).count(), 1);
+    assert!(undo(&world, &rig).expect("a step").is_nominal());
+    assert!(undo(&world, &rig).expect_err("none left").contains("no step left"));
+}
+
+#[test]
+fn what_cannot_be_accepted_is_said_and_changes_nothing() {
+    let (rig, folder) = (nico(), tempfile::tempdir().expect("a folder for the test"));
+    let sessions = [session(&rig)];
+    let mut found = finding(vec![named("joint-zero", "r_elbow_y", 0.03)]);
+    let refused = |found: &Finding, sessions: &[Session], effects: &[usize]| {
+        accept(folder.path(), &rig, (found, sessions), effects, true).expect_err("refused")
+    };
+    assert!(refused(&found, &sessions, &[1]).contains("no such effect"));
+    assert!(refused(&found, &sessions, &[]).contains("at least one"));
+    assert!(refused(&found, &[], &[0]).contains("not of these sessions"));
+    found.effects[0].not_addable = Some("its fit sits at a bound".to_owned());
+    assert!(refused(&found, &sessions, &[0]).contains("sits at a bound"));
+    assert!(!file(folder.path()).exists());
+}
+
+#[test]
+fn the_model_of_another_rig_is_refused() {
+    let (rig, folder) = (nico(), tempfile::tempdir().expect("a folder for the test"));
+    save(folder.path(), &model_with(&rig, &[("joint-zero", "r_elbow_y", &[0.03])]), &rig).expect("written");
+    let other = Rig { name: "icub".to_owned(), ..rig };
+    let said = load(folder.path(), &other).expect_err("another rig");
+    assert!(said.contains("belongs to the robot \"nico\", not to \"icub\""), "{said}");
+}
