@@ -192,7 +192,9 @@ fn times_that_go_backwards_copies_and_clipped_rows_are_said() {
     measurements.rows[30].t_secs = Some(1.0);
     let copy = measurements.rows[3].clone();
     measurements.rows.extend(std::iter::repeat_n(copy, 6));
-    let edge = measurements.rows.iter().map(|row| row.measured[0]).fold(f64::NEG_INFINITY, f64::max) - 0.03;
+    let mut along: Vec<f64> = measurements.rows.iter().map(|row| row.measured[0]).collect();
+    along.sort_by(f64::total_cmp);
+    let edge = along[along.len() * 3 / 4];
     measurements.rows.iter_mut().for_each(|row| row.measured[0] = row.measured[0].min(edge));
     let finding = looked_at(&measurements).expect("can be looked at");
     for words in ["backwards", "exact copies", "clipped"] {

@@ -69,7 +69,7 @@ fn one_effect_is_named_and_sized_and_the_gap_closes() {
 #[test]
 fn the_place_is_inferred_through_a_turned_eye() {
     let some = places(1, &[], 1e-4, 1);
-    let hidden = present(&some, "eye-yaw", "eyes", &[0.01]);
+    let hidden = present(&some, "eye-yaw", "right", &[0.01]);
     let measurements = places(2, std::slice::from_ref(&hidden), 5e-4, 2);
     let finding = find(&measurements, &Options::default(), &Unattended).expect("can be looked at");
     println!("{}", finding.sentence);

@@ -68,6 +68,18 @@ fn print(finding: &Finding) {
         shown.closure_range
     );
     let told: Vec<&str> = shown.telling.iter().map(|&c| shown.covariates[c].0.as_str()).collect();
+    // Outliers included, as someone would who does not know of them.
+    let length = |arrow: [f64; 3]| 1e3 * arrow[0].hypot(arrow[1]);
+    let all = |of: fn(&plumbline_gap::finding::Residual) -> [f64; 3]| {
+        comparison.residuals.iter().map(|row| length(of(row))).sum::<f64>()
+            / comparison.residuals.len() as f64
+    };
+    println!(
+        "all {} rows on the table: {:.2} -> {:.2} mm",
+        comparison.rows,
+        all(|row| row.before_m),
+        all(|row| row.after_m)
+    );
     println!("told by {told:?}; unexplained {:?}", finding.unexplained);
 }
 
@@ -76,8 +88,7 @@ fn touches_of_the_real_arm() {
     let Some(measurements) = session("nico-touch/touch-245") else { return };
     let finding = found(&measurements);
     assert!(finding.comparison.is_gap);
-    // Only the frame placed, commands: 6.7 mm.
-    assert!(finding.shown.before > 4.0 && finding.shown.before < 9.0, "{}", finding.shown.before);
+    assert!(finding.shown.before > 4.0 && finding.shown.before < 7.0, "{}", finding.shown.before);
     assert!(finding.shown.after < finding.shown.before);
 }
 
@@ -87,7 +98,9 @@ fn touches_of_the_real_arm_by_commands_alone() {
     measurements.rows.iter_mut().for_each(|row| row.encoder_rad = None);
     let finding = found(&measurements);
     assert!(finding.comparison.is_gap);
-    assert!((finding.shown.before - 6.7).abs() < 0.4, "{}", finding.shown.before);
+    // A least-squares placement in the plane alone leaves 6.7 mm; here heights hold the frame too.
+    assert!((finding.shown.before - 6.7).abs() < 1.0, "{}", finding.shown.before);
+    assert!(finding.shown.after < 0.75 * finding.shown.before);
 }
 
 #[test]

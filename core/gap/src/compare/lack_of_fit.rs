@@ -22,6 +22,8 @@ use crate::error::GapError;
 
 /// Permutations: the smallest probability that they can show is one over one more.
 const PERMUTATIONS: usize = 399;
+/// Mean square, in units of the noise, below which a residual says nothing.
+const DUST: f64 = 0.1;
 /// At most this many columns speak in the score test.
 const MOST_COLUMNS: usize = 40;
 
@@ -66,7 +68,8 @@ pub fn misfit(
     if let Some(found) = by_repeats.filter(|_| !any_not) {
         return Ok(found);
     }
-    let by_dependence = of_dependence(measurements, &standardized, covariates, &repeated, seed, context)?;
+    let once = standardized.once_per_cell(measurements);
+    let by_dependence = of_dependence(measurements, &once, covariates, &repeated, seed, context)?;
     Ok(match by_repeats {
         None => by_dependence,
         // Two tests: twice the smaller probability.
@@ -109,6 +112,43 @@ fn standardized(
         }
     }
     Standardized { rows, start, residual: DVector::from_vec(residual), gauge }
+}
+
+impl Standardized {
+    /// Means of cells, each in the place of the cell's first row: repeats do not speak twice of
+    /// what they depend on.
+    fn once_per_cell(&self, measurements: &Measurements) -> Self {
+        let mut cells = BTreeMap::<usize, Vec<usize>>::new();
+        for (k, &i) in self.rows.iter().enumerate() {
+            cells.entry(measurements.rows[i].cell).or_default().push(k);
+        }
+        let mut members: Vec<Vec<usize>> = cells.into_values().collect();
+        members.sort_by_key(|members| members[0]);
+        let size = |k: usize| measurements.rows[self.rows[k]].what.len();
+        let total = members.iter().map(|members| size(members[0])).sum();
+        let mut once = Self {
+            rows: vec![],
+            start: vec![],
+            residual: DVector::zeros(total),
+            gauge: DMatrix::zeros(total, self.gauge.ncols()),
+        };
+        let mut at = 0;
+        for members in members {
+            once.rows.push(self.rows[members[0]]);
+            once.start.push(at);
+            let weight = 1.0 / (members.len() as f64).sqrt();
+            for c in 0..size(members[0]) {
+                for &k in &members {
+                    once.residual[at + c] += weight * self.residual[self.start[k] + c];
+                    for g in 0..self.gauge.ncols() {
+                        once.gauge[(at + c, g)] += weight * self.gauge[(self.start[k] + c, g)];
+                    }
+                }
+            }
+            at += size(members[0]);
+        }
+        once
+    }
 }
 
 /// What a basis cannot explain.
@@ -218,9 +258,10 @@ fn of_dependence(
                             basis.at.len(),
                             basis.at.iter().map(|at| residual[at + c]),
                         );
-                        let share =
-                            (basis.projector.inside(&own) / own.norm_squared().max(1e-300)).min(1.0 - 1e-9);
-                        -(basis.at.len() as f64) * (1.0 - share).ln()
+                        // What is far below the noise is the dust of rounding.
+                        let whole = own.norm_squared().max(DUST * own.len() as f64);
+                        let share = (basis.projector.inside(&own) / whole).min(1.0 - 1e-9);
+                        -(own.len() as f64) * (1.0 - share).ln()
                     })
                     .sum::<f64>()
             })

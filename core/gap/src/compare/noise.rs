@@ -21,6 +21,9 @@ const FAR: f64 = 4.0;
 /// height of a touch follows from the command.
 const NOT_MEASURED: f64 = 0.02;
 
+/// Noise of the height of a touch against that along the glass, where only commands are known.
+const HEIGHT_SHARE: f64 = 0.5;
+
 /// Noise with what is known of where it comes from.
 pub struct Noise {
     /// Per kind and coordinate.
@@ -49,10 +52,11 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
         };
         from_repeats &= repeats.is_some();
         let free = repeats.as_ref().map_or(nearby.degrees_of_freedom, |repeats| repeats.degrees_of_freedom);
+        let least = follows_command(measurements, what, &known, repeats.as_ref().unwrap_or(&nearby));
         let sd = (0..what.len())
             .map(|c| match &repeats {
                 Some(repeats) if known[c] => repeats.sd[c],
-                _ => nearby.sd[c],
+                _ => nearby.sd[c].max(least[c]),
             })
             .zip(what.coordinates())
             .map(|(sd, (_, unit))| sd.max(finest(*unit)))
@@ -61,6 +65,32 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
         repeated.push(known);
     }
     Noise { floor: Floor { kinds, from_repeats }, repeated }
+}
+
+/// The least noise of coordinates that follow from the command: the height of a touch whose
+/// encoders were not logged. How high the finger really was is as little known as where it met the
+/// glass; as in the score of a plan, half of that is taken. Repeats of a command then say the same
+/// height again and count once.
+fn follows_command(
+    measurements: &Measurements,
+    what: What,
+    known: &[bool],
+    measured: &KindFloor,
+) -> Vec<f64> {
+    let mut least = vec![0.0; what.len()];
+    let mut own = measurements.rows.iter().filter(|row| row.what == what).peekable();
+    let by_command = own.peek().is_some_and(|row| row.encoder_rad.is_none());
+    if what != What::Touch || known[2] || !by_command {
+        return least;
+    }
+    let (mut rows, mut cells) = (0, std::collections::BTreeSet::new());
+    for row in own {
+        rows += 1;
+        cells.insert(row.cell);
+    }
+    let level = (0.5 * (measured.sd[0].powi(2) + measured.sd[1].powi(2))).sqrt();
+    least[2] = HEIGHT_SHARE * level * (f64::from(rows) / cells.len() as f64).sqrt();
+    least
 }
 
 /// Nothing here is measured finer than this.

@@ -19,6 +19,8 @@ const FARTHEST_JOINT_RAD: f64 = 2.0 * std::f64::consts::PI;
 /// A block under the screen is lower, m; a weight in the hand is lighter, kg.
 const HIGHEST_BLOCK_M: f64 = 2.0;
 const HEAVIEST_KG: f64 = 20.0;
+/// Directions in which predictions spread less than this share of the widest say nothing.
+const THIN: f64 = 0.15;
 /// Frames placed, a model of the right unit is not off by more, m. Below it no unit is suspected
 /// of angles that are possible in both.
 const GROSS_M: f64 = 0.04;
@@ -119,7 +121,7 @@ fn near(ratio: f64, factor: f64) -> bool {
 
 /// Units of length by their factor against a meter.
 fn length_of(ratio: f64) -> Option<(&'static str, f64)> {
-    let units = [("millimeters", 1000.0), ("centimeters", 100.0), ("kilometers", 0.001)];
+    let units = [("millimeters", 1000.0), ("centimeters", 100.0)];
     units.into_iter().find(|(_, factor)| near(ratio, *factor))
 }
 
@@ -204,25 +206,37 @@ fn lengths(measurements: &Measurements, session: usize, rows: &[&Observation]) -
     Ok(())
 }
 
-/// Length of the gradient of a measured coordinate over the predicted place, by robust regression;
-/// `None` where the prediction says little of it.
+/// Length of the gradient of a measured coordinate over the predicted place, by robust regression
+/// along the directions in which predictions spread; `None` where they say little of it.
 fn gradient(predicted: &[Vec<f64>], measured: &[f64]) -> Option<f64> {
     let count = predicted.len();
-    let columns = DMatrix::from_fn(count, 4, |i, c| if c == 0 { 1.0 } else { predicted[i][c - 1] });
-    let values = DVector::from_column_slice(measured);
     let mut weights = DVector::from_element(count, 1.0);
-    let mut solution = DVector::zeros(4);
+    let mut found = None;
     for _ in 0..15 {
-        let weighted = DMatrix::from_fn(count, 4, |i, c| columns[(i, c)] * weights[i]);
-        solution = weighted.svd(true, true).solve(&values.component_mul(&weights), 1e-6).ok()?;
-        let left = &values - &columns * &solution;
+        let whole = weights.sum();
+        let mean =
+            |value: &dyn Fn(usize) -> f64| (0..count).map(|i| weights[i] * value(i)).sum::<f64>() / whole;
+        let middle: [f64; 3] = std::array::from_fn(|c| mean(&|i| predicted[i][c]));
+        let level = mean(&|i| measured[i]);
+        let root = |i: usize| weights[i].sqrt();
+        let columns = DMatrix::from_fn(count, 3, |i, c| root(i) * (predicted[i][c] - middle[c]));
+        let values = DVector::from_fn(count, |i, _| root(i) * (measured[i] - level));
+        let svd = columns.svd(true, true);
+        // Touches lie on a plane: across it the prediction says nothing.
+        let thin = THIN * svd.singular_values.max();
+        let solution = svd.solve(&values, thin).ok()?;
+        let left = DVector::from_fn(count, |i, _| {
+            let along: f64 = (0..3).map(|c| solution[c] * (predicted[i][c] - middle[c])).sum();
+            measured[i] - level - along
+        });
         let scale = robust_sd(left.iter().copied()).max(1e-9);
-        weights = left.map(|value| (1.0 / (value / scale).abs().max(1.0)).sqrt());
+        weights = left.map(|value| 1.0 / (value / scale).abs().max(1.0));
+        found = Some((solution.norm(), scale));
     }
-    let left = robust_sd((&values - &columns * &solution).iter().copied());
+    let (length, left) = found?;
     let middle = median(measured.iter().copied())?;
     let whole = robust_sd(measured.iter().map(|value| value - middle));
-    (left < 0.5 * whole).then(|| solution.rows(1, 3).norm())
+    (left < 0.5 * whole).then_some(length)
 }
 
 /// Angles that are possible in both units: the one that fits.

@@ -52,7 +52,7 @@ pub(crate) struct Show {
     pub residuals: Vec<Residual>,
 }
 
-/// Judges every row that is no outlier by models found without it.
+/// Judges every row by models found without it. Outliers have arrows but do not count.
 ///
 /// # Errors
 /// Cancelled.
@@ -73,8 +73,12 @@ pub(crate) fn show(
             context.checkpoint()?;
             let inside = |k: usize| folds.of_row[k] == fold;
             let training: Vec<usize> = (0..chosen.len()).filter(|&k| !inside(k)).map(|k| chosen[k]).collect();
-            let tested: Vec<(usize, usize)> =
+            let mut tested: Vec<(usize, usize)> =
                 (0..chosen.len()).filter(|&k| inside(k)).map(|k| (chosen[k], folds.block[k])).collect();
+            if fold == 0 {
+                // No model was made with outliers: any of them judges them fairly.
+                tested.extend((0..compared.outlier.len()).filter(|&i| compared.outlier[i]).map(|i| (i, 0)));
+            }
             let judged =
                 without(measurements, compared, found, &training, &tested, options, &Quiet(context))?;
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
@@ -89,8 +93,11 @@ pub(crate) fn show(
     held_out.sort_by_key(|row| row.row);
     let residuals = arrows(measurements, compared, &held_out);
     let unit = unit_of(measurements);
-    let counted: Vec<HeldOut> =
-        held_out.iter().copied().filter(|row| counts(measurements.rows[row.row].what, unit)).collect();
+    let counted: Vec<HeldOut> = held_out
+        .iter()
+        .copied()
+        .filter(|row| !compared.outlier[row.row] && counts(measurements.rows[row.row].what, unit))
+        .collect();
     let mut shown = summary(&counted, unit, folds.words, options.seed);
     let before: Vec<(usize, Vector3<f64>)> =
         held_out.iter().map(|row| (row.row, row.before.arrow_m)).collect();

@@ -134,7 +134,7 @@ pub fn touches(plan: &Plan, hidden: &[Present], seed: u64) -> Measurements {
         let mut row = measurements.rows[i].clone();
         match done.iter().find(|known| known.cell == row.cell) {
             Some(known) => row.commanded_rad.clone_from(&known.commanded_rad),
-            None => lower(&measurements, &mut row, &truth),
+            None => lower(&measurements, &mut row, &truth, 3e-4 * normal(&mut random)),
         }
         let exact = measurements.predict(&row, &truth).expect("an arm can always be placed");
         row.measured[0] = exact[0] + plan.noise_m * normal(&mut random);
@@ -145,9 +145,9 @@ pub fn touches(plan: &Plan, hidden: &[Present], seed: u64) -> Measurements {
     measurements
 }
 
-/// Bends the shoulder until the true finger is at the height of the glass.
-fn lower(measurements: &Measurements, row: &mut Observation, truth: &Assumed) {
-    let height = |row: &Observation| measurements.predict(row, truth).expect("predictable")[2];
+/// Bends the shoulder until the true finger is this high over the glass.
+fn lower(measurements: &Measurements, row: &mut Observation, truth: &Assumed, height_m: f64) {
+    let height = |row: &Observation| measurements.predict(row, truth).expect("predictable")[2] - height_m;
     for _ in 0..40 {
         let here = height(row);
         let mut ahead = row.clone();
