@@ -117,6 +117,14 @@ pub fn no_gap() -> Finding {
     for residual in &mut finding.comparison.residuals {
         residual.before_m = residual.after_m;
     }
+    for coordinate in finding.comparison.kinds.iter_mut().flat_map(|kind| &mut kind.coordinates) {
+        coordinate.rms = 1.02 * coordinate.floor;
+        coordinate.share = 1.0 / 3.0;
+    }
+    for candidate in &mut finding.candidates {
+        candidate.probability *= 0.02;
+        candidate.score_sigmas *= 0.1;
+    }
     finding.comparison.is_gap = false;
     finding.comparison.p_value = 0.41;
     finding.comparison.size_sigmas = 0.08;

@@ -154,21 +154,15 @@ pub fn covariate(unit: &str) -> Printed {
     }
 }
 
-/// Evenly spaced round numbers inside of a range, `about` of them.
+/// Evenly spaced round numbers inside of a range, `about` of them or up to twice as many.
 pub fn ticks(low: f64, high: f64, about: usize) -> Vec<f64> {
     let span = high - low;
     if !(span.is_finite() && span > 0.0) || about == 0 {
         return vec![];
     }
-    let step = round_up(span / about as f64);
+    let step = round_down(span / about as f64);
     let first = (low / step - 1e-9).ceil() as i64;
     (first..).map(|i| i as f64 * step).take_while(|tick| *tick <= high + 1e-9 * span).collect()
-}
-
-/// The next of 1, 2, 5, 10, 20, … up.
-pub fn round_up(value: f64) -> f64 {
-    let power = 10f64.powf(value.log10().floor());
-    [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|v| *v >= value * (1.0 - 1e-9)).unwrap_or(value)
 }
 
 /// The next of 1, 2, 5, 10, 20, … down.
@@ -200,7 +194,7 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_inside() {
-        assert_eq!(ticks(-0.4, 2.1, 5), [0.0, 0.5, 1.0, 1.5, 2.0]);
+        assert_eq!(ticks(-0.4, 2.1, 4), [0.0, 0.5, 1.0, 1.5, 2.0]);
         assert_eq!(ticks(0.0, 0.0, 5), Vec::<f64>::new());
         assert_eq!(ticks(f64::NAN, 1.0, 5), Vec::<f64>::new());
     }

@@ -8,8 +8,6 @@ use crate::drawing::{Anchor, Drawing, Style, ink};
 use crate::values::{percent, significant, with_interval};
 use crate::{font, words};
 
-/// At most this many effects are printed.
-const MOST: usize = 6;
 /// Parameters of one effect that are printed.
 const MOST_PARAMETERS: usize = 6;
 /// Between two effects.
@@ -24,10 +22,14 @@ pub fn height(finding: &Finding, width: f64, detail: Detail) -> f64 {
     let entries: f64 = finding
         .effects
         .iter()
-        .take(MOST)
+        .take(detail.effects)
         .map(|effect| Entry::of(effect, finding, width, detail).height() + BETWEEN)
         .sum();
-    HEADING + 2.0 + entries + if finding.effects.len() > MOST { Style::SMALL.leading() } else { 0.0 } + GAP
+    HEADING
+        + 2.0
+        + entries
+        + if finding.effects.len() > detail.effects { Style::SMALL.leading() } else { 0.0 }
+        + GAP
         - 4.0
 }
 
@@ -42,13 +44,13 @@ pub fn draw(drawing: &mut Drawing, area: Area, finding: &Finding, detail: Detail
     };
     heading(drawing, area, title);
     let mut y = area.y + HEADING + 2.0;
-    for effect in finding.effects.iter().take(MOST) {
+    for effect in finding.effects.iter().take(detail.effects) {
         let entry = Entry::of(effect, finding, area.width, detail);
         entry.draw(drawing, area.x, y, area.width);
         y += entry.height() + BETWEEN;
     }
-    if finding.effects.len() > MOST {
-        let text = format!("and {} smaller ones", finding.effects.len() - MOST);
+    if finding.effects.len() > detail.effects {
+        let text = format!("and {} smaller ones", finding.effects.len() - detail.effects);
         drawing.text([area.x, y + 5.0], text, Style::SMALL);
         y += Style::SMALL.leading();
     }
@@ -61,7 +63,7 @@ struct Entry {
     values: Vec<String>,
     meaning: Vec<String>,
     remedy: Vec<String>,
-    others: Vec<String>,
+    others: Vec<(String, bool)>,
     probability: f64,
     class_probability: Option<f64>,
 }
@@ -86,14 +88,20 @@ impl Entry {
             effect.class.iter().skip(1).map(|member| member.title.clone()).collect();
         if !alternatives.is_empty() {
             let names = alternatives.join("; or ");
-            others = wrap(&format!("or as well: {names}"), width - PAD, Style::BODY.color(ink::WARNING), 2);
+            others.extend(
+                wrap(&format!("or as well: {names}"), width - PAD, Style::BODY, detail.others)
+                    .into_iter()
+                    .map(|line| (line, true)),
+            );
             if let Some(split) = &effect.split_by {
-                others.extend(wrap(&format!("To tell them apart: {split}."), width - PAD, Style::BODY, 2));
+                let split =
+                    wrap(&format!("To tell them apart: {split}."), width - PAD, Style::BODY, detail.others);
+                others.extend(split.into_iter().map(|line| (line, false)));
             }
         }
         Self {
-            name: wrap(&effect.title, name_width, NAME, 2),
-            values: wrap(&values(effect), name_width, Style::BODY, 2),
+            name: wrap(&effect.title, name_width, NAME, detail.name),
+            values: wrap(&values(effect), name_width, Style::BODY, detail.name),
             meaning: wrap(&meaning, words_width, Style::BODY, detail.meaning),
             remedy: if detail.remedy == 0 {
                 vec![]
@@ -142,8 +150,8 @@ impl Entry {
         let x_words = x_name + name_width + GUTTER;
         column(drawing, x_words, &mut meaning.chain(remedy));
         self.probabilities(drawing, x_words + words_width + GUTTER, first, last_width);
-        for (i, line) in self.others.iter().enumerate() {
-            let color = if line.starts_with("To tell") || i > 1 { ink::TEXT } else { ink::WARNING };
+        for (i, (line, is_name)) in self.others.iter().enumerate() {
+            let color = if *is_name { ink::WARNING } else { ink::TEXT };
             let base = first + leading * (self.lines() + i) as f64;
             drawing.text([x_name, base], line, Style::BODY.color(color));
         }

@@ -66,7 +66,7 @@ fn gap(drawing: &mut Drawing, area: Area, finding: &Finding) {
             significant(unseen.floor, 3)
         ));
     }
-    let mut y = y + 6.0;
+    let mut y = y + 8.0;
     for line in lines {
         y = drawing.paragraph([area.x, y], area.width, &line, Style::BODY, 2);
     }
@@ -74,7 +74,7 @@ fn gap(drawing: &mut Drawing, area: Area, finding: &Finding) {
 
 /// Which coordinates hold the gap.
 fn coordinates(drawing: &mut Drawing, area: Area, finding: &Finding) {
-    heading(drawing, area, "Where it lies: share of the squared residual");
+    heading(drawing, area, "Share of the squared residual");
     let mut all: Vec<&CoordinateComparison> =
         finding.comparison.kinds.iter().flat_map(|kind| &kind.coordinates).collect();
     all.sort_by(|a, b| b.share.total_cmp(&a.share));
@@ -82,21 +82,26 @@ fn coordinates(drawing: &mut Drawing, area: Area, finding: &Finding) {
         drawing.text([area.x, area.y + HEADING + 8.0], "Nothing was compared.", Style::BODY);
         return;
     }
+    let all = &all[..all.len().min(MOST_COORDINATES)];
     let bars: Vec<Bar> = all
         .iter()
-        .take(MOST_COORDINATES)
         .map(|coordinate| Bar {
             name: coordinate.name.clone(),
             value: coordinate.share,
-            label: {
-                let (rms, floor) =
-                    (printed(coordinate.rms, coordinate), printed(coordinate.floor, coordinate));
-                format!("{}   rms {rms}, floor {floor}", share(coordinate.share))
-            },
+            label: share(coordinate.share),
             color: ink::BEFORE,
         })
         .collect();
-    bars::draw(drawing, area.below(HEADING), &bars, 82.0, 15.0, None);
+    let (right, pitch) = (108.0, 15.0);
+    let below = area.below(HEADING);
+    bars::draw(drawing, Area { width: below.width - right, ..below }, &bars, 88.0, pitch, None);
+    for (i, coordinate) in all.iter().enumerate() {
+        let (rms, floor) = (printed(coordinate.rms, coordinate), printed(coordinate.floor, coordinate));
+        let style = Style::SMALL;
+        let text = font::fit(&format!("rms {rms}, floor {floor}"), right - 8.0, style.size, style.weight);
+        let base = below.y + pitch * i as f64 + 0.5 * (pitch - 5.0) + 2.8;
+        drawing.anchored([area.right(), base], text, style, Anchor::End);
+    }
 }
 
 fn printed(value: f64, coordinate: &CoordinateComparison) -> String {
@@ -110,7 +115,7 @@ fn printed(value: f64, coordinate: &CoordinateComparison) -> String {
 /// Models with their gaps, the last one after what was found now.
 fn history(drawing: &mut Drawing, area: Area, finding: &Finding, entries: &[HistoryEntry]) {
     let unit = unit(finding);
-    heading(drawing, area, &format!("Models so far, mean error in {unit}"));
+    heading(drawing, area, &format!("Models so far, mean error in {unit} (dashed: noise floor)"));
     let shown = &entries[entries.len().saturating_sub(MOST_MODELS)..];
     let plot = Area { height: 50.0, y: area.y + HEADING + 4.0, ..area };
     let largest = shown

@@ -26,6 +26,8 @@ const GUTTER: f64 = 24.0;
 const GAP: f64 = 15.0;
 /// Least and largest heights of the figures.
 const MAPS: [f64; 2] = [104.0, 232.0];
+/// Largest height of maps without other figures below.
+const ALONE: f64 = 320.0;
 const SCATTER: [f64; 2] = [74.0, 118.0];
 
 /// A rectangle of the page.
@@ -67,19 +69,27 @@ impl Area {
 /// How much of the words is printed. The more effects, the less of each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Detail {
+    /// Effects.
+    pub effects: usize,
+    /// Lines of an effect's name, and of its values.
+    pub name: usize,
     /// Lines of what an effect means.
     pub meaning: usize,
     /// Lines of what can be done about it.
     pub remedy: usize,
+    /// Lines of its other names, and of how to tell them apart.
+    pub others: usize,
     /// Lines of each note.
     pub note: usize,
 }
 
-const DETAILS: [Detail; 4] = [
-    Detail { meaning: 3, remedy: 3, note: 8 },
-    Detail { meaning: 2, remedy: 2, note: 6 },
-    Detail { meaning: 1, remedy: 1, note: 5 },
-    Detail { meaning: 1, remedy: 0, note: 4 },
+const DETAILS: [Detail; 6] = [
+    Detail { effects: 6, name: 2, meaning: 3, remedy: 3, others: 2, note: 8 },
+    Detail { effects: 6, name: 2, meaning: 2, remedy: 2, others: 2, note: 6 },
+    Detail { effects: 6, name: 1, meaning: 1, remedy: 1, others: 1, note: 5 },
+    Detail { effects: 5, name: 1, meaning: 1, remedy: 1, others: 1, note: 4 },
+    Detail { effects: 4, name: 1, meaning: 1, remedy: 1, others: 1, note: 4 },
+    Detail { effects: 3, name: 1, meaning: 1, remedy: 1, others: 1, note: 4 },
 ];
 
 /// Draws the page.
@@ -101,7 +111,7 @@ pub fn draw(finding: &Finding, context: &ReportContext) -> Drawing {
             - notes::height(finding, width, *detail)
             - 2.0 * GAP
     };
-    let detail = DETAILS.into_iter().find(|detail| room(detail) >= least).unwrap_or(DETAILS[3]);
+    let detail = DETAILS.into_iter().find(|detail| room(detail) >= least).unwrap_or(DETAILS[5]);
 
     figures::summary(&mut drawing, summary, finding, context);
     let figures_height = room(&detail).max(0.0);
@@ -109,7 +119,12 @@ pub fn draw(finding: &Finding, context: &ReportContext) -> Drawing {
     let scatter_height =
         if has_scatter { (0.36 * figures_height).clamp(SCATTER[0], SCATTER[1]) } else { 0.0 };
     let taken = if has_scatter { scatter_height + GAP } else { 0.0 };
-    let maps = Area { x: MARGIN, y, width, height: (figures_height - taken).min(MAPS[1]) };
+    let maps = Area {
+        x: MARGIN,
+        y,
+        width,
+        height: (figures_height - taken).min(if has_scatter { MAPS[1] } else { ALONE }),
+    };
     figures::maps(&mut drawing, maps, finding, context);
     y = maps.bottom() + GAP;
     if has_scatter {

@@ -164,7 +164,7 @@ fn panel(
     drawing.rect(plot.x, plot.y, plot.width, plot.height, ink::TRACK);
     let title = font::fit(title, plot.width, style.size, style.weight);
     drawing.text([plot.x, area.y + 5.0], title, style.bold().color(color));
-    let rows = ticks(axes.y.0, axes.y.1, 4);
+    let rows = ticks(axes.y.0, axes.y.1, 3);
     let step = rows.windows(2).map(|pair| pair[1] - pair[0]).next().unwrap_or(1.0);
     for tick in rows {
         let [_, y] = at(axes.x.0, tick);

@@ -85,7 +85,7 @@ fn data(finding: &Finding) -> String {
         format!("{} in {}", count(comparison.rows, "row", "rows"), count(comparison.cells, "cell", "cells")),
     ];
     if outliers > 0 {
-        parts.push(format!("{outliers} taken as outliers and not used"));
+        parts.push(format!("{} not used", count(outliers, "outlier", "outliers")));
     }
     if !finding.left_out.is_empty() {
         parts.push(format!("{} could not be read", count(finding.left_out.len(), "row", "rows")));
