@@ -5,6 +5,7 @@
 
 mod contents;
 mod error;
+mod export;
 mod file;
 mod predict;
 #[cfg(test)]
@@ -22,6 +23,7 @@ pub use contents::{
     Addition, Contents, ModelEffect, PlacedExternal, PlacedScreen, ReportedParameter, Step, StepGap, StepKind,
 };
 pub use error::RigModelError;
+pub use export::{ExportError, Exported};
 pub use file::{FORMAT, is_rig_model};
 pub use predict::predict_session_with;
 pub use reach::{Conditions, DeviatedArm, Reached, SETTLED_M};

@@ -276,3 +276,39 @@ fn a_search_for_more_starts_with_the_models_effects() {
         assert_ne!(Some(here), nominal.predict(row, &Assumed::nominal(&nominal)));
     }
 }
+
+/// Another program that reads the exported description has the robot with its effects.
+#[test]
+fn a_description_holds_the_effects_that_are_origins() {
+    let rig = nico();
+    let urdf = include_str!("../../../../assets/robots/nico/nico.urdf");
+    let geometric = vec![
+        effect("joint-zero", "r_elbow_y", &[0.04]),
+        effect("axis-skew", "r_arm_x", &[0.02, -0.01]),
+        effect("link-length", "right_upper_arm", &[0.004]),
+        effect("tip-offset", "tip", &[0.003, -0.002, 0.004]),
+        effect("base-tilt", "base", &[0.01, -0.02, 0.03, 0.005, 0.002, -0.004]),
+    ];
+    let sag = effect("joint-sag", "r_elbow_y", &[0.02]);
+    let exported =
+        with(&rig, [geometric.clone(), vec![sag]].concat()).urdf_with(&rig, urdf).expect("written");
+    assert_eq!((exported.inside.len(), exported.left), (5, vec!["joint-sag@r_elbow_y".to_owned()]));
+    let description = plumbline_model::robot::Description::from_urdf(&exported.urdf).expect("a URDF");
+    let other = Rig { description: std::sync::Arc::new(description), ..rig.clone() };
+    let arm = with(&rig, geometric).arm(&rig, TIP).expect("a tip");
+    for k in 0..5 {
+        let angles: Vec<f64> = POINTING_RAD.iter().map(|angle| angle + 0.1 * f64::from(k)).collect();
+        let tip = other.chain(TIP).expect("a tip").robot_from_tip(&angles).translation_m();
+        let off_m = (tip - arm.tip(&angles, &Conditions::default()).coords.coords).norm();
+        assert!(off_m < 1e-9, "{off_m}");
+    }
+    assert_eq!(RigModel::nominal(&rig).urdf_with(&rig, urdf).expect("written").urdf, urdf);
+    let moved = urdf.replacen("xyz=\"0 0 ", "xyz=\"0.5 0 ", 400);
+    let refused = elsewhere(&rig, &moved);
+    assert!(refused.contains("give the URDF of this robot"), "{refused}");
+    assert!(elsewhere(&rig, "<robot>").contains("give the URDF of this robot"));
+}
+
+fn elsewhere(rig: &Rig, urdf: &str) -> String {
+    RigModel::nominal(rig).urdf_with(rig, urdf).expect_err("refused").to_string()
+}
