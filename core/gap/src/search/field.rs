@@ -6,6 +6,8 @@
 //!   log p(y|S) = ½ bᵀ(1 + A)⁻¹b − ½ log det(1 + A)
 //! with A and b of the columns of S.
 
+use std::sync::Arc;
+
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::library::Block;
@@ -13,6 +15,8 @@ use super::linear::Sums;
 
 /// Standard deviation of a frame against where it was found, m and rad: wide.
 const FRAME: f64 = 0.5;
+/// Dirt is at most this share of a usual size.
+const LARGEST_DIRT: f64 = 0.1;
 
 /// How noise and prior sizes are taken to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,15 +37,21 @@ pub(super) struct Variant {
 /// A variant with everything worked out but the set.
 pub(super) struct Field {
     pub variant: Variant,
-    /// Columns per standard deviation of their prior.
-    pub a: DMatrix<f64>,
-    pub b: DVector<f64>,
+    /// Columns per usual size, noise, cells and dirt taken in; shared by variants of the same.
+    shared: Arc<Dirtied>,
     /// Standard deviation of each column's parameter beforehand, in usual sizes.
-    pub scale: Vec<f64>,
+    scale: Vec<f64>,
     /// Evidence of the empty set and the variant's prior.
-    pub constant: f64,
+    constant: f64,
+}
+
+/// With noise, cells and dirt taken in.
+pub(super) struct Dirtied {
+    a: DMatrix<f64>,
+    b: DVector<f64>,
+    log_evidence: f64,
     /// Sum of squares of the residual in units of noise, cells and dirt.
-    pub square: f64,
+    square: f64,
 }
 
 /// What does not depend on a variant's sizes: frames integrated out.
@@ -95,51 +105,65 @@ impl Framed {
         (0..self.a.ncols()).map(|k| (self.a[(k, k)].max(0.0) / self.total).sqrt()).collect()
     }
 
-    /// With the sizes of a variant. `sizes`: root mean square per column, of plain weights;
-    /// `dirty`: columns that dirt is made of.
-    pub fn field(&self, variant: Variant, blocks: &[Block], sizes: &[f64], dirty: &[bool]) -> Option<Field> {
+    /// With noise and dirt of a variant taken in. `sizes`: root mean square per column, of plain
+    /// weights; `dirty`: columns that dirt is made of.
+    pub fn dirtied(
+        &self,
+        variant: Variant,
+        blocks: &[Block],
+        sizes: &[f64],
+        dirty: &[bool],
+    ) -> Option<Dirtied> {
         let k = self.a.ncols();
         let noise = 1.0 / (variant.noise * variant.noise);
         let kinds = dirty.iter().filter(|dirty| **dirty).count().max(1) as f64;
         let mut narrow = DVector::zeros(k);
-        let mut scale = vec![1.0; k];
-        for block in blocks {
-            let columns = (block.len as f64).sqrt();
-            for c in block.columns() {
-                let reach = sizes[c] * columns;
-                scale[c] = 1.0 / (1.0 + (reach / variant.size).powi(2)).sqrt();
-                if dirty[c] && reach > 1e-9 {
-                    narrow[c] = (variant.dirt / kinds.sqrt() / sizes[c]).min(0.3 * scale[c]);
-                }
-            }
+        for c in blocks.iter().flat_map(Block::columns).filter(|&c| dirty[c] && sizes[c] > 1e-9) {
+            narrow[c] = (variant.dirt / kinds.sqrt() / sizes[c]).min(LARGEST_DIRT);
         }
         let small: Vec<usize> = (0..k).filter(|&c| narrow[c] > 0.0).collect();
-        let mut constant = -0.5 * (noise * self.square + self.logs + self.gauge * noise.ln())
-            - self.total * variant.noise.ln()
-            + variant.log_prior;
-        let (mut a, mut b) = (&self.a * noise, &self.b * noise);
-        let mut square = self.square * noise;
+        let mut log_evidence = -0.5 * (noise * self.square + self.logs + self.gauge * noise.ln())
+            - self.total * variant.noise.ln();
+        let (mut a, mut b, mut square) = (&self.a * noise, &self.b * noise, self.square * noise);
         if !small.is_empty() {
-            let half = DMatrix::from_fn(k, small.len(), |r, c| a[(r, small[c])] * narrow[small[c]]);
+            let half = DMatrix::from_fn(small.len(), k, |r, c| a[(small[r], c)] * narrow[small[r]]);
             let mut inner =
-                DMatrix::from_fn(small.len(), small.len(), |r, c| half[(small[r], c)] * narrow[small[r]]);
+                DMatrix::from_fn(small.len(), small.len(), |r, c| half[(r, small[c])] * narrow[small[c]]);
             inner.fill_diagonal_add(1.0);
             let inner = Cholesky::new(inner)?;
             let narrow_b = DVector::from_fn(small.len(), |r, _| b[small[r]] * narrow[small[r]]);
             let lower = inner.l();
-            let right = lower.solve_lower_triangular(&half.transpose())?;
+            let right = lower.solve_lower_triangular(&half)?;
             let turned = lower.solve_lower_triangular(&narrow_b)?;
             a -= right.tr_mul(&right);
             b -= right.tr_mul(&turned);
-            constant += 0.5 * (turned.norm_squared() - inner.ln_determinant());
+            log_evidence += 0.5 * (turned.norm_squared() - inner.ln_determinant());
             square -= turned.norm_squared();
         }
-        for c in 0..k {
-            a.column_mut(c).scale_mut(scale[c]);
-            a.row_mut(c).scale_mut(scale[c]);
-            b[c] *= scale[c];
+        Some(Dirtied { a, b, log_evidence, square })
+    }
+}
+
+impl Field {
+    /// With the sizes of a variant.
+    pub fn new(variant: Variant, shared: Arc<Dirtied>, blocks: &[Block], sizes: &[f64]) -> Self {
+        let mut scale = vec![1.0; sizes.len()];
+        for block in blocks {
+            for c in block.columns() {
+                let reach = sizes[c] * (block.len as f64).sqrt();
+                scale[c] = 1.0 / (1.0 + (reach / variant.size).powi(2)).sqrt();
+            }
         }
-        Some(Field { variant, a, b, scale, constant, square })
+        let constant = shared.log_evidence + variant.log_prior;
+        Self { variant, shared, scale, constant }
+    }
+
+    fn a(&self, r: usize, c: usize) -> f64 {
+        self.shared.a[(r, c)] * self.scale[r] * self.scale[c]
+    }
+
+    fn b(&self, c: usize) -> f64 {
+        self.shared.b[c] * self.scale[c]
     }
 }
 
@@ -171,13 +195,13 @@ impl Field {
         if columns.is_empty() {
             return Given { field: self, columns, solved: None, log_evidence: self.constant };
         }
-        let mut own = DMatrix::from_fn(columns.len(), columns.len(), |r, c| self.a[(columns[r], columns[c])]);
+        let mut own = DMatrix::from_fn(columns.len(), columns.len(), |r, c| self.a(columns[r], columns[c]));
         own.fill_diagonal_add(1.0);
-        let b = DVector::from_iterator(columns.len(), columns.iter().map(|&c| self.b[c]));
+        let b = DVector::from_iterator(columns.len(), columns.iter().map(|&c| self.b(c)));
         match Cholesky::new(own) {
             Some(cholesky) => {
                 let means = cholesky.solve(&b);
-                let rows = DMatrix::from_fn(columns.len(), self.a.ncols(), |r, c| self.a[(columns[r], c)]);
+                let rows = DMatrix::from_fn(columns.len(), self.scale.len(), |r, c| self.a(columns[r], c));
                 let solved = cholesky.solve(&rows);
                 let log_evidence = self.constant + 0.5 * (b.dot(&means) - cholesky.ln_determinant());
                 Given { field: self, columns, solved: Some((cholesky, solved, means)), log_evidence }
@@ -190,35 +214,47 @@ impl Field {
 impl Given<'_> {
     /// How much evidence one more block adds.
     pub fn adds(&self, block: &Block) -> f64 {
-        let (a, b) = self.rest(block);
-        gain(&a, &b)
+        if block.len == 1 {
+            let (a, b) = (self.rest(block.start, block.start), self.rest_b(block.start));
+            let one = (1.0 + a).max(1e-12);
+            return 0.5 * (b * b / one - one.ln());
+        }
+        let at = block.start;
+        let mut own = DMatrix::from_fn(block.len, block.len, |r, c| self.rest(at + r, at + c));
+        own.fill_diagonal_add(1.0);
+        let b = DVector::from_fn(block.len, |r, _| self.rest_b(at + r));
+        Cholesky::new(own)
+            .map_or(f64::NEG_INFINITY, |own| 0.5 * (b.dot(&own.solve(&b)) - own.ln_determinant()))
     }
 
-    /// A and b of a block when the set is there already.
-    fn rest(&self, block: &Block) -> (DMatrix<f64>, DVector<f64>) {
-        let at = block.start;
-        let mut a = self.field.a.view((at, at), (block.len, block.len)).clone_owned();
-        let mut b = self.field.b.rows(at, block.len).clone_owned();
-        if let Some((_, solved, means)) = &self.solved {
-            for r in 0..block.len {
-                for (i, &column) in self.columns.iter().enumerate() {
-                    let mixed = self.field.a[(at + r, column)];
-                    b[r] -= mixed * means[i];
-                    for c in 0..block.len {
-                        a[(r, c)] -= mixed * solved[(i, at + c)];
-                    }
-                }
-            }
-        }
-        (a, b)
+    /// A of two columns when the set is there already.
+    fn rest(&self, r: usize, c: usize) -> f64 {
+        let own = self.field.a(r, c);
+        self.solved.as_ref().map_or(own, |(_, solved, _)| {
+            let explained =
+                self.columns.iter().enumerate().map(|(i, &column)| self.field.a(r, column) * solved[(i, c)]);
+            own - explained.sum::<f64>()
+        })
+    }
+
+    fn rest_b(&self, r: usize) -> f64 {
+        let own = self.field.b(r);
+        self.solved.as_ref().map_or(own, |(_, _, means)| {
+            own - self
+                .columns
+                .iter()
+                .zip(means.iter())
+                .map(|(&column, mean)| self.field.a(r, column) * mean)
+                .sum::<f64>()
+        })
     }
 
     /// Sum of squares that the set leaves, in units of noise, cells and dirt.
     pub fn square_left(&self) -> f64 {
         let explained = self.solved.as_ref().map_or(0.0, |(_, _, means)| {
-            self.columns.iter().zip(means.iter()).map(|(&c, mean)| self.field.b[c] * mean).sum()
+            self.columns.iter().zip(means.iter()).map(|(&c, mean)| self.field.b(c) * mean).sum()
         });
-        self.field.square - explained
+        self.field.shared.square - explained
     }
 
     /// Means of the set's parameters and their covariance, in usual sizes.
@@ -235,18 +271,6 @@ impl Given<'_> {
         }
         (means.component_mul(&scale), covariance)
     }
-}
-
-/// ½ bᵀ(1 + A)⁻¹b − ½ log det(1 + A).
-fn gain(a: &DMatrix<f64>, b: &DVector<f64>) -> f64 {
-    if b.len() == 1 {
-        let one = (1.0 + a[(0, 0)]).max(1e-12);
-        return 0.5 * (b[0] * b[0] / one - one.ln());
-    }
-    let mut own = a.clone();
-    own.fill_diagonal_add(1.0);
-    Cholesky::new(own)
-        .map_or(f64::NEG_INFINITY, |cholesky| 0.5 * (b.dot(&cholesky.solve(b)) - cholesky.ln_determinant()))
 }
 
 /// log Σ exp.

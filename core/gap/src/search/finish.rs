@@ -143,7 +143,7 @@ impl Finish<'_> {
             .take(MOST_HYPOTHESES)
             .filter(|(_, probability)| *probability >= LEAST_HYPOTHESIS)
             .map(|(set, probability)| {
-                let (means, _) = likely.given(&set, &self.look.blocks).values();
+                let (means, _) = likely.given(&set, &self.look.packed).values();
                 let mut at = 0;
                 let effects = set
                     .iter()
@@ -180,7 +180,7 @@ impl Finish<'_> {
         let Some(top) = self.explored.models.first() else { return vec![] };
         let set = self.of_library(top);
         let field = &self.look.fields[self.look.likely(self.explored)];
-        let given = field.given(&set, &self.look.blocks);
+        let given = field.given(&set, &self.look.packed);
         let left = given.square_left() - self.look.within.0;
         let free = self.look.total - self.look.within.1 - self.look.gauge as f64;
         let mut all: Vec<Dependence> = self
@@ -192,7 +192,7 @@ impl Finish<'_> {
                 let rival = &self.look.rivals[block - self.look.effects];
                 let mut with = set.clone();
                 with.push(block);
-                let less = field.given(&with, &self.look.blocks).square_left() - self.look.within.0;
+                let less = field.given(&with, &self.look.packed).square_left() - self.look.within.0;
                 let share = ((left - less) / (left - 0.8 * free).max(left - less).max(1e-9)).clamp(0.0, 1.0);
                 Dependence { on: rival.on.clone(), of: rival.of.clone(), share, formula: None }
             })

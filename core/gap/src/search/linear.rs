@@ -11,6 +11,9 @@ use crate::floor::Floor;
 
 /// Rows between two looks at whether to stop.
 const CHUNK: usize = 256;
+/// A fingertip's pad gives way and the angles are logged a moment before or after: the height at
+/// contact is off by this whatever repeats say, m.
+const CONTACT_M: f64 = 0.6e-3;
 
 /// Whitened by the floor: one line per coordinate of every row that is predicted.
 pub(super) struct Linear {
@@ -67,7 +70,7 @@ impl Linear {
             let place = sessions.iter().position(|session| *session == row.session);
             for c in 0..row.measured.len() {
                 let line = row_of.len();
-                let sd = floor.sd[c];
+                let sd = standard(row.what, c, floor.sd[c]);
                 if let Some(place) = place.filter(|_| row.what.is_placed()) {
                     for k in 0..6 {
                         lines[(line, 6 * place + k)] = tangents.gauge[(c, k)] / sd;
@@ -171,12 +174,31 @@ impl Sums {
     }
 }
 
+/// Standard deviation that a coordinate is weighed by.
+fn standard(what: What, coordinate: usize, floor: f64) -> f64 {
+    if what == What::Touch && coordinate == 2 { floor.hypot(CONTACT_M) } else { floor }
+}
+
 /// Names of coordinates, for people.
 pub(super) fn coordinate_name(what: What, coordinate: usize) -> &'static str {
     what.coordinates()[coordinate].0
 }
 
 impl Sums {
+    /// With some columns only, in the order given; frames and residual stay.
+    pub fn only(&self, columns: &[usize]) -> Self {
+        let last = self.gram.ncols() - 1;
+        let kept: Vec<usize> =
+            (0..self.gauge).chain(columns.iter().map(|c| self.gauge + c)).chain([last]).collect();
+        Self {
+            gauge: self.gauge,
+            gram: DMatrix::from_fn(kept.len(), kept.len(), |r, c| self.gram[(kept[r], kept[c])]),
+            means: self.means.as_ref().map(|means| means.select_columns(&kept)),
+            counts: self.counts.clone(),
+            total: self.total,
+        }
+    }
+
     /// Sum of squares of the residual about the means of cells, and its degrees of freedom.
     pub fn within(&self) -> (f64, f64) {
         let Some(means) = &self.means else { return (0.0, 0.0) };

@@ -1,12 +1,14 @@
 //! One look at the data: everything linear at the present model.
 
+use std::sync::Arc;
+
 use nalgebra::DVector;
 use plumbline_effects::Assumed;
 use plumbline_effects::measurements::Measurements;
 use plumbline_model::JobContext;
 
 use super::explore::{Explored, Space};
-use super::field::{Field, Framed};
+use super::field::{Dirtied, Field, Framed, Variant};
 use super::free::{Rival, rivals};
 use super::library::{Block, Library};
 use super::linear::Linear;
@@ -25,7 +27,10 @@ pub(super) const TEMPERATURE: f64 = 1.0;
 
 /// Everything at one linearization.
 pub(super) struct Look {
+    /// With their columns in [`Self::plain`].
     pub blocks: Vec<Block>,
+    /// With their columns in the fields; only those allowed.
+    pub packed: Vec<Block>,
     pub rivals: Vec<Rival>,
     /// Number of library blocks; rivals come after.
     pub effects: usize,
@@ -85,36 +90,56 @@ impl Look {
             .filter(|&block| {
                 let size = blocks[block].columns().map(|c| sizes[c] * sizes[c]).sum::<f64>().sqrt();
                 let seen = size * sums.total.sqrt();
-                LARGEST_VALUE * size >= SMALLEST && seen >= SEEN_SIGMAS
+                let present = blocks[block].columns().any(|c| present[c] != 0.0);
+                present || LARGEST_VALUE * size >= SMALLEST && seen >= SEEN_SIGMAS
             })
             .collect();
-        let mut dirty = vec![false; count];
+        // Only what is looked through takes part from here on.
+        let mut packed = blocks.clone();
+        let mut kept: Vec<usize> = vec![];
+        for &block in &allowed {
+            packed[block].start = kept.len();
+            kept.extend(blocks[block].columns());
+        }
+        let of_allowed: Vec<Block> = allowed.iter().map(|&block| packed[block].clone()).collect();
+        let mut dirty = vec![false; kept.len()];
         let mut names = std::collections::HashSet::new();
         for &block in allowed.iter().filter(|&&block| block < library.blocks.len()) {
             if names.insert(blocks[block].name) {
-                blocks[block].columns().for_each(|c| dirty[c] = true);
+                packed[block].columns().for_each(|c| dirty[c] = true);
             }
         }
-        let mut fields = vec![];
-        let mut last: Option<(f64, Framed)> = None;
+        let own_sizes: Vec<f64> = kept.iter().map(|&c| sizes[c]).collect();
+        let own_present = DVector::from_iterator(kept.len(), kept.iter().map(|&c| present[c]));
+        let small = sums.only(&kept);
+        let mut fields: Vec<Field> = vec![];
+        let mut framed: Option<(f64, Framed)> = None;
+        let mut shared: Option<(Variant, Arc<Dirtied>)> = None;
         for variant in variants(floor.from_repeats) {
-            context.checkpoint()?;
-            let again = last.take().filter(|(cell, _)| *cell == variant.cell);
-            let framed = match again {
-                Some((_, framed)) => framed,
-                None => match Framed::of(&sums, variant.cell * variant.cell, &present) {
-                    Some(framed) => framed,
-                    None => continue,
-                },
+            let like = |known: &Variant| {
+                Variant { size: variant.size, log_prior: variant.log_prior, ..*known } == variant
             };
-            fields.extend(framed.field(variant, &blocks, &sizes, &dirty));
-            last = Some((variant.cell, framed));
+            if !shared.as_ref().is_some_and(|(known, _)| like(known)) {
+                context.checkpoint()?;
+                if !framed.as_ref().is_some_and(|(cell, _)| *cell == variant.cell) {
+                    framed = Framed::of(&small, variant.cell * variant.cell, &own_present)
+                        .map(|one| (variant.cell, one));
+                }
+                let dirtied = framed
+                    .as_ref()
+                    .and_then(|(_, framed)| framed.dirtied(variant, &of_allowed, &own_sizes, &dirty));
+                shared = dirtied.map(|dirtied| (variant, Arc::new(dirtied)));
+            }
+            if let Some((_, shared)) = &shared {
+                fields.push(Field::new(variant, Arc::clone(shared), &of_allowed, &own_sizes));
+            }
         }
         let within = sums.within();
         let (total, gauge, cells) = (sums.total, sums.gauge, linear.cells);
         let effects = library.blocks.len();
         Ok(Self {
             blocks,
+            packed,
             rivals,
             effects,
             fields,
@@ -141,7 +166,7 @@ impl Look {
     ) -> Result<Explored, GapError> {
         let space = Space {
             fields: &self.fields,
-            blocks: &self.blocks,
+            blocks: &self.packed,
             allowed: &self.allowed,
             most,
             temperature: TEMPERATURE,
@@ -159,6 +184,11 @@ impl Look {
             .map(|(r, c)| values[r - at] * values[c - at] * self.plain.a[(r, c)])
             .sum();
         (square.max(0.0) / self.total).sqrt()
+    }
+
+    /// Root mean square of what frames alone leave beyond the noise, in floors.
+    pub fn gap(&self) -> f64 {
+        (self.plain.square / self.total - 1.0).max(0.0).sqrt()
     }
 
     /// Place of the most probable variant.

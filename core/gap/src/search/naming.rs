@@ -17,7 +17,14 @@ const SAME_CLASS_ODDS: f64 = 10.0;
 /// Effects of a class are named from this probability of the class on.
 const NAMED_FROM: f64 = 0.5;
 /// An effect that does less than this to the rows (floors) is dirt and gets no name.
-const SMALLEST: f64 = 0.3;
+const SMALLEST: f64 = 0.4;
+/// A rival counts as something unknown when it does this to the rows, and this share of all.
+const RIVAL_SIZE: f64 = 0.4;
+const RIVAL_SHARE: f64 = 0.15;
+/// And only where the library leaves more than noise and dirt would, with this probability.
+const RIVAL_P: f64 = 0.02;
+/// Effects that do more to the rows than this many times the whole gap cancel each other: no name.
+const CANCELLING: f64 = 1.5;
 /// Beyond this many usual sizes a fit is at its bound.
 const BOUND: f64 = 3.0;
 /// One name stands for its class from this probability on.
@@ -60,17 +67,23 @@ impl Evidence<'_> {
         let names = self.of_names();
         let top: Vec<usize> = models.first().map_or(vec![], |model| self.of_library(model));
         let values = self.values(&top);
-        let (p_value, left) = self.lack_of_fit(models.first().map_or(&[], |model| &model.set));
-        let (p_library, left_library) = self.lack_of_fit(&top);
-        let rival: f64 =
-            models.iter().filter(|model| self.has_rival(model)).map(|model| model.probability).sum();
-        let vetoed = p_library < VETO_P && left_library > VETO_SIZE;
+        // What stays unexplained is what the library's best set leaves.
+        let of_library = models.iter().find(|model| model.set.iter().all(|&block| block < self.look.effects));
+        let (p_value, left) = self.lack_of_fit(of_library.map_or(&top, |model| &model.set));
+        let large = (RIVAL_SHARE * self.look.gap()).max(RIVAL_SIZE);
+        let rival: f64 = models
+            .iter()
+            .filter(|_| p_value < RIVAL_P)
+            .filter(|model| self.rival_does(model) > large)
+            .map(|model| model.probability)
+            .sum();
+        let vetoed = p_value < VETO_P && left > VETO_SIZE;
         let unknown = rival.max(if vetoed { 0.95 } else { 0.0 }).max(self.white());
         let mut found = vec![];
         for (place, &block) in top.iter().enumerate() {
             let (own, covariance) = &values[place];
             let size = self.look.does(block, own);
-            if size < SMALLEST {
+            if size < SMALLEST || size > CANCELLING * self.look.gap() + SMALLEST {
                 continue;
             }
             let effect = self.effect(&top, block, own, covariance, size, &names);
@@ -89,12 +102,13 @@ impl Evidence<'_> {
         } else {
             Verdict::Class
         };
-        let _ = left;
         Named { verdict, effects, blocks, names, unknown, p_value }
     }
 
-    fn has_rival(&self, model: &Model) -> bool {
-        model.set.iter().any(|&block| block >= self.look.effects)
+    /// What a rival in the set does to the rows, in floors; zero without one.
+    fn rival_does(&self, model: &Model) -> f64 {
+        let Some(place) = model.set.iter().position(|&block| block >= self.look.effects) else { return 0.0 };
+        self.values(&model.set).get(place).map_or(0.0, |(own, _)| self.look.does(model.set[place], own))
     }
 
     fn of_library(&self, model: &Model) -> Vec<usize> {
@@ -121,7 +135,7 @@ impl Evidence<'_> {
     /// Values and covariance of each block of a set, in usual sizes.
     fn values(&self, set: &[usize]) -> Vec<(Vec<f64>, DMatrix<f64>)> {
         let Some(field) = self.look.fields.get(self.look.likely(self.explored)) else { return vec![] };
-        let (means, covariance) = field.given(set, &self.look.blocks).values();
+        let (means, covariance) = field.given(set, &self.look.packed).values();
         let mut at = 0;
         set.iter()
             .map(|&block| {
@@ -148,7 +162,7 @@ impl Evidence<'_> {
         });
         let Some(field) = field else { return (1.0, 0.0) };
         let columns: usize = set.iter().map(|&block| self.look.blocks[block].len).sum();
-        let left = field.given(set, &self.look.blocks).square_left() - self.look.within.0;
+        let left = field.given(set, &self.look.packed).square_left() - self.look.within.0;
         let free = self.look.total - self.look.within.1 - self.look.gauge as f64 - columns as f64;
         if free < 1.0 {
             return (1.0, 0.0);
@@ -243,7 +257,7 @@ impl Evidence<'_> {
     fn exchanged(&self, set: &[usize], block: usize) -> Vec<(usize, f64, usize)> {
         let base: Vec<usize> = set.iter().copied().filter(|&other| other != block).collect();
         let taken: Vec<usize> = base.iter().map(|&block| self.look.blocks[block].name).collect();
-        let blocks = &self.look.blocks;
+        let blocks = &self.look.packed;
         let given: Vec<_> = self.look.fields.iter().map(|field| field.given(&base, blocks)).collect();
         let mut found: Vec<(usize, Vec<(f64, usize)>)> = vec![];
         for &other in self.look.allowed.iter().filter(|&&other| other < self.look.effects) {
