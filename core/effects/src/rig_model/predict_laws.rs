@@ -36,7 +36,7 @@ fn session(rig: &Rig) -> Session {
         encoder_rad: if k == 1 { POINTING_RAD.map(Some).into() } else { vec![None; 6] },
         touch: (k != 2).then(|| Pixel::new(900.0, 500.0)),
         screen_height_m: Some(0.03 * (k % 2) as f64),
-        approach: Some(if k % 2 == 0 { "plus" } else { "minus" }.to_owned()),
+        approach: Some(if k.is_multiple_of(2) { "plus" } else { "minus" }.to_owned()),
         t_secs: Some(100.0 * k as f64),
         ..TouchRow::default()
     };
