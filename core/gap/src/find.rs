@@ -65,6 +65,9 @@ pub fn find(
     context.report(SHOWN, "next experiment");
     let next = None;
     flag_outliers(&mut compared, &kept, &found);
+    if let Some(words) = no_help(&found, &shown, options) {
+        compared.warnings.push(words);
+    }
     let mut finding = assemble(measurements, compared, Some(found), shown, options);
     finding.next = next;
     finding.seconds = start.elapsed().as_secs_f64();
@@ -85,6 +88,16 @@ fn without_search(
     finding.seconds = start.elapsed().as_secs_f64();
     finding.sentence = sentence::of(&finding);
     finding
+}
+
+/// Says when named effects do not help on rows that were not used.
+fn no_help(found: &Found, shown: &Shown, options: &Options) -> Option<String> {
+    let helps = shown.after < shown.before || !options.show || found.assumed.effects.is_empty();
+    (!helps).then(|| {
+        "what was found does not make the error smaller on rows that were not used: do not add it, measure more rows \
+         in other places first"
+            .to_owned()
+    })
 }
 
 /// Rows that the search does not believe are outliers too.

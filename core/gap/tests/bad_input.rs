@@ -141,6 +141,11 @@ fn lengths_in_another_unit_are_named() {
         }
         assert_eq!(unit_of(&measurements), ("true_x_m, true_y_m, true_z_m".to_owned(), unit.to_owned()));
     }
+    assert_eq!(
+        unit_of(&common::places_estimated_in(1000.0)),
+        ("est_x_m, est_y_m, est_z_m".to_owned(), "millimeters".to_owned())
+    );
+    assert_eq!(unit_of(&common::places_estimated_in(100.0)).1, "centimeters");
     let mut measurements = touches(&one_by_one(40), &[], 5);
     measurements.rows.iter_mut().for_each(|row| row.screen_height_m = 60.0);
     assert_eq!(unit_of(&measurements).0, "screen_height_m");

@@ -1,4 +1,5 @@
 //! Whether there is a gap: found where there is one, not where there is none.
+#![allow(clippy::print_stdout, reason = "figures are read from the test's output")]
 
 mod common;
 
@@ -122,6 +123,29 @@ fn work_stops_when_cancelled() {
     let measurements = touches(&Plan::default(), &[], 1);
     let error = find(&measurements, &Options::default(), &Stopped).expect_err("cancelled");
     assert_eq!(error, GapError::Cancelled(Cancelled));
+}
+
+#[test]
+fn work_stops_soon_when_cancelled_midway() {
+    /// Cancels after a time.
+    struct Until(std::time::Instant);
+    impl JobContext for Until {
+        fn checkpoint(&self) -> Result<(), Cancelled> {
+            if std::time::Instant::now() > self.0 { Err(Cancelled) } else { Ok(()) }
+        }
+        fn report(&self, _fraction: f64, _doing: &str) {}
+    }
+    let measurements = touches(&Plan { places: 600, repeats: 2, ..Plan::default() }, &[elbow_zero(0.05)], 1);
+    for milliseconds in [5, 60, 200, 500, 1200, 2500] {
+        let at = std::time::Instant::now() + std::time::Duration::from_millis(milliseconds);
+        let cancelled = find(&measurements, &Options::default(), &Until(at));
+        let late = std::time::Instant::now().saturating_duration_since(at);
+        if cancelled == Err(GapError::Cancelled(Cancelled)) {
+            println!("cancelled at {milliseconds} ms, stopped {} ms later", late.as_millis());
+            // 100 ms on a machine of its own; tests share theirs.
+            assert!(late.as_millis() < 500, "{} ms", late.as_millis());
+        }
+    }
 }
 
 #[test]

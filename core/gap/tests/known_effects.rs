@@ -1,4 +1,5 @@
 //! Effects that were put in with the forward model: found, named, sized, and the gap closed.
+#![allow(clippy::print_stdout, reason = "figures are read from the test's output")]
 
 mod common;
 

@@ -1,4 +1,5 @@
 //! Data of the real robot, where they are at hand: held-out errors.
+#![allow(clippy::print_stdout, reason = "figures are read from the test's output")]
 
 use std::time::Instant;
 

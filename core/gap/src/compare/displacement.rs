@@ -44,7 +44,7 @@ pub fn nominal_place_m(measurements: &Measurements, row: &Observation) -> Option
         What::Place => eyes.place(&row.measured)?,
         What::EyePoints => {
             let [left_u, left_v, right_u, right_v] = *row.measured.first_chunk::<4>()?;
-            eyes.cameras.triangulate(Pixel::new(left_u, left_v), Pixel::new(right_u, right_v))?.coords.into()
+            eyes.cameras.triangulate(Pixel::new(left_u, left_v), Pixel::new(right_u, right_v))?.coords
         }
         What::Touch | What::Pose => return None,
     };

@@ -57,13 +57,19 @@ impl Points {
         let sizes = (0..=self.context.iter().copied().max().unwrap_or(0))
             .map(|context| self.context.iter().filter(|own| **own == context).count())
             .collect::<Vec<_>>();
+        // Thousands of rows make tens of millions of pairs: plain arrays.
+        let at: Vec<[f64; MOST_DIRECTIONS]> = (0..self.rows.len())
+            .map(|i| std::array::from_fn(|c| if c < self.directions() { self.at[(i, c)] } else { 0.0 }))
+            .collect();
+        let apart =
+            |i: usize, j: usize| -> f64 { (0..MOST_DIRECTIONS).map(|c| (at[i][c] - at[j][c]).powi(2)).sum() };
         (0..self.rows.len())
             .into_par_iter()
             .map(|i| {
                 let alone = sizes[self.context[i]] <= count + 2;
                 let mut others: Vec<(f64, usize)> = (0..self.rows.len())
                     .filter(|&j| j != i && (alone || self.context[j] == self.context[i]))
-                    .map(|j| ((self.at.row(i) - self.at.row(j)).norm_squared(), j))
+                    .map(|j| (apart(i, j), j))
                     .collect();
                 let kept = count.min(others.len());
                 if kept < others.len() {

@@ -125,8 +125,11 @@ fn still_joints(measurements: &Measurements, session: usize, rows: &[&Observatio
     }
 }
 
+/// Some values of a row, where they are known.
+type Values<'a> = &'a dyn Fn(&Observation) -> Option<Vec<f64>>;
+
 fn zeros(rows: &[&Observation], said: &mut Vec<String>) {
-    let all_zero = |value: &dyn Fn(&Observation) -> Option<Vec<f64>>| {
+    let all_zero = |value: Values<'_>| {
         let mut any = false;
         let zero = rows.iter().filter_map(|row| value(row)).all(|values| {
             any = true;
@@ -134,7 +137,7 @@ fn zeros(rows: &[&Observation], said: &mut Vec<String>) {
         });
         any && zero
     };
-    let columns: [(&str, &dyn Fn(&Observation) -> Option<Vec<f64>>); 5] = [
+    let columns: [(&str, Values<'_>); 5] = [
         ("tau_…_nm", &|row| row.torque_nm.clone()),
         ("temp_…_c", &|row| row.temperature_c.clone()),
         ("t_secs", &|row| row.t_secs.map(|t| vec![t])),

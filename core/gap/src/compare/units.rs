@@ -158,10 +158,8 @@ fn places(measurements: &Measurements, session: usize, rows: &[&Observation]) ->
         return Err(wrong(measurements, session, "true_x_m, true_y_m, true_z_m".to_owned(), unit, factor));
     }
     for c in 0..3 {
-        let sizes = |of: fn(&(Vector3<f64>, Vector3<f64>)) -> Vector3<f64>| {
-            median(pairs.iter().map(|pair| of(pair)[c].abs())).unwrap_or(0.0)
-        };
-        let (estimate, truth) = (sizes(|pair| pair.0), sizes(|pair| pair.1));
+        let estimate = median(pairs.iter().map(|(estimate, _)| estimate[c].abs())).unwrap_or(0.0);
+        let truth = median(pairs.iter().map(|(_, truth)| truth[c].abs())).unwrap_or(0.0);
         if estimate.max(truth) < 1.5 || estimate.min(truth) < 1e-6 {
             continue;
         }

@@ -41,6 +41,9 @@ pub(super) fn unseen(
     Ok(Some(Unseen { what, rows: rows.len(), before, after, floor }))
 }
 
+/// The level of a condition that a row has.
+type Level<'a> = &'a dyn Fn(&Observation) -> Option<String>;
+
 /// The rows of one level, and what it is called.
 fn condition(measurements: &Measurements, chosen: &[usize]) -> Option<(String, Vec<usize>)> {
     let micro = |value: f64| (value * 1e6).round() as i64;
@@ -54,7 +57,7 @@ fn condition(measurements: &Measurements, chosen: &[usize]) -> Option<(String, V
         1 => format!("with the screen {:.0} mm higher", row.screen_height_m * 1e3),
         _ => format!("approached from the side \"{}\"", row.approach.clone().unwrap_or_default()),
     };
-    let levels: [&dyn Fn(&Observation) -> Option<String>; 3] = [&weight, &height, &side];
+    let levels: [Level<'_>; 3] = [&weight, &height, &side];
     for (kind, level) in levels.iter().enumerate() {
         let mut by_level = BTreeMap::<String, Vec<usize>>::new();
         for &i in chosen {

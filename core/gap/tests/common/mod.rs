@@ -186,6 +186,17 @@ pub fn poses(plan: &Plan, hidden: &[Present], seed: u64) -> Measurements {
     measurements
 }
 
+/// A grid of places whose estimates are in another unit than meters.
+pub fn places_estimated_in(factor: f64) -> Measurements {
+    let mut text =
+        "true_x_m,true_y_m,true_z_m,est_x_m,est_y_m,est_z_m,head_head_z_rad,head_head_y_rad\n".to_owned();
+    for i in 0..36 {
+        let (x, y) = (0.2 + 0.1 * f64::from(i / 9), -0.4 + 0.1 * f64::from(i % 9));
+        text += &format!("{x},{y},0.05,{},{},{},0,-0.523599\n", x * factor, y * factor, 0.05 * factor);
+    }
+    read("localizations.csv", &text)
+}
+
 /// A grid of places that the eyes estimate, 9 by 4 or more.
 pub fn places(repeats: usize, hidden: &[Present], noise_rad: f64, seed: u64) -> Measurements {
     let mut random = StdRng::seed_from_u64(seed);
