@@ -213,7 +213,8 @@ impl<'a> Scene<'a> {
 
 /// One parameter after the other at its usual size, the others of its effect at zero.
 fn for_each_parameter(candidates: &[Effect], mut act: impl FnMut(&Effect, &[f64])) {
-    let mut values = [0.0; 8];
+    // As many as an effect at every site has.
+    let mut values = [0.0; 24];
     for candidate in candidates {
         let parameters = candidate.parameters();
         for (k, parameter) in parameters.iter().enumerate() {

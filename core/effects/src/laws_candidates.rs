@@ -364,7 +364,7 @@ fn a_skewed_axis_is_reported_as_it_turns_the_joint() {
     let measurements = everything(12);
     let candidates = Effect::candidates(&measurements);
     let skews = candidates.iter().filter(|effect| effect.kind == Kind::AxisSkew);
-    for effect in skews {
+    for effect in skews.filter(|effect| !effect.is_of_every_site()) {
         let [a, b] = effect.across.expect("an axis");
         let turn = a * 0.02 - b * 0.03;
         let zero = DMatrix::zeros(2, 2);
@@ -372,6 +372,38 @@ fn a_skewed_axis_is_reported_as_it_turns_the_joint() {
             let k = ["rot_x_rad", "rot_y_rad", "rot_z_rad"].iter().position(|name| *name == one.name);
             assert!((one.value - turn[k.expect("a turn")]).abs() < 1e-12);
         }
+    }
+}
+
+#[test]
+fn an_effect_at_every_site_is_its_members_together() {
+    let measurements = everything(12);
+    let candidates = Effect::candidates(&measurements);
+    let many: Vec<&Effect> = candidates.iter().filter(|effect| effect.is_of_every_site()).collect();
+    assert_eq!(many.len(), 3, "zeros, axes and links");
+    for effect in many {
+        let single: Vec<&Effect> =
+            candidates.iter().filter(|one| one.kind == effect.kind && !one.site.is_empty()).collect();
+        let count = effect.parameters().len();
+        let values: Vec<f64> =
+            effect.parameters().iter().enumerate().map(|(k, p)| p.typical * (0.3 + 0.1 * k as f64)).collect();
+        let mut at = 0;
+        let each = single.iter().map(|one| {
+            let own = values[at..at + one.parameters().len()].to_vec();
+            at += own.len();
+            Present { effect: (*one).clone(), values: own }
+        });
+        let nominal = Assumed::nominal(&measurements);
+        let together = Assumed { effects: each.collect(), ..nominal.clone() };
+        assert_eq!(at, count);
+        let present = Present { effect: effect.clone(), values: values.clone() };
+        let at_once = Assumed { effects: vec![present], ..nominal };
+        for row in &measurements.rows {
+            assert_eq!(measurements.predict(row, &together), measurements.predict(row, &at_once));
+        }
+        let names: std::collections::HashSet<String> =
+            effect.report(&values, &DMatrix::zeros(count, count)).into_iter().map(|one| one.name).collect();
+        assert!(names.len() >= count, "every parameter has its own name: {names:?}");
     }
 }
 

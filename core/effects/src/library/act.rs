@@ -19,6 +19,15 @@ impl Effect {
     /// What it does to the arm in a situation, added to `deviation`; one value per parameter.
     /// Linear in the values. Nothing where the row lacks what it depends on.
     pub fn deviate(&self, situation: &Situation<'_>, values: &[f64], deviation: &mut Deviation) {
+        let mut at = 0;
+        for member in &self.members {
+            let count = member.parameters().len();
+            member.deviate(situation, &values[at..at + count], deviation);
+            at += count;
+        }
+        if at > 0 {
+            return;
+        }
         let value = values[0];
         match (self.kind, self.joint) {
             (Kind::LinkLength, Some(j)) => {

@@ -36,7 +36,13 @@ pub struct Effect {
     pub(crate) across: Option<[Vector3<f64>; 2]>,
     /// The joint that pulls this one along.
     pub(super) partner: Option<String>,
+    /// Not one effect but one of this kind at every site, each with its own values: a robot that
+    /// was put together by hand has every zero off. Parameters are theirs in turn.
+    pub(super) members: Vec<Effect>,
 }
+
+/// At most so many joints have their effects in one.
+const MOST_MEMBERS: usize = 12;
 
 impl Effect {
     /// Every effect that a plan of touches is scored by, at every site of an arm.
@@ -90,6 +96,7 @@ impl Effect {
             joint,
             across: None,
             partner: None,
+            members: vec![],
         }
     }
 
@@ -106,10 +113,19 @@ impl Effect {
 
     /// Its parameters.
     pub fn parameters(&self) -> &'static [Parameter] {
+        if !self.members.is_empty() {
+            let count: usize = self.members.iter().map(|member| member.parameters().len()).sum();
+            return &self.kind.parameters_of_many()[..count];
+        }
         match (self.kind, self.shape) {
             (Kind::EyeYaw, Some(_)) => YAW_WARM_UP,
             _ => self.kind.parameters(),
         }
+    }
+
+    /// Whether it stands for one of its kind at every site, each with its own values.
+    pub fn is_of_every_site(&self) -> bool {
+        !self.members.is_empty()
     }
 
     /// Time constant and delay (s) of what grows as 1 − exp(−(t − delay)/time constant). The shape
@@ -145,10 +161,17 @@ fn of_arm(kind: Kind, arm: &Arm) -> Vec<Effect> {
             effect
         });
         let shared = kind.is_shared().then(|| Effect::new(kind, "", "all joints alike", None));
-        return single.chain(shared).collect();
+        let single: Vec<Effect> = single.collect();
+        let every = every(kind, "every joint", &single);
+        return single.into_iter().chain(shared).chain(every).collect();
     }
     match kind {
-        Kind::LinkLength | Kind::LinkBending => links(kind, arm).collect(),
+        Kind::LinkLength => {
+            let single: Vec<Effect> = links(kind, arm).collect();
+            let every = every(kind, "every link", &single);
+            single.into_iter().chain(every).collect()
+        }
+        Kind::LinkBending => links(kind, arm).collect(),
         Kind::TipOffset | Kind::FingerRoll | Kind::TouchDrag | Kind::FingerBend | Kind::SpeedOvershoot => {
             vec![Effect::new(kind, "tip", "", None)]
         }
@@ -170,6 +193,16 @@ fn of_eyes(kind: Kind, eyes: &Eyes) -> Vec<Effect> {
         Kind::EyeYaw | Kind::ImageShift | Kind::EyeRoll => vec![Effect::new(kind, "right", "", None)],
         _ => vec![Effect::new(kind, "eyes", "", None)],
     }
+}
+
+/// One effect for all of these, for kinds that come at every site at once when an arm is put
+/// together.
+fn every(kind: Kind, whose: &str, single: &[Effect]) -> Option<Effect> {
+    let at_once = matches!(kind, Kind::JointZero | Kind::AxisSkew | Kind::LinkLength);
+    (at_once && (2..=MOST_MEMBERS).contains(&single.len())).then(|| Effect {
+        members: single.to_vec(),
+        ..Effect::new(kind, "", whose, None)
+    })
 }
 
 /// Links between the joints of an arm; the way to the tip belongs to the tip's offset.

@@ -305,6 +305,16 @@ impl Kind {
         }
     }
 
+    /// Its parameters at up to twelve sites in turn, for kinds that come at every site at once.
+    pub(super) fn parameters_of_many(self) -> &'static [Parameter] {
+        match self {
+            Self::JointZero => const { &[parameter("offset_rad", 0.044); 12] },
+            Self::AxisSkew => const { &[parameter("rot_rad", TILT); 24] },
+            Self::LinkLength => const { &[parameter("length_m", 0.005); 12] },
+            _ => &[],
+        }
+    }
+
     /// Its parameters. They enter the prediction nearly linearly, so a compliance stands for a
     /// stiffness, and a sine and a cosine for amplitude and phase. What does not (an order, a time
     /// constant, a moment) is the shape of an effect ([`super::Effect::shape`]).

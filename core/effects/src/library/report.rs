@@ -28,6 +28,9 @@ impl Effect {
     /// Its parameters under the names and in the units of the command line: one value per
     /// parameter of [`Self::parameters`] and their covariance in squared units of the values.
     pub fn report(&self, values: &[f64], covariance: &DMatrix<f64>) -> Vec<Reported> {
+        if self.is_of_every_site() {
+            return self.of_members(values, covariance);
+        }
         let fit = Fit { values, covariance };
         match self.kind {
             Kind::JointEccentricity | Kind::ToothRipple => self.wave(&fit),
@@ -53,6 +56,22 @@ impl Effect {
                 own.chain(self.times()).collect()
             }
         }
+    }
+
+    /// Those of every member, with the name of its site before.
+    fn of_members(&self, values: &[f64], covariance: &DMatrix<f64>) -> Vec<Reported> {
+        let mut at = 0;
+        let mut all = vec![];
+        for member in &self.members {
+            let count = member.parameters().len();
+            let own = covariance.view((at, at), (count, count)).clone_owned();
+            all.extend(member.report(&values[at..at + count], &own).into_iter().map(|one| Reported {
+                name: format!("{}_{}", member.site, one.name),
+                ..one
+            }));
+            at += count;
+        }
+        all
     }
 
     /// What its shape says about times.

@@ -23,7 +23,7 @@ const LARGEST_VALUE: f64 = 3.0;
 /// And whose usual size stands out of the noise by so many standard deviations.
 const SEEN_SIGMAS: f64 = 1.5;
 /// Divides log odds: see the README's section on calibration.
-pub(super) const TEMPERATURE: f64 = 1.0;
+pub(super) const TEMPERATURE: f64 = 2.0;
 
 /// Everything at one linearization.
 pub(super) struct Look {
@@ -41,13 +41,10 @@ pub(super) struct Look {
     pub sizes: Vec<f64>,
     /// Blocks that are looked through.
     pub allowed: Vec<usize>,
-    /// Values in the model at this linearization, by column, usual sizes.
-    pub present: DVector<f64>,
     /// Sum of the weights of all coordinates, and sum of squares about the cells' means.
     pub total: f64,
     pub within: (f64, f64),
     pub gauge: usize,
-    pub cells: usize,
 }
 
 impl Look {
@@ -104,7 +101,8 @@ impl Look {
         let of_allowed: Vec<Block> = allowed.iter().map(|&block| packed[block].clone()).collect();
         let mut dirty = vec![false; kept.len()];
         let mut names = std::collections::HashSet::new();
-        for &block in allowed.iter().filter(|&&block| block < library.blocks.len()) {
+        let single = |block: usize| library.effects.get(block).is_some_and(|e| !e.is_of_every_site());
+        for &block in allowed.iter().filter(|&&block| single(block)) {
             if names.insert(blocks[block].name) {
                 packed[block].columns().for_each(|c| dirty[c] = true);
             }
@@ -135,23 +133,9 @@ impl Look {
             }
         }
         let within = sums.within();
-        let (total, gauge, cells) = (sums.total, sums.gauge, linear.cells);
+        let (total, gauge) = (sums.total, sums.gauge);
         let effects = library.blocks.len();
-        Ok(Self {
-            blocks,
-            packed,
-            rivals,
-            effects,
-            fields,
-            plain,
-            sizes,
-            allowed,
-            present,
-            total,
-            within,
-            gauge,
-            cells,
-        })
+        Ok(Self { blocks, packed, rivals, effects, fields, plain, sizes, allowed, total, within, gauge })
     }
 
     /// Looks through sets of blocks.
