@@ -23,8 +23,6 @@ pub(super) struct Rival {
     pub of: String,
     /// On what ("angle of the elbow").
     pub on: String,
-    /// Place of the covariate.
-    pub covariate: usize,
 }
 
 /// What moves.
@@ -50,7 +48,7 @@ pub(super) fn rivals(
         let Some(own) = functions(linear, covariates, &base, covariate, sided) else { return };
         let (name, _) = &covariates.names[covariate];
         let on = if sided.is_some() { format!("{name} and its direction") } else { name.clone() };
-        rivals.push(Rival { of, on, covariate });
+        rivals.push(Rival { of, on });
         columns.extend(own);
     };
     let find = |name: &str| covariates.names.iter().position(|(known, _)| known == name);

@@ -1,7 +1,7 @@
 //! Candidates and free-form rivals as blocks of columns.
 
+use plumbline_effects::Effect;
 use plumbline_effects::measurements::Measurements;
-use plumbline_effects::{Effect, Kind};
 
 use crate::options::Options;
 
@@ -70,10 +70,5 @@ impl Library {
             block.log_prior = (odds / shapes[block.name] as f64).ln();
         }
         Self { effects, blocks, names, columns: start }
-    }
-
-    /// Effects that the frame of a session cannot be told from, if there is one session.
-    pub fn is_frame(kind: Kind) -> bool {
-        matches!(kind, Kind::BaseTilt | Kind::ScreenTilt)
     }
 }

@@ -17,7 +17,7 @@ const SAME_CLASS_ODDS: f64 = 10.0;
 /// Effects of a class are named from this probability of the class on.
 const NAMED_FROM: f64 = 0.5;
 /// An effect that does less than this to the rows (floors) is dirt and gets no name.
-const SMALLEST: f64 = 0.4;
+const SMALLEST: f64 = 0.35;
 /// A rival counts as something unknown when it does this to the rows, and this share of all.
 const RIVAL_SIZE: f64 = 0.4;
 const RIVAL_SHARE: f64 = 0.15;
@@ -32,6 +32,8 @@ const ONE_NAME: f64 = 0.8;
 /// Lack of fit that vetoes names: probability by chance, and how much larger than noise the rest is.
 const VETO_P: f64 = 1e-4;
 const VETO_SIZE: f64 = 0.45;
+/// A gap of this size (floors) that gets no name is unexplained.
+const NO_DIRT: f64 = 0.6;
 /// Cells off by this, dirt, are no lack of fit.
 const TOLERATED_CELL: f64 = 0.2;
 
@@ -93,6 +95,9 @@ impl Evidence<'_> {
         }
         found.sort_by(|a, b| b.1.size_sigmas.total_cmp(&a.1.size_sigmas));
         let (blocks, effects): (Vec<usize>, Vec<NamedEffect>) = found.into_iter().unzip();
+        let (p_bare, left_bare) = self.lack_of_fit(&[]);
+        let nameless = effects.is_empty() && p_bare < VETO_P && left_bare > NO_DIRT;
+        let unknown = unknown.max(if nameless { 0.6 } else { 0.0 });
         let verdict = if unknown > 0.5 {
             Verdict::NotInLibrary
         } else if effects.is_empty() {

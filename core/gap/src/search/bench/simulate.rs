@@ -173,7 +173,9 @@ impl Bench {
                 (0..self.library.effects.len()).filter(|&i| self.library.effects[i].kind == kind).collect();
             let place = own[random.random_range(0..own.len())];
             let effect = &self.library.effects[place];
-            if present.iter().any(|other| other.effect.name() == effect.name()) || Library::is_frame(kind) {
+            if present.iter().any(|other| other.effect.name() == effect.name())
+                || matches!(kind, Kind::BaseTilt | Kind::ScreenTilt)
+            {
                 continue;
             }
             let block = &self.library.blocks[place];
