@@ -8,6 +8,7 @@ use plumbline_model::{Cancelled, JobContext};
 use crate::compare::{Compared, compare};
 use crate::error::GapError;
 use crate::finding::{FORMAT, Finding, NamedEffect, Shown, Unexplained, Verdict};
+use crate::next;
 use crate::options::Options;
 use crate::search::{self, Found};
 use crate::sentence;
@@ -63,7 +64,7 @@ pub fn find(
         show::nothing_added(measurements, &compared)
     };
     context.report(SHOWN, "next experiment");
-    let next = None;
+    let next = next::advise(&used, &compared.floor, &found, options, &Stage::new(context, SHOWN, 1.0))?;
     flag_outliers(&mut compared, &kept, &found);
     if let Some(words) = no_help(&found, &shown, options) {
         compared.warnings.push(words);

@@ -128,22 +128,26 @@ fn work_stops_when_cancelled() {
 #[test]
 fn work_stops_soon_when_cancelled_midway() {
     /// Cancels after a time.
-    struct Until(std::time::Instant);
+    struct Until(std::time::Instant, std::sync::Mutex<String>);
     impl JobContext for Until {
         fn checkpoint(&self) -> Result<(), Cancelled> {
             if std::time::Instant::now() > self.0 { Err(Cancelled) } else { Ok(()) }
         }
-        fn report(&self, _fraction: f64, _doing: &str) {}
+        fn report(&self, _fraction: f64, doing: &str) {
+            doing.clone_into(&mut self.1.lock().expect("not poisoned"));
+        }
     }
     let measurements = touches(&Plan { places: 600, repeats: 2, ..Plan::default() }, &[elbow_zero(0.05)], 1);
     for milliseconds in [5, 60, 200, 500, 1200, 2500] {
         let at = std::time::Instant::now() + std::time::Duration::from_millis(milliseconds);
-        let cancelled = find(&measurements, &Options::default(), &Until(at));
+        let until = Until(at, std::sync::Mutex::default());
+        let cancelled = find(&measurements, &Options::default(), &until);
         let late = std::time::Instant::now().saturating_duration_since(at);
         if cancelled == Err(GapError::Cancelled(Cancelled)) {
-            println!("cancelled at {milliseconds} ms, stopped {} ms later", late.as_millis());
+            let doing = until.1.into_inner().expect("not poisoned");
+            println!("cancelled at {milliseconds} ms ({doing}), stopped {} ms later", late.as_millis());
             // 100 ms on a machine of its own; tests share theirs.
-            assert!(late.as_millis() < 500, "{} ms", late.as_millis());
+            assert!(late.as_millis() < 500, "{} ms ({doing})", late.as_millis());
         }
     }
 }
