@@ -16,17 +16,15 @@ use plumbline_blind::case::{self, Recipe};
 use plumbline_blind::design::Planner;
 use plumbline_blind::score::{Score, Verdict};
 use plumbline_blind::{mix, table};
-use plumbline_effects::Measurements;
-use plumbline_gap::{GapReport, Options};
-use plumbline_model::robot::Rig;
-use plumbline_model::session::RigReference;
-use plumbline_model::{Session, Unattended};
+use plumbline_gap::Options;
+
+#[path = "../judge/mod.rs"]
+mod judge;
+use judge::AnyError;
 
 /// Cases are made anew when the physics changes.
 const PHYSICS: &str = "v3";
 const THREADS: usize = 2;
-
-type AnyError = Box<dyn std::error::Error + Send + Sync>;
 
 struct Arguments {
     cases: usize,
@@ -77,7 +75,9 @@ fn main() -> Result<(), AnyError> {
         let work = || {
             let mut judged = vec![];
             while let Some(recipe) = recipes.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let verdict = search(&folder, recipe.number, &options).map_err(|error| error.to_string());
+                let verdict =
+                    judge::search(&folder.join("cases").join(format!("{:03}", recipe.number)), &options)
+                        .map_err(|error| error.to_string());
                 judged.push((recipe.number, verdict));
             }
             judged
@@ -135,23 +135,6 @@ fn make_missing(recipes: &[Recipe], folder: &Path) -> Result<(), AnyError> {
         }
     });
     Ok(())
-}
-
-/// What the command line does with a session.
-fn search(folder: &Path, number: usize, options: &Options) -> Result<Verdict, AnyError> {
-    let verdicts = folder.join("verdicts");
-    let folder = folder.join("cases").join(format!("{number:03}"));
-    let session = Session::read(&folder)?;
-    let rig = match &session.manifest.rig {
-        RigReference::Named(name) => Rig::built_in(name)?,
-        RigReference::File(file) => Rig::read(&folder.join(file))?,
-    };
-    let measurements = Measurements::of_sessions(&[(format!("{number:03}"), session)], &rig)?;
-    let finding = plumbline_gap::find(&measurements, options, &Unattended)?;
-    let text = serde_json::to_string(&GapReport::of(&finding))?;
-    std::fs::create_dir_all(&verdicts)?;
-    std::fs::write(verdicts.join(format!("{number:03}.json")), &text)?;
-    Ok(serde_json::from_str(&text)?)
 }
 
 fn list(answer: &Answer, verdict: &Result<Verdict, String>) {

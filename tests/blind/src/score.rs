@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::answer::{Answer, Hidden};
@@ -14,7 +14,7 @@ const CONFIDENT: f64 = 0.8;
 const BINS: usize = 10;
 
 /// What `plumbline gap --json` prints, as far as it is judged.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Verdict {
     /// `no-gap`, `named`, `class` or `not-in-library`.
     pub verdict: String,
@@ -30,7 +30,7 @@ pub struct Verdict {
 }
 
 /// An effect that was found.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Found {
     /// Its name.
     pub id: String,

@@ -1,0 +1,50 @@
+//! Runs the search on a session on disk, as the command line does. Shared by the driver and the
+//! test; the library of this package knows nothing of the search.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use plumbline_blind::score::{Found, Verdict};
+use plumbline_effects::Measurements;
+use plumbline_gap::finding::Finding;
+use plumbline_gap::{Options, find};
+use plumbline_model::robot::Rig;
+use plumbline_model::session::RigReference;
+use plumbline_model::{Session, Unattended};
+use serde_json::json;
+
+/// What went wrong, in words.
+pub type AnyError = Box<dyn std::error::Error + Send + Sync>;
+
+/// Searches the session in a folder.
+pub fn search(folder: &Path, options: &Options) -> Result<Verdict, AnyError> {
+    let session = Session::read(folder)?;
+    let rig = match &session.manifest.rig {
+        RigReference::Named(name) => Rig::built_in(name)?,
+        RigReference::File(file) => Rig::read(&folder.join(file))?,
+    };
+    let measurements = Measurements::of_sessions(&[(folder.display().to_string(), session)], &rig)?;
+    Ok(verdict(&find(&measurements, options, &Unattended)?))
+}
+
+/// A finding as the command line prints it, as far as it is judged.
+fn verdict(finding: &Finding) -> Verdict {
+    let effects = finding.effects.iter().map(|effect| Found {
+        id: effect.id.clone(),
+        site: effect.site.clone(),
+        probability: effect.probability,
+        parameters: effect
+            .parameters
+            .iter()
+            .map(|p| (p.name.clone(), json!({"value": p.value, "low": p.low, "high": p.high})))
+            .collect(),
+        class: effect.class.iter().map(|member| format!("{}@{}", member.id, member.site)).collect(),
+    });
+    let word = serde_json::to_value(finding.verdict).ok();
+    Verdict {
+        verdict: word.and_then(|word| word.as_str().map(str::to_owned)).unwrap_or_default(),
+        effects: effects.collect(),
+        held_out: BTreeMap::from([("closure".to_owned(), json!(finding.shown.closure))]),
+        seconds: Some(finding.seconds),
+    }
+}

@@ -1,0 +1,91 @@
+//! A small blind test: effects hidden in physics must be found, and what is not there must not.
+//! The whole table is printed by the example `blind_table`.
+
+#[path = "../judge/mod.rs"]
+mod judge;
+
+use plumbline_blind::answer::Answer;
+use plumbline_blind::bench::Bench;
+use plumbline_blind::case::{self, Family, Recipe};
+use plumbline_blind::design::{Design, Planner};
+use plumbline_blind::score::{Score, Share};
+use plumbline_blind::secret::Kind;
+use plumbline_blind::table;
+use plumbline_gap::Options;
+
+/// Cases: 4 without anything, 10 with one effect, 4 with two, 4 with what the library lacks.
+fn recipes() -> Vec<Recipe> {
+    let singles = [
+        (Kind::JointZero, Design::Plain),
+        (Kind::TipOffset, Design::Rich),
+        (Kind::JointSag, Design::Rich),
+        (Kind::LinkLength, Design::Rich),
+        (Kind::Backlash, Design::Rich),
+        (Kind::TorsoLean, Design::Rich),
+        (Kind::JointCoupling, Design::Rich),
+        (Kind::ScreenScale, Design::Plain),
+        (Kind::SlippedHorn, Design::Plain),
+        (Kind::SidewaysGive, Design::Rich),
+    ];
+    let nameless = [Kind::CableStep, Kind::Hysteresis, Kind::OtherArm, Kind::SoftWhenWarm];
+    let one = |family, design, size_sigmas, kind| Recipe {
+        number: 0,
+        family,
+        design,
+        dirt: false,
+        size_sigmas,
+        kind,
+        seed: 0,
+    };
+    let mut recipes = vec![];
+    recipes
+        .extend([Design::Plain, Design::Rich].repeat(2).into_iter().map(|d| one(Family::Null, d, 0.0, None)));
+    recipes.extend(singles.map(|(kind, design)| one(Family::Single, design, 2.0, Some(kind))));
+    recipes.extend([None; 4].map(|kind| one(Family::Pair, Design::Rich, 2.0, kind)));
+    recipes.extend(nameless.map(|kind| one(Family::OffLibrary, Design::Rich, 5.0, Some(kind))));
+    for (number, recipe) in recipes.iter_mut().enumerate() {
+        (recipe.number, recipe.seed) = (number, 1900 + number as u64);
+    }
+    recipes
+}
+
+#[test]
+#[allow(clippy::print_stdout)]
+fn hidden_effects_are_found_and_nothing_else() {
+    let bench = Bench::usual().expect("the rig");
+    let planner = Planner::new(&bench).expect("it reaches the screen");
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = Options { show: false, advise: false, ..Options::default() };
+    let recipes = recipes();
+    let score = std::sync::Mutex::new(Score::default());
+    let judge_some = |first: usize| {
+        for recipe in recipes.iter().skip(first).step_by(2) {
+            let case = case::make_or_smaller(&bench, &planner, recipe).expect("physics");
+            case::write(&case, &folder.path().join("cases"), &folder.path().join("answers"))
+                .expect("written");
+            let name = format!("{:03}", recipe.number);
+            let verdict =
+                judge::search(&folder.path().join("cases").join(&name), &options).expect("a verdict");
+            let answer =
+                Answer::read(&folder.path().join("answers").join(format!("{name}.json"))).expect("there");
+            let hidden: Vec<String> = answer.hidden.iter().map(|hidden| hidden.named()).collect();
+            let said: Vec<String> = verdict.effects.iter().map(|f| format!("{}@{}", f.id, f.site)).collect();
+            println!("{name} {hidden:?}: {} {said:?}", verdict.verdict);
+            score.lock().expect("nobody panicked").count(&answer, &verdict);
+        }
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(|| judge_some(0));
+        judge_some(1);
+    });
+    let score = score.into_inner().expect("nobody panicked");
+    println!("{}", table::markdown(&score));
+    let value = |share: &Share| share.value().expect("there were some");
+    let null: usize = score.null_named.iter().map(|share| share.hits).sum();
+    assert_eq!(null, 0, "a name where nothing is hidden");
+    let class: Vec<f64> = score.singles_visible.values().map(|naming| value(&naming.class)).collect();
+    assert!(class.iter().all(|share| *share >= 0.65), "single effects: {class:?}");
+    let pairs = score.several.values().map(|naming| value(&naming.class)).sum::<f64>();
+    assert!(pairs >= 0.5, "pairs: {pairs}");
+    assert!(value(&score.nameless["rich"]) >= 0.5, "said to be in the library");
+}
