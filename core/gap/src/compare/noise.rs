@@ -13,8 +13,9 @@ use super::neighbors::Points;
 use super::statistics::robust_sd;
 use crate::floor::{Floor, KindFloor};
 
-/// Fewer degrees of freedom than this say too little of the spread.
-const FEWEST: f64 = 8.0;
+/// Fewer degrees of freedom than this say too little of the spread: 20 know it to a sixth. What
+/// repeats say is taken as it is, what neighbors say with doubt.
+const FEWEST: f64 = 20.0;
 /// Deviations beyond this many robust standard deviations are no noise.
 const FAR: f64 = 4.0;
 /// A coordinate that spreads less than this share of the others was not measured by itself: the

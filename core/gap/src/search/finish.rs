@@ -9,8 +9,8 @@ use super::explore::{Explored, Model};
 use super::library::Library;
 use super::linear::Linear;
 use super::look::{Look, TEMPERATURE};
-use super::naming::{Evidence, Named};
-use super::refit::{Fitted, frames};
+use super::naming::{Evidence, Named, parameters};
+use super::refit::{Fitted, frames, refit};
 use super::{Doubt, Found, Hypothesis, knowledge};
 use crate::error::GapError;
 use crate::finding::{Dependence, Unexplained, Verdict};
@@ -47,7 +47,7 @@ impl Finish<'_> {
             floor_mm: floor_mm(self.measurements, self.floor),
             temperature: TEMPERATURE,
         };
-        let named = evidence.name();
+        let mut named = evidence.name();
         let effects: Vec<Present> = named
             .blocks
             .iter()
@@ -57,8 +57,22 @@ impl Finish<'_> {
                 values: effect.values.clone(),
             })
             .collect();
+        let named_all = effects.len() == fitted.assumed.effects.len();
         let start = Assumed { effects, placements: fitted.assumed.placements.clone() };
-        let assumed = frames(self.measurements, self.floor, &start, context)?;
+        // Values that were found beside effects that get no name are not theirs alone.
+        let assumed = if named_all {
+            frames(self.measurements, self.floor, &start, context)?
+        } else {
+            let kept: Vec<Effect> = start.effects.iter().map(|present| present.effect.clone()).collect();
+            let assumed = refit(self.measurements, self.floor, &start, &kept, context)?.assumed;
+            for (effect, present) in named.effects.iter_mut().zip(&assumed.effects) {
+                effect.values.clone_from(&present.values);
+                let covariance =
+                    DMatrix::from_row_slice(effect.values.len(), effect.values.len(), &effect.covariance);
+                effect.parameters = parameters(&present.effect, &effect.values, &covariance);
+            }
+            assumed
+        };
         let doubt = self.doubt(&assumed, &fitted.weights, context)?;
         let hypotheses = self.hypotheses(&assumed, context)?;
         let after = self.misses(&assumed, context)?;

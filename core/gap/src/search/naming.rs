@@ -287,7 +287,8 @@ impl Evidence<'_> {
     }
 }
 
-fn parameters(effect: &Effect, values: &[f64], covariance: &DMatrix<f64>) -> Vec<FoundParameter> {
+/// Parameters as the command line names them.
+pub(super) fn parameters(effect: &Effect, values: &[f64], covariance: &DMatrix<f64>) -> Vec<FoundParameter> {
     let reported = effect.report(values, covariance);
     let found = reported.into_iter().map(|one| FoundParameter {
         name: one.name,
