@@ -64,7 +64,13 @@ pub fn find(
         show::nothing_added(measurements, &compared)
     };
     context.report(SHOWN, "next experiment");
-    let next = next::advise(&used, &compared.floor, &found, options, &Stage::new(context, SHOWN, 1.0))?;
+    let advising = Stage::new(context, SHOWN, 1.0);
+    let next = next::advise(&used, &compared.floor, &found, options, &advising)?;
+    if options.advise {
+        let mut effects = std::mem::take(&mut found.effects);
+        next::split_by(&mut effects, &used, &compared.floor, &found, options, &advising)?;
+        found.effects = effects;
+    }
     flag_outliers(&mut compared, &kept, &found);
     if let Some(words) = no_help(&found, &shown, options) {
         compared.warnings.push(words);

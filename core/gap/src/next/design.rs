@@ -55,8 +55,7 @@ pub(super) fn score(
         })
         .collect();
     // Rows that every rival predicts, with the noise of each of their coordinates.
-    let used: Vec<usize> =
-        (0..rows.len()).filter(|&i| tangents.iter().all(|all| all[i].is_some())).collect();
+    let used: Vec<usize> = (0..rows.len()).filter(|&i| tangents.iter().all(|all| all[i].is_some())).collect();
     let used: Vec<(usize, &[f64])> =
         used.into_iter().filter_map(|i| Some((i, floor.of(rows[i].what)?.sd.as_slice()))).collect();
     let lines: usize = used.iter().map(|(i, _)| rows[*i].measured.len()).sum();
@@ -122,9 +121,10 @@ fn stacked(
 }
 
 fn means(tangents: &[Option<Tangents>], used: &[(usize, &[f64])], lines: usize, noise: f64) -> DVector<f64> {
-    let values = used.iter().filter_map(|(i, sd)| Some((tangents[*i].as_ref()?, *sd))).flat_map(|(tangents, sd)| {
-        tangents.predicted.iter().zip(sd).map(move |(value, sd)| value / (sd * noise))
-    });
+    let values =
+        used.iter().filter_map(|(i, sd)| Some((tangents[*i].as_ref()?, *sd))).flat_map(|(tangents, sd)| {
+            tangents.predicted.iter().zip(sd).map(move |(value, sd)| value / (sd * noise))
+        });
     let mut mean = DVector::zeros(lines);
     mean.iter_mut().zip(values).for_each(|(mean, value)| *mean = value);
     mean

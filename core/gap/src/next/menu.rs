@@ -56,10 +56,14 @@ pub(super) fn of(measurements: &Measurements, found: &Found) -> Vec<Trial> {
         .map(|(_, row)| row)
         .collect();
     let mut trials = vec![];
-    for (whats, is_arm) in [(&[What::Touch][..], true), (&[What::Pose], true), (&[What::Place, What::EyePoints], false)] {
-        let rows: Vec<&Observation> = believed.iter().copied().filter(|row| whats.contains(&row.what)).collect();
+    for (whats, is_arm) in
+        [(&[What::Touch][..], true), (&[What::Pose], true), (&[What::Place, What::EyePoints], false)]
+    {
+        let rows: Vec<&Observation> =
+            believed.iter().copied().filter(|row| whats.contains(&row.what)).collect();
         let Some(last) = rows.last() else { continue };
-        let rows: Vec<&Observation> = rows.iter().copied().filter(|row| row.session == last.session).collect();
+        let rows: Vec<&Observation> =
+            rows.iter().copied().filter(|row| row.session == last.session).collect();
         let apparatus = &measurements.apparatuses[last.session];
         let all: Vec<&Observation> =
             believed.iter().copied().filter(|row| whats.contains(&row.what)).collect();
@@ -109,32 +113,55 @@ struct Menu<'a> {
 impl Menu<'_> {
     fn of_arm(&self) -> Vec<Trial> {
         let weight = |row: &Observation| {
-            Some(vec![self.with(row, |row| row.payload_kg = 0.0), self.with(row, |row| row.payload_kg = WEIGHT_KG)])
+            Some(vec![
+                self.with(row, |row| row.payload_kg = 0.0),
+                self.with(row, |row| row.payload_kg = WEIGHT_KG),
+            ])
         };
         let slower = |row: &Observation| {
             let secs = row.move_secs?;
-            Some(vec![self.with(row, |_| ()), self.with(row, |row| {
-                row.move_secs = Some(3.0 * secs);
-                row.speed_rad_s.iter_mut().flatten().for_each(|speed| *speed /= 3.0);
-            })])
+            Some(vec![
+                self.with(row, |_| ()),
+                self.with(row, |row| {
+                    row.move_secs = Some(3.0 * secs);
+                    row.speed_rad_s.iter_mut().flatten().for_each(|speed| *speed /= 3.0);
+                }),
+            ])
         };
         let later = |row: &Observation| {
             row.lag_rad()?;
-            Some(vec![self.with(row, |_| ()), self.with(row, |row| row.commanded_rad.clone_from(&row.encoder_rad))])
+            Some(vec![
+                self.with(row, |_| ()),
+                self.with(row, |row| row.commanded_rad.clone_from(&row.encoder_rad)),
+            ])
         };
         let repeats = |row: &Observation| Some(vec![self.with(row, |_| ()); 3]);
         let mut trials = vec![];
-        let mut add = |kind, done: bool, changes_min: f64, each_min: f64, rows: &dyn Fn(&Observation) -> Option<Vec<Observation>>| {
+        let mut add = |kind,
+                       done: bool,
+                       changes_min: f64,
+                       each_min: f64,
+                       rows: &dyn Fn(&Observation) -> Option<Vec<Observation>>| {
             if !done {
                 trials.extend(self.trial(kind, changes_min, each_min, rows));
             }
         };
         let is_touch = self.base.iter().all(|row| row.what == What::Touch);
         add(Experiment::OtherSide, self.has_both_sides(), 0.0, TOUCH_MIN, &|row| self.both_sides(row));
-        add(Experiment::Weight, self.differ(|row| Some(row.payload_kg), 0.05), CHANGE_WEIGHT_MIN, TOUCH_MIN, &weight);
+        add(
+            Experiment::Weight,
+            self.differ(|row| Some(row.payload_kg), 0.05),
+            CHANGE_WEIGHT_MIN,
+            TOUCH_MIN,
+            &weight,
+        );
         let heights = self.differ(|row| Some(row.screen_height_m), 0.02);
-        add(Experiment::RaisedScreen, heights || !is_touch, 2.0 * CHANGE_BLOCK_MIN, TOUCH_MIN, &|row| self.raised(row));
-        add(Experiment::OtherPosture, self.has_postures(), ARRANGE_MIN, 1.4 * TOUCH_MIN, &|row| self.postures(row));
+        add(Experiment::RaisedScreen, heights || !is_touch, 2.0 * CHANGE_BLOCK_MIN, TOUCH_MIN, &|row| {
+            self.raised(row)
+        });
+        add(Experiment::OtherPosture, self.has_postures(), ARRANGE_MIN, 1.4 * TOUCH_MIN, &|row| {
+            self.postures(row)
+        });
         let speeds = self.ratio(|row| row.move_secs) > 2.5;
         add(Experiment::Slower, speeds, 0.0, 2.0 * TOUCH_MIN, &slower);
         let warm = self.differ(|row| row.t_secs, WARM_SECS);
@@ -154,7 +181,9 @@ impl Menu<'_> {
             Some(vec![self.with(row, |_| ()), self.with(row, |row| row.background_m = Some(behind))])
         };
         let has_card = self.all.iter().any(|row| {
-            row.background_m.zip(self.range_m(row)).is_some_and(|(behind, range)| behind - range < 1.5 * CARD_M)
+            row.background_m
+                .zip(self.range_m(row))
+                .is_some_and(|(behind, range)| behind - range < 1.5 * CARD_M)
         });
         let distance = |row: &Observation| {
             let head = self.head_m(row)?;
@@ -172,11 +201,12 @@ impl Menu<'_> {
         let warm = self.differ(|row| row.t_secs, WARM_SECS);
         let distances = self.ratio(range_m) > 1.8;
         let mut trials = vec![];
-        let mut add = |kind, done: bool, changes_min: f64, rows: &dyn Fn(&Observation) -> Option<Vec<Observation>>| {
-            if !done {
-                trials.extend(self.trial(kind, changes_min, LOOK_MIN, rows));
-            }
-        };
+        let mut add =
+            |kind, done: bool, changes_min: f64, rows: &dyn Fn(&Observation) -> Option<Vec<Observation>>| {
+                if !done {
+                    trials.extend(self.trial(kind, changes_min, LOOK_MIN, rows));
+                }
+            };
         add(Experiment::CardBehind, has_card, CHANGE_WEIGHT_MIN, &card);
         add(Experiment::OtherDistance, distances, CHANGE_BLOCK_MIN, &distance);
         add(Experiment::HeadTurned, head_turned, 0.0, &turned);
@@ -227,7 +257,8 @@ impl Menu<'_> {
     /// Whether a value differs between rows by more than this.
     fn differ(&self, value: impl Fn(&Observation) -> Option<f64>, least: f64) -> bool {
         let known = self.all.iter().filter_map(|row| value(row));
-        let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        let (low, high) =
+            known.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
         high - low >= least
     }
 
@@ -251,7 +282,8 @@ impl Menu<'_> {
         // Of most joints both directions were seen, each in a tenth of the rows and more.
         let joints = self.all.first().map_or(0, |row| row.direction.len());
         let share = |j: usize, sign: f64| {
-            let count = self.all.iter().filter(|row| row.direction.get(j).is_some_and(|d| *d == sign)).count();
+            let count =
+                self.all.iter().filter(|row| row.direction.get(j).is_some_and(|d| *d == sign)).count();
             count as f64 / self.all.len().max(1) as f64
         };
         let both = (0..joints).filter(|&j| share(j, 1.0) > 0.1 && share(j, -1.0) > 0.1).count();
@@ -263,8 +295,12 @@ impl Menu<'_> {
         let Some(arm) = &self.apparatus.arm else { return true };
         let none = plumbline_effects::arm::Deviation::none(arm.len());
         let every = self.all.len().div_ceil(60).max(1);
-        let poses: Vec<(nalgebra::Point3<f64>, &[f64])> =
-            self.all.iter().step_by(every).map(|row| (arm.tip_m(row.angles_rad(), &none), row.angles_rad())).collect();
+        let poses: Vec<(nalgebra::Point3<f64>, &[f64])> = self
+            .all
+            .iter()
+            .step_by(every)
+            .map(|row| (arm.tip_m(row.angles_rad(), &none), row.angles_rad()))
+            .collect();
         poses.iter().enumerate().any(|(i, (tip, angles))| {
             poses[i + 1..].iter().any(|(other_tip, other)| {
                 (tip - other_tip).norm() < 0.02 && angles.iter().zip(*other).any(|(a, b)| (a - b).abs() > 0.3)
@@ -288,7 +324,9 @@ impl Menu<'_> {
         let mut rows = vec![self.with(row, |_| ())];
         for height_m in BLOCKS_M {
             // A place that the arm does not reach so high is touched at the other heights.
-            let Some(mut raised) = self.posed(row, |arm, angles| poses::moved(arm, angles, normal * height_m)) else {
+            let Some(mut raised) =
+                self.posed(row, |arm, angles| poses::moved(arm, angles, normal * height_m))
+            else {
                 continue;
             };
             raised.screen_height_m += height_m;
@@ -331,7 +369,9 @@ impl Menu<'_> {
             .into_iter()
             .filter_map(|k| match row.truth_m {
                 Some(truth) => Some(self.with(row, |row| row.truth_m = Some(truth + WIDER_M * way(k)))),
-                None => self.posed(row, |arm, angles| poses::moved(arm, angles, self.level(way(k)) * WIDER_M)),
+                None => {
+                    self.posed(row, |arm, angles| poses::moved(arm, angles, self.level(way(k)) * WIDER_M))
+                }
             })
             .collect();
         (!rows.is_empty()).then_some(rows)

@@ -151,7 +151,12 @@ fn off_library(found: &Found, trials: &[Trial]) -> Option<NextExperiment> {
     Some(answer(trial, why, 1.0 - found.unexplained.probability, &[]))
 }
 
-fn answer(trial: &Trial, why: String, expected_probability: f64, others: &[(&Trial, Score)]) -> NextExperiment {
+fn answer(
+    trial: &Trial,
+    why: String,
+    expected_probability: f64,
+    others: &[(&Trial, Score)],
+) -> NextExperiment {
     NextExperiment {
         what: trial.what.clone(),
         why,

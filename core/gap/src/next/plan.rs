@@ -27,12 +27,8 @@ pub fn plan_for(next: &NextExperiment, area: TouchArea) -> Option<PlanOptions> {
     };
     let heights: Vec<f64> = std::iter::once(0.0).chain(BLOCKS_M).collect();
     Some(match next.kind {
-        Experiment::OtherSide => {
-            PlanOptions { patterns: grid(2), sides: Sides::LeftAndRight, ..plain }
-        }
-        Experiment::Weight => {
-            PlanOptions { patterns: grid(2), payloads_kg: vec![0.0, WEIGHT_KG], ..plain }
-        }
+        Experiment::OtherSide => PlanOptions { patterns: grid(2), sides: Sides::LeftAndRight, ..plain },
+        Experiment::Weight => PlanOptions { patterns: grid(2), payloads_kg: vec![0.0, WEIGHT_KG], ..plain },
         Experiment::RaisedScreen => {
             PlanOptions { patterns: grid(heights.len()), screen_heights_m: heights, ..plain }
         }

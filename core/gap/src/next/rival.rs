@@ -83,7 +83,10 @@ pub(super) fn of_class(
     effect: &NamedEffect,
     context: &dyn JobContext,
 ) -> Result<Vec<Rival>, GapError> {
-    let mut hypotheses = vec![Hypothesis { probability: effect.class.first().map_or(1.0, |own| own.probability), ..as_found(found) }];
+    let mut hypotheses = vec![Hypothesis {
+        probability: effect.class.first().map_or(1.0, |own| own.probability),
+        ..as_found(found)
+    }];
     hypotheses.extend(swapped(measurements, found, effect));
     fitted(measurements, floor, found, hypotheses, context)
 }

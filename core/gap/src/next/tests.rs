@@ -38,8 +38,13 @@ fn touches(effects: &[Present], change: impl Fn(usize, &mut Observation)) -> Mea
     let apparatus =
         Apparatus { title: "made".to_owned(), tip: None, arm: Some(arm), surface: Some(surface), eyes: None };
     let mut random = StdRng::seed_from_u64(3);
-    let mut made =
-        Measurements { rig: "nico".to_owned(), apparatuses: vec![apparatus], rows: vec![], left_out: vec![], present: vec![] };
+    let mut made = Measurements {
+        rig: "nico".to_owned(),
+        apparatuses: vec![apparatus],
+        rows: vec![],
+        left_out: vec![],
+        present: vec![],
+    };
     for i in 0..80 {
         // Places twice each; one posture: two joints go through the places.
         let k = (i / 2) as f64;
@@ -103,7 +108,8 @@ fn found(measurements: &Measurements, verdict: Verdict, sets: &[(&[Present], f64
             assumed: Assumed { effects: effects.to_vec(), ..Assumed::nominal(measurements) },
         })
         .collect();
-    let assumed = hypotheses.first().map_or_else(|| Assumed::nominal(measurements), |first| first.assumed.clone());
+    let assumed =
+        hypotheses.first().map_or_else(|| Assumed::nominal(measurements), |first| first.assumed.clone());
     let effects = assumed.effects.iter().map(|present| named(&present.effect, sets[0].1)).collect();
     Found {
         doubt: Doubt {
@@ -143,7 +149,12 @@ fn named(effect: &Effect, probability: f64) -> NamedEffect {
 }
 
 fn member(effect: &Effect, probability: f64) -> ClassMember {
-    ClassMember { id: effect.id().to_owned(), site: effect.site.clone(), title: effect.title.clone(), probability }
+    ClassMember {
+        id: effect.id().to_owned(),
+        site: effect.site.clone(),
+        title: effect.title.clone(),
+        probability,
+    }
 }
 
 fn advised(measurements: &Measurements, found: &Found) -> Option<NextExperiment> {
@@ -152,13 +163,16 @@ fn advised(measurements: &Measurements, found: &Found) -> Option<NextExperiment>
 
 #[test]
 fn a_bracket_that_gives_way_is_told_from_an_encoder_off_center_by_a_weight() {
-    let (sag, off_center) = (effect("joint-sag", 1, None, 1.0), effect("joint-eccentricity", 1, Some(1.0), 1.0));
+    let (sag, off_center) =
+        (effect("joint-sag", 1, None, 1.0), effect("joint-eccentricity", 1, Some(1.0), 1.0));
     let made = touches(&[sag.clone()], |_, _| ());
     let found = found(&made, Verdict::Class, &[(&[sag], 0.55), (&[off_center], 0.45)]);
     let next = advised(&made, &found).expect("there is something to tell apart");
     assert_eq!(next.kind, Experiment::Weight, "{next:?}");
     assert!(next.what.contains("250 g") && next.why.starts_with("It tells"), "{next:?}");
-    assert!(next.expected_probability > 0.9 && next.expected_probability <= 1.0, "{next:?}");
+    // How far the bracket gives way is hardly known from one posture, so the weight may show little.
+    assert!(next.expected_probability > 0.7 && next.expected_probability <= 1.0, "{next:?}");
+    assert!(next.others.iter().all(|other| other.1 < next.expected_probability - 0.1), "{next:?}");
     assert!(next.minutes > 0.0 && next.count >= 10);
     assert!(next.others.windows(2).all(|pair| pair[0].1 >= pair[1].1), "the best first: {next:?}");
 }
@@ -223,7 +237,8 @@ fn no_gap_needs_nothing_and_the_unknown_needs_more() {
 
 #[test]
 fn each_class_says_what_splits_it() {
-    let (sag, off_center) = (effect("joint-sag", 1, None, 1.0), effect("joint-eccentricity", 1, Some(1.0), 1.0));
+    let (sag, off_center) =
+        (effect("joint-sag", 1, None, 1.0), effect("joint-eccentricity", 1, Some(1.0), 1.0));
     let made = touches(&[sag.clone()], |_, _| ());
     let found = found(&made, Verdict::Class, &[(&[sag.clone()], 0.97)]);
     let mut effects = found.effects.clone();
@@ -257,7 +272,10 @@ fn an_experiment_with_touches_becomes_a_plan_that_can_be_made() {
     assert!(weight.touches.iter().any(|touch| touch.payload_kg == 0.0));
     let sides = made(Experiment::OtherSide, 20).expect("a matter of touches");
     assert_eq!((sides.options.sides, sides.touches.len()), (Sides::LeftAndRight, 20));
-    assert_eq!(made(Experiment::RaisedScreen, 30).expect("touches").options.screen_heights_m, [0.0, 0.06, 0.12]);
+    assert_eq!(
+        made(Experiment::RaisedScreen, 30).expect("touches").options.screen_heights_m,
+        [0.0, 0.06, 0.12]
+    );
     assert_eq!(made(Experiment::Repeats, 30).expect("touches").touches.len(), 30);
     assert_eq!(made(Experiment::MorePlaces, 20).expect("touches").touches.len(), 20);
     assert_eq!(made(Experiment::HeadTurned, 20), None);

@@ -19,8 +19,12 @@ pub(super) fn what(kind: Experiment, places: usize, verb: &str, noun: &str) -> S
         Experiment::Repeats => format!("{these}, each three times"),
         Experiment::MorePlaces => format!("{these} that are new, spread wider"),
         Experiment::CardBehind => format!("{these} with and without a card 10 cm behind"),
-        Experiment::OtherDistance => format!("{these} at two thirds and at one and a half times the distance"),
-        Experiment::HeadTurned => format!("{these} with the head straight ahead and turned by 12° to either side"),
+        Experiment::OtherDistance => {
+            format!("{these} at two thirds and at one and a half times the distance")
+        }
+        Experiment::HeadTurned => {
+            format!("{these} with the head straight ahead and turned by 12° to either side")
+        }
         Experiment::LogLater => format!("{these} and log the encoders once more a second after contact"),
     }
 }
