@@ -82,7 +82,7 @@ impl Space<'_> {
                 .max_by(|a, b| a.1.total_cmp(b.1).then_with(|| b.0.cmp(a.0)));
             let Some((set, _)) = next else { break };
             let set = set.clone();
-            self.around(&set, &fields, &mut visited);
+            self.around(&set, &fields, &mut visited, context)?;
             expanded.insert(set.clone());
             if round >= 1 {
                 let scores = self.scores(&self.best(&visited), &all);
@@ -111,33 +111,49 @@ impl Space<'_> {
     }
 
     /// All sets with one block more, fewer or exchanged.
-    fn around(&self, set: &[usize], fields: &[usize], visited: &mut HashMap<Vec<usize>, f64>) {
-        self.additions(set, fields, visited);
+    fn around(
+        &self,
+        set: &[usize],
+        fields: &[usize],
+        visited: &mut HashMap<Vec<usize>, f64>,
+        context: &dyn JobContext,
+    ) -> Result<(), GapError> {
+        self.additions(set, fields, visited, context)?;
         for leave in 0..set.len() {
             let mut base = set.to_vec();
             base.remove(leave);
-            self.additions(&base, fields, visited);
+            self.additions(&base, fields, visited, context)?;
         }
+        Ok(())
     }
 
-    fn additions(&self, base: &[usize], fields: &[usize], visited: &mut HashMap<Vec<usize>, f64>) {
+    fn additions(
+        &self,
+        base: &[usize],
+        fields: &[usize],
+        visited: &mut HashMap<Vec<usize>, f64>,
+        context: &dyn JobContext,
+    ) -> Result<(), GapError> {
+        context.checkpoint()?;
         let prior = self.prior(base);
         let given: Vec<_> = fields.iter().map(|&f| self.fields[f].given(base, self.blocks)).collect();
         visited.insert(base.to_vec(), prior + log_sum(given.iter().map(|given| given.log_evidence)));
         if base.len() >= self.most {
-            return;
+            return Ok(());
         }
         let names: HashSet<usize> = base.iter().map(|&block| self.blocks[block].name).collect();
         for &block in self.allowed {
             if names.contains(&self.blocks[block].name) {
                 continue;
             }
+            context.checkpoint()?;
             let own = &self.blocks[block];
             let score = log_sum(given.iter().map(|given| given.log_evidence + given.adds(own)));
             let mut set = base.to_vec();
             set.insert(set.partition_point(|&other| other < block), block);
             visited.insert(set, prior + own.log_prior + score);
         }
+        Ok(())
     }
 
     fn left(&self, visited: HashMap<Vec<usize>, f64>, fields: &[usize]) -> Explored {
