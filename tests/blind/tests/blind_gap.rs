@@ -83,9 +83,14 @@ fn hidden_effects_are_found_and_nothing_else() {
     let value = |share: &Share| share.value().expect("there were some");
     let null: usize = score.null_named.iter().map(|share| share.hits).sum();
     assert_eq!(null, 0, "a name where nothing is hidden");
-    let class: Vec<f64> = score.singles_visible.values().map(|naming| value(&naming.class)).collect();
-    assert!(class.iter().all(|share| *share >= 0.65), "single effects: {class:?}");
-    let pairs = score.several.values().map(|naming| value(&naming.class)).sum::<f64>();
-    assert!(pairs >= 0.5, "pairs: {pairs}");
-    assert!(value(&score.nameless["rich"]) >= 0.5, "said to be in the library");
+    // Few cases: what is asked here is less than what the table shows.
+    let all = |shares: Vec<Share>| Share {
+        hits: shares.iter().map(|share| share.hits).sum(),
+        of: shares.iter().map(|share| share.of).sum(),
+    };
+    let singles = all(score.singles_visible.values().map(|naming| naming.class).collect());
+    assert!(value(&singles) >= 0.7, "single effects: {singles:?}");
+    let several = all(score.several.values().map(|naming| naming.class).collect());
+    assert!(value(&several) >= 0.5, "pairs: {several:?}");
+    assert!(value(&score.nameless["rich"]) >= 0.25, "all were said to be in the library");
 }
