@@ -44,7 +44,7 @@ pub(super) struct Space<'a> {
     pub allowed: &'a [usize],
     /// At most so many.
     pub most: usize,
-    /// Divides differences of log scores: above 1 for more doubt than the formula has.
+    /// Divides differences of log evidence: above 1 for more doubt than the formula has.
     pub temperature: f64,
 }
 
@@ -157,24 +157,31 @@ impl Space<'_> {
     }
 
     fn left(&self, visited: HashMap<Vec<usize>, f64>, fields: &[usize]) -> Explored {
-        let best = visited.values().copied().fold(f64::NEG_INFINITY, f64::max);
-        let window = self.temperature * WINDOW.ln();
-        let mut models: Vec<Model> = visited
+        // Doubt is about the evidence, not about how rare effects are.
+        let tempered = |set: &[usize], score: f64| {
+            let prior = self.prior(set);
+            (score - prior) / self.temperature + prior
+        };
+        let scored: Vec<(Vec<usize>, f64, f64)> = visited
             .into_iter()
-            .filter(|(_, score)| *score > best - window)
-            .map(|(set, log_score)| Model {
-                set,
-                log_score,
-                probability: ((log_score - best) / self.temperature).exp(),
+            .map(|(set, score)| {
+                let own = tempered(&set, score);
+                (set, score, own)
             })
             .collect();
-        models.sort_by(|a, b| b.log_score.total_cmp(&a.log_score).then_with(|| a.set.cmp(&b.set)));
+        let best = scored.iter().map(|(.., tempered)| *tempered).fold(f64::NEG_INFINITY, f64::max);
+        let mut models: Vec<Model> = scored
+            .into_iter()
+            .filter(|(.., tempered)| *tempered > best - WINDOW.ln())
+            .map(|(set, log_score, tempered)| Model { set, log_score, probability: (tempered - best).exp() })
+            .collect();
+        models.sort_by(|a, b| b.probability.total_cmp(&a.probability).then_with(|| a.set.cmp(&b.set)));
         let sum: f64 = models.iter().map(|model| model.probability).sum();
         models.iter_mut().for_each(|model| model.probability /= sum);
         let scores = models.first().map_or(vec![], |model| self.scores(&model.set, fields));
         let total = log_sum(scores.iter().copied());
-        let variants =
-            scores.iter().map(|score| ((score - total) / self.temperature).exp()).collect::<Vec<_>>();
+        let variants: Vec<f64> =
+            scores.iter().map(|score| ((score - total) / self.temperature).exp()).collect();
         let sum: f64 = variants.iter().sum();
         Explored { models, variants: variants.iter().map(|share| share / sum).collect() }
     }

@@ -13,7 +13,7 @@ use crate::floor::Floor;
 const CHUNK: usize = 256;
 /// A fingertip's pad gives way and the angles are logged a moment before or after: the height at
 /// contact is off by this whatever repeats say, m.
-const CONTACT_M: f64 = 0.35e-3;
+const CONTACT_M: f64 = 0.45e-3;
 
 /// Whitened by the floor: one line per coordinate of every row that is predicted.
 pub(super) struct Linear {

@@ -95,8 +95,7 @@ impl Evidence<'_> {
         }
         found.sort_by(|a, b| b.1.size_sigmas.total_cmp(&a.1.size_sigmas));
         let (blocks, effects): (Vec<usize>, Vec<NamedEffect>) = found.into_iter().unzip();
-        let (p_bare, left_bare) = self.lack_of_fit(&[]);
-        let nameless = effects.is_empty() && p_bare < VETO_P && left_bare > NO_DIRT;
+        let nameless = effects.is_empty() && self.p_bare() < VETO_P && self.look.gap() > NO_DIRT;
         let unknown = unknown.max(if nameless { 0.6 } else { 0.0 });
         let verdict = if unknown > 0.5 {
             Verdict::NotInLibrary
@@ -108,6 +107,20 @@ impl Evidence<'_> {
             Verdict::Class
         };
         Named { verdict, effects, blocks, names, unknown, p_value }
+    }
+
+    /// Probability by noise alone of what frames leave.
+    fn p_bare(&self) -> f64 {
+        let free = self.look.total - self.look.within.1 - self.look.gauge as f64;
+        if free < 1.0 {
+            return 1.0;
+        }
+        f_tail((self.look.plain.square - self.look.within.0) / free, free, self.floor_freedom())
+    }
+
+    fn floor_freedom(&self) -> f64 {
+        let kinds = self.floor.kinds.iter();
+        kinds.map(|kind| kind.degrees_of_freedom * kind.sd.len() as f64).sum::<f64>().max(4.0)
     }
 
     /// What a rival in the set does to the rows, in floors; zero without one.
@@ -172,11 +185,9 @@ impl Evidence<'_> {
         if free < 1.0 {
             return (1.0, 0.0);
         }
-        let below: f64 =
-            self.floor.kinds.iter().map(|kind| kind.degrees_of_freedom * kind.sd.len() as f64).sum();
         let ratio = left / free;
         let repeats = self.look.total / (self.look.total - self.look.within.1);
-        ((f_tail(ratio, free, below.max(4.0))), ((ratio - 1.0).max(0.0) / repeats).sqrt())
+        (f_tail(ratio, free, self.floor_freedom()), ((ratio - 1.0).max(0.0) / repeats).sqrt())
     }
 
     fn effect(
@@ -271,7 +282,7 @@ impl Evidence<'_> {
                 continue;
             }
             let adds = given.iter().map(|given| given.log_evidence + given.adds(&blocks[other]));
-            let score = (blocks[other].log_prior + log_sum(adds)) / self.temperature;
+            let score = blocks[other].log_prior + log_sum(adds) / self.temperature;
             match found.iter_mut().find(|(known, _)| *known == name) {
                 Some((_, shapes)) => shapes.push((score, other)),
                 None => found.push((name, vec![(score, other)])),
