@@ -83,7 +83,7 @@ pub fn fit(text: &str, most: f64, size: f64, weight: Weight) -> String {
 pub fn wrap(text: &str, most_width: f64, size: f64, weight: Weight, most: usize) -> Vec<String> {
     let mut lines: Vec<String> = vec![];
     let mut line = String::new();
-    for word in printable(text).split_whitespace() {
+    for word in printable(text).split([' ', '\t']).filter(|word| !word.is_empty()) {
         let joined = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
         if width(&joined, size, weight) <= most_width {
             line = joined;

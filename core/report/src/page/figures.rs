@@ -152,25 +152,30 @@ fn history(drawing: &mut Drawing, area: Area, finding: &Finding, entries: &[Hist
     }
 }
 
-/// The table from above, before and after.
-pub fn maps(drawing: &mut Drawing, area: Area, finding: &Finding, context: &ReportContext) {
+/// Least height of what stands beside the map where there is no gap.
+const BESIDE: f64 = 130.0;
+
+/// The table from above, before and after. Returns the lower end.
+pub fn maps(drawing: &mut Drawing, area: Area, finding: &Finding, context: &ReportContext) -> f64 {
     let [left, right] = area.columns([1.0, 1.0]);
     let Some(view) = map::View::of(finding, context, left.below(HEADING)) else {
         heading(drawing, area, "Over the table");
         let text = "No row has a place on the table, so no map can be drawn.";
         drawing.text([area.x, area.y + HEADING + 8.0], text, Style::BODY);
-        return;
+        return area.y + HEADING + 12.0;
     };
+    let cut = |area: Area| Area { height: view.height, ..area.below(HEADING) };
     if finding.verdict == Verdict::NoGap {
         heading(drawing, left, "Measured less predicted, from above");
-        view.draw(drawing, left.below(HEADING), finding, map::Which::Before);
+        view.draw(drawing, cut(left), finding, map::Which::Before);
         could_have_shown(drawing, right, finding);
-        return;
+        return cut(left).bottom().max(area.y + BESIDE).min(area.bottom());
     }
     heading(drawing, left, "Before: measured less predicted");
-    view.draw(drawing, left.below(HEADING), finding, map::Which::Before);
+    view.draw(drawing, cut(left), finding, map::Which::Before);
     heading(drawing, right, "After, same scale");
-    view.draw(drawing, right.below(HEADING), finding, map::Which::After);
+    view.draw(drawing, cut(right), finding, map::Which::After);
+    cut(left).bottom()
 }
 
 /// What the rows of a session without a gap can say.

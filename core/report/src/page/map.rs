@@ -31,6 +31,8 @@ pub struct View {
     /// Points of the page per meter of an arrow.
     arrow_per_m: f64,
     screen_m: Option<[[f64; 2]; 4]>,
+    /// Height of a map that shows all, its scales included.
+    pub height: f64,
 }
 
 fn has_place(residual: &&Residual) -> bool {
@@ -54,7 +56,7 @@ impl View {
                 *range = [range[0].min(value), range[1].max(value)];
             }
         }
-        if rows.is_empty() || area.height < SCALES + 30.0 {
+        if rows.is_empty() {
             return None;
         }
         // A single place still needs a table around it.
@@ -71,7 +73,8 @@ impl View {
         let long = lengths.get(lengths.len() * 19 / 20).or(lengths.last()).copied().unwrap_or(0.0);
         let arrow_per_m = if long > 0.0 { LONG_ARROW * area.width / long } else { per_m };
         let middle_m = range.map(|[low, high]| 0.5 * (low + high));
-        Some(Self { middle_m, per_m, arrow_per_m, screen_m })
+        let height = (span[0] * per_m + margin + SCALES).min(area.height);
+        Some(Self { middle_m, per_m, arrow_per_m, screen_m, height })
     }
 
     /// Away from the robot is up, the robot's left is left.
@@ -136,12 +139,12 @@ impl View {
         bar(drawing, self.arrow_per_m, ink::STRONG, "of error");
         let mut notes = vec![];
         if every > 1 {
-            notes.push(format!("every {every}. row"));
+            notes.push(format!("1 of {every} rows drawn"));
         }
         if has_outliers {
             notes.push("× outlier".to_owned());
         }
-        drawing.anchored([area.right(), y], notes.join(", "), style, Anchor::End);
+        drawing.anchored([area.right() - 5.0, area.y + 10.0], notes.join(", "), style, Anchor::End);
     }
 }
 

@@ -101,8 +101,7 @@ pub fn draw(finding: &Finding, context: &ReportContext) -> Drawing {
     let bottom = verdict::footer(&mut drawing, finding) - 10.0;
 
     let summary = Area { x: MARGIN, y: top, width, height: 98.0 };
-    let has_scatter = finding.verdict != Verdict::NoGap && scatter::is_possible(finding);
-    let least = MAPS[0] + if has_scatter { SCATTER[0] + GAP } else { 0.0 };
+    let with_scatter = MAPS[0] + SCATTER[0] + GAP;
     let room = |detail: &Detail| {
         bottom
             - summary.bottom()
@@ -111,7 +110,12 @@ pub fn draw(finding: &Finding, context: &ReportContext) -> Drawing {
             - notes::height(finding, width, *detail)
             - 2.0 * GAP
     };
-    let detail = DETAILS.into_iter().find(|detail| room(detail) >= least).unwrap_or(DETAILS[5]);
+    // Where room is scarce the maps stay: they say most.
+    let last = DETAILS[DETAILS.len() - 1];
+    let has_scatter =
+        finding.verdict != Verdict::NoGap && scatter::is_possible(finding) && room(&last) >= with_scatter;
+    let least = if has_scatter { with_scatter } else { MAPS[0] };
+    let detail = DETAILS.into_iter().find(|detail| room(detail) >= least).unwrap_or(last);
 
     figures::summary(&mut drawing, summary, finding, context);
     let figures_height = room(&detail).max(0.0);
@@ -125,8 +129,7 @@ pub fn draw(finding: &Finding, context: &ReportContext) -> Drawing {
         width,
         height: (figures_height - taken).min(if has_scatter { MAPS[1] } else { ALONE }),
     };
-    figures::maps(&mut drawing, maps, finding, context);
-    y = maps.bottom() + GAP;
+    y = figures::maps(&mut drawing, maps, finding, context) + GAP;
     if has_scatter {
         scatter::draw(&mut drawing, Area { x: MARGIN, y, width, height: scatter_height }, finding);
         y += scatter_height + GAP;

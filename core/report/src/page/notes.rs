@@ -55,7 +55,7 @@ fn unexplained(finding: &Finding) -> Paragraphs {
         return vec![("Nothing above the noise of these rows.".to_owned(), true)];
     }
     let mut paragraphs = vec![];
-    let p = p_value(rest.p_value);
+    let p = p_value(rest.p_value).replace(' ', "\u{a0}");
     paragraphs.push((
         if rest.p_value.is_finite() && rest.p_value < 0.01 {
             format!("{} of the gap is left, more than noise leaves ({p}).", share(rest.share))
