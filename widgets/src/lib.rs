@@ -24,9 +24,11 @@ pub mod notifications;
 pub mod overlay;
 pub mod parameter;
 pub mod pose_list;
+pub mod probability;
 pub mod progress;
 pub mod rail;
 pub mod residuals;
+pub mod scatter;
 pub mod scene3d;
 pub mod table_map;
 pub mod texture;
@@ -53,9 +55,11 @@ pub use loss_curves::{LossCurve, LossCurves, loss_legend, loss_range};
 pub use notifications::{Notification, Notifications, Severity};
 pub use overlay::{Ink, Mark, Overlay, PointShape};
 pub use pose_list::{PoseCard, PoseIntent, PoseList};
+pub use probability::{ShareRow, probability_bar, share_rows};
 pub use progress::{ProgressAction, ProgressLine, progress_bar};
 pub use rail::{RailStep, StepState};
 pub use residuals::{arrow_scale, residual_arrows};
+pub use scatter::{Scatter, ScatterSeries};
 pub use scene3d::{Scene, Scene3d, Scene3dResponse, SceneCamera};
 pub use table_map::{
     BeforeAfter, Border, Outline, Place, PointsResponse, ScalarField, TableMap, TableMapResponse, TableMark,

@@ -19,10 +19,20 @@ pub struct Gap {
     /// Folders of sessions of one robot, looked at together.
     #[arg(long, value_name = "DIR", num_args = 1.., required = true)]
     session: Vec<PathBuf>,
-    /// What to compare with in place of what the first session names: a rig file, or the screen.toml
-    /// of a placed touchscreen.
+    /// What to compare with in place of what the first session names: a rig file, the screen.toml of a
+    /// placed touchscreen, or a model with effects, whose own gap is then looked for.
     #[arg(long, value_name = "FILE")]
     rig_model: Option<PathBuf>,
+    /// Writes a model with all effects that were found; needs --out.
+    #[arg(long, requires = "out")]
+    add: bool,
+    /// Receives the model, for --rig-model of this command, predict and ik. Where nothing can be added
+    /// it is written as it was.
+    #[arg(long, value_name = "FILE", requires = "add")]
+    out: Option<PathBuf>,
+    /// Receives a page about it: PDF if its name ends in .pdf, else HTML.
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
     /// The same seed gives the same answer.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -30,7 +40,13 @@ pub struct Gap {
 
 /// Compares, finds, names, shows.
 pub fn run(arguments: Gap, output: &Output) -> anyhow::Result<()> {
-    let args = GapArgs { sessions: arguments.session, rig_model: arguments.rig_model, seed: arguments.seed };
+    let args = GapArgs {
+        sessions: arguments.session,
+        rig_model: arguments.rig_model,
+        seed: arguments.seed,
+        add_to: arguments.out.filter(|_| arguments.add),
+        report: arguments.report,
+    };
     let report = offline::gap(&args, output)?;
     output.result(&report, text)
 }
@@ -49,6 +65,9 @@ fn text(report: &GapReport) -> String {
         text.push_str(&format!("Note: {warning}\n"));
     }
     left_out(&mut text, finding);
+    if !report.added.is_empty() {
+        text.push_str(&format!("Added to the model: {}\n", report.added.join(", ")));
+    }
     text.push_str(&format!("Searched for {}\n", format::ms(finding.seconds)));
     text
 }

@@ -1,5 +1,6 @@
 //! What the command line says about the window.
 
+mod gap_steps;
 mod robot_steps;
 mod touch_steps;
 
@@ -30,7 +31,7 @@ pub struct WindowArgs {
     /// Colors of the window, in place of the remembered ones.
     #[arg(long, value_enum)]
     theme: Option<ThemeChoice>,
-    /// Screen to start with: live, collect, judge, accept, mount, touch, models or robot.
+    /// Screen to start with: live, collect, judge, accept, mount, touch, models, gap or robot.
     #[arg(long, value_name = "SCREEN", value_parser = screen)]
     screen: Option<Screen>,
     /// Size of the window in points: 1280x800.
@@ -58,6 +59,10 @@ pub struct WindowArgs {
     /// touch-plan-train, touch-plan-rich, touch-plan-check, touch-correct:METHOD, touch-start,
     /// touch-pause, touch-resume, touch-skip, touch-prepared, touch-finish, touch-close,
     /// touch-accept-screen, touch-discard-screen, touch-nominal-screen, touch-window;
+    /// gap, gap-session:FOLDER, gap-list, gap-nominal, gap-in-use, gap-find, gap-add, gap-next,
+    /// gap-report:FILE, gap-report-pdf:FILE, gap-delete, gap-undo, gap-take-out, gap-map-before,
+    /// gap-map-after, gap-map-both, gap-pane-compare, gap-pane-names, gap-pane-candidates,
+    /// gap-pane-shown, gap-pane-next, gap-pane-history;
     /// models-list, models-train, models-accept, models-accept-m1 (m2, m3), models-show-m1 (m2, m3),
     /// models-discard, models-undo, models-none, models-check, models-training, models-compared,
     /// models-map, models-map-before, models-map-after, models-map-both, models-tables.
@@ -134,9 +139,10 @@ fn screen(text: &str) -> Result<Screen, String> {
         "mount" => Ok(Screen::Mount),
         "touch" => Ok(Screen::Touch),
         "models" => Ok(Screen::Models),
+        "gap" => Ok(Screen::Gap),
         "robot" => Ok(Screen::Robot),
         _ => {
-            Err("there are the screens live, collect, judge, accept, mount, touch, models and robot"
+            Err("there are the screens live, collect, judge, accept, mount, touch, models, gap and robot"
                 .to_owned())
         }
     }
@@ -180,6 +186,7 @@ fn step(text: &str) -> Result<ScriptStep, String> {
         "picture" if !value.is_empty() => Ok(ScriptStep::Picture(value.into())),
         other => robot_steps::step(other, value)
             .or_else(|| touch_steps::step(other, value))
+            .or_else(|| gap_steps::step(other, value))
             .unwrap_or_else(|| Err(format!("\"{other}\" is not a step; plumbline --help lists them"))),
     }
 }

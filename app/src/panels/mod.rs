@@ -10,6 +10,7 @@ mod error_bars;
 mod eye;
 mod figures;
 mod files;
+mod gap;
 mod models;
 mod mount;
 mod pairs;
@@ -26,7 +27,14 @@ mod twin;
 mod verdict_line;
 
 pub use board::BoardDraft;
+pub use gap::GapErrors;
+pub use gap::GapPanels;
+pub(crate) use gap::{
+    add_label as gap_add_label, is_of_choice as gap_is_of_choice, show_inspector as show_gap_inspector,
+    touch_label as gap_touch_label,
+};
 pub use models::{MapErrors, ModelsPanels};
+pub(crate) use models::{arrow_scale, clock as models_clock, map_entry};
 pub(crate) use models::{Standing, show_inspector as show_models_inspector, standing};
 pub(crate) use picture::key as picture_key;
 pub use probe::{ProbeState, probe_readout};
@@ -88,6 +96,8 @@ pub struct PanelState {
     pub touch: TouchPanels,
     /// Correction models.
     pub models: ModelsPanels,
+    /// The gap between model and measurement.
+    pub gap: GapPanels,
 }
 
 impl Default for PanelState {
@@ -110,6 +120,7 @@ impl Default for PanelState {
             twin: TwinPanels::default(),
             touch: TouchPanels::default(),
             models: ModelsPanels::default(),
+            gap: GapPanels::default(),
         }
     }
 }
@@ -195,5 +206,12 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
         Pane::ModelTraining | Pane::ModelComparison | Pane::ModelMap | Pane::GraspTables => {
             models::show(ui, pane, cx);
         }
+        Pane::GapCompare
+        | Pane::GapNames
+        | Pane::GapCandidates
+        | Pane::GapMap
+        | Pane::GapShown
+        | Pane::GapNext
+        | Pane::GapHistory => gap::show(ui, pane, cx),
     }
 }

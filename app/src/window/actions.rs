@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use plumbline_engine::view::SourceStatus;
 use plumbline_engine::{ExportFormat, Exported, View};
 
+use super::gap_actions::GapAction;
 use super::models_actions::ModelsAction;
 use super::robot_actions::{MountAction, RobotAction};
 use super::steps::Screen;
@@ -75,6 +76,8 @@ pub enum Action {
     Touch(TouchAction),
     /// Something of correction models.
     Models(ModelsAction),
+    /// Of the gap between model and measurement.
+    Gap(GapAction),
     /// Asks the running job to stop.
     CancelJob,
     /// Saves a picture of the window.
@@ -105,7 +108,8 @@ pub fn all() -> impl Iterator<Item = Action> {
     let mount = MountAction::ALL.into_iter().map(Action::Mount);
     let touch = TouchAction::ALL.into_iter().map(Action::Touch);
     let models = ModelsAction::ALL.into_iter().map(Action::Models);
-    ALL.iter().copied().chain(robot).chain(mount).chain(touch).chain(models)
+    let gap = GapAction::ALL.into_iter().map(Action::Gap);
+    ALL.iter().copied().chain(robot).chain(mount).chain(touch).chain(models).chain(gap)
 }
 
 const ALL: &[Action] = &[
@@ -129,6 +133,7 @@ const ALL: &[Action] = &[
     Action::Go(Screen::Mount),
     Action::Go(Screen::Touch),
     Action::Go(Screen::Models),
+    Action::Go(Screen::Gap),
     Action::Go(Screen::Robot),
     Action::RecognizeBoard,
     Action::UseSeenBoard,
@@ -184,11 +189,13 @@ impl Action {
             Self::Go(Screen::Mount) => "Go to Mount",
             Self::Go(Screen::Touch) => "Go to Touch",
             Self::Go(Screen::Models) => "Go to Models",
+            Self::Go(Screen::Gap) => "Go to Gap",
             Self::Go(Screen::Robot) => "Go to Robot",
             Self::Robot(action) => action.label(),
             Self::Mount(action) => action.label(),
             Self::Touch(action) => action.label(),
             Self::Models(action) => action.label(),
+            Self::Gap(action) => action.label(),
             Self::RecognizeBoard => "Recognize the board",
             Self::UseSeenBoard => "Use the recognized board",
             Self::Capture => "Capture pair",
@@ -246,6 +253,7 @@ impl Action {
             Self::Mount(action) => action.refusal(view),
             Self::Touch(action) => action.refusal(view),
             Self::Models(action) => action.refusal(view),
+            Self::Gap(action) => action.refusal(view),
             Self::CancelJob => when(view.running_job().is_some(), "no job is running"),
             _ => None,
         }

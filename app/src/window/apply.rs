@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use plumbline_engine::view::{JobState, SourceStatus};
 use plumbline_engine::{
-    Command, Destination, EyesCommand, FileLength, JobCommand, LiveCommand, ModelsCommand, MountCommand,
+    Command, Destination, EyesCommand, FileLength, GapCommand, JobCommand, LiveCommand, ModelsCommand, MountCommand,
     NoticeCommand, NoticeLevel, ProbePoint, RobotCommand, SourceCommand, TablesCommand, TouchCommand,
     TwinCommand,
 };
@@ -20,6 +20,7 @@ use super::ask::{Ask, Asked};
 use super::dialogs::{Answer, Question};
 use super::frame_time::{FrameTimes, resident_mb};
 use super::jogging::RENEW;
+use super::gap_actions::{self, GapAction};
 use super::models_actions::ModelsAction;
 use super::outbox::Outbox;
 use super::robot_actions::RobotAction;
@@ -118,6 +119,7 @@ impl PlumblineWindow {
             Action::Export(what, format) => self.ask_for(ctx, Question::Export(what, format)),
             Action::SaveWindow => self.ask_for(ctx, Question::SaveWindow),
             Action::Models(action) => self.act_on_models(ctx, action),
+            Action::Gap(action) => self.act_on_gap(ctx, action),
             Action::Go(screen) => self.settings.screen = screen,
             Action::Palette => self.palette.toggle(),
             Action::ToggleInspector => self.settings.inspector_open = !self.settings.inspector_open,
@@ -145,6 +147,22 @@ impl PlumblineWindow {
                 self.settings.screen = Screen::Touch;
                 self.send(TouchCommand::CorrectWith(method.map(Into::into)).into());
                 if let Some(plan) = TouchAction::Plan(Preset::Check).command(&self.view) {
+                    self.send(plan);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// The actions on the gap that ask for a file, or go somewhere else.
+    fn act_on_gap(&mut self, ctx: &egui::Context, action: GapAction) {
+        match action {
+            GapAction::OpenSession => self.ask_for(ctx, Question::GapSession),
+            GapAction::ReportHtml => self.ask_for(ctx, Question::GapReport { pdf: false }),
+            GapAction::ReportPdf => self.ask_for(ctx, Question::GapReport { pdf: true }),
+            GapAction::NextExperiment => {
+                if let Some(plan) = gap_actions::plan(&self.view) {
+                    self.settings.screen = Screen::Touch;
                     self.send(plan);
                 }
             }
@@ -182,6 +200,7 @@ impl PlumblineWindow {
             Action::Mount(action) => action.command(),
             Action::Touch(action) => return action.command(&self.view),
             Action::Models(action) => return action.command(&self.view),
+            Action::Gap(action) => return action.command(&self.view),
             Action::CancelJob => JobCommand::Cancel(self.view.running_job()?.id).into(),
             _ => return None,
         })
@@ -242,6 +261,12 @@ impl PlumblineWindow {
                 (Question::TouchSession, _) => {
                     self.send(ModelsCommand::ChooseSession { session: paths.remove(0) }.into());
                 }
+                (Question::GapSession, _) => {
+                    self.send(GapCommand::Choose { sessions: vec![paths.remove(0)] }.into());
+                }
+                (Question::GapReport { pdf }, _) => {
+                    self.send(GapCommand::Report { file: paths.remove(0), pdf }.into());
+                }
                 (Question::ImportModel, _) => {
                     self.send(ModelsCommand::Import { file: paths.remove(0) }.into());
                 }
@@ -294,6 +319,7 @@ impl PlumblineWindow {
             }
             ScriptStep::ShowPane(pane) => self.show_pane(self.settings.screen, pane),
             ScriptStep::ShowErrors(errors) => self.panels.models.errors = errors,
+            ScriptStep::ShowGapErrors(errors) => self.panels.gap.errors = errors,
             ScriptStep::PairsPerSecond(rate) => self.backend.send(SourceCommand::PairsPerSecond(rate).into()),
             ScriptStep::Measure => {
                 self.frame_times = FrameTimes::default();
@@ -344,6 +370,7 @@ impl PlumblineWindow {
             self.settings.remember_source(spec);
         }
         self.follow_the_models();
+        self.follow_the_gap();
         self.dismiss_ended_jobs();
     }
 
@@ -357,6 +384,17 @@ impl PlumblineWindow {
             _ => return,
         };
         self.show_pane(Screen::Models, pane);
+    }
+
+    /// What was found is named, and judged on held-out rows.
+    fn follow_the_gap(&mut self) {
+        let gap = &self.view.gap;
+        let searched_before =
+            std::mem::replace(&mut self.panels.gap.searching_seen, gap.searching.is_some());
+        if searched_before && gap.searching.is_none() && gap.failed.is_none() && gap.shown.is_some() {
+            self.show_pane(Screen::Gap, Pane::GapNames);
+            self.show_pane(Screen::Gap, Pane::GapShown);
+        }
     }
 
     /// Brings a pane to the front of its tabs.

@@ -24,6 +24,13 @@ pub enum Question {
     Export(Exported, ExportFormat),
     /// The folder of a session with touches.
     TouchSession,
+    /// The folder of a session to compare with the model.
+    GapSession,
+    /// Where a page about the gap is written, as PDF or as HTML.
+    GapReport {
+        /// As PDF.
+        pdf: bool,
+    },
     /// A correction model to read.
     ImportModel,
     /// Where a correction model is written, as ONNX or as JSON.
@@ -62,6 +69,8 @@ impl Question {
             Self::Import => "Import a calibration",
             Self::Export(..) => "Export the calibration",
             Self::TouchSession => "Open a session with touches",
+            Self::GapSession => "Open a session to compare",
+            Self::GapReport { .. } => "Write the report of the gap",
             Self::ImportModel => "Import a correction model",
             Self::ExportModel(..) => "Export the correction model",
             Self::ImportTable(GraspTable::Height) => "Import grasp heights",
@@ -76,7 +85,7 @@ impl Question {
     /// Names of the paths that are asked for.
     pub fn fields(self) -> &'static [&'static str] {
         match self {
-            Self::Folder | Self::TouchSession => &["Folder"],
+            Self::Folder | Self::TouchSession | Self::GapSession => &["Folder"],
             Self::TwoFolders => &["Left folder", "Right folder"],
             Self::TwoVideos => &["Left video", "Right video"],
             Self::Import => &["File", "Right eye's file, if there are two"],
@@ -85,6 +94,7 @@ impl Question {
             | Self::ExportModel(..)
             | Self::ImportTable(_)
             | Self::ExportTable(_)
+            | Self::GapReport { .. }
             | Self::SaveWindow
             | Self::SaveView => &["File"],
         }
@@ -110,6 +120,8 @@ impl Question {
             Self::ExportModel(Method::M3, true) => "m3.onnx",
             Self::ExportTable(GraspTable::Height) => "grasp-height.csv",
             Self::ExportTable(GraspTable::Yaw) => "grasp-yaw.csv",
+            Self::GapReport { pdf: false } => "gap.html",
+            Self::GapReport { pdf: true } => "gap.pdf",
             Self::SaveWindow => "plumbline.png",
             Self::SaveView => "view.png",
             _ => "",
@@ -123,6 +135,7 @@ impl Question {
             Self::Export(..)
                 | Self::ExportModel(..)
                 | Self::ExportTable(_)
+                | Self::GapReport { .. }
                 | Self::SaveWindow
                 | Self::SaveView
         )
@@ -135,7 +148,7 @@ impl Question {
         let video =
             |title: &str| titled(title).add_filter("Videos", &["mp4", "avi", "mkv", "mov", "webm", "m4v"]);
         match self {
-            Self::Folder | Self::TouchSession => dialog().pick_folder().map(|folder| vec![folder]),
+            Self::Folder | Self::TouchSession | Self::GapSession => dialog().pick_folder().map(|folder| vec![folder]),
             Self::ImportModel => {
                 dialog().add_filter("Models", &["json", "onnx"]).pick_file().map(|file| vec![file])
             }
@@ -156,6 +169,7 @@ impl Question {
             Self::Export(..)
             | Self::ExportModel(..)
             | Self::ExportTable(_)
+            | Self::GapReport { .. }
             | Self::SaveWindow
             | Self::SaveView => {
                 dialog().set_file_name(self.suggested_name()).save_file().map(|file| vec![file])

@@ -1,5 +1,6 @@
 //! What is happening and what to do next, in one sentence and one button.
 
+mod gap;
 mod models;
 mod robot;
 mod touch;
@@ -54,6 +55,7 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
         Screen::Mount => robot::mount(view),
         Screen::Touch => touch::touch(view),
         Screen::Models => models::models(view),
+        Screen::Gap => gap::gap(view),
         Screen::Robot => robot::robot(view),
     }
 }

@@ -69,6 +69,7 @@ fn lamps(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     eyes_lamps(&window.view, ui, outbox);
     robot_lamps::show(&window.view, ui, outbox);
     calibration_lamp(&window.view, ui, outbox);
+    model_lamp(&window.view, ui, outbox);
     clock_lamp(window, ui, outbox);
 }
 
@@ -186,6 +187,21 @@ fn calibration_lamp(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
     };
     if Lamp::new("Calibration", &value, health).reason(reason).show(ui).clicked() {
         outbox.act(Action::Go(Screen::Accept));
+    }
+}
+
+/// With which effects the robot is predicted; nothing stands here while it is as described.
+fn model_lamp(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+    let gap = &view.gap;
+    if gap.model.effects.is_empty() {
+        return;
+    }
+    let (health, reason) = match &gap.step {
+        StepState::Stale { why } => (Health::Warning, Some(why.as_str())),
+        _ => (Health::Good, None),
+    };
+    if Lamp::new("Model", &gap.model.name, health).reason(reason).show(ui).clicked() {
+        outbox.act(Action::Go(Screen::Gap));
     }
 }
 

@@ -14,7 +14,7 @@ use super::outbox::Outbox;
 use super::steps::Screen;
 use super::{PlumblineWindow, hint_text};
 use crate::panels::{
-    PanelState, chosen_fit, probe_readout, show_models_inspector, show_robot_inspector, show_touch_inspector,
+    PanelState, chosen_fit, probe_readout, show_gap_inspector, show_models_inspector, show_robot_inspector, show_touch_inspector,
 };
 
 pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
@@ -32,6 +32,7 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
             Screen::Mount => mount(ui, &view),
             Screen::Touch => show_touch_inspector(ui, &view, state, outbox),
             Screen::Models => show_models_inspector(ui, &view, state, outbox),
+            Screen::Gap => show_gap_inspector(ui, &view, state, outbox),
             Screen::Robot => show_robot_inspector(ui, &view, &mut state.robot, outbox),
         });
     });

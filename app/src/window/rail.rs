@@ -41,6 +41,7 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
             for (name, number, state, target) in [
                 ("Touch", 3, touch_state(view), Screen::Touch),
                 ("Models", 4, models_state(view), Screen::Models),
+                ("Gap", 5, gap_state(view), Screen::Gap),
             ] {
                 let step = RailStep::new(name, state).number(number).selected(screen == target);
                 if step.show(ui).clicked() {
@@ -185,6 +186,18 @@ fn touch_state(view: &View) -> StepState<'_> {
 
 fn models_state(view: &View) -> StepState<'_> {
     step_state(&view.models.step)
+}
+
+/// The search says how far it is; one that failed says why.
+fn gap_state(view: &View) -> StepState<'_> {
+    let searching = view.gap.searching.and_then(|id| view.jobs.iter().find(|job| job.id == id));
+    if let Some(JobState::Running { fraction, .. }) = searching.map(|job| &job.state) {
+        return StepState::Running(*fraction as f32);
+    }
+    match &view.gap.failed {
+        Some(why) => StepState::Failed(why),
+        None => step_state(&view.gap.step),
+    }
 }
 
 /// The robot is no step of the work; it only says when it needs to be looked at.

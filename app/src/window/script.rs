@@ -31,6 +31,8 @@ pub enum ScriptStep {
     ShowPane(Pane),
     /// Which errors the map of a model shows.
     ShowErrors(MapErrors),
+    /// Which errors the map of the gap shows.
+    ShowGapErrors(crate::panels::GapErrors),
     /// Keeps measuring at this pixel of the raw left image.
     Probe([f64; 2]),
     /// Forgets the frame times so far.
@@ -73,6 +75,7 @@ impl Script {
             || matches!(view.robot.motion, MotionState::Moving { .. })
             || matches!(view.touch.phase, TouchPhase::Running { .. } | TouchPhase::Planning)
             || view.models.training
+            || view.gap.searching.is_some()
             || view.mount.step == StepState::Running
             || view.source.status == SourceStatus::Opening
             || self.waiting_for_picture.load(Ordering::Relaxed)

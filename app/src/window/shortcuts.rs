@@ -28,6 +28,7 @@ impl Action {
             Self::Go(Screen::Robot) => command(Key::Num6),
             Self::Go(Screen::Touch) => command(Key::Num7),
             Self::Go(Screen::Models) => command(Key::Num8),
+            Self::Go(Screen::Gap) => command(Key::Num9),
             Self::Capture => plain(Key::C),
             Self::DeleteLast => plain(Key::Backspace),
             Self::Undo => command(Key::Z),

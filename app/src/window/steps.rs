@@ -22,13 +22,15 @@ pub enum Screen {
     Touch,
     /// Correction models, and the tables of grasp height and yaw.
     Models,
+    /// The gap between model and measurement: compare, find, name, add, show.
+    Gap,
     /// The robot: its joints, moving it.
     Robot,
 }
 
 impl Screen {
     /// All of them, in the order of work.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Live,
         Self::Collect,
         Self::Judge,
@@ -36,6 +38,7 @@ impl Screen {
         Self::Mount,
         Self::Touch,
         Self::Models,
+        Self::Gap,
         Self::Robot,
     ];
 
@@ -113,6 +116,20 @@ pub enum Pane {
     ModelMap,
     /// The tables of grasp height and yaw.
     GraspTables,
+    /// Sessions and model, and how far they lie apart.
+    GapCompare,
+    /// What is missing, by name.
+    GapNames,
+    /// What the data say about every effect of the library.
+    GapCandidates,
+    /// What is left over the table.
+    GapMap,
+    /// Before and after on held-out rows.
+    GapShown,
+    /// What to measure next.
+    GapNext,
+    /// Models and findings so far.
+    GapHistory,
 }
 
 impl Pane {
@@ -151,6 +168,13 @@ impl Pane {
             Self::ModelComparison => "Models compared",
             Self::ModelMap => "Model over the table",
             Self::GraspTables => "Grasp height and yaw",
+            Self::GapCompare => "Compare",
+            Self::GapNames => "Name and add",
+            Self::GapCandidates => "Candidates",
+            Self::GapMap => "Gap over the table",
+            Self::GapShown => "Before and after",
+            Self::GapNext => "Next experiment",
+            Self::GapHistory => "History",
         }
     }
 }
@@ -166,6 +190,7 @@ pub fn default_arrangement(screen: Screen) -> Tree<Pane> {
         Screen::Mount => mount(&mut tiles),
         Screen::Touch => touch(&mut tiles),
         Screen::Models => models(&mut tiles),
+        Screen::Gap => gap(&mut tiles),
         Screen::Robot => robot(&mut tiles),
     };
     Tree::new(egui::Id::unique(("tiles", screen)), root, tiles)
@@ -239,6 +264,15 @@ fn models(tiles: &mut Tiles<Pane>) -> TileId {
     let work = tabs(tiles, &[Pane::ModelTraining, Pane::ModelComparison]);
     let maps = tabs(tiles, &[Pane::ModelMap, Pane::GraspTables]);
     row(tiles, &[(work, 1.0), (maps, 1.15)])
+}
+
+fn gap(tiles: &mut Tiles<Pane>) -> TileId {
+    // Read from left to right: compare and name, then where it shows and that it shrinks.
+    let work = tabs(tiles, &[Pane::GapCompare, Pane::GapNames, Pane::GapCandidates]);
+    let map = tabs(tiles, &[Pane::GapMap]);
+    let shown = tabs(tiles, &[Pane::GapShown, Pane::GapNext, Pane::GapHistory]);
+    let right = column(tiles, &[(map, 1.0), (shown, 1.15)]);
+    row(tiles, &[(work, 1.0), (right, 1.1)])
 }
 
 fn robot(tiles: &mut Tiles<Pane>) -> TileId {

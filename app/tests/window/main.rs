@@ -1,8 +1,10 @@
 //! The window over made-up views: every state is drawn, and every click asks for the right thing.
 
 mod fake;
+mod gap;
 mod guidance;
 mod made_up;
+mod made_up_gap;
 mod made_up_models;
 mod made_up_touch;
 mod models;

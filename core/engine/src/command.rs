@@ -1,6 +1,7 @@
 //! What the operator can ask for: one enum per workflow, serializable, so that a journal of
 //! commands is a replay.
 
+mod gap;
 mod robot;
 mod touch;
 
@@ -10,10 +11,10 @@ use plumbline_hardware::SourceSpec;
 use plumbline_model::{CalibrationOptions, Eye};
 use serde::{Deserialize, Serialize};
 
+pub use gap::{GapCommand, GapModel};
 pub use robot::{Destination, JOG_DEADLINE_MS, JogRates, MountCommand, RobotCommand, TwinCommand};
 pub use touch::{
-    ContactWith, Correction, GraspTable, ModelsCommand, ScreenContact, ScreenWindow, TablesCommand,
-    TouchCommand,
+    ContactWith, Correction, GraspTable, ModelsCommand, ScreenContact, ScreenWindow, TablesCommand, TouchCommand,
 };
 
 /// Anything that the window (or a script) can ask of the engine.
@@ -36,6 +37,8 @@ pub enum Command {
     Touch(TouchCommand),
     /// Correction models, and the tables of grasp height and yaw.
     Models(ModelsCommand),
+    /// Finding, naming and adding what makes measurement differ from the model.
+    Gap(GapCommand),
     /// Long work that is running.
     Job(JobCommand),
     /// Messages to the operator.
@@ -317,5 +320,5 @@ macro_rules! into_command {
 }
 into_command!(
     Source: SourceCommand, Live: LiveCommand, Eyes: EyesCommand, Robot: RobotCommand, Twin: TwinCommand,
-    Mount: MountCommand, Touch: TouchCommand, Models: ModelsCommand, Job: JobCommand, Notice: NoticeCommand
+    Mount: MountCommand, Touch: TouchCommand, Models: ModelsCommand, Gap: GapCommand, Job: JobCommand, Notice: NoticeCommand
 );

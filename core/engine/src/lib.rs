@@ -6,6 +6,7 @@ mod context;
 pub mod doctor;
 pub mod engine;
 pub mod eyes;
+mod gaps;
 mod job_list;
 pub mod jobs;
 pub mod journal;
@@ -28,8 +29,8 @@ pub mod view;
 pub mod work;
 
 pub use command::{
-    AimChoice, Command, ContactWith, Correction, Destination, ExportFormat, Exported, EyesCommand,
-    FileLength, GraspTable, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LiveCommand, ModelsCommand,
+    AimChoice, Command, ContactWith, Correction, Destination, ExportFormat, Exported, EyesCommand, FileLength,
+    GapCommand, GapModel, GraspTable, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LiveCommand, ModelsCommand,
     MountCommand, NoticeCommand, ProbePoint, Products, RobotCommand, ScreenContact, ScreenWindow,
     SourceCommand, TablesCommand, TouchCommand, TwinCommand,
 };
@@ -41,6 +42,7 @@ pub use plumbline_correction as correction;
 pub use plumbline_effects as effects;
 pub use plumbline_gap as gap;
 pub use plumbline_hardware::{CameraDevice, SourceSpec};
+pub use plumbline_report as report;
 pub use plumbline_vision::disparity::{DisparityMap, Origin as DisparityOrigin};
 pub use settings::EngineSettings;
 pub use source::Control;

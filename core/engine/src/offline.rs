@@ -29,6 +29,7 @@ pub use check::{CheckArgs, CheckReport, check};
 pub use correct::{CorrectArgs, CorrectReport, CorrectedPoint, correct};
 pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};
 pub use error::OfflineError;
+pub(crate) use gap::{measured, search, title_of as gap_title};
 pub use gap::{GapArgs, GapReport, gap};
 pub use ik::{IkArgs, IkReport, IkSolution, ik};
 pub use locate::{LocateArgs, LocateReport, LocatedPoint, locate};

@@ -13,6 +13,7 @@ use crate::command::{Command, HeadPose, JobCommand, JobId, NoticeCommand};
 use crate::context::{Action, Context};
 use crate::eyes::work::{EyesWork, Restore};
 use crate::eyes::{EyesOfWorlds, EyesState, Look, World};
+use crate::gaps::{GapWorkflow, Surroundings as GapSurroundings};
 use crate::job_list::JobList;
 use crate::jobs::Outcome;
 use crate::live::{LiveState, Skipped, default_rig};
@@ -24,7 +25,7 @@ use crate::source::{Control, Note, SourceState};
 use crate::stages::{CornersInput, ProbeInput, ProbeOutput, RectifyInput, RectifyOutput, StagePanic, Timed};
 use crate::touch::{Surroundings as TouchSurroundings, TouchWorkflow};
 use crate::view::{
-    Connection, JobState, JobView, ModelsView, MountView, RobotView, SourceView, TouchView, TwinView, View,
+    Connection, GapView, JobState, JobView, ModelsView, MountView, RobotView, SourceView, TouchView, TwinView, View,
 };
 use crate::work::WorkResult;
 
@@ -43,6 +44,7 @@ pub struct State {
     arm_of: World,
     touches: BTreeMap<World, TouchWorkflow>,
     models: BTreeMap<World, ModelsWorkflow>,
+    gaps: BTreeMap<World, GapWorkflow>,
     /// The finished session of touches that models were told of last, with its revision.
     learned_from: BTreeMap<World, (PathBuf, u64)>,
     /// Work belongs to the world it was started for, whatever is shown when it ends.
@@ -80,6 +82,10 @@ impl State {
                 .into_iter()
                 .map(|world| (world, ModelsWorkflow::new(&world.folder(data_dir))))
                 .collect(),
+            gaps: WORLDS
+                .into_iter()
+                .map(|world| (world, GapWorkflow::new(&world.folder(data_dir))))
+                .collect(),
             learned_from: BTreeMap::new(),
             started_by: BTreeMap::new(),
             jobs: JobList::default(),
@@ -104,6 +110,10 @@ impl State {
             });
             state.with_models_of(world, |models, around, context| {
                 let work = models.restore(around.rig);
+                context.start(work);
+            });
+            state.with_gap_of(world, |gap, around, context| {
+                let work = gap.restore(around.rig);
                 context.start(work);
             });
         }
@@ -133,6 +143,9 @@ impl State {
             }
             Command::Models(command) => {
                 self.with_models(|models, around, context| models.apply(command, around, context));
+            }
+            Command::Gap(command) => {
+                self.with_gap_of(self.arm_of, |gap, around, context| gap.apply(command, around, context));
             }
             Command::Job(JobCommand::Cancel(id)) if self.jobs.is_running(id) => {
                 self.actions.push(Action::Cancel(id));
@@ -213,6 +226,7 @@ impl State {
             self.with_models_of(world, |models, around, context| {
                 models.touched(&finished.0, around, context);
             });
+            self.with_gap_of(world, |gap, _, context| gap.touched(&finished.0, context));
             self.learned_from.insert(world, finished);
         }
     }
@@ -236,6 +250,21 @@ impl State {
         let mut context = Context { notices, newest: live.newest(), source: source.view(), jobs, actions };
         let newest_session = touches.get(&world).and_then(TouchWorkflow::session);
         act(models, &ModelsSurroundings { rig: &rig, robot, newest_session }, &mut context);
+        self.note_world(world, before);
+    }
+
+    fn with_gap_of(
+        &mut self,
+        world: World,
+        act: impl FnOnce(&mut GapWorkflow, &GapSurroundings<'_>, &mut Context<'_>),
+    ) {
+        let rig = self.rig_of(world);
+        let Self { source, live, jobs, notices, actions, touches, gaps, .. } = self;
+        let Some(gap) = gaps.get_mut(&world) else { return };
+        let before = actions.len();
+        let mut context = Context { notices, newest: live.newest(), source: source.view(), jobs, actions };
+        let newest_session = touches.get(&world).and_then(TouchWorkflow::session);
+        act(gap, &GapSurroundings { rig: &rig, newest_session }, &mut context);
         self.note_world(world, before);
     }
 
@@ -418,20 +447,20 @@ impl State {
             }
             Outcome::Cancelled => {
                 self.notices.add(NoticeLevel::Info, format!("{title}: cancelled, nothing was changed."));
-                self.work_gave_nothing(id);
+                self.work_gave_nothing(id, None);
                 JobState::Cancelled
             }
             Outcome::Failed(reason) => {
                 self.notices.add(NoticeLevel::Error, &*reason);
-                self.work_gave_nothing(id);
+                self.work_gave_nothing(id, Some(&reason));
                 JobState::Failed { reason }
             }
             Outcome::Panicked(message) => {
                 let text = format!(
                     "{title}: this program made a mistake ({message}). Nothing was changed. Please report it with the journal."
                 );
+                self.work_gave_nothing(id, Some(&text));
                 self.notices.add(NoticeLevel::Error, text);
-                self.work_gave_nothing(id);
                 JobState::Panicked { message }
             }
         };
@@ -461,6 +490,10 @@ impl State {
                     models.work_done(id, *result, around, context);
                 });
             }
+            WorkResult::Gap(result) => {
+                let world = self.world_of(id);
+                self.with_gap_of(world, |gap, around, context| gap.work_done(id, *result, around, context));
+            }
         }
     }
 
@@ -468,7 +501,7 @@ impl State {
         self.started_by.remove(&id).unwrap_or(self.eyes.shown)
     }
 
-    fn work_gave_nothing(&mut self, id: JobId) {
+    fn work_gave_nothing(&mut self, id: JobId, why: Option<&str>) {
         let world = self.world_of(id);
         self.eyes.of_mut(world).work_ended(id);
         if let Some(mount) = self.mounts.get_mut(&world) {
@@ -479,6 +512,9 @@ impl State {
         }
         if let Some(models) = self.models.get_mut(&world) {
             models.work_ended(id);
+        }
+        if let Some(gap) = self.gaps.get_mut(&world) {
+            gap.work_ended(id, why);
         }
     }
 
@@ -517,6 +553,13 @@ impl State {
         self.models.get(&self.arm_of).map(|models| models.view(&around)).unwrap_or_default()
     }
 
+    fn gap_view(&self) -> GapView {
+        let newest_session = self.touches.get(&self.arm_of).and_then(TouchWorkflow::session);
+        let rig = self.rig_of(self.arm_of);
+        let around = GapSurroundings { rig: &rig, newest_session };
+        self.gaps.get(&self.arm_of).map(|gap| gap.view(&around)).unwrap_or_default()
+    }
+
     /// What the window shows.
     pub fn view(&mut self, skipped: Skipped, lost_commands: u64, now: Instant) -> View {
         self.revision += 1;
@@ -530,6 +573,7 @@ impl State {
             mount: Arc::new(self.mount_view()),
             touch: Arc::new(self.touch_view()),
             models: Arc::new(self.models_view()),
+            gap: Arc::new(self.gap_view()),
             jobs: self.jobs.view(),
             notices: self.notices.view(),
             lost_commands,

@@ -3,6 +3,7 @@
 //! A view is cheap to take and to keep: images and long lists are shared, not copied.
 
 mod eyes;
+mod gap;
 mod live;
 mod map;
 mod models;
@@ -17,6 +18,9 @@ use std::time::Duration;
 pub use eyes::{
     AcceptedCalibration, BoardPlace, BoardSeen, CaptureHint, CollectedPair, Coverage, CoverageGrid,
     EarlierCalibration, EyesView, GhostBoard, Origin, Proposal,
+};
+pub use gap::{
+    AddedEffect, FindingEntry, GapModelView, GapSession, GapView, ModelStep, ShownFinding,
 };
 pub use live::{
     AimView, CornersView, DisparityView, LiveView, ProbeReading, ProbeView, RectifiedView, ReplayView,
@@ -59,6 +63,8 @@ pub struct View {
     pub touch: Arc<TouchView>,
     /// Correction models, and the tables of grasp height and yaw.
     pub models: Arc<ModelsView>,
+    /// The gap between model and measurement.
+    pub gap: Arc<GapView>,
     /// Long work, oldest first: what is running and what has ended and was not dismissed.
     pub jobs: Arc<[JobView]>,
     /// Messages, oldest first.

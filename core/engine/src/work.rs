@@ -5,6 +5,7 @@ use plumbline_hardware::{CameraDevice, camera_devices};
 use plumbline_model::JobContext;
 
 use crate::eyes::work::{EyesResult, EyesWork};
+use crate::gaps::work::{GapResult, GapWork};
 use crate::jobs::JobError;
 use crate::models::work::{ModelsResult, ModelsWork};
 use crate::mount::work::{MountResult, MountWork};
@@ -23,11 +24,19 @@ pub enum Work {
     Touch(Box<TouchWork>),
     /// Part of correction models and tables.
     Models(Box<ModelsWork>),
+    /// Part of the gap.
+    Gap(Box<GapWork>),
 }
 
 impl From<TouchWork> for Work {
     fn from(work: TouchWork) -> Self {
         Self::Touch(Box::new(work))
+    }
+}
+
+impl From<GapWork> for Work {
+    fn from(work: GapWork) -> Self {
+        Self::Gap(Box::new(work))
     }
 }
 
@@ -62,6 +71,8 @@ pub enum WorkResult {
     Touch(Box<TouchResult>),
     /// Part of correction models and tables.
     Models(Box<ModelsResult>),
+    /// Part of the gap.
+    Gap(Box<GapResult>),
 }
 
 impl Work {
@@ -73,6 +84,7 @@ impl Work {
             Self::Mount(work) => work.title(),
             Self::Touch(work) => work.title(),
             Self::Models(work) => work.title(),
+            Self::Gap(work) => work.title(),
         }
     }
 
@@ -84,6 +96,7 @@ impl Work {
             Self::Mount(work) => work.is_quiet(),
             Self::Touch(work) => work.is_quiet(),
             Self::Models(work) => work.is_quiet(),
+            Self::Gap(work) => work.is_quiet(),
         }
     }
 
@@ -95,6 +108,7 @@ impl Work {
             Self::Mount(work) => work.run(context).map(Box::new).map(WorkResult::Mount),
             Self::Touch(work) => work.run(context).map(Box::new).map(WorkResult::Touch),
             Self::Models(work) => work.run(context).map(Box::new).map(WorkResult::Models),
+            Self::Gap(work) => work.run(context).map(Box::new).map(WorkResult::Gap),
         }
     }
 }
@@ -108,6 +122,7 @@ impl WorkResult {
             Self::Mount(result) => result.summary(),
             Self::Touch(result) => result.summary(),
             Self::Models(result) => result.summary(),
+            Self::Gap(result) => result.summary(),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 mod control;
 mod controls;
+mod gap;
 mod models;
 mod pictures;
 mod robot;
@@ -82,7 +83,7 @@ pub struct Page {
 }
 
 /// All pages.
-pub const PAGES: [Page; 21] = [
+pub const PAGES: [Page; 22] = [
     Page { name: "Window", draw: controls::window },
     Page { name: "Theme", draw: theme_page },
     Page { name: "Image views", draw: pictures::linked },
@@ -96,6 +97,7 @@ pub const PAGES: [Page; 21] = [
     Page { name: "Table map", draw: tables::table_map },
     Page { name: "Training", draw: models::training },
     Page { name: "Model map and points", draw: models::map },
+    Page { name: "Gap", draw: gap::gap },
     Page { name: "Touch pattern", draw: touch::pattern },
     Page { name: "Scene", draw: robot::scene },
     Page { name: "Scene states", draw: robot::scene_states },

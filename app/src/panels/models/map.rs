@@ -164,7 +164,7 @@ fn means_m(map: &ModelMap) -> Option<[f64; 2]> {
 }
 
 /// A round magnification that makes half of the arrows easy to see: 1, 2, 5, 10, …
-fn arrow_scale(lengths: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn arrow_scale(lengths: impl Iterator<Item = f64>) -> f64 {
     let mut lengths: Vec<f64> = lengths.collect();
     lengths.sort_by(f64::total_cmp);
     let median = lengths.get(lengths.len() / 2).copied().filter(|median| *median > 0.0);
@@ -294,7 +294,7 @@ fn legend(ui: &mut Ui, errors: Errors, drawn: &Drawn) {
 }
 
 /// A line in the color that it has on the map, and what it means.
-fn entry(ui: &mut Ui, role: Role, text: &str) {
+pub(crate) fn entry(ui: &mut Ui, role: Role, text: &str) {
     ui.spacing_mut().interact_size.y = 14.0;
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(26.0, 14.0), Sense::hover());

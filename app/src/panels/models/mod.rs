@@ -10,6 +10,7 @@ mod verdict;
 
 pub use inspector::show as show_inspector;
 pub use map::Errors as MapErrors;
+pub(crate) use map::{arrow_scale, entry as map_entry};
 pub(crate) use verdict::{Standing, standing};
 
 use std::sync::Arc;

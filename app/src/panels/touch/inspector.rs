@@ -104,8 +104,7 @@ fn redo(ui: &mut Ui, number: usize, button: &mut impl FnMut(&mut Ui, String, &st
 fn corrected(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
     group_heading(ui, "Targets corrected by");
     let known = known_models(view);
-    // They are offered once the panel of the gap shows which there are.
-    let has_effects = false;
+    let has_effects = !view.gap.model.effects.is_empty();
     if known.is_empty() && !has_effects {
         ui.label(theme::weak(ui, "No model yet: targets are sent as they are."));
         return;

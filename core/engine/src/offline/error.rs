@@ -10,6 +10,7 @@ use plumbline_model::predict::PredictError;
 use plumbline_model::robot::ik::{IkError, SolverError};
 use plumbline_model::robot::{DescriptionError, RigError};
 use plumbline_model::{AimError, BoardError, Cancelled, FormatError, PlacementError, SessionError};
+use plumbline_report::ReportError;
 use plumbline_vision::calibrate::SolveError;
 use plumbline_vision::disparity::DisparityError;
 use plumbline_vision::locate::NoBaseline;
@@ -134,6 +135,9 @@ pub enum OfflineError {
     /// A model with effects cannot be used.
     #[error(transparent)]
     Effects(#[from] RigModelError),
+    /// No report can be written.
+    #[error(transparent)]
+    Report(#[from] ReportError),
     /// Effects of a finding cannot be added.
     #[error("{0}")]
     NotAdded(String),

@@ -4,16 +4,19 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use plumbline_effects::measurements::What;
 use plumbline_effects::{Measurements, RigModel};
 use plumbline_gap::finding::{Dependence, NamedEffect, NextExperiment, Shown, ShownUnit};
 use plumbline_gap::{Finding, Options, Verdict, find};
 use plumbline_model::robot::Rig;
 use plumbline_model::{JobContext, Session};
+use plumbline_report::ReportContext;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::OfflineError;
 use super::session::{self, ModelFile};
+use crate::rig_models;
 
 /// Where to look for a gap.
 #[derive(Clone, Debug)]
@@ -24,6 +27,10 @@ pub struct GapArgs {
     pub rig_model: Option<PathBuf>,
     /// Of all that is drawn by chance.
     pub seed: u64,
+    /// Receives the model with what was found.
+    pub add_to: Option<PathBuf>,
+    /// Receives a page about it: PDF if it is called so, else HTML.
+    pub report: Option<PathBuf>,
 }
 
 /// What was found, with the keys of the command line's JSON.
@@ -47,6 +54,8 @@ pub struct GapReport {
     pub left_out: usize,
     /// Time of the search.
     pub seconds: f64,
+    /// `id@site` of the effects that were written into a model.
+    pub added: Vec<String>,
     /// Everything, for people and for the window.
     #[serde(skip)]
     pub finding: Finding,
@@ -116,12 +125,58 @@ pub struct NextReport {
     pub minutes: f64,
 }
 
-/// Reads the sessions and looks for the gap.
+/// Reads the sessions, looks for the gap, and writes what is asked for.
 pub fn gap(args: &GapArgs, context: &dyn JobContext) -> Result<GapReport, OfflineError> {
-    let measurements = read(&args.sessions, args.rig_model.as_deref())?;
+    let given = read(&args.sessions, args.rig_model.as_deref())?;
     let options = Options { seed: args.seed, ..Options::default() };
-    let finding = find(&measurements, &options, context)?;
-    Ok(GapReport::of(finding))
+    let finding = find(&given.measurements, &options, context)?;
+    let mut report = GapReport::of(finding);
+    if let Some(file) = &args.add_to {
+        report.added = add(&given, &report.finding, file)?;
+    }
+    if let Some(file) = &args.report {
+        write_report(&given, &report.finding, file)?;
+    }
+    Ok(report)
+}
+
+/// Writes the model with all effects that can be added; as it was where there is none.
+fn add(given: &Given, finding: &Finding, file: &Path) -> Result<Vec<String>, OfflineError> {
+    let named = matches!(finding.verdict, Verdict::Named | Verdict::Class);
+    let addable = |(_, effect): &(usize, &NamedEffect)| named && effect.not_addable.is_none();
+    let effects: Vec<(usize, &NamedEffect)> = finding.effects.iter().enumerate().filter(addable).collect();
+    let places: Vec<usize> = effects.iter().map(|(i, _)| *i).collect();
+    let model = if places.is_empty() {
+        given.model.clone()
+    } else {
+        // A search that began with effects finds what is missing beside them.
+        let of = (finding, given.sessions.as_slice());
+        rig_models::with(&given.model, &given.rig, of, &places, given.model.is_nominal())
+            .map_err(OfflineError::NotAdded)?
+    };
+    model.write(file, &given.rig)?;
+    Ok(effects.into_iter().map(|(_, effect)| name(&effect.id, &effect.site)).collect())
+}
+
+fn write_report(given: &Given, finding: &Finding, file: &Path) -> Result<(), OfflineError> {
+    let page = ReportContext {
+        date: jiff::Zoned::now().strftime("%-d %B %Y").to_string(),
+        model: crate::gaps::model_name(&given.model),
+        history: crate::gaps::history(&given.model),
+        screen_m: finding
+            .comparison
+            .kinds
+            .iter()
+            .any(|kind| kind.what == What::Touch)
+            .then(|| given.rig.touchscreen.corners().map(|corner| [corner.coords.x, corner.coords.y])),
+    };
+    let is_pdf = file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("pdf"));
+    let bytes = if is_pdf {
+        plumbline_report::pdf(finding, &page)?
+    } else {
+        plumbline_report::html(finding, &page).into_bytes()
+    };
+    std::fs::write(file, bytes).map_err(OfflineError::io(file))
 }
 
 /// Rows of all sessions, which must be of this robot.
@@ -140,17 +195,23 @@ pub(crate) fn measured(folders: &[PathBuf], rig: &Rig) -> Result<Measurements, O
 /// Looks for the gap of a model.
 pub(crate) fn search(
     measurements: &Measurements,
-    rig: &Rig,
     model: &RigModel,
     options: &Options,
     context: &dyn JobContext,
 ) -> Result<Finding, OfflineError> {
-    let _ = rig;
     Ok(find(&model.put_into(measurements.clone()), options, context)?)
 }
 
-/// Rows of all sessions, predicted by the robot of the first one or by a rig model.
-pub(crate) fn read(folders: &[PathBuf], rig_model: Option<&Path>) -> Result<Measurements, OfflineError> {
+/// All that a search is made on.
+struct Given {
+    sessions: Vec<Session>,
+    rig: Rig,
+    model: RigModel,
+    measurements: Measurements,
+}
+
+/// Reads all sessions; their robot is that of the first one, or of the rig model.
+fn read(folders: &[PathBuf], rig_model: Option<&Path>) -> Result<Given, OfflineError> {
     let sessions: Vec<(String, Session)> = folders
         .iter()
         .map(|folder| Ok((title_of(folder), Session::read(folder)?)))
@@ -158,29 +219,24 @@ pub(crate) fn read(folders: &[PathBuf], rig_model: Option<&Path>) -> Result<Meas
     let Some((first, folder)) = sessions.first().zip(folders.first()) else {
         return Err(plumbline_effects::MeasurementsError::NoSession.into());
     };
-    let own = session::rig_of(&first.1, folder)?;
+    let mut rig = session::rig_of(&first.1, folder)?;
     for ((title, other), folder) in sessions.iter().zip(folders).skip(1) {
-        same_rig(&own, &session::rig_of(other, folder)?, title)?;
+        same_rig(&rig, &session::rig_of(other, folder)?, title)?;
     }
-    let rig = match rig_model {
-        None => own,
-        Some(file) => match ModelFile::read(file, &own)? {
-            ModelFile::Rig(rig) => {
-                same_rig(&own, &rig, &file.display().to_string())?;
-                *rig
+    let mut model = RigModel::nominal(&rig);
+    if let Some(file) = rig_model {
+        match ModelFile::read(file, &rig)? {
+            ModelFile::Rig(other) => {
+                same_rig(&rig, &other, &file.display().to_string())?;
+                rig = *other;
             }
-            ModelFile::Placement(placement) => {
-                let mut rig = own;
-                rig.touchscreen = placement.screen;
-                rig
-            }
-            ModelFile::Effects(model) => {
-                let measurements = Measurements::of_sessions(&sessions, &own)?;
-                return Ok(model.put_into(measurements));
-            }
-        },
-    };
-    Ok(Measurements::of_sessions(&sessions, &rig)?)
+            ModelFile::Placement(placement) => rig.touchscreen = placement.screen,
+            ModelFile::Effects(effects) => model = *effects,
+        }
+    }
+    let measurements = model.put_into(Measurements::of_sessions(&sessions, &rig)?);
+    let sessions = sessions.into_iter().map(|(_, session)| session).collect();
+    Ok(Given { sessions, rig, model, measurements })
 }
 
 fn same_rig(first: &Rig, other: &Rig, whose: &str) -> Result<(), OfflineError> {
@@ -218,6 +274,7 @@ impl GapReport {
             warnings: finding.warnings.clone(),
             left_out: finding.left_out.len(),
             seconds: finding.seconds,
+            added: vec![],
             finding,
         }
     }

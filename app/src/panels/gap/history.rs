@@ -1,0 +1,173 @@
+//! Models so far with their gaps, and findings, any two of which can be seen side by side.
+
+use egui::{Button, RichText, ScrollArea, Ui, vec2};
+use plumbline_engine::GapCommand;
+use plumbline_engine::view::{FindingEntry, GapModelView};
+use plumbline_widgets::format::Quantity;
+use plumbline_widgets::intervals::{IntervalRow, Intervals, Level};
+use plumbline_widgets::parameter;
+use plumbline_widgets::theme::{self, Role, space};
+
+use super::{action_button, padded, words};
+use crate::panels::PanelContext;
+use crate::panels::models_clock as clock;
+use crate::window::GapAction;
+
+const ROW_HEIGHT: f32 = 26.0;
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    padded(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            let gap = cx.view.gap.clone();
+            model(ui, &gap.model);
+            ui.horizontal_wrapped(|ui| {
+                if gap.model.can_undo {
+                    action_button(ui, cx, GapAction::Undo, "Back to the model before");
+                }
+                if !gap.model.effects.is_empty() {
+                    action_button(ui, cx, GapAction::UseNominal, "Take all effects out");
+                }
+            });
+            ui.add_space(space::S);
+            steps(ui, &gap.model);
+            ui.add_space(space::S);
+            theme::group_heading(ui, "Findings");
+            if gap.findings.is_empty() {
+                ui.label(theme::weak(ui, "None yet. Every search is kept here with its numbers."));
+            }
+            for entry in gap.findings.iter() {
+                finding_row(ui, cx, entry);
+            }
+            side_by_side(ui, cx);
+        });
+    });
+}
+
+fn model(ui: &mut Ui, model: &GapModelView) {
+    theme::group_heading(ui, "Model in use");
+    ui.label(if model.effects.is_empty() {
+        "Nominal: the robot's description as it is.".to_owned()
+    } else {
+        format!("{}:", crate::window::capitalized(&model.name))
+    });
+    for effect in &model.effects {
+        let sizes: Vec<String> = effect
+            .parameters
+            .iter()
+            .map(|(name, value, _)| format!("{} {}", parameter::words(name), parameter::value(name, *value)))
+            .collect();
+        ui.label(format!("{}: {}", effect.title, sizes.join(", "))).on_hover_text(&effect.name);
+    }
+}
+
+/// The gap of each model on the data that it was found on.
+fn steps(ui: &mut Ui, model: &GapModelView) {
+    if model.history.is_empty() {
+        return;
+    }
+    theme::group_heading(ui, "Models so far");
+    let mut rows: Vec<IntervalRow> = vec![];
+    let mut floor = None;
+    let pixels = model.history.iter().any(|step| step.in_pixels);
+    let (quantity, factor) = if pixels { (Quantity::Pixels, 1.0) } else { (Quantity::Length, 1e-3) };
+    for step in &model.history {
+        let Some([before, after, noise]) = step.errors else { continue };
+        if rows.is_empty() {
+            rows.push(IntervalRow {
+                name: "Nominal".to_owned(),
+                note: String::new(),
+                mean: Some(before * factor),
+                interval: None,
+                role: Role::Difference,
+            });
+        }
+        floor = Some(noise * factor);
+        rows.push(IntervalRow {
+            name: clock(step.at),
+            note: if step.undone { "taken back".to_owned() } else { String::new() },
+            mean: Some(after * factor),
+            interval: None,
+            role: if step.undone { Role::Weak } else { Role::HeldOut },
+        });
+    }
+    let levels: Vec<Level<'_>> =
+        floor.map(|value| Level { name: "noise alone", value, role: Role::NoiseFloor }).into_iter().collect();
+    if rows.len() > 1 {
+        Intervals::new("Gap of the models so far", &rows, quantity).levels(&levels).show(ui);
+    }
+    for step in model.history.iter().rev() {
+        let undone = if step.undone { " (taken back)" } else { "" };
+        let text = format!("{} · {}{undone}", clock(step.at), step.title);
+        ui.label(theme::small(ui, text)).on_hover_text(step.sessions.join("\n"));
+    }
+}
+
+/// A finding: shown by a click, put beside by another.
+fn finding_row(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &FindingEntry) {
+    let gap = &cx.view.gap;
+    let is = |of: &Option<std::sync::Arc<plumbline_engine::view::ShownFinding>>| {
+        of.as_ref().is_some_and(|shown| shown.entry.id == entry.id)
+    };
+    let (shown, beside) = (is(&gap.shown), is(&gap.beside));
+    let what = match entry.named.as_slice() {
+        [] => words::verdict(entry.verdict).to_owned(),
+        [one] => one.clone(),
+        several => format!("{} effects", several.len()),
+    };
+    let text = format!("{} · {} · {what}", clock(entry.made), entry.model);
+    ui.horizontal(|ui| {
+        ui.set_height(ROW_HEIGHT);
+        let size = vec2((ui.available_width() - 84.0).max(80.0), ROW_HEIGHT);
+        let layout = egui::Layout::top_down_justified(egui::Align::Min);
+        let button = Button::selectable(shown, RichText::new(&text)).truncate();
+        let response = ui.allocate_ui_with_layout(size, layout, |ui| ui.add(button)).inner;
+        let help = format!("{}\n{}", words::verdict(entry.verdict), entry.sessions.join("\n"));
+        if response.on_hover_text(help).clicked() {
+            cx.outbox.send(GapCommand::Show { id: entry.id.clone() });
+        }
+        if shown {
+            return;
+        }
+        let beside_button = ui
+            .add(Button::selectable(beside, "Beside"))
+            .on_hover_text("Puts its numbers beside the shown ones");
+        if beside_button.clicked() {
+            let id = (!beside).then(|| entry.id.clone());
+            cx.outbox.send(GapCommand::Beside { id });
+        }
+    });
+}
+
+/// The numbers of two findings.
+fn side_by_side(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let gap = &cx.view.gap;
+    let (Some(shown), Some(beside)) = (&gap.shown, &gap.beside) else { return };
+    ui.add_space(space::S);
+    theme::group_heading(ui, "Side by side");
+    egui::Grid::new("side by side").num_columns(3).spacing([space::L, 2.0]).show(ui, |ui| {
+        ui.label("");
+        ui.label(theme::strong(ui, "shown"));
+        ui.label(theme::strong(ui, "the other"));
+        ui.end_row();
+        let of = |f: &dyn Fn(&plumbline_engine::view::ShownFinding) -> String| [f(shown), f(beside)];
+        let rows = [
+            ("model", of(&|s| s.entry.model.clone())),
+            ("sessions", of(&|s| s.entry.sessions.join(", "))),
+            ("verdict", of(&|s| words::verdict(s.finding.verdict).to_owned())),
+            ("before", of(&|s| words::error(&s.finding.shown, s.finding.shown.before))),
+            ("after", of(&|s| words::error(&s.finding.shown, s.finding.shown.after))),
+            ("noise alone", of(&|s| words::error(&s.finding.shown, s.finding.shown.floor))),
+            (
+                "unexplained, p",
+                of(&|s| plumbline_widgets::format::significant(s.finding.unexplained.p_value, 2)),
+            ),
+        ];
+        for (name, values) in rows {
+            ui.label(theme::weak(ui, name));
+            for value in values {
+                ui.label(value);
+            }
+            ui.end_row();
+        }
+    });
+}

@@ -1,0 +1,149 @@
+//! The gap between model and measurement, in the order compare, find, name, add, show.
+
+mod compare;
+mod history;
+mod inspector;
+mod map;
+mod names;
+mod next;
+mod shown;
+pub(crate) mod words;
+
+pub use inspector::show as show_inspector;
+pub use map::Errors as GapErrors;
+pub(crate) use names::add_label;
+pub(crate) use next::touch_label;
+
+use std::sync::Arc;
+
+use egui::{Button, Label, Response, RichText, Sense, Ui, vec2};
+use plumbline_engine::View;
+use plumbline_engine::view::{GapView, JobState, ShownFinding};
+use plumbline_widgets::empty::{EmptyState, Message};
+use plumbline_widgets::glyph::{self, Glyph};
+use plumbline_widgets::theme::{self, Role};
+
+use super::{PanelContext, padded};
+use crate::window::{Action, GapAction, Pane};
+
+/// How the gap is looked at: kept from frame to frame, never saved.
+#[derive(Debug, Default)]
+pub struct GapPanels {
+    /// Which errors the map shows.
+    pub errors: map::Errors,
+    /// The covariate that residuals are drawn against; `None`: the one that tells most.
+    pub covariate: Option<usize>,
+    /// Which part of the residual is drawn.
+    pub along: shown::Along,
+    /// How the candidates are sorted.
+    pub sort: names::Sort,
+    /// Effects of the shown finding that shall not be added, by place.
+    pub left_out: Vec<usize>,
+    /// The finding that `left_out` and `covariate` belong to.
+    of: String,
+    /// Whether the search ran in the last frame.
+    pub searching_seen: bool,
+    map: Option<(usize, Arc<map::Drawn>)>,
+    scatter: Option<(usize, Arc<shown::Points>)>,
+}
+
+/// Draws one of the panes of this step.
+pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
+    let id = cx.view.gap.shown.as_ref().map(|shown| shown.entry.id.clone()).unwrap_or_default();
+    if cx.state.gap.of != id {
+        cx.state.gap.of = id;
+        cx.state.gap.left_out.clear();
+        cx.state.gap.covariate = None;
+    }
+    match pane {
+        Pane::GapNames => names::show(ui, cx),
+        Pane::GapCandidates => names::show_candidates(ui, cx),
+        Pane::GapMap => map::show(ui, cx),
+        Pane::GapShown => shown::show(ui, cx),
+        Pane::GapNext => next::show(ui, cx),
+        Pane::GapHistory => history::show(ui, cx),
+        _ => compare::show(ui, cx),
+    }
+}
+
+/// How far the search is and what it does just now.
+fn searching(view: &View) -> Option<(f64, String)> {
+    let id = view.gap.searching?;
+    let job = view.jobs.iter().find(|job| job.id == id)?;
+    match &job.state {
+        JobState::Running { fraction, doing, .. } => Some((*fraction, doing.clone())),
+        _ => None,
+    }
+}
+
+/// The finding, or what stands in its place: not looked for yet, under way, failed.
+fn finding(ui: &mut Ui, cx: &mut PanelContext<'_>, what: &str) -> Option<Arc<ShownFinding>> {
+    let gap = &cx.view.gap;
+    if let Some(shown) = &gap.shown {
+        return Some(shown.clone());
+    }
+    if let Some((fraction, doing)) = searching(cx.view) {
+        let percent = plumbline_widgets::format::percent(fraction);
+        EmptyState::loading(&format!("Looking for the gap: {doing} ({percent}).")).show(ui);
+        return None;
+    }
+    if let Some(why) = &gap.failed {
+        let message = Message::new("The gap could not be looked for", why);
+        if EmptyState::failed(message.button("Try again")).show(ui) {
+            cx.outbox.act(Action::Gap(GapAction::Find));
+        }
+        return None;
+    }
+    let message = Message::new("Nothing was looked for yet", what);
+    let ready = GapAction::Find.refusal(cx.view).is_none();
+    let message = if ready { message.button("Find what is missing") } else { message };
+    if EmptyState::empty(message).show(ui) {
+        cx.outbox.act(Action::Gap(GapAction::Find));
+    }
+    None
+}
+
+/// That what is shown is old, or that a new search is under way.
+fn state(ui: &mut Ui, view: &View) {
+    if let Some((fraction, doing)) = searching(view) {
+        ui.horizontal(|ui| {
+            ui.spinner();
+            let percent = plumbline_widgets::format::percent(fraction);
+            ui.label(theme::weak(
+                ui,
+                format!("Looking again: {doing} ({percent}). Below is the finding before."),
+            ));
+        });
+    } else if let Some(why) = &view.gap.failed {
+        line(ui, Glyph::Cross, Role::Warning, why);
+    } else if let Some(why) = &view.gap.stale {
+        line(ui, Glyph::Clock, Role::Warning, why);
+    }
+}
+
+/// A sentence with its sign.
+fn line(ui: &mut Ui, sign: Glyph, role: Role, text: &str) {
+    let tokens = theme::tokens(ui);
+    ui.horizontal_top(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(18.0, 20.0), Sense::hover());
+        glyph::paint(ui.painter(), rect.center(), 14.0, sign, role.color(tokens));
+        let color = if role == Role::Warning { role.color(tokens) } else { tokens.text };
+        ui.add(Label::new(RichText::new(text).color(color)).wrap());
+    });
+}
+
+/// A button of one of the actions, with its reason where it cannot be pressed.
+fn action_button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: GapAction, text: &str) -> Response {
+    let why = action.refusal(cx.view);
+    let button = ui.add_enabled(why.is_none(), Button::new(text)).on_hover_text(action.label());
+    let button = button.on_disabled_hover_text(why.unwrap_or_default());
+    if button.clicked() {
+        cx.outbox.act(Action::Gap(action));
+    }
+    button
+}
+
+/// Whether the shown finding is about the sessions that are chosen now.
+pub(crate) fn is_of_choice(gap: &GapView) -> bool {
+    gap.shown.as_ref().is_some_and(|shown| shown.folders[..] == gap.chosen[..])
+}

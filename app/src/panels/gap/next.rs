@@ -1,0 +1,83 @@
+//! What to measure next.
+
+use egui::{ScrollArea, Ui};
+use plumbline_engine::gap::Verdict;
+use plumbline_widgets::empty::{EmptyState, Message};
+use plumbline_widgets::format;
+use plumbline_widgets::probability::{ShareRow, probability_bar, share_rows};
+use plumbline_widgets::theme::{self, Role, space};
+
+use super::{action_button, finding, padded};
+use crate::panels::PanelContext;
+use crate::window::GapAction;
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let what = "A finding says which experiment would tell most.";
+    let Some(shown) = finding(ui, cx, what) else { return };
+    let Some(next) = &shown.finding.next else {
+        let text = match shown.finding.verdict {
+            Verdict::NoGap => "Model and measurement agree; there is nothing to tell apart.",
+            _ => "Nothing is left to tell apart with the experiments of the menu.",
+        };
+        EmptyState::empty(Message::new("No experiment is needed", text)).show(ui);
+        return;
+    };
+    padded(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.label(theme::strong(ui, crate::window::capitalized(&next.what)));
+            ui.label(&next.why);
+            let minutes = format::significant(next.minutes, 2);
+            ui.label(theme::weak(
+                ui,
+                format!("{}, about {minutes} min.", format::count(next.count, "measurement")),
+            ));
+            ui.add_space(space::XS);
+            ui.label(theme::small(ui, "Expected probability of the right name after it"));
+            probability_bar(ui, "After the experiment", next.expected_probability, Role::Predicted);
+            ui.add_space(space::S);
+            if crate::window::gap_plan(cx.view).is_some() {
+                action_button(ui, cx, GapAction::NextExperiment, &touch_label(cx.view));
+                ui.label(theme::small(
+                    ui,
+                    "Opens step 3, Touch, with this plan. Nothing moves before you start it there.",
+                ));
+            } else {
+                ui.label(theme::small(
+                    ui,
+                    "This experiment is not touched by the wizard: do it by hand, then open its session.",
+                ));
+            }
+            if !next.others.is_empty() {
+                theme::group_heading(ui, "Others");
+                let rows: Vec<ShareRow> = next
+                    .others
+                    .iter()
+                    .map(|(what, probability, minutes)| ShareRow {
+                        name: what.clone(),
+                        share: *probability,
+                        note: format!("{} min", format::significant(*minutes, 2)),
+                        role: Role::Weak,
+                    })
+                    .collect();
+                share_rows(ui, &rows);
+            }
+        });
+    });
+}
+
+/// "Touch 40 targets: repeat with a 250 g weight".
+pub(crate) fn touch_label(view: &plumbline_engine::View) -> String {
+    use plumbline_engine::gap::finding::Experiment;
+    let next = view.gap.finding().and_then(|finding| finding.next.as_ref());
+    let Some(next) = next else { return "Plan the next experiment".to_owned() };
+    let how = match next.kind {
+        Experiment::OtherSide => " from the other side",
+        Experiment::Weight => " with a weight",
+        Experiment::RaisedScreen => " on a raised screen",
+        Experiment::OtherPosture => " with another posture of the elbow",
+        Experiment::Slower => " more slowly",
+        Experiment::Repeats => " again",
+        _ => "",
+    };
+    format!("Touch {}{how}", format::count(next.count, "target"))
+}

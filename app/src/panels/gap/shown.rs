@@ -1,0 +1,193 @@
+//! The gap before and after on rows that were not used, and what gave the effects away.
+
+use std::sync::Arc;
+
+use egui::{ComboBox, ScrollArea, Ui, vec2};
+use plumbline_engine::gap::finding::{Finding, Shown};
+use plumbline_engine::view::ShownFinding;
+use plumbline_widgets::buttons::choice;
+use plumbline_widgets::format::{self, Quantity};
+use plumbline_widgets::intervals::{IntervalRow, Intervals, Level};
+use plumbline_widgets::scatter::{Scatter, ScatterSeries};
+use plumbline_widgets::theme::{self, Role, space};
+
+use super::{action_button, finding, padded, words};
+use crate::panels::PanelContext;
+use crate::window::GapAction;
+
+/// Which part of the residual is drawn against a covariate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Along {
+    /// Forward, away from the robot.
+    #[default]
+    X,
+    /// To the left.
+    Y,
+    /// Up.
+    Z,
+}
+
+/// Points of the chart, made once.
+#[derive(Debug)]
+pub struct Points {
+    series: [ScatterSeries; 2],
+    name: String,
+}
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let what = "The gap is then judged on rows that were not used, before and after.";
+    let Some(shown) = finding(ui, cx, what) else { return };
+    padded(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            bars(ui, cx, &shown);
+            ui.add_space(space::S);
+            against(ui, cx, &shown);
+            ui.add_space(space::S);
+            ui.horizontal_wrapped(|ui| {
+                action_button(ui, cx, GapAction::ReportHtml, "Report (HTML)…");
+                action_button(ui, cx, GapAction::ReportPdf, "Report (PDF)…");
+            });
+        });
+    });
+}
+
+/// Before, after, unseen, with the floor.
+fn bars(ui: &mut Ui, cx: &PanelContext<'_>, shown: &ShownFinding) {
+    let held_out = &shown.finding.shown;
+    if held_out.rows == 0 {
+        ui.label(theme::weak(ui, "This finding was not judged on held-out rows."));
+        return;
+    }
+    if let Some(closed) = words::closure(held_out) {
+        ui.label(theme::strong(ui, closed));
+    } else {
+        ui.label(theme::strong(ui, "There is nothing to close: before is what noise alone would leave."));
+    }
+    let (quantity, factor) = words::held_out(held_out.unit);
+    let row = |name: &str, note: &str, value: f64, interval: Option<[f64; 2]>, role| IntervalRow {
+        name: name.to_owned(),
+        note: note.to_owned(),
+        mean: Some(value * factor),
+        interval: interval.map(|ends| ends.map(|end| end * factor)),
+        role,
+    };
+    let mut rows = vec![
+        row("Before", "", held_out.before, None, Role::Difference),
+        row("After", "", held_out.after, after_range(held_out), Role::HeldOut),
+    ];
+    if let Some(unseen) = &held_out.unseen {
+        rows.push(row("Before", "unseen", unseen.before, None, Role::Difference));
+        rows.push(row("After", "unseen", unseen.after, None, Role::HeldOut));
+    }
+    if let Some(beside) = &cx.view.gap.beside
+        && beside.finding.shown.unit == held_out.unit
+        && beside.finding.shown.rows > 0
+    {
+        let other = &beside.finding.shown;
+        rows.push(row("Before", "the other", other.before, None, Role::Weak));
+        rows.push(row("After", "the other", other.after, after_range(other), Role::Weak));
+    }
+    let levels = [Level { name: "noise alone", value: held_out.floor * factor, role: Role::NoiseFloor }];
+    Intervals::new("Gap on held-out rows", &rows, quantity).levels(&levels).show(ui);
+    let mut said = format!(
+        "Mean error of {} that were held out ({}). Worst tenth: {} before, {} after. {} of the coordinates lie within their predicted 95 %.",
+        format::count(held_out.rows, "row"),
+        held_out.blocks,
+        words::error(held_out, held_out.worst_tenth[0]),
+        words::error(held_out, held_out.worst_tenth[1]),
+        format::percent(held_out.inside_95),
+    );
+    if let Some(unseen) = &held_out.unseen {
+        said.push_str(&format!(
+            " Unseen: {}, {} held out as a whole; noise alone would leave {}.",
+            unseen.what,
+            format::count(unseen.rows, "row"),
+            words::error(held_out, unseen.floor)
+        ));
+    }
+    ui.label(theme::small(ui, said));
+}
+
+/// The interval of the closure as one of what is left.
+fn after_range(shown: &Shown) -> Option<[f64; 2]> {
+    let [low, high] = shown.closure_range?;
+    let left = |closure: f64| shown.before - closure * (shown.before - shown.floor);
+    let (a, b) = (left(high), left(low));
+    (a.is_finite() && b.is_finite()).then_some([a.max(0.0), b])
+}
+
+/// Residuals against what gave the effects away, or anything else.
+fn against(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &Arc<ShownFinding>) {
+    let finding = &shown.finding;
+    let covariates = &finding.shown.covariates;
+    if covariates.is_empty() {
+        return;
+    }
+    let told = finding.shown.telling.first().copied().unwrap_or(0);
+    let mut chosen = cx.state.gap.covariate.unwrap_or(told).min(covariates.len() - 1);
+    ui.horizontal(|ui| {
+        ui.label(theme::weak(ui, "Against"));
+        let name = |i: usize| covariates.get(i).map_or_else(String::new, |(name, _)| name.clone());
+        let combo = ComboBox::from_id_salt("covariate").selected_text(name(chosen)).width(190.0);
+        let response = combo.show_ui(ui, |ui| {
+            for i in order(finding) {
+                let telling = finding.shown.telling.contains(&i);
+                let text = if telling { format!("{} · gave it away", name(i)) } else { name(i) };
+                ui.selectable_value(&mut chosen, i, text);
+            }
+        });
+        response
+            .response
+            .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Residuals against"));
+        let options = [(Along::X, "Forward"), (Along::Y, "Left"), (Along::Z, "Up")];
+        choice(ui, "Part of the residual", &mut cx.state.gap.along, &options);
+    });
+    cx.state.gap.covariate = Some(chosen);
+    let key =
+        (Arc::as_ptr(shown) as usize).wrapping_mul(31).wrapping_add(chosen * 4 + cx.state.gap.along as usize);
+    let points = match &cx.state.gap.scatter {
+        Some((of, points)) if *of == key => points.clone(),
+        _ => {
+            let points = Arc::new(points(finding, chosen, cx.state.gap.along as usize));
+            cx.state.gap.scatter = Some((key, points.clone()));
+            points
+        }
+    };
+    Scatter::new("Residual", &points.name, &points.series, Quantity::Length)
+        .size(vec2(ui.available_width(), 190.0))
+        .show(ui);
+}
+
+/// Those that gave it away first.
+fn order(finding: &Finding) -> Vec<usize> {
+    let telling = finding.shown.telling.iter().copied();
+    let others = (0..finding.shown.covariates.len()).filter(|i| !finding.shown.telling.contains(i));
+    telling.chain(others).collect()
+}
+
+/// Angles are drawn in degrees, everything else as it is.
+fn points(finding: &Finding, covariate: usize, axis: usize) -> Points {
+    let (name, unit) = &finding.shown.covariates[covariate];
+    let (factor, unit) = match unit.as_str() {
+        "rad" => (1f64.to_degrees(), "°"),
+        "m" => (1e3, "mm"),
+        "kg" => (1e3, "g"),
+        other => (1.0, other),
+    };
+    let kept = || finding.comparison.residuals.iter().filter(|row| !row.outlier);
+    let series = |name, role, of: &dyn Fn(&plumbline_engine::gap::finding::Residual) -> [f64; 3]| {
+        let point = |row| {
+            let row: &plumbline_engine::gap::finding::Residual = row;
+            let across = row.covariates.get(covariate).copied().flatten()?;
+            Some([across * factor, of(row)[axis]])
+        };
+        ScatterSeries { name, points: kept().filter_map(point).collect(), role }
+    };
+    Points {
+        series: [
+            series("before", Role::Difference, &|row| row.before_m),
+            series("after", Role::HeldOut, &|row| row.after_m),
+        ],
+        name: if unit.is_empty() { name.clone() } else { format!("{name}, {unit}") },
+    }
+}

@@ -1,0 +1,133 @@
+//! What can be asked for by name of the gap.
+
+use std::borrow::Cow;
+
+use plumbline_engine::{Command, GapCommand, GapModel, TouchCommand, View};
+
+use super::touch_actions::{Preset, TouchAction, usual_area};
+
+/// Of the gap between model and measurement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GapAction {
+    /// Looks anew which sessions there are.
+    ListSessions,
+    /// Chooses the folder of a session.
+    OpenSession,
+    /// Compares with the robot's description alone.
+    CompareNominal,
+    /// Compares with the model in use.
+    CompareInUse,
+    /// Looks for the gap.
+    Find,
+    /// Adds all effects of the shown finding that can be added.
+    Add,
+    /// Takes over the next experiment as a plan of touches.
+    NextExperiment,
+    /// Writes a page about the finding as HTML (asks where to).
+    ReportHtml,
+    /// The same as PDF.
+    ReportPdf,
+    /// Deletes the shown finding.
+    Delete,
+    /// Back to the model before.
+    Undo,
+    /// Takes all effects out of the model.
+    UseNominal,
+}
+
+impl GapAction {
+    /// All of them, in the palette's order.
+    pub const ALL: [Self; 12] = [
+        Self::ListSessions,
+        Self::OpenSession,
+        Self::CompareInUse,
+        Self::CompareNominal,
+        Self::Find,
+        Self::Add,
+        Self::NextExperiment,
+        Self::ReportHtml,
+        Self::ReportPdf,
+        Self::Delete,
+        Self::Undo,
+        Self::UseNominal,
+    ];
+
+    /// What it is called everywhere.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::ListSessions => "Look for sessions to compare",
+            Self::OpenSession => "Open a session to compare…",
+            Self::CompareNominal => "Compare with the nominal model",
+            Self::CompareInUse => "Compare with the model in use",
+            Self::Find => "Find what is missing",
+            Self::Add => "Add the found effects to the model",
+            Self::NextExperiment => "Plan the next experiment",
+            Self::ReportHtml => "Report of the gap (HTML)…",
+            Self::ReportPdf => "Report of the gap (PDF)…",
+            Self::Delete => "Delete the shown finding",
+            Self::Undo => "Go back to the robot model before",
+            Self::UseNominal => "Take all effects out of the robot model",
+        }
+    }
+
+    /// Why it cannot be done now.
+    pub fn refusal(self, view: &View) -> Option<Cow<'static, str>> {
+        let gap = &view.gap;
+        let when = |possible: bool, why| (!possible).then_some(Cow::Borrowed(why));
+        match self {
+            Self::ListSessions | Self::OpenSession | Self::CompareNominal | Self::CompareInUse => None,
+            Self::Find if gap.searching.is_some() => Some("the gap is being looked for".into()),
+            Self::Find => when(!gap.chosen.is_empty(), "no session is chosen"),
+            Self::Add => match &gap.stale {
+                Some(why) => Some(why.clone().into()),
+                None => when(!gap.addable().is_empty(), "nothing was found that could be added"),
+            },
+            Self::NextExperiment if plan(view).is_none() => Some("no experiment is waiting".into()),
+            Self::NextExperiment => TouchAction::Plan(Preset::Check).refusal(view),
+            Self::ReportHtml | Self::ReportPdf | Self::Delete => {
+                when(gap.shown.is_some(), "nothing was looked for yet")
+            }
+            Self::Undo => when(gap.model.can_undo, "there was no other model before"),
+            Self::UseNominal => when(!gap.model.effects.is_empty(), "the model has no effects"),
+        }
+    }
+
+    /// The command that it stands for; `None` where the window has to ask first.
+    pub fn command(self, view: &View) -> Option<Command> {
+        Some(
+            match self {
+                Self::ListSessions => GapCommand::ListSessions,
+                Self::CompareNominal => GapCommand::CompareWith(GapModel::Nominal),
+                Self::CompareInUse => GapCommand::CompareWith(GapModel::InUse),
+                Self::Find => GapCommand::Find { seed: 1 },
+                Self::Add => GapCommand::Add { effects: view.gap.addable() },
+                Self::Delete => GapCommand::Delete { id: view.gap.shown.as_ref()?.entry.id.clone() },
+                Self::Undo => GapCommand::Undo,
+                Self::UseNominal => GapCommand::UseNominal,
+                Self::OpenSession | Self::NextExperiment | Self::ReportHtml | Self::ReportPdf => return None,
+            }
+            .into(),
+        )
+    }
+}
+
+/// The next experiment as a command to the touch step.
+pub(crate) fn plan(view: &View) -> Option<Command> {
+    let next = view.gap.finding()?.next.as_ref()?;
+    let plan = plumbline_engine::gap::plan_for(next, usual_area(view)?)?;
+    Some(TouchCommand::Plan(plan).into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_anything_found_the_reasons_are_said() {
+        let view = View::default();
+        assert_eq!(GapAction::Find.refusal(&view).as_deref(), Some("no session is chosen"));
+        assert_eq!(GapAction::Add.refusal(&view).as_deref(), Some("nothing was found that could be added"));
+        assert_eq!(GapAction::NextExperiment.refusal(&view).as_deref(), Some("no experiment is waiting"));
+        assert_eq!(GapAction::OpenSession.refusal(&view), None);
+    }
+}

@@ -1,0 +1,82 @@
+//! What to do next with the gap: one button, named by what it does.
+
+use plumbline_engine::View;
+use plumbline_engine::gap::Verdict;
+use plumbline_engine::view::ShownFinding;
+use plumbline_widgets::format;
+
+use super::{Guidance, say};
+use crate::panels::{gap_add_label, gap_is_of_choice, gap_touch_label};
+use crate::window::actions::Action;
+use crate::window::gap_actions::GapAction;
+use crate::window::steps::Screen;
+
+/// Below this the experiment goes before adding.
+const SURE: f64 = 0.8;
+
+pub(super) fn gap(view: &View) -> Guidance {
+    let gap = &view.gap;
+    if gap.searching.is_some() {
+        return say("The gap is being looked for; nothing changes before you add what is found.");
+    }
+    if let Some(why) = &gap.failed {
+        let guidance = say(why.clone()).warn();
+        return match gap.chosen.is_empty() {
+            true => guidance.then("Go to Touch", Action::Go(Screen::Touch)),
+            false => guidance.then("Find what is missing", Action::Gap(GapAction::Find)),
+        };
+    }
+    if gap.chosen.is_empty() {
+        return say("The gap is found in sessions. Touch the screen first (step 3), or open one.")
+            .then("Go to Touch", Action::Go(Screen::Touch));
+    }
+    if let Some(why) = &gap.stale {
+        return say(why.clone()).warn().then("Find what is missing", Action::Gap(GapAction::Find));
+    }
+    match &gap.shown {
+        Some(shown) if gap_is_of_choice(gap) => found(view, shown),
+        _ => {
+            let sessions = match gap.chosen.len() {
+                1 => "the chosen session".to_owned(),
+                n => format!("{n} sessions"),
+            };
+            say(format!(
+                "Next: hold {sessions} against the robot's model ({}). Nothing moves.",
+                gap.model.name
+            ))
+            .then("Find what is missing", Action::Gap(GapAction::Find))
+        }
+    }
+}
+
+fn found(view: &View, shown: &ShownFinding) -> Guidance {
+    let finding = &shown.finding;
+    let guidance = say(finding.sentence.clone());
+    let addable = view.gap.addable();
+    let experiment = GapAction::NextExperiment.refusal(view).is_none();
+    let unsure = finding.effects.iter().any(|effect| effect.probability < SURE);
+    let touch =
+        |guidance: Guidance| guidance.then(gap_touch_label(view), Action::Gap(GapAction::NextExperiment));
+    match finding.verdict {
+        Verdict::NoGap => guidance,
+        Verdict::NotInLibrary if experiment => touch(guidance.warn()),
+        Verdict::NotInLibrary => guidance.warn(),
+        Verdict::Class if unsure && experiment && !addable.is_empty() => touch(guidance),
+        _ if !addable.is_empty() => guidance.then(gap_add_label(view, &addable), Action::Gap(GapAction::Add)),
+        _ if shown.added.iter().any(|added| *added) => added(view, shown, experiment),
+        _ if experiment => touch(guidance),
+        _ => guidance,
+    }
+}
+
+/// What was found is in the model.
+fn added(view: &View, shown: &ShownFinding, experiment: bool) -> Guidance {
+    let closed = shown.finding.shown.closure.map_or_else(String::new, |closure| {
+        format!(" On held-out rows {} of the gap is closed.", format::percent(closure))
+    });
+    let guidance = say(format!("The model in use is {}.{closed}", view.gap.model.name));
+    if experiment {
+        return guidance.then(gap_touch_label(view), Action::Gap(GapAction::NextExperiment));
+    }
+    guidance.then("Find what is left", Action::Gap(GapAction::Find))
+}

@@ -1,0 +1,199 @@
+//! The gap: every state is drawn, with one button named by what it does, and every button asks for
+//! what it says.
+
+use egui_kittest::Harness;
+use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
+use plumbline_engine::report::sample;
+use plumbline_engine::{Command, GapCommand, GapModel, View};
+
+use crate::fake::{Fake, click, says, shows};
+use crate::made_up_gap::{added, failed, found, nothing, recorded, searching, stale, with};
+
+fn on_gap() -> WindowSettings {
+    WindowSettings { screen: Screen::Gap, ..WindowSettings::default() }
+}
+
+const TALL: [f32; 2] = [1440.0, 1700.0];
+
+fn asked(fake: &Fake) -> Vec<GapCommand> {
+    let only = |command| if let Command::Gap(command) = command { Some(command) } else { None };
+    fake.take_sent().into_iter().filter_map(only).collect()
+}
+
+fn window_of(view: View) -> (Fake, Harness<'static, PlumblineWindow>) {
+    let fake = Fake::over(view);
+    let window = fake.window_of_size(on_gap(), TALL);
+    (fake, window)
+}
+
+/// Presses the one button of the step, which has this label, from the keyboard.
+fn press_next(window: &mut Harness<'_, PlumblineWindow>, label: &str) {
+    assert!(shows(window, label), "nothing is called {label:?}");
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Enter);
+    window.run_steps(3);
+}
+
+#[test]
+fn without_sessions_it_leads_to_touching() {
+    let (_, mut window) = window_of(with(nothing()));
+    assert!(says(&window, "Touch the screen first (step 3)"));
+    press_next(&mut window, "Go to Touch");
+    assert!(shows(&window, "Plan"), "the tiles of Touch are open");
+}
+
+#[test]
+fn what_was_touched_is_compared_by_one_button() {
+    let (fake, mut window) = window_of(with(recorded()));
+    press_next(&mut window, "Find what is missing");
+    assert_eq!(asked(&fake), [GapCommand::Find { seed: 1 }]);
+}
+
+#[test]
+fn sessions_are_chosen_together_and_with_a_model() {
+    let view = recorded();
+    let (fake, mut window) = window_of(with(view.clone()));
+    click(&mut window, "Compare 2026-09-12T15-05-00_touch");
+    let both = vec![view.sessions[0].folder.clone(), view.sessions[1].folder.clone()];
+    assert_eq!(asked(&fake), [GapCommand::Choose { sessions: both }]);
+    click(&mut window, "Nominal");
+    assert_eq!(asked(&fake), [GapCommand::CompareWith(GapModel::Nominal)]);
+}
+
+#[test]
+fn a_search_under_way_says_how_far_it_is() {
+    let (_, mut window) = window_of(searching());
+    click(&mut window, "Name and add");
+    assert!(says(&window, "held-out fold 3 of 5"));
+    assert!(!shows(&window, "Find what is missing"), "one search at a time");
+}
+
+#[test]
+fn a_search_that_failed_says_why_and_can_be_tried_again() {
+    let (fake, mut window) = window_of(with(failed()));
+    assert!(says(&window, "7 rows are too few"));
+    click(&mut window, "Try again");
+    assert_eq!(asked(&fake), [GapCommand::Find { seed: 1 }]);
+}
+
+#[test]
+fn named_effects_are_sized_and_added() {
+    let (fake, mut window) = window_of(with(found(sample::named())));
+    click(&mut window, "Name and add");
+    assert!(says(&window, "1.78°") && says(&window, "1.60 to 1.95°"));
+    assert!(says(&window, "Elbow: zero position off: 97.0 %"));
+    press_next(&mut window, "Add 2 effects to the model");
+    assert_eq!(asked(&fake), [GapCommand::Add { effects: vec![0, 1] }]);
+}
+
+#[test]
+fn an_effect_can_be_left_out() {
+    let (fake, mut window) = window_of(with(found(sample::named())));
+    click(&mut window, "Name and add");
+    click(&mut window, "Shoulder, forward: bracket gives way under load");
+    click(&mut window, "Add joint zero of the elbow to the model");
+    assert_eq!(asked(&fake), [GapCommand::Add { effects: vec![0] }]);
+}
+
+#[test]
+fn what_cannot_be_told_apart_is_listed_with_what_tells_it_apart() {
+    let (_, mut window) = window_of(with(found(sample::class())));
+    click(&mut window, "Name and add");
+    assert!(says(&window, "Found, but not one name"));
+    assert!(says(&window, "One of 2 names that these data cannot tell apart"));
+    assert!(says(&window, "To tell them apart: repeat ten poses with a 250 g weight"));
+    click(&mut window, "Next experiment");
+    assert!(says(&window, "A bracket gives way more under the weight"));
+}
+
+#[test]
+fn what_is_not_in_the_library_has_no_name_and_cannot_be_added() {
+    let (_, mut window) = window_of(with(found(sample::not_in_library())));
+    click(&mut window, "Name and add");
+    assert!(says(&window, "Not one of the known effects"));
+    assert!(says(&window, "it is not a name, and it cannot be added"));
+    assert!(!says(&window, "to the model"), "there is nothing to add");
+}
+
+#[test]
+fn no_gap_is_said_and_nothing_is_to_be_done() {
+    let (_, mut window) = window_of(with(found(sample::no_gap())));
+    assert!(says(&window, "No: model and measurement agree within the noise."));
+    click(&mut window, "Name and add");
+    assert!(shows(&window, "No gap"));
+}
+
+#[test]
+fn a_stale_finding_cannot_be_added() {
+    let (fake, mut window) = window_of(with(stale()));
+    assert!(says(&window, "changed or is gone since this was found"));
+    click(&mut window, "Name and add");
+    assert!(!says(&window, "effects to the model"));
+    press_next(&mut window, "Find what is missing");
+    assert_eq!(asked(&fake), [GapCommand::Find { seed: 1 }]);
+}
+
+#[test]
+fn what_was_added_is_in_the_top_line_and_can_be_taken_back() {
+    let (fake, mut window) = window_of(with(added()));
+    assert!(says(&window, "nominal + 2 effects"));
+    press_next(&mut window, "Find what is left");
+    assert_eq!(asked(&fake), [GapCommand::Find { seed: 1 }]);
+    click(&mut window, "History");
+    assert!(shows(&window, "Side by side"));
+    click(&mut window, "Back to the model before");
+    assert_eq!(asked(&fake), [GapCommand::Undo]);
+}
+
+#[test]
+fn every_state_is_drawn_at_every_size_in_both_themes() {
+    let states = [nothing(), recorded(), failed(), stale(), added()];
+    let findings =
+        [sample::named(), sample::class(), sample::not_in_library(), sample::no_gap(), sample::crowded()];
+    let views = states.into_iter().chain(findings.into_iter().map(found)).map(with).chain([searching()]);
+    for view in views {
+        for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
+            for size in [[960.0, 600.0], [3840.0, 2160.0]] {
+                let fake = Fake::over(view.clone());
+                let window = fake.window_of_size(WindowSettings { theme, ..on_gap() }, size);
+                assert!(shows(&window, "STOP"));
+            }
+        }
+    }
+}
+
+/// Pictures of all states, to be looked at: `PLUMBLINE_WINDOW_PICTURES=folder`.
+#[test]
+fn pictures_of_the_states() {
+    let Some(folder) = std::env::var_os("PLUMBLINE_WINDOW_PICTURES").map(std::path::PathBuf::from) else {
+        println!("skipped: set PLUMBLINE_WINDOW_PICTURES to a folder");
+        return;
+    };
+    let states = [
+        ("recorded", with(recorded()), None),
+        ("searching", searching(), Some("Name and add")),
+        ("failed", with(failed()), Some("Name and add")),
+        ("compare", with(found(sample::named())), None),
+        ("named", with(found(sample::named())), Some("Name and add")),
+        ("candidates", with(found(sample::named())), Some("Candidates")),
+        ("class", with(found(sample::class())), Some("Name and add")),
+        ("not-in-library", with(found(sample::not_in_library())), Some("Name and add")),
+        ("no-gap", with(found(sample::no_gap())), Some("Name and add")),
+        ("crowded", with(found(sample::crowded())), Some("Name and add")),
+        ("next", with(found(sample::class())), Some("Next experiment")),
+        ("stale", with(stale()), Some("Name and add")),
+        ("history", with(added()), Some("History")),
+    ];
+    for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
+        for (name, view, tab) in &states {
+            let fake = Fake::over(view.clone());
+            let mut window = fake.window_with(WindowSettings { theme, ..on_gap() }, [1440.0, 900.0], true);
+            if let Some(tab) = tab {
+                click(&mut window, tab);
+            }
+            window.run_steps(2);
+            let image = window.render().expect("the test renderer draws");
+            let file = format!("gap {name} {theme:?}.png").to_lowercase().replace(' ', "-");
+            image.save(folder.join(file)).expect("the folder can be written");
+        }
+    }
+}
