@@ -23,7 +23,7 @@ mod judge;
 use judge::AnyError;
 
 /// Cases are made anew when the physics changes.
-const PHYSICS: &str = "v3";
+const PHYSICS: &str = "v4";
 const THREADS: usize = 2;
 
 struct Arguments {

@@ -154,6 +154,10 @@ pub fn make_or_smaller(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) ->
             Err(BlindError::TooLarge { .. }) if smaller(recipe.size_sigmas).is_some() => {
                 recipe.size_sigmas = smaller(recipe.size_sigmas).unwrap_or(recipe.size_sigmas);
             }
+            // Hardly to be seen at all: another kind.
+            Err(BlindError::TooLarge { .. }) if recipe.kind.is_some() => {
+                recipe = Recipe { kind: None, seed: recipe.seed.wrapping_add(1), ..recipe };
+            }
             made => return made,
         }
     }
@@ -307,6 +311,10 @@ impl Maker<'_> {
         }
         let leans = |kind: Kind| matches!(kind, Kind::TorsoLean | Kind::OtherArm);
         if leans(kind) && taken.iter().any(|s| leans(s.kind)) {
+            return None;
+        }
+        let gives = |kind: Kind| matches!(kind, Kind::JointSag | Kind::SoftWhenWarm);
+        if gives(kind) && taken.iter().any(|s| s.joint == joint && gives(s.kind)) {
             return None;
         }
         // One cable, one drive of an encoder, one play per joint.
