@@ -33,7 +33,7 @@ const ONE_NAME: f64 = 0.8;
 const VETO_P: f64 = 1e-4;
 const VETO_SIZE: f64 = 0.45;
 /// A gap of this size (floors) that gets no name is unexplained.
-const NO_DIRT: f64 = 0.6;
+const NO_DIRT: f64 = 0.4;
 /// Cells off by this, dirt, are no lack of fit.
 const TOLERATED_CELL: f64 = 0.2;
 
