@@ -179,11 +179,14 @@ impl AddDiagonal for DMatrix<f64> {
     }
 }
 
+/// 1 + A of a set, (1 + A)⁻¹A with all columns, and the means of its parameters.
+type Solved = (Cholesky<f64, Dyn>, DMatrix<f64>, DVector<f64>);
+
 /// A field given that some blocks are present.
 pub(super) struct Given<'a> {
     field: &'a Field,
     columns: Vec<usize>,
-    solved: Option<(Cholesky<f64, Dyn>, DMatrix<f64>, DVector<f64>)>,
+    solved: Option<Solved>,
     /// Evidence of the set.
     pub log_evidence: f64,
 }
