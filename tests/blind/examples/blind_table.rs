@@ -23,7 +23,7 @@ mod judge;
 use judge::AnyError;
 
 /// Cases are made anew when the physics changes.
-const PHYSICS: &str = "v4";
+const PHYSICS: &str = "v5";
 const THREADS: usize = 2;
 
 struct Arguments {

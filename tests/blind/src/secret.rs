@@ -275,7 +275,8 @@ impl Secret {
             Kind::JointScale => one("scale"),
             Kind::JointEccentricity => {
                 // The reading runs ahead of the joint by a vector sum, see `reading`.
-                many(&["amplitude_rad", "phase_rad"], &[amount, (-b).atan2(a)])
+                let sign = amount.signum();
+                many(&["amplitude_rad", "phase_rad"], &[amount.abs(), (-b * sign).atan2(a * sign)])
             }
             Kind::Backlash | Kind::GravityBacklash => one("width_rad"),
             Kind::JointSag | Kind::SidewaysGive => one("compliance_rad_per_nm"),
@@ -291,7 +292,8 @@ impl Secret {
             Kind::ScreenScale => many(&["scale_u", "scale_v"], &[a * amount, b * amount]),
             Kind::ScreenBow => many(&["bow_u_per_m", "bow_v_per_m"], &[0.0, -amount]),
             Kind::ScreenBumped => {
-                many(&["dx_m", "dy_m", "yaw_rad"], &[a * amount, b * amount, c * amount * 8.0])
+                // Axes of the robot: the screen's x (along u) is its −y, the screen's y its x.
+                many(&["dx_m", "dy_m", "yaw_rad"], &[b * amount, -a * amount, c * amount * 8.0])
             }
             Kind::SlippedHorn => one("step_rad"),
             Kind::EarlyLog => one("early_secs"),

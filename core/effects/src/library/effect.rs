@@ -199,10 +199,8 @@ fn of_eyes(kind: Kind, eyes: &Eyes) -> Vec<Effect> {
 /// together.
 fn every(kind: Kind, whose: &str, single: &[Effect]) -> Option<Effect> {
     let at_once = matches!(kind, Kind::JointZero | Kind::AxisSkew | Kind::LinkLength);
-    (at_once && (2..=MOST_MEMBERS).contains(&single.len())).then(|| Effect {
-        members: single.to_vec(),
-        ..Effect::new(kind, "", whose, None)
-    })
+    (at_once && (2..=MOST_MEMBERS).contains(&single.len()))
+        .then(|| Effect { members: single.to_vec(), ..Effect::new(kind, "", whose, None) })
 }
 
 /// Links between the joints of an arm; the way to the tip belongs to the tip's offset.

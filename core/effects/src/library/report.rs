@@ -65,10 +65,12 @@ impl Effect {
         for member in &self.members {
             let count = member.parameters().len();
             let own = covariance.view((at, at), (count, count)).clone_owned();
-            all.extend(member.report(&values[at..at + count], &own).into_iter().map(|one| Reported {
-                name: format!("{}_{}", member.site, one.name),
-                ..one
-            }));
+            all.extend(
+                member
+                    .report(&values[at..at + count], &own)
+                    .into_iter()
+                    .map(|one| Reported { name: format!("{}_{}", member.site, one.name), ..one }),
+            );
             at += count;
         }
         all

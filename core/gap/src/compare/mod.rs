@@ -2,6 +2,7 @@
 //! than noise.
 
 mod displacement;
+mod drift;
 mod frames;
 mod lack_of_fit;
 mod neighbors;
@@ -108,7 +109,12 @@ pub(crate) fn compare(
     warn_of_noise(&noise.floor, &mut warnings);
     let covariates = Covariates::of(measurements);
     context.report(0.5, "testing for a gap");
-    let misfit = lack_of_fit::misfit(measurements, &residuals, &noise, &assumed, &covariates, seed, context)?;
+    let mut misfit =
+        lack_of_fit::misfit(measurements, &residuals, &noise, &assumed, &covariates, seed, context)?;
+    if let Some(course) = &noise.drift {
+        misfit.p_value = misfit.p_value.min(course.p_value);
+        misfit.size_sigmas = misfit.size_sigmas.max(course.size_sigmas);
+    }
     let is_related = related(measurements, &residuals);
     if !is_related {
         warnings.push(

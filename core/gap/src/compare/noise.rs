@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 use plumbline_effects::measurements::{Measurements, Unit, What};
 
+use super::drift::{Deviation, Drift, drift};
 use super::neighbors::Points;
 use super::statistics::robust_sd;
 use crate::floor::{Floor, KindFloor};
@@ -31,6 +32,8 @@ pub struct Noise {
     pub floor: Floor,
     /// Per kind of [`Floor::kinds`] and coordinate: whether repeats say it.
     pub repeated: Vec<Vec<bool>>,
+    /// What changed between repeats, where something did.
+    pub drift: Option<Drift>,
 }
 
 /// The floor of rows with these residuals (`None`: not predictable, or an outlier).
@@ -38,11 +41,18 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
     let mut kinds = vec![];
     let mut repeated = vec![];
     let mut from_repeats = true;
+    let mut changed: Option<Drift> = None;
     for what in [What::Touch, What::Pose, What::Place, What::EyePoints] {
         if !measurements.has(what) {
             continue;
         }
-        let repeats = within_cells(measurements, residuals, what);
+        let repeats = within_cells(measurements, residuals, what).map(|(mut repeats, course)| {
+            if let Some(course) = course {
+                repeats.sd.iter_mut().zip(&course.left).for_each(|(sd, left)| *sd *= left.sqrt());
+                changed = Some(course);
+            }
+            repeats
+        });
         let nearby = near_neighbors(measurements, residuals, what);
         let known: Vec<bool> = match &repeats {
             Some(repeats) => {
@@ -65,7 +75,7 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
         kinds.push(KindFloor { what, sd, degrees_of_freedom: free });
         repeated.push(known);
     }
-    Noise { floor: Floor { kinds, from_repeats }, repeated }
+    Noise { floor: Floor { kinds, from_repeats }, repeated, drift: changed }
 }
 
 /// The least noise of coordinates that follow from the command: the height of a touch whose
@@ -107,7 +117,7 @@ fn within_cells(
     measurements: &Measurements,
     residuals: &[Option<Vec<f64>>],
     what: What,
-) -> Option<KindFloor> {
+) -> Option<(KindFloor, Option<Drift>)> {
     let mut cells = BTreeMap::<usize, Vec<&Vec<f64>>>::new();
     for (row, residual) in measurements.rows.iter().zip(residuals) {
         if let Some(residual) = residual.as_ref().filter(|_| row.what == what) {
@@ -133,7 +143,35 @@ fn within_cells(
             pooled(&spread)
         })
         .collect();
-    Some(KindFloor { what, sd, degrees_of_freedom: free })
+    let course = drift(&deviations(measurements, residuals, what), free);
+    Some((KindFloor { what, sd, degrees_of_freedom: free }, course))
+}
+
+/// Rows of cells with repeats whose time is known, less the mean of their cell.
+fn deviations(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: What) -> Vec<Deviation> {
+    let mut cells = BTreeMap::<(usize, usize), Vec<(f64, &Vec<f64>)>>::new();
+    for (row, residual) in measurements.rows.iter().zip(residuals) {
+        if let (Some(residual), Some(t_secs)) = (residual.as_ref().filter(|_| row.what == what), row.t_secs) {
+            cells.entry((row.session, row.cell)).or_default().push((t_secs, residual));
+        }
+    }
+    // Times of different sessions have different beginnings: the first one speaks.
+    let session = cells.keys().next().map(|(session, _)| *session);
+    let own = cells.iter().filter(|((of, _), members)| Some(*of) == session && members.len() >= 2);
+    own.flat_map(|((_, cell), members)| {
+        let count = members.len() as f64;
+        let mean = |c: usize| members.iter().map(|(_, residual)| residual[c]).sum::<f64>() / count;
+        let means: Vec<f64> = (0..what.len()).map(mean).collect();
+        members
+            .iter()
+            .map(|(t_secs, residual)| Deviation {
+                cell: *cell,
+                t_secs: *t_secs,
+                off: residual.iter().zip(&means).map(|(value, mean)| value - mean).collect(),
+            })
+            .collect::<Vec<_>>()
+    })
+    .collect()
 }
 
 /// Root mean square of what is not far out.

@@ -47,14 +47,18 @@ pub(super) fn rivals(
         let base = base(measurements, linear, moved);
         let Some(own) = functions(linear, covariates, &base, covariate, sided) else { return };
         let (name, _) = &covariates.names[covariate];
-        let on = if sided.is_some() { format!("{name} and its direction") } else { name.clone() };
+        let on = match sided.and_then(|sided| covariates.names.get(sided)) {
+            Some((with, _)) if with.starts_with("direction") => format!("{name} and its direction"),
+            Some((with, _)) => format!("{name} and {with}"),
+            None => name.clone(),
+        };
         rivals.push(Rival { of, on });
         columns.extend(own);
     };
     let find = |name: &str| covariates.names.iter().position(|(known, _)| known == name);
     for (effect, block) in library.effects.iter().zip(&library.blocks) {
         let neck = effect.kind == Kind::HeadJoint;
-        if effect.kind != Kind::JointZero && !neck {
+        if effect.kind != Kind::JointZero && !neck || effect.is_of_every_site() {
             continue;
         }
         let title = effect.title.split(':').next().unwrap_or_default().to_owned();
@@ -70,8 +74,15 @@ pub(super) fn rivals(
         if let (Some(angle), Some(direction)) = (angle, direction) {
             add(of.clone(), &moved, angle, Some(direction));
         }
-        if let Some(time) = find("time") {
+        let time = find("time");
+        if let Some(time) = time {
             add(of.clone(), &moved, time, None);
+        }
+        // A joint that gives way differently as it warms.
+        let torque = find(&format!("torque of {title}"));
+        let warmth = find(&format!("temperature of {title}")).or(time);
+        if let (Some(torque), Some(warmth)) = (torque, warmth) {
+            add(of.clone(), &moved, warmth, Some(torque));
         }
     }
     for (what, on) in [

@@ -25,6 +25,9 @@ impl Block {
     }
 }
 
+/// How much less probable it is beforehand that every joint is wrong than that one is.
+const EVERY_SITE: f64 = 0.05;
+
 /// The candidates of a search.
 #[derive(Clone, Debug)]
 pub(super) struct Library {
@@ -66,8 +69,9 @@ impl Library {
         blocks.iter().for_each(|block| shapes[block.name] += 1);
         // One expected effect in all; an effect with many shapes is not more probable for it.
         let odds = 1.0 / (names.len() as f64).max(2.0);
-        for block in &mut blocks {
-            block.log_prior = (odds / shapes[block.name] as f64).ln();
+        for (block, effect) in blocks.iter_mut().zip(&effects) {
+            let many = if effect.is_of_every_site() { EVERY_SITE } else { 1.0 };
+            block.log_prior = (many * odds / shapes[block.name] as f64).ln();
         }
         Self { effects, blocks, names, columns: start }
     }
