@@ -104,7 +104,8 @@ fn the_screen_is_placed_touched_learned_and_touched_better() {
 
     click_containing(&mut window, "Check M3 with new touches");
     until(&mut window, "the plan of the check", |window| {
-        view(window).touch.phase == TouchPhase::Planned && view(window).touch.correct_with == Some(Method::M3.into())
+        view(window).touch.phase == TouchPhase::Planned
+            && view(window).touch.correct_with == Some(Method::M3.into())
     });
     let reachable = view(&window).touch.plan.as_ref().expect("just seen").reachable;
     click(&mut window, &format!("Touch {reachable} targets"));

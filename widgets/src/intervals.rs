@@ -140,6 +140,9 @@ struct Chart {
     end: f64,
 }
 
+/// What has no interval may make the scale this much longer and no more.
+const SQUEEZED: f64 = 4.0;
+
 impl Chart {
     fn new(all: &Intervals<'_>, rect: Rect) -> Self {
         // What has an interval decides the scale: something far worse would squeeze together what
@@ -150,9 +153,9 @@ impl Chart {
         };
         let levels = all.levels.iter().map(|level| level.value);
         let mut largest = ends(true).chain(levels).fold(0.0, f64::max);
-        if ends(true).next().is_none() {
-            largest = ends(false).fold(largest, f64::max);
-        }
+        let decides = ends(true).next().is_some();
+        let limit = if decides { SQUEEZED * largest } else { f64::INFINITY };
+        largest = ends(false).filter(|end| *end <= limit).fold(largest, f64::max);
         let on_screen = all.quantity.on_screen(1.0);
         let plot = Rect::from_min_max(
             pos2(rect.left() + NAME_WIDTH, rect.top() + HEAD),

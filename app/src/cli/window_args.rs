@@ -141,10 +141,8 @@ fn screen(text: &str) -> Result<Screen, String> {
         "models" => Ok(Screen::Models),
         "gap" => Ok(Screen::Gap),
         "robot" => Ok(Screen::Robot),
-        _ => {
-            Err("there are the screens live, collect, judge, accept, mount, touch, models, gap and robot"
-                .to_owned())
-        }
+        _ => Err("there are the screens live, collect, judge, accept, mount, touch, models, gap and robot"
+            .to_owned()),
     }
 }
 

@@ -34,8 +34,8 @@ pub(crate) use gap::{
     touch_label as gap_touch_label,
 };
 pub use models::{MapErrors, ModelsPanels};
-pub(crate) use models::{arrow_scale, clock as models_clock, map_entry};
 pub(crate) use models::{Standing, show_inspector as show_models_inspector, standing};
+pub(crate) use models::{arrow_scale, clock as models_clock, map_entry};
 pub(crate) use picture::key as picture_key;
 pub use probe::{ProbeState, probe_readout};
 pub(crate) use residuals::chosen_fit;

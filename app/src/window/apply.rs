@@ -7,9 +7,9 @@ use std::time::Instant;
 
 use plumbline_engine::view::{JobState, SourceStatus};
 use plumbline_engine::{
-    Command, Destination, EyesCommand, FileLength, GapCommand, JobCommand, LiveCommand, ModelsCommand, MountCommand,
-    NoticeCommand, NoticeLevel, ProbePoint, RobotCommand, SourceCommand, TablesCommand, TouchCommand,
-    TwinCommand,
+    Command, Destination, EyesCommand, FileLength, GapCommand, JobCommand, LiveCommand, ModelsCommand,
+    MountCommand, NoticeCommand, NoticeLevel, ProbePoint, RobotCommand, SourceCommand, TablesCommand,
+    TouchCommand, TwinCommand,
 };
 use plumbline_model::Eye;
 use plumbline_model::robot::JointIndex;
@@ -19,8 +19,8 @@ use super::actions::Action;
 use super::ask::{Ask, Asked};
 use super::dialogs::{Answer, Question};
 use super::frame_time::{FrameTimes, resident_mb};
-use super::jogging::RENEW;
 use super::gap_actions::{self, GapAction};
+use super::jogging::RENEW;
 use super::models_actions::ModelsAction;
 use super::outbox::Outbox;
 use super::robot_actions::RobotAction;
@@ -389,8 +389,7 @@ impl PlumblineWindow {
     /// What was found is named, and judged on held-out rows.
     fn follow_the_gap(&mut self) {
         let gap = &self.view.gap;
-        let searched_before =
-            std::mem::replace(&mut self.panels.gap.searching_seen, gap.searching.is_some());
+        let searched_before = std::mem::replace(&mut self.panels.gap.searching_seen, gap.searching.is_some());
         if searched_before && gap.searching.is_none() && gap.failed.is_none() && gap.shown.is_some() {
             self.show_pane(Screen::Gap, Pane::GapNames);
             self.show_pane(Screen::Gap, Pane::GapShown);

@@ -148,7 +148,9 @@ impl Question {
         let video =
             |title: &str| titled(title).add_filter("Videos", &["mp4", "avi", "mkv", "mov", "webm", "m4v"]);
         match self {
-            Self::Folder | Self::TouchSession | Self::GapSession => dialog().pick_folder().map(|folder| vec![folder]),
+            Self::Folder | Self::TouchSession | Self::GapSession => {
+                dialog().pick_folder().map(|folder| vec![folder])
+            }
             Self::ImportModel => {
                 dialog().add_filter("Models", &["json", "onnx"]).pick_file().map(|file| vec![file])
             }

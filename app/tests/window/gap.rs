@@ -80,7 +80,7 @@ fn named_effects_are_sized_and_added() {
     let (fake, mut window) = window_of(with(found(sample::named())));
     click(&mut window, "Name and add");
     assert!(says(&window, "1.78°") && says(&window, "1.60 to 1.95°"));
-    assert!(says(&window, "Elbow: zero position off: 97.0 %"));
+    assert!(says(&window, "Elbow: zero position off: 97 %"));
     press_next(&mut window, "Add 2 effects to the model");
     assert_eq!(asked(&fake), [GapCommand::Add { effects: vec![0, 1] }]);
 }

@@ -14,7 +14,8 @@ use serde::{Deserialize, Serialize};
 pub use gap::{GapCommand, GapModel};
 pub use robot::{Destination, JOG_DEADLINE_MS, JogRates, MountCommand, RobotCommand, TwinCommand};
 pub use touch::{
-    ContactWith, Correction, GraspTable, ModelsCommand, ScreenContact, ScreenWindow, TablesCommand, TouchCommand,
+    ContactWith, Correction, GraspTable, ModelsCommand, ScreenContact, ScreenWindow, TablesCommand,
+    TouchCommand,
 };
 
 /// Anything that the window (or a script) can ask of the engine.

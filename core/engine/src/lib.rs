@@ -29,10 +29,10 @@ pub mod view;
 pub mod work;
 
 pub use command::{
-    AimChoice, Command, ContactWith, Correction, Destination, ExportFormat, Exported, EyesCommand, FileLength,
-    GapCommand, GapModel, GraspTable, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LiveCommand, ModelsCommand,
-    MountCommand, NoticeCommand, ProbePoint, Products, RobotCommand, ScreenContact, ScreenWindow,
-    SourceCommand, TablesCommand, TouchCommand, TwinCommand,
+    AimChoice, Command, ContactWith, Correction, Destination, ExportFormat, Exported, EyesCommand,
+    FileLength, GapCommand, GapModel, GraspTable, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates,
+    LiveCommand, ModelsCommand, MountCommand, NoticeCommand, ProbePoint, Products, RobotCommand,
+    ScreenContact, ScreenWindow, SourceCommand, TablesCommand, TouchCommand, TwinCommand,
 };
 pub use context::Action;
 pub use engine::{Engine, Wake};

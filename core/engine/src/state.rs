@@ -25,7 +25,8 @@ use crate::source::{Control, Note, SourceState};
 use crate::stages::{CornersInput, ProbeInput, ProbeOutput, RectifyInput, RectifyOutput, StagePanic, Timed};
 use crate::touch::{Surroundings as TouchSurroundings, TouchWorkflow};
 use crate::view::{
-    Connection, GapView, JobState, JobView, ModelsView, MountView, RobotView, SourceView, TouchView, TwinView, View,
+    Connection, GapView, JobState, JobView, ModelsView, MountView, RobotView, SourceView, TouchView,
+    TwinView, View,
 };
 use crate::work::WorkResult;
 

@@ -19,9 +19,7 @@ pub use eyes::{
     AcceptedCalibration, BoardPlace, BoardSeen, CaptureHint, CollectedPair, Coverage, CoverageGrid,
     EarlierCalibration, EyesView, GhostBoard, Origin, Proposal,
 };
-pub use gap::{
-    AddedEffect, FindingEntry, GapModelView, GapSession, GapView, ModelStep, ShownFinding,
-};
+pub use gap::{AddedEffect, FindingEntry, GapModelView, GapSession, GapView, ModelStep, ShownFinding};
 pub use live::{
     AimView, CornersView, DisparityView, LiveView, ProbeReading, ProbeView, RectifiedView, ReplayView,
     SourceCounters, SourceStatus, SourceView, StageStatistics, Statistics,

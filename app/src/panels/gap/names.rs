@@ -156,7 +156,7 @@ fn sizes(ui: &mut Ui, effect: &NamedEffect) {
             ui.label(theme::weak(ui, "does"));
             ui.label(format::mm(effect.size_mm * 1e-3));
             let sigmas = format::significant(effect.size_sigmas, 2);
-            ui.label(theme::weak(ui, format!("rms at these rows, {sigmas} noise deviations")));
+            ui.label(theme::weak(ui, format!("rms, {sigmas} × the noise")));
             ui.end_row();
         }
     });
