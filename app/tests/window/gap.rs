@@ -162,6 +162,7 @@ fn every_state_is_drawn_at_every_size_in_both_themes() {
 }
 
 /// Pictures of all states, to be looked at: `PLUMBLINE_WINDOW_PICTURES=folder`.
+#[allow(clippy::print_stdout, reason = "says why it was skipped")]
 #[test]
 fn pictures_of_the_states() {
     let Some(folder) = std::env::var_os("PLUMBLINE_WINDOW_PICTURES").map(std::path::PathBuf::from) else {

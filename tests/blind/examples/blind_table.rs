@@ -124,9 +124,12 @@ fn make_missing(recipes: &[Recipe], folder: &Path) -> Result<(), AnyError> {
         for i in 0..THREADS {
             let work = || {
                 while let Some(recipe) = missing.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let made = case::make_or_smaller(&bench, &planner, recipe)
-                        .and_then(|case| case::write(&case, &folder.join("cases"), &folder.join("answers")));
-                    if let Err(error) = made {
+                    let made = case::make_or_smaller(&bench, &planner, recipe);
+                    let written = match &made {
+                        Ok(case) => case::write(case, &folder.join("cases"), &folder.join("answers")),
+                        Err(_) => Ok(()),
+                    };
+                    if let Some(error) = made.err().or(written.err()) {
                         eprintln!("case {:03} was not made: {error}", recipe.number);
                     }
                 }

@@ -467,6 +467,7 @@ mod tests {
 
     /// Without anything hidden the description is right up to a tenth of the noise, and something
     /// that is hidden has the size that it was made to have.
+    #[allow(clippy::print_stdout, reason = "figures are read from the test's output")]
     #[test]
     fn nothing_hidden_leaves_nothing() {
         let bench = Bench::usual().expect("the rig");

@@ -92,17 +92,15 @@ fn part(text: &mut String, tail: &mut Tail, bench: &Bench, secrets: &[Secret], j
     // The drive of the encoder where it has play: a little wheel beside the joint.
     for secret in here.iter().filter(|s| s.kind == Kind::Backlash && s.amount > 0.0) {
         let half = 0.5 * secret.amount;
-        let _ = write!(
+        let _ = writeln!(
             text,
-            r#"    <body {}><inertial pos="0 0 0" mass="1e-6" diaginertia="1e-6 1e-6 1e-6"/><joint name="{name}.dial" type="hinge" axis="{}" armature="0.0005" damping="0.002" frictionloss="0.01"/></body>
-"#,
+            r#"    <body {}><inertial pos="0 0 0" mass="1e-6" diaginertia="1e-6 1e-6 1e-6"/><joint name="{name}.dial" type="hinge" axis="{}" armature="0.0005" damping="0.002" frictionloss="0.01"/></body>"#,
             pose(&place),
             list(&part.axis)
         );
-        let _ = write!(
+        let _ = writeln!(
             tail.tendons,
-            r#"    <fixed name="{name}.dial" limited="true" range="{} {half}" {STEEL_TENDON}><joint joint="{name}.dial" coef="1"/><joint joint="{name}" coef="-1"/></fixed>
-"#,
+            r#"    <fixed name="{name}.dial" limited="true" range="{} {half}" {STEEL_TENDON}><joint joint="{name}.dial" coef="1"/><joint joint="{name}" coef="-1"/></fixed>"#,
             -half
         );
     }
@@ -124,10 +122,9 @@ fn part(text: &mut String, tail: &mut Tail, bench: &Bench, secrets: &[Secret], j
             Kind::Backlash if secret.amount < 0.0 => {
                 play(text, name, &list(&part.axis), -secret.amount);
                 // The link's own bearing rubs against the part that carries it.
-                let _ = write!(
+                let _ = writeln!(
                     tail.tendons,
-                    r#"    <fixed name="{name}.bearing" frictionloss="0.6"><joint joint="{name}" coef="1"/><joint joint="{name}.play" coef="1"/></fixed>
-"#
+                    r#"    <fixed name="{name}.bearing" frictionloss="0.6"><joint joint="{name}" coef="1"/><joint joint="{name}.play" coef="1"/></fixed>"#
                 );
             }
             _ => {}
@@ -154,10 +151,9 @@ fn servo(text: &mut String, tail: &mut Tail, bench: &Bench, here: &[&Secret], j:
     // that one.
     if let Some(secret) = here.iter().find(|s| s.kind == Kind::JointCoupling && j > 0) {
         let before = &bench.parts[j - 1].joint;
-        let _ = write!(
+        let _ = writeln!(
             tail.tendons,
-            r#"    <fixed name="{name}.cable"><joint joint="{name}" coef="1"/><joint joint="{before}" coef="{}"/></fixed>
-"#,
+            r#"    <fixed name="{name}.cable"><joint joint="{name}" coef="1"/><joint joint="{before}" coef="{}"/></fixed>"#,
             -secret.amount
         );
         let _ = writeln!(tail.actuators, r#"    <position tendon="{name}.cable" gear="{gear}" {servo}/>"#);

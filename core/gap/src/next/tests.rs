@@ -165,7 +165,7 @@ fn advised(measurements: &Measurements, found: &Found) -> Option<NextExperiment>
 fn a_bracket_that_gives_way_is_told_from_an_encoder_off_center_by_a_weight() {
     let (sag, off_center) =
         (effect("joint-sag", 1, None, 1.0), effect("joint-eccentricity", 1, Some(1.0), 1.0));
-    let made = touches(&[sag.clone()], |_, _| ());
+    let made = touches(std::slice::from_ref(&sag), |_, _| ());
     let found = found(&made, Verdict::Class, &[(&[sag], 0.55), (&[off_center], 0.45)]);
     let next = advised(&made, &found).expect("there is something to tell apart");
     assert_eq!(next.kind, Experiment::Weight, "{next:?}");
@@ -180,7 +180,7 @@ fn a_bracket_that_gives_way_is_told_from_an_encoder_off_center_by_a_weight() {
 #[test]
 fn play_that_was_seen_from_one_side_only_is_told_from_a_zero_by_the_other_side() {
     let (zero, play) = (effect("joint-zero", 1, None, 0.3), effect("backlash", 1, None, 2.0));
-    let made = touches(&[play.clone()], |_, _| ());
+    let made = touches(std::slice::from_ref(&play), |_, _| ());
     let found = found(&made, Verdict::Class, &[(&[zero], 0.5), (&[play], 0.5)]);
     let next = advised(&made, &found).expect("there is something to tell apart");
     assert_eq!(next.kind, Experiment::OtherSide, "{next:?}");
@@ -214,11 +214,13 @@ fn what_the_session_holds_is_not_proposed() {
 #[test]
 fn settled_names_need_nothing_or_a_narrower_interval() {
     let large = effect("joint-sag", 1, None, 3.0);
-    let made = touches(&[large.clone()], |i, row| row.payload_kg = 0.25 * f64::from(u8::from(i % 2 == 0)));
+    let made = touches(std::slice::from_ref(&large), |i, row| {
+        row.payload_kg = 0.25 * f64::from(u8::from(i % 2 == 0))
+    });
     let settled = found(&made, Verdict::Named, &[(&[large], 1.0)]);
     assert_eq!(advised(&made, &settled), None);
     let small = effect("joint-eccentricity", 1, Some(1.0), 0.2);
-    let made = touches(&[small.clone()], |_, _| ());
+    let made = touches(std::slice::from_ref(&small), |_, _| ());
     let open = found(&made, Verdict::Named, &[(&[small], 1.0)]);
     let next = advised(&made, &open).expect("its size is hardly known");
     assert!(next.why.starts_with("The names are settled"), "{next:?}");
@@ -239,8 +241,8 @@ fn no_gap_needs_nothing_and_the_unknown_needs_more() {
 fn each_class_says_what_splits_it() {
     let (sag, off_center) =
         (effect("joint-sag", 1, None, 1.0), effect("joint-eccentricity", 1, Some(1.0), 1.0));
-    let made = touches(&[sag.clone()], |_, _| ());
-    let found = found(&made, Verdict::Class, &[(&[sag.clone()], 0.97)]);
+    let made = touches(std::slice::from_ref(&sag), |_, _| ());
+    let found = found(&made, Verdict::Class, &[(std::slice::from_ref(&sag), 0.97)]);
     let mut effects = found.effects.clone();
     effects[0].class = vec![member(&sag.effect, 0.6), member(&off_center.effect, 0.4)];
     split_by(&mut effects, &made, &floor(), &found, &Options::default(), &Unattended).expect("not cancelled");

@@ -10,6 +10,7 @@
 //! The method with its assumptions is described in the package's README.
 
 #[cfg(test)]
+#[allow(clippy::print_stdout, reason = "figures are read from the test's output")]
 mod bench;
 mod explore;
 mod field;
