@@ -164,7 +164,8 @@ pub struct NamedEffect {
     pub class: Vec<ClassMember>,
     /// What experiment would tell them apart; `None` where the class has one member.
     pub split_by: Option<String>,
-    /// The best name outside of the class, and how much less probable it is (log₁₀ of the odds).
+    /// The best name outside of the class, and how much less probable it is (log₁₀ of the odds
+    /// against it, positive).
     pub runner_up: Option<(String, f64)>,
     /// Why it cannot be added although it was found, if so (its fit sits at a bound, say).
     pub not_addable: Option<String>,

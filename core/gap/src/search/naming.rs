@@ -242,7 +242,7 @@ impl Evidence<'_> {
             .filter(|(other, score, _)| *other != name && !inside(*score))
             .max_by(|a, b| a.1.total_cmp(&b.1))
             .map(|(other, score, _)| {
-                (self.library.names[*other].clone(), (score - own_score) / std::f64::consts::LN_10)
+                (self.library.names[*other].clone(), (own_score - score) / std::f64::consts::LN_10)
             });
         let class_probability: f64 = self
             .explored

@@ -184,8 +184,9 @@ fn panel(
     means(drawing, points, &at);
 }
 
+/// That a step of a scale can be read with.
 fn decimals(step: f64) -> usize {
-    usize::from(step < 1.0) + usize::from(step < 0.1)
+    (-step.log10() - 1e-9).ceil().clamp(0.0, 6.0) as usize
 }
 
 /// Labels below, as many as have room.
