@@ -89,10 +89,13 @@ impl Evidence<'_> {
         let mut found = vec![];
         let sizes = top.iter().zip(&values).map(|(&block, (own, _))| self.look.does(block, own));
         let largest = sizes.fold(0.0, f64::max);
+        // Without repeats the floor may be off; what matters is the noise that was found.
+        let likely = self.look.fields.get(self.look.likely(self.explored));
+        let noise = likely.map_or(1.0, |field| field.variant.noise.min(1.0));
         for (place, &block) in top.iter().enumerate() {
             let (own, covariance) = &values[place];
             let size = self.look.does(block, own);
-            let least = if size >= largest { SMALLEST_FIRST } else { SMALLEST };
+            let least = noise * if size >= largest { SMALLEST_FIRST } else { SMALLEST };
             if size < least || size > CANCELLING * self.look.gap() + SMALLEST {
                 continue;
             }
