@@ -201,7 +201,7 @@ fn unexplained(ui: &mut Ui, finding: &Finding) {
     }
     let left = &finding.unexplained;
     theme::group_heading(ui, "What stays unexplained");
-    let enough = left.p_value > 0.05;
+    let enough = left.p_value > 0.05 && finding.verdict != Verdict::NotInLibrary;
     let (sign, role, said) = if enough {
         (Glyph::Check, Role::Accepted, "The rest is what noise alone would leave.".to_owned())
     } else {

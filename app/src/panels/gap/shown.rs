@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use egui::{ComboBox, ScrollArea, Ui, vec2};
+use plumbline_engine::gap::Verdict;
 use plumbline_engine::gap::finding::{Finding, Shown};
 use plumbline_engine::view::ShownFinding;
 use plumbline_widgets::buttons::choice;
@@ -60,6 +61,8 @@ fn bars(ui: &mut Ui, cx: &PanelContext<'_>, shown: &ShownFinding) {
     }
     if let Some(closed) = words::closure(held_out) {
         ui.label(theme::strong(ui, closed));
+    } else if shown.finding.verdict == Verdict::NotInLibrary {
+        ui.label(theme::strong(ui, "Nothing can be added, so nothing is closed."));
     } else {
         ui.label(theme::strong(ui, "There is nothing to close: before is what noise alone would leave."));
     }
@@ -89,14 +92,20 @@ fn bars(ui: &mut Ui, cx: &PanelContext<'_>, shown: &ShownFinding) {
     }
     let levels = [Level { name: "noise alone", value: held_out.floor * factor, role: Role::NoiseFloor }];
     Intervals::new("Gap on held-out rows", &rows, quantity).levels(&levels).show(ui);
-    let mut said = format!(
-        "Mean error of {} that were held out ({}). Worst tenth: {} before, {} after. {} of the coordinates lie within their predicted 95 %.",
-        format::count(held_out.rows, "row"),
-        held_out.blocks,
-        words::error(held_out, held_out.worst_tenth[0]),
-        words::error(held_out, held_out.worst_tenth[1]),
-        format::percent(held_out.inside_95),
-    );
+    let worst = held_out.worst_tenth.map(|error| words::error(held_out, error));
+    let count = format::count(held_out.rows, "row");
+    // Without an effect nothing was held out, and nothing predicted an interval.
+    let mut said = if shown.finding.effects.is_empty() {
+        format!("Mean error of {count} ({}). Worst tenth: {}.", held_out.blocks, worst[0])
+    } else {
+        format!(
+            "Mean error of {count} that were held out ({}). Worst tenth: {} before, {} after. {} of the coordinates lie within their predicted 95 %.",
+            held_out.blocks,
+            worst[0],
+            worst[1],
+            format::percent(held_out.inside_95),
+        )
+    };
     if let Some(unseen) = &held_out.unseen {
         said.push_str(&format!(
             " Unseen: {}, {} held out as a whole; noise alone would leave {}.",
@@ -125,7 +134,7 @@ fn against(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &Arc<ShownFinding>) {
     }
     let told = finding.shown.telling.first().copied().unwrap_or(0);
     let mut chosen = cx.state.gap.covariate.unwrap_or(told).min(covariates.len() - 1);
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label(theme::weak(ui, "Against"));
         let name = |i: usize| covariates.get(i).map_or_else(String::new, |(name, _)| name.clone());
         let combo = ComboBox::from_id_salt("covariate").selected_text(name(chosen)).width(190.0);
