@@ -8,6 +8,7 @@ pub mod aim;
 pub mod calibration;
 pub mod camera;
 pub mod chessboard;
+pub mod detection;
 pub mod formats;
 pub mod frame;
 pub mod image_pair;
@@ -29,6 +30,7 @@ pub use calibration::{
 };
 pub use camera::{Camera, CameraModel, Fisheye, ModelKind, Pinhole, ProjectError};
 pub use chessboard::{BoardError, Chessboard, InnerCorners};
+pub use detection::{ClassIndex, ClassNames, Detection, PixelBox};
 pub use formats::FormatError;
 pub use frame::{
     Board, Direction, Frame, LeftCamera, LeftRectified, Point, Pose, RightCamera, RightRectified, Robot,
