@@ -11,7 +11,7 @@ use plumbline_model::{Eye, LeftCamera, Pixel, Point, ProjectError, Raw, StereoCa
 
 /// Direction in epipolar coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct EpipolarRay {
+pub(crate) struct EpipolarRay {
     /// Angle of the epipolar plane about the baseline, rad.
     pub plane_rad: f64,
     /// Angle from the plane at right angles to the baseline, towards the right eye, rad.
@@ -20,7 +20,7 @@ pub(super) struct EpipolarRay {
 
 /// Turns pixels of either eye into epipolar rays and back.
 #[derive(Clone, Debug)]
-pub(super) struct EpipolarGeometry {
+pub(crate) struct EpipolarGeometry {
     pub cameras: StereoCameras,
     /// From each eye's axes to the epipolar axes.
     epipolar_from_eye: [Rotation3<f64>; 2],
@@ -75,6 +75,17 @@ impl EpipolarGeometry {
         let in_epipolar = Vector3::new(left.along_rad.tan(), sin_plane, cos_plane) * distance_from_baseline_m;
         let in_left = self.epipolar_from_eye[0].inverse() * in_epipolar;
         Some(Point::new(in_left.x, in_left.y, in_left.z))
+    }
+
+    /// Ray in the other eye of the point that lies along `ray` of the eye `from`, this far from the
+    /// baseline.
+    pub fn in_other_eye(&self, from: Eye, ray: &EpipolarRay, distance_from_baseline_m: f64) -> EpipolarRay {
+        let shift = self.baseline_m / distance_from_baseline_m;
+        let along_rad = match from {
+            Eye::Left => (ray.along_rad.tan() - shift).atan(),
+            Eye::Right => (ray.along_rad.tan() + shift).atan(),
+        };
+        EpipolarRay { along_rad, ..*ray }
     }
 
     /// Disparity of a point this far from the baseline, rad.

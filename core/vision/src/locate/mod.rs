@@ -9,7 +9,7 @@
 //! transparent things, repeated texture and edges of near things before far ones; these come out
 //! as "not found" with a reason where they can be told.
 
-mod epipolar;
+pub(crate) mod epipolar;
 mod refine;
 mod scene;
 mod search;
