@@ -8,6 +8,7 @@
 mod board_presets;
 mod error;
 pub mod eyes;
+mod hand_look;
 pub mod judging;
 pub mod physics;
 pub mod scenario;
@@ -15,6 +16,7 @@ pub mod scene;
 pub mod scenery;
 mod servos;
 mod toys;
+pub mod training_set;
 pub mod truth;
 mod twin;
 mod warm_up;

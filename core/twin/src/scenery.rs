@@ -4,6 +4,7 @@ use nalgebra::{Isometry3, Vector3};
 use plumbline_model::Chessboard;
 use plumbline_model::robot::LinkIndex;
 
+use crate::hand_look::{self, HandLook};
 use crate::physics::World;
 use crate::physics::parts::{self, Side};
 use crate::scene::{BodyIndex, Item, Light, Material, Pattern, Scenery, Shape};
@@ -24,7 +25,12 @@ pub mod object {
     /// Torso, neck, head, arms.
     pub const ROBOT: u16 = 4;
     /// The hand of the first arm of the rig is 5, that of the second 6.
+    ///
+    /// Fingers and thumb; the palm has its own number.
     pub const FIRST_HAND: u16 = 5;
+    /// The palm of the first arm of the rig is 7, that of the second 8: from the wrist to the roots
+    /// of the fingers, as people draw boxes of hands.
+    pub const FIRST_PALM: u16 = 7;
     /// The first toy is 10, the others follow in the order of [`Toy::ALL`].
     pub const FIRST_TOY: u16 = 10;
 
@@ -141,28 +147,43 @@ fn furniture(world: &World, items: &mut Vec<Item>) {
 fn robot(world: &World, items: &mut Vec<Item>) {
     let rig = world.rig();
     let sides = parts::sides(rig);
+    let palms = hand_look::palms(rig);
+    let look = HandLook::default();
     for (i, link) in rig.description.links().iter().enumerate() {
         let index = LinkIndex(i);
         let Some(body) = world.body_of_link(index).map(BodyIndex) else { continue };
+        let is_palm = palms.contains(&Some(index));
         let object = match sides[i] {
+            Side::Hand(arm) if is_palm => object::FIRST_PALM + arm as u16,
             Side::Hand(arm) => object::FIRST_HAND + arm as u16,
             Side::Arm(_) | Side::Body => object::ROBOT,
         };
-        let mut put = |body, (body_from_shape, shape), material| {
-            items.push(Item { object, body, body_from_shape, shape, material });
+        let mut put = |body, drawn: Vec<hand_look::Drawn>| {
+            items.extend(drawn.into_iter().map(|(body_from_shape, shape, material)| Item {
+                object,
+                body,
+                body_from_shape,
+                shape,
+                material,
+            }));
         };
         let outer = world.body_named(&format!("{}.outer", link.name)).map(BodyIndex);
-        match (parts::finger(rig, index), outer, link.visuals.first()) {
-            (Some(finger), Some(outer), Some(visual)) => {
-                let material = parts::material_of(visual, sides[i]);
-                put(body, finger.near, material);
-                put(outer, finger.far, material);
-            }
-            _ => {
-                for visual in &link.visuals {
-                    put(body, parts::shape_of(visual), parts::material_of(visual, sides[i]));
-                }
-            }
+        if let (Some(finger), Some(outer)) = (parts::finger(rig, index), outer) {
+            let (near, far) = hand_look::finger(&finger, &look);
+            put(body, near);
+            put(outer, far);
+            continue;
+        }
+        for visual in &link.visuals {
+            let (place, shape) = parts::shape_of(visual);
+            put(
+                body,
+                match (&shape, sides[i]) {
+                    (Shape::Box { half_m }, _) if is_palm => hand_look::palm(&place, half_m, &look),
+                    (_, Side::Hand(_)) => hand_look::thumb(&place, &shape, &look),
+                    _ => vec![(place, shape, parts::material_of(visual, sides[i]))],
+                },
+            );
         }
     }
 }
@@ -170,7 +191,7 @@ fn robot(world: &World, items: &mut Vec<Item>) {
 fn toys(world: &World, items: &mut Vec<Item>) {
     for toy in Toy::ALL.into_iter().filter(|toy| world.toy(*toy).is_some()) {
         let Some(body) = world.body_named(&format!("toy.{}", toy.name())) else { continue };
-        for part in toy.parts() {
+        for part in toy.look() {
             items.push(Item {
                 object: object::of_toy(toy),
                 body: BodyIndex(body),
@@ -213,10 +234,11 @@ mod tests {
             assert!(all.items.iter().any(|item| item.object == object::of_toy(toy)), "{toy:?}");
             assert_eq!(object::toy(object::of_toy(toy)), Some(toy));
         }
+        let count = |object| all.items.iter().filter(|item| item.object == object).count();
         for hand in 0..2 {
-            // Palm, thumb, three fingers of two parts.
-            let parts = all.items.iter().filter(|item| item.object == object::FIRST_HAND + hand).count();
-            assert_eq!(parts, 8);
+            // Three fingers of two pieces with a ring and a tip, a thumb with two rings and a tip.
+            assert_eq!(count(object::FIRST_HAND + hand), 3 * 4 + 4);
+            assert!(count(object::FIRST_PALM + hand) > 5);
         }
         assert!(!all.items.iter().any(|item| item.object == object::BOARD));
         world.remove_toy(Toy::Duck);

@@ -1,4 +1,7 @@
-//! The six toys: what they are made of.
+//! The six toys: what collides, and (in `look`) what they look like.
+
+pub(crate) mod look;
+pub(crate) mod surface;
 
 use std::sync::LazyLock;
 
@@ -95,7 +98,15 @@ impl Toy {
         }
     }
 
-    /// Its parts: each is drawn and collides.
+    /// What it looks like.
+    pub(crate) fn look(self) -> &'static [ToyPart] {
+        static LOOKS: LazyLock<Vec<Vec<ToyPart>>> = LazyLock::new(|| {
+            Toy::ALL.into_iter().map(|toy| look::parts(toy, &look::Look::default())).collect()
+        });
+        &LOOKS[self as usize]
+    }
+
+    /// The convex parts that collide; [`Toy::look`] is drawn.
     pub(crate) fn parts(self) -> &'static [ToyPart] {
         static PARTS: LazyLock<Vec<Vec<ToyPart>>> =
             LazyLock::new(|| Toy::ALL.into_iter().map(make_parts).collect());

@@ -1,0 +1,232 @@
+//! Labeled images for training a detector, drawn with everything randomised: light, colors, clutter,
+//! postures, toys, lenses, and what the cameras do to their images.
+//!
+//! The same seed gives the same scenes and labels, and on the same device the same pixels; a pair
+//! depends on the seed and its number alone. Boxes enclose what is seen of an object, as the
+//! renderer knows it; those of hands enclose the palm only. Nothing that could be seen is left
+//! without a label: what shows too little of itself is taken out of the scene.
+
+mod arms;
+mod dice;
+mod files;
+mod finish;
+mod labels;
+mod placing;
+mod room;
+mod scene;
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use image::RgbImage;
+use plumbline_model::robot::{Rig, RigError};
+use plumbline_model::{Cancelled, JobContext};
+
+use self::arms::Bank;
+use self::labels::{Appears, appears};
+use self::scene::Scene;
+use crate::eyes::{EyeOptions, EyeRenderer, LabeledPair, RenderError};
+
+pub use labels::Label;
+
+/// Counts up whenever the same seed gives another set.
+pub const GENERATOR: u32 = 1;
+/// Most pairs of a set.
+pub const MOST_PAIRS: usize = 100_000;
+/// A scene is drawn at most this often, each time with less in it.
+const MOST_TRIES: usize = 6;
+
+/// What to draw.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SetOptions {
+    /// Pairs, 1 to [`MOST_PAIRS`].
+    pub pairs: usize,
+    /// The same seed gives the same set.
+    pub seed: u64,
+    /// Number of the first pair, so that a set can be drawn in parts.
+    pub first: usize,
+    /// Share of the pairs that is kept for validation, 0–1; both eyes of a pair stay together.
+    pub val_share: f64,
+}
+
+impl Default for SetOptions {
+    fn default() -> Self {
+        Self { pairs: 100, seed: 1, first: 0, val_share: 0.1 }
+    }
+}
+
+impl SetOptions {
+    /// Whether a pair is for validation. The choice is spread evenly.
+    fn is_val(&self, index: usize) -> bool {
+        let share = |n: usize| (n as f64 * self.val_share + 1e-9).floor();
+        share(index + 1) > share(index)
+    }
+}
+
+/// What was drawn.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SetSummary {
+    /// Pairs.
+    pub pairs: usize,
+    /// Boxes of each published class, both eyes.
+    pub boxes: [usize; 8],
+    /// Images without any label.
+    pub empty_images: usize,
+    /// The device that drew.
+    pub device: String,
+}
+
+/// Why a set could not be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum SetError {
+    /// Stopped on request; what was drawn so far stays.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// An option that cannot be used.
+    #[error("{what} is {value}: {remedy}")]
+    Option {
+        /// Which.
+        what: &'static str,
+        /// Its value.
+        value: String,
+        /// What is right.
+        remedy: &'static str,
+    },
+    /// The robot's description cannot be used.
+    #[error(transparent)]
+    Rig(#[from] RigError),
+    /// The renderer failed.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// An image could not be encoded.
+    #[error("an image could not be encoded as JPEG: {0}. Try again; if it stays so, report it")]
+    Encode(String),
+    /// A file could not be written.
+    #[error("{} could not be written: {source}. Check that the folder may be written and the disk is not full", file.display())]
+    Write {
+        /// The file.
+        file: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+}
+
+/// One pair with its labels.
+#[derive(Clone, Debug)]
+pub struct LabeledImages {
+    /// Left and right image as the cameras would give them.
+    pub images: [RgbImage; 2],
+    /// Labels of the left and the right image.
+    pub labels: [Vec<Label>; 2],
+    /// Quality of the JPEG files.
+    quality: u8,
+}
+
+/// Draws pairs of a set one by one.
+pub struct SetPainter {
+    rig: Rig,
+    bank: Bank,
+    renderer: EyeRenderer,
+}
+
+impl SetPainter {
+    /// Opens the renderer; takes about two seconds.
+    ///
+    /// # Errors
+    /// When there is no device that draws.
+    pub fn new(options: EyeOptions) -> Result<Self, SetError> {
+        let rig = Rig::built_in("nico")?;
+        let bank = Bank::new(&rig);
+        Ok(Self { bank, rig, renderer: EyeRenderer::new(options)? })
+    }
+
+    /// The pair of a number.
+    ///
+    /// # Errors
+    /// When the renderer fails.
+    pub fn pair(&mut self, seed: u64, index: usize) -> Result<LabeledImages, SetError> {
+        let scene = Scene::draw(&self.rig, &self.bank, seed, index as u64);
+        let mut without: Vec<u16> = vec![];
+        for tried in 1.. {
+            let drawn = self.renderer.render_labeled(
+                &scene.scenery(&without),
+                &scene.snapshot,
+                &scene.sensor,
+                scene.noise_seed,
+            )?;
+            let (labels, barely) = label(&scene, &drawn);
+            if barely.is_empty() || tried == MOST_TRIES {
+                let LabeledPair { pair, .. } = drawn;
+                let mut images = [pair.left, pair.right];
+                images.iter_mut().for_each(|image| scene.finish.apply(image));
+                return Ok(LabeledImages { images, labels, quality: scene.finish.quality });
+            }
+            without.extend(barely);
+        }
+        unreachable!("the last try returns")
+    }
+}
+
+/// Labels of both eyes, and the objects of which too little is seen.
+fn label(scene: &Scene, drawn: &LabeledPair) -> ([Vec<Label>; 2], Vec<u16>) {
+    let eyes = &scene.snapshot.eyes;
+    let views = [
+        (&drawn.left_objects, &eyes.left, &eyes.robot_from_left.isometry),
+        (&drawn.right_objects, &eyes.right, &eyes.robot_from_right.isometry),
+    ];
+    let mut labels = [vec![], vec![]];
+    let mut barely = vec![];
+    for thing in &scene.things {
+        for (own, (image, camera, robot_from_eye)) in labels.iter_mut().zip(views) {
+            match appears(thing, image, camera, robot_from_eye) {
+                Appears::Unseen => {}
+                Appears::As(area) => own.push(Label { class: thing.class, area }),
+                Appears::Barely => barely.push(thing.object),
+            }
+        }
+    }
+    (labels, barely)
+}
+
+/// Draws a set into a folder: `images` and `labels` with `train` and `val`, `data.yaml`,
+/// `recipe.json`.
+///
+/// # Errors
+/// When an option cannot be used, nothing draws, a file cannot be written, or on request.
+pub fn generate(out: &Path, options: &SetOptions, context: &dyn JobContext) -> Result<SetSummary, SetError> {
+    if options.pairs == 0 || options.pairs > MOST_PAIRS {
+        return Err(SetError::Option {
+            what: "the number of pairs",
+            value: options.pairs.to_string(),
+            remedy: "give 1 to 100000",
+        });
+    }
+    if !(0.0..=1.0).contains(&options.val_share) {
+        return Err(SetError::Option {
+            what: "the share for validation",
+            value: options.val_share.to_string(),
+            remedy: "give 0 to 1",
+        });
+    }
+    files::prepare(out, options)?;
+    let mut painter = SetPainter::new(EyeOptions::default())?;
+    let mut summary =
+        SetSummary { device: painter.renderer.adapter_name().to_owned(), ..SetSummary::default() };
+    for index in options.first..options.first + options.pairs {
+        context.checkpoint()?;
+        let pair = painter.pair(options.seed, index)?;
+        let split = if options.is_val(index) { "val" } else { "train" };
+        for (eye, (image, labels)) in ["left", "right"].iter().zip(pair.images.iter().zip(&pair.labels)) {
+            files::one(out, split, &format!("{index:05}_{eye}"), image, pair.quality, labels)?;
+            summary.empty_images += usize::from(labels.is_empty());
+            for label in labels {
+                summary.boxes[label.class.0] += 1;
+            }
+        }
+        summary.pairs += 1;
+        let fraction = summary.pairs as f64 / options.pairs as f64;
+        context.report(fraction, &format!("drawing, pair {} of {}", summary.pairs, options.pairs));
+    }
+    files::recipe(out, options, &summary)?;
+    Ok(summary)
+}
