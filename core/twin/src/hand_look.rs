@@ -97,7 +97,7 @@ pub(crate) fn palm(link_from_box: &Isometry3<f64>, half_m: &Vector3<f64>, look: 
 
 /// The two pieces of a finger with what is on them, each in its own frame.
 pub(crate) fn finger(finger: &Finger, look: &HandLook) -> (Vec<Drawn>, Vec<Drawn>) {
-    let (black, metal) = (matt(look.black, 0.07), matt(look.metal * 0.6, 0.2));
+    let (black, metal) = (matt(look.black, 0.07), matt(look.metal * 0.35, 0.2));
     let mut near = vec![(finger.near.0, finger.near.1.clone(), black)];
     let mut far = vec![(finger.far.0, finger.far.1.clone(), black)];
     if let Shape::Capsule { radius_m, half_length_m } = finger.far.1 {

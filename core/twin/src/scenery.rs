@@ -52,18 +52,18 @@ const WALL: Material = plain([0.76, 0.76, 0.74]);
 const CEILING: Material = plain([0.80, 0.80, 0.78]);
 const FLOOR: Material = Material {
     albedo: [0.45, 0.43, 0.39],
-    gloss: 0.05,
+    gloss: 0.025,
     pattern: Pattern::Speckle { size_m: 0.03, contrast: 0.15 },
 };
 const WOOD: Material = Material {
     albedo: [0.55, 0.20, 0.045],
-    gloss: 0.06,
+    gloss: 0.025,
     pattern: Pattern::Speckle { size_m: 0.012, contrast: 0.12 },
 };
 const DARK_WOOD: Material = plain([0.10, 0.045, 0.022]);
 const LAMINATE: Material = Material {
     albedo: [0.50, 0.50, 0.47],
-    gloss: 0.03,
+    gloss: 0.025,
     pattern: Pattern::Speckle { size_m: 0.0045, contrast: 0.75 },
 };
 const CURTAIN: Material = Material {

@@ -27,6 +27,7 @@ mod tiles;
 pub use error::RenderError;
 pub use gpu::AdapterChoice;
 pub use renderer::{EyeOptions, EyeRenderer, LabeledPair, ObjectImage, RenderedPair};
+pub(crate) use sensor::theta_d;
 pub use sensor::{FaceShell, Sensor};
 
 pub use stream::{EyeControls, SceneView, TwinEyes, TwinEyesOptions};

@@ -18,7 +18,7 @@ pub(super) const BOARD: usize = 4;
 pub(super) const MESH: usize = 5;
 
 /// Smallest share of mirrored light that is worth tracing; below, the surroundings are guessed.
-const LEAST_GLOSS: f32 = 0.065;
+const LEAST_GLOSS: f32 = 0.03;
 /// Smallest side of a box that mirrors, meters.
 const LEAST_MIRROR_M: f64 = 0.1;
 

@@ -69,6 +69,15 @@ struct Work {
     taps: usize,
 }
 
+/// What the device is asked for.
+#[derive(Clone, Copy)]
+struct Wanted {
+    /// The images.
+    image: bool,
+    /// The object of every pixel.
+    objects: bool,
+}
+
 /// Handles to where the device leaves an image pair.
 struct Results {
     bytes: wgpu::Buffer,
@@ -100,7 +109,7 @@ impl EyeRenderer {
         seed: u64,
     ) -> Result<RenderedPair, RenderError> {
         let work = self.prepare(scenery, snapshot, sensor, seed)?;
-        let results = self.submit(&work, false)?;
+        let results = self.submit(&work, Wanted { image: true, objects: false })?;
         let [left, right] = self.gpu.read(&results.bytes, |bytes| images(bytes, work.size))?;
         Ok(RenderedPair { left, right })
     }
@@ -114,12 +123,26 @@ impl EyeRenderer {
         seed: u64,
     ) -> Result<LabeledPair, RenderError> {
         let work = self.prepare(scenery, snapshot, sensor, seed)?;
-        let results = self.submit(&work, true)?;
+        let results = self.submit(&work, Wanted { image: true, objects: true })?;
         let ([left, right], seen) =
             self.gpu.read(&results.bytes, |bytes| (images(bytes, work.size), bytes.to_vec()))?;
         let [left_objects, right_objects] =
             self.gpu.read(&results.objects, |bytes| object_images(bytes, &seen, work.size))?;
         Ok(LabeledPair { pair: RenderedPair { left, right }, left_objects, right_objects })
+    }
+
+    /// Only which object every pixel shows, in a fraction of the time: left, right. It is what
+    /// [`EyeRenderer::render_labeled`] says.
+    pub fn objects(
+        &mut self,
+        scenery: &Scenery,
+        snapshot: &Snapshot,
+        sensor: &Sensor,
+    ) -> Result<[ObjectImage; 2], RenderError> {
+        let work = self.prepare(scenery, snapshot, sensor, 0)?;
+        let results = self.submit(&work, Wanted { image: false, objects: true })?;
+        let seen = self.gpu.read(&results.bytes, |bytes| bytes.to_vec())?;
+        self.gpu.read(&results.objects, |bytes| object_images(bytes, &seen, work.size))
     }
 
     /// The part of the work that the CPU does: checks, packing, lists.
@@ -167,9 +190,9 @@ impl EyeRenderer {
     }
 
     /// Uploads and starts the device; tells where the results will be.
-    fn submit(&mut self, work: &Work, objects: bool) -> Result<Results, RenderError> {
+    fn submit(&mut self, work: &Work, wanted: Wanted) -> Result<Results, RenderError> {
         let used = (0..VARIANTS).filter(|&variant| work.lists.runs[variant].1 > 0);
-        self.gpu.prepare(used, work.meshes, work.taps, objects);
+        self.gpu.prepare(used, work.meshes, work.taps, wanted.objects);
         let room = Room {
             tiles: 4 * work.lists.data.len() as u64,
             shadow_tiles: 4 * work.shadow.data.len() as u64,
@@ -185,7 +208,7 @@ impl EyeRenderer {
             self.gpu.write(&buffers.meshes, bytemuck::cast_slice(&self.meshes.buffer));
             self.meshes.changed = false;
         }
-        encode(&self.gpu, buffers, work, objects);
+        encode(&self.gpu, buffers, work, wanted);
         self.gpu.check()?;
         Ok(Results { bytes: buffers.bytes_back.clone(), objects: buffers.objects_back.clone() })
     }
@@ -233,7 +256,8 @@ fn upload(gpu: &Gpu, buffers: &Buffers, work: &Work) {
     gpu.write(&buffers.jobs, bytemuck::cast_slice(&jobs));
 }
 
-fn encode(gpu: &Gpu, buffers: &Buffers, work: &Work, objects: bool) {
+fn encode(gpu: &Gpu, buffers: &Buffers, work: &Work, wanted: Wanted) {
+    let Wanted { image, objects } = wanted;
     let mut encoder =
         gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("eyes") });
     encoder.clear_buffer(&buffers.shadow_map, 0, None);
@@ -245,7 +269,7 @@ fn encode(gpu: &Gpu, buffers: &Buffers, work: &Work, objects: bool) {
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         let job = |number: u32| number * JOB_STRIDE as u32;
-        if let Some(cast) = gpu.cast(work.meshes).filter(|_| work.shadow.tiles > 0) {
+        if let Some(cast) = gpu.cast(work.meshes).filter(|_| image && work.shadow.tiles > 0) {
             pass.set_pipeline(cast);
             pass.set_bind_group(0, &buffers.shadow_group, &[]);
             pass.set_bind_group(1, &buffers.job_group, &[job(SHADOW_JOB)]);
@@ -253,7 +277,7 @@ fn encode(gpu: &Gpu, buffers: &Buffers, work: &Work, objects: bool) {
         }
         pass.set_bind_group(0, &buffers.see_group, &[]);
         for (variant, &(_, count)) in work.lists.runs.iter().enumerate() {
-            if let Some(pipeline) = gpu.see(variant).filter(|_| count > 0) {
+            if let Some(pipeline) = gpu.see(variant).filter(|_| image && count > 0) {
                 pass.set_pipeline(pipeline);
                 pass.set_bind_group(1, &buffers.job_group, &[job(variant as u32)]);
                 pass.dispatch_workgroups(4 * count as u32, 1, 1);

@@ -138,7 +138,7 @@ impl Sensor {
 }
 
 /// Distance from the axis in the image, in units of the focal length, at an angle off the axis.
-pub(super) fn theta_d(lens: &Fisheye, theta_rad: f64) -> f64 {
+pub(crate) fn theta_d(lens: &Fisheye, theta_rad: f64) -> f64 {
     let t2 = theta_rad * theta_rad;
     let [k1, k2, k3, k4] = lens.k;
     theta_rad * (1.0 + t2 * (k1 + t2 * (k2 + t2 * (k3 + t2 * k4))))

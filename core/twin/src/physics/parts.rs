@@ -113,7 +113,7 @@ pub(crate) fn material_of(visual: &Visual, side: Side) -> Material {
     let [r, g, b, _] = visual.rgba;
     let linear = |c: f32| c.powf(2.2);
     let (darkening, gloss) = match side {
-        Side::Body => (1.0, 0.05),
+        Side::Body => (1.0, 0.025),
         Side::Arm(_) => (0.06, 0.08),
         Side::Hand(_) => (0.7, 0.08),
     };

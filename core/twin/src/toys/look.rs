@@ -29,9 +29,9 @@ impl Default for Look {
     }
 }
 
-const BANANA_YELLOW: [f32; 3] = [0.86, 0.62, 0.015];
+const BANANA_YELLOW: [f32; 3] = [0.88, 0.66, 0.018];
 const BANANA_TIP: [f32; 3] = [0.30, 0.19, 0.02];
-const DUCK_YELLOW: [f32; 3] = [0.88, 0.60, 0.012];
+const DUCK_YELLOW: [f32; 3] = [0.90, 0.63, 0.012];
 const BEAK: [f32; 3] = [0.85, 0.16, 0.012];
 const BLACK: [f32; 3] = [0.008, 0.008, 0.008];
 const FABRIC_WHITE: [f32; 3] = [0.80, 0.79, 0.76];
@@ -40,7 +40,7 @@ const CAP_BROWN: [f32; 3] = [0.36, 0.145, 0.085];
 const CREASE: [f32; 3] = [0.10, 0.035, 0.02];
 const ORANGE: [f32; 3] = [0.90, 0.125, 0.012];
 const RED: [f32; 3] = [0.56, 0.020, 0.014];
-const LEAF: [f32; 3] = [0.030, 0.062, 0.022];
+const LEAF: [f32; 3] = [0.028, 0.052, 0.022];
 
 /// What a toy looks like, origin and axes as those of its colliding parts.
 pub(crate) fn parts(toy: Toy, look: &Look) -> Vec<ToyPart> {
@@ -116,7 +116,7 @@ impl Maker {
         let mut faces = vec![];
         for leaf in 0..5 {
             let angle = TAU * f64::from(leaf) / 5.0 + 0.12 * (f64::from(leaf) * 2.4).sin();
-            let half = 0.44 + 0.06 * wide;
+            let half = 0.42 + 0.06 * wide;
             let reach = 0.88 + 0.10 * (f64::from(leaf) * 1.7).cos() + 0.08 * wide;
             let first = vertices.len();
             vertices.extend([

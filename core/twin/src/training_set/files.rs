@@ -44,9 +44,10 @@ pub(super) fn one(
     JpegEncoder::new_with_quality(&mut jpeg, quality)
         .encode_image(image)
         .map_err(|error| SetError::Encode(error.to_string()))?;
-    write(&out.join("images").join(split).join(format!("{name}.jpg")), &jpeg)?;
+    // Labels first: an image is never without them, whenever the work is ended.
     let text: String = labels.iter().map(|label| line(label, image.dimensions())).collect();
-    write(&out.join("labels").join(split).join(format!("{name}.txt")), text.as_bytes())
+    write(&out.join("labels").join(split).join(format!("{name}.txt")), text.as_bytes())?;
+    write(&out.join("images").join(split).join(format!("{name}.jpg")), &jpeg)
 }
 
 /// What made the set, and what is in it.
@@ -70,6 +71,11 @@ pub(super) fn recipe(out: &Path, options: &SetOptions, summary: &SetSummary) -> 
     write(&out.join("recipe.json"), text.as_bytes())
 }
 
+/// Under another name first, so that nobody reads half a file.
 fn write(file: &Path, bytes: &[u8]) -> Result<(), SetError> {
-    fs::write(file, bytes).map_err(|source| SetError::Write { file: file.to_owned(), source })
+    let failed = |source| SetError::Write { file: file.to_owned(), source };
+    let mut part = file.as_os_str().to_owned();
+    part.push(".part");
+    fs::write(&part, bytes).map_err(failed)?;
+    fs::rename(&part, file).map_err(failed)
 }

@@ -4,9 +4,22 @@ use image::RgbImage;
 
 use super::dice::Dice;
 
+/// The edge of what a lens shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Rim {
+    /// Middle of the image circle.
+    pub middle_px: [f32; 2],
+    /// Its radius.
+    pub radius_px: f32,
+}
+
 /// How a camera processes its images.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Finish {
+    /// Edges of the left and the right image.
+    rims: [Rim; 2],
+    /// Breadth of the rim that turns blue, px.
+    blue_px: f32,
     /// Exponent of brightness.
     gamma: f32,
     /// Strength of the S-curve, 0–1.
@@ -24,9 +37,12 @@ pub(super) struct Finish {
 }
 
 impl Finish {
-    pub fn draw(dice: &mut Dice) -> Self {
+    /// Any camera.
+    pub fn draw(rims: [Rim; 2], dice: &mut Dice) -> Self {
         let usual = dice.chance(0.7);
         Self {
+            rims,
+            blue_px: if dice.chance(0.7) { dice.within_f32(2.0, 26.0) } else { 0.0 },
             gamma: if usual { dice.within_f32(0.85, 1.15) } else { dice.within_f32(0.7, 1.45) },
             contrast: dice.within_f32(0.0, if usual { 0.7 } else { 0.9 }),
             saturation: if usual { dice.within_f32(0.9, 1.45) } else { dice.within_f32(0.6, 1.8) },
@@ -37,8 +53,9 @@ impl Finish {
         }
     }
 
-    /// Processes an image in place.
-    pub fn apply(&self, image: &mut RgbImage) {
+    /// Processes the image of an eye (0 left, 1 right) in place.
+    pub fn apply(&self, image: &mut RgbImage, eye: usize) {
+        self.tint_rim(image, self.rims[eye]);
         let (width, height) = image.dimensions();
         let (w, h) = (width as usize, height as usize);
         let curve: Vec<f32> = (0..256).map(|v| self.curve(v as f32 / 255.0)).collect();
@@ -64,6 +81,22 @@ impl Finish {
             let (r, b) = (y + red[i], y + blue[i]);
             let g = (y - 0.299 * r - 0.114 * b) / 0.587;
             pixel.0 = [r, g, b].map(|v| (v.clamp(0.0, 1.0) * 255.0 + 0.5) as u8);
+        }
+    }
+
+    /// Red and green are lost before blue toward the edge.
+    fn tint_rim(&self, image: &mut RgbImage, rim: Rim) {
+        if self.blue_px <= 0.0 {
+            return;
+        }
+        for (x, y, pixel) in image.enumerate_pixels_mut() {
+            let (dx, dy) = (x as f32 - rim.middle_px[0], y as f32 - rim.middle_px[1]);
+            let inward = (rim.radius_px - dx.hypot(dy)) / self.blue_px;
+            if inward < 1.0 {
+                let inward = inward.max(0.0);
+                let [r, g, b] = pixel.0.map(f32::from);
+                pixel.0 = [(r * inward) as u8, (g * inward.sqrt()) as u8, b as u8];
+            }
         }
     }
 
@@ -114,6 +147,8 @@ mod tests {
     use super::*;
 
     const NEUTRAL: Finish = Finish {
+        rims: [RIM; 2],
+        blue_px: 0.0,
         gamma: 1.0,
         contrast: 0.0,
         saturation: 1.0,
@@ -134,14 +169,14 @@ mod tests {
     #[test]
     fn a_neutral_camera_changes_nothing() {
         let mut image = edge();
-        NEUTRAL.apply(&mut image);
+        NEUTRAL.apply(&mut image, 0);
         assert_eq!(image, edge());
     }
 
     #[test]
     fn sharpening_overshoots_at_edges_and_nowhere_else() {
         let mut image = edge();
-        Finish { sharpen: 1.0, ..NEUTRAL }.apply(&mut image);
+        Finish { sharpen: 1.0, ..NEUTRAL }.apply(&mut image, 0);
         assert!(image.get_pixel(7, 4)[0] < 80 && image.get_pixel(8, 4)[0] > 160);
         assert_eq!(image.get_pixel(2, 4), edge().get_pixel(2, 4));
     }
@@ -149,7 +184,17 @@ mod tests {
     #[test]
     fn black_stays_black() {
         let mut image = RgbImage::new(8, 8);
-        Finish { lift: 0.03, contrast: 0.5, gamma: 0.8, ..NEUTRAL }.apply(&mut image);
+        Finish { lift: 0.03, contrast: 0.5, gamma: 0.8, ..NEUTRAL }.apply(&mut image, 0);
         assert!(image.iter().all(|v| *v == 0));
+    }
+
+    #[test]
+    fn a_rim_turns_blue_toward_the_edge_only() {
+        let mut image = RgbImage::from_pixel(40, 1, image::Rgb([200, 200, 200]));
+        Finish { rims: [Rim { middle_px: [0.0, 0.0], radius_px: 30.0 }; 2], blue_px: 10.0, ..NEUTRAL }
+            .apply(&mut image, 0);
+        assert_eq!(image.get_pixel(15, 0).0, [200; 3]);
+        let [r, g, b] = image.get_pixel(27, 0).0;
+        assert!(r < g && g < b);
     }
 }

@@ -14,6 +14,8 @@ mod labels;
 mod placing;
 mod room;
 mod scene;
+#[cfg(test)]
+mod tests;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -25,7 +27,7 @@ use plumbline_model::{Cancelled, JobContext};
 use self::arms::Bank;
 use self::labels::{Appears, appears};
 use self::scene::Scene;
-use crate::eyes::{EyeOptions, EyeRenderer, LabeledPair, RenderError};
+use crate::eyes::{EyeOptions, EyeRenderer, ObjectImage, RenderError};
 
 pub use labels::Label;
 
@@ -33,7 +35,7 @@ pub use labels::Label;
 pub const GENERATOR: u32 = 1;
 /// Most pairs of a set.
 pub const MOST_PAIRS: usize = 100_000;
-/// A scene is drawn at most this often, each time with less in it.
+/// A scene is looked at at most this often, each time with less in it.
 const MOST_TRIES: usize = 6;
 
 /// What to draw.
@@ -145,34 +147,42 @@ impl SetPainter {
     /// # Errors
     /// When the renderer fails.
     pub fn pair(&mut self, seed: u64, index: usize) -> Result<LabeledImages, SetError> {
-        let scene = Scene::draw(&self.rig, &self.bank, seed, index as u64);
+        let (scene, without) = self.clear_scene(seed, index as u64)?;
+        let drawn = self.renderer.render_labeled(
+            &scene.scenery(&without),
+            &scene.snapshot,
+            &scene.sensor,
+            scene.noise_seed,
+        )?;
+        let (labels, _) = label(&scene, &[drawn.left_objects, drawn.right_objects]);
+        let mut images = [drawn.pair.left, drawn.pair.right];
+        images.iter_mut().enumerate().for_each(|(eye, image)| scene.finish.apply(image, eye));
+        Ok(LabeledImages { images, labels, quality: scene.finish.quality })
+    }
+
+    /// A scene, and what must be left out of it so that nothing remains of which only a little is
+    /// seen. It takes a fraction of the time that the images take.
+    fn clear_scene(&mut self, seed: u64, index: u64) -> Result<(Scene, Vec<u16>), SetError> {
+        let scene = Scene::draw(&self.rig, &self.bank, seed, index);
         let mut without: Vec<u16> = vec![];
-        for tried in 1.. {
-            let drawn = self.renderer.render_labeled(
-                &scene.scenery(&without),
-                &scene.snapshot,
-                &scene.sensor,
-                scene.noise_seed,
-            )?;
-            let (labels, barely) = label(&scene, &drawn);
-            if barely.is_empty() || tried == MOST_TRIES {
-                let LabeledPair { pair, .. } = drawn;
-                let mut images = [pair.left, pair.right];
-                images.iter_mut().for_each(|image| scene.finish.apply(image));
-                return Ok(LabeledImages { images, labels, quality: scene.finish.quality });
+        for _ in 0..MOST_TRIES {
+            let objects = self.renderer.objects(&scene.scenery(&without), &scene.snapshot, &scene.sensor)?;
+            let (_, barely) = label(&scene, &objects);
+            if barely.is_empty() {
+                break;
             }
             without.extend(barely);
         }
-        unreachable!("the last try returns")
+        Ok((scene, without))
     }
 }
 
 /// Labels of both eyes, and the objects of which too little is seen.
-fn label(scene: &Scene, drawn: &LabeledPair) -> ([Vec<Label>; 2], Vec<u16>) {
+fn label(scene: &Scene, [left, right]: &[ObjectImage; 2]) -> ([Vec<Label>; 2], Vec<u16>) {
     let eyes = &scene.snapshot.eyes;
     let views = [
-        (&drawn.left_objects, &eyes.left, &eyes.robot_from_left.isometry),
-        (&drawn.right_objects, &eyes.right, &eyes.robot_from_right.isometry),
+        (left, &eyes.left, &eyes.robot_from_left.isometry),
+        (right, &eyes.right, &eyes.robot_from_right.isometry),
     ];
     let mut labels = [vec![], vec![]];
     let mut barely = vec![];
@@ -225,7 +235,7 @@ pub fn generate(out: &Path, options: &SetOptions, context: &dyn JobContext) -> R
         }
         summary.pairs += 1;
         let fraction = summary.pairs as f64 / options.pairs as f64;
-        context.report(fraction, &format!("drawing, pair {} of {}", summary.pairs, options.pairs));
+        context.report(fraction, "drawing pairs");
     }
     files::recipe(out, options, &summary)?;
     Ok(summary)

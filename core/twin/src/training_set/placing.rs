@@ -78,7 +78,7 @@ pub(super) fn place(
 
 fn some_look(dice: &mut Dice) -> Look {
     let bright = if dice.chance(0.8) { dice.within_f32(0.75, 1.2) } else { dice.within_f32(0.45, 1.5) };
-    let tint = [0; 3].map(|_| bright * (1.0 + dice.normal(0.07) as f32).clamp(0.7, 1.3));
+    let tint = [0; 3].map(|_| bright * (1.0 + dice.normal(0.045) as f32).clamp(0.8, 1.2));
     Look {
         scale: dice.within(0.85, 1.15),
         tint,

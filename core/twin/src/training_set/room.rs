@@ -40,10 +40,12 @@ fn block(items: &mut Vec<Item>, middle_m: [f64; 3], half_m: [f64; 3], material: 
 
 /// Draws a room and says what lies where.
 pub(super) fn furnish(rig: &Rig, dice: &mut Dice, items: &mut Vec<Item>) -> Room {
-    walls(dice, items);
-    let room = tables(rig, dice, items);
+    // Three rooms of five are about like the laboratory, the others are any.
+    let like_lab = dice.chance(0.6);
+    walls(like_lab, dice, items);
+    let room = tables(rig, like_lab, dice, items);
     if room.has_screen {
-        screen(&room, dice, items);
+        screen(&room, like_lab, dice, items);
     }
     before_the_robot(&room, dice, items);
     things_behind(&room, dice, items);
@@ -51,13 +53,12 @@ pub(super) fn furnish(rig: &Rig, dice: &mut Dice, items: &mut Vec<Item>) -> Room
     room
 }
 
-fn walls(dice: &mut Dice, items: &mut Vec<Item>) {
-    // Two rooms of three look like the laboratory.
-    let like_lab = dice.chance(0.67);
-    let wall = if like_lab { dice.gray(0.55, 0.95) } else { dice.color() };
+fn walls(like_lab: bool, dice: &mut Dice, items: &mut Vec<Item>) {
+    // Walls are lit from all over the room: brighter than one lamp makes them.
+    let wall = if like_lab || dice.chance(0.3) { dice.gray(0.7, 1.6) } else { dice.color() };
     let side = |dice: &mut Dice| {
         let shade = dice.within_f32(0.75, 1.1);
-        plain(wall.map(|c| (c * shade).min(0.97)))
+        plain(wall.map(|c| c * shade))
     };
     let floor = if like_lab { dice.gray(0.25, 0.6) } else { dice.color() };
     let (front, left, right) = (dice.within(1.7, 2.8), dice.within(1.2, 2.3), dice.within(-2.0, -1.0));
@@ -85,8 +86,17 @@ fn walls(dice: &mut Dice, items: &mut Vec<Item>) {
             plain([bright; 3]),
         );
     }
-    if dice.chance(0.85) {
-        curtain(front - 0.1, dice, items);
+    if like_lab || dice.chance(0.7) {
+        curtain(front - 0.1, like_lab, dice, items);
+    }
+    if like_lab && dice.chance(0.8) {
+        // Glass above a white panel, a dark door, a box on the floor.
+        let x = dice.within(0.5, 1.1);
+        block(items, [x, left - 0.05, 0.1], [0.08, 0.03, 0.8], plain([0.10, 0.045, 0.022]));
+        let (pane, deep) = (dice.gray(0.02, 0.4), dice.within(0.2, 0.5));
+        block(items, [x + 0.1 + deep, left - 0.05, 1.0], [deep, 0.02, 0.25], plain(pane));
+        let at = [dice.within(1.4, 1.9), dice.within(0.7, left - 0.1), dice.within(-0.3, 0.05)];
+        block(items, at, [0.1, 0.1, 0.13], plain(dice.gray(0.015, 0.06)));
     }
     // A door, a cupboard, windows and pictures at the walls.
     for _ in 0..dice.count(1, 5) {
@@ -100,14 +110,14 @@ fn walls(dice: &mut Dice, items: &mut Vec<Item>) {
     }
 }
 
-fn curtain(x_m: f64, dice: &mut Dice, items: &mut Vec<Item>) {
-    let albedo = if dice.chance(0.8) { dice.gray(0.005, 0.04) } else { dice.color() };
+fn curtain(x_m: f64, like_lab: bool, dice: &mut Dice, items: &mut Vec<Item>) {
+    let albedo = if like_lab || dice.chance(0.4) { dice.gray(0.003, 0.025) } else { dice.color() };
     let folds = Pattern::Folds { period_m: dice.within_f32(0.06, 0.16), contrast: dice.within_f32(0.1, 0.6) };
     let material = Material { albedo, gloss: 0.0, pattern: folds };
     let (middle, gap) = (dice.within(-0.4, 0.4), dice.within(0.0, 0.08));
-    let (low, high) = (dice.within(0.0, 0.25), dice.within(1.2, 1.6));
+    let (low, high) = (dice.within(-0.15, 0.2), dice.within(1.3, 1.9));
     for side in [-1.0, 1.0] {
-        let half = dice.within(0.3, 0.6);
+        let half = dice.within(0.35, 0.75);
         let y = middle + side * (half + gap);
         block(items, [x_m, y, 0.5 * (low + high)], [0.02, half, 0.5 * (high - low)], material);
     }
@@ -118,7 +128,7 @@ fn wood(dice: &mut Dice) -> Material {
     let tint = dice.within_f32(0.6, 1.6);
     Material {
         albedo: [0.58 * shade, 0.22 * shade * tint.sqrt(), 0.055 * shade * tint],
-        gloss: dice.within_f32(0.0, 0.06),
+        gloss: dice.within_f32(0.0, 0.029),
         pattern: Pattern::Speckle {
             size_m: dice.within_f32(0.006, 0.03),
             contrast: dice.within_f32(0.03, 0.25),
@@ -126,14 +136,14 @@ fn wood(dice: &mut Dice) -> Material {
     }
 }
 
-fn table_top(dice: &mut Dice) -> Material {
-    if dice.chance(0.72) {
+fn table_top(like_lab: bool, dice: &mut Dice) -> Material {
+    if like_lab || dice.chance(0.4) {
         // Black and white grains.
         return Material {
             albedo: dice.gray(0.35, 0.70),
-            gloss: dice.within_f32(0.0, 0.06),
+            gloss: dice.within_f32(0.0, 0.029),
             pattern: Pattern::Speckle {
-                size_m: dice.within_f32(0.0018, 0.0065),
+                size_m: dice.within_f32(0.0018, 0.0055),
                 contrast: dice.within_f32(0.45, 1.15),
             },
         };
@@ -144,20 +154,20 @@ fn table_top(dice: &mut Dice) -> Material {
     let albedo = if dice.chance(0.5) { dice.gray(0.02, 0.9) } else { dice.color() };
     let size_m = dice.within_f32(0.002, 0.05);
     let pattern = Pattern::Speckle { size_m, contrast: dice.within_f32(0.0, 0.6) };
-    Material { albedo, gloss: dice.within_f32(0.0, 0.06), pattern }
+    Material { albedo, gloss: dice.within_f32(0.0, 0.029), pattern }
 }
 
-fn tables(rig: &Rig, dice: &mut Dice, items: &mut Vec<Item>) -> Room {
+fn tables(rig: &Rig, like_lab: bool, dice: &mut Dice, items: &mut Vec<Item>) -> Room {
     let table_m = rig.table.height_m + dice.within(-0.02, 0.02);
     let [x, y] = [rig.table.x_range_m, rig.table.y_range_m];
     let far = x[1] + dice.within(-0.04, 0.10);
     let wide = [y[0] + dice.within(-0.12, 0.08), y[1] + dice.within(-0.08, 0.12)];
     let desk_m =
         if dice.chance(0.5) { table_m - dice.within(0.0, 0.006) } else { table_m - dice.within(0.01, 0.05) };
-    let top = table_top(dice);
+    let top = table_top(like_lab, dice);
     let (mx, my) = (0.5 * (x[0] + far), 0.5 * (wide[0] + wide[1]));
     block(items, [mx, my, table_m - 0.016], [0.5 * (far - x[0]), 0.5 * (wide[1] - wide[0]), 0.016], top);
-    let desk = if dice.chance(0.8) { wood(dice) } else { table_top(dice) };
+    let desk = if like_lab || dice.chance(0.6) { wood(dice) } else { table_top(false, dice) };
     let (deep, half) = (dice.within(0.9, 1.4), dice.within(0.5, 0.75));
     let desk_low = desk_m - 0.02;
     block(items, [0.5 * deep - 0.1, 0.0, desk_low], [0.5 * deep + 0.1, half, 0.02], desk);
@@ -170,15 +180,19 @@ fn tables(rig: &Rig, dice: &mut Dice, items: &mut Vec<Item>) -> Room {
     Room {
         robot_from_screen: Isometry3::from_parts(at.into(), turn),
         screen_half_m: [0.5 * screen.height_m, 0.5 * screen.width_m],
-        has_screen: dice.chance(0.93),
+        has_screen: like_lab || dice.chance(0.85),
         table_m,
         table_range_m: [[x[0], far], wide],
         desk_m,
     }
 }
 
-fn screen(room: &Room, dice: &mut Dice, items: &mut Vec<Item>) {
-    let gloss = if dice.chance(0.75) { dice.within_f32(0.065, 0.13) } else { dice.within_f32(0.02, 0.40) };
+fn screen(room: &Room, like_lab: bool, dice: &mut Dice, items: &mut Vec<Item>) {
+    let gloss = match dice.within(0.0, 1.0) {
+        p if p < if like_lab { 0.85 } else { 0.4 } => dice.within_f32(0.03, 0.06),
+        p if p < 0.9 => dice.within_f32(0.075, 0.20),
+        _ => dice.within_f32(0.0, 0.40),
+    };
     let glass = Material { albedo: dice.gray(0.001, 0.012), gloss, pattern: Pattern::Plain };
     let frame = Material {
         albedo: dice.gray(0.003, 0.02),
@@ -288,7 +302,8 @@ fn clutter(room: &Room, dice: &mut Dice, items: &mut Vec<Item>) {
             1 => *dice.pick(&[[0.6, 0.02, 0.015], [0.85, 0.6, 0.02], [0.8, 0.8, 0.78], [0.85, 0.14, 0.015]]),
             _ => dice.color(),
         };
-        let material = Material { albedo: color, gloss: dice.within_f32(0.0, 0.09), pattern: Pattern::Plain };
+        let material =
+            Material { albedo: color, gloss: dice.within_f32(0.0, 0.029), pattern: Pattern::Plain };
         let flat = dice.chance(0.35);
         match dice.count(0, 4) {
             0 | 1 => {

@@ -6,11 +6,11 @@ use plumbline_model::{Camera, CameraModel, ClassIndex, Pose};
 
 use super::arms::{self, Bank, Doing};
 use super::dice::Dice;
-use super::finish::Finish;
+use super::finish::{Finish, Rim};
 use super::labels::Thing;
 use super::placing::{self, Placed};
 use super::room::{self, put};
-use crate::eyes::{FaceShell, Sensor};
+use crate::eyes::{FaceShell, Sensor, theta_d};
 use crate::scene::{Item, Light, Scenery, Snapshot, TrueEyes};
 use crate::toys::Toy;
 
@@ -94,12 +94,28 @@ impl Scene {
             snapshot: Snapshot { time_s: 0.0, robot_from_body: vec![Isometry3::identity()], eyes },
             light: light(dice),
             sensor: sensor(&eyes, dice),
-            finish: Finish::draw(dice),
+            finish: Finish::default(),
             noise_seed: dice.seed(),
             things: vec![],
         };
+        scene.finish = Finish::draw(scene.rims(), dice);
         scene.things = scene.list_things(rig);
         scene
+    }
+
+    /// The edges of both images.
+    fn rims(&self) -> [Rim; 2] {
+        let eyes = &self.snapshot.eyes;
+        [&eyes.left, &eyes.right].map(|camera| {
+            let middle = camera.model.principal_point();
+            let (focal_px, _) = camera.model.focal_px();
+            let angle = f64::from(self.sensor.image_circle_rad);
+            let radius_px = match &camera.model {
+                CameraModel::Fisheye(lens) => focal_px * theta_d(lens, angle),
+                CameraModel::Pinhole(_) => focal_px * angle,
+            };
+            Rim { middle_px: [middle.u_px as f32, middle.v_px as f32], radius_px: radius_px as f32 }
+        })
     }
 
     fn list_things(&self, rig: &Rig) -> Vec<Thing> {
@@ -220,18 +236,24 @@ fn choose_posture(
     };
     let palm = crate::hand_look::palms(rig)[arm]?;
     let mut last = None;
-    for _ in 0..if dice.chance(0.85) { 25 } else { 1 } {
+    for _ in 0..if dice.chance(0.85) { 40 } else { 1 } {
         let angles = bank.pick(arm, doing, dice)?;
         let place = rig.description.forward(&posture.with(&rig.arms[arm].joints, &angles)).of(palm).isometry;
         let middle = place * nalgebra::Point3::new(0.0, 0.0, -0.034);
         let before_eye = (eyes.robot_from_left.isometry.inverse() * middle).coords;
-        // A palm is best told when it is seen flat.
-        let flat = (place.rotation * Vector3::x())
-            .dot(&(middle.coords - eyes.robot_from_left.isometry.translation.vector).normalize())
-            .abs();
-        let in_sight = before_eye.z.atan2(before_eye.xy().norm()) > 0.02;
+        let from_eye = (middle.coords - eyes.robot_from_left.isometry.translation.vector).normalize();
+        // A palm is best told when it is seen flat; one that is held up shows its edge as often.
+        let flat = (place.rotation * Vector3::x()).dot(&from_eye).abs();
+        let in_sight = before_eye.z.atan2(before_eye.xy().norm()) > -0.08;
+        // Beside the head, or pointing ahead on the table, as they mostly are.
+        let usual = match doing {
+            Doing::Raised => before_eye.z.atan2(before_eye.xy().norm()) < 0.6,
+            Doing::Resting => (place.rotation * -Vector3::z()).x > 0.6,
+            Doing::Working | Doing::Anything => true,
+        };
         last = Some(angles);
-        if in_sight && flat > dice.within(0.0, 0.8) {
+        let flat_enough = doing == Doing::Raised || flat > dice.within(0.0, 0.8);
+        if in_sight && flat_enough && (usual || dice.chance(0.25)) {
             break;
         }
     }
@@ -245,7 +267,7 @@ fn light(dice: &mut Dice) -> Light {
 }
 
 fn sensor(eyes: &TrueEyes, dice: &mut Dice) -> Sensor {
-    let exposure = if dice.chance(0.75) { dice.within_f32(1.1, 1.9) } else { dice.within_f32(0.45, 2.6) };
+    let exposure = if dice.chance(0.8) { dice.within_f32(0.85, 1.5) } else { dice.within_f32(0.4, 2.3) };
     let warm = dice.normal(0.06) as f32;
     let green = dice.normal(0.025) as f32;
     let limit = [&eyes.left, &eyes.right]
