@@ -10,6 +10,7 @@ pub mod chessboard;
 pub mod depth;
 pub mod detect;
 pub mod detect_places;
+pub mod detect_score;
 pub mod disparity;
 pub mod locate;
 pub mod mat;
