@@ -5,6 +5,7 @@ mod bench_window;
 mod calibrate;
 mod common;
 mod correct;
+mod detector_set;
 mod disparity;
 mod doctor;
 mod gap;
@@ -57,6 +58,8 @@ enum Verb {
     Predict(WithJson<predict::Predict>),
     /// Finds where model and measurement disagree, names what is missing, shows the gap shrink.
     Gap(WithJson<gap::Gap>),
+    /// Draws labeled images of the twin with everything randomised, to train a detector on.
+    DetectorSet(WithJson<detector_set::DetectorSet>),
     /// Computes the disparity of a pair.
     Disparity(WithJson<disparity::Disparity>),
     /// Says what works on this machine: libraries, graphics, cameras, serial ports, folders.
@@ -113,6 +116,7 @@ pub fn run() -> ExitCode {
                 Verb::Correct(verb) => verb.run(correct::run),
                 Verb::Predict(verb) => verb.run(predict::run),
                 Verb::Gap(verb) => verb.run(gap::run),
+                Verb::DetectorSet(verb) => verb.run(detector_set::run),
                 Verb::Disparity(verb) => verb.run(disparity::run),
                 Verb::Doctor(verb) => verb.run(doctor::run),
                 Verb::Sample(verb) => verb.run(sample::run),

@@ -47,7 +47,8 @@ fn matt(gray: f32, gloss: f32) -> Material {
 /// fingers (-z), is broad along y and thin along x.
 pub(crate) fn palm(link_from_box: &Isometry3<f64>, half_m: &Vector3<f64>, look: &HandLook) -> Vec<Drawn> {
     let (x, y, z) = (half_m.x, half_m.y * look.breadth, half_m.z);
-    let (black, dark, metal) = (matt(look.black, 0.07), matt(look.black * 2.2, 0.09), matt(look.metal, 0.25));
+    let (black, dark, metal) =
+        (matt(look.black, 0.035), matt(look.black * 2.2, 0.05), matt(look.metal, 0.25));
     let across = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), FRAC_PI_2);
     let through = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), FRAC_PI_2);
     let mut drawn: Vec<Drawn> = vec![];
@@ -97,7 +98,7 @@ pub(crate) fn palm(link_from_box: &Isometry3<f64>, half_m: &Vector3<f64>, look: 
 
 /// The two pieces of a finger with what is on them, each in its own frame.
 pub(crate) fn finger(finger: &Finger, look: &HandLook) -> (Vec<Drawn>, Vec<Drawn>) {
-    let (black, metal) = (matt(look.black, 0.07), matt(look.metal * 0.35, 0.2));
+    let (black, metal) = (matt(look.black, 0.035), matt(look.metal * 0.35, 0.2));
     let mut near = vec![(finger.near.0, finger.near.1.clone(), black)];
     let mut far = vec![(finger.far.0, finger.far.1.clone(), black)];
     if let Shape::Capsule { radius_m, half_length_m } = finger.far.1 {
@@ -114,7 +115,7 @@ pub(crate) fn finger(finger: &Finger, look: &HandLook) -> (Vec<Drawn>, Vec<Drawn
 
 /// The thumb's last part, and metal on it.
 pub(crate) fn thumb(link_from_shape: &Isometry3<f64>, shape: &Shape, look: &HandLook) -> Vec<Drawn> {
-    let mut drawn = vec![(*link_from_shape, shape.clone(), matt(look.black, 0.07))];
+    let mut drawn = vec![(*link_from_shape, shape.clone(), matt(look.black, 0.035))];
     if let Shape::Capsule { radius_m, half_length_m } = *shape {
         for at in [-0.55, 0.25] {
             let ring = Shape::Cylinder { radius_m: 1.12 * radius_m, half_length_m: 0.2 * radius_m };

@@ -128,8 +128,8 @@ pub(super) fn draw(
     let palms = hand_look::palms(rig);
     let look = some_look(dice);
     let sleeve = Material {
-        albedo: dice.gray(0.006, 0.03),
-        gloss: dice.within_f32(0.0, 0.09),
+        albedo: dice.gray(0.003, 0.02),
+        gloss: dice.within_f32(0.0, 0.04),
         pattern: Pattern::Plain,
     };
     let mut hand = None;
@@ -185,7 +185,7 @@ pub(super) fn draw(
 
 fn some_look(dice: &mut Dice) -> HandLook {
     HandLook {
-        black: dice.within_f32(0.004, 0.03),
+        black: dice.within_f32(0.003, 0.02),
         metal: dice.within_f32(0.03, 0.45),
         tip: dice.within_f32(0.02, 0.16),
         breadth: dice.within(0.62, 1.05),

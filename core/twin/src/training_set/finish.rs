@@ -44,10 +44,10 @@ impl Finish {
             rims,
             blue_px: if dice.chance(0.7) { dice.within_f32(2.0, 26.0) } else { 0.0 },
             gamma: if usual { dice.within_f32(0.85, 1.15) } else { dice.within_f32(0.7, 1.45) },
-            contrast: dice.within_f32(0.0, if usual { 0.7 } else { 0.9 }),
+            contrast: if usual { dice.within_f32(0.2, 0.8) } else { dice.within_f32(0.0, 1.0) },
             saturation: if usual { dice.within_f32(0.9, 1.45) } else { dice.within_f32(0.6, 1.8) },
             sharpen: if dice.chance(0.7) { dice.within_f32(0.3, 1.8) } else { 0.0 },
-            lift: dice.within_f32(-0.04, 0.03),
+            lift: dice.within_f32(-0.05, 0.015),
             color_block: *dice.pick(&[1, 1, 2, 2, 4]),
             quality: dice.count(70, 95) as u8,
         }
@@ -147,7 +147,7 @@ mod tests {
     use super::*;
 
     const NEUTRAL: Finish = Finish {
-        rims: [RIM; 2],
+        rims: [Rim { middle_px: [0.0; 2], radius_px: 0.0 }; 2],
         blue_px: 0.0,
         gamma: 1.0,
         contrast: 0.0,

@@ -58,6 +58,12 @@ impl Default for SetOptions {
 }
 
 impl SetOptions {
+    /// The set that detectors of this program are judged on and never trained on: 300 pairs, all for
+    /// validation.
+    pub fn held_out() -> Self {
+        Self { pairs: 300, seed: 20_261_121, first: 0, val_share: 1.0 }
+    }
+
     /// Whether a pair is for validation. The choice is spread evenly.
     fn is_val(&self, index: usize) -> bool {
         let share = |n: usize| (n as f64 * self.val_share + 1e-9).floor();
