@@ -220,4 +220,15 @@ mod tests {
         }
         assert_eq!(Toy::from_name("cube"), None);
     }
+
+    #[test]
+    fn what_collides_is_convex_and_simple_whatever_it_looks_like() {
+        let simple = |part: &ToyPart| {
+            matches!(part.shape, Shape::Ellipsoid { .. } | Shape::Capsule { .. } | Shape::Cylinder { .. })
+        };
+        for toy in Toy::ALL {
+            assert!(toy.parts().iter().all(simple), "{toy:?}");
+            assert!(toy.parts().len() <= 5 && toy.look().len() < 30, "{toy:?}");
+        }
+    }
 }

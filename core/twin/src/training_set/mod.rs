@@ -7,6 +7,7 @@
 //! without a label: what shows too little of itself is taken out of the scene.
 
 mod arms;
+mod clutter;
 mod dice;
 mod files;
 mod finish;

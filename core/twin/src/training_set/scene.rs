@@ -66,10 +66,10 @@ impl Scene {
         let mut posture = look_somewhere(rig, dice);
         let eyes = eyes(rig, &posture, dice);
         let mut shown = vec![false; rig.arms.len()];
-        for arm in 0..rig.arms.len() {
+        for (arm, shown) in shown.iter_mut().enumerate() {
             if let Some(angles) = choose_posture(rig, bank, arm, &posture, &eyes, dice) {
                 posture = posture.with(&rig.arms[arm].joints, &angles);
-                shown[arm] = true;
+                *shown = true;
             }
             posture = arms::grip(rig, arm, &posture, dice);
         }
