@@ -1,8 +1,11 @@
 //! What the operator can ask for: one enum per workflow, serializable, so that a journal of
 //! commands is a replay.
 
+mod detect;
 mod gap;
+mod labels;
 mod robot;
+mod scores;
 mod touch;
 
 use std::path::PathBuf;
@@ -11,8 +14,11 @@ use plumbline_hardware::SourceSpec;
 use plumbline_model::{CalibrationOptions, Eye};
 use serde::{Deserialize, Serialize};
 
+pub use detect::{DetectCommand, DetectorChoice, Provider};
 pub use gap::{GapCommand, GapModel};
+pub use labels::{BoxEdit, LabelsCommand};
 pub use robot::{Destination, JOG_DEADLINE_MS, JogRates, MountCommand, RobotCommand, TwinCommand};
+pub use scores::{ConfusionCell, ScoresCommand, SetPart};
 pub use touch::{
     ContactWith, Correction, GraspTable, ModelsCommand, ScreenContact, ScreenWindow, TablesCommand,
     TouchCommand,
@@ -26,6 +32,8 @@ pub enum Command {
     Source(SourceCommand),
     /// What is computed from them, live.
     Live(LiveCommand),
+    /// Detecting objects in those images, live.
+    Detect(DetectCommand),
     /// Calibrating the eyes.
     Eyes(EyesCommand),
     /// The robot: connecting and moving it.
@@ -40,6 +48,10 @@ pub enum Command {
     Models(ModelsCommand),
     /// Finding, naming and adding what makes measurement differ from the model.
     Gap(GapCommand),
+    /// The lab's own data sets: images with boxes.
+    Labels(LabelsCommand),
+    /// Judging detectors.
+    Scores(ScoresCommand),
     /// Long work that is running.
     Job(JobCommand),
     /// Messages to the operator.
@@ -99,6 +111,9 @@ pub struct Products {
     pub disparity: bool,
     /// Chessboard corners drawn over both eyes.
     pub corners: bool,
+    /// Objects in both eyes.
+    #[serde(default)]
+    pub detections: bool,
 }
 
 /// A point of an image to be measured.
@@ -320,6 +335,6 @@ macro_rules! into_command {
     };
 }
 into_command!(
-    Source: SourceCommand, Live: LiveCommand, Eyes: EyesCommand, Robot: RobotCommand, Twin: TwinCommand,
-    Mount: MountCommand, Touch: TouchCommand, Models: ModelsCommand, Gap: GapCommand, Job: JobCommand, Notice: NoticeCommand
+    Source: SourceCommand, Live: LiveCommand, Detect: DetectCommand, Eyes: EyesCommand, Robot: RobotCommand, Twin: TwinCommand,
+    Mount: MountCommand, Touch: TouchCommand, Models: ModelsCommand, Gap: GapCommand, Labels: LabelsCommand, Scores: ScoresCommand, Job: JobCommand, Notice: NoticeCommand
 );

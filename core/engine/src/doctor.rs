@@ -1,6 +1,7 @@
 //! What works on this machine: one check per thing that can be missing, each with a sentence
 //! that says what was found or what to do.
 
+mod detector;
 mod processor;
 mod serial;
 mod twin;
@@ -42,6 +43,7 @@ impl Check {
 pub fn checks(data_folder: &Path) -> Vec<Check> {
     let mut checks = vec![opencv(), processor::instructions(), processor::cores(), processor::memory()];
     checks.extend(twin::checks());
+    checks.extend(detector::checks());
     checks.extend(cameras());
     checks.extend(serial::ports());
     checks.push(writable(data_folder));
@@ -122,6 +124,8 @@ mod tests {
             "memory",
             "twin",
             "twin's eyes",
+            "ONNX Runtime",
+            "detector",
             "cameras",
             "serial ports",
             "data folder",

@@ -3,6 +3,8 @@
 mod bell;
 pub mod command;
 mod context;
+pub mod detect;
+mod detector_scores;
 pub mod doctor;
 pub mod engine;
 pub mod eyes;
@@ -10,6 +12,7 @@ mod gaps;
 mod job_list;
 pub mod jobs;
 pub mod journal;
+pub mod label_sets;
 mod live;
 mod models;
 mod mount;
@@ -29,10 +32,11 @@ pub mod view;
 pub mod work;
 
 pub use command::{
-    AimChoice, Command, ContactWith, Correction, Destination, ExportFormat, Exported, EyesCommand,
-    FileLength, GapCommand, GapModel, GraspTable, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates,
-    LiveCommand, ModelsCommand, MountCommand, NoticeCommand, ProbePoint, Products, RobotCommand,
-    ScreenContact, ScreenWindow, SourceCommand, TablesCommand, TouchCommand, TwinCommand,
+    AimChoice, BoxEdit, Command, ConfusionCell, ContactWith, Correction, Destination, DetectCommand, DetectorChoice, ExportFormat, Exported,
+    EyesCommand, FileLength, GapCommand, GapModel, GraspTable, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId,
+    JogRates, LabelsCommand, LiveCommand, ModelsCommand, MountCommand, NoticeCommand, ProbePoint, Products, Provider,
+    RobotCommand, ScoresCommand, ScreenContact, ScreenWindow, SetPart, SourceCommand, TablesCommand,
+    TouchCommand, TwinCommand,
 };
 pub use context::Action;
 pub use engine::{Engine, Wake};

@@ -70,6 +70,8 @@ pub struct Skipped {
     pub corners: u64,
     /// In front of measuring.
     pub probe: u64,
+    /// In front of the detector.
+    pub detect: u64,
 }
 
 impl Default for LiveState {
@@ -238,6 +240,16 @@ impl LiveState {
     /// Whether somebody looks at the chessboard's corners.
     pub fn wants_corners(&self) -> bool {
         self.wanted.corners
+    }
+
+    /// Whether somebody looks at objects.
+    pub fn wants_detections(&self) -> bool {
+        self.wanted.detections
+    }
+
+    /// What places rest on, or why there are none.
+    pub fn setup(&self) -> Result<Arc<LiveSetup>, String> {
+        self.setup.clone()
     }
 
     /// The newest pair and the setup, if they fit each other.

@@ -9,6 +9,8 @@ mod bench;
 mod calibrate;
 mod check;
 mod correct;
+mod detect;
+mod detect_eval;
 mod detector_set;
 mod disparity;
 mod error;
@@ -28,6 +30,10 @@ pub use bench::{BenchReport, Figure, Peer, bench};
 pub use calibrate::{CalibrateArgs, CalibrateReport, LeftOutCorner, PairErrors, Rejected, calibrate_stereo};
 pub use check::{CheckArgs, CheckReport, check};
 pub use correct::{CorrectArgs, CorrectReport, CorrectedPoint, correct};
+pub use detect::{DetectArgs, DetectReport, FoundBox, LeftOutImage, detect};
+pub use detect_eval::{
+    ClassReport, DetectEvalArgs, DetectEvalReport, FailedModel, ModelReport, detect_eval,
+};
 pub use detector_set::{ClassBoxes, DetectorSetArgs, DetectorSetReport, detector_set};
 pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};
 pub use error::OfflineError;
@@ -38,3 +44,6 @@ pub use locate::{LocateArgs, LocateReport, LocatedPoint, locate};
 pub use predict::{ImagePoints, PredictArgs, PredictReport, PredictedRow, TableGap, predict};
 pub use sample::{SampleArgs, SampleReport, write_sample};
 pub use train::{TrainArgs, TrainReport, train};
+pub use plumbline_vision::detect as detector;
+pub use plumbline_vision::detect_score as scores;
+pub use plumbline_vision::yolo_set::Split;

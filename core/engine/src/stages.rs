@@ -1,6 +1,7 @@
 //! The stages of the live pipeline: plain structs with `process`, run by a thread each.
 
 mod corners;
+mod detect;
 mod probe;
 mod rectify;
 mod run;
@@ -11,6 +12,7 @@ use std::time::Duration;
 use plumbline_model::{AimedPair, LeftCamera, Pose, Robot, Stamp, StereoCalibration};
 
 pub use corners::{CornersInput, CornersStage};
+pub use detect::{DetectFailure, DetectInput, DetectOutput, DetectStage};
 pub use probe::{ProbeInput, ProbeOutput, ProbeStage, other_size};
 pub use rectify::{RectifyInput, RectifyOutput, RectifyStage};
 pub use run::{StagePanic, StageThread, run_stage};

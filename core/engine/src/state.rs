@@ -6,23 +6,28 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::SourceSpec;
+use plumbline_vision::detect::shipped_detector;
 use plumbline_model::StereoFrame;
 use plumbline_model::robot::Rig;
 
 use crate::command::{Command, HeadPose, JobCommand, JobId, NoticeCommand};
 use crate::context::{Action, Context};
+use crate::detect::{Around, DetectState, OpenDetector};
+use crate::detector_scores::ScoresWorkflow;
 use crate::eyes::work::{EyesWork, Restore};
 use crate::eyes::{EyesOfWorlds, EyesState, Look, World};
 use crate::gaps::{GapWorkflow, Surroundings as GapSurroundings};
 use crate::job_list::JobList;
 use crate::jobs::Outcome;
+use crate::label_sets::work::LabelsWork;
+use crate::label_sets::{LabelsWorkflow, Surroundings as LabelsSurroundings};
 use crate::live::{LiveState, Skipped, default_rig};
 use crate::models::{ModelsWorkflow, Surroundings as ModelsSurroundings};
 use crate::mount::{MountState, Surroundings as MountSurroundings};
 use crate::notice::{NoticeLevel, Notices};
 use crate::robot::{News, RobotControl, TouchNews};
 use crate::source::{Control, Note, SourceState};
-use crate::stages::{CornersInput, ProbeInput, ProbeOutput, RectifyInput, RectifyOutput, StagePanic, Timed};
+use crate::stages::{CornersInput, DetectInput, DetectOutput, ProbeInput, ProbeOutput, RectifyInput, RectifyOutput, StagePanic, Timed};
 use crate::touch::{Surroundings as TouchSurroundings, TouchWorkflow};
 use crate::view::{
     Connection, GapView, JobState, JobView, ModelsView, MountView, RobotView, SourceView, TouchView,
@@ -35,6 +40,7 @@ use crate::work::WorkResult;
 pub struct State {
     source: SourceState,
     live: LiveState,
+    detect: DetectState,
     eyes: EyesOfWorlds,
     robot: Arc<RobotView>,
     twin: Arc<TwinView>,
@@ -46,6 +52,8 @@ pub struct State {
     touches: BTreeMap<World, TouchWorkflow>,
     models: BTreeMap<World, ModelsWorkflow>,
     gaps: BTreeMap<World, GapWorkflow>,
+    labels: LabelsWorkflow,
+    scores: ScoresWorkflow,
     /// The finished session of touches that models were told of last, with its revision.
     learned_from: BTreeMap<World, (PathBuf, u64)>,
     /// Work belongs to the world it was started for, whatever is shown when it ends.
@@ -65,6 +73,7 @@ impl State {
         let mut state = Self {
             eyes: EyesOfWorlds::new(data_dir, live.workspace()),
             live,
+            detect: DetectState::new(data_dir),
             source: SourceState::default(),
             robot: Arc::default(),
             twin: Arc::default(),
@@ -87,6 +96,8 @@ impl State {
                 .into_iter()
                 .map(|world| (world, GapWorkflow::new(&world.folder(data_dir))))
                 .collect(),
+            labels: LabelsWorkflow::new(data_dir),
+            scores: ScoresWorkflow::new(shipped_detector().map(|shipped| shipped.file)),
             learned_from: BTreeMap::new(),
             started_by: BTreeMap::new(),
             jobs: JobList::default(),
@@ -95,6 +106,11 @@ impl State {
             shown_of: 0,
             revision: 0,
         };
+        state.with_labels(|labels, _, context| labels.restore(context));
+        let restore = state.detect.restore();
+        state.with_detect(|_, context| {
+            context.start(restore);
+        });
         let workspace = state.live.workspace();
         for world in WORLDS {
             let store = state.eyes.of(world).store().clone();
@@ -133,6 +149,9 @@ impl State {
                 );
             }
             Command::Live(command) => self.apply_live(command),
+            Command::Detect(command) => {
+                self.with_detect(|detect, context| detect.apply(command, context));
+            }
             Command::Eyes(command) => self.with_eyes(|eyes, context| eyes.apply(command, context)),
             Command::Robot(command) => self.actions.push(Action::Robot(command.into())),
             Command::Twin(command) => self.actions.push(Action::Robot(command.into())),
@@ -148,6 +167,13 @@ impl State {
             Command::Gap(command) => {
                 self.with_gap_of(self.arm_of, |gap, around, context| gap.apply(command, around, context));
             }
+            Command::Labels(command) => {
+                self.with_labels(|labels, around, context| labels.apply(command, around, context));
+            }
+            Command::Scores(command) => {
+                let provider = self.detect.chosen().1;
+                self.with_scores(|scores, context| scores.apply(command, provider, context));
+            }
             Command::Job(JobCommand::Cancel(id)) if self.jobs.is_running(id) => {
                 self.actions.push(Action::Cancel(id));
             }
@@ -162,6 +188,28 @@ impl State {
         let mut context = Context { notices, newest: None, source: source.view(), jobs, actions };
         live.apply(command, &mut context);
         self.eyes.set_workspace(self.live.workspace());
+        let wanted = self.live.wants_detections();
+        self.with_detect(|detect, context| detect.want(wanted, context));
+    }
+
+    fn with_detect(&mut self, act: impl FnOnce(&mut DetectState, &mut Context<'_>)) {
+        let Self { source, live, detect, jobs, notices, actions, .. } = self;
+        let mut context = Context { notices, newest: live.newest(), source: source.view(), jobs, actions };
+        act(detect, &mut context);
+    }
+
+    /// Opens detectors in another way (tests, fake detectors).
+    pub fn set_detector_opener(&mut self, open: OpenDetector) {
+        self.detect.set_opener(open);
+    }
+
+    fn around_detection(&self) -> Around<'_> {
+        Around {
+            newest: self.live.newest(),
+            opened: self.shown_of,
+            photographs: self.source.view().photographs,
+            setup: self.live.setup(),
+        }
     }
 
     fn with_eyes(&mut self, act: impl FnOnce(&mut EyesState, &mut Context<'_>)) {
@@ -269,6 +317,34 @@ impl State {
         self.note_world(world, before);
     }
 
+    /// Data sets belong to no world: images of both may be labeled together.
+    fn with_labels(
+        &mut self,
+        act: impl FnOnce(&mut LabelsWorkflow, &LabelsSurroundings, &mut Context<'_>),
+    ) {
+        let Self { source, live, detect, jobs, notices, actions, labels, .. } = self;
+        let mut context = Context { notices, newest: live.newest(), source: source.view(), jobs, actions };
+        let (detector, provider) = detect.chosen();
+        let around = LabelsSurroundings {
+            open: detect.opener().clone(),
+            detector: detector.clone(),
+            provider,
+            confidence: detect.settings().confidence,
+        };
+        act(labels, &around, &mut context);
+    }
+
+    /// What the operator drew and is not on disk yet, to be written before the program ends.
+    pub fn last_write(&self) -> Option<LabelsWork> {
+        self.labels.last_write()
+    }
+
+    fn with_scores(&mut self, act: impl FnOnce(&mut ScoresWorkflow, &mut Context<'_>)) {
+        let Self { source, live, jobs, notices, actions, scores, .. } = self;
+        let mut context = Context { notices, newest: live.newest(), source: source.view(), jobs, actions };
+        act(scores, &mut context);
+    }
+
     /// Work that was just asked for belongs to this world.
     fn note_world(&mut self, world: World, before: usize) {
         for action in &self.actions[before..] {
@@ -336,6 +412,7 @@ impl State {
     pub fn source_changed(&mut self, view: SourceView) {
         if view.opened != self.source.view().opened && view.opened != self.shown_of {
             self.live.clear();
+            self.detect.clear();
         }
         self.eyes.shown = World::of(view.spec.as_ref());
         self.use_mount();
@@ -400,6 +477,16 @@ impl State {
             self.with_mount(|mount, around, context| mount.look(look, around, context));
         }
         self.with_eyes(|eyes, context| eyes.look(look, context));
+    }
+
+    /// The detector has something.
+    pub fn detected(&mut self, output: Timed<DetectOutput>, now: Instant) {
+        self.detect.detected(output, self.shown_of, now);
+    }
+
+    /// What the detector is to do with the newest pair, if anything.
+    pub fn detect_input(&self) -> Option<DetectInput> {
+        self.detect.input(self.around_detection())
     }
 
     /// A stage met a defect of this program and goes on with the next pair.
@@ -471,6 +558,9 @@ impl State {
     fn work_done(&mut self, id: JobId, result: WorkResult) {
         match result {
             WorkResult::Cameras(cameras) => self.source.set_cameras(cameras),
+            WorkResult::Detect(result) => {
+                self.with_detect(|detect, context| detect.work_done(id, *result, context));
+            }
             WorkResult::Eyes(result) => {
                 let world = self.world_of(id);
                 self.with_eyes_of(world, |eyes, context| eyes.work_done(id, *result, context));
@@ -491,6 +581,12 @@ impl State {
                     models.work_done(id, *result, around, context);
                 });
             }
+            WorkResult::Labels(result) => {
+                self.with_labels(|labels, _, context| labels.work_done(id, *result, context));
+            }
+            WorkResult::Scores(result) => {
+                self.scores.work_done(id, *result);
+            }
             WorkResult::Gap(result) => {
                 let world = self.world_of(id);
                 self.with_gap_of(world, |gap, around, context| gap.work_done(id, *result, around, context));
@@ -503,6 +599,9 @@ impl State {
     }
 
     fn work_gave_nothing(&mut self, id: JobId, why: Option<&str>) {
+        self.with_labels(|labels, _, context| labels.work_ended(id, why, context));
+        self.scores.work_ended(id, why);
+        self.with_detect(|detect, context| detect.work_ended(id, why, context));
         let world = self.world_of(id);
         self.eyes.of_mut(world).work_ended(id);
         if let Some(mount) = self.mounts.get_mut(&world) {
@@ -564,10 +663,18 @@ impl State {
     /// What the window shows.
     pub fn view(&mut self, skipped: Skipped, lost_commands: u64, now: Instant) -> View {
         self.revision += 1;
+        let around = Around {
+            newest: self.live.newest(),
+            opened: self.shown_of,
+            photographs: self.source.view().photographs,
+            setup: self.live.setup(),
+        };
+        let detect = Arc::new(self.detect.view(skipped.detect, &around, now));
         View {
             revision: self.revision,
             source: self.source.view().clone(),
             live: Arc::new(self.live.view(skipped, now)),
+            detect,
             eyes: Arc::new(self.eyes.of_mut(self.eyes.shown).view()),
             robot: self.robot.clone(),
             twin: self.twin.clone(),
@@ -575,6 +682,8 @@ impl State {
             touch: Arc::new(self.touch_view()),
             models: Arc::new(self.models_view()),
             gap: Arc::new(self.gap_view()),
+            labels: Arc::new(self.labels.view(self.detect.chosen().0)),
+            scores: Arc::new(self.scores.view()),
             jobs: self.jobs.view(),
             notices: self.notices.view(),
             lost_commands,

@@ -2,24 +2,35 @@
 //!
 //! A view is cheap to take and to keep: images and long lists are shared, not copied.
 
+mod detect;
 mod eyes;
 mod gap;
+mod labels;
 mod live;
 mod map;
 mod models;
 mod mount;
 mod robot;
+mod scores;
 mod touch;
 mod twin;
 
 use std::sync::Arc;
 use std::time::Duration;
 
+pub use detect::{
+    ClassRates, DetectView, DetectionSettings, DetectionTiming, DetectionsView, DetectorFacts,
+    DetectorState, ObjectPlaceView, ObjectView, SeenBox,
+};
 pub use eyes::{
     AcceptedCalibration, BoardPlace, BoardSeen, CaptureHint, CollectedPair, Coverage, CoverageGrid,
     EarlierCalibration, EyesView, GhostBoard, Origin, Proposal,
 };
 pub use gap::{AddedEffect, FindingEntry, GapModelView, GapSession, GapView, ModelStep, ShownFinding};
+pub use labels::{
+    ImportView, LabelBox, LabelCounts, LabelImage, LabelProblem, LabelSetView, LabelState, LabelsView,
+    ProposedBox, ShownLabels,
+};
 pub use live::{
     AimView, CornersView, DisparityView, LiveView, ProbeReading, ProbeView, RectifiedView, ReplayView,
     SourceCounters, SourceStatus, SourceView, StageStatistics, Statistics,
@@ -30,6 +41,9 @@ pub use mount::{HeadViewSummary, MountSummary, MountView};
 pub use robot::{
     BusView, Connection, JointSample, JointView, MotionState, PathCheck, PortView, PoseView, Preview,
     RobotView, TipPlace,
+};
+pub use scores::{
+    CellPicture, ModelScores, OpenedCell, Score, ScoreRow, ScoreTable, ScoredModelFile, ScoresView,
 };
 pub use touch::{
     ContactSource, ContactView, PlanView, TouchCounts, TouchFigures, TouchOutcome, TouchPhase, TouchState,
@@ -49,6 +63,8 @@ pub struct View {
     pub source: Arc<SourceView>,
     /// The newest images and what was computed from them.
     pub live: Arc<LiveView>,
+    /// What the detector sees live.
+    pub detect: Arc<DetectView>,
     /// Calibrating the eyes.
     pub eyes: Arc<EyesView>,
     /// The robot.
@@ -63,6 +79,10 @@ pub struct View {
     pub models: Arc<ModelsView>,
     /// The gap between model and measurement.
     pub gap: Arc<GapView>,
+    /// The lab's own data sets.
+    pub labels: Arc<LabelsView>,
+    /// Scores of detectors.
+    pub scores: Arc<ScoresView>,
     /// Long work, oldest first: what is running and what has ended and was not dismissed.
     pub jobs: Arc<[JobView]>,
     /// Messages, oldest first.

@@ -4,9 +4,12 @@
 use plumbline_hardware::{CameraDevice, camera_devices};
 use plumbline_model::JobContext;
 
+use crate::detector_scores::work::{ScoresResult, ScoresWork};
+use crate::detect::{DetectResult, DetectWork};
 use crate::eyes::work::{EyesResult, EyesWork};
 use crate::gaps::work::{GapResult, GapWork};
 use crate::jobs::JobError;
+use crate::label_sets::work::{LabelsResult, LabelsWork};
 use crate::models::work::{ModelsResult, ModelsWork};
 use crate::mount::work::{MountResult, MountWork};
 use crate::touch::work::{TouchResult, TouchWork};
@@ -16,6 +19,8 @@ use crate::touch::work::{TouchResult, TouchWork};
 pub enum Work {
     /// Looks which cameras this machine has.
     ListCameras,
+    /// Part of detection.
+    Detect(Box<DetectWork>),
     /// Part of calibrating the eyes.
     Eyes(Box<EyesWork>),
     /// Part of calibrating how they sit in the head.
@@ -26,11 +31,27 @@ pub enum Work {
     Models(Box<ModelsWork>),
     /// Part of the gap.
     Gap(Box<GapWork>),
+    /// Part of the lab's own data sets.
+    Labels(Box<LabelsWork>),
+    /// Part of judging detectors.
+    Scores(Box<ScoresWork>),
 }
 
 impl From<TouchWork> for Work {
     fn from(work: TouchWork) -> Self {
         Self::Touch(Box::new(work))
+    }
+}
+
+impl From<LabelsWork> for Work {
+    fn from(work: LabelsWork) -> Self {
+        Self::Labels(Box::new(work))
+    }
+}
+
+impl From<ScoresWork> for Work {
+    fn from(work: ScoresWork) -> Self {
+        Self::Scores(Box::new(work))
     }
 }
 
@@ -52,6 +73,12 @@ impl From<MountWork> for Work {
     }
 }
 
+impl From<DetectWork> for Work {
+    fn from(work: DetectWork) -> Self {
+        Self::Detect(Box::new(work))
+    }
+}
+
 impl From<EyesWork> for Work {
     fn from(work: EyesWork) -> Self {
         Self::Eyes(Box::new(work))
@@ -63,6 +90,8 @@ impl From<EyesWork> for Work {
 pub enum WorkResult {
     /// Cameras of this machine.
     Cameras(Vec<CameraDevice>),
+    /// Part of detection.
+    Detect(Box<DetectResult>),
     /// Part of calibrating the eyes.
     Eyes(Box<EyesResult>),
     /// Part of calibrating how they sit in the head.
@@ -73,6 +102,10 @@ pub enum WorkResult {
     Models(Box<ModelsResult>),
     /// Part of the gap.
     Gap(Box<GapResult>),
+    /// Part of the lab's own data sets.
+    Labels(Box<LabelsResult>),
+    /// Part of judging detectors.
+    Scores(Box<ScoresResult>),
 }
 
 impl Work {
@@ -80,11 +113,14 @@ impl Work {
     pub fn title(&self) -> String {
         match self {
             Self::ListCameras => "Look for cameras".to_owned(),
+            Self::Detect(work) => work.title(),
             Self::Eyes(work) => work.title(),
             Self::Mount(work) => work.title(),
             Self::Touch(work) => work.title(),
             Self::Models(work) => work.title(),
             Self::Gap(work) => work.title(),
+            Self::Labels(work) => work.title(),
+            Self::Scores(work) => work.title(),
         }
     }
 
@@ -92,11 +128,14 @@ impl Work {
     pub fn is_quiet(&self) -> bool {
         match self {
             Self::ListCameras => true,
+            Self::Detect(work) => work.is_quiet(),
             Self::Eyes(work) => work.is_quiet(),
             Self::Mount(work) => work.is_quiet(),
             Self::Touch(work) => work.is_quiet(),
             Self::Models(work) => work.is_quiet(),
             Self::Gap(work) => work.is_quiet(),
+            Self::Labels(work) => work.is_quiet(),
+            Self::Scores(work) => work.is_quiet(),
         }
     }
 
@@ -104,11 +143,14 @@ impl Work {
     pub fn run(self, context: &dyn JobContext) -> Result<WorkResult, JobError> {
         match self {
             Self::ListCameras => Ok(WorkResult::Cameras(camera_devices())),
+            Self::Detect(work) => work.run(context).map(Box::new).map(WorkResult::Detect),
             Self::Eyes(work) => work.run(context).map(Box::new).map(WorkResult::Eyes),
             Self::Mount(work) => work.run(context).map(Box::new).map(WorkResult::Mount),
             Self::Touch(work) => work.run(context).map(Box::new).map(WorkResult::Touch),
             Self::Models(work) => work.run(context).map(Box::new).map(WorkResult::Models),
             Self::Gap(work) => work.run(context).map(Box::new).map(WorkResult::Gap),
+            Self::Labels(work) => work.run(context).map(Box::new).map(WorkResult::Labels),
+            Self::Scores(work) => work.run(context).map(Box::new).map(WorkResult::Scores),
         }
     }
 }
@@ -118,11 +160,14 @@ impl WorkResult {
     pub fn summary(&self) -> String {
         match self {
             Self::Cameras(cameras) => format!("{} cameras", cameras.len()),
+            Self::Detect(result) => result.summary(),
             Self::Eyes(result) => result.summary(),
             Self::Mount(result) => result.summary(),
             Self::Touch(result) => result.summary(),
             Self::Models(result) => result.summary(),
             Self::Gap(result) => result.summary(),
+            Self::Labels(result) => result.summary(),
+            Self::Scores(result) => result.summary(),
         }
     }
 }

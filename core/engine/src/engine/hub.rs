@@ -25,11 +25,11 @@ use crate::settings::EngineSettings;
 use crate::slot::{Putter, Taker, newest_value_slot};
 use crate::source::{Note, Player, SourceThread, Wires};
 use crate::stages::{
-    CornersInput, CornersStage, ProbeInput, ProbeOutput, ProbeStage, RectifyInput, RectifyOutput,
+    CornersInput, CornersStage, DetectInput, DetectOutput, DetectStage, ProbeInput, ProbeOutput, ProbeStage, RectifyInput, RectifyOutput,
     RectifyStage, StageThread, run_stage,
 };
 use crate::state::State;
-use crate::view::{SourceView, View};
+use crate::view::{DetectionSettings, SourceView, View};
 use crate::work::WorkResult;
 
 /// Views are published at most this often.
@@ -95,6 +95,7 @@ struct Pipeline {
     rectify: StageThread<RectifyInput, RectifyOutput>,
     corners: StageThread<CornersInput, Look>,
     probe: StageThread<ProbeInput, ProbeOutput>,
+    detect: StageThread<DetectInput, DetectOutput>,
     fed: Fed,
 }
 
@@ -104,6 +105,9 @@ struct Fed {
     rectify: Option<(u64, u64, bool)>,
     corners: Option<(u64, Chessboard)>,
     probe: Option<(u64, u64, ProbePoint)>,
+    /// Pair, source, detector, setup; settings are told apart by themselves.
+    detect: Option<(u64, u64, u64, Option<u64>)>,
+    detect_settings: Option<Arc<DetectionSettings>>,
     probed_at: Option<Instant>,
     /// A newer pair waits for its time.
     probe_waits: bool,
@@ -276,6 +280,11 @@ impl<'a> Hub<'a> {
                 log::warn!("{} did not end in time", job.title);
             }
         }
+        if let Some(work) = self.state.last_write()
+            && let Err(error) = work.run(&plumbline_model::Unattended)
+        {
+            log::error!("{error}");
+        }
     }
 }
 
@@ -305,6 +314,10 @@ impl Pipeline {
             let mut stage = ProbeStage::default();
             move |input| stage.process(input)
         };
+        let detect = || {
+            let mut stage = DetectStage::default();
+            move |input| stage.process(input)
+        };
         Ok(Self {
             source: SourceThread::start(Player::with_opener(eyes.opener()), wires)?,
             robot: RobotThread::start(worker, robot_wires)?,
@@ -317,6 +330,7 @@ impl Pipeline {
             rectify: run_stage("rectify", bell.clone(), |i: &RectifyInput| i.frame.stamp, rectify)?,
             corners: run_stage("corners", bell.clone(), |i: &CornersInput| i.frame.stamp, corners)?,
             probe: run_stage("probe", bell.clone(), |i: &ProbeInput| i.frame.stamp, probe)?,
+            detect: run_stage("detect", bell.clone(), |i: &DetectInput| i.frame.stamp, detect)?,
             fed: Fed::default(),
         })
     }
@@ -358,6 +372,13 @@ impl Pipeline {
                 Err(panic) => state.stage_panicked(&panic),
             }
         }
+        if let Some(output) = self.detect.take() {
+            any = true;
+            match output {
+                Ok(output) => state.detected(output, now),
+                Err(panic) => state.stage_panicked(&panic),
+            }
+        }
         if let Some(output) = self.probe.take() {
             any = true;
             match output {
@@ -383,6 +404,15 @@ impl Pipeline {
                 self.corners.put(input);
             }
         }
+        if let Some(input) = state.detect_input() {
+            let generation = input.setup.as_ref().ok().map(|setup| setup.generation);
+            let key = (input.frame.stamp.seq, input.opened, input.detector.id, generation);
+            let settings = Some(input.settings.clone());
+            if self.fed.detect.replace(key) != Some(key) || self.fed.detect_settings != settings {
+                self.fed.detect_settings = settings;
+                self.detect.put(input);
+            }
+        }
         if let Some(input) = state.probe_input() {
             let key = (input.frame.stamp.seq, input.setup.generation, input.point);
             let fed = &mut self.fed;
@@ -404,6 +434,7 @@ impl Pipeline {
             rectify: self.rectify.skipped(),
             corners: self.corners.skipped(),
             probe: self.probe.skipped(),
+            detect: self.detect.skipped(),
         }
     }
 }

@@ -12,9 +12,12 @@ use plumbline_model::robot::{DescriptionError, RigError};
 use plumbline_model::{AimError, BoardError, Cancelled, FormatError, PlacementError, SessionError};
 use plumbline_report::ReportError;
 use plumbline_vision::calibrate::SolveError;
+use plumbline_vision::detect::DetectError;
+use plumbline_vision::detect_score::EvaluateError;
 use plumbline_vision::disparity::DisparityError;
 use plumbline_vision::locate::NoBaseline;
 use plumbline_vision::rectify::RectifyError;
+use plumbline_vision::yolo_set::YoloSetError;
 
 /// Why work on recorded data could not be done, and what to do.
 #[derive(Debug, thiserror::Error)]
@@ -171,6 +174,40 @@ pub enum OfflineError {
         left: String,
         /// Size of the right image.
         right: String,
+    },
+    /// The detector cannot be opened.
+    #[error(transparent)]
+    Detect(#[from] DetectError),
+    /// A labeled set cannot be read.
+    #[error(transparent)]
+    YoloSet(#[from] YoloSetError),
+    /// A detector cannot be judged.
+    #[error(transparent)]
+    Evaluate(#[from] EvaluateError),
+    /// No detector of several could be judged.
+    #[error("none of the {models} models could be judged. For example {example}")]
+    NoModelJudged {
+        /// How many there are.
+        models: usize,
+        /// What is wrong with one.
+        example: String,
+    },
+    /// The program came without a detector.
+    #[error("the detector that comes with the program was not found: give one of your own with --model")]
+    NoDetector,
+    /// A folder without images.
+    #[error("there are no images in {}: give the folder that holds the PNG or JPEG files themselves", .folder.display())]
+    NoImages {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// No image could be looked at.
+    #[error("none of the {images} images could be looked at. For example {example}")]
+    NoImageDetected {
+        /// How many there are.
+        images: usize,
+        /// What is wrong with one.
+        example: String,
     },
     /// A file cannot be read or written.
     #[error("{}: {error}. Check the path, the permissions and the free space", .path.display())]

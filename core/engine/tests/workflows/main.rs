@@ -3,6 +3,7 @@
 #![allow(missing_docs, clippy::print_stdout)]
 
 mod common;
+mod detect;
 mod eyes;
 mod journal;
 mod measured;

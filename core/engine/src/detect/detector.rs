@@ -1,0 +1,98 @@
+//! A detector as the live stage uses it, and how one is opened.
+
+use std::fmt;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use image::RgbImage;
+use plumbline_model::detection::Detection;
+
+use crate::command::{DetectorChoice, Provider};
+use crate::view::{DetectionTiming, DetectorFacts};
+
+/// Least confidence that is asked of a detector. Thresholds lie above it, so that moving one needs
+/// no new run of the network.
+pub const SHOWN_FROM: f32 = 0.05;
+
+/// Finds things on an image.
+pub trait Detects: Send {
+    /// What it is.
+    fn facts(&self) -> DetectorFacts;
+
+    /// Finds everything of at least [`SHOWN_FROM`]; boxes of a class that overlap by more than
+    /// `iou` are one thing.
+    ///
+    /// # Errors
+    /// Why nothing can be found on this image, and what to do.
+    fn detect(
+        &mut self,
+        image: &RgbImage,
+        iou: f32,
+        found: &mut Vec<Detection>,
+    ) -> Result<DetectionTiming, String>;
+}
+
+/// A detector that is ready. Only the stage that runs it ever waits for it.
+pub struct LoadedDetector {
+    /// Tells detectors apart, also two readings of the same file.
+    pub id: u64,
+    /// What it is.
+    pub facts: Arc<DetectorFacts>,
+    detector: Mutex<Box<dyn Detects>>,
+}
+
+impl LoadedDetector {
+    /// Takes over a detector.
+    pub fn new(detector: Box<dyn Detects>) -> Self {
+        static LOADED: AtomicU64 = AtomicU64::new(1);
+        let id = LOADED.fetch_add(1, Ordering::Relaxed);
+        Self { id, facts: Arc::new(detector.facts()), detector: Mutex::new(detector) }
+    }
+
+    /// For running it.
+    pub fn lock(&self) -> MutexGuard<'_, Box<dyn Detects>> {
+        self.detector.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl fmt::Debug for LoadedDetector {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("LoadedDetector").field("id", &self.id).field("name", &self.facts.name).finish()
+    }
+}
+
+type Open = dyn Fn(&DetectorChoice, Provider) -> Result<Box<dyn Detects>, String> + Send + Sync;
+
+/// Opens detectors; takes its time, so never on a thread that draws.
+#[derive(Clone)]
+pub struct OpenDetector(Arc<Open>);
+
+impl OpenDetector {
+    /// Opens them like this.
+    pub fn new(
+        open: impl Fn(&DetectorChoice, Provider) -> Result<Box<dyn Detects>, String> + Send + Sync + 'static,
+    ) -> Self {
+        Self(Arc::new(open))
+    }
+
+    /// Opens one.
+    ///
+    /// # Errors
+    /// What is wrong and what to do.
+    pub fn open(&self, choice: &DetectorChoice, provider: Provider) -> Result<Box<dyn Detects>, String> {
+        (self.0)(choice, provider)
+    }
+}
+
+impl fmt::Debug for OpenDetector {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("OpenDetector")
+    }
+}
+
+impl Default for OpenDetector {
+    /// With ONNX Runtime.
+    fn default() -> Self {
+        Self::new(super::file::open)
+    }
+}

@@ -1,0 +1,90 @@
+//! Detectors in ONNX files, run by ONNX Runtime.
+
+use image::RgbImage;
+use plumbline_model::detection::Detection;
+use plumbline_vision::detect::{
+    ClassFilter, DetectSettings, Detector, DetectorInfo, DetectorOptions, Provider, shipped_detector,
+};
+
+use super::detector::{Detects, SHOWN_FROM};
+use crate::command::DetectorChoice;
+use crate::text::sentence;
+use crate::view::{DetectionTiming, DetectorFacts};
+
+/// Boxes of one image that are kept at most.
+const MOST: usize = 300;
+
+/// What is said while no detector comes with the program.
+const NONE_SHIPPED: &str =
+    "no detector comes with this version; choose an ONNX file, any export of a YOLO detector will do";
+
+/// Opens a detector.
+pub fn open(choice: &DetectorChoice, provider: Provider) -> Result<Box<dyn Detects>, String> {
+    let options = DetectorOptions { provider, ..DetectorOptions::default() };
+    let opened = match choice {
+        DetectorChoice::Off => return Err("no detector is chosen".to_owned()),
+        DetectorChoice::Shipped => shipped_detector().ok_or(NONE_SHIPPED)?.open(&options),
+        DetectorChoice::File(file) => Detector::open(file, &options),
+    };
+    let detector = opened.map_err(|error| error.to_string())?;
+    let settings = DetectSettings {
+        confidence: SHOWN_FROM,
+        most: MOST,
+        classes: ClassFilter::All,
+        ..DetectSettings::default()
+    };
+    Ok(Box::new(FileDetector { detector, settings, shipped: *choice == DetectorChoice::Shipped }))
+}
+
+struct FileDetector {
+    detector: Detector,
+    settings: DetectSettings,
+    shipped: bool,
+}
+
+impl Detects for FileDetector {
+    fn facts(&self) -> DetectorFacts {
+        facts(self.detector.info(), self.shipped)
+    }
+
+    fn detect(
+        &mut self,
+        image: &RgbImage,
+        iou: f32,
+        found: &mut Vec<Detection>,
+    ) -> Result<DetectionTiming, String> {
+        self.settings.iou = iou;
+        let timing = self.detector.detect(image, &self.settings, found).map_err(|error| error.to_string())?;
+        Ok(DetectionTiming {
+            before: timing.before,
+            network: timing.network,
+            after: timing.after,
+            ..DetectionTiming::default()
+        })
+    }
+}
+
+fn facts(info: &DetectorInfo, shipped: bool) -> DetectorFacts {
+    let differing = |other: &Option<_>| other.clone().filter(|other| *other != info.names);
+    let other_names = differing(&info.names_beside)
+        .map(|names| (names, "the data.yaml beside the file".to_owned()))
+        .or_else(|| differing(&info.names_in_file).map(|names| (names, "the file itself".to_owned())));
+    let mut rows = vec![
+        ("Input".to_owned(), info.input.to_string()),
+        ("Output".to_owned(), info.head.to_string()),
+        ("Numbers".to_owned(), info.precision.to_string()),
+        ("Computed by".to_owned(), info.provider_used.to_string()),
+        ("Library".to_owned(), info.runtime.clone()),
+    ];
+    rows.extend(info.made_by.iter().map(|made_by| ("Made by".to_owned(), made_by.clone())));
+    let remarks = [&info.disagreement, &info.provider_note];
+    DetectorFacts {
+        name: if shipped { DetectorChoice::Shipped.name() } else { info.name.clone() },
+        file: info.file.clone().filter(|_| !shipped),
+        names: info.names.clone(),
+        names_from: info.names_from.to_string(),
+        other_names,
+        rows,
+        remarks: remarks.into_iter().flatten().map(|remark| sentence(remark)).collect(),
+    }
+}

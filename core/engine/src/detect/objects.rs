@@ -1,0 +1,226 @@
+//! From boxes in two eyes to objects: what belongs together, and where it is.
+
+use std::panic::AssertUnwindSafe;
+use std::sync::Arc;
+
+use plumbline_model::detection::{ClassIndex, ClassNames, Detection, PixelBox};
+use plumbline_model::frame::LeftCamera;
+use plumbline_model::{AimedPair, Eye, Pixel, Pose, Raw, Rectified, Robot, StereoCalibration, StereoFrame};
+use plumbline_vision::detect_places::{ObjectPlace, Place, PlaceFinder, PlaceOptions, RangeFrom, Seen};
+
+use crate::jobs::panic_message;
+use crate::stages::{LiveSetup, other_size};
+use crate::text::sentence;
+use crate::view::{ObjectPlaceView, ObjectView, SeenBox};
+
+/// Points along each edge of a box that are taken over to the rectified image: straight edges are
+/// bent by the lens.
+const POINTS_PER_EDGE: usize = 8;
+
+/// Finds objects pair by pair; keeps what it knows of the calibration, and working memory.
+#[derive(Default)]
+pub struct Objects {
+    finder: Option<(Option<Arc<StereoCalibration>>, ClassNames, PlaceFinder)>,
+    places: Vec<ObjectPlace>,
+    curve: Vec<Pixel<Raw>>,
+}
+
+/// What the boxes of a pair are.
+#[derive(Clone, Debug)]
+pub struct FoundObjects {
+    /// For the window, the surest first.
+    pub objects: Vec<ObjectView>,
+    /// The same as they were found.
+    pub places: Vec<ObjectPlace>,
+    /// Why none of them has a place, a sentence.
+    pub no_places_because: Option<String>,
+}
+
+impl Objects {
+    /// What the boxes of a pair are. A panic inside is returned as its message.
+    ///
+    /// # Errors
+    /// What the program said when it met a defect of its own.
+    pub fn find(
+        &mut self,
+        frame: &StereoFrame,
+        setup: Result<&Arc<LiveSetup>, &String>,
+        names: &ClassNames,
+        boxes: [&[Detection]; 2],
+    ) -> Result<FoundObjects, String> {
+        let setup = setup.map_err(String::clone).and_then(|setup| fits(frame, setup).map(|()| setup));
+        let work = AssertUnwindSafe(|| self.look(frame, setup.as_ref().ok().copied(), names, boxes));
+        let mut objects = std::panic::catch_unwind(work).map_err(|panic| {
+            // What it kept may be half changed.
+            self.finder = None;
+            panic_message(panic.as_ref())
+        })?;
+        let no_places_because = setup.err();
+        if let Some(why) = &no_places_because {
+            for object in &mut objects {
+                object.place = Err(why.clone());
+                object.alone_because = Some(why.clone());
+            }
+        }
+        objects.sort_by(|a, b| b.confidence().total_cmp(&a.confidence()));
+        Ok(FoundObjects { objects, places: self.places.clone(), no_places_because })
+    }
+
+    fn look(
+        &mut self,
+        frame: &StereoFrame,
+        setup: Option<&Arc<LiveSetup>>,
+        names: &ClassNames,
+        [left, right]: [&[Detection]; 2],
+    ) -> Vec<ObjectView> {
+        let calibration = setup.map(|setup| &setup.calibration);
+        let known = self.finder.take().filter(|(of, of_names, _)| {
+            let same = match (of, calibration) {
+                (Some(of), Some(calibration)) => Arc::ptr_eq(of, calibration),
+                (None, None) => true,
+                _ => false,
+            };
+            same && of_names == names
+        });
+        let (.., finder) = self.finder.insert(known.unwrap_or_else(|| {
+            let options = PlaceOptions::for_classes(names);
+            let finder = PlaceFinder::new(calibration.map(|calibration| &**calibration), options);
+            (calibration.cloned(), names.clone(), finder)
+        }));
+        finder.find((&frame.left, left), (&frame.right, right), &mut self.places);
+        let curve = &mut self.curve;
+        let mut seen_box = |eye: Eye, found: &Detection| {
+            finder.epipolar_curve(eye, found.area.middle(), curve);
+            let rectified = setup.map(|setup| rectified_outline(&setup.pair, eye, &found.area));
+            SeenBox {
+                confidence: found.confidence,
+                area: found.area,
+                rectified: rectified.unwrap_or_default().into(),
+                line_in_other: curve.as_slice().into(),
+            }
+        };
+        let robot_from_left = setup.map_or_else(Pose::identity, |setup| setup.robot_from_left);
+        let mut view = |object: &ObjectPlace| {
+            let mut of = |eye, boxes: &[Detection]| {
+                object.seen.index(eye).and_then(|i| boxes.get(i)).map(|found| seen_box(eye, found))
+            };
+            let (left, right) = (of(Eye::Left, left), of(Eye::Right, right));
+            object_view(object, names, left, right, &robot_from_left)
+        };
+        self.places.iter().map(&mut view).collect()
+    }
+}
+
+fn fits(frame: &StereoFrame, setup: &LiveSetup) -> Result<(), String> {
+    let cameras = &setup.pair.cameras;
+    for (eye, image) in [(Eye::Left, &frame.left), (Eye::Right, &frame.right)] {
+        let calibrated = cameras.camera(eye).size_px();
+        if image.dimensions() != calibrated {
+            return Err(other_size(image.dimensions(), calibrated));
+        }
+    }
+    Ok(())
+}
+
+fn object_view(
+    object: &ObjectPlace,
+    names: &ClassNames,
+    left: Option<SeenBox>,
+    right: Option<SeenBox>,
+    robot_from_left: &Pose<Robot, LeftCamera>,
+) -> ObjectView {
+    let (epipolar_px, alone_because) = match &object.seen {
+        Seen::Both { epipolar_px, .. } => (Some(*epipolar_px), None),
+        Seen::One { why, .. } => (None, Some(sentence(&why.to_string()))),
+    };
+    let place = object.place.as_ref();
+    ObjectView {
+        class: object.class,
+        name: class_name(names, object.class),
+        left,
+        right,
+        epipolar_px,
+        alone_because,
+        place: place
+            .map(|place| place_view(place, robot_from_left))
+            .map_err(|why| sentence(&why.to_string())),
+        voted: place.map(|place| place.votes.cells().collect()).unwrap_or_default(),
+        leak: place.ok().and_then(leak),
+        doubts: doubts(object, names),
+    }
+}
+
+fn place_view(place: &Place, robot_from_left: &Pose<Robot, LeftCamera>) -> ObjectPlaceView {
+    let middle = &place.middle;
+    let turn = robot_from_left.isometry.rotation.to_rotation_matrix().into_inner();
+    let covariance_m2 = turn * middle.covariance_m2 * turn.transpose();
+    let along = middle.point.direction().map(|direction| direction.vector());
+    let range_variance_m2 = along.map_or(0.0, |along| (along.transpose() * middle.covariance_m2 * along).x);
+    ObjectPlaceView {
+        point_in_robot: *robot_from_left * middle.point,
+        sigma_m: [0, 1, 2].map(|i| covariance_m2[(i, i)].max(0.0).sqrt()),
+        covariance_m2,
+        range_m: middle.point.range_m(),
+        range_sigma_m: range_variance_m2.max(0.0).sqrt(),
+    }
+}
+
+/// What lies behind and was kept out.
+fn leak(place: &Place) -> Option<String> {
+    let leak = place.leak?;
+    let side = if leak.behind_m >= 0.0 { "behind" } else { "in front of" };
+    Some(format!(
+        "{:.0} % of its box lies {:.0} mm {side} it and does not count: a place from all of the box would be {:.0} mm off.",
+        100.0 * leak.share,
+        1e3 * leak.behind_m.abs(),
+        1e3 * leak.median_off_m.abs(),
+    ))
+}
+
+fn doubts(object: &ObjectPlace, names: &ClassNames) -> Vec<String> {
+    let mut doubts = Vec::new();
+    if let Seen::Both { eyes_disagree: Some([left, right]), .. } = object.seen {
+        let [left, right] = [left, right].map(|class| class_name(names, class));
+        doubts.push(format!("The left eye calls it {left}, the right eye {right}."));
+    }
+    let Ok(place) = &object.place else { return doubts };
+    if let Some(disagreement) = place.disagreement {
+        let side = if disagreement.by_m >= 0.0 { "farther" } else { "nearer" };
+        doubts.push(format!(
+            "Its pixels say {:.0} mm {side} than its boxes do ({:.1} standard deviations): it may be hidden in part from one eye.",
+            1e3 * disagreement.by_m.abs(),
+            disagreement.sigmas.abs(),
+        ));
+    }
+    if place.from == RangeFrom::BoxesAlone {
+        doubts.push("Too few of its pixels could be matched: the place rests on its boxes alone.".to_owned());
+    }
+    doubts
+}
+
+fn class_name(names: &ClassNames, class: ClassIndex) -> String {
+    names.get(class).map_or_else(|| format!("class {}", class.0), str::to_owned)
+}
+
+/// The outline of a box on the rectified image; empty where any of it cannot be seen there, or
+/// nothing of it lies on the image.
+fn rectified_outline(pair: &AimedPair, eye: Eye, area: &PixelBox) -> Vec<Pixel<Rectified>> {
+    let outline: Result<Vec<_>, _> = outline(area).map(|pixel| pair.rectified_from_raw(eye, pixel)).collect();
+    let on_image =
+        |outline: &Vec<Pixel<Rectified>>| outline.iter().any(|pixel| pixel.is_inside(pair.size_px()));
+    outline.ok().filter(on_image).unwrap_or_default()
+}
+
+/// Along the edges, clockwise from the top left.
+fn outline(area: &PixelBox) -> impl Iterator<Item = Pixel<Raw>> {
+    let edge = |value: f32| f64::from(value) - 0.5;
+    let (x0, y0, x1, y1) = (edge(area.x0_px), edge(area.y0_px), edge(area.x1_px), edge(area.y1_px));
+    let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+    (0..4).flat_map(move |i| {
+        let (from, to) = (corners[i], corners[(i + 1) % 4]);
+        (0..POINTS_PER_EDGE).map(move |step| {
+            let part = step as f64 / POINTS_PER_EDGE as f64;
+            Pixel::new(from[0] + part * (to[0] - from[0]), from[1] + part * (to[1] - from[1]))
+        })
+    })
+}

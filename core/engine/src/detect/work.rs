@@ -1,0 +1,97 @@
+//! Reading detectors and settings, beside the window.
+
+use std::sync::Arc;
+
+use plumbline_model::JobContext;
+
+use super::detector::{LoadedDetector, OpenDetector};
+use super::store::Store;
+use crate::command::{DetectorChoice, Provider};
+use crate::jobs::JobError;
+use crate::text::sentence;
+use crate::view::DetectionSettings;
+
+/// Something to do for detection.
+#[derive(Clone, Debug)]
+pub enum DetectWork {
+    /// Reads what is remembered.
+    Restore(Store),
+    /// Remembers.
+    Keep(Store, Arc<DetectionSettings>),
+    /// Reads a detector and makes it ready.
+    Open {
+        /// How.
+        open: OpenDetector,
+        /// Which one.
+        choice: DetectorChoice,
+        /// Where it is computed.
+        provider: Provider,
+    },
+}
+
+/// What came out.
+#[derive(Clone, Debug)]
+pub enum DetectResult {
+    /// What was remembered, and what is wrong with it.
+    Restored(DetectionSettings, Option<String>),
+    /// These settings are remembered.
+    Kept(Arc<DetectionSettings>),
+    /// A detector is ready.
+    Opened(Arc<LoadedDetector>),
+}
+
+impl DetectWork {
+    /// What it does, for people.
+    pub fn title(&self) -> String {
+        match self {
+            Self::Restore(_) => "Read the settings of detection".to_owned(),
+            Self::Keep(..) => "Keep the settings of detection".to_owned(),
+            Self::Open { choice, .. } => format!("Read the detector {}", choice.name()),
+        }
+    }
+
+    /// Whether it is over so soon that it needs no line when it is done.
+    pub fn is_quiet(&self) -> bool {
+        // What comes of a detector is said where its boxes are.
+        true
+    }
+
+    /// Does it.
+    ///
+    /// # Errors
+    /// What is wrong and what to do.
+    pub fn run(self, context: &dyn JobContext) -> Result<DetectResult, JobError> {
+        match self {
+            Self::Restore(store) => Ok(match store.read() {
+                Ok(settings) => DetectResult::Restored(settings, None),
+                Err(problem) => DetectResult::Restored(DetectionSettings::default(), Some(problem)),
+            }),
+            Self::Keep(store, settings) => {
+                store.keep(&settings).map_err(JobError::Failed)?;
+                Ok(DetectResult::Kept(settings))
+            }
+            Self::Open { open, choice, provider } => {
+                context.checkpoint()?;
+                context.report(0.1, "reading it and making it ready");
+                let detector =
+                    open.open(&choice, provider).map_err(|why| JobError::Failed(sentence(&why)))?;
+                context.checkpoint()?;
+                Ok(DetectResult::Opened(Arc::new(LoadedDetector::new(detector))))
+            }
+        }
+    }
+}
+
+impl DetectResult {
+    /// The result in a sentence.
+    pub fn summary(&self) -> String {
+        match self {
+            Self::Restored(..) => "Settings of detection read.".to_owned(),
+            Self::Kept(_) => "Settings of detection kept.".to_owned(),
+            Self::Opened(detector) => {
+                let facts = &detector.facts;
+                format!("Detector {}: {} classes.", facts.name, facts.names.len())
+            }
+        }
+    }
+}

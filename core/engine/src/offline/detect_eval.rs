@@ -1,0 +1,279 @@
+//! `plumbline detect-eval`: how good detectors are on a labeled set.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use plumbline_model::JobContext;
+use plumbline_vision::detect::{Detector, DetectorOptions, shipped_detector};
+use plumbline_vision::detect_score::{
+    EvaluateError, EvaluateOptions, Interval, Intervals, ModelEvaluation, PartOfJob, evaluate, matrix_csv,
+    scores_csv,
+};
+use plumbline_vision::yolo_set::{Split, YoloSet, YoloSurvey};
+use serde::Serialize;
+
+use super::OfflineError;
+
+/// What to judge, and by what.
+#[derive(Clone, Debug)]
+pub struct DetectEvalArgs {
+    /// ONNX files; empty takes the detector that comes with the program.
+    pub models: Vec<PathBuf>,
+    /// The set.
+    pub data: PathBuf,
+    /// Part of the set.
+    pub split: Split,
+    /// Where the scores are written as a table.
+    pub csv: Option<PathBuf>,
+    /// Folder that receives what is taken for what, a table per model.
+    pub matrices: Option<PathBuf>,
+    /// What computes.
+    pub options: DetectorOptions,
+    /// How models are judged.
+    pub judging: EvaluateOptions,
+}
+
+/// How good they are.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DetectEvalReport {
+    /// The set.
+    pub data: PathBuf,
+    /// Part of it.
+    pub split: Split,
+    /// Its classes in order.
+    pub classes: Vec<String>,
+    /// Images in that part.
+    pub images: usize,
+    /// Scenes in it.
+    pub scenes: usize,
+    /// Images with nothing on them.
+    pub backgrounds: usize,
+    /// Labeled boxes per class.
+    pub boxes: BTreeMap<String, usize>,
+    /// What is wrong with the set; it is left out.
+    pub problems: Vec<String>,
+    /// One per model, in the order given.
+    pub models: Vec<ModelReport>,
+    /// Models that could not be judged.
+    pub failed: Vec<FailedModel>,
+    /// What was noticed.
+    pub notes: Vec<String>,
+}
+
+/// How good one is. A score that there is none of, because the class is nowhere in the set, is
+/// null.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModelReport {
+    /// What it is called.
+    pub model: String,
+    /// Its file.
+    pub file: PathBuf,
+    /// Who made it, as far as it says.
+    pub made_by: Option<String>,
+    /// Size, head, precision, in words.
+    pub summary: String,
+    /// Mean over overlaps 0.50–0.95 and over the classes.
+    pub map50_95: Option<f64>,
+    /// Where it would mostly lie on other scenes.
+    pub map50_95_interval: Option<Interval>,
+    /// Mean over the classes, at an overlap of 0.5.
+    pub map50: Option<f64>,
+    /// Where it would mostly lie on other scenes.
+    pub map50_interval: Option<Interval>,
+    /// mAP50–95 of each class.
+    pub per_class: BTreeMap<String, Option<f64>>,
+    /// mAP50 of each class.
+    pub per_class_map50: BTreeMap<String, Option<f64>>,
+    /// More of each class, in the order of the set.
+    pub classes: Vec<ClassReport>,
+    /// Whole time of an image without reading its file, median.
+    pub milliseconds_median: f64,
+    /// Its part before the network.
+    pub milliseconds_before: f64,
+    /// The network alone.
+    pub milliseconds_network: f64,
+    /// Its part after the network.
+    pub milliseconds_after: f64,
+    /// How its names fit those of the set; null if they are the same.
+    pub names: Option<String>,
+    /// Images that could not be used, and those on which it failed.
+    pub skipped: Vec<String>,
+}
+
+/// How good a model is at one class.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ClassReport {
+    /// Its name.
+    pub class: String,
+    /// Labeled boxes of it.
+    pub things: usize,
+    /// Images with one.
+    pub images: usize,
+    /// mAP50–95.
+    pub map50_95: Option<f64>,
+    /// mAP50.
+    pub map50: Option<f64>,
+    /// Where they would mostly lie on other scenes.
+    pub intervals: Intervals,
+    /// Part of the boxes that are right, from the confidence of the matrix on.
+    pub precision: Option<f64>,
+    /// Part of the things that are found, likewise.
+    pub recall: Option<f64>,
+    /// Confidence with the greatest F1.
+    pub best_confidence: Option<f64>,
+    /// That F1.
+    pub best_f1: Option<f64>,
+}
+
+/// A model that could not be judged.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct FailedModel {
+    /// Its file.
+    pub model: PathBuf,
+    /// Why.
+    pub reason: String,
+}
+
+/// Judges models on a set, one after the other.
+pub fn detect_eval(
+    args: &DetectEvalArgs,
+    context: &dyn JobContext,
+) -> Result<DetectEvalReport, OfflineError> {
+    let files = match args.models.as_slice() {
+        [] => vec![shipped_detector().ok_or(OfflineError::NoDetector)?.file],
+        files => files.to_vec(),
+    };
+    let survey = YoloSet::survey(&args.data, &[args.split], context)?;
+    let mut report = about(args, &survey);
+    let mut judged: Vec<ModelEvaluation> = Vec::new();
+    for (part, file) in files.iter().enumerate() {
+        let part = PartOfJob { whole: context, part, parts: files.len() };
+        match one(file, args, &survey.set, &part) {
+            Ok((model, evaluation)) => {
+                report.models.push(model);
+                judged.push(evaluation);
+            }
+            Err(
+                error @ (OfflineError::Cancelled(_) | OfflineError::Evaluate(EvaluateError::Cancelled(_))),
+            ) => {
+                return Err(error);
+            }
+            Err(error) if files.len() == 1 => return Err(error),
+            Err(error) => report.failed.push(FailedModel { model: file.clone(), reason: error.to_string() }),
+        }
+    }
+    if let (true, Some(first)) = (judged.is_empty(), report.failed.first()) {
+        let (models, example) = (files.len(), first.reason.clone());
+        return Err(OfflineError::NoModelJudged { models, example });
+    }
+    if let Some(file) = &args.csv {
+        std::fs::write(file, scores_csv(&judged)).map_err(OfflineError::io(file))?;
+    }
+    if let Some(folder) = &args.matrices {
+        std::fs::create_dir_all(folder).map_err(OfflineError::io(folder))?;
+        for model in &judged {
+            let file = folder.join(format!("{}.csv", model.model.trim_end_matches(".onnx")));
+            std::fs::write(&file, matrix_csv(&model.matrix, &model.class_names))
+                .map_err(OfflineError::io(&file))?;
+        }
+    }
+    Ok(report)
+}
+
+fn one(
+    file: &Path,
+    args: &DetectEvalArgs,
+    set: &YoloSet,
+    context: &dyn JobContext,
+) -> Result<(ModelReport, ModelEvaluation), OfflineError> {
+    let mut detector = Detector::open(file, &args.options)?;
+    let evaluation = evaluate(&mut detector, set, &args.judging, context)?;
+    let info = detector.info();
+    let told = [info.disagreement.clone(), info.provider_note.clone(), evaluation.agreement.sentence()];
+    let told: Vec<String> = told.into_iter().flatten().collect();
+    let report = ModelReport {
+        file: file.to_owned(),
+        made_by: info.made_by.clone(),
+        summary: info.summary(),
+        names: (!told.is_empty()).then(|| told.join("; ")),
+        ..model_report(&evaluation)
+    };
+    Ok((report, evaluation))
+}
+
+/// What a set holds and what is wrong with it.
+fn about(args: &DetectEvalArgs, survey: &YoloSurvey) -> DetectEvalReport {
+    let YoloSurvey { set, problems, .. } = survey;
+    let scenes: std::collections::BTreeSet<&str> =
+        set.images.iter().map(|image| image.scene.as_str()).collect();
+    let boxes = set.names.iter().zip(set.boxes_per_class());
+    let counted = |count: usize, what: &str| (count > 0).then(|| format!("{count} {what}"));
+    let notes = [
+        counted(survey.without_labels, "images have no label file and count as images with nothing on them"),
+        counted(survey.polygons, "rows are outlines, of which the boxes around them are taken"),
+        counted(survey.repeated_rows, "rows are there twice and count once"),
+        counted(survey.in_several_splits, "images are in several parts of the set"),
+        counted(problems.len(), "rows or images of the set are wrong and left out"),
+    ];
+    DetectEvalReport {
+        data: args.data.clone(),
+        split: args.split,
+        classes: set.names.iter().map(|(_, name)| name.to_owned()).collect(),
+        images: set.images.len(),
+        scenes: scenes.len(),
+        backgrounds: set.images.iter().filter(|image| image.boxes.is_empty()).count(),
+        boxes: boxes.map(|((_, name), count)| (name.to_owned(), count)).collect(),
+        problems: problems.iter().map(ToString::to_string).collect(),
+        models: Vec::new(),
+        failed: Vec::new(),
+        notes: notes.into_iter().flatten().collect(),
+    }
+}
+
+fn model_report(evaluation: &ModelEvaluation) -> ModelReport {
+    let classes: Vec<ClassReport> = evaluation
+        .scores
+        .per_class
+        .iter()
+        .zip(&evaluation.per_class_intervals)
+        .map(|(scores, intervals)| {
+            let at = evaluation.scores.at_confidence(scores.class, evaluation.confidence);
+            let best = evaluation.scores.best_confidence(scores.class);
+            ClassReport {
+                class: evaluation.class_names.get(scores.class).unwrap_or_default().to_owned(),
+                things: scores.things,
+                images: scores.images,
+                map50_95: scores.summary.ap,
+                map50: scores.summary.ap50,
+                intervals: *intervals,
+                precision: at.and_then(|point| point.precision()),
+                recall: at.and_then(|point| point.recall()),
+                best_confidence: best.map(|point| point.confidence),
+                best_f1: best.and_then(|point| point.f1()),
+            }
+        })
+        .collect();
+    let skipped = evaluation.skipped.iter().map(|skipped| {
+        let counts = if skipped.counts { " (counts as nothing found)" } else { " (left out)" };
+        format!("{}: {}{counts}", skipped.path.display(), skipped.reason)
+    });
+    ModelReport {
+        model: evaluation.model.clone(),
+        file: PathBuf::new(),
+        made_by: None,
+        summary: String::new(),
+        map50_95: evaluation.scores.overall.ap,
+        map50_95_interval: evaluation.intervals.ap,
+        map50: evaluation.scores.overall.ap50,
+        map50_interval: evaluation.intervals.ap50,
+        per_class: classes.iter().map(|class| (class.class.clone(), class.map50_95)).collect(),
+        per_class_map50: classes.iter().map(|class| (class.class.clone(), class.map50)).collect(),
+        classes,
+        milliseconds_median: evaluation.timing.total_s * 1e3,
+        milliseconds_before: evaluation.timing.before_s * 1e3,
+        milliseconds_network: evaluation.timing.network_s * 1e3,
+        milliseconds_after: evaluation.timing.after_s * 1e3,
+        names: None,
+        skipped: skipped.collect(),
+    }
+}
