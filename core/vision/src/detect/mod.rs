@@ -20,6 +20,8 @@ mod letterbox;
 mod library;
 mod names;
 mod network;
+#[cfg(test)]
+mod reference_tests;
 mod settings;
 mod shape;
 mod shipped;

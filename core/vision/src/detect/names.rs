@@ -8,9 +8,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use plumbline_model::detection::ClassNames;
-use serde::Deserialize;
 
 use super::NamesFrom;
+use crate::yolo_set::YoloSet;
 
 /// Names as Python prints a dictionary of numbers, or a list; `None` if it is neither, or if a
 /// number between 0 and the last is missing.
@@ -88,35 +88,6 @@ fn in_order(names: BTreeMap<usize, String>) -> Option<ClassNames> {
     complete.then(|| ClassNames::new(names.into_values()))
 }
 
-#[derive(Deserialize)]
-struct DataYaml {
-    names: Names,
-}
-
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Names {
-    List(Vec<String>),
-    Map(BTreeMap<usize, String>),
-}
-
-/// Names of a `data.yaml`; what is wrong with it, if it cannot be used.
-pub(super) fn from_yaml(text: &str) -> Result<ClassNames, String> {
-    let data: DataYaml = serde_saphyr::from_str(text)
-        .map_err(|error| first_line(&format!("it has no readable names: {error}")))?;
-    match data.names {
-        Names::List(names) if names.is_empty() => Err("its list of names is empty".to_owned()),
-        Names::List(names) => Ok(ClassNames::new(names)),
-        Names::Map(names) => {
-            in_order(names).ok_or_else(|| "its names are not numbered 0, 1, 2, …".to_owned())
-        }
-    }
-}
-
-fn first_line(text: &str) -> String {
-    text.lines().next().unwrap_or_default().to_owned()
-}
-
 /// The `data.yaml` that belongs to a file: `NAME.yaml` or `data.yaml` beside it.
 fn beside(file: &Path) -> Option<PathBuf> {
     [file.with_extension("yaml"), file.with_file_name("data.yaml"), file.with_file_name("data.yml")]
@@ -144,9 +115,8 @@ impl Found {
             names
         });
         let beside = file.and_then(beside).and_then(|path| {
-            let text = std::fs::read_to_string(&path).map_err(|error| error.to_string());
-            text.and_then(|text| from_yaml(&text))
-                .map_err(|reason| remarks.push(format!("{} is not used: {reason}", path.display())))
+            YoloSet::read_names(&path)
+                .map_err(|error| remarks.push(format!("what lies beside the file is not used: {error}")))
                 .ok()
         });
         if let (Some(in_file), Some(beside)) = (&in_file, &beside) {
@@ -225,13 +195,15 @@ mod tests {
     }
 
     #[test]
-    fn both_forms_of_yaml_are_read() {
-        assert_eq!(from_yaml("train: a\nnc: 2\nnames: [x, 'y z']\n").ok(), names(&["x", "y z"]));
-        assert_eq!(from_yaml("names:\n  0: x\n  1: y\n").ok(), names(&["x", "y"]));
-        assert!(from_yaml("names:\n  0: x\n  2: y\n").expect_err("a hole").contains("not numbered"));
-        assert!(from_yaml("nc: 3\n").is_err());
-        assert!(from_yaml("names: []\n").is_err());
-        assert!(from_yaml(": : :").is_err());
+    fn what_cannot_be_read_beside_the_file_is_said() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("a.onnx");
+        std::fs::write(folder.path().join("data.yaml"), "nc: 3\n").expect("writing");
+        let found = Found::new(Some("{0: 'Banana'}"), Some(&file));
+        assert_eq!((found.in_file, found.beside), (names(&["Banana"]), None));
+        assert!(found.remark.expect("a remark").contains("is not used"));
+        let unreadable = Found::new(Some("Banana and Duck"), None);
+        assert!(unreadable.remark.expect("a remark").contains("cannot be read"));
     }
 
     #[test]
