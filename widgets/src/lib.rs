@@ -3,7 +3,9 @@
 
 pub mod axis;
 pub mod bars;
+pub mod box_canvas;
 pub mod buttons;
+pub mod class_color;
 pub mod colormap;
 pub mod compare;
 pub mod coverage;
@@ -36,7 +38,9 @@ pub mod theme;
 pub mod touch_pattern;
 
 pub use bars::{BarRef, BarsResponse, PairBar, PairBars};
+pub use box_canvas::{BoxCanvas, CanvasBox, CanvasResponse, CanvasState, Placed};
 pub use buttons::{ArmState, choice, primary_button, stop_button, stop_keys, stop_pressed};
+pub use class_color::class_color;
 pub use colormap::{ColorScale, Colormap, Orientation, ScaleBar};
 pub use coverage::{Coverage, coverage_view};
 pub use empty::{EmptyState, Message, empty_state};

@@ -1,6 +1,8 @@
 //! What the command line says about the window.
 
+mod detect_steps;
 mod gap_steps;
+mod label_steps;
 mod robot_steps;
 mod touch_steps;
 
@@ -31,7 +33,7 @@ pub struct WindowArgs {
     /// Colors of the window, in place of the remembered ones.
     #[arg(long, value_enum)]
     theme: Option<ThemeChoice>,
-    /// Screen to start with: live, collect, judge, accept, mount, touch, models, gap or robot.
+    /// Screen to start with: live, collect, judge, accept, mount, touch, models, gap, robot, images or scores.
     #[arg(long, value_name = "SCREEN", value_parser = screen)]
     screen: Option<Screen>,
     /// Size of the window in points: 1280x800.
@@ -59,13 +61,22 @@ pub struct WindowArgs {
     /// touch-plan-train, touch-plan-rich, touch-plan-check, touch-correct:METHOD, touch-start,
     /// touch-pause, touch-resume, touch-skip, touch-prepared, touch-finish, touch-close,
     /// touch-accept-screen, touch-discard-screen, touch-nominal-screen, touch-window;
+    /// detect-boxes, detect-file:FILE, detect-shipped, detect-off, detect-confidence:SHARE,
+    /// detect-overlap:SHARE, detect-hide:CLASS, detect-show:CLASS, detect-all-classes, detect-reset,
+    /// object:CLASS;
     /// gap, gap-session:FOLDER, gap-list, gap-nominal, gap-in-use, gap-find, gap-add, gap-next,
     /// gap-report:FILE, gap-report-pdf:FILE, gap-delete, gap-undo, gap-take-out, gap-map-before,
     /// gap-map-after, gap-map-both, gap-pane-compare, gap-pane-names, gap-pane-candidates,
     /// gap-pane-shown, gap-pane-next, gap-pane-history;
     /// models-list, models-train, models-accept, models-accept-m1 (m2, m3), models-show-m1 (m2, m3),
     /// models-discard, models-undo, models-none, models-check, models-training, models-compared,
-    /// models-map, models-map-before, models-map-after, models-map-both, models-tables.
+    /// models-map, models-map-before, models-map-after, models-map-both, models-tables;
+    /// images, labels-open:FOLDER, labels-new:FOLDER, labels-add, labels-image:NAME, labels-next,
+    /// labels-previous, labels-next-open, labels-box:CLASS,X0,Y0,X1,Y1, labels-choose:N, labels-undo,
+    /// labels-redo, labels-copy, labels-propose, labels-accept, labels-nothing, labels-to-check,
+    /// labels-checks, labels-list, labels-import:FOLDER, labels-accept-import, labels-export:FOLDER,
+    /// labels-close; scores, scores-model:FILE, scores-set:FOLDER, scores-train, scores-evaluate,
+    /// scores-table, scores-classes, scores-cell:TRUTH,FOUND, scores-picture:N, scores-csv:FILE.
     #[arg(long = "do", value_name = "STEPS", value_delimiter = ';', value_parser = step, hide_short_help = true)]
     script: Vec<ScriptStep>,
     /// Writes how long the frames took, as JSON, when the window is closed.
@@ -141,7 +152,9 @@ fn screen(text: &str) -> Result<Screen, String> {
         "models" => Ok(Screen::Models),
         "gap" => Ok(Screen::Gap),
         "robot" => Ok(Screen::Robot),
-        _ => Err("there are the screens live, collect, judge, accept, mount, touch, models, gap and robot"
+        "detect" | "images" => Ok(Screen::Images),
+        "scores" => Ok(Screen::Scores),
+        _ => Err("there are the screens live, collect, judge, accept, mount, touch, models, gap, robot, images and scores"
             .to_owned()),
     }
 }
@@ -185,6 +198,8 @@ fn step(text: &str) -> Result<ScriptStep, String> {
         other => robot_steps::step(other, value)
             .or_else(|| touch_steps::step(other, value))
             .or_else(|| gap_steps::step(other, value))
+            .or_else(|| label_steps::step(other, value))
+            .or_else(|| detect_steps::step(other, value))
             .unwrap_or_else(|| Err(format!("\"{other}\" is not a step; plumbline --help lists them"))),
     }
 }

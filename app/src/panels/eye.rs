@@ -10,7 +10,7 @@ use plumbline_widgets::image_view::{Content, ImageView};
 use plumbline_widgets::overlay::{Mark, Overlay, PointShape};
 use plumbline_widgets::theme::Role;
 
-use super::{PanelContext, picture, residuals, source_state};
+use super::{PanelContext, objects, picture, residuals, source_state};
 use crate::window::Screen;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
@@ -22,10 +22,21 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
     if collecting {
         cx.outbox.want(Products { corners: true, ..Products::default() });
     }
+    let on_live = cx.screen == Screen::Live;
+    if on_live && cx.state.objects.shown {
+        cx.outbox.want(Products { detections: true, ..Products::default() });
+    }
     let view = cx.view;
     let label = if eye == Eye::Left { "Left eye, as delivered" } else { "Right eye, as delivered" };
-    let overlay = if collecting { board_marks(cx, eye) } else { probe_marks(cx, eye) };
+    let mut overlay = if collecting { board_marks(cx, eye) } else { probe_marks(cx, eye) };
     let stale = source_state::stale_sentence(view);
+    let mut note = None;
+    if on_live {
+        let mut boxes = objects::raw(view, &cx.state.objects, eye);
+        boxes.append(overlay);
+        overlay = boxes;
+        note = objects::stale(view, &cx.state.objects);
+    }
     let picture = view.live.raw.as_ref().map(|frame| {
         let image = if eye == Eye::Left { &frame.left } else { &frame.right };
         cx.state.textures.rgb(picture::eye_key(eye), picture::seq(&frame.stamp), image)
@@ -35,6 +46,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
         .caption(false)
         .overlay(&overlay)
         .stale(stale.as_deref())
+        .note(note.as_deref().filter(|_| eye == Eye::Left))
         .show(ui, &mut cx.state.raw[eye.index()]);
     if shown.button_clicked {
         source_state::button_clicked(view, cx.outbox);
@@ -42,7 +54,10 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
     if !collecting {
         let point = |at: [f64; 2]| ProbePoint::Raw { eye, u_px: at[0], v_px: at[1] };
         cx.outbox.probe = shown.hover_px.map(point).or(cx.outbox.probe);
-        if let Some(at) = shown.clicked_px {
+        // A click on a box chooses the object; a point below it is measured by pointing at it.
+        let on_box = on_live
+            && cx.state.objects.point(view, eye, shown.hover_px, shown.clicked_px.is_some());
+        if let Some(at) = shown.clicked_px.filter(|_| !on_box) {
             cx.state.probe.toggle_pin(point(at));
         }
     }

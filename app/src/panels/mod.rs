@@ -11,14 +11,17 @@ mod eye;
 mod figures;
 mod files;
 mod gap;
+mod labels;
 mod models;
 mod mount;
+mod objects;
 mod pairs;
 mod picture;
 mod probe;
 mod rectified;
 mod residuals;
 mod robot;
+mod scores;
 mod source_state;
 mod start;
 mod table;
@@ -33,14 +36,20 @@ pub(crate) use gap::{
     add_label as gap_add_label, is_of_choice as gap_is_of_choice, show_inspector as show_gap_inspector,
     touch_label as gap_touch_label,
 };
+pub use labels::LabelsPanels;
+pub(crate) use labels::show_inspector as show_labels_inspector;
 pub use models::{MapErrors, ModelsPanels};
 pub(crate) use models::{Standing, show_inspector as show_models_inspector, standing};
 pub(crate) use models::{arrow_scale, clock as models_clock, map_entry};
+pub use objects::ObjectsPanels;
+pub(crate) use objects::show_inspector as show_objects_inspector;
 pub(crate) use picture::key as picture_key;
 pub use probe::{ProbeState, probe_readout};
 pub(crate) use residuals::chosen_fit;
 pub use robot::RobotPanels;
 pub(crate) use robot::{move_sentence, moved_name, show_inspector as show_robot_inspector};
+pub use scores::ScoresPanels;
+pub(crate) use scores::show_inspector as show_scores_inspector;
 pub(crate) use source_state::source_age;
 pub(crate) use start::show as show_start;
 pub use touch::TouchPanels;
@@ -72,6 +81,8 @@ pub struct PanelState {
     pub chosen: [ViewState; 2],
     /// The measured point.
     pub probe: ProbeState,
+    /// What the detector sees.
+    pub objects: ObjectsPanels,
     /// How the live views are drawn.
     pub live: LiveStyle,
     /// The pair chosen in a list or by a bar.
@@ -98,6 +109,10 @@ pub struct PanelState {
     pub models: ModelsPanels,
     /// The gap between model and measurement.
     pub gap: GapPanels,
+    /// The lab's own data sets.
+    pub labels: LabelsPanels,
+    /// Judging detectors.
+    pub scores: ScoresPanels,
 }
 
 impl Default for PanelState {
@@ -108,6 +123,7 @@ impl Default for PanelState {
             rectified: ViewState::default(),
             chosen: Default::default(),
             probe: ProbeState::default(),
+            objects: ObjectsPanels::default(),
             live: LiveStyle::default(),
             chosen_pair: None,
             residuals_of: None,
@@ -121,6 +137,8 @@ impl Default for PanelState {
             touch: TouchPanels::default(),
             models: ModelsPanels::default(),
             gap: GapPanels::default(),
+            labels: LabelsPanels::default(),
+            scores: ScoresPanels::default(),
         }
     }
 }
@@ -213,5 +231,13 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
         | Pane::GapShown
         | Pane::GapNext
         | Pane::GapHistory => gap::show(ui, pane, cx),
+        Pane::ScoreChoice
+        | Pane::ScoreTable
+        | Pane::ScoreClasses
+        | Pane::ScoreConfusion
+        | Pane::ScoreCell => scores::show(ui, pane, cx),
+        Pane::LabelList | Pane::LabelCanvas | Pane::LabelGallery | Pane::LabelChecks => {
+            labels::show(ui, pane, cx);
+        }
     }
 }

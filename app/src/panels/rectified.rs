@@ -10,7 +10,7 @@ use plumbline_widgets::image_view::{Content, ImageView};
 use plumbline_widgets::overlay::Overlay;
 use plumbline_widgets::theme::Role;
 
-use super::{PanelContext, picture, source_state};
+use super::{PanelContext, objects, picture, source_state};
 use crate::window::{Action, Outbox, Screen};
 
 const PAIR: &str = "Rectified pair";
@@ -50,6 +50,9 @@ fn one_eye(
     let mut overlay = Overlay::new();
     if cx.state.live.epipolar_lines {
         overlay.append(epipolar_lines(picture.size_px(), LINES_EVERY_PX));
+    }
+    if cx.screen == Screen::Live {
+        overlay.append(objects::rectified(cx.view, &cx.state.objects, eye));
     }
     overlay.append(probe_mark(cx.view, eye));
     let shown = ImageView::new(label, Content::Picture(picture))

@@ -5,7 +5,9 @@ use std::borrow::Cow;
 use plumbline_engine::view::SourceStatus;
 use plumbline_engine::{ExportFormat, Exported, View};
 
+use super::detect_actions::DetectAction;
 use super::gap_actions::GapAction;
+use super::labels_actions::{LabelsAction, ScoresAction};
 use super::models_actions::ModelsAction;
 use super::robot_actions::{MountAction, RobotAction};
 use super::steps::Screen;
@@ -78,6 +80,12 @@ pub enum Action {
     Models(ModelsAction),
     /// Of the gap between model and measurement.
     Gap(GapAction),
+    /// Of the lab's own data sets.
+    Labels(LabelsAction),
+    /// Of judging detectors.
+    Scores(ScoresAction),
+    /// Of detecting objects, live.
+    Detect(DetectAction),
     /// Asks the running job to stop.
     CancelJob,
     /// Saves a picture of the window.
@@ -109,7 +117,11 @@ pub fn all() -> impl Iterator<Item = Action> {
     let touch = TouchAction::ALL.into_iter().map(Action::Touch);
     let models = ModelsAction::ALL.into_iter().map(Action::Models);
     let gap = GapAction::ALL.into_iter().map(Action::Gap);
-    ALL.iter().copied().chain(robot).chain(mount).chain(touch).chain(models).chain(gap)
+    let detect = DetectAction::ALL.into_iter().map(Action::Detect);
+    let labels = LabelsAction::ALL.into_iter().map(Action::Labels);
+    let scores = ScoresAction::ALL.into_iter().map(Action::Scores);
+    let steps = robot.chain(mount).chain(touch).chain(models).chain(gap);
+    ALL.iter().copied().chain(detect).chain(steps).chain(labels).chain(scores)
 }
 
 const ALL: &[Action] = &[
@@ -135,6 +147,8 @@ const ALL: &[Action] = &[
     Action::Go(Screen::Models),
     Action::Go(Screen::Gap),
     Action::Go(Screen::Robot),
+    Action::Go(Screen::Images),
+    Action::Go(Screen::Scores),
     Action::RecognizeBoard,
     Action::UseSeenBoard,
     Action::Capture,
@@ -191,11 +205,16 @@ impl Action {
             Self::Go(Screen::Models) => "Go to Models",
             Self::Go(Screen::Gap) => "Go to Gap",
             Self::Go(Screen::Robot) => "Go to Robot",
+            Self::Go(Screen::Images) => "Go to Detect: images",
+            Self::Go(Screen::Scores) => "Go to Detect: scores",
             Self::Robot(action) => action.label(),
             Self::Mount(action) => action.label(),
             Self::Touch(action) => action.label(),
             Self::Models(action) => action.label(),
             Self::Gap(action) => action.label(),
+            Self::Labels(action) => action.label(),
+            Self::Scores(action) => action.label(),
+            Self::Detect(action) => action.label(),
             Self::RecognizeBoard => "Recognize the board",
             Self::UseSeenBoard => "Use the recognized board",
             Self::Capture => "Capture pair",
@@ -254,6 +273,9 @@ impl Action {
             Self::Touch(action) => action.refusal(view),
             Self::Models(action) => action.refusal(view),
             Self::Gap(action) => action.refusal(view),
+            Self::Labels(action) => action.refusal(view),
+            Self::Scores(action) => action.refusal(view),
+            Self::Detect(action) => action.refusal(view),
             Self::CancelJob => when(view.running_job().is_some(), "no job is running"),
             _ => None,
         }

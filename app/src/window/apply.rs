@@ -7,9 +7,9 @@ use std::time::Instant;
 
 use plumbline_engine::view::{JobState, SourceStatus};
 use plumbline_engine::{
-    Command, Destination, EyesCommand, FileLength, GapCommand, JobCommand, LiveCommand, ModelsCommand,
-    MountCommand, NoticeCommand, NoticeLevel, ProbePoint, RobotCommand, SourceCommand, TablesCommand,
-    TouchCommand, TwinCommand,
+    BoxEdit, Command, Destination, DetectCommand, DetectorChoice, EyesCommand, FileLength, GapCommand,
+    JobCommand, LabelsCommand, LiveCommand, ModelsCommand, MountCommand, NoticeCommand, NoticeLevel,
+    ProbePoint, RobotCommand, ScoresCommand, SourceCommand, TablesCommand, TouchCommand, TwinCommand,
 };
 use plumbline_model::Eye;
 use plumbline_model::robot::JointIndex;
@@ -17,10 +17,12 @@ use plumbline_model::robot::JointIndex;
 use super::PlumblineWindow;
 use super::actions::Action;
 use super::ask::{Ask, Asked};
+use super::detect_actions::DetectAction;
 use super::dialogs::{Answer, Question};
 use super::frame_time::{FrameTimes, resident_mb};
 use super::gap_actions::{self, GapAction};
 use super::jogging::RENEW;
+use super::labels_actions::{LabelsAction, ScoresAction};
 use super::models_actions::ModelsAction;
 use super::outbox::Outbox;
 use super::robot_actions::RobotAction;
@@ -41,6 +43,7 @@ impl PlumblineWindow {
             self.wanted = Some(outbox.wanted);
             self.backend.send(LiveCommand::Want(outbox.wanted).into());
         }
+        self.panels.objects.end_frame(&self.view);
         self.panels.probe.follow(outbox.probe, &mut |command| self.backend.send(command.into()));
         for command in outbox.commands {
             self.send(command);
@@ -118,8 +121,16 @@ impl PlumblineWindow {
             Action::Import => self.ask_for(ctx, Question::Import),
             Action::Export(what, format) => self.ask_for(ctx, Question::Export(what, format)),
             Action::SaveWindow => self.ask_for(ctx, Question::SaveWindow),
+            Action::Detect(DetectAction::ToggleBoxes) => {
+                self.panels.objects.shown = !self.panels.objects.shown;
+            }
+            Action::Detect(DetectAction::ChooseFile) => self.ask_for(ctx, Question::Detector),
             Action::Models(action) => self.act_on_models(ctx, action),
             Action::Gap(action) => self.act_on_gap(ctx, action),
+            Action::Labels(action) => self.act_on_labels(ctx, action),
+            Action::Scores(ScoresAction::AddModels) => self.ask_for(ctx, Question::ScoreModels),
+            Action::Scores(ScoresAction::ChooseSet) => self.ask_for(ctx, Question::ScoreSet),
+            Action::Scores(ScoresAction::ExportCsv) => self.ask_for(ctx, Question::ScoresCsv),
             Action::Go(screen) => self.settings.screen = screen,
             Action::Palette => self.palette.toggle(),
             Action::ToggleInspector => self.settings.inspector_open = !self.settings.inspector_open,
@@ -170,6 +181,27 @@ impl PlumblineWindow {
         }
     }
 
+    /// The actions on data sets that ask for a folder, or need the box that is chosen.
+    fn act_on_labels(&mut self, ctx: &egui::Context, action: LabelsAction) {
+        match action {
+            LabelsAction::Open => self.ask_for(ctx, Question::LabelSet),
+            LabelsAction::Create => self.ask = Some(Ask::new_label_set()),
+            LabelsAction::Export => self.ask_for(ctx, Question::ExportLabels),
+            LabelsAction::Import => self.ask_for(ctx, Question::ImportLabels),
+            LabelsAction::DeleteBox => {
+                if let Some(command) = self.panels.labels.delete_chosen(&self.view) {
+                    self.send(command);
+                }
+            }
+            LabelsAction::Class(class) => {
+                if let Some(command) = self.panels.labels.choose_class(&self.view, class) {
+                    self.send(command);
+                }
+            }
+            _ => {}
+        }
+    }
+
     /// The actions that are nothing but a command to the engine.
     fn command_of(&self, action: Action) -> Option<Command> {
         let replay = self.view.source.replay;
@@ -201,6 +233,9 @@ impl PlumblineWindow {
             Action::Touch(action) => return action.command(&self.view),
             Action::Models(action) => return action.command(&self.view),
             Action::Gap(action) => return action.command(&self.view),
+            Action::Labels(action) => return action.command(&self.view),
+            Action::Scores(action) => return action.command(&self.view),
+            Action::Detect(action) => return action.command(),
             Action::CancelJob => JobCommand::Cancel(self.view.running_job()?.id).into(),
             _ => return None,
         })
@@ -258,6 +293,9 @@ impl PlumblineWindow {
                 (Question::Export(what, format), _) => {
                     self.backend.send(EyesCommand::Export { what, format, file: paths.remove(0) }.into());
                 }
+                (Question::Detector, _) => {
+                    self.send(DetectCommand::Use(DetectorChoice::File(paths.remove(0))).into());
+                }
                 (Question::TouchSession, _) => {
                     self.send(ModelsCommand::ChooseSession { session: paths.remove(0) }.into());
                 }
@@ -266,6 +304,24 @@ impl PlumblineWindow {
                 }
                 (Question::GapReport { pdf }, _) => {
                     self.send(GapCommand::Report { file: paths.remove(0), pdf }.into());
+                }
+                (Question::LabelSet, _) => {
+                    self.settings.screen = Screen::Images;
+                    self.send(LabelsCommand::Open { path: paths.remove(0) }.into());
+                }
+                (Question::ExportLabels, _) => {
+                    let folder = paths.remove(0);
+                    self.send(LabelsCommand::Export { folder, train_percent: 80, seed: 1 }.into());
+                }
+                (Question::ImportLabels, _) => {
+                    self.send(LabelsCommand::Import { path: paths.remove(0) }.into());
+                }
+                (Question::ScoreModels, _) => self.send(ScoresCommand::AddModels { files: paths }.into()),
+                (Question::ScoreSet, _) => {
+                    self.send(ScoresCommand::ChooseSet { path: paths.remove(0) }.into());
+                }
+                (Question::ScoresCsv, _) => {
+                    self.send(ScoresCommand::ExportCsv { file: paths.remove(0) }.into());
                 }
                 (Question::ImportModel, _) => {
                     self.send(ModelsCommand::Import { file: paths.remove(0) }.into());
@@ -317,6 +373,14 @@ impl PlumblineWindow {
             ScriptStep::Probe([u_px, v_px]) => {
                 self.panels.probe.pinned = Some(ProbePoint::Raw { eye: Eye::Left, u_px, v_px });
             }
+            ScriptStep::ChooseObject(name) => self.panels.objects.choose_class(&self.view, &name),
+            ScriptStep::DrawBox(class, area) => {
+                if let Some(shown) = &self.view.labels.shown {
+                    let (image, edit) = (shown.name.clone(), BoxEdit::Add { class, area });
+                    self.send(LabelsCommand::Edit { image, edit }.into());
+                }
+            }
+            ScriptStep::ChooseBox(index) => self.panels.labels.canvas.chosen = Some(index),
             ScriptStep::ShowPane(pane) => self.show_pane(self.settings.screen, pane),
             ScriptStep::ShowErrors(errors) => self.panels.models.errors = errors,
             ScriptStep::ShowGapErrors(errors) => self.panels.gap.errors = errors,

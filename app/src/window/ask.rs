@@ -4,7 +4,9 @@
 use std::path::PathBuf;
 
 use egui::{Align2, DragValue, TextEdit, Ui, Vec2};
-use plumbline_engine::{CameraDevice, Command, EyesCommand, RobotCommand, SourceCommand, SourceSpec, View};
+use plumbline_engine::{
+    CameraDevice, Command, EyesCommand, LabelsCommand, RobotCommand, SourceCommand, SourceSpec, View,
+};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
@@ -38,6 +40,13 @@ pub enum Ask {
     Connect(ConnectChoice),
     /// Whether all joints may go limp.
     LetGo,
+    /// Folder and classes of a new data set.
+    NewLabelSet {
+        /// As it is being typed.
+        folder: String,
+        /// Separated by commas, as they are being typed.
+        classes: String,
+    },
     /// The name of a posture.
     SavePose {
         /// As it is being typed.
@@ -68,6 +77,12 @@ impl Ask {
         Self::Paths { question, typed }
     }
 
+    /// Asks for a new data set, with the published classes.
+    pub fn new_label_set() -> Self {
+        let classes = plumbline_model::detection::PUBLISHED_CLASSES.join(", ");
+        Self::NewLabelSet { folder: String::new(), classes }
+    }
+
     /// Draws the sheet.
     pub fn show(&mut self, ctx: &egui::Context, view: &View, escape_pressed: bool) -> Asked {
         let middle = (Align2::CENTER_CENTER, Vec2::ZERO);
@@ -77,6 +92,7 @@ impl Ask {
             Self::DeleteAll { count } => delete_all(ui, *count),
             Self::Connect(chosen) => connect::show(ui, view, chosen),
             Self::LetGo => let_go(ui),
+            Self::NewLabelSet { folder, classes } => new_label_set(ui, folder, classes),
             Self::SavePose { title } => save_pose(ui, title),
         });
         match shown.inner {
@@ -204,6 +220,28 @@ fn save_pose(ui: &mut Ui, name: &mut String) -> Asked {
         Some(false) => Asked::Closed,
         Some(true) => saved_pose(name),
         None if entered && filled => saved_pose(name),
+        None => Asked::Open,
+    }
+}
+
+fn new_label_set(ui: &mut Ui, folder: &mut String, classes: &mut String) -> Asked {
+    title(ui, "New data set", "Images, labels and data.yaml in the YOLO layout, in a folder of its own.");
+    let label = ui.label(theme::weak(ui, "Folder, which must be empty or new"));
+    ui.add(TextEdit::singleline(folder).desired_width(f32::INFINITY)).labelled_by(label.id);
+    let label = ui.label(theme::weak(ui, "Classes in order, separated by commas"));
+    ui.add(TextEdit::multiline(classes).desired_rows(2).desired_width(f32::INFINITY)).labelled_by(label.id);
+    ui.label(theme::small(ui, "The order gives the class numbers their meaning and is never changed later."));
+    let names: Vec<String> = classes
+        .split([',', '\n'])
+        .map(|name| name.trim().to_owned())
+        .filter(|name| !name.is_empty())
+        .collect();
+    let filled = !folder.trim().is_empty() && !names.is_empty();
+    match buttons(ui, "Make the data set", filled) {
+        Some(false) => Asked::Closed,
+        Some(true) => {
+            Asked::Command(LabelsCommand::Create { folder: expand_home(folder.trim()), names }.into())
+        }
         None => Asked::Open,
     }
 }

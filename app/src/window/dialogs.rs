@@ -22,6 +22,8 @@ pub enum Question {
     Import,
     /// Where a calibration is written.
     Export(Exported, ExportFormat),
+    /// An ONNX file with a detector.
+    Detector,
     /// The folder of a session with touches.
     TouchSession,
     /// The folder of a session to compare with the model.
@@ -39,6 +41,18 @@ pub enum Question {
     ImportTable(GraspTable),
     /// Where a table is written.
     ExportTable(GraspTable),
+    /// The folder of a data set to label.
+    LabelSet,
+    /// Where a data set to train with is written.
+    ExportLabels,
+    /// The folder of a data set to read into the open one.
+    ImportLabels,
+    /// Detectors to judge.
+    ScoreModels,
+    /// The folder of the data set to judge on.
+    ScoreSet,
+    /// Where the table of scores is written.
+    ScoresCsv,
     /// Where a picture of the window is saved.
     SaveWindow,
     /// Where a picture of one view is saved.
@@ -68,6 +82,7 @@ impl Question {
             Self::TwoVideos => "Open two videos: left eye, right eye",
             Self::Import => "Import a calibration",
             Self::Export(..) => "Export the calibration",
+            Self::Detector => "Choose a detector",
             Self::TouchSession => "Open a session with touches",
             Self::GapSession => "Open a session to compare",
             Self::GapReport { .. } => "Write the report of the gap",
@@ -77,6 +92,12 @@ impl Question {
             Self::ImportTable(GraspTable::Yaw) => "Import yaw angles",
             Self::ExportTable(GraspTable::Height) => "Export grasp heights",
             Self::ExportTable(GraspTable::Yaw) => "Export yaw angles",
+            Self::LabelSet => "Open a data set",
+            Self::ExportLabels => "Export the data set into an empty folder",
+            Self::ImportLabels => "Import a YOLO data set",
+            Self::ScoreModels => "Add a detector to judge",
+            Self::ScoreSet => "Choose the data set to judge on",
+            Self::ScoresCsv => "Export the scores",
             Self::SaveWindow => "Save a picture of the window",
             Self::SaveView => "Save a picture of the view",
         }
@@ -85,16 +106,25 @@ impl Question {
     /// Names of the paths that are asked for.
     pub fn fields(self) -> &'static [&'static str] {
         match self {
-            Self::Folder | Self::TouchSession | Self::GapSession => &["Folder"],
+            Self::Folder
+            | Self::TouchSession
+            | Self::GapSession
+            | Self::LabelSet
+            | Self::ExportLabels
+            | Self::ImportLabels
+            | Self::ScoreSet => &["Folder"],
             Self::TwoFolders => &["Left folder", "Right folder"],
             Self::TwoVideos => &["Left video", "Right video"],
             Self::Import => &["File", "Right eye's file, if there are two"],
             Self::Export(..)
+            | Self::Detector
             | Self::ImportModel
             | Self::ExportModel(..)
             | Self::ImportTable(_)
             | Self::ExportTable(_)
             | Self::GapReport { .. }
+            | Self::ScoreModels
+            | Self::ScoresCsv
             | Self::SaveWindow
             | Self::SaveView => &["File"],
         }
@@ -122,6 +152,7 @@ impl Question {
             Self::ExportTable(GraspTable::Yaw) => "grasp-yaw.csv",
             Self::GapReport { pdf: false } => "gap.html",
             Self::GapReport { pdf: true } => "gap.pdf",
+            Self::ScoresCsv => "scores.csv",
             Self::SaveWindow => "plumbline.png",
             Self::SaveView => "view.png",
             _ => "",
@@ -136,6 +167,7 @@ impl Question {
                 | Self::ExportModel(..)
                 | Self::ExportTable(_)
                 | Self::GapReport { .. }
+                | Self::ScoresCsv
                 | Self::SaveWindow
                 | Self::SaveView
         )
@@ -148,12 +180,20 @@ impl Question {
         let video =
             |title: &str| titled(title).add_filter("Videos", &["mp4", "avi", "mkv", "mov", "webm", "m4v"]);
         match self {
-            Self::Folder | Self::TouchSession | Self::GapSession => {
-                dialog().pick_folder().map(|folder| vec![folder])
+            Self::Folder
+            | Self::TouchSession
+            | Self::GapSession
+            | Self::LabelSet
+            | Self::ExportLabels
+            | Self::ImportLabels
+            | Self::ScoreSet => dialog().pick_folder().map(|folder| vec![folder]),
+            Self::Detector => {
+                dialog().add_filter("ONNX files", &["onnx"]).pick_file().map(|file| vec![file])
             }
             Self::ImportModel => {
                 dialog().add_filter("Models", &["json", "onnx"]).pick_file().map(|file| vec![file])
             }
+            Self::ScoreModels => dialog().add_filter("Detectors", &["onnx"]).pick_files(),
             Self::ImportTable(_) => {
                 dialog().add_filter("Tables", &["csv"]).pick_file().map(|file| vec![file])
             }
@@ -172,6 +212,7 @@ impl Question {
             | Self::ExportModel(..)
             | Self::ExportTable(_)
             | Self::GapReport { .. }
+            | Self::ScoresCsv
             | Self::SaveWindow
             | Self::SaveView => {
                 dialog().set_file_name(self.suggested_name()).save_file().map(|file| vec![file])

@@ -3,14 +3,31 @@
 use std::path::{Path, PathBuf};
 
 use egui::{Align2, Context, LayerId, Order, Stroke, StrokeKind, TextStyle};
-use plumbline_engine::{Command, EyesCommand, FileLength, SourceCommand};
+use plumbline_engine::{Command, EyesCommand, FileLength, LabelsCommand, ScoresCommand, SourceCommand};
 use plumbline_widgets::buttons::STOP_SIZE;
 use plumbline_widgets::theme::{self, space};
 
+use super::steps::Screen;
+
 /// What the dropped paths are taken for; an error says what could be dropped instead.
-pub fn command_for(paths: &[PathBuf]) -> Result<Command, String> {
+pub fn command_for(paths: &[PathBuf], screen: Screen) -> Result<Command, String> {
+    match (paths, screen) {
+        ([], _) => Err("Nothing that can be opened was dropped.".to_owned()),
+        (files, Screen::Scores) if files.iter().all(|file| has_extension(file, &["onnx"])) => {
+            Ok(ScoresCommand::AddModels { files: files.to_vec() }.into())
+        }
+        ([set], Screen::Scores) => Ok(ScoresCommand::ChooseSet { path: set.clone() }.into()),
+        ([set], Screen::Images) => Ok(LabelsCommand::Open { path: set.clone() }.into()),
+        (_, Screen::Scores | Screen::Images) => {
+            Err("Drop one folder with a data.yaml, or ONNX files on Scores.".to_owned())
+        }
+        (paths, _) => command_elsewhere(paths),
+    }
+}
+
+/// On the screens that look at pairs.
+fn command_elsewhere(paths: &[PathBuf]) -> Result<Command, String> {
     match paths {
-        [] => Err("Nothing that can be opened was dropped.".to_owned()),
         paths if paths.iter().all(|path| is_calibration(path)) && paths.len() <= 2 => {
             Ok(EyesCommand::Import { files: ordered(paths), length: FileLength::AsPrescribed }.into())
         }
@@ -19,8 +36,11 @@ pub fn command_for(paths: &[PathBuf]) -> Result<Command, String> {
 }
 
 /// What will happen, while the files are still held over the window.
-pub fn preview(paths: &[PathBuf]) -> String {
-    match command_for(paths) {
+pub fn preview(paths: &[PathBuf], screen: Screen) -> String {
+    match command_for(paths, screen) {
+        Ok(Command::Labels(_)) => "Drop to open this data set".to_owned(),
+        Ok(Command::Scores(ScoresCommand::AddModels { .. })) => "Drop to judge these detectors".to_owned(),
+        Ok(Command::Scores(_)) => "Drop to judge on this data set".to_owned(),
         Ok(Command::Eyes(_)) => "Drop to read this calibration as a proposal".to_owned(),
         Ok(Command::Source(SourceCommand::OpenPaths(paths))) => match paths.as_slice() {
             [path] => format!("Drop to open {} as the source", name(path)),
@@ -48,8 +68,12 @@ pub fn paint_preview(ctx: &Context, text: &str) {
 }
 
 fn is_calibration(path: &Path) -> bool {
+    has_extension(path, &["yaml", "yml", "xml"])
+}
+
+fn has_extension(path: &Path, extensions: &[&str]) -> bool {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_lowercase();
-    matches!(extension.as_str(), "yaml" | "yml" | "xml")
+    extensions.contains(&extension.as_str())
 }
 
 /// Left eye first, as far as the names tell; file managers give no useful order.
@@ -74,13 +98,13 @@ mod tests {
 
     #[test]
     fn two_videos_are_opened_left_eye_first() {
-        let command = command_for(&paths(&["a/right.mp4", "a/left.mp4"])).expect("two videos");
+        let command = command_for(&paths(&["a/right.mp4", "a/left.mp4"]), Screen::Live).expect("two videos");
         assert_eq!(command, SourceCommand::OpenPaths(paths(&["a/left.mp4", "a/right.mp4"])).into());
     }
 
     #[test]
     fn a_calibration_file_is_proposed_not_opened() {
-        let command = command_for(&paths(&["rig-cameras.yaml"])).expect("a calibration");
+        let command = command_for(&paths(&["rig-cameras.yaml"]), Screen::Live).expect("a calibration");
         assert_eq!(
             command,
             EyesCommand::Import { files: paths(&["rig-cameras.yaml"]), length: FileLength::AsPrescribed }
@@ -89,8 +113,19 @@ mod tests {
     }
 
     #[test]
+    fn detect_takes_data_sets_and_detectors() {
+        let set = command_for(&paths(&["toys/data.yaml"]), Screen::Images);
+        assert_eq!(set, Ok(LabelsCommand::Open { path: "toys/data.yaml".into() }.into()));
+        let set = command_for(&paths(&["toys"]), Screen::Scores);
+        assert_eq!(set, Ok(ScoresCommand::ChooseSet { path: "toys".into() }.into()));
+        let models = command_for(&paths(&["a.onnx", "b.ONNX"]), Screen::Scores);
+        assert_eq!(models, Ok(ScoresCommand::AddModels { files: paths(&["a.onnx", "b.ONNX"]) }.into()));
+        assert!(command_for(&paths(&["a", "b"]), Screen::Images).is_err());
+    }
+
+    #[test]
     fn the_preview_says_which_eye_is_which() {
-        let text = preview(&paths(&["b/right", "b/left"]));
+        let text = preview(&paths(&["b/right", "b/left"]), Screen::Live);
         assert_eq!(text, "Drop to open left as the left eye and right as the right eye");
     }
 }

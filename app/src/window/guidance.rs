@@ -1,5 +1,6 @@
 //! What is happening and what to do next, in one sentence and one button.
 
+mod detect;
 mod gap;
 mod models;
 mod robot;
@@ -57,6 +58,8 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
         Screen::Models => models::models(view),
         Screen::Gap => gap::gap(view),
         Screen::Robot => robot::robot(view),
+        Screen::Scores => detect::scores(view),
+        Screen::Images => detect::images(view),
     }
 }
 

@@ -14,8 +14,8 @@ use super::outbox::Outbox;
 use super::steps::Screen;
 use super::{PlumblineWindow, hint_text};
 use crate::panels::{
-    PanelState, chosen_fit, probe_readout, show_gap_inspector, show_models_inspector, show_robot_inspector,
-    show_touch_inspector,
+    PanelState, chosen_fit, probe_readout, show_gap_inspector, show_objects_inspector, show_labels_inspector, show_models_inspector,
+    show_robot_inspector, show_scores_inspector, show_touch_inspector,
 };
 
 pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
@@ -34,6 +34,8 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
             Screen::Touch => show_touch_inspector(ui, &view, state, outbox),
             Screen::Models => show_models_inspector(ui, &view, state, outbox),
             Screen::Gap => show_gap_inspector(ui, &view, state, outbox),
+            Screen::Scores => show_scores_inspector(ui, &view, state, outbox),
+            Screen::Images => show_labels_inspector(ui, &view, state, outbox),
             Screen::Robot => show_robot_inspector(ui, &view, &mut state.robot, outbox),
         });
     });
@@ -46,6 +48,7 @@ fn live(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {
         state.probe.pinned = None;
     }
     look_there(ui, view, outbox);
+    show_objects_inspector(ui, view, &mut state.objects, outbox);
     group_heading(ui, "Picture");
     let maps = [(Colormap::Viridis, "Viridis"), (Colormap::Spectrum, "Spectrum"), (Colormap::Gray, "Gray")];
     choice(ui, "Colors of depth", &mut state.live.colormap, &maps);

@@ -8,6 +8,7 @@ mod apply;
 mod ask;
 mod backend;
 mod connect;
+mod detect_actions;
 mod dialogs;
 mod drop;
 mod frame_time;
@@ -19,6 +20,7 @@ mod health;
 mod icon;
 mod inspector;
 mod jogging;
+mod labels_actions;
 mod launch;
 mod log_lines;
 mod log_panel;
@@ -53,11 +55,13 @@ use plumbline_engine::{JobId, Products, View};
 
 pub use actions::{Action, format_name};
 pub use backend::Backend;
+pub use detect_actions::DetectAction;
 pub use gamepad::GamepadState;
 pub use gap_actions::GapAction;
 pub(crate) use gap_actions::plan as gap_plan;
 pub use guidance::{Verdict, capitalized, hint_text, other_board, verdict};
 pub(crate) use guidance::{done_of, minutes, wanted, what_moves};
+pub use labels_actions::{LabelsAction, ScoresAction};
 pub use launch::{LaunchOptions, launch};
 pub use log_lines::{LogStore, start as start_log};
 pub use models_actions::ModelsAction;
@@ -258,6 +262,11 @@ impl PlumblineWindow {
         let ctx = ui.ctx().clone();
         let escape_pressed = ctx.input(|input| input.key_pressed(egui::Key::Escape));
         let mut outbox = Outbox::default();
+        if self.settings.screen == Screen::Images && self.ask.is_none() && !self.palette.is_open() {
+            for action in shortcuts::take_label_keys(&ctx, &self.view) {
+                outbox.act(action);
+            }
+        }
         for action in shortcuts::take_shortcuts(&ctx) {
             outbox.act(action);
         }
@@ -306,10 +315,10 @@ impl PlumblineWindow {
             (hovered, dropped)
         });
         if !hovered.is_empty() {
-            drop::paint_preview(ctx, &drop::preview(&hovered));
+            drop::paint_preview(ctx, &drop::preview(&hovered, self.settings.screen));
         }
         if !dropped.is_empty() {
-            match drop::command_for(&dropped) {
+            match drop::command_for(&dropped, self.settings.screen) {
                 Ok(command) => outbox.send(command),
                 Err(why) => outbox.send(apply::warning(why)),
             }

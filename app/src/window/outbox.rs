@@ -46,5 +46,6 @@ impl Outbox {
         self.wanted.rectified |= products.rectified;
         self.wanted.disparity |= products.disparity;
         self.wanted.corners |= products.corners;
+        self.wanted.detections |= products.detections;
     }
 }

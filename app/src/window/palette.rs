@@ -25,6 +25,11 @@ impl Palette {
         *self = Self { open: !self.open, just_opened: true, ..Self::default() };
     }
 
+    /// Whether it is open.
+    pub fn is_open(&self) -> bool {
+        self.open
+    }
+
     /// Draws it while it is open; returns what was chosen.
     pub fn show(&mut self, ctx: &egui::Context, view: &View, escape_pressed: bool) -> Option<Action> {
         if !self.open {

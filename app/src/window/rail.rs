@@ -53,6 +53,13 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
             if robot.clicked() {
                 outbox.act(Action::Go(Screen::Robot));
             }
+            let detect = RailStep::new("Detect", detect_state(view)).selected(screen.is_detect()).show(ui);
+            if detect.clicked() && !screen.is_detect() {
+                outbox.act(Action::Go(Screen::Images));
+            }
+            if screen.is_detect() {
+                detect_rows(ui, view, screen, outbox);
+            }
         },
     );
 }
@@ -120,13 +127,26 @@ impl Part {
 }
 
 fn part_row(ui: &mut Ui, view: &View, part: Part, screen: Screen, outbox: &mut Outbox) {
+    row(ui, part.name(), part.value(&view.eyes), part.screen() == screen, part.screen(), outbox);
+}
+
+/// What belongs to "Detect".
+fn detect_rows(ui: &mut Ui, view: &View, screen: Screen, outbox: &mut Outbox) {
+    let labeled = match &view.labels.set {
+        Some(_) => format::count(view.labels.images.len(), "image"),
+        None => String::new(),
+    };
+    let scored = view.scores.table.as_ref().map(|table| format::count(table.rows.len(), "model"));
+    row(ui, "Images", labeled, screen == Screen::Images, Screen::Images, outbox);
+    row(ui, "Scores", scored.unwrap_or_default(), screen == Screen::Scores, Screen::Scores, outbox);
+}
+
+fn row(ui: &mut Ui, name: &str, value: String, here: bool, target: Screen, outbox: &mut Outbox) {
     let tokens = theme::tokens(ui);
-    let here = part.screen() == screen;
     let (rect, response) =
         ui.allocate_exact_size(egui::vec2(ui.available_width(), 24.0), egui::Sense::click());
-    let value = part.value(&view.eyes);
     response.widget_info(|| {
-        let mut info = egui::WidgetInfo::selected(egui::Role::Tab, true, here, part.name());
+        let mut info = egui::WidgetInfo::selected(egui::Role::Tab, true, here, name);
         info.current_text_value = Some(value.clone());
         info
     });
@@ -141,7 +161,7 @@ fn part_row(ui: &mut Ui, view: &View, part: Part, screen: Screen, outbox: &mut O
     let body = TextStyle::Body.resolve(ui.style());
     let small = TextStyle::Small.resolve(ui.style());
     let color = if here { tokens.text_strong } else { tokens.text };
-    ui.painter().text(egui::pos2(rect.left() + 28.0, y), egui::Align2::LEFT_CENTER, part.name(), body, color);
+    ui.painter().text(egui::pos2(rect.left() + 28.0, y), egui::Align2::LEFT_CENTER, name, body, color);
     ui.painter().text(
         egui::pos2(rect.right() - 8.0, y),
         egui::Align2::RIGHT_CENTER,
@@ -150,7 +170,7 @@ fn part_row(ui: &mut Ui, view: &View, part: Part, screen: Screen, outbox: &mut O
         tokens.text_weak,
     );
     if response.clicked() {
-        outbox.act(Action::Go(part.screen()));
+        outbox.act(Action::Go(target));
     }
 }
 
@@ -206,6 +226,18 @@ fn robot_state(view: &View) -> StepState<'_> {
         Connection::Lost { reason, .. } => StepState::Failed(reason),
         Connection::Connecting { .. } => StepState::Running(0.5),
         Connection::None | Connection::Connected { .. } => StepState::Always,
+    }
+}
+
+/// No step of the work either; it says how far an evaluation is, and what is not on disk.
+fn detect_state(view: &View) -> StepState<'_> {
+    let evaluating = view.scores.evaluating.and_then(|id| view.jobs.iter().find(|job| job.id == id));
+    if let Some(JobState::Running { fraction, .. }) = evaluating.map(|job| &job.state) {
+        return StepState::Running(*fraction as f32);
+    }
+    match &view.labels.unsaved {
+        Some(why) => StepState::Failed(why),
+        None => StepState::Always,
     }
 }
 

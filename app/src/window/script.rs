@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use plumbline_engine::view::{Connection, MotionState, SourceStatus, StepState, TouchPhase};
 use plumbline_engine::{Command, View};
+use plumbline_model::{ClassIndex, PixelBox};
 
 use super::actions::Action;
 use super::steps::Pane;
@@ -25,8 +26,14 @@ pub enum ScriptStep {
     PreviewJoint(String, f64),
     /// Chooses a joint for the inspector.
     ChooseJoint(String),
+    /// Draws a box on the shown image of the data set.
+    DrawBox(ClassIndex, PixelBox),
+    /// Chooses a box of it, by place.
+    ChooseBox(usize),
     /// Chooses the pair with this place in the list.
     ChoosePair(usize),
+    /// Chooses the surest object of a class.
+    ChooseObject(String),
     /// Brings a pane of the open screen to the front.
     ShowPane(Pane),
     /// Which errors the map of a model shows.
@@ -76,6 +83,8 @@ impl Script {
             || matches!(view.touch.phase, TouchPhase::Running { .. } | TouchPhase::Planning)
             || view.models.training
             || view.gap.searching.is_some()
+            || view.labels.working.is_some()
+            || view.scores.evaluating.is_some()
             || view.mount.step == StepState::Running
             || view.source.status == SourceStatus::Opening
             || self.waiting_for_picture.load(Ordering::Relaxed)

@@ -2,7 +2,11 @@
 
 use egui::{Event, Key, KeyboardShortcut, Modifiers};
 
+use plumbline_engine::View;
+
 use super::actions::{self, Action};
+use super::detect_actions::DetectAction;
+use super::labels_actions::LabelsAction;
 use super::steps::Screen;
 
 impl Action {
@@ -29,7 +33,10 @@ impl Action {
             Self::Go(Screen::Touch) => command(Key::Num7),
             Self::Go(Screen::Models) => command(Key::Num8),
             Self::Go(Screen::Gap) => command(Key::Num9),
+            Self::Go(Screen::Images) => command(Key::D),
+            Self::Go(Screen::Scores) => shift(Key::D),
             Self::Capture => plain(Key::C),
+            Self::Detect(DetectAction::ToggleBoxes) => plain(Key::B),
             Self::DeleteLast => plain(Key::Backspace),
             Self::Undo => command(Key::Z),
             Self::Solve => shift(Key::S),
@@ -56,9 +63,44 @@ impl Action {
     }
 }
 
+/// Keys of classes, in their order.
+const CLASS_KEYS: [Key; 9] =
+    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+
+/// Takes the keys for drawing boxes out of this frame's input; what cannot be done is left to mean
+/// what it means elsewhere.
+pub fn take_label_keys(ctx: &egui::Context, view: &View) -> Vec<Action> {
+    if ctx.text_edit_focused() || view.labels.set.is_none() {
+        return Vec::new();
+    }
+    let keyed = LabelsAction::ALL.into_iter().filter_map(|action| Some((action.keys()?, action)));
+    let mut keyed: Vec<(KeyboardShortcut, LabelsAction)> = keyed.collect();
+    let redo = KeyboardShortcut::new(Modifiers::COMMAND, Key::Y);
+    keyed.push((redo, LabelsAction::Redo));
+    // Elsewhere it deletes a pair.
+    let backspace = KeyboardShortcut::new(Modifiers::NONE, Key::Backspace);
+    keyed.push((backspace, LabelsAction::DeleteBox));
+    keyed.sort_by_key(|(keys, _)| !keys.modifiers.shift);
+    let mut taken = Vec::new();
+    for (keys, action) in keyed {
+        // Enter presses the button that has the focus, unless something is proposed.
+        let possible = action != LabelsAction::AcceptProposals || action.refusal(view).is_none();
+        if possible && ctx.input_mut(|input| input.consume_shortcut(&keys)) {
+            taken.push(Action::Labels(action));
+        }
+    }
+    for (class, key) in CLASS_KEYS.into_iter().enumerate() {
+        if ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key)) {
+            taken.push(Action::Labels(LabelsAction::Class(class)));
+        }
+    }
+    taken
+}
+
 /// Shortcuts as text, for menus and hints.
 pub fn shortcut_text(ctx: &egui::Context, action: Action) -> Option<String> {
-    let text = ctx.format_shortcut(&action.shortcut()?);
+    let local = if let Action::Labels(action) = action { action.keys() } else { None };
+    let text = ctx.format_shortcut(&action.shortcut().or(local)?);
     // As it is printed on the keys.
     Some(text.replace("Escape", "Esc").replace("Period", ".").replace("Comma", ","))
 }

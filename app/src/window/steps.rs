@@ -26,11 +26,15 @@ pub enum Screen {
     Gap,
     /// The robot: its joints, moving it.
     Robot,
+    /// Detectors judged on a labeled data set.
+    Scores,
+    /// The lab's own data sets: capturing images, drawing boxes.
+    Images,
 }
 
 impl Screen {
     /// All of them, in the order of work.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Live,
         Self::Collect,
         Self::Judge,
@@ -40,7 +44,14 @@ impl Screen {
         Self::Models,
         Self::Gap,
         Self::Robot,
+        Self::Scores,
+        Self::Images,
     ];
+
+    /// Whether it belongs to "Detect".
+    pub fn is_detect(self) -> bool {
+        matches!(self, Self::Scores | Self::Images)
+    }
 
     /// Whether it belongs to the step "Eyes".
     pub fn is_eyes(self) -> bool {
@@ -130,6 +141,24 @@ pub enum Pane {
     GapNext,
     /// Models and findings so far.
     GapHistory,
+    /// Which detectors are judged on what.
+    ScoreChoice,
+    /// Detectors compared.
+    ScoreTable,
+    /// Each class by itself.
+    ScoreClasses,
+    /// What was taken for what.
+    ScoreConfusion,
+    /// The images behind a cell of it.
+    ScoreCell,
+    /// The images of a data set.
+    LabelList,
+    /// One image, to draw boxes.
+    LabelCanvas,
+    /// The images as small pictures.
+    LabelGallery,
+    /// What is wrong in a data set; an import before it is accepted.
+    LabelChecks,
 }
 
 impl Pane {
@@ -175,6 +204,15 @@ impl Pane {
             Self::GapShown => "Before and after",
             Self::GapNext => "Next experiment",
             Self::GapHistory => "History",
+            Self::ScoreChoice => "Evaluate",
+            Self::ScoreTable => "Detectors compared",
+            Self::ScoreClasses => "Per class",
+            Self::ScoreConfusion => "Confusion",
+            Self::ScoreCell => "Images of the cell",
+            Self::LabelList => "Data set",
+            Self::LabelCanvas => "Boxes",
+            Self::LabelGallery => "Gallery",
+            Self::LabelChecks => "Checks",
         }
     }
 }
@@ -192,6 +230,8 @@ pub fn default_arrangement(screen: Screen) -> Tree<Pane> {
         Screen::Models => models(&mut tiles),
         Screen::Gap => gap(&mut tiles),
         Screen::Robot => robot(&mut tiles),
+        Screen::Scores => scores(&mut tiles),
+        Screen::Images => images(&mut tiles),
     };
     Tree::new(egui::Id::unique(("tiles", screen)), root, tiles)
 }
@@ -284,6 +324,24 @@ fn robot(tiles: &mut Tiles<Pane>) -> TileId {
     let top = row(tiles, &[(scene, 1.0), (jog, 1.0)]);
     let bottom = row(tiles, &[(joints, 2.4), (poses, 1.0)]);
     column(tiles, &[(top, 1.12), (bottom, 1.0)])
+}
+
+fn scores(tiles: &mut Tiles<Pane>) -> TileId {
+    let choice = tabs(tiles, &[Pane::ScoreChoice]);
+    let table = tabs(tiles, &[Pane::ScoreTable, Pane::ScoreClasses]);
+    let confusion = tabs(tiles, &[Pane::ScoreConfusion]);
+    let cell = tabs(tiles, &[Pane::ScoreCell]);
+    let top = row(tiles, &[(choice, 0.8), (table, 1.6)]);
+    let bottom = row(tiles, &[(confusion, 1.0), (cell, 1.1)]);
+    column(tiles, &[(top, 0.75), (bottom, 1.0)])
+}
+
+fn images(tiles: &mut Tiles<Pane>) -> TileId {
+    let list = tabs(tiles, &[Pane::LabelList, Pane::LabelChecks]);
+    let canvas = tabs(tiles, &[Pane::LabelCanvas]);
+    let gallery = tabs(tiles, &[Pane::LabelGallery]);
+    let right = column(tiles, &[(canvas, 4.2), (gallery, 1.0)]);
+    row(tiles, &[(list, 0.55), (right, 1.45)])
 }
 
 fn tabs(tiles: &mut Tiles<Pane>, panes: &[Pane]) -> TileId {

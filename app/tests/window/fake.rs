@@ -64,6 +64,11 @@ impl Fake {
         all.into_iter().filter(|command| !matches!(command, Command::Live(_))).collect()
     }
 
+    /// The same with what it asks for by itself.
+    pub fn take_all_sent(&self) -> Vec<Command> {
+        std::mem::take(&mut *self.sent.lock().expect("no test panics with the lock"))
+    }
+
     pub fn window(&self, settings: WindowSettings) -> Harness<'static, PlumblineWindow> {
         self.window_of_size(settings, [1280.0, 800.0])
     }

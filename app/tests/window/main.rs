@@ -3,12 +3,16 @@
 mod fake;
 mod gap;
 mod guidance;
+mod labels;
 mod made_up;
 mod made_up_gap;
+mod made_up_labels;
 mod made_up_models;
+mod made_up_objects;
 mod made_up_touch;
 mod models;
 mod mount;
+mod objects;
 mod pictures;
 mod robot;
 mod stop;

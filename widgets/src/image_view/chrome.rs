@@ -23,7 +23,7 @@ pub(super) fn paint(
     if view.caption {
         chip(ui, rect, corner.left_top(), Align2::LEFT_TOP, view.label, None);
     }
-    if let Some(sentence) = view.stale {
+    if let Some(sentence) = view.stale.or(view.note) {
         let below = if view.caption { 26.0 } else { 0.0 };
         let at = corner.left_top() + vec2(0.0, below);
         chip(ui, rect, at, Align2::LEFT_TOP, sentence, Some(Role::Warning));

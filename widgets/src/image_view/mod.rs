@@ -49,6 +49,7 @@ pub struct ImageView<'a> {
     content: Content<'a>,
     overlay: Option<&'a Overlay>,
     stale: Option<&'a str>,
+    note: Option<&'a str>,
     value_text: Option<ValueText<'a>>,
     size: Option<Vec2>,
     caption: bool,
@@ -78,6 +79,7 @@ impl<'a> ImageView<'a> {
             content,
             overlay: None,
             stale: None,
+            note: None,
             value_text: None,
             size: None,
             caption: true,
@@ -95,6 +97,12 @@ impl<'a> ImageView<'a> {
     /// again". The picture is dimmed.
     pub fn stale(mut self, sentence: Option<&'a str>) -> Self {
         self.stale = sentence;
+        self
+    }
+
+    /// Says something about the marks, for instance that they are old. The picture is not dimmed.
+    pub fn note(mut self, sentence: Option<&'a str>) -> Self {
+        self.note = sentence;
         self
     }
 

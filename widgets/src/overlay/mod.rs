@@ -1,7 +1,9 @@
 //! Marks on top of an image, in image pixels, as plain data.
 
+mod boxes;
 mod paint;
 
+pub use boxes::{Emphasis, LabeledBox};
 pub(crate) use paint::arrow;
 
 use egui::{Align2, Color32, Painter, Rect, pos2};
@@ -110,6 +112,8 @@ pub enum Mark {
         /// Color.
         ink: Ink,
     },
+    /// Boxes around things; their words never lie on each other.
+    Boxes(Vec<LabeledBox>),
     /// A grid of colored cells, row by row from the top left.
     Cells {
         /// Top-left corner of the first cell (that of the first pixel is (-0.5, -0.5)).

@@ -50,6 +50,7 @@ impl Pen<'_> {
             Mark::Text { at_px, text, anchor, ink } => {
                 self.text(self.transform.to_screen(*at_px), text, *anchor, ink.color(self.tokens));
             }
+            Mark::Boxes(boxes) => super::boxes::paint(boxes, self.painter, self.transform),
             Mark::Cells { origin_px, cell_px, columns, colors } => {
                 self.cells(*origin_px, *cell_px, *columns, colors);
             }

@@ -65,11 +65,53 @@ pub fn scene(view: &View, panels: &RobotPanels, ghost: Option<&Posture>, names: 
             board(&mut scene, &pose.isometry, &view.eyes.board);
         }
     }
+    objects(&mut scene, view);
     tip(&mut scene, view);
     if let Some(at_m) = panels.chosen_point_m {
         scene.dots.push(Dot { at_m, radius: 5.0, tint: Tint::Selected });
     }
     scene
+}
+
+/// What the detector places: an ellipsoid of two standard deviations, and its name.
+fn objects(scene: &mut Scene, view: &View) {
+    if view.detect.stale.is_some() {
+        return;
+    }
+    let objects = view.detect.found.iter().flat_map(|found| &found.objects);
+    for object in objects {
+        let Ok(place) = &object.place else { continue };
+        let at_m = steadied_m(&place.point_in_robot.coords);
+        let tint = Tint::Object(plumbline_widgets::class_color(&object.name, object.class.0));
+        if let Some((radii_m, turn)) = two_sigma(&place.covariance_m2) {
+            let pose = Isometry3::from_parts(Translation3::from(at_m.coords), turn);
+            scene.solids.push(Solid::new(Shape::Ellipsoid { radii_m }, pose, tint));
+        }
+        scene.dots.push(Dot { at_m, radius: 3.5, tint });
+        scene.labels.push(Label3d { at_m, text: object.name.clone(), tint });
+    }
+}
+
+/// Half axes of the ellipsoid of two standard deviations, and how it is turned. Known too well to
+/// be seen, it is drawn a little larger.
+fn two_sigma(covariance_m2: &Matrix3<f64>) -> Option<([f64; 3], UnitQuaternion<f64>)> {
+    const SEEN_FROM_M: f64 = 0.003;
+    const SEEN_TO_M: f64 = 0.3;
+    if !covariance_m2.iter().all(|c| c.is_finite()) {
+        return None;
+    }
+    let parts = covariance_m2.symmetric_eigen();
+    let radii_m = [0, 1, 2].map(|i| (2.0 * parts.eigenvalues[i].max(0.0).sqrt()).max(SEEN_FROM_M));
+    if radii_m.iter().any(|radius_m| *radius_m > SEEN_TO_M) {
+        // An ellipsoid larger than the table hides everything and says no more than the list does.
+        return None;
+    }
+    let mut axes = parts.eigenvectors;
+    if axes.determinant() < 0.0 {
+        axes.column_mut(2).neg_mut();
+    }
+    let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
+    Some((radii_m, turn))
 }
 
 fn steadied(posture: &Posture) -> Posture {

@@ -1,0 +1,72 @@
+//! What is known about the object that is looked at.
+
+use egui::{RichText, Ui};
+use plumbline_engine::View;
+use plumbline_engine::view::{ObjectPlaceView, ObjectView};
+use plumbline_widgets::format::{self, Quantity};
+use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
+use plumbline_widgets::theme::{self, Role, space};
+
+use super::ObjectsPanels;
+use super::drawing::DOUBT;
+
+/// Draws it; a hint while nothing is looked at.
+pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
+    let Some(object) = panels.focused(view) else {
+        match &panels.chosen {
+            Some(gone) => ui.label(theme::weak(ui, format!("{} is not seen on this pair.", gone.name))),
+            None => ui.label(theme::weak(
+                ui,
+                "Point at a box to see its partner in the other eye; click to keep it.",
+            )),
+        };
+        return;
+    };
+    ui.add_space(space::XS);
+    match &object.place {
+        Ok(place) => placed(ui, object, place),
+        Err(why) => {
+            ui.label(
+                RichText::new(format!("{}: no place", object.name)).color(DOUBT.color(theme::tokens(ui))),
+            );
+            ui.label(why);
+            if let Some(alone) = object.alone_because.as_ref().filter(|alone| *alone != why) {
+                ui.label(theme::weak(ui, alone));
+            }
+        }
+    }
+    for doubt in object.leak.iter().chain(&object.doubts) {
+        ui.add_space(space::XS);
+        ui.label(RichText::new(doubt).color(DOUBT.color(theme::tokens(ui))));
+    }
+    if panels.chosen.is_some() && ui.button("Let the object go").clicked() {
+        panels.chosen = None;
+    }
+}
+
+fn placed(ui: &mut Ui, object: &ObjectView, place: &ObjectPlaceView) {
+    let label = format!("{}, from the left eye", object.name);
+    big_figure(ui, &label, &format::mm_with(place.range_m, place.range_sigma_m), Role::Ink);
+    ui.add_space(space::S);
+    ui.label(theme::small(ui, "Middle, robot frame"));
+    let at = place.point_in_robot.coords;
+    let rows: Vec<KeyValue> = ["x", "y", "z"]
+        .into_iter()
+        .zip([at.x, at.y, at.z])
+        .zip(place.sigma_m)
+        .map(|((name, value), sigma)| KeyValue::uncertain(name, Quantity::Length, value, sigma))
+        .collect();
+    key_value_grid(ui, "object place", &rows);
+    let voted = object.voted.iter().map(|cell| cell.area_px2()).sum::<f32>();
+    let share = object.left.as_ref().map(|seen| f64::from(voted / seen.area.area_px2().max(1.0)));
+    key_value_grid(
+        ui,
+        "object evidence",
+        &[
+            KeyValue::optional("Off the epipolar line", Quantity::Pixels, object.epipolar_px)
+                .help("How far the two boxes lie from each other's epipolar line"),
+            KeyValue::optional("Pixels that voted", Quantity::Ratio, share)
+                .help("Share of its box in the left eye whose pixels decided the distance; they are colored in the picture"),
+        ],
+    );
+}

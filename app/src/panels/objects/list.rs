@@ -1,0 +1,104 @@
+//! The objects as a list: what, how sure, where.
+
+use egui::{Align2, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use plumbline_engine::View;
+use plumbline_engine::view::ObjectView;
+use plumbline_model::Eye;
+use plumbline_widgets::format::{self, Quantity};
+use plumbline_widgets::theme::{self, space};
+
+use super::drawing::{DOUBT, color};
+use super::{ObjectsPanels, objects};
+
+const ROW_HEIGHT: f32 = 38.0;
+const SWATCH: f32 = 10.0;
+
+/// Draws the list; pointing at a line highlights its boxes, a click chooses.
+pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
+    ui.spacing_mut().item_spacing.y = 2.0;
+    for object in objects(view) {
+        row(ui, object, panels);
+    }
+}
+
+fn row(ui: &mut Ui, object: &ObjectView, panels: &mut ObjectsPanels) {
+    let tokens = theme::tokens(ui);
+    let width = ui.available_width();
+    let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), Sense::click());
+    let chosen = panels.chosen.as_ref().is_some_and(|chosen| chosen.is(object));
+    response.widget_info(|| {
+        WidgetInfo::selected(
+            egui::Role::ListBoxOption,
+            true,
+            chosen,
+            format!("{}, {}", object.name, whereabouts(object)),
+        )
+    });
+    if response.hovered() {
+        panels.hover(object);
+    }
+    if response.clicked() {
+        panels.toggle(object);
+    }
+    let fill = match (chosen, response.hovered() || response.has_focus()) {
+        (true, _) => Some(tokens.selected),
+        (false, true) => Some(tokens.raised_hover.gamma_multiply(0.6)),
+        (false, false) => None,
+    };
+    if let Some(fill) = fill {
+        ui.painter().rect_filled(rect, 4.0, fill);
+    }
+    let body = TextStyle::Body.resolve(ui.style());
+    let small = TextStyle::Small.resolve(ui.style());
+    let left = rect.left() + space::XS;
+    let swatch = egui::Rect::from_min_size(pos2(left, rect.top() + 6.0), vec2(SWATCH, SWATCH));
+    ui.painter().rect(
+        swatch,
+        2.0,
+        color(object),
+        egui::Stroke::new(1.0, tokens.line),
+        egui::StrokeKind::Outside,
+    );
+    let text = left + SWATCH + space::S;
+    let painter = ui.painter().with_clip_rect(rect);
+    let doubtful = object.leak.is_some() || !object.doubts.is_empty();
+    let name = if doubtful { format!("{}  !", object.name) } else { object.name.clone() };
+    painter.text(pos2(text, rect.top() + 2.0), Align2::LEFT_TOP, name, body.clone(), tokens.text_strong);
+    let right = rect.right() - space::XS;
+    painter.text(
+        pos2(right, rect.top() + 3.0),
+        Align2::RIGHT_TOP,
+        confidences(object),
+        small.clone(),
+        tokens.text_weak,
+    );
+    let ink = if object.place.is_ok() && !doubtful { tokens.text } else { tokens.text_weak };
+    let ink = if doubtful { DOUBT.color(tokens) } else { ink };
+    painter.text(pos2(text, rect.bottom() - 3.0), Align2::LEFT_BOTTOM, whereabouts(object), small, ink);
+}
+
+/// "L 0.91  R 0.88".
+fn confidences(object: &ObjectView) -> String {
+    let of = |eye: Eye, letter: &str| match object.seen(eye) {
+        Some(seen) => format!("{letter} {:.2}", seen.confidence),
+        None => format!("{letter} {}", format::NONE),
+    };
+    format!("{}   {}", of(Eye::Left, "L"), of(Eye::Right, "R"))
+}
+
+/// Where it is, on one line.
+fn whereabouts(object: &ObjectView) -> String {
+    match &object.place {
+        Ok(place) => {
+            let at = place.point_in_robot.coords;
+            let number = |m: f64| format!("{:.0}", Quantity::Length.on_screen(m));
+            let worst_m = place.sigma_m.iter().copied().fold(0.0, f64::max);
+            format!("{}, {}, {} ± {} mm", number(at.x), number(at.y), number(at.z), number(worst_m))
+        }
+        Err(_) => match (object.left.is_some(), object.right.is_some()) {
+            (true, false) => "only the left eye: no place".to_owned(),
+            (false, true) => "only the right eye: no place".to_owned(),
+            _ => "no place".to_owned(),
+        },
+    }
+}

@@ -1,0 +1,98 @@
+//! Which detectors are judged on which data set.
+
+use egui::{Label, RichText, ScrollArea, Ui};
+use plumbline_engine::{ScoresCommand, SetPart};
+use plumbline_widgets::buttons::choice;
+use plumbline_widgets::format;
+use plumbline_widgets::progress::progress_bar;
+use plumbline_widgets::theme::{self, Role, space};
+
+use super::{PanelContext, action_button, evaluating};
+use crate::window::{Action, ScoresAction, primary_button};
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.label(theme::strong(ui, "Detectors"));
+        models(ui, cx);
+        action_button(ui, cx, ScoresAction::AddModels, "Add a detector…");
+        ui.add_space(space::S);
+        ui.label(theme::strong(ui, "Data set"));
+        set(ui, cx);
+        ui.add_space(space::S);
+        start(ui, cx);
+    });
+}
+
+fn models(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let models = cx.view.scores.models.clone();
+    if models.is_empty() {
+        ui.label(theme::weak(ui, "None yet. Add ONNX files, or drop them here."));
+    }
+    for model in models.iter() {
+        ui.horizontal(|ui| {
+            let mut chosen = model.chosen;
+            let name =
+                model.file.file_name().unwrap_or(model.file.as_os_str()).to_string_lossy().into_owned();
+            let text = if model.shipped { format!("{name} (shipped)") } else { name.clone() };
+            if ui.checkbox(&mut chosen, text).on_hover_text(model.file.display().to_string()).changed() {
+                cx.outbox.send(ScoresCommand::ChooseModel { file: model.file.clone(), chosen });
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if model.shipped {
+                    return;
+                }
+                let remove = ui.add(egui::Button::new(theme::small(ui, "Remove")).frame(false));
+                remove.widget_info(|| {
+                    egui::WidgetInfo::labeled(egui::Role::Button, true, format!("Remove {name}"))
+                });
+                if remove.clicked() {
+                    cx.outbox.send(ScoresCommand::RemoveModel { file: model.file.clone() });
+                }
+            });
+        });
+    }
+}
+
+fn set(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    match &cx.view.scores.set {
+        None => {
+            ui.label(theme::weak(ui, "None yet. Choose a folder with a data.yaml, or drop it here."));
+        }
+        Some(path) => {
+            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+            ui.add(Label::new(name).truncate()).on_hover_text(path.display().to_string());
+        }
+    }
+    ui.horizontal_wrapped(|ui| {
+        action_button(ui, cx, ScoresAction::ChooseSet, "Choose…");
+        if cx.view.labels.set.is_some() {
+            action_button(ui, cx, ScoresAction::UseOpenSet, "Use the open one");
+        }
+    });
+    let mut part = cx.view.scores.part;
+    let parts = [(SetPart::Val, "Val"), (SetPart::Train, "Train"), (SetPart::Test, "Test")];
+    if choice(ui, "Part", &mut part, &parts) {
+        cx.outbox.send(ScoresCommand::ChoosePart(part));
+    }
+}
+
+fn start(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    if let Some((fraction, doing)) = evaluating(cx.view) {
+        let width = ui.available_width();
+        progress_bar(ui, "Evaluation", fraction, egui::vec2(width, 6.0));
+        ui.label(theme::weak(ui, format!("{doing} ({})", format::percent(fraction))));
+        let cancel = Action::CancelJob;
+        if ui.button("Cancel").clicked() {
+            cx.outbox.act(cancel);
+        }
+        return;
+    }
+    let why = ScoresAction::Evaluate.refusal(cx.view);
+    let button = ui.add_enabled(why.is_none(), primary_button(ui, "Evaluate"));
+    if button.on_disabled_hover_text(why.clone().unwrap_or_default()).clicked() {
+        cx.outbox.act(Action::Scores(ScoresAction::Evaluate));
+    }
+    if let Some(why) = &cx.view.scores.failed {
+        ui.add(Label::new(RichText::new(why).color(Role::Warning.color(theme::tokens(ui)))).wrap());
+    }
+}

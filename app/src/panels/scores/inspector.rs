@@ -1,0 +1,45 @@
+//! What is known of the chosen model.
+
+use egui::{Label, RichText, Ui};
+use plumbline_engine::View;
+use plumbline_widgets::key_value::{KeyValue, key_value_grid};
+use plumbline_widgets::theme::{self, Role, group_heading};
+
+use super::table::said_of;
+use super::{figure, interval};
+use crate::panels::PanelState;
+use crate::window::Outbox;
+
+/// What is known of the chosen model.
+pub fn show(ui: &mut Ui, view: &View, state: &mut PanelState, _outbox: &mut Outbox) {
+    group_heading(ui, "Detector");
+    let row = view.scores.table.as_ref().and_then(|table| table.rows.get(state.scores.model));
+    let Some(row) = row else {
+        ui.label(theme::weak(ui, "Nothing was judged yet."));
+        return;
+    };
+    ui.add(Label::new(theme::strong(ui, &*row.model)).truncate()).on_hover_text(&*row.model);
+    for text in said_of(row) {
+        ui.add(Label::new(RichText::new(text).color(Role::Warning.color(theme::tokens(ui)))).wrap());
+    }
+    let Ok(scores) = &row.scores else { return };
+    let total: f64 = scores.times_ms.iter().sum();
+    let mut rows = vec![
+        KeyValue::text("mAP50–95", figure(Some(scores.all.map50_95))),
+        KeyValue::text("95 %", interval(scores.all.map50_95_interval)),
+        KeyValue::text("mAP50", figure(Some(scores.all.map50))),
+        KeyValue::text("Per image", plumbline_widgets::format::ms(1e-3 * total)),
+    ];
+    if scores.all.map50_95_interval.is_none() {
+        rows.remove(1);
+    }
+    key_value_grid(ui, "score figures", &rows);
+    group_heading(ui, "How to read it");
+    for text in [
+        "mAP50–95 is the mean average precision over overlaps from 0.50 to 0.95, by the rule of COCO; 1 is perfect.",
+        "An interval says where the score would mostly lie on other scenes of the same kind.",
+        "Never judge on images that the detector was trained on.",
+    ] {
+        ui.add(Label::new(theme::weak(ui, text)).wrap());
+    }
+}

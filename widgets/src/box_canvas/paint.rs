@@ -1,0 +1,136 @@
+//! How the canvas looks.
+
+use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui, pos2, vec2};
+use plumbline_model::PixelBox;
+
+use super::{BoxCanvas, CanvasBox, CanvasState};
+use crate::image_view::ImageTransform;
+use crate::texture::Sampling;
+use crate::theme::{self, RIM, readable_on};
+
+/// From this magnification on, in physical pixels per image pixel, pixels are drawn as squares.
+const HARD_PIXELS_FROM: f64 = 4.0;
+/// Side of a handle, points.
+const HANDLE: f32 = 7.0;
+
+/// A box on the screen.
+fn on_screen(area: &PixelBox, transform: &ImageTransform) -> Rect {
+    let at = |x: f32, y: f32| transform.to_screen([f64::from(x) - 0.5, f64::from(y) - 0.5]);
+    Rect::from_min_max(at(area.x0_px, area.y0_px), at(area.x1_px, area.y1_px))
+}
+
+pub(super) fn paint(
+    ui: &Ui,
+    rect: Rect,
+    canvas: &BoxCanvas<'_>,
+    transform: &ImageTransform,
+    state: &CanvasState,
+    pointer_px: Option<[f32; 2]>,
+) {
+    let tokens = theme::tokens(ui);
+    let painter = ui.painter_at(rect);
+    painter.rect_filled(rect, 0.0, tokens.backdrop);
+    let magnification = transform.points_per_px * f64::from(ui.pixels_per_point());
+    let sampling = if magnification >= HARD_PIXELS_FROM { Sampling::Pixels } else { Sampling::Smooth };
+    let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    let texture = canvas.picture.texture(ui.ctx(), sampling);
+    painter.image(texture, transform.image_rect(), whole, Color32::WHITE);
+    let under_way = canvas.under_way(state);
+    for (index, shown) in canvas.boxes.iter().enumerate() {
+        let moved = under_way.filter(|placed| placed.index == Some(index));
+        let shown = CanvasBox { area: moved.map_or(shown.area, |placed| placed.area), ..shown.clone() };
+        paint_box(ui, &painter, transform, &shown, state.chosen == Some(index), canvas.draw.is_some());
+    }
+    if let (Some(placed), Some(color)) = (under_way.filter(|placed| placed.index.is_none()), canvas.draw) {
+        frame(&painter, on_screen(&placed.area, transform), color, 1.5, false);
+    }
+    let drawing = state.holding.is_some() || state.chosen.is_none();
+    if let (Some([x, y]), true, true) = (pointer_px, canvas.draw.is_some(), drawing) {
+        crosshair(&painter, rect, transform, [x, y]);
+    }
+    if ui.memory(|memory| memory.focused().is_some()) && state.holding.is_some() {
+        painter.rect_stroke(rect, 0.0, Stroke::new(1.0, tokens.accent), StrokeKind::Inside);
+    }
+}
+
+/// Lines through the pointer, by which the edges of a thing are met.
+fn crosshair(painter: &Painter, rect: Rect, transform: &ImageTransform, [x, y]: [f32; 2]) {
+    let at = transform.to_screen([f64::from(x) - 0.5, f64::from(y) - 0.5]);
+    let image = transform.image_rect().intersect(rect);
+    if image.contains(at) {
+        let line = Stroke::new(1.0, Color32::from_white_alpha(70));
+        painter.hline(image.x_range(), at.y, line);
+        painter.vline(at.x, image.y_range(), line);
+    }
+}
+
+fn paint_box(
+    ui: &Ui,
+    painter: &Painter,
+    transform: &ImageTransform,
+    shown: &CanvasBox,
+    chosen: bool,
+    editable: bool,
+) {
+    let rect = on_screen(&shown.area, transform);
+    if chosen {
+        painter.rect_filled(rect, 0.0, shown.color.gamma_multiply(0.16));
+    }
+    frame(painter, rect, shown.color, if chosen { 2.5 } else { 1.5 }, shown.dashed);
+    if chosen && editable {
+        for handle in handles(rect) {
+            let square = Rect::from_center_size(handle, vec2(HANDLE, HANDLE));
+            painter.rect_filled(square, 1.0, Color32::WHITE);
+            painter.rect_stroke(square, 1.0, Stroke::new(1.0, RIM), StrokeKind::Outside);
+        }
+    }
+    let text = if shown.odd { format!("{}  !", shown.text) } else { shown.text.clone() };
+    tag(ui, painter, rect, &text, shown.color, transform);
+}
+
+/// The outline of a box alone, on an image that is mapped like this.
+pub fn box_frame(painter: &Painter, transform: &ImageTransform, shown: &CanvasBox, width_pt: f32) {
+    frame(painter, on_screen(&shown.area, transform), shown.color, width_pt, shown.dashed);
+}
+
+/// An outline that is seen on bright and on dark pictures.
+fn frame(painter: &Painter, rect: Rect, color: Color32, width: f32, dashed: bool) {
+    let rim = Stroke::new(width + 2.0, RIM.gamma_multiply(0.7));
+    let line = Stroke::new(width, color);
+    if !dashed {
+        painter.rect_stroke(rect, 0.0, rim, StrokeKind::Middle);
+        painter.rect_stroke(rect, 0.0, line, StrokeKind::Middle);
+        return;
+    }
+    let corners =
+        [rect.left_top(), rect.right_top(), rect.right_bottom(), rect.left_bottom(), rect.left_top()];
+    painter.extend(Shape::dashed_line(&corners, rim, 6.0, 4.0));
+    painter.extend(Shape::dashed_line(&corners, line, 6.0, 4.0));
+}
+
+fn handles(rect: Rect) -> [Pos2; 8] {
+    [
+        rect.left_top(),
+        rect.center_top(),
+        rect.right_top(),
+        rect.right_center(),
+        rect.right_bottom(),
+        rect.center_bottom(),
+        rect.left_bottom(),
+        rect.left_center(),
+    ]
+}
+
+/// What it is, above the box or, at the upper edge of the picture, in it.
+fn tag(ui: &Ui, painter: &Painter, rect: Rect, text: &str, color: Color32, transform: &ImageTransform) {
+    let font = TextStyle::Small.resolve(ui.style());
+    let galley = painter.layout_no_wrap(text.to_owned(), font, readable_on(color));
+    let size = galley.size() + vec2(6.0, 2.0);
+    let image = transform.image_rect();
+    let above = rect.top() - size.y >= image.top().max(painter.clip_rect().top());
+    let top = if above { rect.top() - size.y } else { rect.top() };
+    let left = rect.left().min(image.right().min(painter.clip_rect().right()) - size.x);
+    let background = Rect::from_min_size(pos2(left, top), size);
+    painter.rect_filled(background, 2.0, color);
+    painter.galley(background.min + vec2(3.0, 1.0), galley, readable_on(color));
+}
