@@ -5,6 +5,8 @@ mod bench_window;
 mod calibrate;
 mod common;
 mod correct;
+mod detect;
+mod detect_eval;
 mod detector_set;
 mod disparity;
 mod doctor;
@@ -58,6 +60,10 @@ enum Verb {
     Predict(WithJson<predict::Predict>),
     /// Finds where model and measurement disagree, names what is missing, shows the gap shrink.
     Gap(WithJson<gap::Gap>),
+    /// Finds things on images with a detector, an ONNX file.
+    Detect(WithJson<detect::Detect>),
+    /// Judges detectors on a labeled set: average precision by the rule of COCO, times.
+    DetectEval(WithJson<detect_eval::DetectEval>),
     /// Draws labeled images of the twin with everything randomised, to train a detector on.
     DetectorSet(WithJson<detector_set::DetectorSet>),
     /// Computes the disparity of a pair.
@@ -116,6 +122,8 @@ pub fn run() -> ExitCode {
                 Verb::Correct(verb) => verb.run(correct::run),
                 Verb::Predict(verb) => verb.run(predict::run),
                 Verb::Gap(verb) => verb.run(gap::run),
+                Verb::Detect(verb) => verb.run(detect::run),
+                Verb::DetectEval(verb) => verb.run(detect_eval::run),
                 Verb::DetectorSet(verb) => verb.run(detector_set::run),
                 Verb::Disparity(verb) => verb.run(disparity::run),
                 Verb::Doctor(verb) => verb.run(doctor::run),
