@@ -140,6 +140,14 @@ fn a_network_of_any_size_sees_no_more_gray_than_it_needs() {
 }
 
 #[test]
+fn an_output_whose_sides_are_left_open_is_read_from_a_first_run() {
+    let mut detector = open("open-shape");
+    assert_eq!(detector.info().head, Head::Raw);
+    assert_eq!(detector.info().names.len(), 3);
+    assert_eq!(found(&mut detector, &picture(), &DetectSettings::default()).len(), 3);
+}
+
+#[test]
 fn another_size_of_image_leaves_nothing_of_the_one_before() {
     let mut detector = open("seeing");
     let settings = DetectSettings::default();

@@ -16,7 +16,7 @@ use super::shape::{self, Metadata, Output};
 use super::suppress::{Candidate, suppress, surest_first};
 use super::{
     DetectError, DetectSettings, DetectTiming, DetectorInfo, DetectorOptions, Head, InputSize, NamesFrom,
-    Precision, Provider,
+    Precision, Provider, Task,
 };
 
 /// Finds things on one image at a time. Belongs to one thread; it can be sent to another.
@@ -75,7 +75,25 @@ impl Detector {
         let metadata = Metadata::of(&session);
         let found = Found::new(metadata.names.as_deref(), file);
         let (input, input_precision) = shape::input(&name, &session, &metadata)?;
-        let output = checked_output(&name, &session, &metadata, input, &found)?;
+        let names = found.in_file.as_ref().or(found.beside.as_ref());
+        let output = |session: &Session, shape: Option<&[i64]>| {
+            shape::output(&name, session, &metadata, input, names, shape)
+        };
+        let (session, output) = match shape::must_be_run(&session) {
+            None => {
+                let output = output(&session, None)?;
+                (session, output)
+            }
+            Some(precision) => {
+                // Wrong tasks are told before anything is run.
+                if let Some(task) = metadata.task.as_deref().and_then(Task::from_metadata) {
+                    return Err(DetectError::OtherTask { model: name, task });
+                }
+                let (session, shape) = first_run(&name, session, input, [input_precision, precision])?;
+                let output = output(&session, Some(&shape))?;
+                (session, output)
+            }
+        };
         let info = DetectorInfo {
             file: file.map(Path::to_owned),
             input,
@@ -83,9 +101,9 @@ impl Detector {
             head: output.head,
             provider_used,
             provider_note,
-            made_by: metadata.made_by,
+            made_by: metadata.made_by.clone(),
             runtime: library.version(),
-            ..named(name, found, output)?
+            ..named(name.clone(), found.clone(), output)?
         };
         let network = Network::new(session, [input_precision, output.precision], output.steady);
         Ok(Self { info, network, reader: Reader::default(), candidates: Vec::new() })
@@ -135,10 +153,7 @@ impl Detector {
     }
 
     fn fill(&mut self, image: &RgbImage, letterbox: &Letterbox) -> Result<(), DetectError> {
-        self.network.fill(image, letterbox).map_err(|problem| match problem {
-            NotFilled::Image(error) => error,
-            NotFilled::Runtime(error) => failed(&self.info.name, &error),
-        })
+        self.network.fill(image, letterbox).map_err(|problem| not_filled(&self.info.name, problem))
     }
 
     /// Runs the network and reads its head; `ran` is set between the two.
@@ -192,20 +207,32 @@ fn has_extent(area: &PixelBox) -> bool {
     area.x1_px > area.x0_px && area.y1_px > area.y0_px
 }
 
+fn not_filled(model: &str, problem: NotFilled) -> DetectError {
+    match problem {
+        NotFilled::Image(error) => error,
+        NotFilled::Runtime(error) => failed(model, &error),
+    }
+}
+
 fn failed(model: &str, error: &ort::Error) -> DetectError {
     DetectError::Run { model: model.to_owned(), reason: words(error) }
 }
 
-/// The output, if it is a detector's.
-fn checked_output(
+/// Shape of the output for a gray image, where the file leaves it open.
+fn first_run(
     name: &str,
-    session: &Session,
-    metadata: &Metadata,
+    session: Session,
     input: InputSize,
-    found: &Found,
-) -> Result<Output, DetectError> {
-    let names = found.in_file.as_ref().or(found.beside.as_ref());
-    shape::output(name, session, metadata, input, names)
+    precisions: [Precision; 2],
+) -> Result<(Session, Vec<i64>), DetectError> {
+    let (InputSize::Fixed { width_px, height_px } | InputSize::Dynamic { width_px, height_px, .. }) = input;
+    let letterbox = Letterbox::new((width_px, height_px), input)
+        .ok_or(DetectError::EmptyImage { width_px, height_px })?;
+    let mut network = Network::new(session, precisions, false);
+    let gray = RgbImage::from_pixel(width_px, height_px, image::Rgb([114; 3]));
+    network.fill(&gray, &letterbox).map_err(|problem| not_filled(name, problem))?;
+    let shape = network.run(|shape, _| shape.to_vec()).map_err(|error| failed(name, &error))?;
+    Ok((network.into_session(), shape))
 }
 
 /// What there is to say of the names; the rest is filled in by the caller.

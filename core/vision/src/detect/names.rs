@@ -96,7 +96,7 @@ fn beside(file: &Path) -> Option<PathBuf> {
 }
 
 /// Names of a detector, and what must be said about them.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Found {
     pub in_file: Option<ClassNames>,
     pub beside: Option<ClassNames>,

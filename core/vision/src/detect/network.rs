@@ -133,6 +133,11 @@ impl Network {
         Self { session, input, wide: Vec::new(), output_precision, into_kept: None, steady }
     }
 
+    /// The session alone.
+    pub fn into_session(self) -> Session {
+        self.session
+    }
+
     /// Writes an image into the input.
     pub fn fill(&mut self, image: &RgbImage, letterbox: &Letterbox) -> Result<(), NotFilled> {
         let same = match &mut self.input {

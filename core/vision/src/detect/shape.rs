@@ -114,13 +114,21 @@ pub(super) struct Output {
     pub steady: bool,
 }
 
-/// What the output declares of itself.
+/// Whether only a run tells the form of the output, because it leaves both of its sides open;
+/// then the type of its numbers.
+pub(super) fn must_be_run(session: &Session) -> Option<Precision> {
+    let (shape, precision) = tensor(session.outputs().first()?).ok()?;
+    matches!(shape.as_slice(), [_, ..=0, ..=0]).then_some(precision)
+}
+
+/// What the output declares of itself, or what shape it had in a first run.
 pub(super) fn output(
     model: &str,
     session: &Session,
     metadata: &Metadata,
     input: InputSize,
     names: Option<&ClassNames>,
+    shape_of_run: Option<&[i64]>,
 ) -> Result<Output, DetectError> {
     let wrong = |reason: String| DetectError::Output { model: model.to_owned(), reason };
     let other = |task| DetectError::OtherTask { model: model.to_owned(), task };
@@ -129,7 +137,7 @@ pub(super) fn output(
     }
     let Some(first) = session.outputs().first() else { return Err(wrong("it has none".to_owned())) };
     let (declared, precision) = tensor(first).map_err(wrong)?;
-    let &[_, rows, columns] = declared.as_slice() else {
+    let &[_, rows, columns] = shape_of_run.unwrap_or(&declared) else {
         return Err(match declared.len() {
             2 => other(Task::Classify),
             4 => other(Task::Depth),

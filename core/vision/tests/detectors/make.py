@@ -107,6 +107,19 @@ def seeing(name, size=(64, 64), declared=(64, 64)):
     save(name, None, size=declared, nodes=nodes, initializers=weights, outputs=outputs)
 
 
+def open_shape():
+    """Declares no side of its output, as exports of any size do."""
+    nodes, weights = constant(raw(), np.float32)
+    outputs = [helper.make_tensor_value_info("output0", TensorProto.FLOAT, ["batch", "rows", "boxes"])]
+    # Sides that come from a value are not inferred from the graph.
+    nodes[-1] = helper.make_node("Add", ["answer", "nothing"], ["sum"])
+    nodes += [
+        helper.make_node("Shape", ["sum"], ["shape"]),
+        helper.make_node("Reshape", ["sum", "shape"], ["output0"]),
+    ]
+    save("open-shape", None, size=("height", "width"), nodes=nodes, initializers=weights, outputs=outputs)
+
+
 def throwing():
     """Asks for a row that is not there, which shows only when it runs."""
     weights = [
@@ -160,6 +173,7 @@ save("alien-class", np.where(np.arange(6) == 5, 7, ENDED)[None].astype(np.float3
 spoiled = raw()
 spoiled[0, 4, 2] = np.nan
 save("nan", spoiled)
+open_shape()
 throwing()
 segmenting()
 save("posing", raw(), meta=metadata(task="pose"))
