@@ -35,19 +35,31 @@ pub struct LabeledBox {
 /// Gap between a box and its words, points.
 const GAP: f32 = 2.0;
 const PADDING: Vec2 = vec2(4.0, 1.0);
+/// Words go away from their box by up to this many lines to find room.
+const LINES_AWAY: usize = 6;
+/// How much worse words on another box are than words one line farther away.
+const ON_A_BOX: f32 = 3.0;
 
 /// Draws them all, chosen ones on top, and gives the chosen ones the first choice of a place for
 /// their words.
 pub(super) fn paint(boxes: &[LabeledBox], painter: &Painter, transform: &ImageTransform) {
-    let mut order: Vec<&LabeledBox> = boxes.iter().collect();
-    order.sort_by_key(|shown| shown.emphasis == Emphasis::Chosen);
-    for shown in &order {
+    let mut order: Vec<&LabeledBox> = boxes.iter().filter(|shown| !shown.outline_px.is_empty()).collect();
+    order.sort_by_key(|shown| shown.emphasis != Emphasis::Chosen);
+    for shown in order.iter().rev() {
         outline(shown, painter, transform);
     }
+    let around: Vec<Rect> = order.iter().map(|shown| surrounding(shown, transform)).collect();
     let mut taken: Vec<Rect> = Vec::new();
-    for shown in order.iter().rev() {
-        words(shown, painter, transform, &mut taken);
+    for (i, shown) in order.iter().enumerate() {
+        words(shown, i, &around, painter, &mut taken);
     }
+}
+
+fn surrounding(shown: &LabeledBox, transform: &ImageTransform) -> Rect {
+    shown.outline_px.iter().fold(Rect::NOTHING, |mut rect, at| {
+        rect.extend_with(transform.to_screen(*at));
+        rect
+    })
 }
 
 fn outline(shown: &LabeledBox, painter: &Painter, transform: &ImageTransform) {
@@ -70,65 +82,70 @@ fn outline(shown: &LabeledBox, painter: &Painter, transform: &ImageTransform) {
     }
 }
 
-fn words(shown: &LabeledBox, painter: &Painter, transform: &ImageTransform, taken: &mut Vec<Rect>) {
-    if shown.text.is_empty() || shown.outline_px.is_empty() {
+fn words(shown: &LabeledBox, i: usize, around: &[Rect], painter: &Painter, taken: &mut Vec<Rect>) {
+    // While one is looked at, the words of the others would only hide what surrounds it.
+    if shown.text.is_empty() || shown.emphasis == Emphasis::Faded {
         return;
     }
-    let points = shown.outline_px.iter().map(|at| transform.to_screen(*at));
-    let around = points.fold(Rect::NOTHING, |mut rect, point| {
-        rect.extend_with(point);
-        rect
-    });
     let font = painter.ctx().global_style().text_styles.get(&TextStyle::Small).cloned();
     let font = font.unwrap_or_else(|| FontId::proportional(size::SMALL));
-    let color = match shown.emphasis {
-        Emphasis::Chosen => ON_IMAGE.text_strong,
-        Emphasis::Usual => shown.color,
-        Emphasis::Faded => shown.color.gamma_multiply(0.7),
-    };
+    let chosen = shown.emphasis == Emphasis::Chosen;
+    let color = if chosen { ON_IMAGE.text_strong } else { shown.color };
     let galley = painter.layout_no_wrap(shown.text.clone(), font, color);
     let size = galley.size() + 2.0 * PADDING;
-    let Some(place) = place(around, size, painter.clip_rect(), taken) else { return };
+    let Some(place) = place(i, around, size, painter.clip_rect(), taken) else { return };
+    if place.expand(GAP + 1.0).intersects(around[i]) {
+        // It stands at its box; no line is needed.
+    } else {
+        let [from, to] = [around[i].clamp(place.center()), place.clamp(around[i].center())];
+        for stroke in [Stroke::new(3.0, RIM), Stroke::new(1.0, shown.color)] {
+            painter.line_segment([from, to], stroke);
+        }
+    }
     painter.rect_filled(place, 3.0, RIM);
-    if shown.emphasis == Emphasis::Chosen {
+    if chosen {
         painter.rect_filled(Rect::from_min_size(place.min, vec2(3.0, place.height())), 1.0, shown.color);
     }
     painter.galley(place.min + PADDING, galley, color);
     taken.push(place);
 }
 
-/// Where words of this size go: the first of some places around the box that is on the picture and
-/// on no other words. `None` if the box is not on the picture at all, or there is no room: better
-/// no word than two that cannot be read.
-fn place(around: Rect, size: Vec2, clip: Rect, taken: &[Rect]) -> Option<Rect> {
-    if !clip.intersects(around) {
+/// Where words of this size for box `i` go: of the places around it that are on the picture and on
+/// no other words, the one that is near and hides little of other boxes. `None` if the box is not on
+/// the picture at all, or there is no room: better no word than two that cannot be read.
+fn place(i: usize, around: &[Rect], size: Vec2, clip: Rect, taken: &[Rect]) -> Option<Rect> {
+    let own = around[i];
+    if !clip.intersects(own) {
         return None;
     }
-    let above = around.top() - GAP - size.y;
-    let below = around.bottom() + GAP;
-    let (left, right) = (around.left(), around.right() - size.x);
-    let middle = around.center().x - size.x / 2.0;
-    let beside = around.right() + GAP;
-    let before = around.left() - GAP - size.x;
-    let candidates = [
-        (left, above),
-        (left, below),
-        (right, above),
-        (right, below),
-        (middle, above),
-        (middle, below),
-        (beside, around.top()),
-        (before, around.top()),
-        (beside, around.bottom() - size.y),
-        (before, around.bottom() - size.y),
-        (left, around.top() + GAP),
-        (left, above - size.y - GAP),
-        (left, below + size.y + GAP),
+    let rects = places(own, size).filter(|(_, rect)| clip.contains_rect(*rect));
+    let free = rects.filter(|(_, rect)| !taken.iter().any(|other| other.intersects(*rect)));
+    let hidden = |rect: &Rect| {
+        let on = around.iter().map(|other| other.intersect(*rect)).filter(|common| common.is_positive());
+        on.map(|common| common.area()).sum::<f32>() / size.x / size.y
+    };
+    let scored = free.map(|(away, rect)| (away + ON_A_BOX * hidden(&rect), rect));
+    scored.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, rect)| rect)
+}
+
+/// Places around a box, with how many lines they are away from it.
+fn places(own: Rect, size: Vec2) -> impl Iterator<Item = (f32, Rect)> {
+    let columns = [
+        (0.0, own.left()),
+        (0.1, own.right() - size.x),
+        (0.2, own.center().x - size.x / 2.0),
+        (0.6, own.right() + GAP),
+        (0.6, own.left() - GAP - size.x),
     ];
-    let rects = candidates.map(|(x, y)| Rect::from_min_size(Pos2::new(x, y), size));
-    rects
-        .into_iter()
-        .find(|rect| clip.contains_rect(*rect) && !taken.iter().any(|other| other.intersects(*rect)))
+    (0..LINES_AWAY).flat_map(move |line| {
+        let step = line as f32 * (size.y + GAP);
+        let rows = [(0.0, own.top() - GAP - size.y - step), (0.1, own.bottom() + GAP + step)];
+        let beside = [own.right() + GAP, own.left() - GAP - size.x].map(|x| (0.3, x, own.top() + step));
+        let beyond = rows.into_iter().flat_map(move |(a, y)| columns.map(|(b, x)| (a + b, x, y)));
+        beyond
+            .chain(beside)
+            .map(move |(more, x, y)| (line as f32 + more, Rect::from_min_size(Pos2::new(x, y), size)))
+    })
 }
 
 #[cfg(test)]
@@ -145,14 +162,12 @@ mod tests {
 
     #[test]
     fn words_of_many_boxes_at_one_place_never_overlap() {
+        let boxes: Vec<Rect> = (0..9).map(|i| around(150.0 + i as f32, 120.0 + i as f32)).collect();
         let mut taken = Vec::new();
-        for i in 0..9 {
-            let shift = i as f32;
-            if let Some(place) = place(around(150.0 + shift, 120.0 + shift), SIZE, CLIP, &taken) {
-                taken.push(place);
-            }
+        for i in 0..boxes.len() {
+            taken.extend(place(i, &boxes, SIZE, CLIP, &taken));
         }
-        assert!(taken.len() >= 8, "{}", taken.len());
+        assert_eq!(taken.len(), boxes.len(), "there is room for all");
         for (i, a) in taken.iter().enumerate() {
             assert!(CLIP.contains_rect(*a));
             assert!(taken[i + 1..].iter().all(|b| !a.intersects(*b)), "{taken:?}");
@@ -160,11 +175,20 @@ mod tests {
     }
 
     #[test]
+    fn words_do_not_hide_other_boxes_where_there_is_room_elsewhere() {
+        // Another box stands right above.
+        let boxes = [around(100.0, 100.0), Rect::from_min_size(pos2(90.0, 60.0), vec2(80.0, 38.0))];
+        let place = place(0, &boxes, SIZE, CLIP, &[]).expect("there is room");
+        assert!(!place.intersects(boxes[1]) && place.expand(GAP + 1.0).intersects(boxes[0]), "{place:?}");
+    }
+
+    #[test]
     fn words_stay_on_the_picture() {
         for (x, y) in [(-20.0, -20.0), (380.0, -20.0), (-20.0, 280.0), (380.0, 280.0)] {
-            let place = place(around(x, y), SIZE, CLIP, &[]).expect("part of the box is seen");
+            let place = place(0, &[around(x, y)], SIZE, CLIP, &[]).expect("part of the box is seen");
             assert!(CLIP.contains_rect(place), "{place:?}");
         }
-        assert_eq!(place(around(500.0, 0.0), SIZE, CLIP, &[]), None, "a box that is not seen has no words");
+        let off = [around(500.0, 0.0)];
+        assert_eq!(place(0, &off, SIZE, CLIP, &[]), None, "a box that is not seen has no words");
     }
 }

@@ -65,7 +65,7 @@ pub fn scene(view: &View, panels: &RobotPanels, ghost: Option<&Posture>, names: 
             board(&mut scene, &pose.isometry, &view.eyes.board);
         }
     }
-    objects(&mut scene, view);
+    objects(&mut scene, view, names);
     tip(&mut scene, view);
     if let Some(at_m) = panels.chosen_point_m {
         scene.dots.push(Dot { at_m, radius: 5.0, tint: Tint::Selected });
@@ -73,8 +73,9 @@ pub fn scene(view: &View, panels: &RobotPanels, ghost: Option<&Posture>, names: 
     scene
 }
 
-/// What the detector places: an ellipsoid of two standard deviations, and its name.
-fn objects(scene: &mut Scene, view: &View) {
+/// What the detector places: an ellipsoid of two standard deviations and, where there is room, its
+/// name.
+fn objects(scene: &mut Scene, view: &View, names: bool) {
     if view.detect.stale.is_some() {
         return;
     }
@@ -88,7 +89,9 @@ fn objects(scene: &mut Scene, view: &View) {
             scene.solids.push(Solid::new(Shape::Ellipsoid { radii_m }, pose, tint));
         }
         scene.dots.push(Dot { at_m, radius: 3.5, tint });
-        scene.labels.push(Label3d { at_m, text: object.name.clone(), tint });
+        if names {
+            scene.labels.push(Label3d { at_m, text: object.name.clone(), tint });
+        }
     }
 }
 

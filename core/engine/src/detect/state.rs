@@ -1,11 +1,11 @@
-//! Which detector, what is shown of what it finds, and what came of the newest pair.
+//! Which detector, and what is shown of what it finds.
+
+mod shown;
 
 use std::path::Path;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 use plumbline_model::StereoFrame;
-use plumbline_model::detection::ClassIndex;
 use plumbline_vision::detect_places::Rates;
 
 use super::detector::{LoadedDetector, OpenDetector, SHOWN_FROM};
@@ -14,15 +14,9 @@ use super::work::{DetectResult, DetectWork};
 use crate::command::{DetectCommand, DetectorChoice, JobId, Provider};
 use crate::context::Context;
 use crate::notice::NoticeLevel;
-use crate::stages::{DetectInput, DetectOutput, LiveSetup, Timed};
+use crate::stages::LiveSetup;
 use crate::statistics::StageClock;
-use crate::view::{ClassRates, DetectView, DetectionSettings, DetectionsView, DetectorState};
-
-/// Boxes that are this much older than the picture are not where things are any more.
-const BEHIND: Duration = Duration::from_millis(1500);
-
-/// Rates are over this many pairs.
-const COUNTED_PAIRS: usize = 300;
+use crate::view::{DetectionSettings, DetectionsView};
 
 /// What detection can see of the rest.
 pub struct Around<'a> {
@@ -299,93 +293,6 @@ impl DetectState {
         self.rates = None;
         self.clock = StageClock::default();
     }
-
-    /// What the stage is to do with the newest pair, if anything.
-    pub fn input(&self, around: Around<'_>) -> Option<DetectInput> {
-        let in_use = self.detector.as_ref().filter(|_| self.wanted)?;
-        Some(DetectInput {
-            frame: around.newest?.clone(),
-            opened: around.opened,
-            detector: in_use.detector.clone(),
-            settings: self.settings.clone(),
-            setup: around.setup,
-        })
-    }
-
-    /// The stage has something. What another detector found, or on the images of another source, is
-    /// not shown.
-    pub fn detected(&mut self, output: Timed<DetectOutput>, opened: u64, now: Instant) {
-        let result = output.result;
-        let of_this = self.detector.as_ref().is_some_and(|in_use| in_use.detector.id == result.detector);
-        if !of_this || result.opened != opened || !self.wanted {
-            return;
-        }
-        if result.is_new {
-            self.clock.note(now, output.stamp.captured_at, output.busy);
-        }
-        match result.found {
-            Ok((found, places)) => {
-                if result.is_new {
-                    let classes = found.names.len();
-                    self.rates.get_or_insert_with(|| Rates::new(classes, COUNTED_PAIRS)).add(&places);
-                }
-                self.failed = None;
-                self.found = Some(Accepted { view: Arc::new(found), generation: result.generation });
-            }
-            Err(failure) if failure.broken => {
-                let name = self.settings.detector.name();
-                self.let_go();
-                self.failed_to_open = Some((name, failure.why));
-            }
-            Err(failure) => {
-                self.found = None;
-                self.failed = Some(failure.why);
-            }
-        }
-    }
-
-    /// What the window shows.
-    pub fn view(&mut self, skipped: u64, around: &Around<'_>, now: Instant) -> DetectView {
-        self.clock.set_skipped(skipped);
-        DetectView {
-            wanted: self.wanted,
-            detector: self.detector_state(),
-            opening: self.opening.as_ref().map(|opening| opening.choice.name()),
-            refused: self.refused.clone(),
-            settings: self.settings.clone(),
-            found: self.found.as_ref().map(|found| found.view.clone()),
-            stale: self.found.as_ref().and_then(|found| stale(found, around)),
-            failed: self.failed.clone(),
-            rates: self.class_rates(),
-            counted: self.rates.as_ref().map_or(0, Rates::frames),
-            statistics: self.clock.figures(now),
-        }
-    }
-
-    fn class_rates(&self) -> Arc<[ClassRates]> {
-        let (Some(rates), Some(in_use)) = (&self.rates, &self.detector) else { return Arc::default() };
-        let of = |(class, name): (ClassIndex, &str)| {
-            let counted = rates.class(class)?;
-            Some(ClassRates {
-                name: name.to_owned(),
-                left: counted.left,
-                right: counted.right,
-                agree: counted.agree,
-                lost: counted.lost,
-            })
-        };
-        in_use.detector.facts.names.iter().filter_map(of).collect()
-    }
-
-    fn detector_state(&self) -> DetectorState {
-        match (&self.detector, &self.opening, &self.failed_to_open) {
-            (Some(in_use), ..) => DetectorState::Ready(in_use.detector.facts.clone()),
-            (None, Some(opening), _) => DetectorState::Loading { name: opening.choice.name() },
-            (None, None, Some((name, why))) => DetectorState::Failed { name: name.clone(), why: why.clone() },
-            (None, None, None) if self.settings.detector == DetectorChoice::Off => DetectorState::Off,
-            (None, None, None) => DetectorState::None,
-        }
-    }
 }
 
 fn share(confidence: f32) -> Result<f32, String> {
@@ -393,23 +300,4 @@ fn share(confidence: f32) -> Result<f32, String> {
         return Ok(confidence);
     }
     Err(format!("The confidence must be between {SHOWN_FROM} and 1; {confidence} is not."))
-}
-
-/// Why a result must not be taken for the present.
-fn stale(found: &Accepted, around: &Around<'_>) -> Option<String> {
-    let newest = around.newest?;
-    let (of, now) = (found.view.stamp, newest.stamp);
-    if of.seq != now.seq && around.photographs {
-        return Some("Boxes of the pair before; this one is being looked at.".to_owned());
-    }
-    let behind = now.captured_at.saturating_duration_since(of.captured_at);
-    if behind > BEHIND {
-        return Some(format!(
-            "Boxes of {:.1} s before this picture: the detector does not keep up.",
-            behind.as_secs_f64()
-        ));
-    }
-    let generation = around.setup.as_ref().ok().map(|setup| setup.generation);
-    (found.generation != generation)
-        .then(|| "Places rest on the calibration or aim before; they are being computed anew.".to_owned())
 }

@@ -319,7 +319,7 @@ fn a_detector_that_panics_is_let_go_and_the_pictures_go_on() {
     desk.show();
     desk.detect();
     assert_eq!(desk.runs(), runs, "it is not asked again");
-    assert!(desk.view().live.raw.is_some_and(|frame| frame.stamp.seq == 1));
+    assert!(desk.view().live.raw.as_ref().is_some_and(|frame| frame.stamp.seq == 1));
     desk.trouble(None);
     desk.apply(DetectCommand::Retry);
     desk.detect();
