@@ -49,7 +49,8 @@ pub struct ConfusionMatrix {
 
 impl ConfusionMatrix {
     /// Sorts things and boxes into cells. A thing goes with the box that it overlaps most,
-    /// whatever the classes; of equal overlaps with the surer one.
+    /// whatever the classes; of equal overlaps with the surer one. Where a detector gives one and
+    /// the same box to several classes, only the surest counts, as on the screen.
     pub fn new(images: &[ScoredImage], classes: usize, options: &ConfusionOptions) -> Self {
         let mut matrix = Self { classes, cells: vec![Vec::new(); (classes + 1) * (classes + 1)] };
         for (index, image) in images.iter().enumerate() {
@@ -87,8 +88,7 @@ impl ConfusionMatrix {
 
     fn add(&mut self, index: usize, image: &ScoredImage, options: &ConfusionOptions) {
         let things: Vec<usize> = (0..image.truth.len()).filter(|&i| !image.truth[i].crowd).collect();
-        let boxes: Vec<usize> =
-            (0..image.found.len()).filter(|&i| image.found[i].confidence >= options.confidence).collect();
+        let boxes = image.surest_classes(options.confidence);
         let mut couples: Vec<(f64, usize, usize)> = Vec::new();
         for &thing in &things {
             for &found in &boxes {
@@ -129,5 +129,25 @@ impl ConfusionMatrix {
         if let Some(place) = self.place(cell) {
             self.cells[place].push(CellEntry { image: index, truth, found });
         }
+    }
+}
+
+impl ScoredImage {
+    /// Boxes from a confidence on, without those that are a surer one's with another class.
+    fn surest_classes(&self, confidence: f64) -> Vec<usize> {
+        let mut sure: Vec<usize> =
+            (0..self.found.len()).filter(|&i| self.found[i].confidence >= confidence).collect();
+        sure.sort_by(|&a, &b| self.found[b].confidence.total_cmp(&self.found[a].confidence));
+        let mut boxes: Vec<usize> = Vec::with_capacity(sure.len());
+        for found in sure {
+            let other = |&surer: &usize| {
+                let (surer, found) = (&self.found[surer], &self.found[found]);
+                surer.area == found.area && surer.class != found.class
+            };
+            if !boxes.iter().any(other) {
+                boxes.push(found);
+            }
+        }
+        boxes
     }
 }

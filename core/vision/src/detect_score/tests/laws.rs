@@ -247,3 +247,21 @@ fn images_of_one_scene_are_one_witness() {
     let (a, b) = (a.expect("enough"), b.expect("enough"));
     assert!((a.low - b.low).abs() < 0.02 && (a.high - b.high).abs() < 0.02, "{a:?} {b:?}");
 }
+
+#[test]
+fn one_box_with_two_classes_is_one_box_of_the_matrix() {
+    let area = ScoreBox { x_px: 5.0, y_px: 5.0, width_px: 10.0, height_px: 10.0 };
+    let found = |class, confidence| FoundBox { class: ClassIndex(class), confidence, area };
+    let image = ScoredImage {
+        truth: vec![TruthBox::new(ClassIndex(0), area)],
+        found: vec![found(0, 0.4), found(1, 0.7)],
+    };
+    let matrix = ConfusionMatrix::new(&[image], 2, &ConfusionOptions::default());
+    let boxes: usize = matrix
+        .lines()
+        .flat_map(|truth| matrix.lines().map(move |found| (truth, found)))
+        .map(|(truth, found)| matrix.count(Cell { truth, found }))
+        .sum();
+    assert_eq!(boxes, 1);
+    assert_eq!(matrix.count(Cell { truth: Some(ClassIndex(0)), found: Some(ClassIndex(1)) }), 1);
+}
