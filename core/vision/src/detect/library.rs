@@ -5,6 +5,7 @@
 //! `.native/onnxruntime`, where `./plumbline setup` puts it, of a folder above the program or of
 //! the checkout that it was built from; where the system looks for libraries.
 
+use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -63,21 +64,10 @@ impl Library {
 
     fn from_file(path: &Path) -> Result<Self, DetectError> {
         let bad = |reason: String| DetectError::BadLibrary { path: path.to_owned(), reason };
-        let environment = ort::init_from(path)
-            .map_err(|error| bad(error.to_string()))?
-            .with_name("plumbline")
-            .with_telemetry(false)
-            .with_logger(Arc::new(|level, _, _, place, message| {
-                // Its errors also come back as values, with a sentence of ours.
-                let level = match level {
-                    LogLevel::Fatal | LogLevel::Error | LogLevel::Warning => log::Level::Debug,
-                    LogLevel::Info | LogLevel::Verbose => log::Level::Trace,
-                };
-                log::log!(target: "onnxruntime", level, "{message} ({place})");
-            }))
-            .build()
-            .map_err(|error| bad(error.message().to_owned()))?;
-        environment.set_log_level(LogLevel::Warning);
+        // The crate panics on a library that does not hold what its version promises.
+        let environment = catch_unwind(|| environment(path))
+            .unwrap_or_else(|_| Err("it lacks the interface of version 1.24".to_owned()))
+            .map_err(bad)?;
         Ok(Self { environment, path: path.canonicalize().unwrap_or_else(|_| path.to_owned()) })
     }
 
@@ -101,6 +91,26 @@ impl Library {
     pub fn providers(&self) -> Vec<Provider> {
         Provider::ALL.into_iter().filter(|provider| is_built_in(*provider)).collect()
     }
+}
+
+/// Loads a file and starts it; else says what is wrong.
+fn environment(path: &Path) -> Result<Environment, String> {
+    let environment = ort::init_from(path)
+        .map_err(|error| error.to_string())?
+        .with_name("plumbline")
+        .with_telemetry(false)
+        .with_logger(Arc::new(|level, _, _, place, message| {
+            // Its errors also come back as values, with a sentence of ours.
+            let level = match level {
+                LogLevel::Fatal | LogLevel::Error | LogLevel::Warning => log::Level::Debug,
+                LogLevel::Info | LogLevel::Verbose => log::Level::Trace,
+            };
+            log::log!(target: "onnxruntime", level, "{message} ({place})");
+        }))
+        .build()
+        .map_err(|error| error.message().to_owned())?;
+    environment.set_log_level(LogLevel::Warning);
+    Ok(environment)
 }
 
 /// Whether the loaded library was built with a provider.
