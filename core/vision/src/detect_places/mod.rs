@@ -12,8 +12,12 @@
 mod assignment;
 mod boxes;
 mod curve;
+mod matching;
 mod options;
 mod pairing;
+mod patch;
+mod place;
+mod rates;
 #[cfg(test)]
 mod tests;
 mod types;
@@ -21,18 +25,18 @@ mod uncertainty;
 mod votes;
 
 use image::RgbImage;
-use plumbline_model::{Detection, Eye, ParameterCovariance, Pixel, Raw, StereoCalibration};
-
-use crate::locate::epipolar::{EpipolarGeometry, EpipolarRay};
+use plumbline_model::{Detection, Eye, Pixel, Raw, StereoCalibration};
 
 pub use options::PlaceOptions;
+pub use rates::{ClassRates, Rates};
 pub use types::{
     Disagreement, Estimate, LeakWarning, NoPlace, ObjectPlace, Place, RangeFrom, Seen, Unpaired,
 };
 pub use votes::{MOST_CELLS, Votes};
 
-use pairing::{Candidate, Matched, Pairing, px_rad};
-use uncertainty::{Sigmas, add_along, by_calibration, triangulate};
+use matching::Matcher;
+use pairing::{Candidate, Matched, Pairing};
+use place::Rig;
 
 /// Finds the places of objects, frame by frame. Takes no memory after the first frames.
 #[derive(Debug)]
@@ -40,27 +44,14 @@ pub struct PlaceFinder {
     rig: Result<Rig, NoPlace>,
     options: PlaceOptions,
     pairing: Pairing,
+    matcher: Matcher,
 }
-
-/// What is known of the eyes.
-#[derive(Debug)]
-struct Rig {
-    geometry: EpipolarGeometry,
-    covariance: Option<ParameterCovariance>,
-}
-
-/// Depth of a body relative to the half of its smaller visible side, as the mean over toys, fruit
-/// and hands, and its standard deviation: from the middle of what is seen to the middle of the body.
-const HALF_DEPTH: [f64; 2] = [0.75, 0.3];
 
 impl PlaceFinder {
     /// For one calibration; without one, boxes are listed but neither paired nor placed.
     pub fn new(calibration: Option<&StereoCalibration>, options: PlaceOptions) -> Self {
-        let rig = calibration.ok_or(NoPlace::NoCalibration).and_then(|calibration| {
-            let geometry = EpipolarGeometry::new(&calibration.cameras).ok_or(NoPlace::NoBaseline)?;
-            Ok(Rig { geometry, covariance: calibration.covariance.clone() })
-        });
-        Self { rig, options, pairing: Pairing::default() }
+        let (pairing, matcher) = (Pairing::default(), Matcher::default());
+        Self { rig: Rig::new(calibration), options, pairing, matcher }
     }
 
     /// The settings.
@@ -88,7 +79,9 @@ impl PlaceFinder {
         let [lefts, rights] = &self.pairing.candidates;
         for matched in &self.pairing.pairs {
             let (l, r) = (&lefts[matched.left], &rights[matched.right]);
-            out.push(paired(l, r, matched, rig.place(l, r).ok_or(NoPlace::DoNotMeet)));
+            let shapes = [&l.shape, &r.shape];
+            let place = rig.place(&mut self.matcher, [left.0, right.0], shapes, &self.options);
+            out.push(paired(l, r, matched, place.ok_or(NoPlace::DoNotMeet)));
         }
         for &(eye, index, why) in &self.pairing.alone {
             let detection = if eye == Eye::Left { left.1[index] } else { right.1[index] };
@@ -156,49 +149,5 @@ fn paired(l: &Candidate, r: &Candidate, matched: &Matched, place: Result<Place, 
             eyes_disagree: (a.class != b.class).then_some([a.class, b.class]),
         },
         place,
-    }
-}
-
-impl Rig {
-    fn place(&self, left: &Candidate, right: &Candidate) -> Option<Place> {
-        let (l, r) = (&left.shape, &right.shape);
-        let px_rad = px_rad(&self.geometry, Eye::Left);
-        let [l_sigma, r_sigma] = [l.middle_sigma_px(), r.middle_sigma_px()];
-        // Both eyes measure the plane.
-        let weight = r_sigma[1].powi(2) / (l_sigma[1].powi(2) + r_sigma[1].powi(2));
-        let plane_rad = weight * l.middle.plane_rad + (1.0 - weight) * r.middle.plane_rad;
-        let ray = EpipolarRay { plane_rad, ..l.middle };
-        let sigmas = Sigmas {
-            plane_rad: weight.sqrt() * l_sigma[1] * px_rad / ray.along_rad.cos(),
-            along_rad: l_sigma[0] * px_rad,
-            disparity_rad: l_sigma[0].hypot(r_sigma[0]) * px_rad,
-        };
-        let disparity_rad = l.middle.along_rad - r.middle.along_rad;
-        let mut middle = triangulate(&self.geometry, &ray, disparity_rad, &sigmas)?;
-        if let Some(parameters) = &self.covariance {
-            middle.covariance_m2 +=
-                by_calibration(&self.geometry.cameras, parameters, &middle.point.coords.coords)?;
-        }
-        let range_m = middle.point.range_m();
-        let size_m = [l.width_rad() * range_m, l.height_rad() * range_m];
-        let smaller_m = 0.5 * size_m[0].min(size_m[1]);
-        let [half_depth_m, half_depth_sigma_m] = HALF_DEPTH.map(|share| share * smaller_m);
-        let forward = middle.point.direction()?.vector();
-        let mut surface = Estimate {
-            point: (middle.point.coords - forward * half_depth_m).into(),
-            covariance_m2: middle.covariance_m2,
-        };
-        add_along(&mut surface.covariance_m2, &forward, half_depth_sigma_m);
-        Some(Place {
-            middle,
-            surface,
-            half_depth_m,
-            half_depth_sigma_m,
-            size_m,
-            from: RangeFrom::BoxesAlone,
-            votes: Votes::none(l.area),
-            disagreement: None,
-            leak: None,
-        })
     }
 }

@@ -16,9 +16,11 @@ pub struct PlaceOptions {
     pub look_alikes: Vec<[ClassIndex; 2]>,
     /// Boxes paired per eye; of more, the most confident.
     pub most_per_eye: usize,
-    /// What lies behind an object is worth a warning from this distance, m.
+    /// What lies behind an object is worth a warning from this distance, m…
     pub leak_depth_m: f64,
-    /// …if a place from all pixels of the box would have been wrong by this much, m.
+    /// …if it has this share of the box's pixels, 0–1,
+    pub leak_share: f64,
+    /// or if a place from all pixels of the box would have been wrong by this much, m.
     pub leak_error_m: f64,
 }
 
@@ -31,6 +33,7 @@ impl Default for PlaceOptions {
             look_alikes: Vec::new(),
             most_per_eye: 64,
             leak_depth_m: 0.06,
+            leak_share: 0.35,
             leak_error_m: 0.02,
         }
     }

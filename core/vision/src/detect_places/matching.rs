@@ -1,0 +1,398 @@
+//! Which disparity each pixel of a box votes for, and on which the object's own pixels agree.
+//!
+//! Windows of color are compared along epipolar lines (sum of absolute differences, truncated so that
+//! what is seen past an edge counts little). A pixel votes only if its best place is clearly better
+//! than all others, and only within the disparities that keep it inside the right box: so neither
+//! a plain surface nor the background has a say. The most frequent disparity wins, and the
+//! voters near it are averaged.
+
+use image::RgbImage;
+use plumbline_model::{Eye, PixelBox};
+
+use crate::locate::epipolar::EpipolarGeometry;
+
+use super::boxes::EpipolarBox;
+use super::pairing::px_rad;
+use super::patch::{Grid, Patch};
+use super::votes::Votes;
+
+/// Cells that a box's longer side is cut into, if they do not get finer than [`FINEST_PX`].
+const CELLS: f64 = 26.0;
+/// Finest cell, raw px: nothing finer is in the image.
+const FINEST_PX: f64 = 0.6;
+/// Half side of the window that is compared, cells.
+const HALF_WINDOW: usize = 2;
+/// Cells around the box that are looked at too.
+const RING: usize = HALF_WINDOW + 3;
+/// Most disparities that are tried.
+const MOST_DISPARITIES: usize = 144;
+/// Most cells along a side of the left patch; a box never comes near it, whatever the lens does.
+const MOST_SIDE: usize = 64;
+/// Color difference (sum of three channels) beyond which a pixel is simply different.
+const DIFFERENT: u8 = 150;
+/// Color difference of windows that show the same thing, per pixel: noise and compression.
+const NOISE: f32 = 5.0;
+/// The best place must beat all others by this factor (after noise).
+const DISTINCT: f32 = 1.25;
+/// Places this near to the best one are the same place, raw px.
+const SAME_PLACE_PX: f64 = 1.6;
+/// Share of the box's half sides up to which pixels are taken for the object's own.
+const OWN_ELLIPSE: f32 = 0.85;
+/// Fewest pixels that may decide, and fewest for their share of the ellipse.
+const FEWEST_VOTERS: usize = 12;
+const FEWEST_SHARE: f64 = 0.04;
+/// Beyond this the eyes' colors differ by more than exposure and white balance explain.
+const MOST_GAIN: f32 = 1.5;
+
+/// What the pixels of a box say.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Matching {
+    /// Mean disparity of the voters, rad.
+    pub disparity_rad: f64,
+    /// Its standard deviation as the scatter of the voters tells it, rad.
+    pub sigma_rad: f64,
+    pub votes: Votes,
+}
+
+/// What the other pixels of a box say, judged against a disparity of the object.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Behind {
+    /// Median disparity of those behind (or in front), rad.
+    pub disparity_rad: f64,
+    /// Their share of all pixels of the box that could be matched.
+    pub share: f64,
+    /// Median disparity of all pixels of the box that could be matched.
+    pub median_rad: f64,
+    /// Disparity at the middle of the box, if it could be matched.
+    pub middle_rad: Option<f64>,
+}
+
+/// Memory of the matching.
+#[derive(Debug, Default)]
+pub(super) struct Matcher {
+    left: Patch,
+    right: Patch,
+    /// Cost of one disparity: truncated differences, then window sums.
+    differences: Vec<u8>,
+    column_sums: Vec<u16>,
+    /// Window costs, disparity by disparity.
+    costs: Vec<u16>,
+    best: Vec<u16>,
+    best_at: Vec<u16>,
+    second: Vec<u16>,
+    /// Disparity (cells from the least) that each left cell votes for; not finite: none.
+    votes: Vec<f32>,
+    sorted: Vec<f32>,
+    frame: Option<Frame>,
+}
+
+/// Geometry of the box that was matched last.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    grid: Grid,
+    cell_px: f64,
+    px_rad: f64,
+    /// Disparity of index 0, rad.
+    least_rad: f64,
+    count: usize,
+    area: PixelBox,
+}
+
+impl Frame {
+    fn index(&self, disparity_rad: f64) -> f64 {
+        (disparity_rad - self.least_rad) / self.grid.along_step_rad
+    }
+
+    fn disparity_rad(&self, index: f64) -> f64 {
+        self.least_rad + index * self.grid.along_step_rad
+    }
+}
+
+impl Matcher {
+    /// Matches the pixels of the left box; `expected_rad` is the disparity of the surface that the
+    /// box middles suggest, `reach_rad` how far from it the truth may be. `None` if too few pixels
+    /// can be told apart.
+    pub fn find(
+        &mut self,
+        geometry: &EpipolarGeometry,
+        images: [&RgbImage; 2],
+        left: &EpipolarBox,
+        expected_rad: f64,
+        reach_rad: f64,
+    ) -> Option<Matching> {
+        self.frame = None;
+        let frame = frame(geometry, left, expected_rad + reach_rad)?;
+        self.left.sample(geometry, Eye::Left, images[0], &frame.grid);
+        let mut there = frame.grid;
+        there.columns += frame.count - 1;
+        there.first.along_rad -= frame.disparity_rad((frame.count - 1) as f64);
+        self.right.sample(geometry, Eye::Right, images[1], &there);
+        self.equalize(&frame, &there, expected_rad);
+        self.compare(&frame, &there);
+        self.choose(&frame);
+        self.frame = Some(frame);
+        self.agree(&frame, expected_rad, reach_rad)
+    }
+
+    /// Gives the right patch the left one's brightness, by the means within the boxes.
+    fn equalize(&mut self, frame: &Frame, there: &Grid, expected_rad: f64) {
+        let shift = (frame.count - 1) as isize - frame.index(expected_rad).round() as isize;
+        let (mut left, mut right, mut count) = ([0u32; 3], [0u32; 3], 0u32);
+        for row in 0..frame.grid.rows {
+            for column in 0..frame.grid.columns {
+                let here = row * frame.grid.columns + column;
+                let Some(x) = column.checked_add_signed(shift).filter(|x| *x < there.columns) else {
+                    continue;
+                };
+                let other = row * there.columns + x;
+                if own(&frame.area, self.left.raw_px[here])
+                    && self.left.seen[here] & self.right.seen[other] != 0
+                {
+                    for c in 0..3 {
+                        left[c] += u32::from(self.left.channels[c][here]);
+                        right[c] += u32::from(self.right.channels[c][other]);
+                    }
+                    count += 1;
+                }
+            }
+        }
+        if count > 0 {
+            let gains = [0, 1, 2].map(|c| (left[c] as f32 + count as f32) / (right[c] as f32 + count as f32));
+            if gains.iter().all(|gain| (1.0 / MOST_GAIN..MOST_GAIN).contains(gain)) {
+                self.right.scale(gains);
+            }
+        }
+    }
+
+    /// Fills `costs`.
+    fn compare(&mut self, frame: &Frame, there: &Grid) {
+        let Grid { columns, rows, .. } = frame.grid;
+        let cells = columns * rows;
+        self.costs.clear();
+        self.costs.resize(cells * frame.count, u16::MAX);
+        self.differences.clear();
+        self.differences.resize(cells, 0);
+        self.column_sums.clear();
+        self.column_sums.resize(columns, 0);
+        for k in 0..frame.count {
+            let shift = frame.count - 1 - k;
+            for row in 0..rows {
+                let (here, other) = (row * columns, row * there.columns + shift);
+                let to = &mut self.differences[here..here + columns];
+                let channel = |c: usize| {
+                    let left = &self.left.channels[c][here..here + columns];
+                    (left, &self.right.channels[c][other..other + columns])
+                };
+                let ((l0, r0), (l1, r1), (l2, r2)) = (channel(0), channel(1), channel(2));
+                let seen = &self.right.seen[other..other + columns];
+                for x in 0..columns {
+                    let sum = l0[x].abs_diff(r0[x]).saturating_add(l1[x].abs_diff(r1[x]));
+                    let sum = sum.saturating_add(l2[x].abs_diff(r2[x])).min(DIFFERENT);
+                    to[x] = sum.max(DIFFERENT & !seen[x]);
+                }
+            }
+            self.sum_windows(&frame.grid, k);
+        }
+    }
+
+    /// Sums the differences of disparity `k` over windows; cells at the rim keep the largest cost.
+    /// No sum comes near the largest number, so nothing wraps (and checks would forbid vectors).
+    fn sum_windows(&mut self, grid: &Grid, k: usize) {
+        const SIDE: usize = 2 * HALF_WINDOW + 1;
+        let Grid { columns, rows, .. } = *grid;
+        let costs = &mut self.costs[k * columns * rows..][..columns * rows];
+        let inner = columns - 2 * HALF_WINDOW;
+        for row in HALF_WINDOW..rows - HALF_WINDOW {
+            let sums = &mut self.column_sums[..columns];
+            sums.fill(0);
+            for y in row - HALF_WINDOW..=row + HALF_WINDOW {
+                for (sum, d) in sums.iter_mut().zip(&self.differences[y * columns..][..columns]) {
+                    *sum = sum.wrapping_add(u16::from(*d));
+                }
+            }
+            let to = &mut costs[row * columns + HALF_WINDOW..][..inner];
+            to.copy_from_slice(&sums[..inner]);
+            for i in 1..SIDE {
+                for (cost, sum) in to.iter_mut().zip(&sums[i..]) {
+                    *cost = cost.wrapping_add(*sum);
+                }
+            }
+        }
+    }
+
+    /// Fills `votes`: the disparity of each cell whose best place is clearly the best.
+    fn choose(&mut self, frame: &Frame) {
+        let cells = frame.grid.len();
+        for (vector, value) in
+            [(&mut self.best, u16::MAX), (&mut self.best_at, 0), (&mut self.second, u16::MAX)]
+        {
+            vector.clear();
+            vector.resize(cells, value);
+        }
+        for (k, costs) in self.costs.chunks_exact(cells).enumerate() {
+            let k = k as u16;
+            for ((cost, best), at) in costs.iter().zip(&mut self.best).zip(&mut self.best_at) {
+                let better = cost < best;
+                *best = if better { *cost } else { *best };
+                *at = if better { k } else { *at };
+            }
+        }
+        let same = (SAME_PLACE_PX / frame.cell_px).ceil().max(2.0) as u16;
+        for (k, costs) in self.costs.chunks_exact(cells).enumerate() {
+            let k = k as u16;
+            for ((cost, at), second) in costs.iter().zip(&self.best_at).zip(&mut self.second) {
+                let is_other = k.abs_diff(*at) > same;
+                *second = if is_other && cost < second { *cost } else { *second };
+            }
+        }
+        let noise = NOISE * ((2 * HALF_WINDOW + 1) * (2 * HALF_WINDOW + 1)) as f32;
+        self.votes.clear();
+        for i in 0..cells {
+            let (best, second, at) =
+                (f32::from(self.best[i]), f32::from(self.second[i]), usize::from(self.best_at[i]));
+            let is_distinct = self.best[i] < u16::MAX && second + noise > DISTINCT * (best + noise);
+            let at_end = at == 0 || at + 1 == frame.count;
+            let vote = if is_distinct && !at_end {
+                let cost = |k: usize| f32::from(self.costs[k * cells + i]);
+                let (before, after) = (cost(at - 1), cost(at + 1));
+                // Two straight lines with the same slope: what sums of absolute differences look like.
+                let slope = before.max(after) - best;
+                at as f32 + if slope > 0.0 { 0.5 * (before - after) / slope } else { 0.0 }
+            } else {
+                f32::NAN
+            };
+            self.votes.push(vote);
+        }
+    }
+
+    /// The disparity that most of the object's own pixels agree on.
+    fn agree(&mut self, frame: &Frame, expected_rad: f64, reach_rad: f64) -> Option<Matching> {
+        let (expected, reach) =
+            (frame.index(expected_rad) as f32, (reach_rad / frame.grid.along_step_rad) as f32);
+        self.sorted.clear();
+        let mut own_cells = 0usize;
+        for (vote, raw_px) in self.votes.iter().zip(&self.left.raw_px) {
+            if own(&frame.area, *raw_px) {
+                own_cells += 1;
+                if (vote - expected).abs() <= reach {
+                    self.sorted.push(*vote);
+                }
+            }
+        }
+        self.sorted.sort_unstable_by(f32::total_cmp);
+        // The window of disparities with most votes, as wide as two pixels.
+        let width = (2.0 / frame.cell_px) as f32;
+        let mode = densest(&self.sorted, width)?;
+        let voters = &self.sorted[mode];
+        let enough = FEWEST_VOTERS.max((FEWEST_SHARE * own_cells as f64) as usize);
+        if voters.len() < enough {
+            return None;
+        }
+        let n = voters.len() as f64;
+        let mean = voters.iter().map(|v| f64::from(*v)).sum::<f64>() / n;
+        let variance = voters.iter().map(|v| (f64::from(*v) - mean).powi(2)).sum::<f64>() / n;
+        // Windows overlap: only every so many votes are independent.
+        let independent = (n / ((2 * HALF_WINDOW + 1) as f64).powi(2)).max(1.0);
+        let (low, high) = (voters[0], voters[voters.len() - 1]);
+        let mut votes = Votes::none(frame.area);
+        for (vote, raw_px) in self.votes.iter().zip(&self.left.raw_px) {
+            if own(&frame.area, *raw_px) && (low..=high).contains(vote) {
+                votes.vote(raw_px[0] + 0.5, raw_px[1] + 0.5);
+            }
+        }
+        Some(Matching {
+            disparity_rad: frame.disparity_rad(mean),
+            sigma_rad: (variance / independent).sqrt() * frame.grid.along_step_rad,
+            votes,
+        })
+    }
+
+    /// What the pixels of the box say whose disparity lies outside a range around the object's;
+    /// `None` if there are none.
+    pub fn behind(&mut self, nearest_rad: f64, farthest_rad: f64) -> Option<Behind> {
+        let frame = self.frame?;
+        let (near, far) = (frame.index(nearest_rad) as f32, frame.index(farthest_rad) as f32);
+        self.sorted.clear();
+        let middle =
+            [0.5 * (frame.area.x0_px + frame.area.x1_px), 0.5 * (frame.area.y0_px + frame.area.y1_px)];
+        let mut at_middle: Option<(f32, f32)> = None;
+        for (vote, [u, v]) in self.votes.iter().zip(&self.left.raw_px) {
+            let (x, y) = (u + 0.5, v + 0.5);
+            let inside = x >= frame.area.x0_px
+                && x < frame.area.x1_px
+                && y >= frame.area.y0_px
+                && y < frame.area.y1_px;
+            if inside && vote.is_finite() {
+                self.sorted.push(*vote);
+                let off = (x - middle[0]).hypot(y - middle[1]);
+                if off < 1.5 * frame.cell_px as f32 && at_middle.is_none_or(|(o, _)| off < o) {
+                    at_middle = Some((off, *vote));
+                }
+            }
+        }
+        self.sorted.sort_unstable_by(f32::total_cmp);
+        let all = self.sorted.len();
+        let farther = self.sorted.partition_point(|d| *d < far);
+        let nearer = all - self.sorted.partition_point(|d| *d <= near);
+        let strangers =
+            if farther >= nearer { &self.sorted[..farther] } else { &self.sorted[all - nearer..] };
+        let rad = |index: f32| frame.disparity_rad(f64::from(index));
+        Some(Behind {
+            disparity_rad: rad(*strangers.get(strangers.len() / 2)?),
+            share: strangers.len() as f64 / all as f64,
+            median_rad: rad(self.sorted[all / 2]),
+            middle_rad: at_middle.map(|(_, vote)| rad(vote)),
+        })
+    }
+}
+
+/// Whether a raw pixel lies in the ellipse that is taken for the object.
+fn own(area: &PixelBox, [u, v]: [f32; 2]) -> bool {
+    let x = (u + 0.5 - 0.5 * (area.x0_px + area.x1_px)) / (0.5 * area.width_px());
+    let y = (v + 0.5 - 0.5 * (area.y0_px + area.y1_px)) / (0.5 * area.height_px());
+    x * x + y * y <= OWN_ELLIPSE * OWN_ELLIPSE
+}
+
+/// The run of sorted values no wider than `width` that has most of them; `None` if there are none.
+fn densest(sorted: &[f32], width: f32) -> Option<std::ops::Range<usize>> {
+    let (mut best, mut first) = (0..0, 0);
+    for (last, value) in sorted.iter().enumerate() {
+        while value - sorted[first] > width {
+            first += 1;
+        }
+        if last + 1 - first > best.len() {
+            best = first..last + 1;
+        }
+    }
+    (!best.is_empty()).then_some(best)
+}
+
+/// Lays the lattice over a left box; `None` for a box too small or too odd to be matched.
+fn frame(geometry: &EpipolarGeometry, left: &EpipolarBox, most_rad: f64) -> Option<Frame> {
+    let px_rad = px_rad(geometry, Eye::Left);
+    let longer_px = f64::from(left.area.width_px().max(left.area.height_px()));
+    let cell_px = (longer_px / CELLS).max(FINEST_PX);
+    let along_step_rad = cell_px * px_rad;
+    let plane_step_rad = along_step_rad / left.middle.along_rad.cos().max(0.1);
+    let cells = |size_rad: f64, step_rad: f64| {
+        // Not finite becomes 0 and is refused below.
+        (size_rad / step_rad).ceil() as usize + 1 + 2 * RING
+    };
+    let [top, bottom] = left.planes_rad;
+    let [start, end] = left.alongs_rad;
+    let columns = cells((end - start).abs(), along_step_rad);
+    let rows = cells((bottom - top).abs(), plane_step_rad);
+    if columns > MOST_SIDE || rows > MOST_SIDE || columns < 2 * RING + 3 || rows < 2 * RING + 3 {
+        return None;
+    }
+    let middle = |a: f64, b: f64| 0.5 * (a + b);
+    let first = crate::locate::epipolar::EpipolarRay {
+        plane_rad: middle(top, bottom) - 0.5 * (rows - 1) as f64 * plane_step_rad,
+        along_rad: middle(start, end) - 0.5 * (columns - 1) as f64 * along_step_rad,
+    };
+    // From the horizon on, unless that is too many.
+    let count = ((most_rad / along_step_rad).ceil() + 3.0).clamp(8.0, MOST_DISPARITIES as f64) as usize;
+    let least_rad = most_rad - (count - 2) as f64 * along_step_rad;
+    let grid = Grid { first, along_step_rad, plane_step_rad, columns, rows };
+    Some(Frame { grid, cell_px, px_rad, least_rad, count, area: left.area })
+}
