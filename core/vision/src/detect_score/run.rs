@@ -110,17 +110,13 @@ impl NameAgreement {
 
     /// What there is to know, for the operator; `None` if both are the same.
     pub fn sentence(&self) -> Option<String> {
-        let listed = |names: &[String], what: &str| match names {
-            [] => None,
-            names => Some(format!("{} {what}", names.join(", "))),
+        let listed = |what: &str, names: &[String]| {
+            (!names.is_empty()).then(|| format!("{what}: {}", names.join(", ")))
         };
         let told: Vec<String> = [
-            listed(
-                &self.renumbered,
-                "have other numbers in the model than in the set and are matched by name",
-            ),
-            listed(&self.unknown_to_model, "are not known to the model: all of them count as missed"),
-            listed(&self.unknown_to_set, "are known only to the model: its boxes of them are not looked at"),
+            listed("other numbers in the model than in the set, so matched by name", &self.renumbered),
+            listed("not known to the model, so all of them count as missed", &self.unknown_to_model),
+            listed("known only to the model, so not looked at", &self.unknown_to_set),
         ]
         .into_iter()
         .flatten()

@@ -9,7 +9,7 @@ use plumbline_model::{Cancelled, ClassIndex, ClassNames, Detection, JobContext, 
 use tempfile::TempDir;
 
 use super::super::*;
-use crate::detect::{DetectError, DetectSettings, DetectTiming};
+use crate::detect::{DetectError, DetectSettings, DetectTiming, Detector, DetectorOptions};
 use crate::yolo_set::{LabeledBox, LabeledImage, YoloSet, scene_of};
 
 /// Knows every image by the color of its first pixel, and answers with what it was told.
@@ -140,4 +140,40 @@ fn judging_can_be_cancelled() {
     let part = PartOfJob { whole: &impatient, part: 1, parts: 2 };
     let result = evaluate(&mut oracle, &set, &EvaluateOptions::default(), &part);
     assert!(matches!(result, Err(EvaluateError::Cancelled(_))));
+}
+
+/// Tiny networks that answer the same to every image, as in the tests of `detect`; in the set their
+/// classes have the opposite order. Needs ONNX Runtime.
+#[test]
+fn a_network_is_judged_by_the_names_in_its_file() {
+    let folder = TempDir::new().expect("a folder");
+    let tiny = |name: &str| {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/detectors").join(name);
+        let options = DetectorOptions { threads: Some(1), ..DetectorOptions::default() };
+        Detector::open(&file, &options).unwrap_or_else(|error| panic!("{name}: {error}"))
+    };
+    let mut detector = tiny("raw.onnx");
+    let theirs: Vec<String> = detector.info().names.iter().map(|(_, name)| name.to_owned()).collect();
+    let names = ClassNames::new(theirs.iter().rev());
+    let last = names.len() - 1;
+    let boxes = [(0, [15.0, 26.0, 25.0, 34.0]), (1, [15.0, 26.0, 25.0, 34.0]), (2, [47.0, 34.0, 53.0, 46.0])]
+        .map(|(class, [x0, y0, x1, y1])| LabeledBox {
+            class: ClassIndex(last - class),
+            area: PixelBox::new(x0, y0, x1, y1),
+        });
+    let image = |index: u8| {
+        let path = folder.path().join(format!("{index}.png"));
+        RgbImage::from_pixel(64, 64, image::Rgb([255, 128, 0])).save(&path).expect("saved");
+        LabeledImage { scene: scene_of(&path), path, size_px: (64, 64), boxes: boxes.to_vec(), split: None }
+    };
+    let set = YoloSet { names, images: (0..6).map(image).collect() };
+    let judged = evaluate(&mut detector, &set, &EvaluateOptions::default(), &Unattended).expect("judged");
+    assert_eq!(judged.scores.per_class[last].things, 6);
+    for class in 0..3 {
+        let ap50 = judged.scores.per_class[last - class].summary.ap50.expect("there is truth");
+        assert!((ap50 - 1.0).abs() < 1e-9, "{class}: {ap50}");
+    }
+    assert!(judged.timing.network_s > 0.0);
+    let error = evaluate(&mut tiny("throwing.onnx"), &set, &EvaluateOptions::default(), &Unattended);
+    assert!(error.is_err(), "it fails on every image, or has none of the classes: {error:?}");
 }
