@@ -129,6 +129,8 @@ fn an_object_that_is_gone_is_said_to_be_gone() {
     let fake = Fake::over(live(detect()));
     let mut window = fake.window_of_size(settings(), TALL);
     click(&mut window, "Tomato, 331, -118, 82 ± 4 mm");
+    // The line that is under the pointer now is another object's.
+    window.event(egui::Event::PointerGone);
     fake.show(live(DetectView { found: Some(Arc::new(found(vec![banana()]))), ..detect() }));
     window.run_steps(3);
     assert!(says(&window, "Tomato is not seen on this pair."));
