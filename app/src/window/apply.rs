@@ -435,6 +435,7 @@ impl PlumblineWindow {
         }
         self.follow_the_models();
         self.follow_the_gap();
+        self.follow_the_labels();
         self.dismiss_ended_jobs();
     }
 
@@ -458,6 +459,17 @@ impl PlumblineWindow {
             self.show_pane(Screen::Gap, Pane::GapNames);
             self.show_pane(Screen::Gap, Pane::GapShown);
         }
+    }
+
+    /// What an import would do is seen before it can be accepted.
+    fn follow_the_labels(&mut self) {
+        let waits = self.view.labels.import.is_some();
+        let pane = match (std::mem::replace(&mut self.panels.labels.import_seen, waits), waits) {
+            (false, true) => Pane::LabelChecks,
+            (true, false) => Pane::LabelList,
+            _ => return,
+        };
+        self.show_pane(Screen::Images, pane);
     }
 
     /// Brings a pane to the front of its tabs.

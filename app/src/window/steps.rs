@@ -204,7 +204,7 @@ impl Pane {
             Self::GapShown => "Before and after",
             Self::GapNext => "Next experiment",
             Self::GapHistory => "History",
-            Self::ScoreChoice => "Evaluate",
+            Self::ScoreChoice => "Detectors and data set",
             Self::ScoreTable => "Detectors compared",
             Self::ScoreClasses => "Per class",
             Self::ScoreConfusion => "Confusion",
@@ -333,7 +333,7 @@ fn scores(tiles: &mut Tiles<Pane>) -> TileId {
     let cell = tabs(tiles, &[Pane::ScoreCell]);
     let top = row(tiles, &[(choice, 0.8), (table, 1.6)]);
     let bottom = row(tiles, &[(confusion, 1.0), (cell, 1.1)]);
-    column(tiles, &[(top, 0.75), (bottom, 1.0)])
+    column(tiles, &[(top, 0.8), (bottom, 1.0)])
 }
 
 fn images(tiles: &mut Tiles<Pane>) -> TileId {

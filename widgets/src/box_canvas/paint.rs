@@ -85,7 +85,10 @@ fn paint_box(
         }
     }
     let text = if shown.odd { format!("{}  !", shown.text) } else { shown.text.clone() };
-    tag(ui, painter, rect, &text, shown.color, transform);
+    // Where nothing is changed, labels and what was found lie on each other: one says its name above,
+    // the other one below.
+    let below = shown.dashed && !editable;
+    tag(ui, painter, rect, &text, shown.color, transform, below);
 }
 
 /// The outline of a box alone, on an image that is mapped like this.
@@ -122,13 +125,25 @@ fn handles(rect: Rect) -> [Pos2; 8] {
 }
 
 /// What it is, above the box or, at the upper edge of the picture, in it.
-fn tag(ui: &Ui, painter: &Painter, rect: Rect, text: &str, color: Color32, transform: &ImageTransform) {
+fn tag(
+    ui: &Ui,
+    painter: &Painter,
+    rect: Rect,
+    text: &str,
+    color: Color32,
+    transform: &ImageTransform,
+    below: bool,
+) {
     let font = TextStyle::Small.resolve(ui.style());
     let galley = painter.layout_no_wrap(text.to_owned(), font, readable_on(color));
     let size = galley.size() + vec2(6.0, 2.0);
     let image = transform.image_rect();
     let above = rect.top() - size.y >= image.top().max(painter.clip_rect().top());
-    let top = if above { rect.top() - size.y } else { rect.top() };
+    let top = match (below, above) {
+        (true, _) => rect.bottom().min(image.bottom().min(painter.clip_rect().bottom()) - size.y),
+        (false, true) => rect.top() - size.y,
+        (false, false) => rect.top(),
+    };
     let left = rect.left().min(image.right().min(painter.clip_rect().right()) - size.x);
     let background = Rect::from_min_size(pos2(left, top), size);
     painter.rect_filled(background, 2.0, color);

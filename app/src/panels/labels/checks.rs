@@ -64,11 +64,14 @@ fn import_plan(ui: &mut Ui, cx: &mut PanelContext<'_>, import: &ImportView) {
         ui.add(Label::new(theme::weak(ui, text)).wrap());
     }
     if !import.skipped.is_empty() {
-        let text = format!(
-            "{} there already by name and stay as they are: {}.",
-            format::count(import.skipped.len(), "image"),
-            some(&import.skipped)
-        );
+        let text = match import.skipped.as_slice() {
+            [one] => format!("{one} is there already by name and stays as it is."),
+            more => format!(
+                "{} images are there already by name and stay as they are: {}.",
+                more.len(),
+                some(more)
+            ),
+        };
         ui.add(Label::new(theme::weak(ui, text)).wrap());
     }
     for problem in &import.problems {

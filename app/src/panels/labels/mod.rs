@@ -32,6 +32,8 @@ pub struct LabelsPanels {
     pub filter: list::Filter,
     /// The image that the canvas shows.
     of: String,
+    /// Whether an import waited in the last frame.
+    pub import_seen: bool,
     /// The image that list and gallery were scrolled to.
     scrolled: [String; 2],
 }

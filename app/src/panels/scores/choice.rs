@@ -1,26 +1,31 @@
 //! Which detectors are judged on which data set.
 
-use egui::{Label, RichText, ScrollArea, Ui};
+use egui::{Label, ScrollArea, Ui};
 use plumbline_engine::{ScoresCommand, SetPart};
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format;
 use plumbline_widgets::progress::progress_bar;
-use plumbline_widgets::theme::{self, Role, space};
+use plumbline_widgets::theme::{self, space};
 
 use super::{PanelContext, action_button, evaluating};
 use crate::window::{Action, ScoresAction, primary_button};
 
+/// Room for the button, or for how far the evaluation is.
+const START_HEIGHT: f32 = 44.0;
+
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+    // The button stays in sight however many detectors there are.
+    let room = (ui.available_height() - START_HEIGHT).max(60.0);
+    ScrollArea::vertical().auto_shrink(false).max_height(room).show(ui, |ui| {
         ui.label(theme::strong(ui, "Detectors"));
         models(ui, cx);
         action_button(ui, cx, ScoresAction::AddModels, "Add a detector…");
         ui.add_space(space::S);
         ui.label(theme::strong(ui, "Data set"));
         set(ui, cx);
-        ui.add_space(space::S);
-        start(ui, cx);
     });
+    ui.add_space(space::XS);
+    start(ui, cx);
 }
 
 fn models(ui: &mut Ui, cx: &mut PanelContext<'_>) {
@@ -80,19 +85,18 @@ fn start(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     if let Some((fraction, doing)) = evaluating(cx.view) {
         let width = ui.available_width();
         progress_bar(ui, "Evaluation", fraction, egui::vec2(width, 6.0));
-        ui.label(theme::weak(ui, format!("{doing} ({})", format::percent(fraction))));
-        let cancel = Action::CancelJob;
-        if ui.button("Cancel").clicked() {
-            cx.outbox.act(cancel);
-        }
+        ui.horizontal(|ui| {
+            if ui.button("Cancel").clicked() {
+                cx.outbox.act(Action::CancelJob);
+            }
+            let text = format!("{} · {doing}", format::percent(fraction));
+            ui.add(Label::new(theme::weak(ui, text)).truncate());
+        });
         return;
     }
     let why = ScoresAction::Evaluate.refusal(cx.view);
     let button = ui.add_enabled(why.is_none(), primary_button(ui, "Evaluate"));
     if button.on_disabled_hover_text(why.clone().unwrap_or_default()).clicked() {
         cx.outbox.act(Action::Scores(ScoresAction::Evaluate));
-    }
-    if let Some(why) = &cx.view.scores.failed {
-        ui.add(Label::new(RichText::new(why).color(Role::Warning.color(theme::tokens(ui)))).wrap());
     }
 }

@@ -63,7 +63,8 @@ fn with_interval(ui: &mut Ui, value: Option<f64>, ends: Option<[f64; 2]>) {
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.label(figure(value));
         let text = interval(ends);
-        ui.label(theme::small(ui, text)).on_hover_text("95 % interval over scenes drawn again");
+        let small = Label::new(theme::small(ui, text)).extend();
+        ui.add(small).on_hover_text("95 % interval over scenes drawn again");
     });
 }
 

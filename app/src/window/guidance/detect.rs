@@ -11,10 +11,10 @@ use crate::window::labels_actions::{LabelsAction, ScoresAction};
 pub(super) fn images(view: &View) -> Guidance {
     let labels = &view.labels;
     if let Some(why) = &labels.unsaved {
-        return say(why.clone()).warn().then("Save again", Action::Labels(LabelsAction::SaveAgain));
+        return trouble(why).then("Save again", Action::Labels(LabelsAction::SaveAgain));
     }
     if let Some(why) = &labels.failed {
-        return say(why.clone()).warn().then("Open a data set…", Action::Labels(LabelsAction::Open));
+        return trouble(why).then("Open a data set…", Action::Labels(LabelsAction::Open));
     }
     if labels.import.is_some() {
         return say("Check what the import would do; nothing is written before you accept it.")
@@ -30,7 +30,7 @@ pub(super) fn images(view: &View) -> Guidance {
     }
     let Some(shown) = &labels.shown else { return say("Choose an image in the list.") };
     if let Some(why) = &shown.locked {
-        return say(why.clone()).warn();
+        return trouble(why);
     }
     if !shown.proposals.is_empty() {
         let boxes = boxes(shown.proposals.len());
@@ -54,6 +54,11 @@ pub(super) fn images(view: &View) -> Guidance {
     }
 }
 
+/// A sentence as it was written: it may begin with the name of a file.
+fn trouble(why: &str) -> Guidance {
+    Guidance { sentence: why.to_owned(), warning: true, next: None }
+}
+
 /// "1 box", "3 boxes".
 fn boxes(n: usize) -> String {
     if n == 1 { "1 box".to_owned() } else { format!("{n} boxes") }
@@ -65,7 +70,7 @@ pub(super) fn scores(view: &View) -> Guidance {
         return say("The detectors are being judged; the table follows.");
     }
     if let Some(why) = &scores.failed {
-        return say(why.clone()).warn().then("Evaluate", Action::Scores(ScoresAction::Evaluate));
+        return trouble(why).then("Evaluate", Action::Scores(ScoresAction::Evaluate));
     }
     if scores.set.is_none() {
         return say("Choose a labeled data set that the detectors were not trained on.")

@@ -353,7 +353,7 @@ fn what_cannot_be_written_is_kept_said_and_written_later() {
     let view = desk.send(LabelsCommand::Close);
     assert!(view.labels.set.is_some(), "a data set with unsaved boxes stays open");
     let view = desk.send(LabelsCommand::Open { path: desk.path("other") });
-    assert!(view.labels.set.is_some_and(|set| set.folder == desk.path("toys")));
+    assert!(view.labels.set.as_ref().is_some_and(|set| set.folder == desk.path("toys")));
     assert!(desk.state.last_write().is_some(), "written at the latest when the program ends");
     std::fs::remove_file(&labels).expect("removed");
     let view = desk.send(LabelsCommand::SaveAgain);
