@@ -34,7 +34,7 @@ pub struct LabeledBox {
 
 /// Gap between a box and its words, points.
 const GAP: f32 = 2.0;
-const PADDING: Vec2 = vec2(4.0, 1.0);
+const PADDING: Vec2 = vec2(6.0, 1.0);
 /// Words go away from their box by up to this many lines to find room.
 const LINES_AWAY: usize = 6;
 /// How much worse words on another box are than words one line farther away.

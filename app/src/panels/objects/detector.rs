@@ -4,7 +4,6 @@ use egui::{RichText, Ui};
 use plumbline_engine::view::{DetectView, DetectorFacts, DetectorState};
 use plumbline_engine::{DetectCommand, DetectorChoice, Provider};
 use plumbline_model::{ClassIndex, ClassNames};
-use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::drawing::DOUBT;
@@ -57,20 +56,27 @@ pub fn state(ui: &mut Ui, detect: &DetectView, outbox: &mut Outbox) {
     }
 }
 
-/// Buttons and facts of the detector.
+/// Buttons that change the detector.
 pub fn choice(ui: &mut Ui, detect: &DetectView, outbox: &mut Outbox) {
     ui.horizontal_wrapped(|ui| {
         for action in [DetectAction::ChooseFile, DetectAction::UseShipped, DetectAction::Off] {
-            let of = match action {
+            let in_use = match action {
                 DetectAction::UseShipped => detect.settings.detector == DetectorChoice::Shipped,
                 DetectAction::Off => detect.settings.detector == DetectorChoice::Off,
                 _ => false,
             };
-            if !of && ui.button(action.button()).on_hover_text(action.label()).clicked() {
+            if !in_use && ui.button(action.button()).on_hover_text(action.label()).clicked() {
                 outbox.act(Action::Detect(action));
             }
         }
     });
+    if detect.facts().is_none() {
+        provider(ui, detect, outbox);
+    }
+}
+
+/// What computes the network.
+fn provider(ui: &mut Ui, detect: &DetectView, outbox: &mut Outbox) {
     let before = detect.settings.provider;
     let mut provider = before;
     ui.horizontal(|ui| {
@@ -88,17 +94,17 @@ pub fn choice(ui: &mut Ui, detect: &DetectView, outbox: &mut Outbox) {
     if provider != before {
         outbox.send(DetectCommand::Provider(provider));
     }
-    if let Some(facts) = detect.facts() {
-        egui::CollapsingHeader::new("About this detector").show(ui, |ui| about(ui, facts));
-    }
 }
 
-fn about(ui: &mut Ui, facts: &DetectorFacts) {
+/// What is known of the detector in use.
+pub fn about(ui: &mut Ui, detect: &DetectView, facts: &DetectorFacts, outbox: &mut Outbox) {
+    provider(ui, detect, outbox);
     if let Some(file) = &facts.file {
         ui.label(theme::small(ui, file.display().to_string()));
     }
-    let rows: Vec<KeyValue> = facts.rows.iter().map(|(name, value)| KeyValue::text(name, value)).collect();
-    key_value_grid(ui, "detector", &rows);
+    for (name, value) in &facts.rows {
+        ui.label(theme::small(ui, format!("{name}: {value}")));
+    }
     ui.label(theme::small(ui, format!("Names of the classes: {}", facts.names_from)));
 }
 

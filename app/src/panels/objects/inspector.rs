@@ -4,7 +4,7 @@ use egui::Ui;
 use plumbline_engine::View;
 use plumbline_engine::view::{DetectView, DetectionTiming};
 use plumbline_widgets::format;
-use plumbline_widgets::theme::{self, group_heading};
+use plumbline_widgets::theme::{self, group_heading, space};
 
 use super::{ObjectsPanels, classes, details, detector, list, objects};
 use crate::window::{Action, DetectAction, Outbox};
@@ -23,13 +23,16 @@ pub fn show_inspector(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels, outb
         return;
     }
     detector::state(ui, detect, outbox);
-    found(ui, view, panels);
     detector::choice(ui, detect, outbox);
     let Some(facts) = detect.facts() else { return };
+    ui.add_space(space::XS);
+    found(ui, view, panels);
     group_heading(ui, "Shown objects");
     classes::filter(ui, detect, facts, outbox);
     classes::thresholds(ui, detect, panels, outbox);
     classes::rates(ui, detect, outbox);
+    group_heading(ui, "Detector");
+    detector::about(ui, detect, facts, outbox);
 }
 
 fn found(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
@@ -58,17 +61,23 @@ fn found(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
     timing(ui, detect, &found.timing);
 }
 
-/// "Before 2.1 · network 38.0 · after 0.4 · places 3.1 ms, both eyes; 9.8 Hz".
+/// How long a pair takes and how many there are, and where the time goes.
 fn timing(ui: &mut Ui, detect: &DetectView, timing: &DetectionTiming) {
-    let ms = |duration: std::time::Duration| format!("{:.1}", 1e3 * duration.as_secs_f64());
+    let ms = |duration: std::time::Duration| format::ms(duration.as_secs_f64());
     let rate =
-        detect.statistics.per_second.map_or_else(String::new, |rate| format!("; {}", format::hertz(rate)));
-    let line = format!(
-        "before {} · network {} · after {} · places {} ms{rate}",
-        ms(timing.before),
-        ms(timing.network),
-        ms(timing.after),
-        ms(timing.places),
+        detect.statistics.per_second.map_or_else(String::new, |rate| format!(", {}", format::hertz(rate)));
+    ui.add_space(space::S);
+    ui.label(theme::small(ui, format!("{} a pair{rate}", ms(timing.total()))))
+        .on_hover_text("Both eyes, from the images to the places; and pairs per second");
+    let number = |duration| ms(duration).trim_end_matches(" ms").to_owned();
+    let parts = format!(
+        "before {}, network {}, after {}, places {}",
+        number(timing.before),
+        number(timing.network),
+        number(timing.after),
+        number(timing.places),
     );
-    ui.label(theme::small(ui, line)).on_hover_text("Time for both eyes together, and pairs per second");
+    ui.label(theme::small(ui, parts)).on_hover_text(
+        "Scaling and padding; the network; reading its answer; pairing and places. Both eyes together, ms",
+    );
 }

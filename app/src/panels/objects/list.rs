@@ -15,10 +15,12 @@ const SWATCH: f32 = 10.0;
 
 /// Draws the list; pointing at a line highlights its boxes, a click chooses.
 pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
-    ui.spacing_mut().item_spacing.y = 2.0;
-    for object in objects(view) {
-        row(ui, object, panels);
-    }
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        for object in objects(view) {
+            row(ui, object, panels);
+        }
+    });
 }
 
 fn row(ui: &mut Ui, object: &ObjectView, panels: &mut ObjectsPanels) {
