@@ -17,13 +17,13 @@ use super::patch::{Grid, Patch};
 use super::votes::Votes;
 
 /// Cells that a box's longer side is cut into, if they do not get finer than [`FINEST_PX`].
-const CELLS: f64 = 26.0;
+const CELLS: f64 = 22.0;
 /// Finest cell, raw px: nothing finer is in the image.
-const FINEST_PX: f64 = 0.6;
+const FINEST_PX: f64 = 0.7;
 /// Half side of the window that is compared, cells.
 const HALF_WINDOW: usize = 2;
 /// Cells around the box that are looked at too.
-const RING: usize = HALF_WINDOW + 3;
+const RING: usize = HALF_WINDOW + 1;
 /// Most disparities that are tried.
 const MOST_DISPARITIES: usize = 144;
 /// Most cells along a side of the left patch; a box never comes near it, whatever the lens does.
@@ -110,15 +110,15 @@ impl Frame {
 
 impl Matcher {
     /// Matches the pixels of the left box; `expected_rad` is the disparity of the surface that the
-    /// box middles suggest, `reach_rad` how far from it the truth may be. `None` if too few pixels
-    /// can be told apart.
+    /// box middles suggest, `reach_rad` how far from it the truth may be, `spread_rad` by how much an
+    /// end of the object may differ from its middle. `None` if too few pixels can be told apart.
     pub fn find(
         &mut self,
         geometry: &EpipolarGeometry,
         images: [&RgbImage; 2],
         left: &EpipolarBox,
         expected_rad: f64,
-        reach_rad: f64,
+        [reach_rad, spread_rad]: [f64; 2],
     ) -> Option<Matching> {
         self.frame = None;
         let frame = frame(geometry, left, expected_rad + reach_rad)?;
@@ -131,7 +131,7 @@ impl Matcher {
         self.compare(&frame, &there);
         self.choose(&frame);
         self.frame = Some(frame);
-        self.agree(&frame, expected_rad, reach_rad)
+        self.agree(&frame, expected_rad, [reach_rad, spread_rad])
     }
 
     /// Gives the right patch the left one's brightness, by the means within the boxes.
@@ -185,10 +185,11 @@ impl Matcher {
                 };
                 let ((l0, r0), (l1, r1), (l2, r2)) = (channel(0), channel(1), channel(2));
                 let seen = &self.right.seen[other..other + columns];
-                for x in 0..columns {
-                    let sum = l0[x].abs_diff(r0[x]).saturating_add(l1[x].abs_diff(r1[x]));
-                    let sum = sum.saturating_add(l2[x].abs_diff(r2[x])).min(DIFFERENT);
-                    to[x] = sum.max(DIFFERENT & !seen[x]);
+                let colors = l0.iter().zip(r0).zip(l1.iter().zip(r1)).zip(l2.iter().zip(r2));
+                for (((((a0, b0), (a1, b1)), (a2, b2)), seen), to) in colors.zip(seen).zip(to) {
+                    let sum = a0.abs_diff(*b0).saturating_add(a1.abs_diff(*b1));
+                    let sum = sum.saturating_add(a2.abs_diff(*b2)).min(DIFFERENT);
+                    *to = sum.max(DIFFERENT & !seen);
                 }
             }
             self.sum_windows(&frame.grid, k);
@@ -202,13 +203,17 @@ impl Matcher {
         let Grid { columns, rows, .. } = *grid;
         let costs = &mut self.costs[k * columns * rows..][..columns * rows];
         let inner = columns - 2 * HALF_WINDOW;
+        let row_of = |y: usize| &self.differences[y * columns..][..columns];
+        let sums = &mut self.column_sums[..columns];
+        sums.fill(0);
+        for y in 0..SIDE - 1 {
+            for (sum, d) in sums.iter_mut().zip(row_of(y)) {
+                *sum = sum.wrapping_add(u16::from(*d));
+            }
+        }
         for row in HALF_WINDOW..rows - HALF_WINDOW {
-            let sums = &mut self.column_sums[..columns];
-            sums.fill(0);
-            for y in row - HALF_WINDOW..=row + HALF_WINDOW {
-                for (sum, d) in sums.iter_mut().zip(&self.differences[y * columns..][..columns]) {
-                    *sum = sum.wrapping_add(u16::from(*d));
-                }
+            for (sum, d) in sums.iter_mut().zip(row_of(row + HALF_WINDOW)) {
+                *sum = sum.wrapping_add(u16::from(*d));
             }
             let to = &mut costs[row * columns + HALF_WINDOW..][..inner];
             to.copy_from_slice(&sums[..inner]);
@@ -216,6 +221,9 @@ impl Matcher {
                 for (cost, sum) in to.iter_mut().zip(&sums[i..]) {
                     *cost = cost.wrapping_add(*sum);
                 }
+            }
+            for (sum, d) in sums.iter_mut().zip(row_of(row - HALF_WINDOW)) {
+                *sum = sum.wrapping_sub(u16::from(*d));
             }
         }
     }
@@ -266,7 +274,12 @@ impl Matcher {
     }
 
     /// The disparity that most of the object's own pixels agree on.
-    fn agree(&mut self, frame: &Frame, expected_rad: f64, reach_rad: f64) -> Option<Matching> {
+    fn agree(
+        &mut self,
+        frame: &Frame,
+        expected_rad: f64,
+        [reach_rad, spread_rad]: [f64; 2],
+    ) -> Option<Matching> {
         let (expected, reach) =
             (frame.index(expected_rad) as f32, (reach_rad / frame.grid.along_step_rad) as f32);
         self.sorted.clear();
@@ -283,7 +296,11 @@ impl Matcher {
         // The window of disparities with most votes, as wide as two pixels.
         let width = (2.0 / frame.cell_px) as f32;
         let mode = densest(&self.sorted, width)?;
-        let voters = &self.sorted[mode];
+        let spread = (spread_rad / frame.grid.along_step_rad) as f32;
+        let (low, high) = (self.sorted[mode.start] - spread, self.sorted[mode.end - 1] + spread);
+        let first = self.sorted.partition_point(|vote| *vote < low);
+        let last = self.sorted.partition_point(|vote| *vote <= high);
+        let voters = &self.sorted[first..last];
         let enough = FEWEST_VOTERS.max((FEWEST_SHARE * own_cells as f64) as usize);
         if voters.len() < enough {
             return None;
@@ -293,7 +310,6 @@ impl Matcher {
         let variance = voters.iter().map(|v| (f64::from(*v) - mean).powi(2)).sum::<f64>() / n;
         // Windows overlap: only every so many votes are independent.
         let independent = (n / ((2 * HALF_WINDOW + 1) as f64).powi(2)).max(1.0);
-        let (low, high) = (voters[0], voters[voters.len() - 1]);
         let mut votes = Votes::none(frame.area);
         for (vote, raw_px) in self.votes.iter().zip(&self.left.raw_px) {
             if own(&frame.area, *raw_px) && (low..=high).contains(vote) {

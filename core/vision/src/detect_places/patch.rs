@@ -46,7 +46,7 @@ pub(super) struct Patch {
 
 /// Cells between two nodes that are projected exactly; between them the raw pixel is interpolated,
 /// which is off by some hundredths of a pixel.
-const NODE_STEP: usize = 4;
+const NODE_STEP: usize = 6;
 
 impl Patch {
     /// Takes the colors of the cells out of a raw image.
@@ -74,9 +74,14 @@ impl Patch {
             let (Some(top), Some(below)) = (data.get(top..top + 6), data.get(below..below + 6)) else {
                 continue;
             };
+            // Far below the largest number, so nothing wraps.
             let mix = |c: usize| {
-                let one = |row: &[u8]| u32::from(row[c]) * (64 - fx) + u32::from(row[c + 3]) * fx;
-                ((one(top) * (64 - fy) + one(below) * fy + 2048) >> 12) as u8
+                let one = |row: &[u8]| {
+                    (u32::from(row[c]).wrapping_mul(64 - fx))
+                        .wrapping_add(u32::from(row[c + 3]).wrapping_mul(fx))
+                };
+                let sum = one(top).wrapping_mul(64 - fy).wrapping_add(one(below).wrapping_mul(fy));
+                (sum.wrapping_add(2048) >> 12) as u8
             };
             (red[i], green[i], blue[i], self.seen[i]) = (mix(0), mix(1), mix(2), u8::MAX);
         }
@@ -97,17 +102,17 @@ impl Patch {
         self.raw_px.clear();
         for row in 0..grid.rows {
             let fy = (row % NODE_STEP) as f32 / NODE_STEP as f32;
-            let top = &self.nodes_px[row / NODE_STEP * node_columns..];
-            let below = &top[node_columns..];
-            for column in 0..grid.columns {
-                let fx = (column % NODE_STEP) as f32 / NODE_STEP as f32;
-                let k = column / NODE_STEP;
-                let mix = |c: usize| {
-                    let one = |nodes: &[[f32; 2]]| nodes[k][c] + fx * (nodes[k + 1][c] - nodes[k][c]);
-                    let (above, under) = (one(top), one(below));
-                    above + fy * (under - above)
-                };
-                self.raw_px.push([mix(0), mix(1)]);
+            let nodes = &self.nodes_px[row / NODE_STEP * node_columns..];
+            let between =
+                |a: [f32; 2], b: [f32; 2], f: f32| [a[0] + f * (b[0] - a[0]), a[1] + f * (b[1] - a[1])];
+            let node = |k: usize| between(nodes[k], nodes[k + node_columns], fy);
+            let mut left = node(0);
+            for k in 0..node_columns - 1 {
+                let right = node(k + 1);
+                for i in 0..NODE_STEP.min(grid.columns - k * NODE_STEP) {
+                    self.raw_px.push(between(left, right, i as f32 / NODE_STEP as f32));
+                }
+                left = right;
             }
         }
     }

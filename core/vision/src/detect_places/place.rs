@@ -26,6 +26,11 @@ pub(super) struct Rig {
 /// middle on average, its outline 0 (rendered balls come out at 0.4); a lying banana or an open hand
 /// is flatter or deeper than wide.
 const HALF_DEPTH: [f64; 2] = [0.45, 0.3];
+/// The same for what a box is longer than broad, as a share of half of that.
+const LONG_SIGMA: f64 = 0.2;
+/// The middle of a box is not quite that of the body in it: share of the box's side, as a standard
+/// deviation.
+const OFF_MIDDLE: f64 = 0.04;
 /// How well surfaces of toys can be matched at best, raw px: gloss that moves with the eye, outlines
 /// that are different places for each eye, the mosaic of the sensor.
 const MATCH_SIGMA_PX: f64 = 0.25;
@@ -59,7 +64,8 @@ impl Rig {
         let reach_rad = REACH_SIGMAS * view.disparity_sigma_rad.hypot(half_depth.sigma_rad)
             + LEAST_REACH_PX * view.px_rad;
         let surface_rad = box_rad + half_depth.rad;
-        let matching = matcher.find(&self.geometry, images, left, surface_rad, reach_rad);
+        let matching =
+            matcher.find(&self.geometry, images, left, surface_rad, [reach_rad, half_depth.spread_rad]);
         let fused = Fused::new(&view, box_rad, &half_depth, matching.as_ref());
 
         let middle = self.estimate(&view, fused.middle_rad, fused.sigma_rad)?;
@@ -125,7 +131,7 @@ impl Rig {
         let range_m = |disparity_rad: f64| self.geometry.point(&view.ray, disparity_rad).map(|p| p.range_m());
         let surface_m = range_m(matching.disparity_rad)?;
         // A body has extent of its own; what is further than that from its surface is something else.
-        let apart_m = options.leak_depth_m.max(2.0 * half_depth.m);
+        let apart_m = options.leak_depth_m.max(half_depth.longer_m);
         let at = |range_m: f64| self.geometry.disparity_rad(&view.ray, range_m * view.ray.along_rad.cos());
         let nearest_m = (surface_m - apart_m).max(0.3 * surface_m);
         let behind = matcher.behind(at(nearest_m), at(surface_m + apart_m))?;
@@ -166,8 +172,9 @@ impl View {
         Self {
             ray,
             px_rad,
-            plane_sigma_rad: weight.sqrt() * l[1] * px_rad / ray.along_rad.cos(),
-            along_sigma_rad: l[0] * px_rad,
+            plane_sigma_rad: (weight.sqrt() * l[1] * px_rad).hypot(OFF_MIDDLE * left.height_rad())
+                / ray.along_rad.cos(),
+            along_sigma_rad: (l[0] * px_rad).hypot(OFF_MIDDLE * left.width_rad()),
             disparity_sigma_rad: l[0].hypot(r[0]) * px_rad,
         }
     }
@@ -180,6 +187,10 @@ struct HalfDepth {
     /// The same as disparity at the object's range, rad.
     rad: f64,
     sigma_rad: f64,
+    /// Longer side of the box, m.
+    longer_m: f64,
+    /// How much nearer or farther than its middle an end of something long may be, as disparity, rad.
+    spread_rad: f64,
 }
 
 impl HalfDepth {
@@ -190,16 +201,25 @@ impl HalfDepth {
         boxes: [&EpipolarBox; 2],
         disparity_rad: f64,
     ) -> Self {
-        let smaller_rad = boxes
-            .iter()
-            .flat_map(|shape| [shape.width_rad(), shape.height_rad()])
-            .fold(f64::INFINITY, f64::min);
-        let [m, sigma_m] = HALF_DEPTH.map(|share| share * 0.5 * smaller_rad * range_m);
+        let sides = || boxes.iter().flat_map(|shape| [shape.width_rad(), shape.height_rad()]);
+        let shorter_m = sides().fold(f64::INFINITY, f64::min) * range_m;
+        let longer_m = sides().fold(0.0, f64::max) * range_m;
+        let m = HALF_DEPTH[0] * 0.5 * shorter_m;
+        // Something long may lie along the ray as well as across it.
+        let sigma_m = HALF_DEPTH[1] * 0.5 * shorter_m + LONG_SIGMA * 0.5 * (longer_m - shorter_m);
         // Not nearer than half way to the eyes, whatever the box claims.
         let nearer_m = (range_m - m).max(0.5 * range_m);
         let nearer_rad = geometry.disparity_rad(&view.ray, nearer_m * view.ray.along_rad.cos());
         let rad = nearer_rad - disparity_rad;
-        Self { m, sigma_m, rad, sigma_rad: rad * HALF_DEPTH[1] / HALF_DEPTH[0] }
+        let rad_per_m = rad / (range_m - nearer_m);
+        Self {
+            m,
+            sigma_m,
+            rad,
+            sigma_rad: rad_per_m * sigma_m,
+            longer_m,
+            spread_rad: rad_per_m * 0.5 * (longer_m - shorter_m),
+        }
     }
 }
 
