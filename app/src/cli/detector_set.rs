@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use plumbline_engine::offline::{self, DetectorSetArgs};
+use plumbline_engine::offline::{self, DetectorSetArgs, SetWorld};
 
 use super::output::Output;
 
@@ -28,12 +28,17 @@ pub struct DetectorSet {
     /// Draws the set on which detectors are judged, never trained: always the same 300 pairs.
     #[arg(long, conflicts_with_all = ["pairs", "seed", "first", "val_share"])]
     held_out: bool,
+    /// Draws the running twin as its window shows it, with only toys, arms and head at random; else
+    /// everything is randomised.
+    #[arg(long)]
+    as_twin: bool,
 }
 
 /// Draws and writes.
 pub fn run(arguments: DetectorSet, output: &Output) -> anyhow::Result<()> {
+    let world = if arguments.as_twin { SetWorld::Twin } else { SetWorld::Randomised };
     let args = if arguments.held_out {
-        DetectorSetArgs::held_out(arguments.out)
+        DetectorSetArgs::held_out(arguments.out, world)
     } else {
         DetectorSetArgs {
             out: arguments.out,
@@ -41,6 +46,7 @@ pub fn run(arguments: DetectorSet, output: &Output) -> anyhow::Result<()> {
             seed: arguments.seed,
             first: arguments.first as usize,
             val_share: arguments.val_share,
+            world,
         }
     };
     let report = offline::detector_set(&args, output)?;

@@ -35,6 +35,7 @@ pub use detect_eval::{
     ClassReport, DetectEvalArgs, DetectEvalReport, FailedModel, ModelReport, detect_eval,
 };
 pub use detector_set::{ClassBoxes, DetectorSetArgs, DetectorSetReport, detector_set};
+pub use plumbline_twin::training_set::SetWorld;
 pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};
 pub use error::OfflineError;
 pub use gap::{GapArgs, GapReport, gap};

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use plumbline_model::{ClassNames, JobContext};
-use plumbline_twin::training_set::{self, SetError, SetOptions};
+use plumbline_twin::training_set::{self, SetError, SetOptions, SetWorld};
 use serde::Serialize;
 
 /// What to draw.
@@ -19,13 +19,19 @@ pub struct DetectorSetArgs {
     pub first: usize,
     /// Share of the pairs that is kept for validation, 0–1.
     pub val_share: f64,
+    /// Which world is drawn.
+    pub world: SetWorld,
 }
 
 impl DetectorSetArgs {
     /// The set on which detectors are judged and never trained.
-    pub fn held_out(out: PathBuf) -> Self {
-        let SetOptions { pairs, seed, first, val_share } = SetOptions::held_out();
-        Self { out, pairs, seed, first, val_share }
+    pub fn held_out(out: PathBuf, world: SetWorld) -> Self {
+        let options = match world {
+            SetWorld::Randomised => SetOptions::held_out(),
+            SetWorld::Twin => SetOptions::held_out_twin(),
+        };
+        let SetOptions { pairs, seed, first, val_share, world } = options;
+        Self { out, pairs, seed, first, val_share, world }
     }
 }
 
@@ -58,8 +64,13 @@ pub struct ClassBoxes {
 /// # Errors
 /// When nothing draws, a file cannot be written, or on request.
 pub fn detector_set(args: &DetectorSetArgs, context: &dyn JobContext) -> Result<DetectorSetReport, SetError> {
-    let options =
-        SetOptions { pairs: args.pairs, seed: args.seed, first: args.first, val_share: args.val_share };
+    let options = SetOptions {
+        pairs: args.pairs,
+        seed: args.seed,
+        first: args.first,
+        val_share: args.val_share,
+        world: args.world,
+    };
     let summary = training_set::generate(&args.out, &options, context)?;
     let boxes = ClassNames::published()
         .iter()

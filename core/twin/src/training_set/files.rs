@@ -8,7 +8,7 @@ use image::codecs::jpeg::JpegEncoder;
 use plumbline_model::{ClassIndex, ClassNames};
 
 use super::labels::{Label, line};
-use super::{SetError, SetOptions, SetSummary};
+use super::{SetError, SetOptions, SetSummary, SetWorld};
 
 /// Makes the folders and writes what the set is.
 pub(super) fn prepare(out: &Path, options: &SetOptions) -> Result<(), SetError> {
@@ -58,11 +58,15 @@ pub(super) fn recipe(out: &Path, options: &SetOptions, summary: &SetSummary) -> 
         .map(|((_, name), count)| format!("    \"{name}\": {count}"))
         .collect();
     let text = format!(
-        "{{\n  \"format\": 1,\n  \"made_by\": \"plumbline {}\",\n  \"generator\": {},\n  \"seed\": {},\n  \"first\": {},\n  \"pairs\": {},\n  \"val_share\": {},\n  \"images_without_label\": {},\n  \"boxes\": {{\n{}\n  }}\n}}\n",
+        "{{\n  \"format\": 1,\n  \"made_by\": \"plumbline {}\",\n  \"generator\": {},\n  \"seed\": {},\n  \"first\": {},\n  \"world\": \"{}\",\n  \"pairs\": {},\n  \"val_share\": {},\n  \"images_without_label\": {},\n  \"boxes\": {{\n{}\n  }}\n}}\n",
         env!("CARGO_PKG_VERSION"),
         super::GENERATOR,
         options.seed,
         options.first,
+        match options.world {
+            SetWorld::Randomised => "randomised",
+            SetWorld::Twin => "twin",
+        },
         summary.pairs,
         options.val_share,
         summary.empty_images,

@@ -7,6 +7,7 @@
 //! without a label: what shows too little of itself is taken out of the scene.
 
 mod arms;
+mod as_twin;
 mod clutter;
 mod dice;
 mod files;
@@ -20,15 +21,19 @@ mod tests;
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use image::RgbImage;
 use plumbline_model::robot::{Rig, RigError};
 use plumbline_model::{Cancelled, JobContext};
 
 use self::arms::Bank;
-use self::labels::{Appears, appears};
+use self::as_twin::Laboratory;
+use self::labels::{Appears, Thing, appears};
 use self::scene::Scene;
-use crate::eyes::{EyeOptions, EyeRenderer, ObjectImage, RenderError};
+use crate::error::TwinError;
+use crate::eyes::{EyeOptions, EyeRenderer, ObjectImage, RenderError, Sensor};
+use crate::scene::Snapshot;
 
 pub use labels::Label;
 
@@ -38,6 +43,8 @@ pub const GENERATOR: u32 = 1;
 pub const MOST_PAIRS: usize = 100_000;
 /// A scene is looked at at most this often, each time with less in it.
 const MOST_TRIES: usize = 6;
+/// Quality of the JPEG files of the twin, whose eyes do not compress.
+const TWIN_QUALITY: u8 = 95;
 
 /// What to draw.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,11 +57,23 @@ pub struct SetOptions {
     pub first: usize,
     /// Share of the pairs that is kept for validation, 0–1; both eyes of a pair stay together.
     pub val_share: f64,
+    /// Which world is drawn.
+    pub world: SetWorld,
+}
+
+/// Which world a set shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SetWorld {
+    /// Everything randomised, to learn from.
+    #[default]
+    Randomised,
+    /// The running twin as its window shows it; only toys, arms and head differ.
+    Twin,
 }
 
 impl Default for SetOptions {
     fn default() -> Self {
-        Self { pairs: 100, seed: 1, first: 0, val_share: 0.1 }
+        Self { pairs: 100, seed: 1, first: 0, val_share: 0.1, world: SetWorld::Randomised }
     }
 }
 
@@ -62,7 +81,12 @@ impl SetOptions {
     /// The set that detectors of this program are judged on and never trained on: 300 pairs, all for
     /// validation.
     pub fn held_out() -> Self {
-        Self { pairs: 300, seed: 20_261_121, first: 0, val_share: 1.0 }
+        Self { pairs: 300, seed: 20_261_121, val_share: 1.0, ..Self::default() }
+    }
+
+    /// The same for the twin as its window shows it: 150 pairs.
+    pub fn held_out_twin() -> Self {
+        Self { pairs: 150, world: SetWorld::Twin, ..Self::held_out() }
     }
 
     /// Whether a pair is for validation. The choice is spread evenly.
@@ -107,6 +131,9 @@ pub enum SetError {
     /// The renderer failed.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// The twin's world cannot be made.
+    #[error(transparent)]
+    Twin(#[from] TwinError),
     /// An image could not be encoded.
     #[error("an image could not be encoded as JPEG: {0}. Try again; if it stays so, report it")]
     Encode(String),
@@ -136,6 +163,8 @@ pub struct SetPainter {
     rig: Rig,
     bank: Bank,
     renderer: EyeRenderer,
+    /// Made when the first pair of it is asked for.
+    laboratory: Option<Laboratory>,
 }
 
 impl SetPainter {
@@ -146,7 +175,7 @@ impl SetPainter {
     pub fn new(options: EyeOptions) -> Result<Self, SetError> {
         let rig = Rig::built_in("nico")?;
         let bank = Bank::new(&rig);
-        Ok(Self { bank, rig, renderer: EyeRenderer::new(options)? })
+        Ok(Self { bank, rig, renderer: EyeRenderer::new(options)?, laboratory: None })
     }
 
     /// The pair of a number.
@@ -161,10 +190,36 @@ impl SetPainter {
             &scene.sensor,
             scene.noise_seed,
         )?;
-        let (labels, _) = label(&scene, &[drawn.left_objects, drawn.right_objects]);
+        let (labels, _) = label(&scene.things, &scene.snapshot, &[drawn.left_objects, drawn.right_objects]);
         let mut images = [drawn.pair.left, drawn.pair.right];
         images.iter_mut().enumerate().for_each(|(eye, image)| scene.finish.apply(image, eye));
         Ok(LabeledImages { images, labels, quality: scene.finish.quality })
+    }
+
+    /// The pair of a number, of the running twin.
+    ///
+    /// # Errors
+    /// When the twin cannot be made or the renderer fails.
+    pub fn twin_pair(&mut self, seed: u64, index: usize) -> Result<LabeledImages, SetError> {
+        let laboratory = match &mut self.laboratory {
+            Some(laboratory) => laboratory,
+            none => none.insert(Laboratory::new(Arc::new(self.rig.clone()))?),
+        };
+        let scene = laboratory.scene(&self.bank, seed, index as u64);
+        let sensor = Sensor::default();
+        let mut without: Vec<u16> = vec![];
+        for _ in 0..MOST_TRIES {
+            let objects = self.renderer.objects(&scene.scenery(&without), &scene.snapshot, &sensor)?;
+            let (_, barely) = label(&scene.things, &scene.snapshot, &objects);
+            if barely.is_empty() {
+                break;
+            }
+            without.extend(barely);
+        }
+        let scenery = scene.scenery(&without);
+        let drawn = self.renderer.render_labeled(&scenery, &scene.snapshot, &sensor, scene.noise_seed)?;
+        let (labels, _) = label(&scene.things, &scene.snapshot, &[drawn.left_objects, drawn.right_objects]);
+        Ok(LabeledImages { images: [drawn.pair.left, drawn.pair.right], labels, quality: TWIN_QUALITY })
     }
 
     /// A scene, and what must be left out of it so that nothing remains of which only a little is
@@ -174,7 +229,7 @@ impl SetPainter {
         let mut without: Vec<u16> = vec![];
         for _ in 0..MOST_TRIES {
             let objects = self.renderer.objects(&scene.scenery(&without), &scene.snapshot, &scene.sensor)?;
-            let (_, barely) = label(&scene, &objects);
+            let (_, barely) = label(&scene.things, &scene.snapshot, &objects);
             if barely.is_empty() {
                 break;
             }
@@ -185,15 +240,19 @@ impl SetPainter {
 }
 
 /// Labels of both eyes, and the objects of which too little is seen.
-fn label(scene: &Scene, [left, right]: &[ObjectImage; 2]) -> ([Vec<Label>; 2], Vec<u16>) {
-    let eyes = &scene.snapshot.eyes;
+fn label(
+    things: &[Thing],
+    snapshot: &Snapshot,
+    [left, right]: &[ObjectImage; 2],
+) -> ([Vec<Label>; 2], Vec<u16>) {
+    let eyes = &snapshot.eyes;
     let views = [
         (left, &eyes.left, &eyes.robot_from_left.isometry),
         (right, &eyes.right, &eyes.robot_from_right.isometry),
     ];
     let mut labels = [vec![], vec![]];
     let mut barely = vec![];
-    for thing in &scene.things {
+    for thing in things {
         for (own, (image, camera, robot_from_eye)) in labels.iter_mut().zip(views) {
             match appears(thing, image, camera, robot_from_eye) {
                 Appears::Unseen => {}
@@ -231,7 +290,10 @@ pub fn generate(out: &Path, options: &SetOptions, context: &dyn JobContext) -> R
         SetSummary { device: painter.renderer.adapter_name().to_owned(), ..SetSummary::default() };
     for index in options.first..options.first + options.pairs {
         context.checkpoint()?;
-        let pair = painter.pair(options.seed, index)?;
+        let pair = match options.world {
+            SetWorld::Randomised => painter.pair(options.seed, index)?,
+            SetWorld::Twin => painter.twin_pair(options.seed, index)?,
+        };
         let split = if options.is_val(index) { "val" } else { "train" };
         for (eye, (image, labels)) in ["left", "right"].iter().zip(pair.images.iter().zip(&pair.labels)) {
             files::one(out, split, &format!("{index:05}_{eye}"), image, pair.quality, labels)?;

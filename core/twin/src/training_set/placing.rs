@@ -43,14 +43,14 @@ pub(super) fn choose(dice: &mut Dice) -> Vec<Toy> {
 /// Finds a place for a toy; `None` where all that were tried are taken.
 pub(super) fn place(
     toy: Toy,
+    look: &Look,
     room: &Room,
     hands: &[Hand],
     arms: &[Item],
     others: &[Placed],
     dice: &mut Dice,
 ) -> Option<Placed> {
-    let look = some_look(dice);
-    let parts = look::parts(toy, &look);
+    let parts = look::parts(toy, look);
     let radius_m = toy.radius_m() * look.scale;
     for _ in 0..30 {
         let turn = lie(toy, dice);
@@ -76,7 +76,8 @@ pub(super) fn place(
     None
 }
 
-fn some_look(dice: &mut Dice) -> Look {
+/// What one piece of its kind looks like.
+pub(super) fn some_look(dice: &mut Dice) -> Look {
     let bright = if dice.chance(0.8) { dice.within_f32(0.75, 1.2) } else { dice.within_f32(0.45, 1.5) };
     let tint = [0; 3].map(|_| bright * (1.0 + dice.normal(0.045) as f32).clamp(0.8, 1.2));
     Look {

@@ -85,7 +85,8 @@ impl Scene {
         let all_arms: Vec<Item> = drawn.iter().flatten().cloned().collect();
         let mut toys: Vec<Placed> = vec![];
         for toy in placing::choose(dice) {
-            toys.extend(placing::place(toy, &room, &hands, &all_arms, &toys, dice));
+            let look = placing::some_look(dice);
+            toys.extend(placing::place(toy, &look, &room, &hands, &all_arms, &toys, dice));
         }
         let mut scene = Self {
             items,
@@ -171,7 +172,7 @@ impl Scene {
 }
 
 /// The head looks down at the table, mostly ahead.
-fn look_somewhere(rig: &Rig, dice: &mut Dice) -> Posture {
+pub(super) fn look_somewhere(rig: &Rig, dice: &mut Dice) -> Posture {
     let mut posture = rig.home();
     let pan = if dice.chance(0.6) { dice.normal(8_f64.to_radians()) } else { dice.within(-0.79, 0.79) };
     let tilt = if dice.chance(0.7) { dice.within(18.0, 42.0) } else { dice.within(8.0, 58.0) };
@@ -219,7 +220,7 @@ fn lens(published: &Camera, wide: f64, dice: &mut Dice) -> Camera {
 }
 
 /// Tries postures until the palm is in sight, mostly.
-fn choose_posture(
+pub(super) fn choose_posture(
     rig: &Rig,
     bank: &Bank,
     arm: usize,

@@ -111,7 +111,7 @@ fn the_same_seed_gives_the_same_pair_and_boxes_enclose_what_is_seen() {
         let scene = Scene::draw(&painter.rig, &painter.bank, 21, index);
         let objects =
             painter.renderer.objects(&scene.scenery(&[]), &scene.snapshot, &scene.sensor).expect("drawn");
-        let (labels, _) = label(&scene, &objects);
+        let (labels, _) = label(&scene.things, &scene.snapshot, &objects);
         for (image, own) in objects.iter().zip(&labels) {
             for label in own {
                 boxes += 1;
@@ -152,7 +152,7 @@ fn what_is_left_in_a_pair_is_labeled_or_not_seen() {
             .renderer
             .objects(&scene.scenery(&without), &scene.snapshot, &scene.sensor)
             .expect("drawn");
-        let (_, barely) = label(&scene, &objects);
+        let (_, barely) = label(&scene.things, &scene.snapshot, &objects);
         assert!(barely.is_empty(), "pair {index}");
     }
 }
@@ -174,7 +174,7 @@ fn a_set_has_its_files_and_an_image_is_never_without_labels() {
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");
-    let options = SetOptions { pairs: 5, seed: 2, first: 0, val_share: 0.5 };
+    let options = SetOptions { pairs: 5, seed: 2, first: 0, val_share: 0.5, ..SetOptions::default() };
     let error = generate(folder.path(), &options, &Patience(AtomicUsize::new(2))).expect_err("cancelled");
     assert!(matches!(error, SetError::Cancelled(_)));
     let read = |file: &str| fs::read_to_string(folder.path().join(file)).expect("written");
@@ -229,4 +229,24 @@ fn the_share_for_validation_is_spread_evenly() {
     assert!((0..50).all(|index| !none.is_val(index)));
     let all = SetOptions { val_share: 1.0, ..options };
     assert!((0..50).all(|index| all.is_val(index)));
+}
+
+#[test]
+fn the_twins_own_scenes_are_the_same_again_and_boxes_enclose_what_is_seen() {
+    let Some(mut painter) = painter() else { return };
+    let mut boxes = 0;
+    for index in [0, 3, 5] {
+        let once = painter.twin_pair(4, index).expect("draws");
+        let other = painter.twin_pair(4, index + 1).expect("draws");
+        let again = painter.twin_pair(4, index).expect("draws");
+        assert_eq!(once.labels, again.labels);
+        assert_eq!(once.images, again.images);
+        assert_ne!(once.images, other.images);
+        for label in once.labels.iter().flatten() {
+            assert_eq!(label.area.on_image((640, 480)), Some(label.area));
+            assert!(label.area.width_px() >= 4.0 || label.area.height_px() >= 4.0, "{label:?}");
+            boxes += 1;
+        }
+    }
+    assert!(boxes >= 6, "{boxes}");
 }
