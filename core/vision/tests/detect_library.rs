@@ -1,6 +1,7 @@
 //! What is said when ONNX Runtime is missing, is something else, or is too old. A library is
 //! loaded once per process, so every case has a process of its own.
 
+use std::io::Write as _;
 use std::path::Path;
 use std::process::Command;
 
@@ -41,10 +42,8 @@ fn loads_what_it_is_told() {
         return;
     }
     for _ in 0..2 {
-        match open() {
-            Ok(detector) => println!("\n{MARK}{}", detector.info().runtime),
-            Err(error) => println!("\n{MARK}{error}"),
-        }
+        let said = open().map_or_else(|error| error.to_string(), |detector| detector.info().runtime.clone());
+        writeln!(std::io::stdout(), "\n{MARK}{said}").expect("the parent reads");
     }
 }
 

@@ -92,7 +92,7 @@ impl Brightness for half::f16 {
 
 /// Fills inputs; keeps what it needs between images.
 pub(super) struct Filler<T> {
-    table: [T; 256],
+    table: Box<[T; 256]>,
     scaled: RgbImage,
     /// What the padding of the input was made for.
     padded_for: Option<Letterbox>,
@@ -101,7 +101,7 @@ pub(super) struct Filler<T> {
 impl<T: Brightness> Filler<T> {
     /// With nothing filled yet.
     pub fn new() -> Self {
-        Self { table: T::table(), scaled: RgbImage::new(0, 0), padded_for: None }
+        Self { table: Box::new(T::table()), scaled: RgbImage::new(0, 0), padded_for: None }
     }
 
     /// Writes an image into an input of three planes, red first.
