@@ -74,12 +74,12 @@ pub(super) struct Matcher {
     right: Patch,
     /// Cost of one disparity: truncated differences, then window sums.
     differences: Vec<u8>,
-    column_sums: Vec<u16>,
+    column_sums: Vec<i16>,
     /// Window costs, disparity by disparity.
-    costs: Vec<u16>,
-    best: Vec<u16>,
-    best_at: Vec<u16>,
-    second: Vec<u16>,
+    costs: Vec<i16>,
+    best: Vec<i16>,
+    best_at: Vec<i16>,
+    second: Vec<i16>,
     /// Disparity (cells from the least) that each left cell votes for; not finite: none.
     votes: Vec<f32>,
     sorted: Vec<f32>,
@@ -169,7 +169,7 @@ impl Matcher {
         let Grid { columns, rows, .. } = frame.grid;
         let cells = columns * rows;
         self.costs.clear();
-        self.costs.resize(cells * frame.count, u16::MAX);
+        self.costs.resize(cells * frame.count, i16::MAX);
         self.differences.clear();
         self.differences.resize(cells, 0);
         self.column_sums.clear();
@@ -208,12 +208,12 @@ impl Matcher {
         sums.fill(0);
         for y in 0..SIDE - 1 {
             for (sum, d) in sums.iter_mut().zip(row_of(y)) {
-                *sum = sum.wrapping_add(u16::from(*d));
+                *sum = sum.wrapping_add(i16::from(*d));
             }
         }
         for row in HALF_WINDOW..rows - HALF_WINDOW {
             for (sum, d) in sums.iter_mut().zip(row_of(row + HALF_WINDOW)) {
-                *sum = sum.wrapping_add(u16::from(*d));
+                *sum = sum.wrapping_add(i16::from(*d));
             }
             let to = &mut costs[row * columns + HALF_WINDOW..][..inner];
             to.copy_from_slice(&sums[..inner]);
@@ -223,7 +223,7 @@ impl Matcher {
                 }
             }
             for (sum, d) in sums.iter_mut().zip(row_of(row - HALF_WINDOW)) {
-                *sum = sum.wrapping_sub(u16::from(*d));
+                *sum = sum.wrapping_sub(i16::from(*d));
             }
         }
     }
@@ -232,33 +232,34 @@ impl Matcher {
     fn choose(&mut self, frame: &Frame) {
         let cells = frame.grid.len();
         for (vector, value) in
-            [(&mut self.best, u16::MAX), (&mut self.best_at, 0), (&mut self.second, u16::MAX)]
+            [(&mut self.best, i16::MAX), (&mut self.best_at, 0), (&mut self.second, i16::MAX)]
         {
             vector.clear();
             vector.resize(cells, value);
         }
         for (k, costs) in self.costs.chunks_exact(cells).enumerate() {
-            let k = k as u16;
+            let k = k as i16;
+            // Without branches, so that it becomes vector instructions.
             for ((cost, best), at) in costs.iter().zip(&mut self.best).zip(&mut self.best_at) {
-                let better = cost < best;
-                *best = if better { *cost } else { *best };
-                *at = if better { k } else { *at };
+                let better = -i16::from(cost < best);
+                *at = (*at & !better) | (k & better);
+                *best = (*best).min(*cost);
             }
         }
-        let same = (SAME_PLACE_PX / frame.cell_px).ceil().max(2.0) as u16;
+        let same = (SAME_PLACE_PX / frame.cell_px).ceil().max(2.0) as i16;
         for (k, costs) in self.costs.chunks_exact(cells).enumerate() {
-            let k = k as u16;
+            let k = k as i16;
             for ((cost, at), second) in costs.iter().zip(&self.best_at).zip(&mut self.second) {
-                let is_other = k.abs_diff(*at) > same;
-                *second = if is_other && cost < second { *cost } else { *second };
+                let near = -i16::from(k.wrapping_sub(*at).wrapping_abs() <= same);
+                *second = (*second).min(*cost | (near & i16::MAX));
             }
         }
         let noise = NOISE * ((2 * HALF_WINDOW + 1) * (2 * HALF_WINDOW + 1)) as f32;
         self.votes.clear();
         for i in 0..cells {
             let (best, second, at) =
-                (f32::from(self.best[i]), f32::from(self.second[i]), usize::from(self.best_at[i]));
-            let is_distinct = self.best[i] < u16::MAX && second + noise > DISTINCT * (best + noise);
+                (f32::from(self.best[i]), f32::from(self.second[i]), self.best_at[i] as usize);
+            let is_distinct = self.best[i] < i16::MAX && second + noise > DISTINCT * (best + noise);
             let at_end = at == 0 || at + 1 == frame.count;
             let vote = if is_distinct && !at_end {
                 let cost = |k: usize| f32::from(self.costs[k * cells + i]);
