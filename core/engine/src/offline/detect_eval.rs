@@ -277,3 +277,82 @@ fn model_report(evaluation: &ModelEvaluation) -> ModelReport {
         skipped: skipped.collect(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use plumbline_model::{ClassIndex, PixelBox, Unattended};
+    use plumbline_vision::yolo_set::{LabeledBox, LabeledImage, WriteOptions};
+
+    use super::*;
+
+    /// A network that finds the same on every image; see the tests of the detector.
+    fn tiny() -> PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../vision/tests/detectors/raw.onnx")
+    }
+
+    fn options() -> DetectorOptions {
+        DetectorOptions { threads: Some(1), ..DetectorOptions::default() }
+    }
+
+    fn args(data: PathBuf, models: Vec<PathBuf>) -> DetectEvalArgs {
+        let judging = EvaluateOptions::default();
+        DetectEvalArgs {
+            models,
+            data,
+            split: Split::Val,
+            csv: None,
+            matrices: None,
+            options: options(),
+            judging,
+        }
+    }
+
+    /// Five scenes with the thing that the network finds first.
+    fn set(folder: &Path) -> PathBuf {
+        let names = Detector::open(&tiny(), &options()).expect("a network").info().names.clone();
+        let area = PixelBox::new(15.0, 26.0, 25.0, 34.0);
+        let image = |index: u32| {
+            let path = folder.join(format!("scene{index}.png"));
+            image::RgbImage::from_pixel(64, 64, image::Rgb([255, 128, 0])).save(&path).expect("saved");
+            let boxes = vec![LabeledBox { class: ClassIndex(0), area }];
+            LabeledImage { path, size_px: (64, 64), scene: index.to_string(), boxes, split: Some(Split::Val) }
+        };
+        let set = YoloSet { names, images: (0..5).map(image).collect() };
+        set.write(&folder.join("set"), &WriteOptions::default(), &Unattended).expect("written").data_yaml
+    }
+
+    #[test]
+    fn what_can_be_judged_is_judged_and_the_rest_is_said() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let data = set(folder.path());
+        let (csv, matrices) = (folder.path().join("scores.csv"), folder.path().join("matrices"));
+        let args = DetectEvalArgs {
+            csv: Some(csv.clone()),
+            matrices: Some(matrices.clone()),
+            ..args(data, vec![folder.path().join("gone.onnx"), tiny()])
+        };
+        let report = detect_eval(&args, &Unattended).expect("one can be judged");
+        assert_eq!((report.images, report.scenes, report.models.len()), (5, 5, 1));
+        assert!(report.failed[0].reason.contains("gone.onnx"), "{:?}", report.failed);
+        let json = serde_json::to_value(&report).expect("JSON");
+        let model = &json["models"][0];
+        assert_eq!(model["model"], "raw.onnx");
+        assert!((model["map50"].as_f64().expect("a score") - 1.0).abs() < 1e-9, "{model}");
+        assert!(model["map50_95"].is_number() && model["milliseconds_median"].is_number());
+        let first = &report.classes[0];
+        assert!(model["per_class"][first].is_number());
+        assert!(model["per_class"][&report.classes[1]].is_null(), "nowhere in the set, so no score");
+        assert!(std::fs::read_to_string(csv).expect("written").lines().count() > report.classes.len());
+        assert!(matrices.join("raw.csv").is_file());
+    }
+
+    #[test]
+    fn a_set_or_part_that_is_not_there_is_said() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let gone = args(folder.path().join("data.yaml"), vec![tiny()]);
+        assert!(detect_eval(&gone, &Unattended).expect_err("no set").to_string().contains("data.yaml"));
+        let test = DetectEvalArgs { split: Split::Test, ..args(set(folder.path()), vec![tiny()]) };
+        let words = detect_eval(&test, &Unattended).expect_err("no test part").to_string();
+        assert!(words.contains("has no test part, only train and val"), "{words}");
+    }
+}
