@@ -91,7 +91,6 @@ pub(super) struct Matcher {
 struct Frame {
     grid: Grid,
     cell_px: f64,
-    px_rad: f64,
     /// Disparity of index 0, rad.
     least_rad: f64,
     count: usize,
@@ -411,5 +410,5 @@ fn frame(geometry: &EpipolarGeometry, left: &EpipolarBox, most_rad: f64) -> Opti
     let count = ((most_rad / along_step_rad).ceil() + 3.0).clamp(8.0, MOST_DISPARITIES as f64) as usize;
     let least_rad = most_rad - (count - 2) as f64 * along_step_rad;
     let grid = Grid { first, along_step_rad, plane_step_rad, columns, rows };
-    Some(Frame { grid, cell_px, px_rad, least_rad, count, area: left.area })
+    Some(Frame { grid, cell_px, least_rad, count, area: left.area })
 }
