@@ -56,6 +56,8 @@ pub struct CanvasState {
     /// What was done and is not in the boxes yet, with the revision that it was done to: shown until
     /// the boxes follow, so that nothing jumps back for a moment.
     done: Option<Done>,
+    /// A box was drawn when the boxes had this revision; it is chosen once it is there.
+    drawn_at: Option<u64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +69,7 @@ struct Done {
 }
 
 /// What was done and is not in the boxes after this time was refused.
-const FOLLOWS_WITHIN_S: f64 = 0.7;
+const FOLLOWS_WITHIN_S: f64 = 2.0;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Holding {
@@ -142,8 +144,8 @@ impl<'a> BoxCanvas<'a> {
 
     /// A box that was drawn is chosen once it is there.
     fn follow(&self, state: &mut CanvasState, now_s: f64) {
-        let followed = state.done.take_if(|done| done.revision != self.revision);
-        if followed.is_some_and(|done| done.placed.index.is_none()) {
+        state.done.take_if(|done| done.revision != self.revision);
+        if state.drawn_at.take_if(|revision| *revision != self.revision).is_some() {
             state.chosen = self.boxes.iter().rposition(|shown| !shown.dashed);
         }
         state.done.take_if(|done| now_s - done.at_s > FOLLOWS_WITHIN_S);
@@ -188,6 +190,7 @@ impl<'a> BoxCanvas<'a> {
         let placed = state.holding.take().and_then(|holding| self.placed(&holding))?;
         let at_s = ui.input(|input| input.time);
         state.done = Some(Done { revision: self.revision, placed, at_s });
+        state.drawn_at = placed.index.is_none().then_some(self.revision);
         state.chosen = placed.index;
         Some(placed)
     }
