@@ -25,8 +25,32 @@ fn pictures(folder: &Path) -> PathBuf {
     folder.join("pairs")
 }
 
+/// Waits until the detector that was asked for before is there or refused: what stands in the
+/// inspector moves then.
+fn settled(window: &mut Window) {
+    until(window, "the detector to settle", |window| {
+        let detect = &view(window).detect;
+        let settled = !matches!(detect.detector, DetectorState::None | DetectorState::Loading { .. });
+        settled
+            && detect.opening.is_none()
+            && (detect.facts().is_none() || detect.found.is_some() || detect.failed.is_some())
+    });
+    window.run_steps(3);
+}
+
+/// Clicks what may have to be scrolled to.
+fn reach(window: &mut Window, label: &str) {
+    until(window, label, |window| window.query_all_by_label(label).next().is_some());
+    // What was clicked before may still change what stands above.
+    window.run_steps(10);
+    window.get_all_by_label(label).next().expect("just seen").scroll_to_me();
+    window.run_steps(20);
+    click(window, label);
+}
+
 fn choose(window: &mut Window, file: &Path) {
-    click(window, "Choose a detector…");
+    settled(window);
+    reach(window, "Choose a detector…");
     type_over(window, file);
     click(window, "Open");
 }
@@ -70,9 +94,9 @@ fn detectors_are_chosen_tried_and_refused() {
 
     // A class less, at once, on a picture that stands still.
     let first = found.objects[0].name.clone();
-    click(&mut window, &format!("Show {first}"));
+    reach(&mut window, &format!("Show {first}"));
     until(&mut window, "the others", |window| boxes(window) == 4);
-    click(&mut window, "Show all classes");
+    reach(&mut window, "Show all classes");
     until(&mut window, "all again", |window| boxes(window) == 6);
 
     // What is no detector is refused, and the one in use goes on.
@@ -96,6 +120,7 @@ fn detectors_are_chosen_tried_and_refused() {
     choose(&mut window, &network("throwing.onnx"));
     until(&mut window, "what it says", |window| view(window).detect.failed.is_some());
     assert!(view(&window).live.raw.is_some() && boxes(&window) == 0);
-    click(&mut window, "Off");
+    settled(&mut window);
+    reach(&mut window, "Off");
     until(&mut window, "no detector", |window| view(window).detect.detector == DetectorState::Off);
 }

@@ -90,11 +90,12 @@ fn a_detector_file_is_asked_for() {
 
 #[test]
 fn names_that_disagree_stand_side_by_side() {
-    let exchanged = ClassNames::new([
-        "Banana", "Duck", "RightHand", "Mushroom", "Onion", "Orange", "LeftHand", "Tomato",
-    ]);
-    let facts =
-        DetectorFacts { other_names: Some((exchanged, "the data.yaml beside the file".to_owned())), ..facts() };
+    let exchanged =
+        ClassNames::new(["Banana", "Duck", "RightHand", "Mushroom", "Onion", "Orange", "LeftHand", "Tomato"]);
+    let facts = DetectorFacts {
+        other_names: Some((exchanged, "the data.yaml beside the file".to_owned())),
+        ..facts()
+    };
     let detect = DetectView { detector: DetectorState::Ready(Arc::new(facts)), ..detect() };
     let fake = Fake::over(live(detect));
     let window = fake.window_of_size(settings(), TALL);
@@ -113,8 +114,14 @@ fn every_state_of_the_detector_has_its_words() {
         (state(failed), "best.onnx cannot be used"),
         (DetectView { found: None, ..detect() }, "Looking at the first pair."),
         (DetectView { found: Some(Arc::new(found(vec![]))), ..detect() }, "Nothing was found on this pair."),
-        (DetectView { failed: Some("The image is empty.".to_owned()), found: None, ..detect() }, "The image is empty."),
-        (DetectView { stale: Some("Boxes of 2.1 s before this picture.".to_owned()), ..detect() }, "2.1 s before"),
+        (
+            DetectView { failed: Some("The image is empty.".to_owned()), found: None, ..detect() },
+            "The image is empty.",
+        ),
+        (
+            DetectView { stale: Some("Boxes of 2.1 s before this picture.".to_owned()), ..detect() },
+            "2.1 s before",
+        ),
         (DetectView { refused: Some("CUDA is not here.".to_owned()), ..detect() }, "CUDA is not here."),
     ];
     for (detect, words) in cases {
@@ -129,8 +136,6 @@ fn an_object_that_is_gone_is_said_to_be_gone() {
     let fake = Fake::over(live(detect()));
     let mut window = fake.window_of_size(settings(), TALL);
     click(&mut window, "Tomato, 331, -118, 82 ± 4 mm");
-    // The line that is under the pointer now is another object's.
-    window.event(egui::Event::PointerGone);
     fake.show(live(DetectView { found: Some(Arc::new(found(vec![banana()]))), ..detect() }));
     window.run_steps(3);
     assert!(says(&window, "Tomato is not seen on this pair."));
@@ -158,11 +163,12 @@ fn pictures_of_objects() {
         println!("skipped: set PLUMBLINE_WINDOW_PICTURES to a folder");
         return;
     };
-    let exchanged = ClassNames::new([
-        "Banana", "Duck", "RightHand", "Mushroom", "Onion", "Orange", "LeftHand", "Tomato",
-    ]);
-    let differing =
-        DetectorFacts { other_names: Some((exchanged, "the data.yaml beside the file".to_owned())), ..facts() };
+    let exchanged =
+        ClassNames::new(["Banana", "Duck", "RightHand", "Mushroom", "Onion", "Orange", "LeftHand", "Tomato"]);
+    let differing = DetectorFacts {
+        other_names: Some((exchanged, "the data.yaml beside the file".to_owned())),
+        ..facts()
+    };
     let failed = DetectorState::Failed {
         name: "best.onnx".to_owned(),
         why: "best.onnx is not a usable ONNX file (it is empty): export the detector again with format=onnx."
@@ -185,7 +191,9 @@ fn pictures_of_objects() {
             }
             window.run_steps(3);
             let image = window.render().expect("the test renderer draws");
-            image.save(folder.join(format!("objects-{name}-{theme:?}.png"))).expect("a folder that can be written");
+            image
+                .save(folder.join(format!("objects-{name}-{theme:?}.png")))
+                .expect("a folder that can be written");
         }
     }
 }

@@ -12,7 +12,7 @@ use super::drawing::DOUBT;
 
 /// Draws it; a hint while nothing is looked at.
 pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
-    let Some(object) = panels.focused(view) else {
+    let Some(object) = panels.described(view) else {
         match &panels.chosen {
             Some(gone) => ui.label(theme::weak(ui, format!("{} is not seen on this pair.", gone.name))),
             None => ui.label(theme::weak(

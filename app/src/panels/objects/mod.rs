@@ -24,10 +24,18 @@ pub struct ObjectsPanels {
     pub shown: bool,
     /// The object that was clicked.
     pub chosen: Option<ObjectKey>,
-    hovered: Option<ObjectKey>,
-    hovered_next: Option<ObjectKey>,
+    hovered: Option<Hovered>,
+    hovered_next: Option<Hovered>,
     /// Whether the threshold of each class can be moved.
     pub own_thresholds: bool,
+}
+
+/// An object under the pointer.
+#[derive(Clone, Debug)]
+struct Hovered {
+    key: ObjectKey,
+    /// In the list rather than in a picture.
+    in_list: bool,
 }
 
 impl Default for ObjectsPanels {
@@ -39,9 +47,20 @@ impl Default for ObjectsPanels {
 impl ObjectsPanels {
     /// The object that is looked at: the one under the pointer, else the one that was clicked.
     pub fn focused<'a>(&self, view: &'a View) -> Option<&'a ObjectView> {
-        let objects = objects(view);
-        let find = |key: &Option<ObjectKey>| key.as_ref().and_then(|key| key.find(objects));
-        find(&self.hovered).or_else(|| find(&self.chosen))
+        let hovered = self.hovered.as_ref().and_then(|hovered| hovered.key.find(objects(view)));
+        hovered.or_else(|| self.chosen(view))
+    }
+
+    /// The object that is described: as [`Self::focused`], but pointing at a line of the list, which
+    /// stands right above the description, must not move what the pointer is on its way to.
+    pub fn described<'a>(&self, view: &'a View) -> Option<&'a ObjectView> {
+        let in_picture = self.hovered.as_ref().filter(|hovered| !hovered.in_list);
+        let hovered = in_picture.and_then(|hovered| hovered.key.find(objects(view)));
+        hovered.or_else(|| self.chosen(view))
+    }
+
+    fn chosen<'a>(&self, view: &'a View) -> Option<&'a ObjectView> {
+        self.chosen.as_ref().and_then(|chosen| chosen.find(objects(view)))
     }
 
     /// The pointer is over this place of an eye; `clicked` chooses what is there. Says whether a box
@@ -53,13 +72,13 @@ impl ObjectsPanels {
         if clicked {
             self.toggle(object);
         }
-        self.hovered_next = Some(key);
+        self.hovered_next = Some(Hovered { key, in_list: false });
         true
     }
 
     /// A line of the list is pointed at.
     pub fn hover(&mut self, object: &ObjectView) {
-        self.hovered_next = Some(ObjectKey::of(object));
+        self.hovered_next = Some(Hovered { key: ObjectKey::of(object), in_list: true });
     }
 
     /// Chooses an object, or lets go of it.
@@ -77,8 +96,7 @@ impl ObjectsPanels {
     /// is followed to where it is now.
     pub fn end_frame(&mut self, view: &View) {
         self.hovered = self.hovered_next.take();
-        let chosen = self.chosen.as_ref().and_then(|chosen| chosen.find(objects(view)));
-        if let Some(object) = chosen {
+        if let Some(object) = self.chosen(view) {
             self.chosen = Some(ObjectKey::of(object));
         }
     }
