@@ -144,7 +144,10 @@ impl Rig {
             median_off_m: off(behind.median_rad),
             middle_off_m: behind.middle_rad.map(off),
         };
-        let worst_m = warning.median_off_m.abs().max(warning.middle_off_m.map_or(0.0, f64::abs));
+        // Only errors toward the strangers are theirs; others are those of a single pixel.
+        let toward = warning.behind_m.signum();
+        let worst_m =
+            (toward * warning.median_off_m).max(warning.middle_off_m.map_or(0.0, |off| toward * off));
         let is_large =
             warning.share >= options.leak_share || worst_m >= options.leak_error_m.max(half_depth.m);
         (is_large && warning.behind_m.abs() >= options.leak_depth_m).then_some(warning)
