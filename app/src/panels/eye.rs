@@ -55,8 +55,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
         let point = |at: [f64; 2]| ProbePoint::Raw { eye, u_px: at[0], v_px: at[1] };
         cx.outbox.probe = shown.hover_px.map(point).or(cx.outbox.probe);
         // A click on a box chooses the object; a point below it is measured by pointing at it.
-        let on_box = on_live
-            && cx.state.objects.point(view, eye, shown.hover_px, shown.clicked_px.is_some());
+        let on_box = on_live && cx.state.objects.point(view, eye, shown.hover_px, shown.clicked_px.is_some());
         if let Some(at) = shown.clicked_px.filter(|_| !on_box) {
             cx.state.probe.toggle_pin(point(at));
         }

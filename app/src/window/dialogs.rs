@@ -187,9 +187,7 @@ impl Question {
             | Self::ExportLabels
             | Self::ImportLabels
             | Self::ScoreSet => dialog().pick_folder().map(|folder| vec![folder]),
-            Self::Detector => {
-                dialog().add_filter("ONNX files", &["onnx"]).pick_file().map(|file| vec![file])
-            }
+            Self::Detector => dialog().add_filter("ONNX files", &["onnx"]).pick_file().map(|file| vec![file]),
             Self::ImportModel => {
                 dialog().add_filter("Models", &["json", "onnx"]).pick_file().map(|file| vec![file])
             }

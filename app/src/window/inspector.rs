@@ -14,8 +14,8 @@ use super::outbox::Outbox;
 use super::steps::Screen;
 use super::{PlumblineWindow, hint_text};
 use crate::panels::{
-    PanelState, chosen_fit, probe_readout, show_gap_inspector, show_objects_inspector, show_labels_inspector, show_models_inspector,
-    show_robot_inspector, show_scores_inspector, show_touch_inspector,
+    PanelState, chosen_fit, probe_readout, show_gap_inspector, show_labels_inspector, show_models_inspector,
+    show_objects_inspector, show_robot_inspector, show_scores_inspector, show_touch_inspector,
 };
 
 pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {

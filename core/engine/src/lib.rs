@@ -32,11 +32,11 @@ pub mod view;
 pub mod work;
 
 pub use command::{
-    AimChoice, BoxEdit, Command, ConfusionCell, ContactWith, Correction, Destination, DetectCommand, DetectorChoice, ExportFormat, Exported,
-    EyesCommand, FileLength, GapCommand, GapModel, GraspTable, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId,
-    JogRates, LabelsCommand, LiveCommand, ModelsCommand, MountCommand, NoticeCommand, ProbePoint, Products, Provider,
-    RobotCommand, ScoresCommand, ScreenContact, ScreenWindow, SetPart, SourceCommand, TablesCommand,
-    TouchCommand, TwinCommand,
+    AimChoice, BoxEdit, Command, ConfusionCell, ContactWith, Correction, Destination, DetectCommand,
+    DetectorChoice, ExportFormat, Exported, EyesCommand, FileLength, GapCommand, GapModel, GraspTable,
+    HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LabelsCommand, LiveCommand, ModelsCommand,
+    MountCommand, NoticeCommand, ProbePoint, Products, Provider, RobotCommand, ScoresCommand, ScreenContact,
+    ScreenWindow, SetPart, SourceCommand, TablesCommand, TouchCommand, TwinCommand,
 };
 pub use context::Action;
 pub use engine::{Engine, Wake};

@@ -31,20 +31,18 @@ pub use calibrate::{CalibrateArgs, CalibrateReport, LeftOutCorner, PairErrors, R
 pub use check::{CheckArgs, CheckReport, check};
 pub use correct::{CorrectArgs, CorrectReport, CorrectedPoint, correct};
 pub use detect::{DetectArgs, DetectReport, FoundBox, LeftOutImage, detect};
-pub use detect_eval::{
-    ClassReport, DetectEvalArgs, DetectEvalReport, FailedModel, ModelReport, detect_eval,
-};
+pub use detect_eval::{ClassReport, DetectEvalArgs, DetectEvalReport, FailedModel, ModelReport, detect_eval};
 pub use detector_set::{ClassBoxes, DetectorSetArgs, DetectorSetReport, detector_set};
-pub use plumbline_twin::training_set::SetWorld;
 pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};
 pub use error::OfflineError;
 pub use gap::{GapArgs, GapReport, gap};
 pub(crate) use gap::{measured, search, title_of as gap_title};
 pub use ik::{IkArgs, IkReport, IkSolution, ik};
 pub use locate::{LocateArgs, LocateReport, LocatedPoint, locate};
-pub use predict::{ImagePoints, PredictArgs, PredictReport, PredictedRow, TableGap, predict};
-pub use sample::{SampleArgs, SampleReport, write_sample};
-pub use train::{TrainArgs, TrainReport, train};
+pub use plumbline_twin::training_set::SetWorld;
 pub use plumbline_vision::detect as detector;
 pub use plumbline_vision::detect_score as scores;
 pub use plumbline_vision::yolo_set::Split;
+pub use predict::{ImagePoints, PredictArgs, PredictReport, PredictedRow, TableGap, predict};
+pub use sample::{SampleArgs, SampleReport, write_sample};
+pub use train::{TrainArgs, TrainReport, train};

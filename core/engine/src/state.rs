@@ -6,9 +6,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::SourceSpec;
-use plumbline_vision::detect::shipped_detector;
 use plumbline_model::StereoFrame;
 use plumbline_model::robot::Rig;
+use plumbline_vision::detect::shipped_detector;
 
 use crate::command::{Command, HeadPose, JobCommand, JobId, NoticeCommand};
 use crate::context::{Action, Context};
@@ -27,7 +27,10 @@ use crate::mount::{MountState, Surroundings as MountSurroundings};
 use crate::notice::{NoticeLevel, Notices};
 use crate::robot::{News, RobotControl, TouchNews};
 use crate::source::{Control, Note, SourceState};
-use crate::stages::{CornersInput, DetectInput, DetectOutput, ProbeInput, ProbeOutput, RectifyInput, RectifyOutput, StagePanic, Timed};
+use crate::stages::{
+    CornersInput, DetectInput, DetectOutput, ProbeInput, ProbeOutput, RectifyInput, RectifyOutput,
+    StagePanic, Timed,
+};
 use crate::touch::{Surroundings as TouchSurroundings, TouchWorkflow};
 use crate::view::{
     Connection, GapView, JobState, JobView, ModelsView, MountView, RobotView, SourceView, TouchView,
@@ -318,10 +321,7 @@ impl State {
     }
 
     /// Data sets belong to no world: images of both may be labeled together.
-    fn with_labels(
-        &mut self,
-        act: impl FnOnce(&mut LabelsWorkflow, &LabelsSurroundings, &mut Context<'_>),
-    ) {
+    fn with_labels(&mut self, act: impl FnOnce(&mut LabelsWorkflow, &LabelsSurroundings, &mut Context<'_>)) {
         let Self { source, live, detect, jobs, notices, actions, labels, .. } = self;
         let mut context = Context { notices, newest: live.newest(), source: source.view(), jobs, actions };
         let (detector, provider) = detect.chosen();

@@ -19,8 +19,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 pub use detect::{
-    ClassRates, DetectView, DetectionSettings, DetectionTiming, DetectionsView, DetectorFacts,
-    DetectorState, ObjectPlaceView, ObjectView, SeenBox,
+    ClassRates, DetectView, DetectionSettings, DetectionTiming, DetectionsView, DetectorFacts, DetectorState,
+    ObjectPlaceView, ObjectView, SeenBox,
 };
 pub use eyes::{
     AcceptedCalibration, BoardPlace, BoardSeen, CaptureHint, CollectedPair, Coverage, CoverageGrid,

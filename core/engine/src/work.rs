@@ -4,8 +4,8 @@
 use plumbline_hardware::{CameraDevice, camera_devices};
 use plumbline_model::JobContext;
 
-use crate::detector_scores::work::{ScoresResult, ScoresWork};
 use crate::detect::{DetectResult, DetectWork};
+use crate::detector_scores::work::{ScoresResult, ScoresWork};
 use crate::eyes::work::{EyesResult, EyesWork};
 use crate::gaps::work::{GapResult, GapWork};
 use crate::jobs::JobError;

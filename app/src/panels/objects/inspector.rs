@@ -39,7 +39,9 @@ fn found(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
     let detect = &view.detect;
     let Some(found) = &detect.found else {
         if detect.facts().is_some() && detect.failed.is_none() {
-            ui.label(theme::weak(ui, "Looking at the first pair."));
+            let waits =
+                if view.live.raw.is_some() { "Looking at the first pair." } else { "No pictures yet." };
+            ui.label(theme::weak(ui, waits));
         }
         return;
     };

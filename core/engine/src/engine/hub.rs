@@ -25,8 +25,8 @@ use crate::settings::EngineSettings;
 use crate::slot::{Putter, Taker, newest_value_slot};
 use crate::source::{Note, Player, SourceThread, Wires};
 use crate::stages::{
-    CornersInput, CornersStage, DetectInput, DetectOutput, DetectStage, ProbeInput, ProbeOutput, ProbeStage, RectifyInput, RectifyOutput,
-    RectifyStage, StageThread, run_stage,
+    CornersInput, CornersStage, DetectInput, DetectOutput, DetectStage, ProbeInput, ProbeOutput, ProbeStage,
+    RectifyInput, RectifyOutput, RectifyStage, StageThread, run_stage,
 };
 use crate::state::State;
 use crate::view::{DetectionSettings, SourceView, View};
