@@ -122,7 +122,7 @@ impl Patch {
         for (channel, gain) in self.channels.iter_mut().zip(gains) {
             let gain = (gain * 256.0) as u32;
             for value in channel {
-                *value = (u32::from(*value) * gain >> 8).min(255) as u8;
+                *value = ((u32::from(*value) * gain) >> 8).min(255) as u8;
             }
         }
     }
