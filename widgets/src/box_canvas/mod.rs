@@ -172,13 +172,11 @@ impl<'a> BoxCanvas<'a> {
         if response.clicked()
             && let Some(pos) = response.interact_pointer_pos()
         {
-            response.request_focus();
             state.chosen = box_at(self.areas(), at(pos));
         }
         if response.drag_started_by(PointerButton::Primary) {
             let origin = ui.input(|input| input.pointer.press_origin()).or(response.interact_pointer_pos());
             state.holding = origin.map(at).and_then(|from| self.take(from, reach_px, shift, state));
-            response.request_focus();
         }
         let holding = state.holding.as_mut()?;
         if let Some(pos) = response.interact_pointer_pos() {

@@ -48,9 +48,6 @@ pub(super) fn paint(
     if let (Some([x, y]), true, true) = (pointer_px, canvas.draw.is_some(), drawing) {
         crosshair(&painter, rect, transform, [x, y]);
     }
-    if ui.memory(|memory| memory.focused().is_some()) && state.holding.is_some() {
-        painter.rect_stroke(rect, 0.0, Stroke::new(1.0, tokens.accent), StrokeKind::Inside);
-    }
 }
 
 /// Lines through the pointer, by which the edges of a thing are met.
