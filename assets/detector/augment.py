@@ -41,29 +41,43 @@ def decode(data):
 
 
 class Crops:
-    def __init__(self, items):
-        self.items = items
+    """`mosaics`: share of samples that are put together of four, so that more objects are seen."""
+
+    def __init__(self, items, mosaics=0.0):
+        self.items, self.mosaics = items, mosaics
 
     def side(self, rng):
         return int(rng.choice([256, 320, 320, 320, 384, 448]))
 
     def sample(self, rng, side):
+        if rng.random() >= self.mosaics:
+            return self.crop(rng, side)
+        half = side // 2
+        image, boxes = np.empty((side, side, 3), np.uint8), []
+        for x, y in ((0, 0), (half, 0), (0, half), (half, half)):
+            part, inside = self.crop(rng, half)
+            image[y : y + half, x : x + half] = part
+            boxes.append(inside + np.array([0, x, y, x, y], np.float32))
+        return image, np.concatenate(boxes)
+
+    def crop(self, rng, side):
         data, boxes = self.items[rng.integers(len(self.items))]
         image = decode(data)
         zoom = float(np.exp(rng.normal(0.05, 0.22)))
         zoom = min(max(zoom, side / image.shape[0] * 0.75, 0.6), 1.8)
-        image, boxes = self.cut(rng, image, boxes, side, zoom)
+        reach = 0.42 if side > 200 else 0.3
+        image, boxes = self.cut(rng, image, boxes, side, zoom, reach)
         if rng.random() < 0.5:
             image, boxes = mirror(image, boxes)
         # The images are randomised already.
         return (recolor(rng, image) if rng.random() < 0.6 else image), boxes
 
-    def cut(self, rng, image, boxes, side, zoom):
+    def cut(self, rng, image, boxes, side, zoom, reach):
         height, width = image.shape[:2]
         window = side / zoom
         if len(boxes) and rng.random() < 0.85:
             chosen = boxes[rng.integers(len(boxes))]
-            middle = (chosen[1:3] + chosen[3:5]) / 2 + rng.uniform(-0.42, 0.42, 2) * window
+            middle = (chosen[1:3] + chosen[3:5]) / 2 + rng.uniform(-reach, reach, 2) * window
         else:
             middle = rng.uniform([0, 0], [width, height])
         low = middle - window / 2

@@ -100,6 +100,7 @@ def main():
     arguments.add_argument("--minutes", type=float, default=120)
     arguments.add_argument("--batch", type=int, default=12, help="crops of 320 pixels per step")
     arguments.add_argument("--rate", type=float, default=1.5e-3)
+    arguments.add_argument("--mosaics", type=float, default=0.5, help="share of samples made of four crops")
     arguments.add_argument("--threads", type=int, default=2)
     arguments.add_argument("--seed", type=int, default=1)
     arguments.add_argument("--out", type=Path, required=True)
@@ -131,7 +132,7 @@ def main():
     optimizer = torch.optim.AdamW(parameters(net, FROZEN_BLOCKS), lr=args.rate)
     average, loss_of = Average(net), DetectionLoss(net.classes)
     stop = threading.Event()
-    source = batches(Crops(items), args.batch, [args.seed * 1000 + i for i in range(2)], stop)
+    source = batches(Crops(items, args.mosaics), args.batch, [args.seed * 1000 + i for i in range(2)], stop)
 
     began, step, shown, sums, waited = time.time(), 0, time.time(), np.zeros(3), 0.0
     judged = began

@@ -277,7 +277,12 @@ fn a_point_on_a_wall_is_measured_where_the_wall_is() {
     let mut desk = collected(folder.path());
     desk.apply(EyesCommand::Solve);
     desk.apply(EyesCommand::Accept);
-    desk.apply(LiveCommand::Want(Products { rectified: true, disparity: true, corners: false }));
+    desk.apply(LiveCommand::Want(Products {
+        rectified: true,
+        disparity: true,
+        corners: false,
+        detections: false,
+    }));
     desk.apply(LiveCommand::Probe(ProbePoint::Raw { eye: Eye::Left, u_px: 165.0, v_px: 125.0 }));
     desk.show(&wall_pair());
     let view = desk.view();

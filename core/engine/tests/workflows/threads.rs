@@ -66,7 +66,12 @@ fn a_folder_is_opened_collected_solved_accepted_and_rectified_live() {
     bench.until("a proposal", |view| view.eyes.proposal.is_some());
     bench.engine.send(EyesCommand::Accept);
     bench.until("a calibration", |view| view.eyes.in_use.is_some());
-    bench.engine.send(LiveCommand::Want(Products { rectified: true, disparity: true, corners: true }));
+    bench.engine.send(LiveCommand::Want(Products {
+        rectified: true,
+        disparity: true,
+        corners: true,
+        detections: false,
+    }));
     let view = bench.until("all products", |view| {
         view.live.rectified.is_some() && view.live.disparity.is_some() && view.live.corners.is_some()
     });
