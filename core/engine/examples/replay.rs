@@ -49,7 +49,12 @@ fn main() {
     engine.send(EyesCommand::Accept);
     until("a calibration", &|view| view.eyes.in_use.is_some());
 
-    engine.send(LiveCommand::Want(Products { rectified: true, disparity: true, corners: true, detections: false }));
+    engine.send(LiveCommand::Want(Products {
+        rectified: true,
+        disparity: true,
+        corners: true,
+        detections: false,
+    }));
     engine.send(LiveCommand::Probe(ProbePoint::Raw { eye: Eye::Left, u_px: 330.0, v_px: 250.0 }));
     engine.send(SourceCommand::PairsPerSecond(rate_hz));
     let first = newest(&engine.view());
