@@ -1,6 +1,6 @@
 //! Colors of classes on images. None of them is red, which belongs to danger.
 
-use egui::Color32;
+use egui::{Color32, Painter, Rect, Stroke, StrokeKind};
 use plumbline_model::detection::PUBLISHED_CLASSES;
 
 const fn rgb(hex: u32) -> Color32 {
@@ -28,6 +28,11 @@ pub fn class_color(name: &str, number: usize) -> Color32 {
     let published = PUBLISHED_CLASSES.iter().position(|known| *known == name);
     let others = COLORS.len() - PUBLISHED_CLASSES.len();
     published.map_or_else(|| COLORS[PUBLISHED_CLASSES.len() + number % others], |class| COLORS[class])
+}
+
+/// A patch of a class's color, edged so that a light color is seen on a light ground.
+pub fn class_swatch(painter: &Painter, rect: Rect, color: Color32, edge: Color32) {
+    painter.rect(rect, 2.0, color, Stroke::new(1.0, edge), StrokeKind::Inside);
 }
 
 #[cfg(test)]

@@ -117,7 +117,7 @@ fn class_button(
         ui.painter().rect_stroke(rect, 4.0, stroke, egui::StrokeKind::Inside);
     }
     let swatch = egui::Rect::from_center_size(rect.left_center() + vec2(13.0, 0.0), vec2(11.0, 11.0));
-    ui.painter().rect_filled(swatch, 2.0, color);
+    plumbline_widgets::class_swatch(ui.painter(), swatch, color, tokens.text_weak);
     let y = rect.center().y;
     ui.painter().galley(egui::pos2(rect.left() + 24.0, y - 0.5 * text.size().y), text.clone(), tokens.text);
     let key_at = egui::pos2(rect.left() + 28.0 + text.size().x, y - 0.5 * key.size().y + 1.0);

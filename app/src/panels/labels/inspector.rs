@@ -115,7 +115,7 @@ fn row(
         ui.painter().rect_filled(rect, 4.0, if chosen { tokens.selected } else { tokens.raised });
     }
     let swatch = egui::Rect::from_center_size(rect.left_center() + vec2(10.0, 0.0), vec2(10.0, 10.0));
-    ui.painter().rect_filled(swatch, 2.0, color);
+    plumbline_widgets::class_swatch(ui.painter(), swatch, color, tokens.text_weak);
     let body = egui::TextStyle::Body.resolve(ui.style());
     let small = egui::TextStyle::Small.resolve(ui.style());
     let left = rect.left_center() + vec2(22.0, 0.0);

@@ -54,13 +54,7 @@ fn row(ui: &mut Ui, object: &ObjectView, panels: &mut ObjectsPanels) {
     let small = TextStyle::Small.resolve(ui.style());
     let left = rect.left() + space::XS;
     let swatch = egui::Rect::from_min_size(pos2(left, rect.top() + 6.0), vec2(SWATCH, SWATCH));
-    ui.painter().rect(
-        swatch,
-        2.0,
-        color(object),
-        egui::Stroke::new(1.0, tokens.line),
-        egui::StrokeKind::Outside,
-    );
+    plumbline_widgets::class_swatch(ui.painter(), swatch, color(object), tokens.text_weak);
     let text = left + SWATCH + space::S;
     let painter = ui.painter().with_clip_rect(rect);
     let doubtful = object.leak.is_some() || !object.doubts.is_empty();

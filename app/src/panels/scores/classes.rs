@@ -2,8 +2,8 @@
 
 use egui::{Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use plumbline_engine::view::{Score, ScoreTable};
-use plumbline_widgets::class_color;
 use plumbline_widgets::theme::{self, space};
+use plumbline_widgets::{class_color, class_swatch};
 
 use super::{PanelContext, chosen, figure, judged};
 
@@ -46,7 +46,7 @@ fn row(ui: &mut Ui, table: &ScoreTable, class: usize, name: &str, score: Option<
     let x = |value: f64| bar.left() + bar.width() * value.clamp(0.0, 1.0) as f32;
     if let Some(score) = score {
         let filled = Rect::from_min_max(bar.min, pos2(x(score.map50_95), bar.bottom()));
-        painter.rect_filled(filled, 2.0, class_color(name, class));
+        class_swatch(painter, filled, class_color(name, class), tokens.text_weak);
         if let Some([low, high]) = score.map50_95_interval {
             painter.hline(x(low)..=x(high), bar.center().y, Stroke::new(2.0, tokens.text_strong));
         }
