@@ -6,7 +6,7 @@ use plumbline_model::PixelBox;
 use super::{BoxCanvas, CanvasBox, CanvasState};
 use crate::image_view::ImageTransform;
 use crate::texture::Sampling;
-use crate::theme::{self, RIM, readable_on};
+use crate::theme::{self, CROSSHAIR, RIM, readable_on};
 
 /// From this magnification on, in physical pixels per image pixel, pixels are drawn as squares.
 const HARD_PIXELS_FROM: f64 = 4.0;
@@ -55,7 +55,7 @@ fn crosshair(painter: &Painter, rect: Rect, transform: &ImageTransform, [x, y]: 
     let at = transform.to_screen([f64::from(x) - 0.5, f64::from(y) - 0.5]);
     let image = transform.image_rect().intersect(rect);
     if image.contains(at) {
-        let line = Stroke::new(1.0, Color32::from_white_alpha(70));
+        let line = Stroke::new(1.0, CROSSHAIR);
         painter.hline(image.x_range(), at.y, line);
         painter.vline(at.x, image.y_range(), line);
     }

@@ -5,13 +5,15 @@
 //! background of its theme; the tests of this module hold that.
 
 mod apply;
+mod class_color;
 #[cfg(test)]
 mod distinct;
 mod tokens;
 
 pub use apply::{apply, fonts};
+pub use class_color::{class_color, class_swatch};
+pub(crate) use tokens::{CROSSHAIR, INVALID, PIXEL_GRID, RIM, STALE_FADE, STALE_TINT, readable_on};
 pub use tokens::{DARK, LIGHT, ON_IMAGE, Surfaces, Tokens};
-pub(crate) use tokens::{INVALID, PIXEL_GRID, RIM, STALE_FADE, STALE_TINT, readable_on};
 
 use egui::{Color32, FontId, RichText, TextStyle, Ui};
 

@@ -165,6 +165,9 @@ pub const LIGHT: Tokens = Tokens {
 /// pictures.
 pub const ON_IMAGE: Tokens = DARK;
 
+/// Lines through the pointer on an image.
+pub(crate) const CROSSHAIR: Color32 = Color32::from_rgba_premultiplied(70, 70, 70, 70);
+
 /// Rim around marks on images, and ground of words on images.
 pub(crate) const RIM: Color32 = Color32::from_black_alpha(170);
 

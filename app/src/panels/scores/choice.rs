@@ -64,7 +64,7 @@ fn set(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             ui.label(theme::weak(ui, "None yet. Choose a folder with a data.yaml, or drop it here."));
         }
         Some(path) => {
-            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+            let name = super::set_name(path);
             ui.add(Label::new(name).truncate()).on_hover_text(path.display().to_string());
         }
     }

@@ -9,6 +9,8 @@ mod table;
 
 pub use inspector::show as show_inspector;
 
+use std::path::Path;
+
 use egui::{Button, Response, Ui};
 use plumbline_engine::View;
 use plumbline_engine::view::{JobState, ModelScores, Score, ScoreTable};
@@ -80,6 +82,12 @@ fn chosen<'a>(cx: &PanelContext<'_>, table: &'a ScoreTable) -> Option<(&'a str, 
 }
 
 /// "0.806".
+/// What a data set is called: its folder, or that of its `data.yaml`.
+fn set_name(path: &Path) -> String {
+    let folder = if path.extension().is_some() { path.parent().unwrap_or(path) } else { path };
+    folder.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
 fn figure(score: Option<f64>) -> String {
     score.map_or_else(|| "–".to_owned(), |score| format!("{score:.3}"))
 }

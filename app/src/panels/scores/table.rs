@@ -21,12 +21,12 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 
 fn grid(ui: &mut Ui, cx: &mut PanelContext<'_>, table: &ScoreTable) {
     Grid::new("score table").striped(true).spacing([space::M, 4.0]).show(ui, |ui| {
-        let heads = ["Detector", "Tomato", "Hands", "All", "All", "Before", "Network", "After"];
+        let heads = ["Detector", "Tomato", "Hands", "All", "All", "Network"];
         for head in heads {
             ui.label(theme::strong(ui, head));
         }
         ui.end_row();
-        for unit in ["", "mAP50–95", "mAP50–95", "mAP50–95", "mAP50", "ms", "ms", "ms"] {
+        for unit in ["", "mAP50–95", "mAP50–95", "mAP50–95", "mAP50", "ms"] {
             ui.label(theme::small(ui, unit));
         }
         ui.end_row();
@@ -53,9 +53,13 @@ fn model(ui: &mut Ui, scores: &ModelScores) {
         with_interval(ui, value, ends);
     }
     with_interval(ui, Some(scores.all.map50), scores.all.map50_interval);
-    for ms in scores.times_ms {
-        ui.label(format::significant(ms, 3));
-    }
+    let [before, network, after] = scores.times_ms.map(|ms| format::significant(ms, 3));
+    ui.vertical(|ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        ui.label(network);
+        let around = Label::new(theme::small(ui, format!("+ {before} + {after}"))).extend();
+        ui.add(around).on_hover_text("before the network (fitting the image) and after it (its boxes)");
+    });
 }
 
 fn with_interval(ui: &mut Ui, value: Option<f64>, ends: Option<[f64; 2]>) {
@@ -71,7 +75,7 @@ fn with_interval(ui: &mut Ui, value: Option<f64>, ends: Option<[f64; 2]>) {
 /// On what, and what was not as it should be.
 fn notes(ui: &mut Ui, table: &ScoreTable) {
     let boxes: usize = table.instances.iter().sum();
-    let set = table.set.file_name().unwrap_or(table.set.as_os_str()).to_string_lossy();
+    let set = super::set_name(&table.set);
     ui.label(theme::small(
         ui,
         format!("{} with {boxes} boxes of {set}.", format::count(table.images, "image")),
