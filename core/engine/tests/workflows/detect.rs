@@ -174,7 +174,7 @@ fn ball(class: usize) -> ([Detection; 2], [f64; 3]) {
     let in_right = cameras.right_from_left * in_left;
     let boxes =
         [(Eye::Left, in_left.coords.coords), (Eye::Right, in_right.coords.coords)].map(|(eye, at)| {
-            let middle = cameras.camera(eye).project(&at.into()).expect("in view");
+            let middle = cameras.camera(eye).project(&at).expect("in view");
             thing(class, 0.9, (middle.u_px as f32 + 0.5, middle.v_px as f32 + 0.5))
         });
     (boxes, at_m)
