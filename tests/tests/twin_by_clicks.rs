@@ -5,7 +5,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use plumbline_engine::view::{MotionState, RobotView};
+use plumbline_engine::view::{MotionState, Preview, RobotView};
 use plumbline_model::robot::{JointIndex, Rig};
 use plumbline_tests::{Window, click_containing, for_a_while, until, view, window};
 
@@ -68,6 +68,14 @@ fn move_the_arm(window: &mut Window, rig: &Rig) {
 fn stop_it(window: &mut Window, rig: &Rig) {
     let home = rig.pose("home").expect("a pose of NICO");
     click_containing(window, &home.title);
+    // "Move there" goes where the ghost stands, so it is pressed when the ghost is the new one.
+    until(window, "the ghost at home", |window| {
+        let shown = robot(window);
+        let there = |preview: &Preview| {
+            home.joints.iter().all(|(joint, angle_rad)| (preview.end[*joint] - angle_rad).abs() < 0.01)
+        };
+        shown.preview.as_ref().is_some_and(|preview| there(preview) && preview.path.is_ok())
+    });
     click_containing(window, "Move there");
     let on_its_way = |window: &Window| matches!(robot(window).motion, MotionState::Moving { fraction: Some(part), .. } if part > 0.15);
     until(window, "the arm on its way home", on_its_way);
