@@ -41,10 +41,11 @@ def decode(data):
 
 
 class Crops:
-    """`mosaics`: share of samples that are put together of four, so that more objects are seen."""
+    """`mosaics`: share of samples that are put together of four, so that more objects are seen.
+    `zoom`: how large the images are drawn in the middle, as the exported network will see them."""
 
-    def __init__(self, items, mosaics=0.0):
-        self.items, self.mosaics = items, mosaics
+    def __init__(self, items, mosaics=0.0, zoom=1.0):
+        self.items, self.mosaics, self.zoom = items, mosaics, zoom
 
     def side(self, rng):
         return int(rng.choice([256, 320, 320, 320, 384, 448]))
@@ -63,8 +64,8 @@ class Crops:
     def crop(self, rng, side):
         data, boxes = self.items[rng.integers(len(self.items))]
         image = decode(data)
-        zoom = float(np.exp(rng.normal(0.05, 0.22)))
-        zoom = min(max(zoom, side / image.shape[0] * 0.75, 0.6), 1.8)
+        zoom = self.zoom * min(max(float(np.exp(rng.normal(0.05, 0.22))), 0.6), 1.8)
+        zoom = max(zoom, side / image.shape[0] * 0.75)
         reach = 0.42 if side > 200 else 0.3
         image, boxes = self.cut(rng, image, boxes, side, zoom, reach)
         if rng.random() < 0.5:

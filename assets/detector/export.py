@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 """Writes trained weights as an ONNX file with the metadata that YOLO exports carry.
 
-    python export.py run/last.pt plumbline-detector.onnx
+    python export.py run/last.pt plumbline-detector.onnx --zoom 1.5
+
+`--zoom` says how many pixels of the network there are per pixel of an eye's image: toys are some
+20 pixels wide, and the edges of a box are found more exactly on a larger picture.
 """
 
-import sys
+import argparse
 
 import numpy as np
 import onnx
@@ -13,14 +16,27 @@ import torch
 from augment import NAMES
 from network import Detector, Exported, fold
 
+# Of an eye's image.
 HEIGHT, WIDTH = 480, 640
+# Sides of the input are multiples of the widest stride.
+STRIDE = 32
 
 
-def main(weights, out):
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("weights")
+    arguments.add_argument("out")
+    arguments.add_argument("--zoom", type=float, default=1.5)
+    args = arguments.parse_args()
+    height, width = (round(side * args.zoom / STRIDE) * STRIDE for side in (HEIGHT, WIDTH))
+    export(args.weights, args.out, height, width)
+
+
+def export(weights, out, height, width):
     net = Detector()
     net.load_state_dict(torch.load(weights, map_location="cpu", weights_only=True)["net"])
-    model = Exported(fold(net.eval()), HEIGHT, WIDTH).eval()
-    example = torch.rand(1, 3, HEIGHT, WIDTH)
+    model = Exported(fold(net.eval()), height, width).eval()
+    example = torch.rand(1, 3, height, width)
     torch.onnx.export(
         model, example, out, opset_version=17, dynamo=False, input_names=["images"], output_names=["output0"]
     )
@@ -31,7 +47,7 @@ def main(weights, out):
         "task": "detect",
         "stride": "32",
         "batch": "1",
-        "imgsz": str([HEIGHT, WIDTH]),
+        "imgsz": str([height, width]),
         "names": str(dict(enumerate(NAMES))),
     }
     for key, value in known.items():
@@ -51,6 +67,4 @@ def main(weights, out):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
-        raise SystemExit(__doc__)
-    main(*sys.argv[1:])
+    main()

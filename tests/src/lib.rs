@@ -1,6 +1,8 @@
 //! What whole-application tests share: the window over the real engine, clicks by label, and
 //! waiting until something holds.
 
+#![allow(clippy::print_stderr, reason = "says why a test was skipped")]
+
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -9,6 +11,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use plumbline::{PlumblineWindow, WindowOptions};
 use plumbline_engine::{Engine, EngineSettings, View};
+use plumbline_twin::eyes::{EyeOptions, EyeRenderer, RenderError};
 
 /// The window, drawn in memory.
 pub type Window = Harness<'static, PlumblineWindow>;
@@ -79,4 +82,19 @@ pub fn type_over(window: &mut Window, path: &Path) {
     window.run_steps(1);
     window.event(egui::Event::Text(path.to_str().expect("a path in letters").to_owned()));
     window.run_steps(2);
+}
+
+/// Draws what the twin's eyes see; `None`, with a word on the console, where nothing can draw.
+///
+/// # Panics
+/// When there is something to draw with, and it does not work.
+pub fn eye_renderer() -> Option<EyeRenderer> {
+    match EyeRenderer::new(EyeOptions::default()) {
+        Ok(renderer) => Some(renderer),
+        Err(RenderError::NoAdapter) => {
+            eprintln!("skipped: no Vulkan device on this machine");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
 }

@@ -7,7 +7,8 @@ use std::sync::Arc;
 use nalgebra::{Isometry3, Point3, Vector3};
 use plumbline_model::robot::Rig;
 use plumbline_model::{ClassIndex, ClassNames, Detection, PixelBox, Pose, StereoCalibration, StereoCameras};
-use plumbline_twin::eyes::{EyeOptions, EyeRenderer, ObjectImage, RenderError, Sensor};
+use plumbline_tests::eye_renderer;
+use plumbline_twin::eyes::{ObjectImage, Sensor};
 use plumbline_twin::physics::World;
 use plumbline_twin::scene::{Scenery, Shape, Snapshot, TrueEyes};
 use plumbline_twin::scenery::object::of_toy;
@@ -19,17 +20,6 @@ use plumbline_vision::synthetic::Noise;
 const LEAST_SIDE_PX: f32 = 6.0;
 /// Table seen in a few head poses (turn, tilt from the usual one, rad).
 const HEADS_RAD: [[f64; 2]; 4] = [[0.0, 0.0], [0.3, 0.05], [-0.3, -0.05], [0.1, -0.15]];
-
-fn renderer() -> Option<EyeRenderer> {
-    match EyeRenderer::new(EyeOptions::default()) {
-        Ok(renderer) => Some(renderer),
-        Err(RenderError::NoAdapter) => {
-            eprintln!("skipped: no Vulkan device on this machine");
-            None
-        }
-        Err(error) => panic!("{error}"),
-    }
-}
 
 /// What is visible while all toys are out.
 fn scenery(rig: &Arc<Rig>, scenario: &Scenario) -> Arc<Scenery> {
@@ -143,7 +133,7 @@ fn spread(noise: &mut Noise) -> Vec<(Toy, [f64; 2])> {
 
 #[test]
 fn toys_on_the_table_are_where_they_are_said_to_be() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = eye_renderer() else { return };
     let rig = Arc::new(Rig::built_in("nico").expect("valid"));
     let scenario = Scenario::built_in("perfect").expect("valid");
     let scenery = scenery(&rig, &scenario);

@@ -6,20 +6,9 @@ use nalgebra::{Isometry3, Vector3};
 use plumbline_model::{CalibrationOptions, Camera, CameraModel, Fisheye, StereoCameras, Unattended};
 use plumbline_vision::{calibrate, chessboard};
 
-use plumbline_twin::eyes::{EyeOptions, EyeRenderer, RenderError, Sensor, sample};
+use plumbline_tests::eye_renderer;
+use plumbline_twin::eyes::{Sensor, sample};
 use plumbline_twin::scene::{Scenery, Snapshot};
-
-/// A renderer, or a word on why the test is left out.
-fn renderer() -> Option<EyeRenderer> {
-    match EyeRenderer::new(EyeOptions::default()) {
-        Ok(renderer) => Some(renderer),
-        Err(RenderError::NoAdapter) => {
-            eprintln!("skipped: no Vulkan device on this machine");
-            None
-        }
-        Err(error) => panic!("{error}"),
-    }
-}
 
 fn empty() -> (Scenery, Snapshot) {
     let snapshot =
@@ -65,7 +54,7 @@ fn poses() -> Vec<Isometry3<f64>> {
 
 #[test]
 fn a_board_calibrates_back_to_the_true_lenses() {
-    let Some(mut renderer) = renderer() else { return };
+    let Some(mut renderer) = eye_renderer() else { return };
     let (mut scenery, mut snapshot) = empty();
     snapshot.eyes.left = without_skew(&snapshot.eyes.left);
     snapshot.eyes.right = without_skew(&snapshot.eyes.right);

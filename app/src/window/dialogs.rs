@@ -106,28 +106,26 @@ impl Question {
     /// Names of the paths that are asked for.
     pub fn fields(self) -> &'static [&'static str] {
         match self {
-            Self::Folder
-            | Self::TouchSession
-            | Self::GapSession
-            | Self::LabelSet
-            | Self::ExportLabels
-            | Self::ImportLabels
-            | Self::ScoreSet => &["Folder"],
             Self::TwoFolders => &["Left folder", "Right folder"],
             Self::TwoVideos => &["Left video", "Right video"],
             Self::Import => &["File", "Right eye's file, if there are two"],
-            Self::Export(..)
-            | Self::Detector
-            | Self::ImportModel
-            | Self::ExportModel(..)
-            | Self::ImportTable(_)
-            | Self::ExportTable(_)
-            | Self::GapReport { .. }
-            | Self::ScoreModels
-            | Self::ScoresCsv
-            | Self::SaveWindow
-            | Self::SaveView => &["File"],
+            _ if self.picks_folder() => &["Folder"],
+            _ => &["File"],
         }
+    }
+
+    /// Whether one folder is asked for.
+    fn picks_folder(self) -> bool {
+        matches!(
+            self,
+            Self::Folder
+                | Self::TouchSession
+                | Self::GapSession
+                | Self::LabelSet
+                | Self::ExportLabels
+                | Self::ImportLabels
+                | Self::ScoreSet
+        )
     }
 
     /// How many of the fields have to be filled.
@@ -159,13 +157,14 @@ impl Question {
         }
     }
 
-    /// Whether a new file is written rather than something read.
+    /// Whether something new is written rather than something read.
     pub fn saves(self) -> bool {
         matches!(
             self,
             Self::Export(..)
                 | Self::ExportModel(..)
                 | Self::ExportTable(_)
+                | Self::ExportLabels
                 | Self::GapReport { .. }
                 | Self::ScoresCsv
                 | Self::SaveWindow
@@ -180,13 +179,6 @@ impl Question {
         let video =
             |title: &str| titled(title).add_filter("Videos", &["mp4", "avi", "mkv", "mov", "webm", "m4v"]);
         match self {
-            Self::Folder
-            | Self::TouchSession
-            | Self::GapSession
-            | Self::LabelSet
-            | Self::ExportLabels
-            | Self::ImportLabels
-            | Self::ScoreSet => dialog().pick_folder().map(|folder| vec![folder]),
             Self::Detector => dialog().add_filter("ONNX files", &["onnx"]).pick_file().map(|file| vec![file]),
             Self::ImportModel => {
                 dialog().add_filter("Models", &["json", "onnx"]).pick_file().map(|file| vec![file])
@@ -206,15 +198,9 @@ impl Question {
                 Some(vec![left, right])
             }
             Self::Import => dialog().add_filter("Calibrations", &["yaml", "yml", "xml"]).pick_files(),
-            Self::Export(..)
-            | Self::ExportModel(..)
-            | Self::ExportTable(_)
-            | Self::GapReport { .. }
-            | Self::ScoresCsv
-            | Self::SaveWindow
-            | Self::SaveView => {
-                dialog().set_file_name(self.suggested_name()).save_file().map(|file| vec![file])
-            }
+            _ if self.picks_folder() => dialog().pick_folder().map(|folder| vec![folder]),
+            // All others that read something stand above.
+            _ => dialog().set_file_name(self.suggested_name()).save_file().map(|file| vec![file]),
         }
     }
 }

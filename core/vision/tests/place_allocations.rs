@@ -1,38 +1,13 @@
 //! After the first frames places cost no memory.
-#![expect(unsafe_code, reason = "an allocator that counts can be written in no other way")]
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
+mod counting;
 
+use counting::{allocations, assert_counts};
 use image::{Rgb, RgbImage};
 use nalgebra::Vector3;
 use plumbline_model::{ClassIndex, Detection, PixelBox, Pose, StereoCalibration};
 use plumbline_vision::detect_places::{PlaceFinder, PlaceOptions, RangeFrom, Rates};
 use plumbline_vision::synthetic::nico_like_eyes;
-
-thread_local! {
-    static COUNT: Cell<usize> = const { Cell::new(0) };
-}
-
-struct Counting;
-
-// SAFETY: everything is handed to the system's allocator as it comes.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        // A thread that ends has no counter any more, and is not counted.
-        let _ = COUNT.try_with(|count| count.set(count.get() + 1));
-        // SAFETY: as the caller promises.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: as the caller promises.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// Ten boxes, `shift_px` further to the left.
 fn boxes(shift_px: f32) -> Vec<Detection> {
@@ -48,8 +23,7 @@ fn boxes(shift_px: f32) -> Vec<Detection> {
 
 #[test]
 fn nothing_is_allocated_after_the_first_frames() {
-    let _seen = Box::new(0_u8);
-    assert!(COUNT.get() > 0, "this test must be able to see an allocation");
+    assert_counts();
     // A picture whose right view is the left one moved by 20 px.
     let picture = |shift: u32| {
         RgbImage::from_fn(640, 480, |x, y| {
@@ -77,11 +51,11 @@ fn nothing_is_allocated_after_the_first_frames() {
         assert!(frame(&left_boxes, &right_boxes) >= 5, "the whole path has to be used");
         frame(&left_boxes[..4], &right_boxes[3..]);
     }
-    let before = COUNT.get();
+    let before = allocations();
     for _ in 0..20 {
         frame(&left_boxes, &right_boxes);
         frame(&left_boxes[..4], &right_boxes[3..]);
     }
-    let allocated = COUNT.get() - before;
+    let allocated = allocations() - before;
     assert_eq!(allocated, 0, "{allocated} allocations in 40 frames");
 }

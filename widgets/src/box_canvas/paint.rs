@@ -5,6 +5,7 @@ use plumbline_model::PixelBox;
 
 use super::{BoxCanvas, CanvasBox, CanvasState};
 use crate::image_view::ImageTransform;
+use crate::overlay::boxes::room;
 use crate::texture::Sampling;
 use crate::theme::{self, CROSSHAIR, RIM, readable_on};
 
@@ -36,11 +37,14 @@ pub(super) fn paint(
     let texture = canvas.picture.texture(ui.ctx(), sampling);
     painter.image(texture, transform.image_rect(), whole, Color32::WHITE);
     let under_way = canvas.under_way(state);
-    for (index, shown) in canvas.boxes.iter().enumerate() {
-        let moved = under_way.filter(|placed| placed.index == Some(index));
-        let shown = CanvasBox { area: moved.map_or(shown.area, |placed| placed.area), ..shown.clone() };
-        paint_box(ui, &painter, transform, &shown, state.chosen == Some(index), canvas.draw.is_some());
+    let moved = |index| under_way.filter(|placed| placed.index == Some(index)).map(|placed| placed.area);
+    let boxes = canvas.boxes.iter().enumerate();
+    let around: Vec<Rect> =
+        boxes.clone().map(|(i, shown)| on_screen(&moved(i).unwrap_or(shown.area), transform)).collect();
+    for ((index, shown), rect) in boxes.zip(&around) {
+        paint_box(&painter, *rect, shown, state.chosen == Some(index), canvas.draw.is_some());
     }
+    tags(ui, &painter, canvas.boxes, &around, state.chosen);
     if let (Some(placed), Some(color)) = (under_way.filter(|placed| placed.index.is_none()), canvas.draw) {
         frame(&painter, on_screen(&placed.area, transform), color, 1.5, false);
     }
@@ -61,15 +65,7 @@ fn crosshair(painter: &Painter, rect: Rect, transform: &ImageTransform, [x, y]: 
     }
 }
 
-fn paint_box(
-    ui: &Ui,
-    painter: &Painter,
-    transform: &ImageTransform,
-    shown: &CanvasBox,
-    chosen: bool,
-    editable: bool,
-) {
-    let rect = on_screen(&shown.area, transform);
+fn paint_box(painter: &Painter, rect: Rect, shown: &CanvasBox, chosen: bool, editable: bool) {
     if chosen {
         painter.rect_filled(rect, 0.0, shown.color.gamma_multiply(0.16));
     }
@@ -81,11 +77,6 @@ fn paint_box(
             painter.rect_stroke(square, 1.0, Stroke::new(1.0, RIM), StrokeKind::Outside);
         }
     }
-    let text = if shown.odd { format!("{}  !", shown.text) } else { shown.text.clone() };
-    // Where nothing is changed, labels and what was found lie on each other: one says its name above,
-    // the other one below.
-    let below = shown.dashed && !editable;
-    tag(ui, painter, rect, &text, shown.color, transform, below);
 }
 
 /// The outline of a box alone, on an image that is mapped like this.
@@ -121,28 +112,21 @@ fn handles(rect: Rect) -> [Pos2; 8] {
     ]
 }
 
-/// What it is, above the box or, at the upper edge of the picture, in it.
-fn tag(
-    ui: &Ui,
-    painter: &Painter,
-    rect: Rect,
-    text: &str,
-    color: Color32,
-    transform: &ImageTransform,
-    below: bool,
-) {
+/// What the boxes are, none over another: that of the chosen box has the first choice of a place.
+fn tags(ui: &Ui, painter: &Painter, boxes: &[CanvasBox], around: &[Rect], chosen: Option<usize>) {
     let font = TextStyle::Small.resolve(ui.style());
-    let galley = painter.layout_no_wrap(text.to_owned(), font, readable_on(color));
-    let size = galley.size() + vec2(6.0, 2.0);
-    let image = transform.image_rect();
-    let above = rect.top() - size.y >= image.top().max(painter.clip_rect().top());
-    let top = match (below, above) {
-        (true, _) => rect.bottom().min(image.bottom().min(painter.clip_rect().bottom()) - size.y),
-        (false, true) => rect.top() - size.y,
-        (false, false) => rect.top(),
-    };
-    let left = rect.left().min(image.right().min(painter.clip_rect().right()) - size.x);
-    let background = Rect::from_min_size(pos2(left, top), size);
-    painter.rect_filled(background, 2.0, color);
-    painter.galley(background.min + vec2(3.0, 1.0), galley, readable_on(color));
+    let mut order: Vec<usize> = (0..boxes.len()).collect();
+    order.sort_by_key(|index| Some(*index) != chosen);
+    let mut taken = Vec::new();
+    for index in order {
+        let shown = &boxes[index];
+        let text = if shown.odd { format!("{}  !", shown.text) } else { shown.text.clone() };
+        let color = readable_on(shown.color);
+        let galley = painter.layout_no_wrap(text, font.clone(), color);
+        let size = galley.size() + vec2(6.0, 2.0);
+        if let Some(place) = room(painter, index, around, size, shown.color, &mut taken) {
+            painter.rect_filled(place, 2.0, shown.color);
+            painter.galley(place.min + vec2(3.0, 1.0), galley, color);
+        }
+    }
 }

@@ -93,21 +93,33 @@ fn words(shown: &LabeledBox, i: usize, around: &[Rect], painter: &Painter, taken
     let color = if chosen { ON_IMAGE.text_strong } else { shown.color };
     let galley = painter.layout_no_wrap(shown.text.clone(), font, color);
     let size = galley.size() + 2.0 * PADDING;
-    let Some(place) = place(i, around, size, painter.clip_rect(), taken) else { return };
-    if place.expand(GAP + 1.0).intersects(around[i]) {
-        // It stands at its box; no line is needed.
-    } else {
-        let [from, to] = [around[i].clamp(place.center()), place.clamp(around[i].center())];
-        for stroke in [Stroke::new(3.0, RIM), Stroke::new(1.0, shown.color)] {
-            painter.line_segment([from, to], stroke);
-        }
-    }
+    let Some(place) = room(painter, i, around, size, shown.color, taken) else { return };
     painter.rect_filled(place, 3.0, RIM);
     if chosen {
         painter.rect_filled(Rect::from_min_size(place.min, vec2(3.0, place.height())), 1.0, shown.color);
     }
     painter.galley(place.min + PADDING, galley, color);
+}
+
+/// Takes room for words of this size for box `i`, and ties them to it by a line where they are not at
+/// it. `None`: there is no room.
+pub(crate) fn room(
+    painter: &Painter,
+    i: usize,
+    around: &[Rect],
+    size: Vec2,
+    color: Color32,
+    taken: &mut Vec<Rect>,
+) -> Option<Rect> {
+    let place = place(i, around, size, painter.clip_rect(), taken)?;
+    if !place.expand(GAP + 1.0).intersects(around[i]) {
+        let [from, to] = [around[i].clamp(place.center()), place.clamp(around[i].center())];
+        for stroke in [Stroke::new(3.0, RIM), Stroke::new(1.0, color)] {
+            painter.line_segment([from, to], stroke);
+        }
+    }
     taken.push(place);
+    Some(place)
 }
 
 /// Where words of this size for box `i` go: of the places around it that are on the picture and on

@@ -1,6 +1,6 @@
 //! Marks on top of an image, in image pixels, as plain data.
 
-mod boxes;
+pub(crate) mod boxes;
 mod paint;
 
 pub use boxes::{Emphasis, LabeledBox};

@@ -2,6 +2,7 @@
 
 use egui::{Label, RichText, Ui};
 use plumbline_engine::View;
+use plumbline_widgets::format;
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, Role, group_heading};
 
@@ -23,12 +24,16 @@ pub fn show(ui: &mut Ui, view: &View, state: &mut PanelState, _outbox: &mut Outb
         ui.add(Label::new(RichText::new(text).color(Role::Warning.color(theme::tokens(ui)))).wrap());
     }
     let Ok(scores) = &row.scores else { return };
-    let total: f64 = scores.times_ms.iter().sum();
+    let [before_ms, network_ms, after_ms] = scores.times_ms;
+    let total = before_ms + network_ms + after_ms;
     let mut rows = vec![
         KeyValue::text("mAP50–95", figure(Some(scores.all.map50_95))),
         KeyValue::text("95 %", interval(scores.all.map50_95_interval)),
         KeyValue::text("mAP50", figure(Some(scores.all.map50))),
-        KeyValue::text("Per image", plumbline_widgets::format::ms(1e-3 * total)),
+        KeyValue::text("Per image", format::ms(1e-3 * total)),
+        KeyValue::text("fitting it", format::ms(1e-3 * before_ms)),
+        KeyValue::text("network", format::ms(1e-3 * network_ms)),
+        KeyValue::text("its boxes", format::ms(1e-3 * after_ms)),
     ];
     if scores.all.map50_95_interval.is_none() {
         rows.remove(1);

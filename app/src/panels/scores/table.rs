@@ -53,7 +53,8 @@ fn model(ui: &mut Ui, scores: &ModelScores) {
         with_interval(ui, value, ends);
     }
     with_interval(ui, Some(scores.all.map50), scores.all.map50_interval);
-    let [before, network, after] = scores.times_ms.map(|ms| format::significant(ms, 3));
+    let network = format::significant(scores.times_ms[1], 3);
+    let [before, _, after] = scores.times_ms.map(|ms| format::significant(ms, 2));
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         ui.label(network);

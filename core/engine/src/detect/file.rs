@@ -20,7 +20,12 @@ const NONE_SHIPPED: &str =
 
 /// Opens a detector.
 pub fn open(choice: &DetectorChoice, provider: Provider) -> Result<Box<dyn Detects>, String> {
-    let options = DetectorOptions { provider, ..DetectorOptions::default() };
+    let options = DetectorOptions {
+        provider,
+        threads: Some(threads()),
+        shares_processor: true,
+        ..DetectorOptions::default()
+    };
     let opened = match choice {
         DetectorChoice::Off => return Err("no detector is chosen".to_owned()),
         DetectorChoice::Shipped => shipped_detector().ok_or(NONE_SHIPPED)?.open(&options),
@@ -34,6 +39,12 @@ pub fn open(choice: &DetectorChoice, provider: Provider) -> Result<Box<dyn Detec
         ..DetectSettings::default()
     };
     Ok(Box::new(FileDetector { detector, settings, shipped: *choice == DetectorChoice::Shipped }))
+}
+
+/// Cameras, disparity, the window and the bus, which moves an arm, need the processor too.
+fn threads() -> usize {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    (cores / 2).max(1)
 }
 
 struct FileDetector {

@@ -93,7 +93,7 @@ fn one(
     context: &dyn JobContext,
 ) -> Result<Result<ModelEvaluation, String>, JobError> {
     context.checkpoint()?;
-    let options = DetectorOptions { provider, or_processor: true, threads: None };
+    let options = DetectorOptions { provider, or_processor: true, ..DetectorOptions::default() };
     let mut detector = match Detector::open(file, &options) {
         Ok(detector) => detector,
         Err(error) => return Ok(Err(sentence(&error.to_string()))),
@@ -112,18 +112,11 @@ fn scores_of(evaluation: &ModelEvaluation) -> ModelScores {
         let summary = &scores.per_class.get(class.0)?.summary;
         score(summary, evaluation.per_class_intervals.get(class.0))
     };
-    let hands: Vec<&Summary> = ["LeftHand", "RightHand"]
-        .iter()
-        .filter_map(|name| evaluation.class_names.index_of(name))
-        .filter_map(|class| Some(&scores.per_class.get(class.0)?.summary))
-        .filter(|summary| summary.ap.is_some())
-        .collect();
-    let hands = (!hands.is_empty()).then(|| Summary::mean(hands));
     let timing = &evaluation.timing;
     ModelScores {
         all: score(&scores.overall, Some(&evaluation.intervals)).unwrap_or_default(),
         tomato: of("Tomato"),
-        hands: hands.and_then(|summary| score(&summary, None)),
+        hands: evaluation.hands.as_ref().and_then(|(summary, intervals)| score(summary, Some(intervals))),
         classes: evaluation.class_names.iter().map(|(_, name)| of(name)).collect(),
         times_ms: [timing.before_s, timing.network_s, timing.after_s].map(|seconds| 1e3 * seconds),
         unknown_to_model: evaluation.agreement.unknown_to_model.clone(),

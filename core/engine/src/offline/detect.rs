@@ -92,7 +92,7 @@ pub fn detect(args: &DetectArgs, context: &dyn JobContext) -> Result<DetectRepor
     };
     let files = image_files(&args.images)?;
     let mut detector = Detector::open(&model, &args.options)?;
-    let mut work = Work { report: empty(model, detector.info().clone()), timings: Vec::new() };
+    let mut work = Work { report: empty(model, detector.info().clone()), timings: Vec::new(), refused: None };
     let labels = args.labels_out.as_deref();
     if let Some(folder) = labels {
         write_names(folder, &work.report.detector)?;
@@ -109,6 +109,9 @@ pub fn detect(args: &DetectArgs, context: &dyn JobContext) -> Result<DetectRepor
 struct Work {
     report: DetectReport,
     timings: Vec<DetectTiming>,
+    /// Place in the list of left out images of the first one that could be read, so that the
+    /// detector is to blame.
+    refused: Option<usize>,
 }
 
 impl Work {
@@ -122,7 +125,9 @@ impl Work {
     ) -> Result<(), OfflineError> {
         let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let mut found = Vec::new();
+        let mut readable = false;
         let looked = load_image(file).map_err(|problem| problem.to_string()).and_then(|loaded| {
+            readable = true;
             let notes = loaded.notes.iter().map(|note| format!("{name}: {note}"));
             self.report.notes.extend(notes);
             let timing = detector.detect(&loaded.image, settings, &mut found);
@@ -131,6 +136,9 @@ impl Work {
         let (size, timing) = match looked {
             Ok(looked) => looked,
             Err(reason) => {
+                if readable && self.refused.is_none() {
+                    self.refused = Some(self.report.left_out.len());
+                }
                 self.report.left_out.push(LeftOutImage { image: name, reason });
                 return Ok(());
             }
@@ -156,7 +164,8 @@ impl Work {
 
     fn finish(mut self) -> Result<DetectReport, OfflineError> {
         if self.timings.is_empty()
-            && let Some(LeftOutImage { image, reason }) = self.report.left_out.first()
+            && let Some(LeftOutImage { image, reason }) =
+                self.report.left_out.get(self.refused.unwrap_or_default())
         {
             return Err(OfflineError::NoImageDetected {
                 images: self.report.left_out.len(),

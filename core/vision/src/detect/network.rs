@@ -27,11 +27,11 @@ pub(super) fn open(
     options: &DetectorOptions,
 ) -> Result<(Session, Provider, Option<String>), DetectError> {
     let asked = options.provider;
-    let refused = match open_with(library, name, source, options.threads, asked) {
+    let refused = match open_with(library, name, source, options, asked) {
         Err(DetectError::NoProvider { reason, .. }) if options.or_processor => reason,
         result => return result.map(|session| (session, asked, None)),
     };
-    let session = open_with(library, name, source, options.threads, Provider::Cpu)?;
+    let session = open_with(library, name, source, options, Provider::Cpu)?;
     let note = format!("{asked} was asked for but cannot be used here ({refused}); the processor is used");
     Ok((session, Provider::Cpu, Some(note)))
 }
@@ -40,14 +40,16 @@ fn open_with(
     library: &Library,
     name: &str,
     source: &Source<'_>,
-    threads: Option<usize>,
+    options: &DetectorOptions,
     provider: Provider,
 ) -> Result<Session, DetectError> {
     let not_onnx = |error: ort::Error| DetectError::NotOnnx { model: name.to_owned(), reason: words(&error) };
     let mut builder = Session::builder(&library.environment).map_err(not_onnx)?;
-    if let Some(threads) = threads {
+    if let Some(threads) = options.threads {
         builder = builder.with_intra_threads(threads).map_err(|error| not_onnx(error.into()))?;
     }
+    let spins = !options.shares_processor;
+    builder = builder.with_intra_op_spinning(spins).map_err(|error| not_onnx(error.into()))?;
     register(library, provider, &mut builder)?;
     match source {
         Source::File(path) => builder.commit_from_file(path),

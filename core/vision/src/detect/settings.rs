@@ -53,6 +53,10 @@ pub struct DetectorOptions {
     pub or_processor: bool,
     /// Threads on the processor; `None` takes one per core.
     pub threads: Option<usize>,
+    /// Threads sleep while they wait for each other, so that other work gets the processor; alone,
+    /// the network takes a little longer.
+    #[serde(default)]
+    pub shares_processor: bool,
 }
 
 /// Which boxes of a detector count.

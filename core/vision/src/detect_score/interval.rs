@@ -51,13 +51,29 @@ pub struct Intervals {
     pub ap50: Option<Interval>,
 }
 
+/// How far scores can be trusted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ScoreIntervals {
+    /// Over all classes.
+    pub overall: Intervals,
+    /// Of each class.
+    pub per_class: Vec<Intervals>,
+    /// Of the mean over each group of classes that was asked for.
+    pub groups: Vec<Intervals>,
+}
+
 /// Scores of one class in one draw.
 type Draw = Option<[f64; 2]>;
 
 impl Scores {
-    /// Intervals over all classes, and per class. `scenes` names the scene of every image, in
-    /// the order of the images that were scored.
-    pub fn intervals(&self, scenes: &[&str], options: &IntervalOptions) -> (Intervals, Vec<Intervals>) {
+    /// Intervals over all classes, per class, and of the mean over groups of classes. `scenes` names
+    /// the scene of every image, in the order of the images that were scored.
+    pub fn intervals(
+        &self,
+        scenes: &[&str],
+        groups: &[Vec<usize>],
+        options: &IntervalOptions,
+    ) -> ScoreIntervals {
         let mut members: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
         for (image, scene) in scenes.iter().enumerate() {
             members.entry(scene).or_default().push(image);
@@ -67,29 +83,34 @@ impl Scores {
             .into_par_iter()
             .map(|draw| self.draw(&members, scenes.len(), options.seed, draw as u64))
             .collect();
-        let enough = |class: &ClassScores| {
-            let has = |images: &&Vec<usize>| {
-                images
-                    .iter()
-                    .any(|image| class.things_per_image.get(*image).is_some_and(|things| *things > 0))
+        let of = |classes: &[usize]| {
+            let one = |draw: &Vec<Draw>, number: usize| {
+                mean(classes.iter().filter_map(|class| Some((*draw.get(*class)?)?[number])))
             };
-            members.iter().filter(has).count() >= FEWEST_SCENES
+            let over = |number: usize| draws.iter().filter_map(|draw| one(draw, number)).collect();
+            if self.is_seen_enough(classes, &members) {
+                self.between(over, options.level)
+            } else {
+                Intervals::default()
+            }
         };
-        let per_class = self.per_class.iter().enumerate().map(|(class, scores)| {
-            let of = |number: usize| draws.iter().filter_map(|draw| Some(draw[class]?[number])).collect();
-            if enough(scores) { self.between(of, options.level) } else { Intervals::default() }
-        });
-        let per_class = per_class.collect();
-        let over_all = |number: usize| {
-            let one = |draw: &Vec<Draw>| mean(draw.iter().flatten().map(|class| class[number]));
-            draws.iter().filter_map(one).collect()
+        let all: Vec<usize> = (0..self.per_class.len()).collect();
+        ScoreIntervals {
+            overall: if members.len() >= FEWEST_SCENES { of(&all) } else { Intervals::default() },
+            per_class: all.iter().map(|class| of(&[*class])).collect(),
+            groups: groups.iter().map(|group| of(group)).collect(),
+        }
+    }
+
+    /// Whether enough scenes have something of these classes.
+    fn is_seen_enough(&self, classes: &[usize], scenes: &[Vec<usize>]) -> bool {
+        let there = |class: &usize, image: &usize| {
+            let class = self.per_class.get(*class);
+            class.and_then(|class| class.things_per_image.get(*image)).is_some_and(|things| *things > 0)
         };
-        let overall = if members.len() >= FEWEST_SCENES {
-            self.between(over_all, options.level)
-        } else {
-            Intervals::default()
-        };
-        (overall, per_class)
+        let has =
+            |images: &&Vec<usize>| images.iter().any(|image| classes.iter().any(|class| there(class, image)));
+        scenes.iter().filter(has).count() >= FEWEST_SCENES
     }
 
     /// Draws scenes once and scores every class on them.

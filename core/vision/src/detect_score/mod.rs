@@ -21,7 +21,7 @@ use plumbline_model::{ClassIndex, PixelBox};
 
 pub use confusion::{Cell, CellEntry, ConfusionMatrix, ConfusionOptions};
 pub use csv_text::{matrix_csv, scores_csv};
-pub use interval::{Interval, IntervalOptions, Intervals};
+pub use interval::{Interval, IntervalOptions, Intervals, ScoreIntervals};
 pub use operating::OperatingPoint;
 pub use run::{
     Detect, EvaluateError, EvaluateOptions, MedianTiming, ModelEvaluation, NameAgreement, PartOfJob,

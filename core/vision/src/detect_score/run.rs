@@ -7,8 +7,8 @@ use image::RgbImage;
 use plumbline_model::{Cancelled, ClassIndex, ClassNames, Detection, JobContext};
 
 use super::{
-    ConfusionMatrix, ConfusionOptions, FoundBox, IntervalOptions, Intervals, IouThresholds, ScoredImage,
-    Scores, TruthBox, average_precision,
+    ConfusionMatrix, ConfusionOptions, FoundBox, IntervalOptions, Intervals, IouThresholds, ScoreIntervals,
+    ScoredImage, Scores, Summary, TruthBox, average_precision,
 };
 use crate::detect::{DetectError, DetectSettings, DetectTiming, Detector};
 use crate::yolo_set::{LabeledImage, YoloSet};
@@ -150,6 +150,9 @@ pub struct SkippedImage {
     pub counts: bool,
 }
 
+/// Classes that published tables take as one.
+const HANDS: [&str; 2] = ["LeftHand", "RightHand"];
+
 /// A model, judged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelEvaluation {
@@ -171,6 +174,8 @@ pub struct ModelEvaluation {
     pub intervals: Intervals,
     /// How far those of each class can.
     pub per_class_intervals: Vec<Intervals>,
+    /// Mean of both hands, as published tables have it; `None` if the set has no hands.
+    pub hands: Option<(Summary, Intervals)>,
     /// What is taken for what.
     pub matrix: ConfusionMatrix,
     /// Confidence of the matrix, and of precision and recall.
@@ -241,7 +246,12 @@ pub fn evaluate(
     let scores = average_precision(&scored, set.names.len(), &options.iou);
     context.checkpoint()?;
     let scenes: Vec<&str> = ran.images.iter().map(|image| image.scene.as_str()).collect();
-    let (intervals, per_class_intervals) = scores.intervals(&scenes, &options.interval);
+    let hands: Vec<usize> = HANDS.iter().filter_map(|name| Some(set.names.index_of(name)?.0)).collect();
+    let ScoreIntervals { overall: intervals, per_class: per_class_intervals, groups } =
+        scores.intervals(&scenes, std::slice::from_ref(&hands), &options.interval);
+    let of_hands = hands.iter().map(|class| &scores.per_class[*class].summary);
+    let seen: Vec<&Summary> = of_hands.filter(|summary| summary.ap.is_some()).collect();
+    let hands = (!seen.is_empty()).then(|| Summary::mean(seen)).zip(groups.into_iter().next());
     Ok(ModelEvaluation {
         model,
         class_names: set.names.clone(),
@@ -249,6 +259,7 @@ pub fn evaluate(
         scores,
         intervals,
         per_class_intervals,
+        hands,
         matrix: ConfusionMatrix::new(&scored, set.names.len(), &options.confusion),
         confidence: options.confusion.confidence,
         timing: medians(&ran.times),

@@ -217,8 +217,11 @@ fn intervals_hold_the_score_and_shrink_with_more_scenes() {
         let scores = score(images);
         let names: Vec<String> = (0..images.len()).map(|i| i.to_string()).collect();
         let scenes: Vec<&str> = names.iter().map(String::as_str).collect();
-        let (overall, per_class) = scores.intervals(&scenes, &IntervalOptions::default());
-        assert_eq!((overall, per_class.clone()), scores.intervals(&scenes, &IntervalOptions::default()));
+        let groups = [vec![1], vec![0, 1], vec![]];
+        let intervals = scores.intervals(&scenes, &groups, &IntervalOptions::default());
+        assert_eq!(intervals, scores.intervals(&scenes, &groups, &IntervalOptions::default()));
+        let ScoreIntervals { overall, per_class, groups } = intervals;
+        assert_eq!(groups, [per_class[1], overall, Intervals::default()], "classes taken as one");
         let interval = overall.ap50.expect("enough scenes");
         let ap50 = scores.overall.ap50.expect("there is truth");
         assert!(interval.low <= ap50 && ap50 <= interval.high, "{interval:?} {ap50}");
@@ -233,7 +236,8 @@ fn intervals_hold_the_score_and_shrink_with_more_scenes() {
 fn images_of_one_scene_are_one_witness() {
     let images = some_images(4);
     let scores = score(&images);
-    let (overall, per_class) = scores.intervals(&["the same"; 12], &IntervalOptions::default());
+    let ScoreIntervals { overall, per_class, .. } =
+        scores.intervals(&["the same"; 12], &[], &IntervalOptions::default());
     assert_eq!(overall, Intervals::default(), "one scene says nothing of others");
     assert!(per_class.iter().all(|class| *class == Intervals::default()));
     // Every image twice: the same witnesses, so the same interval.
@@ -242,8 +246,8 @@ fn images_of_one_scene_are_one_witness() {
     let scenes: Vec<&str> = names.iter().map(String::as_str).collect();
     let once: Vec<&str> = scenes.iter().step_by(2).copied().collect();
     let options = IntervalOptions { draws: 50, ..IntervalOptions::default() };
-    let (a, b) =
-        (scores.intervals(&once, &options).0.ap50, score(&twice).intervals(&scenes, &options).0.ap50);
+    let of_twice = score(&twice).intervals(&scenes, &[], &options);
+    let (a, b) = (scores.intervals(&once, &[], &options).overall.ap50, of_twice.overall.ap50);
     let (a, b) = (a.expect("enough"), b.expect("enough"));
     assert!((a.low - b.low).abs() < 0.02 && (a.high - b.high).abs() < 0.02, "{a:?} {b:?}");
 }
