@@ -205,11 +205,19 @@ impl JobContext for Part<'_> {
     }
 }
 
+impl<T> From<Result<T, JobError>> for Outcome<T> {
+    fn from(result: Result<T, JobError>) -> Self {
+        match result {
+            Ok(result) => Self::Done(result),
+            Err(JobError::Cancelled(_)) => Self::Cancelled,
+            Err(JobError::Failed(reason)) => Self::Failed(reason),
+        }
+    }
+}
+
 fn outcome_of<T>(result: std::thread::Result<Result<T, JobError>>) -> Outcome<T> {
     match result {
-        Ok(Ok(result)) => Outcome::Done(result),
-        Ok(Err(JobError::Cancelled(_))) => Outcome::Cancelled,
-        Ok(Err(JobError::Failed(reason))) => Outcome::Failed(reason),
+        Ok(result) => result.into(),
         Err(panic) => Outcome::Panicked(panic_message(panic.as_ref())),
     }
 }

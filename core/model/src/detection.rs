@@ -85,6 +85,14 @@ impl PixelBox {
             && y < f64::from(self.y1_px)
     }
 
+    /// Middle and size (x, y, width, height) as shares of an image of this size: what rows of label
+    /// files in the YOLO layout say.
+    pub fn in_shares(&self, size_px: (u32, u32)) -> [f64; 4] {
+        let (w, h) = (f64::from(size_px.0), f64::from(size_px.1));
+        let [x0, y0, x1, y1] = [self.x0_px, self.y0_px, self.x1_px, self.y1_px].map(f64::from);
+        [0.5 * (x0 + x1) / w, 0.5 * (y0 + y1) / h, (x1 - x0) / w, (y1 - y0) / h]
+    }
+
     /// The part of it on an image of this size; `None` if there is none.
     pub fn on_image(&self, (width_px, height_px): (u32, u32)) -> Option<Self> {
         self.intersection(&Self::new(0.0, 0.0, width_px as f32, height_px as f32))

@@ -11,7 +11,6 @@ use plumbline_vision::yolo_set::{Split, YoloSet};
 use crate::command::{BoxEdit, Command, LabelsCommand};
 use crate::context::Action;
 use crate::detect::{Detects, OpenDetector};
-use crate::jobs::{JobError, Outcome};
 use crate::state::State;
 use crate::view::{DetectionTiming, DetectorFacts, LabelState, View};
 
@@ -37,12 +36,7 @@ impl Desk {
             }
             for action in actions {
                 let Action::Start(id, work) = action else { continue };
-                let outcome = match work.run(&Unattended) {
-                    Ok(result) => Outcome::Done(result),
-                    Err(JobError::Cancelled(_)) => Outcome::Cancelled,
-                    Err(JobError::Failed(reason)) => Outcome::Failed(reason),
-                };
-                self.state.work_ended(id, outcome, Duration::ZERO);
+                self.state.work_ended(id, work.run(&Unattended).into(), Duration::ZERO);
             }
         }
     }

@@ -17,7 +17,6 @@ use plumbline_model::{JobContext, Pixel, Point, Robot, Session, Unattended};
 use crate::Skipped;
 use crate::command::{Command, ModelsCommand};
 use crate::context::Action;
-use crate::jobs::{JobError, Outcome};
 use crate::state::State;
 use crate::view::{ModelsView, View};
 
@@ -129,12 +128,7 @@ impl Lab {
                 return;
             }
             for (id, work) in started {
-                let outcome = match work.run(context) {
-                    Ok(result) => Outcome::Done(result),
-                    Err(JobError::Cancelled(_)) => Outcome::Cancelled,
-                    Err(JobError::Failed(reason)) => Outcome::Failed(reason),
-                };
-                self.state.work_ended(id, outcome, Duration::ZERO);
+                self.state.work_ended(id, work.run(context).into(), Duration::ZERO);
             }
         }
     }

@@ -221,20 +221,11 @@ fn image_files(images: &Path) -> Result<Vec<PathBuf>, OfflineError> {
 }
 
 /// YOLO labels: class, middle and size as parts of the image's width and height.
-fn label_lines(found: &[Detection], (width_px, height_px): (u32, u32)) -> String {
+fn label_lines(found: &[Detection], size_px: (u32, u32)) -> String {
     let mut text = String::new();
     for Detection { class, area, .. } in found {
-        let (width, height) = (f64::from(width_px), f64::from(height_px));
-        let middle = |a: f32, b: f32| 0.5 * (f64::from(a) + f64::from(b));
-        let _ = writeln!(
-            text,
-            "{} {:.6} {:.6} {:.6} {:.6}",
-            class.0,
-            middle(area.x0_px, area.x1_px) / width,
-            middle(area.y0_px, area.y1_px) / height,
-            f64::from(area.width_px()) / width,
-            f64::from(area.height_px()) / height,
-        );
+        let [x, y, width, height] = area.in_shares(size_px);
+        let _ = writeln!(text, "{} {x:.6} {y:.6} {width:.6} {height:.6}", class.0);
     }
     text
 }

@@ -7,7 +7,6 @@ use std::time::{Duration, Instant};
 use image::{DynamicImage, RgbImage};
 use nalgebra::Point3;
 use plumbline_engine::eyes::place::pose_at;
-use plumbline_engine::jobs::{JobError, Outcome};
 use plumbline_engine::stages::{CornersStage, ProbeStage, RectifyStage, Timed};
 use plumbline_engine::state::State;
 use plumbline_engine::view::SourceView;
@@ -201,12 +200,7 @@ impl Desk {
                     // No robot takes part in these workflows.
                     plumbline_engine::Action::Robot(_) => {}
                     Action::Start(id, work) => {
-                        let outcome = match work.run(&Unattended) {
-                            Ok(result) => Outcome::Done(result),
-                            Err(JobError::Cancelled(_)) => Outcome::Cancelled,
-                            Err(JobError::Failed(reason)) => Outcome::Failed(reason),
-                        };
-                        self.state.work_ended(id, outcome, Duration::ZERO);
+                        self.state.work_ended(id, work.run(&Unattended).into(), Duration::ZERO);
                     }
                     Action::Source(control) => self.to_source.push(control),
                     Action::Cancel(_) => {}

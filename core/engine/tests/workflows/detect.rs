@@ -7,7 +7,6 @@ use std::time::{Duration, Instant};
 
 use image::{Rgb, RgbImage};
 use plumbline_engine::detect::{Detects, OpenDetector};
-use plumbline_engine::jobs::{JobError, Outcome};
 use plumbline_engine::stages::{DetectStage, Timed};
 use plumbline_engine::state::State;
 use plumbline_engine::view::{DetectionTiming, DetectorFacts, DetectorState, SourceView};
@@ -135,12 +134,7 @@ impl Desk {
             }
             for action in actions {
                 let Action::Start(id, work) = action else { continue };
-                let outcome = match work.run(&Unattended) {
-                    Ok(result) => Outcome::Done(result),
-                    Err(JobError::Cancelled(_)) => Outcome::Cancelled,
-                    Err(JobError::Failed(reason)) => Outcome::Failed(reason),
-                };
-                self.state.work_ended(id, outcome, Duration::ZERO);
+                self.state.work_ended(id, work.run(&Unattended).into(), Duration::ZERO);
             }
         }
     }

@@ -135,18 +135,9 @@ fn covered_px(flat: &[[[f64; 2]; 3]]) -> usize {
 }
 
 /// A line of a label file: class, middle and size in shares of the image.
-pub(super) fn line(label: &Label, (width_px, height_px): (u32, u32)) -> String {
-    let (w, h) = (f64::from(width_px), f64::from(height_px));
-    let [x0, y0, x1, y1] =
-        [label.area.x0_px, label.area.y0_px, label.area.x1_px, label.area.y1_px].map(f64::from);
-    format!(
-        "{} {} {} {} {}\n",
-        label.class.0,
-        0.5 * (x0 + x1) / w,
-        0.5 * (y0 + y1) / h,
-        (x1 - x0) / w,
-        (y1 - y0) / h
-    )
+pub(super) fn line(label: &Label, size_px: (u32, u32)) -> String {
+    let [x, y, width, height] = label.area.in_shares(size_px);
+    format!("{} {x} {y} {width} {height}\n", label.class.0)
 }
 
 #[cfg(test)]

@@ -43,17 +43,8 @@ pub(super) fn row(line: &str, size_px: (u32, u32), classes: usize) -> Result<Row
 
 /// The row of a box: parts of the image with eight digits, a hundred-thousandth of a pixel.
 pub(super) fn text(labeled: &LabeledBox, size_px: (u32, u32)) -> String {
-    let (w, h) = (f64::from(size_px.0), f64::from(size_px.1));
-    let [x0, y0, x1, y1] =
-        [labeled.area.x0_px, labeled.area.y0_px, labeled.area.x1_px, labeled.area.y1_px].map(f64::from);
-    format!(
-        "{} {:.8} {:.8} {:.8} {:.8}\n",
-        labeled.class.0,
-        0.5 * (x0 + x1) / w,
-        0.5 * (y0 + y1) / h,
-        (x1 - x0) / w,
-        (y1 - y0) / h
-    )
+    let [x, y, width, height] = labeled.area.in_shares(size_px);
+    format!("{} {x:.8} {y:.8} {width:.8} {height:.8}\n", labeled.class.0)
 }
 
 fn class(text: &str, classes: usize) -> Result<ClassIndex, RowProblem> {
