@@ -77,6 +77,6 @@ fn it_finds_toys_and_hands_of_the_twin() {
     let report = judged(folder.path().join("data.yaml"));
     let (objects, hands) = (mean(&report, &OBJECTS), mean(&report, &HANDS));
     eprintln!("mAP50 on twelve pairs of the twin: objects {objects:.3}, hands {hands:.3}");
-    // A quarter below what is reached on all 150 pairs of this kind.
+    // A quarter to a third below what is reached on all 150 pairs of this kind (objects 0.97, hands 0.99).
     assert!(objects >= 0.7 && hands >= 0.65, "{:?}", report.per_class_map50);
 }
