@@ -14,12 +14,12 @@ import onnx
 import torch
 
 from augment import NAMES
-from network import Detector, Exported, fold
+from network import STRIDES, Detector, Exported, fold
 
 # Of an eye's image.
 HEIGHT, WIDTH = 480, 640
 # Sides of the input are multiples of the widest stride.
-STRIDE = 32
+STRIDE = max(STRIDES)
 
 
 def main():
@@ -45,7 +45,7 @@ def export(weights, out, height, width):
         "description": "Plumbline detector, EfficientNet-Lite0 with a small pyramid",
         "license": "MIT OR Apache-2.0; backbone from Apache-2.0 weights",
         "task": "detect",
-        "stride": "32",
+        "stride": str(STRIDE),
         "batch": "1",
         "imgsz": str([height, width]),
         "names": str(dict(enumerate(NAMES))),

@@ -4,18 +4,22 @@ published come from `plumbline detect-eval` on the exported file."""
 import contextlib
 import io
 
+import cv2
 import numpy as np
 import torch
 from torchvision.ops import batched_nms
 
 from augment import NAMES, decode
-from network import anchors, boxes_of
+from network import STRIDES, anchors, boxes_of
 
 
 @torch.no_grad()
-def detect(net, image, device, floor=0.001, iou=0.7, most=300):
-    """[n, 6]: corners, score, class."""
-    height, width = image.shape[:2]
+def detect(net, image, device, zoom=1.0, floor=0.001, iou=0.7, most=300):
+    """[n, 6]: corners, score, class. The network sees the image enlarged by about `zoom`."""
+    seen_as = np.array(image.shape[:2])
+    height, width = (np.round(seen_as * zoom / max(STRIDES)) * max(STRIDES)).astype(int).tolist()
+    shrink = np.tile(seen_as[::-1] / [width, height], 2)
+    image = cv2.resize(image, (width, height), interpolation=cv2.INTER_LINEAR)
     x = torch.from_numpy(image).to(device).permute(2, 0, 1)[None].float() / 255
     edges, names = net(x.contiguous(memory_format=torch.channels_last))
     points, strides = anchors(height, width, device)
@@ -26,10 +30,12 @@ def detect(net, image, device, floor=0.001, iou=0.7, most=300):
     keep = scores > floor
     boxes, scores, classes = boxes[keep], scores[keep], classes[keep]
     keep = batched_nms(boxes, scores, classes, iou)[:most]
-    return torch.cat([boxes[keep], scores[keep, None], classes[keep, None].float()], 1).cpu().numpy()
+    found = torch.cat([boxes[keep], scores[keep, None], classes[keep, None].float()], 1).cpu().numpy()
+    found[:, :4] *= shrink
+    return found
 
 
-def score(net, items, device):
+def score(net, items, device, zoom=1.0):
     from pycocotools.coco import COCO
     from pycocotools.cocoeval import COCOeval
 
@@ -43,7 +49,7 @@ def score(net, items, device):
                 {"id": len(truth) + 1, "image_id": number, "category_id": int(row[0]), "iscrowd": 0,
                  "bbox": [x0, y0, x1 - x0, y1 - y0], "area": (x1 - x0) * (y1 - y0)}
             )
-        for x0, y0, x1, y1, confidence, name in detect(net, image, device).tolist():
+        for x0, y0, x1, y1, confidence, name in detect(net, image, device, zoom).tolist():
             found.append(
                 {"image_id": number, "category_id": int(name), "score": confidence, "bbox": [x0, y0, x1 - x0, y1 - y0]}
             )

@@ -171,12 +171,12 @@ def main():
             for folder in args.set:
                 items.extend(read_set(folder, "train", known))
         if held_out and time.time() - judged > 15 * 60:
-            report(average.net, held_out[:160], device)
+            report(average.net, held_out[:160], device, args.zoom)
             judged = time.time()
     stop.set()
     save(args.out / "last.pt", average, history)
     if held_out:
-        report(average.net, held_out, device)
+        report(average.net, held_out, device, args.zoom)
 
 
 def save(path, average, history):
@@ -185,8 +185,8 @@ def save(path, average, history):
     part.replace(path)
 
 
-def report(net, items, device):
-    result = score(net, items, device)
+def report(net, items, device, zoom):
+    result = score(net, items, device, zoom)
     classes = ", ".join(f"{name} {value:.3f}" for name, value in result["per_class"].items())
     print(f"  held out: mAP50-95 {result['map50_95']:.4f}, mAP50 {result['map50']:.4f} ({classes})", flush=True)
 

@@ -81,13 +81,14 @@ fn chosen<'a>(cx: &PanelContext<'_>, table: &'a ScoreTable) -> Option<(&'a str, 
     Some((&row.model, row.scores.as_ref().ok()?))
 }
 
-/// "0.806".
 /// What a data set is called: its folder, or that of its `data.yaml`.
 fn set_name(path: &Path) -> String {
-    let folder = if path.extension().is_some() { path.parent().unwrap_or(path) } else { path };
+    let is_file = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");
+    let folder = if is_file { path.parent().unwrap_or(path) } else { path };
     folder.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
+/// "0.806".
 fn figure(score: Option<f64>) -> String {
     score.map_or_else(|| "–".to_owned(), |score| format!("{score:.3}"))
 }
