@@ -54,7 +54,7 @@ fn title(cell: &OpenedCell, names: &ClassNames) -> String {
         (None, None) => "Nothing".to_owned(),
     };
     match cell.of == cell.pictures.len() {
-        true => format!("{what}: {} images", cell.of),
+        true => format!("{what}: {}", plumbline_widgets::format::count(cell.of, "image")),
         false => format!("{what}: {} of {} images", cell.pictures.len(), cell.of),
     }
 }

@@ -93,7 +93,13 @@ fn one(
     context: &dyn JobContext,
 ) -> Result<Result<ModelEvaluation, String>, JobError> {
     context.checkpoint()?;
-    let options = DetectorOptions { provider, or_processor: true, ..DetectorOptions::default() };
+    // The window and what is live behind it go on meanwhile.
+    let options = DetectorOptions {
+        provider,
+        or_processor: true,
+        shares_processor: true,
+        ..DetectorOptions::default()
+    };
     let mut detector = match Detector::open(file, &options) {
         Ok(detector) => detector,
         Err(error) => return Ok(Err(sentence(&error.to_string()))),
