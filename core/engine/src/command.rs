@@ -7,6 +7,7 @@ mod labels;
 mod robot;
 mod scores;
 mod touch;
+mod watch;
 
 use std::path::PathBuf;
 
@@ -23,6 +24,7 @@ pub use touch::{
     ContactWith, Correction, GraspTable, ModelsCommand, ScreenContact, ScreenWindow, TablesCommand,
     TouchCommand,
 };
+pub use watch::WatchCommand;
 
 /// Anything that the window (or a script) can ask of the engine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,6 +58,8 @@ pub enum Command {
     Job(JobCommand),
     /// Messages to the operator.
     Notice(NoticeCommand),
+    /// The program's own threads.
+    Watch(WatchCommand),
 }
 
 /// Where the images come from and, for recordings, how they are played.
@@ -336,5 +340,6 @@ macro_rules! into_command {
 }
 into_command!(
     Source: SourceCommand, Live: LiveCommand, Detect: DetectCommand, Eyes: EyesCommand, Robot: RobotCommand, Twin: TwinCommand,
-    Mount: MountCommand, Touch: TouchCommand, Models: ModelsCommand, Gap: GapCommand, Labels: LabelsCommand, Scores: ScoresCommand, Job: JobCommand, Notice: NoticeCommand
+    Mount: MountCommand, Touch: TouchCommand, Models: ModelsCommand, Gap: GapCommand, Labels: LabelsCommand, Scores: ScoresCommand, Job: JobCommand, Notice: NoticeCommand,
+    Watch: WatchCommand
 );

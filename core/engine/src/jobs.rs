@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-use crossbeam_channel::Receiver;
-use plumbline_model::{Cancelled, JobContext};
+use crossbeam_channel::{Receiver, RecvTimeoutError, TryRecvError};
+use plumbline_model::{Cancelled, JobContext, duration};
 
 use crate::command::JobId;
 use crate::view::{JobState, JobView};
@@ -51,6 +51,7 @@ pub struct JobHandle<T> {
     started: Instant,
     shared: Arc<Shared>,
     outcome: Receiver<Outcome<T>>,
+    told: AtomicBool,
 }
 
 struct Shared {
@@ -124,7 +125,7 @@ impl<T: Send + 'static> JobHandle<T> {
                 "The system gave no thread for this work ({error}). Close other programs and try again."
             )));
         }
-        Self { id, title, started, shared, outcome }
+        Self { id, title, started, shared, outcome, told: AtomicBool::new(false) }
     }
 }
 
@@ -136,17 +137,32 @@ impl<T> JobHandle<T> {
 
     /// How it ended, once it has; gives the outcome only once.
     pub fn take_outcome(&self) -> Option<Outcome<T>> {
-        self.outcome.try_recv().ok()
+        match self.outcome.try_recv() {
+            Ok(outcome) => self.told(outcome),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => self.told(without_a_word()),
+        }
     }
 
     /// Waits for the end, but not longer than this.
     pub fn wait_at_most(&self, time: Duration) -> Option<Outcome<T>> {
-        self.outcome.recv_timeout(time).ok()
+        match self.outcome.recv_timeout(time) {
+            Ok(outcome) => self.told(outcome),
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => self.told(without_a_word()),
+        }
     }
 
     /// Waits for the end (tests and the command line).
     pub fn wait(&self) -> Outcome<T> {
-        self.outcome.recv().unwrap_or(Outcome::Cancelled)
+        let outcome = self.outcome.recv().unwrap_or_else(|_| without_a_word());
+        self.told.store(true, Ordering::Relaxed);
+        outcome
+    }
+
+    /// The outcome, if it was not given before.
+    fn told(&self, outcome: Outcome<T>) -> Option<Outcome<T>> {
+        (!self.told.swap(true, Ordering::Relaxed)).then_some(outcome)
     }
 
     /// What the window shows while it is at work.
@@ -222,6 +238,11 @@ fn outcome_of<T>(result: std::thread::Result<Result<T, JobError>>) -> Outcome<T>
     }
 }
 
+/// A job whose thread is gone and that said nothing would be shown at work for ever.
+fn without_a_word<T>() -> Outcome<T> {
+    Outcome::Panicked("its thread ended without a word".to_owned())
+}
+
 /// What a panic said.
 pub(crate) fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
@@ -230,7 +251,8 @@ pub(crate) fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
 
 fn remaining(elapsed: Duration, fraction: f64) -> Option<Duration> {
     (elapsed >= TELLING_TIME && fraction >= TELLING_FRACTION)
-        .then(|| elapsed.mul_f64((1.0 - fraction) / fraction))
+        .then(|| duration::seconds(elapsed.as_secs_f64() * (1.0 - fraction) / fraction))
+        .flatten()
 }
 
 #[cfg(test)]
@@ -271,6 +293,21 @@ mod tests {
         assert_eq!(failed.wait(), Outcome::Failed("no pairs: open a folder first".into()));
         let panicked: JobHandle<()> = start(|_| panic!("index {} out of range", 3));
         assert_eq!(panicked.wait(), Outcome::Panicked("index 3 out of range".into()));
+    }
+
+    #[test]
+    fn a_job_that_dies_without_a_word_is_not_at_work_for_ever() {
+        /// A panic whose message cannot even be dropped.
+        struct Vicious;
+        impl Drop for Vicious {
+            fn drop(&mut self) {
+                panic!("not even that");
+            }
+        }
+        let job: JobHandle<()> = start(|_| std::panic::panic_any(Vicious));
+        let outcome = job.wait_at_most(Duration::from_secs(10)).expect("it ended");
+        assert!(matches!(outcome, Outcome::Panicked(_)), "{outcome:?}");
+        assert_eq!(job.take_outcome(), None, "told once");
     }
 
     #[test]

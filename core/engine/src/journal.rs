@@ -6,12 +6,17 @@
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Sender};
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 
+use crate::bell::Bell;
 use crate::command::{Command, LiveCommand};
+use crate::watched::{self, Pulse, Trial, Watched, WatchedThread};
 
 /// First line of a journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -66,20 +71,31 @@ pub enum JournalError {
 
 /// Writes entries on a thread of its own, so that a slow disk holds nothing up.
 pub struct Journal {
+    file: PathBuf,
     entries: Option<Sender<Entry>>,
-    lost: u64,
+    /// Entries that were not taken, because too many waited or the writer has ended.
+    refused: u64,
+    handed_over: u64,
+    written: Arc<AtomicU64>,
     waiting_probe: Option<Entry>,
-    writer: Option<std::thread::JoinHandle<()>>,
+    writer: Watched,
 }
 
 /// Entries that may wait for the disk.
 const WAITING: usize = 1024;
 /// Journals that are kept.
 const KEPT: usize = 30;
+/// A disk that takes longer for one line is worth a word.
+const SILENT: Duration = Duration::from_secs(3);
 
 impl Journal {
     /// Starts a journal in a folder, which is made if it is not there.
     pub fn start(folder: &Path) -> Result<Self, JournalError> {
+        Self::start_watched(folder, Pulse::new(WatchedThread::Journal, Bell::new().0, Trial::default()))
+    }
+
+    /// The same, for somebody who looks after its thread.
+    pub fn start_watched(folder: &Path, pulse: Pulse) -> Result<Self, JournalError> {
         let io = |path: &Path| {
             let path = path.to_owned();
             move |error| JournalError::Io { path, error }
@@ -92,15 +108,40 @@ impl Journal {
             started.strftime("%Y-%m-%dT%H-%M-%S%.3f"),
             std::process::id()
         ));
-        let mut file = BufWriter::new(File::create(&path).map_err(io(&path))?);
+        let mut file = BufWriter::new(File::create_new(&path).map_err(io(&path))?);
         let heading = Heading { journal: 1, software: crate::software(), started };
         write_line(&mut file, &heading).map_err(io(&path))?;
+        Self::write_to(path, file, pulse).map_err(io(folder))
+    }
+
+    fn write_to(path: PathBuf, file: BufWriter<File>, pulse: Pulse) -> std::io::Result<Self> {
         let (entries, waiting) = crossbeam_channel::bounded(WAITING);
-        let writer = std::thread::Builder::new()
-            .name("journal".into())
-            .spawn(move || write_entries(file, &waiting))
-            .map_err(io(folder))?;
-        Ok(Self { entries: Some(entries), lost: 0, waiting_probe: None, writer: Some(writer) })
+        let written = Arc::new(AtomicU64::new(0));
+        let count = written.clone();
+        let name = path.display().to_string();
+        let work = move |file: &mut BufWriter<File>, pulse: &Pulse| {
+            write_entries(file, &waiting, &count, &name, pulse);
+        };
+        let writer = watched::spawn(pulse, file, work)?;
+        Ok(Self {
+            file: path,
+            entries: Some(entries),
+            refused: 0,
+            handed_over: 0,
+            written,
+            waiting_probe: None,
+            writer,
+        })
+    }
+
+    /// Where it is written.
+    pub fn file(&self) -> &Path {
+        &self.file
+    }
+
+    /// Whether its thread does its work.
+    pub fn watched(&self) -> &Watched {
+        &self.writer
     }
 
     /// Hands an entry to the writer; never waits.
@@ -117,14 +158,18 @@ impl Journal {
         self.hand_over(entry);
     }
 
-    /// Entries that were lost because the disk did not keep up.
+    /// Entries that were lost because the disk did not keep up, or does not take any more.
     pub fn lost(&self) -> u64 {
-        self.lost
+        let has_failed = self.writer.pulse().has_failed();
+        let unwritten = self.handed_over.saturating_sub(self.written.load(Ordering::Acquire));
+        self.refused + if has_failed { unwritten } else { 0 }
     }
 
     fn hand_over(&mut self, entry: Entry) {
-        if let Some(entries) = &self.entries {
-            self.lost += u64::from(entries.try_send(entry).is_err());
+        let Some(entries) = &self.entries else { return };
+        match entries.try_send(entry) {
+            Ok(()) => self.handed_over += 1,
+            Err(_) => self.refused += 1,
         }
     }
 }
@@ -134,11 +179,9 @@ impl Drop for Journal {
         if let Some(probe) = self.waiting_probe.take() {
             self.hand_over(probe);
         }
+        self.writer.ask_to_end();
+        // What waits is written before the writer, which is waited for, comes to its end.
         self.entries = None;
-        if let Some(writer) = self.writer.take() {
-            // A writer that panicked has nothing left to say.
-            let _ = writer.join();
-        }
     }
 }
 
@@ -168,12 +211,21 @@ fn write_line(file: &mut impl Write, value: &impl Serialize) -> std::io::Result<
     file.flush()
 }
 
-fn write_entries(mut file: BufWriter<File>, waiting: &Receiver<Entry>) {
+fn write_entries(
+    file: &mut BufWriter<File>,
+    waiting: &Receiver<Entry>,
+    written: &AtomicU64,
+    name: &str,
+    pulse: &Pulse,
+) {
     for entry in waiting {
-        if let Err(error) = write_line(&mut file, &entry) {
-            log::error!("the journal ends here, the disk says: {error}");
-            return;
+        pulse.promise(SILENT);
+        if let Err(error) = write_line(file, &entry) {
+            // One broken line is left out by whoever reads it; a second one would be taken for damage.
+            return pulse.fail(&format!("{name}: {error}"));
         }
+        written.fetch_add(1, Ordering::Release);
+        pulse.rest();
     }
 }
 
@@ -195,6 +247,8 @@ fn forget_oldest(folder: &Path) {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Instant;
+
     use super::*;
     use crate::command::{EyesCommand, ProbePoint, SourceCommand};
 
@@ -253,6 +307,47 @@ mod tests {
         std::fs::write(&path, format!("{whole}not json\n")).expect("writable");
         let message = read(&path).expect_err("spoiled").to_string();
         assert!(message.contains("line 3"), "{message}");
+    }
+
+    #[test]
+    fn a_full_disk_is_told_and_what_it_did_not_take_is_counted() {
+        let full = Path::new("/dev/full");
+        if !full.exists() {
+            return;
+        }
+        let file = BufWriter::new(File::options().write(true).open(full).expect("a device that is full"));
+        let (bell, rung) = Bell::new();
+        let pulse = Pulse::new(WatchedThread::Journal, bell, Trial::default());
+        let mut journal = Journal::write_to(full.to_owned(), file, pulse).expect("a thread");
+        assert_eq!(journal.lost(), 0);
+        for i in 0..5 {
+            journal.note(entry(f64::from(i), EyesCommand::Capture));
+        }
+        rung.recv_timeout(Duration::from_secs(10)).expect("it is rung");
+        match journal.watched().pulse().trouble(Instant::now()) {
+            Some(watched::Trouble::Ended { said, .. }) => {
+                assert!(said.contains("/dev/full") && said.contains("No space left"), "{said}");
+            }
+            other => panic!("{other:?}"),
+        }
+        assert_eq!(journal.lost(), 5);
+        for i in 0..3 {
+            journal.note(entry(f64::from(i), EyesCommand::Capture));
+        }
+        assert_eq!(journal.lost(), 8);
+    }
+
+    #[test]
+    fn what_was_written_is_not_lost() {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let mut journal = Journal::start(folder.path()).expect("writable");
+        for i in 0..100 {
+            journal.note(entry(f64::from(i), EyesCommand::Capture));
+        }
+        assert_eq!(journal.lost(), 0);
+        let file = journal.file().to_owned();
+        drop(journal);
+        assert_eq!(read(&file).expect("readable").1.len(), 100);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 mod bell;
 pub mod command;
 mod context;
+pub mod data_folder;
 pub mod detect;
 mod detector_scores;
 pub mod doctor;
@@ -29,6 +30,7 @@ pub mod statistics;
 mod text;
 mod touch;
 pub mod view;
+pub mod watched;
 pub mod work;
 
 pub use command::{
@@ -37,6 +39,7 @@ pub use command::{
     HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LabelsCommand, LiveCommand, ModelsCommand,
     MountCommand, NoticeCommand, ProbePoint, Products, Provider, RobotCommand, ScoresCommand, ScreenContact,
     ScreenWindow, SetPart, SourceCommand, TablesCommand, TouchCommand, TwinCommand,
+    WatchCommand,
 };
 pub use context::Action;
 pub use engine::{Engine, Wake};
@@ -51,6 +54,7 @@ pub use plumbline_vision::disparity::{DisparityMap, Origin as DisparityOrigin};
 pub use settings::EngineSettings;
 pub use source::Control;
 pub use view::View;
+pub use watched::WatchedThread;
 
 /// Program and version, as written into results.
 pub fn software() -> String {

@@ -1,5 +1,6 @@
 //! What is computed live, for whom, and what came of it last.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -15,6 +16,7 @@ use crate::stages::{LiveSetup, ProbeInput, ProbeOutput, RectifyInput, RectifyOut
 use crate::statistics::StageClock;
 use crate::text::sentence;
 use crate::view::{AimView, CornersView, DisparityView, LiveView, ProbeView, RectifiedView, Statistics};
+use crate::watched::WatchedThread;
 
 /// Disparities beyond the nearest corner of the workspace that are searched too.
 const SEARCH_MARGIN: f64 = 1.15;
@@ -48,6 +50,8 @@ pub struct LiveState {
     corners: Option<CornersView>,
     probe: Option<ProbeView>,
     failed: Option<String>,
+    /// Why stages give nothing any more.
+    down: BTreeMap<WatchedThread, String>,
     clocks: Clocks,
 }
 
@@ -93,6 +97,7 @@ impl Default for LiveState {
             corners: None,
             probe: None,
             failed: None,
+            down: BTreeMap::new(),
             clocks: Clocks::default(),
         }
     }
@@ -289,6 +294,37 @@ impl LiveState {
         }
     }
 
+    /// A stage gives nothing any more, or does again.
+    pub fn stage_is_down(&mut self, stage: WatchedThread, why: Option<String>) {
+        match why {
+            Some(why) => {
+                self.gave_nothing(stage, &why);
+                self.down.insert(stage, why);
+            }
+            None => {
+                self.down.remove(&stage);
+                self.failed = None;
+            }
+        }
+    }
+
+    /// A stage gave nothing of the newest pair: what it gave before must not be taken for it.
+    pub fn gave_nothing(&mut self, stage: WatchedThread, why: &str) {
+        match stage {
+            WatchedThread::Rectify => {
+                (self.rectified, self.disparity) = (None, None);
+                self.failed = Some(why.to_owned());
+            }
+            WatchedThread::Corners => self.corners = None,
+            WatchedThread::Probe => {
+                let asked = self.probe_asked;
+                let failed = |asked| ProbeView { asked, stamp: None, reading: Err(why.to_owned()) };
+                self.probe = asked.map(failed);
+            }
+            _ => {}
+        }
+    }
+
     /// The chessboard search has something.
     pub fn corners(&mut self, output: &Timed<Look>, now: Instant) {
         self.clocks.corners.note(now, output.stamp.captured_at, output.busy);
@@ -326,7 +362,9 @@ impl LiveState {
             time_difference_s: self.raw.as_ref().and_then(|frame| frame.time_difference_s),
         };
         let no_setup = self.setup.as_ref().err().cloned();
-        let no_rectified_because = no_setup.or_else(|| self.misfit()).or_else(|| self.failed.clone());
+        let down = self.down.get(&WatchedThread::Rectify).cloned();
+        let no_rectified_because =
+            no_setup.or_else(|| self.misfit()).or(down).or_else(|| self.failed.clone());
         LiveView {
             wanted: self.wanted,
             raw: self.raw.clone(),
@@ -344,6 +382,7 @@ impl LiveState {
 
     fn probe_view(&self, nothing_because: Option<&str>) -> Option<ProbeView> {
         let asked = self.probe_asked?;
+        let nothing_because = self.down.get(&WatchedThread::Probe).map(String::as_str).or(nothing_because);
         match (nothing_because, &self.probe) {
             (Some(reason), _) => Some(ProbeView { asked, stamp: None, reading: Err(reason.to_owned()) }),
             (None, probe) => probe.clone(),

@@ -16,6 +16,9 @@ use crate::notice::NoticeLevel;
 use crate::view::SourceView;
 use crate::work::Work;
 
+/// Rates at which a recording can be played.
+const PAIRS_PER_SECOND: std::ops::RangeInclusive<f64> = 0.01..=1000.0;
+
 /// What the engine knows of the source.
 #[derive(Clone, Debug, Default)]
 pub struct SourceState {
@@ -31,9 +34,10 @@ impl SourceState {
             return;
         }
         if let SourceCommand::PairsPerSecond(rate) = command
-            && !(rate.is_finite() && rate > 0.0)
+            && !PAIRS_PER_SECOND.contains(&rate)
         {
-            let text = format!("{rate} pairs per second is no rate; give a positive number.");
+            let (least, most) = (PAIRS_PER_SECOND.start(), PAIRS_PER_SECOND.end());
+            let text = format!("{rate} pairs per second cannot be played: give between {least} and {most}.");
             context.notices.add(NoticeLevel::Error, text);
             return;
         }

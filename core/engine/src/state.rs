@@ -1,5 +1,7 @@
 //! Everything the engine knows, driven by commands and events; owns no thread.
 
+mod threads;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -33,9 +35,10 @@ use crate::stages::{
 };
 use crate::touch::{Surroundings as TouchSurroundings, TouchWorkflow};
 use crate::view::{
-    Connection, GapView, JobState, JobView, ModelsView, MountView, RobotView, SourceView, TouchView,
-    TwinView, View,
+    Connection, GapView, JobState, JobView, KeptView, ModelsView, MountView, RobotView, SourceView,
+    ThreadFault, TouchView, TwinView, View,
 };
+use crate::watched::WatchedThread;
 use crate::work::WorkResult;
 
 /// Everything the engine knows.
@@ -67,6 +70,10 @@ pub struct State {
     /// Which source, counted, the newest pair is of.
     shown_of: u64,
     revision: u64,
+    faults: BTreeMap<WatchedThread, ThreadFault>,
+    /// What was known of robot and twin before their thread fell silent.
+    before_silence: Option<(Arc<RobotView>, Arc<TwinView>)>,
+    kept: Arc<KeptView>,
 }
 
 impl State {
@@ -108,6 +115,9 @@ impl State {
             actions: Vec::new(),
             shown_of: 0,
             revision: 0,
+            faults: BTreeMap::new(),
+            before_silence: None,
+            kept: Arc::default(),
         };
         state.with_labels(|labels, _, context| labels.restore(context));
         let restore = state.detect.restore();
@@ -181,6 +191,8 @@ impl State {
                 self.actions.push(Action::Cancel(id));
             }
             Command::Job(JobCommand::Cancel(id) | JobCommand::Dismiss(id)) => self.jobs.dismiss(id),
+            // Whoever owns the threads has done it.
+            Command::Watch(_) => {}
             Command::Notice(NoticeCommand::Add { level, text }) => self.notices.add(level, text),
             Command::Notice(NoticeCommand::Clear) => self.notices.clear(),
         }
@@ -431,7 +443,10 @@ impl State {
     pub fn robot_changed(&mut self, news: News) {
         let eyes_of_this_robot =
             matches!(self.source.view().spec, Some(SourceSpec::Twin | SourceSpec::Cameras { .. }));
-        if let (Some(rig), Some(posture), true) = (&news.robot.rig, &news.robot.measured, eyes_of_this_robot)
+        let head = |rig: &Rig| news.robot.known(&[rig.eyes.pan, rig.eyes.tilt]).cloned();
+        // Where it is not known the view stays aimed as it was; the servos' lamp says which is silent.
+        if let Some(rig) = &news.robot.rig
+            && let (Some(posture), true) = (head(rig), eyes_of_this_robot)
         {
             let head = HeadPose { head_z_rad: posture[rig.eyes.pan], head_y_rad: posture[rig.eyes.tilt] };
             self.live.set_head(head);
@@ -442,6 +457,7 @@ impl State {
             self.actions.push(Action::Source(Control::Open(SourceSpec::Twin)));
         }
         (self.robot, self.twin) = (news.robot, news.twin);
+        self.before_silence = None;
         self.arm_of = match &self.robot.connection {
             Connection::Connected { twin, .. } => World::of_robot(*twin),
             _ => self.arm_of,
@@ -493,8 +509,10 @@ impl State {
     pub fn stage_panicked(&mut self, panic: &StagePanic) {
         let StagePanic { stage, message } = panic;
         let text = format!(
-            "Live {stage}: this program made a mistake ({message}). It goes on; please report it with the journal."
+            "Live {}: this program made a mistake ({message}). It goes on; please report it with the journal.",
+            stage.name()
         );
+        self.stage_gave_nothing(*stage, &text);
         self.notices.add(NoticeLevel::Error, text);
     }
 
@@ -686,6 +704,8 @@ impl State {
             scores: Arc::new(self.scores.view()),
             jobs: self.jobs.view(),
             notices: self.notices.view(),
+            threads: self.faults.values().cloned().collect(),
+            kept: self.kept.clone(),
             lost_commands,
         }
     }

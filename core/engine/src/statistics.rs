@@ -78,7 +78,7 @@ mod tests {
         let start = Instant::now();
         let mut clock = StageClock::default();
         for i in 0..300u32 {
-            let now = start + Duration::from_secs_f64(f64::from(i) / 30.0);
+            let now = start + Duration::from_secs(1) * i / 30;
             clock.note(now + Duration::from_millis(5), now, Duration::from_millis(4));
         }
         let figures = clock.figures(start + Duration::from_secs(10));

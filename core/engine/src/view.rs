@@ -12,6 +12,7 @@ mod models;
 mod mount;
 mod robot;
 mod scores;
+mod threads;
 mod touch;
 mod twin;
 
@@ -45,6 +46,8 @@ pub use robot::{
 pub use scores::{
     CellPicture, ModelScores, OpenedCell, Score, ScoreRow, ScoreTable, ScoredModelFile, ScoresView,
 };
+pub use threads::{KeptView, ThreadFault};
+pub(crate) use threads::{robot_without_its_thread, twin_without_its_thread, view_without_its_engine};
 pub use touch::{
     ContactSource, ContactView, PlanView, TouchCounts, TouchFigures, TouchOutcome, TouchPhase, TouchState,
     TouchView, UnfinishedRun,
@@ -53,6 +56,7 @@ pub use twin::{FaultView, ToyView, TwinView};
 
 use crate::command::JobId;
 use crate::notice::Notice;
+use crate::watched::WatchedThread;
 
 /// Everything that can be shown, at one moment.
 #[derive(Clone, Debug, Default)]
@@ -87,11 +91,20 @@ pub struct View {
     pub jobs: Arc<[JobView]>,
     /// Messages, oldest first.
     pub notices: Arc<[Notice]>,
+    /// Threads of the program that do not do their work any more; usually none.
+    pub threads: Arc<[ThreadFault]>,
+    /// Where data are kept, and whether the journal is.
+    pub kept: Arc<KeptView>,
     /// Commands that were lost because too many came at once; zero unless something hangs.
     pub lost_commands: u64,
 }
 
 impl View {
+    /// What is wrong with a thread; `None` when it does its work.
+    pub fn fault(&self, thread: WatchedThread) -> Option<&ThreadFault> {
+        self.threads.iter().find(|fault| fault.thread == thread)
+    }
+
     /// The oldest job that is still running.
     pub fn running_job(&self) -> Option<&JobView> {
         self.jobs.iter().find(|job| job.state.is_running())

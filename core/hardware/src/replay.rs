@@ -2,9 +2,13 @@
 
 use std::time::{Duration, Instant};
 
+use plumbline_model::duration;
 use serde::{Deserialize, Serialize};
 
 use crate::error::SourceError;
+
+/// Longest time between two pairs.
+const LONGEST: Duration = Duration::from_secs(100);
 
 /// How fast a recording is replayed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -69,7 +73,11 @@ impl Replay {
 
     /// Time between two pairs.
     pub(crate) fn period(self, recorded_hz: f64) -> Duration {
-        self.rate_hz(recorded_hz).map_or(Duration::ZERO, |rate_hz| Duration::from_secs_f64(1.0 / rate_hz))
+        let usual = || duration::period(Self::USUAL_RATE_HZ).unwrap_or_default();
+        // A recording may claim any rate of itself.
+        let between =
+            |rate_hz| duration::period(rate_hz).filter(|time| *time <= LONGEST).unwrap_or_else(usual);
+        self.rate_hz(recorded_hz).map_or(Duration::ZERO, between)
     }
 }
 
@@ -119,6 +127,16 @@ mod tests {
         }
         assert!(Replay::default().check().is_ok());
         assert!(Replay::ONCE.check().is_ok());
+    }
+
+    #[test]
+    fn a_recording_that_claims_a_rate_that_is_none_is_played_at_the_usual_one() {
+        for recorded_hz in [0.0, -1.0, f64::NAN, 1e-30, f64::NEG_INFINITY] {
+            let period = Replay::default().period(recorded_hz);
+            assert!((period.as_secs_f64() - 1.0 / 30.0).abs() < 1e-6, "{recorded_hz}: {period:?}");
+        }
+        assert_eq!(Replay::default().period(4.0), Duration::from_millis(250));
+        assert_eq!(Replay::ONCE.period(f64::NAN), Duration::ZERO);
     }
 
     #[test]

@@ -9,6 +9,7 @@ pub mod calibration;
 pub mod camera;
 pub mod chessboard;
 pub mod detection;
+pub mod duration;
 pub mod formats;
 pub mod frame;
 pub mod image_pair;

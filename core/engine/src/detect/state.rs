@@ -50,6 +50,8 @@ pub struct DetectState {
     refused: Option<String>,
     found: Option<Accepted>,
     failed: Option<String>,
+    /// Why the stage gives nothing any more.
+    down: Option<String>,
     /// Of the classes of the detector in use.
     rates: Option<Rates>,
     clock: StageClock,
@@ -94,6 +96,7 @@ impl DetectState {
             refused: None,
             found: None,
             failed: None,
+            down: None,
             rates: None,
             clock: StageClock::default(),
         }
@@ -285,6 +288,17 @@ impl DetectState {
                 self.change(settings, context);
             }
         }
+    }
+
+    /// The stage gives nothing any more, or does again.
+    pub fn stage_is_down(&mut self, why: Option<String>) {
+        (self.found, self.failed) = (None, None);
+        self.down = why;
+    }
+
+    /// The stage gave nothing of the newest pair: what it found before must not be taken for it.
+    pub fn gave_nothing(&mut self, why: &str) {
+        (self.found, self.failed) = (None, Some(why.to_owned()));
     }
 
     /// The source was closed or another one opened.

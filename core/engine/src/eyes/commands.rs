@@ -62,8 +62,8 @@ impl EyesState {
 
     fn set_minutes(&mut self, minutes: Option<f64>, context: &mut Context<'_>) {
         match minutes {
-            Some(value) if !(value.is_finite() && value >= 0.0) => {
-                context.refuse("Give the minutes since the cameras were switched on as a number from 0 on, or leave it empty.");
+            Some(value) if !(0.0..=LONGEST_ON_MINUTES).contains(&value) => {
+                context.refuse(format!("Give the minutes since the cameras were switched on as a number from 0 to {LONGEST_ON_MINUTES}, or leave it empty."));
             }
             minutes => self.minutes_since_on = minutes,
         }
@@ -235,4 +235,6 @@ impl EyesState {
     }
 }
 
+/// A year: nobody knows better how long cameras were on.
+const LONGEST_ON_MINUTES: f64 = 527_040.0;
 const NO_IMAGE: &str = "There is no image yet. Open a folder of pairs, two videos or the cameras first.";

@@ -1,6 +1,5 @@
 //! The thread that connects, previews, jogs and moves, so that nobody else has to wait.
 
-use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError};
@@ -11,6 +10,7 @@ use super::worker::{News, Worker};
 use crate::bell::Bell;
 use crate::notice::NoticeLevel;
 use crate::slot::Putter;
+use crate::watched::{self, Pulse, Watched};
 
 /// Commands that may wait while something is being connected.
 const WAITING: usize = 256;
@@ -20,6 +20,10 @@ const TICK: Duration = Duration::from_millis(33);
 const LOWERING: Duration = Duration::from_millis(5);
 /// Otherwise.
 const IDLE: Duration = Duration::from_millis(500);
+/// Without a sign of life for this long it is taken to hang.
+const SILENT: Duration = Duration::from_secs(3);
+/// Connecting asks servos that may not be there, and a twin is built first.
+const SILENT_WHILE_CONNECTING: Duration = Duration::from_secs(90);
 
 /// Where the thread puts what it has.
 pub struct Wires {
@@ -36,16 +40,21 @@ pub struct Wires {
 /// The running thread; ends when dropped.
 pub struct RobotThread {
     controls: Option<Sender<RobotControl>>,
-    thread: Option<JoinHandle<()>>,
+    watched: Watched,
 }
 
 impl RobotThread {
-    /// Starts it.
-    pub fn start(worker: Worker, wires: Wires) -> std::io::Result<Self> {
+    /// Starts it. When it fails, the worker is dropped and with it the arm's driver, which lets the
+    /// arm hold.
+    pub fn start(worker: Worker, wires: Wires, pulse: Pulse) -> std::io::Result<Self> {
         let (controls, received) = crossbeam_channel::bounded(WAITING);
-        let thread =
-            std::thread::Builder::new().name("robot".into()).spawn(move || run(worker, &received, &wires))?;
-        Ok(Self { controls: Some(controls), thread: Some(thread) })
+        let work = move |worker: &mut Worker, pulse: &Pulse| run(worker, &received, &wires, pulse);
+        Ok(Self { controls: Some(controls), watched: watched::spawn(pulse, worker, work)? })
+    }
+
+    /// Whether it does its work.
+    pub fn watched(&self) -> &Watched {
+        &self.watched
     }
 
     /// Hands a command over; `false` when too many wait.
@@ -59,16 +68,15 @@ impl RobotThread {
 
 impl Drop for RobotThread {
     fn drop(&mut self) {
+        self.watched.ask_to_end();
+        // Cut off it ends; the watched thread is waited for.
         self.controls = None;
-        if let Some(thread) = self.thread.take() {
-            // A thread that panicked has been reported by the panic itself.
-            let _ = thread.join();
-        }
     }
 }
 
-fn run(mut worker: Worker, controls: &Receiver<RobotControl>, wires: &Wires) {
-    tell(&mut worker, wires);
+fn run(worker: &mut Worker, controls: &Receiver<RobotControl>, wires: &Wires, pulse: &Pulse) {
+    pulse.promise(SILENT);
+    tell(worker, wires);
     let mut next = Instant::now();
     let mut told = next;
     loop {
@@ -77,14 +85,18 @@ fn run(mut worker: Worker, controls: &Receiver<RobotControl>, wires: &Wires) {
             () if worker.is_awake() => TICK,
             () => IDLE,
         };
+        pulse.promise(SILENT);
         match controls.recv_timeout(next.saturating_duration_since(Instant::now())) {
             Ok(control) => {
                 // Connecting takes seconds; meanwhile the window says so.
                 if let Some(connecting) = worker.announce(&control) {
                     put(connecting, wires);
+                    pulse.promise(SILENT_WHILE_CONNECTING);
+                } else {
+                    pulse.promise(SILENT);
                 }
                 worker.control(control);
-                tell(&mut worker, wires);
+                tell(worker, wires);
                 next = next.min(Instant::now() + period);
             }
             Err(RecvTimeoutError::Timeout) => {
@@ -92,7 +104,7 @@ fn run(mut worker: Worker, controls: &Receiver<RobotControl>, wires: &Wires) {
                 worker.tick(now);
                 // The window needs no news as often as the finger is looked after.
                 if now.saturating_duration_since(told) >= TICK || !worker.is_lowering() {
-                    tell(&mut worker, wires);
+                    tell(worker, wires);
                     told = now;
                 }
                 next = Instant::now() + period;

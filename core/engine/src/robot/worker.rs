@@ -32,6 +32,9 @@ const TRAIL_STEP_M: f64 = 0.002;
 
 /// What the state is told.
 #[derive(Clone, Debug)]
+/// Shares of the usual speed that can be set: a slower move would take hours.
+const SPEEDS: (f64, f64) = (0.01, 2.0);
+
 pub struct News {
     /// For the window.
     pub robot: Arc<RobotView>,
@@ -126,6 +129,13 @@ impl Worker {
     /// Whether there is something to look at often.
     pub fn is_awake(&self) -> bool {
         self.arm.is_some() || self.desk.is_running()
+    }
+
+    /// Takes the place of a worker that failed: twins are counted on, so that a new one is told from
+    /// those before.
+    pub fn in_place_of_one_that_started(mut self, twins: u64) -> Self {
+        self.twins_started = twins;
+        self
     }
 
     /// Messages for the operator since the last call.
@@ -233,8 +243,11 @@ impl Worker {
                 Ok(())
             }
             RobotCommand::Speed(speed) => {
-                if !(speed > 0.0 && speed <= 2.0) {
-                    return Err("The speed goes from just above 0 to 2 times the usual one.".to_owned());
+                if !(SPEEDS.0..=SPEEDS.1).contains(&speed) {
+                    return Err(format!(
+                        "A speed of {speed} cannot be set: it goes from {} to {} times the usual one.",
+                        SPEEDS.0, SPEEDS.1
+                    ));
                 }
                 self.speed = speed;
                 if let Some((resolved, _)) = self.preview.take() {

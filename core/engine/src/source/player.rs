@@ -120,6 +120,13 @@ impl Player {
         }
     }
 
+    /// Takes the place of a player that failed: pairs and sources are counted on, so that none has
+    /// the stamp of one before.
+    pub fn in_place_of_one(mut self, next_seq: u64, opened: u64) -> Self {
+        (self.next_seq, self.opened) = (next_seq, opened);
+        self
+    }
+
     /// Does what the operator asked; gives messages for him.
     pub fn control(&mut self, control: Control) -> Vec<Note> {
         let result = match control {
@@ -144,13 +151,9 @@ impl Player {
             }
             Control::Step(by) => self.step(by),
             Control::Seek(index) => self.seek(index),
-            Control::Loop(looping) => {
-                self.set_replay(Replay { looping, ..self.replay });
-                Ok(())
-            }
+            Control::Loop(looping) => self.set_replay(Replay { looping, ..self.replay }),
             Control::PairsPerSecond(rate) => {
-                self.set_replay(Replay { rate: ReplayRate::PairsPerSecond(rate), ..self.replay });
-                Ok(())
+                self.set_replay(Replay { rate: ReplayRate::PairsPerSecond(rate), ..self.replay })
             }
         };
         match result {
@@ -310,9 +313,10 @@ impl Player {
         self.finite(|finite| finite.seek(usize::try_from(index).unwrap_or(usize::MAX))).unwrap_or(Ok(()))
     }
 
-    fn set_replay(&mut self, replay: Replay) {
+    fn set_replay(&mut self, replay: Replay) -> Result<(), SourceError> {
+        self.finite(|finite| finite.set_replay(replay)).unwrap_or(Ok(()))?;
         self.replay = replay;
-        self.finite(|finite| finite.set_replay(replay));
+        Ok(())
     }
 
     /// Does something with a source that has a beginning and an end.

@@ -1,6 +1,6 @@
 //! The thread that waits for cameras and disks, so that nobody else has to.
 
-use std::thread::JoinHandle;
+use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError};
 use plumbline_model::StereoFrame;
@@ -9,9 +9,14 @@ use super::player::{Control, Note, Player, Polled};
 use crate::bell::Bell;
 use crate::slot::Putter;
 use crate::view::SourceView;
+use crate::watched::{self, Pulse, Watched};
 
 /// Commands that may wait while a camera is being opened.
 const WAITING: usize = 64;
+/// Beyond the time that it waits anyway: without a sign of life for this long it is taken to hang.
+const SILENT: Duration = Duration::from_secs(3);
+/// Cameras take their time to be opened, and so does what draws the twin's eyes.
+const SILENT_WHILE_OPENING: Duration = Duration::from_secs(60);
 
 /// Where the thread puts what it has.
 pub struct Wires {
@@ -28,17 +33,20 @@ pub struct Wires {
 /// The running thread; ends when dropped.
 pub struct SourceThread {
     controls: Option<Sender<Control>>,
-    thread: Option<JoinHandle<()>>,
+    watched: Watched,
 }
 
 impl SourceThread {
     /// Starts it.
-    pub fn start(player: Player, wires: Wires) -> std::io::Result<Self> {
+    pub fn start(player: Player, wires: Wires, pulse: Pulse) -> std::io::Result<Self> {
         let (controls, received) = crossbeam_channel::bounded(WAITING);
-        let thread = std::thread::Builder::new()
-            .name("source".into())
-            .spawn(move || run(player, &received, &wires))?;
-        Ok(Self { controls: Some(controls), thread: Some(thread) })
+        let work = move |player: &mut Player, pulse: &Pulse| run(player, &received, &wires, pulse);
+        Ok(Self { controls: Some(controls), watched: watched::spawn(pulse, player, work)? })
+    }
+
+    /// Whether it does its work.
+    pub fn watched(&self) -> &Watched {
+        &self.watched
     }
 
     /// Hands a command over; `false` when too many wait.
@@ -52,17 +60,16 @@ impl SourceThread {
 
 impl Drop for SourceThread {
     fn drop(&mut self) {
+        self.watched.ask_to_end();
+        // Cut off it ends; the watched thread is waited for.
         self.controls = None;
-        if let Some(thread) = self.thread.take() {
-            // A thread that panicked has been reported by the panic itself.
-            let _ = thread.join();
-        }
     }
 }
 
-fn run(mut player: Player, controls: &Receiver<Control>, wires: &Wires) {
+fn run(player: &mut Player, controls: &Receiver<Control>, wires: &Wires, pulse: &Pulse) {
     let mut told = SourceView::default();
     loop {
+        pulse.promise(SILENT);
         let (polled, mut notes) = player.poll();
         let wait = match polled {
             Polled::Frame(frame) => {
@@ -70,19 +77,21 @@ fn run(mut player: Player, controls: &Receiver<Control>, wires: &Wires) {
                     return;
                 }
                 wires.bell.ring();
-                std::time::Duration::ZERO
+                Duration::ZERO
             }
             Polled::Wait(time) => time,
         };
-        tell(&mut player, &mut told, &mut notes, wires);
+        tell(player, &mut told, &mut notes, wires);
+        pulse.promise(wait.saturating_add(SILENT));
         match controls.recv_timeout(wait) {
             Ok(control) => {
                 if let Control::Open(_) | Control::OpenPaths(_) = control {
                     tell_opening(&told, wires);
+                    pulse.promise(SILENT_WHILE_OPENING);
                 }
                 let mut notes = player.control(control);
                 told.status = crate::view::SourceStatus::Opening;
-                tell(&mut player, &mut told, &mut notes, wires);
+                tell(player, &mut told, &mut notes, wires);
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return,

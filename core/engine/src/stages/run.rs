@@ -1,8 +1,7 @@
 //! A stage on a thread of its own: newest input in, newest output out.
 
 use std::panic::AssertUnwindSafe;
-use std::thread::JoinHandle;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use plumbline_model::Stamp;
 
@@ -10,26 +9,31 @@ use super::Timed;
 use crate::bell::Bell;
 use crate::jobs::panic_message;
 use crate::slot::{Putter, Taker, newest_value_slot};
+use crate::watched::{self, Pulse, Watched, WatchedThread};
+
+/// At work on one input for this long, a stage is taken to hang. A detector on a slow processor takes
+/// seconds.
+const SILENT: Duration = Duration::from_secs(30);
 
 /// The two ends of a stage's thread. Ends when dropped.
 pub struct StageThread<I, O> {
     input: Option<Putter<I>>,
     output: Taker<Result<Timed<O>, StagePanic>>,
-    thread: Option<JoinHandle<()>>,
+    watched: Watched,
 }
 
 /// A stage met a defect of this program. It goes on with the next input, from scratch.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StagePanic {
-    /// Name of the stage.
-    pub stage: String,
+    /// Which stage.
+    pub stage: WatchedThread,
     /// What the program said.
     pub message: String,
 }
 
-/// Runs what `make` makes on a thread of this name. `stamp` tells the stamp of an input.
+/// Runs what `make` makes on a watched thread. `stamp` tells the stamp of an input.
 pub fn run_stage<I, O, P>(
-    name: &str,
+    pulse: Pulse,
     bell: Bell,
     stamp: impl Fn(&I) -> Stamp + Send + 'static,
     make: impl Fn() -> P + Send + 'static,
@@ -41,10 +45,12 @@ where
 {
     let (input, inputs) = newest_value_slot::<I>();
     let (outputs, output) = newest_value_slot();
-    let stage = name.to_owned();
-    let work = move || {
+    let stage = pulse.thread();
+    let work = move |(): &mut (), pulse: &Pulse| {
         let mut process = make();
+        pulse.rest();
         while let Some(input) = inputs.take() {
+            pulse.promise(SILENT);
             let (begun, stamp) = (Instant::now(), stamp(&input));
             let result = std::panic::catch_unwind(AssertUnwindSafe(|| process(input)));
             let output = match result {
@@ -52,17 +58,17 @@ where
                 Err(panic) => {
                     // What it kept may be half changed.
                     process = make();
-                    Err(StagePanic { stage: stage.clone(), message: panic_message(panic.as_ref()) })
+                    Err(StagePanic { stage, message: panic_message(panic.as_ref()) })
                 }
             };
             if !outputs.put(output) {
                 return;
             }
             bell.ring();
+            pulse.rest();
         }
     };
-    let thread = std::thread::Builder::new().name(name.to_owned()).spawn(work)?;
-    Ok(StageThread { input: Some(input), output, thread: Some(thread) })
+    Ok(StageThread { input: Some(input), output, watched: watched::spawn(pulse, (), work)? })
 }
 
 impl<I, O> StageThread<I, O> {
@@ -78,6 +84,11 @@ impl<I, O> StageThread<I, O> {
         self.output.try_take()
     }
 
+    /// Whether it does its work.
+    pub fn watched(&self) -> &Watched {
+        &self.watched
+    }
+
     /// Inputs that were replaced before the stage could begin.
     pub fn skipped(&self) -> u64 {
         self.input.as_ref().map_or(0, Putter::skipped)
@@ -86,18 +97,20 @@ impl<I, O> StageThread<I, O> {
 
 impl<I, O> Drop for StageThread<I, O> {
     fn drop(&mut self) {
+        self.watched.ask_to_end();
+        // Cut off it ends; the watched thread is waited for.
         self.input = None;
-        if let Some(thread) = self.thread.take() {
-            // A panic of the thread itself has been reported by the panic.
-            let _ = thread.join();
-        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Duration;
+    use crate::watched::Trial;
+
+    fn pulse(bell: &Bell) -> Pulse {
+        Pulse::new(WatchedThread::Probe, bell.clone(), Trial::default())
+    }
 
     fn stamp(seq: &u64) -> Stamp {
         Stamp { seq: *seq, captured_at: Instant::now() }
@@ -116,7 +129,7 @@ mod tests {
                 seq * 10
             }
         };
-        let stage = run_stage("test stage", bell, stamp, make).expect("a thread");
+        let stage = run_stage(pulse(&bell), bell, stamp, make).expect("a thread");
         let next = |expected: Option<(u64, u64)>| {
             go.send(()).expect("running");
             heard.recv_timeout(Duration::from_secs(10)).expect("rung");
@@ -146,14 +159,14 @@ mod tests {
                 sum
             }
         };
-        let stage = run_stage("fragile", bell, stamp, make).expect("a thread");
+        let stage = run_stage(pulse(&bell), bell, stamp, make).expect("a thread");
         let mut outputs = Vec::new();
         for seq in [1, 2, 3] {
             stage.put(seq);
             heard.recv_timeout(Duration::from_secs(10)).expect("rung");
             outputs.push(stage.take().expect("an output").map(|output| output.result));
         }
-        let panic = StagePanic { stage: "fragile".into(), message: "two is too much".into() };
+        let panic = StagePanic { stage: WatchedThread::Probe, message: "two is too much".into() };
         assert_eq!(outputs, [Ok(1), Err(panic), Ok(3)]);
     }
 }

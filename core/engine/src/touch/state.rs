@@ -2,15 +2,15 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use plumbline_correction::{CorrectionModel, Method};
 use plumbline_hardware::joints::Touch;
-use plumbline_model::Pixel;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::Touchscreen;
 use plumbline_model::touch_plan::{PlanOptions, Purpose, TouchArea};
 use plumbline_model::touchscreen::ScreenPlacement;
+use plumbline_model::{Pixel, duration};
 
 use super::path::ScreenPlace;
 use super::placement::Proposal;
@@ -304,7 +304,7 @@ impl TouchWorkflow {
 
     fn contact(&mut self, contact: ScreenContact, around: &Surroundings<'_>, context: &mut Context<'_>) {
         let ScreenContact { u_px, v_px, age_s, with, down } = contact;
-        let age = Duration::try_from_secs_f64(age_s).unwrap_or_default();
+        let age = duration::seconds(age_s).unwrap_or_default();
         if !(u_px.is_finite() && v_px.is_finite()) {
             return;
         }

@@ -6,10 +6,10 @@ mod eye_thread;
 mod settings;
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use image::RgbImage;
-use plumbline_model::{Eye, Stamp, StereoFrame};
+use plumbline_model::{Eye, Stamp, StereoFrame, duration};
 
 use crate::error::SourceError;
 use crate::pair_by_time::{PairByTime, Timed};
@@ -90,7 +90,8 @@ impl CameraSource {
 
     /// Moves what the threads captured to the pairing; an eye that is gone ends the source.
     fn collect(&mut self) -> Result<(), SourceError> {
-        let silence_limit = Duration::from_secs_f64(self.settings.silence_limit_s);
+        let silence_limit = duration::seconds(self.settings.silence_limit_s);
+        let silence_limit = silence_limit.expect("settings were checked when the cameras were opened");
         for eye in Eye::BOTH {
             let thread = &self.threads[eye.index()];
             for (captured_at, frame) in thread.take_frames() {
@@ -111,7 +112,8 @@ impl CameraSource {
         let seq = self.counters.delivered;
         self.counters.delivered += 1;
         // A pair is as old as the older of its images.
-        let captured_at = self.epoch + Duration::from_secs_f64(left.time_s.min(right.time_s));
+        let since_epoch = duration::seconds(left.time_s.min(right.time_s));
+        let captured_at = since_epoch.map_or_else(Instant::now, |time| self.epoch + time);
         StereoFrame {
             stamp: Stamp { seq, captured_at },
             time_difference_s: Some(right.time_s - left.time_s),

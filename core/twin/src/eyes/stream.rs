@@ -6,7 +6,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::{Counters, Next, Report, SourceDescription, SourceError, SourceKind, StereoSource};
-use plumbline_model::{Stamp, StereoFrame};
+use plumbline_model::{Stamp, StereoFrame, duration};
 
 use super::error::RenderError;
 use super::renderer::{EyeOptions, EyeRenderer};
@@ -75,6 +75,11 @@ impl Shared {
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Rates are checked where they enter.
+fn period(rate_hz: f64) -> Duration {
+    duration::period(rate_hz).unwrap_or(Duration::from_secs(1))
 }
 
 fn check_rate(rate_hz: f64) -> Result<f64, RenderError> {
@@ -170,7 +175,7 @@ impl Loop {
         while !self.shared.stop.load(Ordering::Acquire) {
             let (sensor, period) = {
                 let state = self.shared.state();
-                (state.sensor, Duration::from_secs_f64(1.0 / state.rate_hz))
+                (state.sensor, period(state.rate_hz))
             };
             match self.draw(&sensor, seq) {
                 Ok(frame) => self.deliver(frame),

@@ -8,6 +8,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::dynamixel::{Deframer, Found, Protocol};
+use plumbline_model::duration;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
@@ -46,7 +47,7 @@ impl ServoTerminal {
         let line = Line {
             master: Some(master),
             bank,
-            byte: Duration::from_secs_f64(byte_s),
+            byte: duration::seconds(byte_s).unwrap_or_default(),
             end: end.clone(),
             free_at: Instant::now(),
             random: StdRng::seed_from_u64(seed),
@@ -176,7 +177,8 @@ impl Line {
             bytes.truncate(self.random.random_range(1..bytes.len().max(2)));
         }
         let lateness = if late { Fault::LATE_S } else { 0.0 };
-        self.free_at += Duration::from_secs_f64(delay_s + lateness) + self.byte * bytes.len() as u32;
+        let waits = duration::seconds(delay_s + lateness).unwrap_or_default();
+        self.free_at += waits + self.byte * bytes.len() as u32;
         sleep_until(self.free_at);
         if self.is_on(Fault::PortClosedMidAnswer) {
             self.put(&bytes[..bytes.len() / 2]);

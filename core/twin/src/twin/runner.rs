@@ -6,7 +6,7 @@ use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::joints::Touch;
-use plumbline_model::{Board, Pose, Robot};
+use plumbline_model::{Board, Pose, Robot, duration};
 
 use super::command::{TwinCommand, TwinState};
 use super::{Shared, TOUCHES, Touches, lock};
@@ -19,8 +19,8 @@ use crate::toys::Toy;
 
 /// A twin that is further behind than this gives up catching up, s.
 const MOST_BEHIND_S: f64 = 0.1;
-/// Longest stretch of physics between two looks at commands, s.
-const STRETCH_S: f64 = 0.02;
+/// Longest stretch of physics between two looks at commands.
+const STRETCH: Duration = Duration::from_millis(20);
 
 /// Steps, obeys, publishes.
 pub(super) struct Runner {
@@ -62,7 +62,8 @@ impl Runner {
             }
             self.catch_up();
             self.publish();
-            std::thread::sleep(Duration::from_secs_f64((World::STEP_S / self.pace).clamp(5e-4, 0.01)));
+            let nap_s = (World::STEP_S / self.pace).clamp(5e-4, 0.01);
+            std::thread::sleep(duration::seconds(nap_s).unwrap_or(STRETCH));
         }
     }
 
@@ -76,7 +77,7 @@ impl Runner {
         if let Some(suspect) = lock(&self.shared.bank).suspect() {
             world.heat_servo(suspect, if hot { Fault::HEATING_K_PER_S } else { 0.0 });
         }
-        let stop_at = Instant::now() + Duration::from_secs_f64(STRETCH_S);
+        let stop_at = Instant::now() + STRETCH;
         while world.time_s() < target_s && Instant::now() < stop_at {
             {
                 let mut bank = lock(&self.shared.bank);

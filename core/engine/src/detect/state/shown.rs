@@ -72,7 +72,7 @@ impl DetectState {
             settings: self.settings.clone(),
             found: self.found.as_ref().map(|found| found.view.clone()),
             stale: self.found.as_ref().and_then(|found| stale(found, around)),
-            failed: self.failed.clone(),
+            failed: self.down.clone().or_else(|| self.failed.clone()),
             rates: self.class_rates(),
             counted: self.rates.as_ref().map_or(0, Rates::frames),
             statistics: self.clock.figures(now),

@@ -14,6 +14,7 @@ use crate::robot::touch_order::{TouchNews, TouchOrder, TouchRun};
 use crate::robot::{News, RobotControl, RobotThread, RobotWires, Switches, TwinDesk, TwinEyesPlug, Worker};
 use crate::slot::{Taker, newest_value_slot};
 use crate::touch::path::{Planner, ScreenPlace, TouchPace};
+use crate::watched::{Pulse, Trial, WatchedThread};
 
 /// Beside other tests the physics of the twin is slower than its clock.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -40,8 +41,9 @@ impl Bench {
         let (touches_in, touches) = crossbeam_channel::bounded(64);
         let (notes_in, notes) = crossbeam_channel::bounded(64);
         let (bell, _) = Bell::new();
+        let pulse = Pulse::new(WatchedThread::Robot, bell.clone(), Trial::default());
         let wires = RobotWires { news: news_in, touches: touches_in, notes: notes_in, bell };
-        let thread = RobotThread::start(worker, wires).expect("a thread");
+        let thread = RobotThread::start(worker, wires, pulse).expect("a thread");
         let scenario = scenario.to_owned();
         assert!(thread.control(RobotCommand::ConnectTwin { scenario }.into()));
         Self { thread, news, touches, notes, switches, rig, measured: None, _folder: folder }
