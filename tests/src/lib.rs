@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use plumbline::{PlumblineWindow, WindowOptions};
+use plumbline_engine::watched::Trial;
 use plumbline_engine::{Engine, EngineSettings, View};
 use plumbline_twin::eyes::{EyeOptions, EyeRenderer, RenderError};
 
@@ -21,10 +22,15 @@ const PATIENCE: Duration = Duration::from_secs(600);
 
 /// The window over the real engine; with the twin of a scenario, if one is named.
 pub fn window(data_dir: &Path, twin: Option<&str>) -> Window {
+    window_on_trial(data_dir, twin, Trial::default())
+}
+
+/// The same over threads that the test can let fail.
+pub fn window_on_trial(data_dir: &Path, twin: Option<&str>, trial: Trial) -> Window {
     let settings =
         EngineSettings { data_dir: Some(data_dir.to_owned()), source: None, twin: twin.map(str::to_owned) };
     Harness::builder().with_size([1280.0, 800.0]).build_eframe(move |creation| {
-        let engine = Engine::start(settings, Arc::new(|| {}));
+        let engine = Engine::start_on_trial(settings, Arc::new(|| {}), trial);
         PlumblineWindow::new(&creation.egui_ctx, Box::new(engine), WindowOptions::default())
     })
 }

@@ -58,7 +58,8 @@ fn figure(what: &str, value: f64, unit: &'static str, at_most: Option<f64>, note
 fn measure(pairs: &Path) -> anyhow::Result<FrameReport> {
     let folder = std::env::temp_dir().join(format!("plumbline-bench-{}", std::process::id()));
     let report = folder.join("frames.json");
-    std::fs::create_dir_all(&folder)?;
+    // A new one: what somebody else put there under this name is not used.
+    std::fs::create_dir(&folder)?;
     let result = run_window(pairs, &folder, &report);
     let text = result.and_then(|()| Ok(std::fs::read_to_string(&report)?));
     // The folder is small and temporary: one that stays behind does no harm.

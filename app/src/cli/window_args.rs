@@ -10,9 +10,13 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
+use plumbline_model::duration;
 
 use crate::window::renderer::RendererChoice;
 use crate::window::{Action, LaunchOptions, Screen, ScriptStep, ThemeChoice, launch};
+
+/// A script waits no longer than this between two steps.
+const LONGEST_WAIT: Duration = Duration::from_secs(24 * 3600);
 
 #[derive(Debug, Args)]
 pub struct WindowArgs {
@@ -162,7 +166,11 @@ fn screen(text: &str) -> Result<Screen, String> {
 fn step(text: &str) -> Result<ScriptStep, String> {
     let (name, value) = text.split_once(':').unwrap_or((text, ""));
     let act = |action| Ok(ScriptStep::Act(action));
-    let seconds = |text: &str| text.parse::<f64>().ok().and_then(|s| Duration::try_from_secs_f64(s).ok());
+    let seconds = |text: &str| {
+        let seconds = text.parse::<f64>().ok().and_then(duration::seconds);
+        seconds.filter(|time| *time <= LONGEST_WAIT)
+    };
+    let rate = |text: &str| text.parse::<f64>().ok().filter(|hz| (0.01..=1000.0).contains(hz));
     match name.trim() {
         "collect" => act(Action::CollectRecording),
         "capture" => act(Action::Capture),
@@ -189,10 +197,12 @@ fn step(text: &str) -> Result<ScriptStep, String> {
             at.map(ScriptStep::Probe).ok_or_else(|| "probe:U,V wants a pixel".to_owned())
         }
         "rate" => {
-            value.parse().map(ScriptStep::PairsPerSecond).map_err(|_| "rate:HZ wants a number".to_owned())
+            let wants = || "rate:HZ wants pairs per second between 0.01 and 1000".to_owned();
+            rate(value).map(ScriptStep::PairsPerSecond).ok_or_else(wants)
         }
         "wait" => {
-            seconds(value).map(ScriptStep::Wait).ok_or_else(|| "wait:SECONDS wants a number".to_owned())
+            let wants = || format!("wait:SECONDS wants a number from 0 to {}", LONGEST_WAIT.as_secs());
+            seconds(value).map(ScriptStep::Wait).ok_or_else(wants)
         }
         "picture" if !value.is_empty() => Ok(ScriptStep::Picture(value.into())),
         other => robot_steps::step(other, value)
@@ -221,5 +231,12 @@ mod tests {
         assert_eq!(step("probe:320,240.5"), Ok(ScriptStep::Probe([320.0, 240.5])));
         assert_eq!(step("wait:1.5"), Ok(ScriptStep::Wait(Duration::from_millis(1500))));
         assert!(step("dance").is_err());
+        for bad in ["wait:-1", "wait:NaN", "wait:inf", "wait:1e30", "wait:86401", "wait:soon"] {
+            assert!(step(bad).expect_err(bad).contains("from 0 to 86400"), "{bad}");
+        }
+        for bad in ["rate:0", "rate:-1", "rate:NaN", "rate:1e-30", "rate:1e9", "rate:fast"] {
+            assert!(step(bad).expect_err(bad).contains("between 0.01 and 1000"), "{bad}");
+        }
+        assert_eq!(step("rate:4"), Ok(ScriptStep::PairsPerSecond(4.0)));
     }
 }

@@ -1,10 +1,8 @@
 //! Both eyes in one picture: red and cyan, or in turns.
 
-use std::time::Duration;
-
 use egui::Ui;
 use plumbline_engine::Products;
-use plumbline_model::Eye;
+use plumbline_model::{Eye, duration};
 use plumbline_widgets::compare;
 use plumbline_widgets::empty::Message;
 use plumbline_widgets::image_view::{Content, ImageView};
@@ -47,7 +45,8 @@ pub fn blink(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let Some(rectified) = &cx.view.live.rectified else { return show_missing(ui, cx, "Blink") };
     let now_s = ui.input(|input| input.time);
     let eye = compare::blink(now_s, BLINK_S);
-    ui.ctx().request_repaint_after(Duration::from_secs_f64(compare::blink_remaining_s(now_s, BLINK_S)));
+    let remaining = duration::seconds(compare::blink_remaining_s(now_s, BLINK_S));
+    ui.ctx().request_repaint_after(remaining.unwrap_or_default());
     let (image, label) = match eye {
         Eye::Left => (&rectified.left, "Left"),
         Eye::Right => (&rectified.right, "Right"),

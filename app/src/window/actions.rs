@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use plumbline_engine::view::SourceStatus;
-use plumbline_engine::{ExportFormat, Exported, View};
+use plumbline_engine::{ExportFormat, Exported, View, WatchedThread};
 
 use super::detect_actions::DetectAction;
 use super::gap_actions::GapAction;
@@ -88,6 +88,8 @@ pub enum Action {
     Detect(DetectAction),
     /// Asks the running job to stop.
     CancelJob,
+    /// Starts a part of the program that has failed inside again.
+    StartAgain(WatchedThread),
     /// Saves a picture of the window.
     SaveWindow,
     /// Opens the list of everything that can be done.
@@ -121,7 +123,8 @@ pub fn all() -> impl Iterator<Item = Action> {
     let labels = LabelsAction::ALL.into_iter().map(Action::Labels);
     let scores = ScoresAction::ALL.into_iter().map(Action::Scores);
     let steps = robot.chain(mount).chain(touch).chain(models).chain(gap);
-    ALL.iter().copied().chain(detect).chain(steps).chain(labels).chain(scores)
+    let threads = WatchedThread::ALL.into_iter().map(Action::StartAgain);
+    ALL.iter().copied().chain(detect).chain(steps).chain(labels).chain(scores).chain(threads)
 }
 
 const ALL: &[Action] = &[
@@ -227,6 +230,7 @@ impl Action {
             Self::Accept => "Accept calibration",
             Self::Discard => "Discard the proposal",
             Self::Import => "Import a calibration…",
+            Self::StartAgain(thread) => return Self::start_again_label(thread),
             Self::Export(_, format) => return format!("Export as {}…", format_name(format)),
             Self::CancelJob => "Cancel the running job",
             Self::SaveWindow => "Save a picture of the window…",
@@ -276,6 +280,7 @@ impl Action {
             Self::Labels(action) => action.refusal(view),
             Self::Scores(action) => action.refusal(view),
             Self::Detect(action) => action.refusal(view),
+            Self::StartAgain(thread) => Self::start_again_refusal(thread, view).map(Cow::Borrowed),
             Self::CancelJob => when(view.running_job().is_some(), "no job is running"),
             _ => None,
         }

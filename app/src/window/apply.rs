@@ -10,6 +10,7 @@ use plumbline_engine::{
     BoxEdit, Command, Destination, DetectCommand, DetectorChoice, EyesCommand, FileLength, GapCommand,
     JobCommand, LabelsCommand, LiveCommand, ModelsCommand, MountCommand, NoticeCommand, NoticeLevel,
     ProbePoint, RobotCommand, ScoresCommand, SourceCommand, TablesCommand, TouchCommand, TwinCommand,
+    WatchCommand,
 };
 use plumbline_model::Eye;
 use plumbline_model::robot::JointIndex;
@@ -236,6 +237,7 @@ impl PlumblineWindow {
             Action::Labels(action) => return action.command(&self.view),
             Action::Scores(action) => return action.command(&self.view),
             Action::Detect(action) => return action.command(),
+            Action::StartAgain(thread) => WatchCommand::StartAgain(thread).into(),
             Action::CancelJob => JobCommand::Cancel(self.view.running_job()?.id).into(),
             _ => return None,
         })

@@ -4,6 +4,9 @@ use std::sync::Arc;
 
 use plumbline_engine::{Command, Engine, View};
 
+/// Lets whatever moves hold, past every queue, from any thread.
+pub type Stopper = Arc<dyn Fn() + Send + Sync>;
+
 /// Gives views, takes commands; neither ever waits.
 pub trait Backend {
     /// The newest snapshot.
@@ -12,6 +15,8 @@ pub trait Backend {
     fn send(&self, command: Command);
     /// Whatever moves holds, past every queue.
     fn stop(&self);
+    /// The same for other threads.
+    fn stopper(&self) -> Stopper;
     /// Says that the window is alive; without it the arm holds.
     fn heartbeat(&self);
 }
@@ -27,6 +32,10 @@ impl Backend for Engine {
 
     fn stop(&self) {
         Self::stop(self);
+    }
+
+    fn stopper(&self) -> Stopper {
+        Arc::new(Self::stopper(self))
     }
 
     fn heartbeat(&self) {

@@ -13,6 +13,7 @@ use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
 use plumbline_widgets::format;
 
 use super::actions::Action;
+use super::faults;
 use super::robot_actions::RobotAction;
 use super::steps::Screen;
 
@@ -41,6 +42,9 @@ pub const ENOUGH_PAIRS: usize = 10;
 
 /// The bottom line of a screen.
 pub fn guidance(view: &View, screen: Screen) -> Guidance {
+    if let Some(guidance) = failed_inside(view, screen) {
+        return guidance;
+    }
     if let Some(guidance) = stopped(view, screen) {
         return guidance;
     }
@@ -61,6 +65,15 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
         Screen::Scores => detect::scores(view),
         Screen::Images => detect::images(view),
     }
+}
+
+/// A part of the program has failed, and what starts it again.
+pub(super) fn failed_inside(view: &View, screen: Screen) -> Option<Guidance> {
+    let fault = faults::most_urgent(view, screen)?;
+    let guidance = say(&*fault.meaning).warn();
+    // Where it cannot be started again the sentence says what to do instead.
+    let again = fault.can_start_again || !fault.is_silent();
+    Some(if again { guidance.then("Start again", Action::StartAgain(fault.thread)) } else { guidance })
 }
 
 /// What only looks goes on while STOP is latched; what moves says so.

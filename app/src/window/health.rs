@@ -6,6 +6,7 @@ use egui::{Align, Button, DragValue, Layout, Panel, Popup, Ui};
 use jiff::Timestamp;
 use plumbline_engine::view::{SourceStatus, StepState};
 use plumbline_engine::{EyesCommand, View};
+use plumbline_model::duration;
 use plumbline_widgets::buttons::{STOP_SIZE, stop_button, stop_pressed};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
@@ -17,7 +18,7 @@ use super::outbox::Outbox;
 use super::robot_actions::RobotAction;
 use super::shortcuts::shortcut_text;
 use super::steps::Screen;
-use super::{PlumblineWindow, robot_lamps, world_menu};
+use super::{PlumblineWindow, faults, robot_lamps, world_menu};
 use crate::panels::source_age;
 
 /// Below this width, points, the lamps take a row of their own.
@@ -66,6 +67,7 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
 
 fn lamps(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     ui.spacing_mut().item_spacing.x = space::XS;
+    faults::lamps(&window.view, ui, outbox);
     eyes_lamps(&window.view, ui, outbox);
     robot_lamps::show(&window.view, ui, outbox);
     calibration_lamp(&window.view, ui, outbox);
@@ -219,7 +221,9 @@ fn clock_lamp(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
         "Lenses move while cameras get warm: calibrate after about 20 minutes, and again if unsure.",
     );
     let (name, value) = match minutes_on {
-        Some(minutes) => ("Cameras on", format::clock(Duration::from_secs_f64((minutes * 60.0).max(0.0)))),
+        Some(minutes) => {
+            ("Cameras on", duration::seconds(minutes * 60.0).map_or(format::NONE.to_owned(), format::clock))
+        }
         None => ("Since start", format::clock(since_start)),
     };
     let lamp = Lamp::new(name, &value, health).reason(reason).show(ui);
@@ -243,7 +247,7 @@ fn clock_lamp(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
 
 /// The twin knows how long its eyes have been on.
 fn twin_clock_lamp(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
-    let on = Duration::try_from_secs_f64(view.twin.eyes_on_s).unwrap_or_default();
+    let on = duration::seconds(view.twin.eyes_on_s).unwrap_or_default();
     let fraction = on.as_secs_f64() / 60.0 / WARM_AFTER_MINUTES;
     let warming = fraction < 1.0;
     let health = if warming { Health::Working(fraction as f32) } else { Health::Good };

@@ -11,6 +11,7 @@ mod connect;
 mod detect_actions;
 mod dialogs;
 mod drop;
+mod faults;
 mod frame_time;
 mod frame_times_overlay;
 mod gamepad;
@@ -52,11 +53,12 @@ use std::time::{Duration, Instant};
 
 use plumbline_engine::view::MotionState;
 use plumbline_engine::{JobId, Products, View};
+use plumbline_model::duration;
 
 pub use actions::{Action, format_name};
-pub use backend::Backend;
+pub use backend::{Backend, Stopper};
 pub use detect_actions::DetectAction;
-pub use gamepad::GamepadState;
+pub use gamepad::{GamepadState, STOP_BUTTONS};
 pub use gap_actions::GapAction;
 pub(crate) use gap_actions::plan as gap_plan;
 pub use guidance::{Verdict, capitalized, hint_text, other_board, verdict};
@@ -168,6 +170,10 @@ impl PlumblineWindow {
         plumbline_widgets::theme::apply(ctx, options.settings.theme.preference());
         ctx.set_zoom_factor(options.settings.zoom);
         let view = backend.view();
+        let gamepads = match options.gamepads {
+            true => Gamepads::start(ctx, backend.stopper()),
+            false => Gamepads::default(),
+        };
         Self {
             backend,
             view,
@@ -192,7 +198,7 @@ impl PlumblineWindow {
             pending_picture: None,
             dismissed: Vec::new(),
             wanted: None,
-            gamepads: Gamepads::new(options.gamepads),
+            gamepads,
             jogging: Jogging::default(),
             motion_asked: None,
             touch_window: TouchWindow::default(),
@@ -234,10 +240,17 @@ impl PlumblineWindow {
             || self.motion_asked.is_some_and(|asked| asked.elapsed() < BEGINS_WITHIN)
     }
 
-    /// Only the robot's screen uses one.
+    /// Only the robot's screen is jogged with one; its STOP counts everywhere.
     fn poll_gamepad(&mut self, ctx: &egui::Context) {
+        if self.gamepads.take_stop() {
+            self.stop();
+        }
+        if let Some(trouble) = self.gamepads.take_trouble() {
+            self.backend.send(apply::warning(trouble));
+        }
         let wanted = self.settings.screen == Screen::Robot;
-        let state = wanted.then(|| self.gamepads.poll(ctx)).flatten();
+        let is_focused = ctx.input(|input| input.focused);
+        let state = wanted.then(|| self.gamepads.newest(is_focused)).flatten();
         if let Some(pad) = &state {
             ctx.request_repaint_after(if pad.enabled { jogging::RENEW } else { SIGN_OF_LIFE });
         }
@@ -250,7 +263,7 @@ impl PlumblineWindow {
         let took = match (used, self.processor_time_before) {
             (Some(now), Some(before)) => now.checked_sub(before),
             (Some(_), None) => None,
-            (None, _) => clock_s.map(|seconds| Duration::from_secs_f32(seconds.max(0.0))),
+            (None, _) => clock_s.and_then(|clock_s| duration::seconds(clock_s.into())),
         };
         self.processor_time_before = used;
         if let Some(took) = took {

@@ -100,7 +100,7 @@ impl Script {
         let step = self.steps.pop_front();
         match step {
             Some(ScriptStep::Wait(time)) => {
-                self.not_before = now + time;
+                self.not_before = now.checked_add(time).unwrap_or(now);
                 None
             }
             step => step,

@@ -7,7 +7,7 @@ use plumbline_widgets::progress::{ProgressAction, ProgressLine};
 use plumbline_widgets::theme::space;
 
 use super::actions::Action;
-use super::guidance::{Guidance, guidance};
+use super::guidance::{Guidance, failed_inside, guidance};
 use super::outbox::Outbox;
 use super::shortcuts::shortcut_text;
 use super::{PlumblineWindow, primary_button};
@@ -25,10 +25,13 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
 
 fn contents(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let view = &window.view;
-    if let Some(job) = view.running_job() {
+    let screen = window.settings.screen;
+    let failed = failed_inside(view, screen);
+    // What failed inside is not hidden behind work that goes on.
+    if let (Some(job), None) = (view.running_job(), &failed) {
         return running(job, ui, outbox);
     }
-    let guidance = guidance(view, window.settings.screen);
+    let guidance = failed.unwrap_or_else(|| guidance(view, screen));
     next_button(view, &guidance, ui, outbox);
     if let Some((job, reason)) = failed_job(view) {
         if ui.button("Dismiss").clicked() {

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use plumbline::{Backend, PlumblineWindow, ScriptStep, ThemeChoice, WindowOptions, WindowSettings};
+use plumbline::{Backend, PlumblineWindow, ScriptStep, Stopper, ThemeChoice, WindowOptions, WindowSettings};
 use plumbline_engine::{Command, View};
 
 /// What the test can see and change from outside.
@@ -28,6 +28,13 @@ impl Backend for Fake {
 
     fn stop(&self) {
         self.stops.fetch_add(1, Ordering::SeqCst);
+    }
+
+    fn stopper(&self) -> Stopper {
+        let stops = self.stops.clone();
+        Arc::new(move || {
+            stops.fetch_add(1, Ordering::SeqCst);
+        })
     }
 
     fn heartbeat(&self) {

@@ -57,8 +57,8 @@ fn robot(name: &str, value: &str) -> Option<Step> {
         "look-at" => point().and_then(|point_m| preview(Destination::LookAt { point_m })),
         "reach" => point().and_then(|point_m| preview(Destination::TipPosition { point_m })),
         "speed" => match value.parse() {
-            Ok(share) => send(RobotCommand::Speed(share)),
-            Err(_) => Err("speed:SHARE wants a number, 1 is usual".to_owned()),
+            Ok(share) if (0.01..=2.0).contains(&share) => send(RobotCommand::Speed(share)),
+            _ => Err("speed:SHARE wants a number between 0.01 and 2, 1 is usual".to_owned()),
         },
         _ => return None,
     })
@@ -79,8 +79,8 @@ fn twin(name: &str, value: &str) -> Option<Step> {
         "twin-toy" => place_toy(value),
         "twin-toy-away" => send(TwinCommand::RemoveToy { toy: value.to_owned() }),
         "twin-warm-up" => match value.parse() {
-            Ok(minutes) => send(TwinCommand::AdvanceWarmUp { minutes }),
-            Err(_) => Err("twin-warm-up:MINUTES wants a number".to_owned()),
+            Ok(minutes) if minutes > 0.0 && minutes <= 600.0 => send(TwinCommand::AdvanceWarmUp { minutes }),
+            _ => Err("twin-warm-up:MINUTES wants a number up to 600".to_owned()),
         },
         "twin-fault" => match value.split_once('=') {
             Some((fault, on @ ("on" | "off"))) => {
@@ -105,14 +105,15 @@ fn place_toy(value: &str) -> Step {
 
 /// NAME=NUMBER.
 fn named(step: &str, value: &str, then: impl FnOnce(String, f64) -> Step) -> Step {
-    match value.split_once('=').and_then(|(name, number)| Some((name, number.trim().parse().ok()?))) {
-        Some((name, number)) => then(name.trim().to_owned(), number),
-        None => Err(format!("{step}:NAME=NUMBER wants a name and a number")),
+    match value.split_once('=').and_then(|(name, number)| Some((name, number.trim().parse::<f64>().ok()?))) {
+        Some((name, number)) if number.is_finite() => then(name.trim().to_owned(), number),
+        _ => Err(format!("{step}:NAME=NUMBER wants a name and a number")),
     }
 }
 
 fn numbers(text: &str) -> Option<[f64; 3]> {
-    let all: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+    let finite = |part: &str| part.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    let all: Option<Vec<f64>> = text.split(',').map(finite).collect();
     all?.try_into().ok()
 }
 
@@ -130,5 +131,12 @@ mod tests {
         assert!(step("look-at", "1,2").expect("known").expect_err("two numbers").contains("meters"));
         assert!(step("twin-board", "0").expect("known").is_err());
         assert_eq!(step("dance", ""), None);
+        for bad in ["1e-30", "0", "-1", "NaN", "inf", "2.1", "fast"] {
+            let why = step("speed", bad).expect("known").expect_err(bad);
+            assert!(why.contains("between 0.01 and 2"), "{why}");
+        }
+        for bad in ["0", "-1", "NaN", "1e9"] {
+            assert!(step("twin-warm-up", bad).expect("known").is_err(), "{bad}");
+        }
     }
 }

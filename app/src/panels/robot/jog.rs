@@ -10,7 +10,7 @@ use plumbline_widgets::theme;
 use super::words::tip_title;
 use super::{Asked, cannot_move, refusal_line};
 use crate::panels::{PanelContext, padded};
-use crate::window::GamepadState;
+use crate::window::{GamepadState, STOP_BUTTONS};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     if super::without_joints(ui, cx, Some("Moves the tip of an arm while a key is held.")) {
@@ -72,12 +72,13 @@ fn choose_tip(ui: &mut Ui, robot: &RobotView, choose: &mut dyn FnMut(String)) {
 }
 
 fn gamepad(ui: &mut Ui, pad: Option<&GamepadState>) {
-    const USE: &str = "Hold the left shoulder button to enable it. Left stick: forward, back, left, right. \
-                       Right stick: up, down, turn.";
+    let how = format!(
+        "Hold the left shoulder button to enable it. Left stick: forward, back, left, right. Right stick: up, down, turn. It stops with {STOP_BUTTONS}, on every screen."
+    );
     let (text, hover) = match pad {
-        Some(pad) if pad.enabled => ("gamepad enabled", format!("{}. {USE}", pad.name)),
-        Some(pad) => ("gamepad: hold left shoulder", format!("{}. {USE}", pad.name)),
-        None => ("no gamepad", format!("Plug one in to jog with it. {USE}")),
+        Some(pad) if pad.enabled => ("gamepad enabled", format!("{}. {how}", pad.name)),
+        Some(pad) => ("gamepad: hold left shoulder", format!("{}. {how}", pad.name)),
+        None => ("no gamepad", format!("Plug one in to jog with it. {how}")),
     };
     ui.label(theme::small(ui, text)).on_hover_text(hover);
 }

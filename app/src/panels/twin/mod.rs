@@ -4,11 +4,10 @@
 mod board;
 mod table;
 
-use std::time::Duration;
-
 use egui::{Button, ComboBox, ScrollArea, Ui};
 use plumbline_engine::view::{Connection, TwinView};
 use plumbline_engine::{RobotCommand, TwinCommand};
+use plumbline_model::duration;
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, group_heading, space};
@@ -76,7 +75,7 @@ fn without_twin(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 /// The eyes turn in their mounts while they warm up.
 fn clock(ui: &mut Ui, cx: &mut PanelContext<'_>, twin: &TwinView) {
     group_heading(ui, "Warm-up");
-    let on = Duration::try_from_secs_f64(twin.eyes_on_s).unwrap_or_default();
+    let on = duration::seconds(twin.eyes_on_s).unwrap_or_default();
     ui.label(format!("Eyes on for {}", format::clock(on))).on_hover_text(
         "Eyes turn in their mounts while they warm up: a calibration made cold does not hold warm",
     );

@@ -275,3 +275,30 @@ fn what_runs_is_not_started_again() {
     bench.engine.send(Command::Watch(WatchCommand::StartAgain(WatchedThread::Robot)));
     bench.until("an answer", |view| says(view, "nothing to start again: what talks to the arm runs"));
 }
+
+#[test]
+fn numbers_from_outside_end_no_thread() {
+    let bench = Bench::start(None);
+    bench.open_pairs();
+    bench.until("a picture", |view| view.live.raw.is_some());
+    let numbers = [0.0, -1.0, 1e-30, 1e-308, 1e30, 1e308, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+    for number in numbers {
+        bench.engine.send(SourceCommand::PairsPerSecond(number));
+        bench.engine.send(RobotCommand::Speed(number));
+        bench
+            .engine
+            .send(RobotCommand::Jog(crate::JogRates { velocity_m_s: [number; 3], yaw_rad_s: number }));
+        bench.engine.send(EyesCommand::MinutesSinceOn(Some(number)));
+        bench.engine.send(crate::TwinCommand::AdvanceWarmUp { minutes: number });
+    }
+    // What is sent last comes after all of it on every thread.
+    bench.engine.send(SourceCommand::Seek(2));
+    bench.engine.send(RobotCommand::Speed(0.5));
+    let view = bench.until("the last word", |view| (view.robot.speed - 0.5).abs() < 1e-9);
+    bench.until("the third pair", |view| view.source.replay.and_then(|replay| replay.position) == Some(2));
+    assert!(view.threads.is_empty(), "{:?}", view.threads);
+    for words in ["cannot be played", "cannot be set", "number from 0 to 527040"] {
+        assert!(says(&view, words), "{words}: {:?}", view.notices);
+    }
+    assert_eq!(view.eyes.minutes_since_on, Some(1e-308), "the last that is a time");
+}

@@ -203,6 +203,12 @@ fn numbers_that_are_none_are_refused() {
         RobotCommand::Jog(JogRates { velocity_m_s: [f64::NAN, 0.0, 0.0], yaw_rad_s: 0.0 }),
         RobotCommand::Speed(f64::NAN),
         RobotCommand::Speed(0.0),
+        RobotCommand::Speed(1e-30),
+        RobotCommand::Speed(0.009),
+        RobotCommand::Speed(2.1),
+        RobotCommand::Speed(f64::INFINITY),
+        RobotCommand::Jog(JogRates { velocity_m_s: [1e308, 0.0, 0.0], yaw_rad_s: 0.0 }),
+        RobotCommand::Jog(JogRates { velocity_m_s: [0.0; 3], yaw_rad_s: f64::NEG_INFINITY }),
         RobotCommand::Preview(Destination::TipPosition { point_m: [f64::INFINITY, 0.0, 0.3] }),
     ] {
         bench.worker.refusal = None;
@@ -210,6 +216,11 @@ fn numbers_that_are_none_are_refused() {
         assert!(bench.refusal().is_some(), "{command:?}");
     }
     assert_eq!(bench.asked(), vec![]);
+    bench.send(RobotCommand::Speed(1e-30));
+    let why = bench.refusal().expect("refused");
+    assert!(why.contains("0.01 to 2 times"), "{why}");
+    bench.send(RobotCommand::Speed(0.01));
+    assert_eq!(bench.refusal(), None);
 }
 
 #[test]

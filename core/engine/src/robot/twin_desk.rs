@@ -21,6 +21,7 @@ const AT_EACH_PLACE: Duration = Duration::from_millis(1600);
 /// So much around the touchscreen is kept free of toys while it is touched: a hand is broad, m.
 const BESIDE_SCREEN_M: f64 = 0.06;
 const NOT_RUNNING: &str = "The twin is not running. Connect to it first.";
+const PHYSICS_FAILED: &str = "The twin's physics have failed inside, so the twin has ended. Nothing real is hurt: connect to the twin again, and report it with the log.";
 /// The same twin every time.
 const SEED: u64 = 1;
 
@@ -210,6 +211,9 @@ impl TwinDesk {
 
     /// Goes on with what takes time.
     pub fn tick(&mut self, now: Instant, _rig: &Rig) {
+        if self.twin.as_ref().is_some_and(Twin::has_failed) {
+            return self.let_go_of_the_failed();
+        }
         let (Some(twin), Some((next, at))) = (&self.twin, &mut self.tour) else { return };
         if now < *at {
             return;
@@ -226,6 +230,15 @@ impl TwinDesk {
                 self.notes.push((NoticeLevel::Info, text));
             }
         }
+    }
+
+    /// Its servos would answer for ever with the angles they had: without it their bus is gone, and
+    /// that is said too.
+    fn let_go_of_the_failed(&mut self) {
+        self.eyes.set(None);
+        (self.twin, self.tour) = (None, None);
+        self.notes.push((NoticeLevel::Error, PHYSICS_FAILED.to_owned()));
+        self.failed = Some(PHYSICS_FAILED.to_owned());
     }
 
     /// What the window shows.
@@ -310,3 +323,29 @@ fn lying(rig: &Rig, x_m: f64, y_m: f64, yaw_rad: f64) -> Result<Pose<Robot, Boar
 
 /// The printed side lies this high above the table, m; the touchscreen's glass is lower.
 const BOARD_THICKNESS_M: f64 = 0.006;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn physics_that_fail_end_the_twin_and_are_said() {
+        let rig = Arc::new(Rig::built_in("nico").expect("the rig that comes with the program"));
+        let mut desk = TwinDesk::new(TwinEyesPlug::default());
+        desk.start("perfect", &rig).expect("a twin");
+        desk.tick(Instant::now(), &rig);
+        assert!(desk.is_running() && desk.take_notes().is_empty());
+        desk.twin.as_ref().expect("it runs").fail_on_trial();
+        let begun = Instant::now();
+        while desk.is_running() {
+            assert!(begun.elapsed() < Duration::from_secs(30), "it is never noticed");
+            desk.tick(Instant::now(), &rig);
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert!(desk.view().failed.is_some_and(|why| why.contains("physics have failed inside")));
+        assert_eq!(desk.take_notes().len(), 1);
+        assert!(desk.control(TwinCommand::Reset, &rig).expect_err("it ended").contains("not running"));
+        desk.start("perfect", &rig).expect("another twin");
+        assert!(desk.is_running() && desk.view().failed.is_none());
+    }
+}

@@ -30,11 +30,14 @@ const TRAIL: Duration = Duration::from_secs(30);
 /// Places nearer than this to the last one are left out of the trail, m.
 const TRAIL_STEP_M: f64 = 0.002;
 
-/// What the state is told.
-#[derive(Clone, Debug)]
+/// What can be asked of a jog along each axis (m/s) and about the vertical (rad/s); the joints' own
+/// limits are far below.
+const FASTEST_JOG: [f64; 2] = [1.0, 6.0];
 /// Shares of the usual speed that can be set: a slower move would take hours.
 const SPEEDS: (f64, f64) = (0.01, 2.0);
 
+/// What the state is told.
+#[derive(Clone, Debug)]
 pub struct News {
     /// For the window.
     pub robot: Arc<RobotView>,
@@ -401,9 +404,14 @@ impl Worker {
     }
 
     fn begin_jog(&mut self, rates: JogRates, now: Instant) -> Result<(), String> {
-        let finite = rates.velocity_m_s.iter().chain([&rates.yaw_rad_s]).all(|rate| rate.is_finite());
-        if !finite {
-            return Err("The speed of jogging must be a number.".to_owned());
+        let is_slow = |rate: &f64, fastest: f64| (-fastest..=fastest).contains(rate);
+        let [fastest_m_s, fastest_rad_s] = FASTEST_JOG;
+        if !rates.velocity_m_s.iter().all(|rate| is_slow(rate, fastest_m_s))
+            || !is_slow(&rates.yaw_rad_s, fastest_rad_s)
+        {
+            return Err(format!(
+                "A tip is jogged by up to {fastest_m_s} m/s along each axis and {fastest_rad_s} rad/s; what was asked for is more, or no number."
+            ));
         }
         if self.switches.stop.is_pressed() {
             return Err(sentence(&Refusal::Stopped.to_string()));

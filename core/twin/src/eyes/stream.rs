@@ -232,6 +232,11 @@ impl StereoSource for TwinEyes {
         }
         match &state.failed {
             Some(error) => Err(SourceError::Lost { reason: error.to_string() }),
+            None if self.thread.as_ref().is_some_and(JoinHandle::is_finished) => {
+                let reason =
+                    "what draws the twin's eyes has failed inside; report it with the log".to_owned();
+                Err(SourceError::Lost { reason })
+            }
             None => Ok(Next::NotYet),
         }
     }

@@ -64,6 +64,8 @@ struct Shared {
     state: Mutex<TwinState>,
     touches: Mutex<Touches>,
     end: AtomicBool,
+    /// A test lets the physics fail.
+    struck: AtomicBool,
 }
 
 #[derive(Debug, Default)]
@@ -130,6 +132,7 @@ impl Twin {
             state: Mutex::new(TwinState::default()),
             touches: Mutex::new(Touches::default()),
             end: AtomicBool::new(false),
+            struck: AtomicBool::new(false),
         });
         let (commands, incoming) = sync_channel(COMMANDS);
         let runner = Runner::new(shared.clone(), incoming, pace);
@@ -140,6 +143,18 @@ impl Twin {
             .map_err(TwinError::Thread)?;
         let baud = rig.bus.baud;
         Ok(Self { shared, commands, terminal: Mutex::new(terminal), baud, seed, thread: Some(thread) })
+    }
+
+    /// Whether its physics have ended although nobody asked them to: its servos then answer with
+    /// angles that are not true any more.
+    pub fn has_failed(&self) -> bool {
+        self.thread.as_ref().is_some_and(JoinHandle::is_finished)
+    }
+
+    /// Lets the physics fail, for tests of what is said then.
+    #[doc(hidden)]
+    pub fn fail_on_trial(&self) {
+        self.shared.struck.store(true, Ordering::Relaxed);
     }
 
     /// Where a host opens the servo bus. After the port was closed by a fault it may be another.

@@ -60,6 +60,7 @@ impl Runner {
             while let Ok(command) = self.incoming.try_recv() {
                 self.obey(command);
             }
+            assert!(!self.shared.struck.load(Ordering::Relaxed), "struck by a test");
             self.catch_up();
             self.publish();
             let nap_s = (World::STEP_S / self.pace).clamp(5e-4, 0.01);

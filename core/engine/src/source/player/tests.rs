@@ -175,3 +175,31 @@ fn a_closed_source_is_gone() {
     assert_eq!(name(&mut player), None);
     assert_eq!(player.view(), SourceView { opened: 2, ..SourceView::default() });
 }
+
+#[test]
+fn a_rate_that_is_none_is_refused_and_the_one_before_stays() {
+    let (mut player, _) = player(3);
+    assert!(player.control(Control::Open(spec())).is_empty());
+    assert!(player.control(Control::PairsPerSecond(50.0)).is_empty());
+    for rate in [0.0, -1.0, 1e-30, 1e9, f64::NAN, f64::INFINITY] {
+        let notes = player.control(Control::PairsPerSecond(rate));
+        assert!(notes.iter().any(|(_, text)| text.contains("between 0.01 and 1000")), "{rate}: {notes:?}");
+    }
+    let rate = player.view().replay.and_then(|replay| replay.pairs_per_second);
+    assert_eq!(rate, Some(50.0));
+}
+
+#[test]
+fn a_player_in_place_of_another_counts_on() {
+    let (player, _) = player(3);
+    let mut player = player.in_place_of_one(41, 7);
+    assert_eq!(player.opened(), 7);
+    player.control(Control::Open(spec()));
+    assert_eq!(player.opened(), 8, "a source opened now is told from those before");
+    loop {
+        if let (Polled::Frame(frame), _) = player.poll() {
+            assert_eq!(frame.stamp.seq, 41);
+            return;
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! What has failed inside is named on every screen, with what it means and what starts it again.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use plumbline::{Screen, WindowSettings};
+use plumbline_engine::view::{Connection, JobState, JobView, KeptView, MotionState, RobotView, ThreadFault};
+use plumbline_engine::watched::Trouble;
+use plumbline_engine::{Command, JobId, View, WatchCommand, WatchedThread};
+
+use crate::fake::{Fake, click, says, shows};
+use crate::made_up::everything;
+
+fn ended(thread: WatchedThread, has_let_go: bool) -> ThreadFault {
+    let trouble = Trouble::Ended { said: "a speed of 1e-30".to_owned(), since: Instant::now() };
+    ThreadFault::new(thread, trouble, has_let_go)
+}
+
+fn silent(thread: WatchedThread) -> ThreadFault {
+    ThreadFault::new(thread, Trouble::Silent { since: Instant::now() }, false)
+}
+
+/// As the engine shows it when the robot's thread is gone.
+fn robot_failed(fault: ThreadFault) -> View {
+    let before = everything();
+    let connection = Connection::Lost { to: "port".to_owned(), reason: fault.meaning.to_string() };
+    let robot = RobotView {
+        connection,
+        motion: MotionState::Unknown,
+        stopped: true,
+        measured: None,
+        bus: plumbline_engine::view::BusView::default(),
+        ..RobotView::clone(&before.robot)
+    };
+    View { robot: Arc::new(robot), threads: Arc::from([fault]), ..before }
+}
+
+fn on(screen: Screen) -> WindowSettings {
+    WindowSettings { screen, ..WindowSettings::default() }
+}
+
+fn start_again(thread: WatchedThread) -> Command {
+    WatchCommand::StartAgain(thread).into()
+}
+
+#[test]
+fn a_dead_robot_thread_is_said_on_every_screen_and_started_again_with_one_click() {
+    for screen in Screen::ALL {
+        let fake = Fake::over(robot_failed(ended(WatchedThread::Robot, true)));
+        let mut window = fake.window(on(screen));
+        assert!(shows(&window, "Program robot failed"), "{screen:?}");
+        assert!(says(&window, "What talks to the arm has failed inside"), "{screen:?}");
+        assert!(says(&window, "power switch in reach"), "{screen:?}");
+        let stop = window.get_by_label("STOP").accesskit_node().value();
+        assert_ne!(stop.as_deref(), Some("arm held"), "{screen:?}");
+        click(&mut window, "Start again");
+        assert_eq!(fake.take_sent(), [start_again(WatchedThread::Robot)], "{screen:?}");
+    }
+}
+
+#[test]
+fn the_lamp_opens_what_was_said_and_the_button() {
+    let fake = Fake::over(robot_failed(ended(WatchedThread::Robot, true)));
+    let mut window = fake.window(on(Screen::Live));
+    click(&mut window, "Program robot failed");
+    assert!(says(&window, "It said: a speed of 1e-30."));
+    click(&mut window, "Start again: what talks to the arm");
+    assert_eq!(fake.take_sent(), [start_again(WatchedThread::Robot)]);
+}
+
+#[test]
+fn work_that_goes_on_does_not_hide_it() {
+    let state = JobState::Running {
+        fraction: 0.4,
+        doing: "iteration 3".to_owned(),
+        remaining: None,
+        cancelling: false,
+    };
+    let job = JobView { id: JobId(7), title: "Solve".to_owned(), state, elapsed: Duration::from_secs(1) };
+    let view = View { jobs: Arc::from([job]), ..robot_failed(ended(WatchedThread::Robot, true)) };
+    let fake = Fake::over(view);
+    let window = fake.window(on(Screen::Judge));
+    assert!(says(&window, "What talks to the arm has failed inside"));
+    assert!(shows(&window, "Start again"));
+}
+
+#[test]
+fn while_it_lets_go_the_button_waits_and_a_silent_one_has_none() {
+    let fake = Fake::over(robot_failed(ended(WatchedThread::Robot, false)));
+    let mut window = fake.window(on(Screen::Robot));
+    assert!(window.get_by_label("Start again").accesskit_node().is_disabled());
+    window.key_press_modifiers(Modifiers::COMMAND, Key::Enter);
+    window.run_steps(2);
+    assert_eq!(fake.take_sent(), []);
+
+    let fake = Fake::over(robot_failed(silent(WatchedThread::Robot)));
+    let window = fake.window(on(Screen::Robot));
+    assert!(shows(&window, "Program robot silent"));
+    assert!(says(&window, "STOP was pressed for you"));
+    assert!(!shows(&window, "Start again"));
+}
+
+#[test]
+fn a_dead_stage_is_said_where_it_is_looked_at_and_named_everywhere() {
+    let view = || View { threads: Arc::from([ended(WatchedThread::Rectify, true)]), ..everything() };
+    let fake = Fake::over(view());
+    let mut window = fake.window(on(Screen::Live));
+    assert!(says(&window, "there are no rectified views and no depth"));
+    click(&mut window, "Start again");
+    assert_eq!(fake.take_sent(), [start_again(WatchedThread::Rectify)]);
+    let fake = Fake::over(view());
+    let window = fake.window(on(Screen::Gap));
+    assert!(shows(&window, "Program rectify failed"));
+    assert!(!shows(&window, "Start again"));
+}
+
+#[test]
+fn several_faults_are_counted_and_the_worst_comes_first() {
+    let threads = Arc::from([
+        ended(WatchedThread::Engine, true),
+        ended(WatchedThread::Robot, true),
+        ended(WatchedThread::Journal, true),
+    ]);
+    let fake = Fake::over(View { threads, ..robot_failed(ended(WatchedThread::Robot, true)) });
+    let mut window = fake.window(on(Screen::Live));
+    assert!(shows(&window, "Program engine failed, 2 more"));
+    assert!(says(&window, "The heart of the program has failed inside"));
+    click(&mut window, "Start again");
+    assert_eq!(fake.take_sent(), [start_again(WatchedThread::Engine)]);
+}
+
+#[test]
+fn what_the_journal_lacks_and_where_data_go_is_said() {
+    let kept = KeptView {
+        problem: Some("You have no home folder. What is accepted goes to /tmp/x.".into()),
+        journal_lost: 12,
+        ..KeptView::default()
+    };
+    let fake = Fake::over(View { kept: Arc::new(kept), ..everything() });
+    let window = fake.window(on(Screen::Live));
+    assert!(shows(&window, "Journal 12 lost") && shows(&window, "Data at risk"));
+    let fake = Fake::over(everything());
+    let window = fake.window(on(Screen::Live));
+    for words in ["Journal", "Data at risk", "Program"] {
+        assert!(!says(&window, words), "while all is well nothing is said: {words}");
+    }
+}
