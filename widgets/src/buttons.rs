@@ -47,6 +47,8 @@ pub enum ArmState {
     Free,
     /// Stopped and held; nothing moves before the stop is released.
     Stopped,
+    /// Connected, and no servo answers: whether it holds is not known.
+    Unknown,
     /// No arm is connected.
     NotConnected,
 }
@@ -59,6 +61,7 @@ impl ArmState {
             Self::Moving => "arm moving",
             Self::Free => "arm free",
             Self::Stopped => "stopped",
+            Self::Unknown => "arm not known",
             Self::NotConnected => "no arm connected",
         }
     }

@@ -109,6 +109,7 @@ impl PlumblineWindow {
                 self.ask = Some(Ask::Connect(Default::default()));
             }
             Action::Robot(RobotAction::TorqueOff) => self.ask = Some(Ask::LetGo),
+            Action::Robot(RobotAction::ShortenAnswers) => self.ask = Some(Ask::ShortenAnswers),
             Action::Robot(RobotAction::SavePose) => self.ask = Some(Ask::SavePose { title: String::new() }),
             Action::OpenFolder => self.ask_for(ctx, Question::Folder),
             Action::OpenTwoFolders => self.ask_for(ctx, Question::TwoFolders),

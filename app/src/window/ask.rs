@@ -40,6 +40,8 @@ pub enum Ask {
     Connect(ConnectChoice),
     /// Whether all joints may go limp.
     LetGo,
+    /// Whether servos may be told for good to answer sooner.
+    ShortenAnswers,
     /// Folder and classes of a new data set.
     NewLabelSet {
         /// As it is being typed.
@@ -92,6 +94,7 @@ impl Ask {
             Self::DeleteAll { count } => delete_all(ui, *count),
             Self::Connect(chosen) => connect::show(ui, view, chosen),
             Self::LetGo => let_go(ui),
+            Self::ShortenAnswers => shorten_answers(ui, view),
             Self::NewLabelSet { folder, classes } => new_label_set(ui, folder, classes),
             Self::SavePose { title } => save_pose(ui, title),
         });
@@ -201,6 +204,19 @@ fn let_go(ui: &mut Ui) -> Asked {
     title(ui, "Let all joints go limp?", "Both arms sink by their own weight: hold them, and keep clear.");
     match buttons(ui, "Let all go limp", true) {
         Some(true) => Asked::Command(RobotCommand::Torque { joints: Vec::new(), on: false }.into()),
+        Some(false) => Asked::Closed,
+        None => Asked::Open,
+    }
+}
+
+fn shorten_answers(ui: &mut Ui, view: &View) -> Asked {
+    let slow = view.robot.bus.slow_answers;
+    let about = format!(
+        "{slow} servos wait before each answer. They are told to answer at once, and keep that in their permanent memory (return delay). Nothing moves."
+    );
+    title(ui, "Shorten the answers of servos?", &about);
+    match buttons(ui, "Write it to the servos", slow > 0) {
+        Some(true) => Asked::Command(RobotCommand::ShortenAnswers.into()),
         Some(false) => Asked::Closed,
         None => Asked::Open,
     }

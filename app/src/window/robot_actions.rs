@@ -18,6 +18,8 @@ pub enum RobotAction {
     Disconnect,
     /// Asks the bus who is there.
     Scan,
+    /// Lets servos answer sooner, which is written to their permanent memory.
+    ShortenAnswers,
     /// Runs the move that is shown.
     Move,
     /// Forgets the move that is shown.
@@ -80,12 +82,13 @@ fn when(possible: bool, why: &'static str) -> Refusal {
 
 impl RobotAction {
     /// All of them, in the palette's order.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Connect,
         Self::ConnectTwin,
         Self::TwinEyes,
         Self::Disconnect,
         Self::Scan,
+        Self::ShortenAnswers,
         Self::Move,
         Self::ForgetMove,
         Self::ReleaseStop,
@@ -108,6 +111,7 @@ impl RobotAction {
             Self::TwinEyes => "Look through the twin's eyes",
             Self::Disconnect => "Disconnect the robot",
             Self::Scan => "Look for servos again",
+            Self::ShortenAnswers => "Shorten answers…",
             Self::Move => "Move there",
             Self::ForgetMove => "Forget the shown move",
             Self::ReleaseStop => "Release STOP",
@@ -138,6 +142,13 @@ impl RobotAction {
                 connected || matches!(robot.connection, Connection::Connecting { .. }),
                 "no robot is connected",
             ),
+            Self::ShortenAnswers => when(
+                connected && robot.bus.slow_answers > 0,
+                "no servo waits longer before its answers than it needs to",
+            )
+            .or_else(|| {
+                when(robot.motion == MotionState::Limp, "servos take it only while all joints are limp")
+            }),
             Self::Scan | Self::SavePose => when(connected, "no robot is connected"),
             Self::Move => move_refusal(view),
             Self::ForgetMove => when(robot.preview.is_some(), "no move is shown"),
@@ -162,7 +173,7 @@ impl RobotAction {
     pub fn command(self, view: &View) -> Option<Command> {
         let all = Vec::new;
         Some(match self {
-            Self::Connect | Self::TorqueOff | Self::SavePose => return None,
+            Self::Connect | Self::TorqueOff | Self::SavePose | Self::ShortenAnswers => return None,
             Self::ConnectTwin => RobotCommand::ConnectTwin { scenario: default_scenario(view) }.into(),
             Self::TwinEyes => SourceCommand::Open(SourceSpec::Twin).into(),
             Self::Disconnect => RobotCommand::Disconnect.into(),

@@ -26,8 +26,9 @@ pub(super) fn arm_state(robot: &RobotView) -> ArmState {
         // Until it is known to stand, it is said to move.
         MotionState::Moving { .. } => ArmState::Moving,
         MotionState::Limp => ArmState::Free,
+        MotionState::Unknown => ArmState::Unknown,
         _ if robot.stopped => ArmState::Stopped,
-        MotionState::Holding { .. } | MotionState::Unknown => ArmState::Held,
+        MotionState::Holding { .. } => ArmState::Held,
     }
 }
 
@@ -67,6 +68,11 @@ fn bus(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
 
 fn connected(robot: &RobotView) -> (String, Health, Option<String>) {
     let bus = &robot.bus;
+    if matches!(robot.motion, MotionState::Unknown)
+        && let Some(warning) = bus.warnings.first()
+    {
+        return ("silent".to_owned(), Health::Failed, Some(warning.clone()));
+    }
     let Some(rate) = bus.cycles_per_s else { return ("starting".to_owned(), Health::Working(0.5), None) };
     let value = format::hertz(rate);
     if !bus.missing.is_empty() {
@@ -100,7 +106,9 @@ fn details(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
     for warning in &bus.warnings {
         ui.label(RichText::new(warning).color(Role::Warning.color(theme::tokens(ui))));
     }
-    for action in [RobotAction::Scan, RobotAction::Connect, RobotAction::Disconnect] {
+    for action in
+        [RobotAction::Scan, RobotAction::ShortenAnswers, RobotAction::Connect, RobotAction::Disconnect]
+    {
         if action.refusal(view).is_none() && ui.button(action.label()).clicked() {
             outbox.act(Action::Robot(action));
             ui.close();

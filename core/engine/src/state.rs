@@ -73,6 +73,8 @@ pub struct State {
     faults: BTreeMap<WatchedThread, ThreadFault>,
     /// What was known of robot and twin before their thread fell silent.
     before_silence: Option<(Arc<RobotView>, Arc<TwinView>)>,
+    /// The same of the source.
+    source_before_silence: Option<Arc<SourceView>>,
     kept: Arc<KeptView>,
 }
 
@@ -117,6 +119,7 @@ impl State {
             revision: 0,
             faults: BTreeMap::new(),
             before_silence: None,
+            source_before_silence: None,
             kept: Arc::default(),
         };
         state.with_labels(|labels, _, context| labels.restore(context));
@@ -431,6 +434,7 @@ impl State {
         let own_eyes = matches!(view.spec, Some(SourceSpec::Twin | SourceSpec::Cameras { .. }));
         self.live.use_nominal_lenses(own_eyes);
         self.source.update(view);
+        self.source_before_silence = None;
         self.live.set_calibration(self.eyes.shown().in_use());
     }
 

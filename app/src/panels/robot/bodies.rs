@@ -3,7 +3,7 @@
 use egui::Color32;
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use plumbline_engine::View;
-use plumbline_engine::view::MotionState;
+use plumbline_engine::view::{MotionState, RobotView};
 use plumbline_model::Chessboard;
 use plumbline_model::robot::{self as model, Description, JointIndex, JointKind, LinkIndex, Posture, Rig};
 use plumbline_widgets::scene3d::{
@@ -54,7 +54,7 @@ pub fn scene(view: &View, panels: &RobotPanels, ghost: Option<&Posture>, names: 
     }
     let measured = steadied(measured);
     table(&mut scene, rig);
-    body(&mut scene, rig, &measured, panels.chosen_joint);
+    body(&mut scene, robot, rig, &measured, panels.chosen_joint);
     if let Some(goal) = ghost_posture(view, ghost, &rig.description) {
         draw_ghost(&mut scene, rig, &measured, goal);
     }
@@ -103,7 +103,7 @@ fn two_sigma(covariance_m2: &Matrix3<f64>) -> Option<([f64; 3], UnitQuaternion<f
     if !covariance_m2.iter().all(|c| c.is_finite()) {
         return None;
     }
-    let parts = covariance_m2.symmetric_eigen();
+    let parts = plumbline_model::decompose::symmetric_eigen(*covariance_m2)?;
     let radii_m = [0, 1, 2].map(|i| (2.0 * parts.eigenvalues[i].max(0.0).sqrt()).max(SEEN_FROM_M));
     if radii_m.iter().any(|radius_m| *radius_m > SEEN_TO_M) {
         // An ellipsoid larger than the table hides everything and says no more than the list does.
@@ -157,15 +157,26 @@ fn table(scene: &mut Scene, rig: &Rig) {
     scene.solids.push(screen_slab(&pose, [screen.width_m, screen.height_m]));
 }
 
-fn body(scene: &mut Scene, rig: &Rig, posture: &Posture, chosen: Option<JointIndex>) {
+/// What hangs on a joint that is not known is drawn where it was last seen, colorless, and says so.
+fn body(scene: &mut Scene, robot: &RobotView, rig: &Rig, posture: &Posture, chosen: Option<JointIndex>) {
     let description = &rig.description;
     let poses = description.forward(posture);
+    let mut said = false;
     for (i, link) in description.links().iter().enumerate() {
         let joint = carrying_joint(description, LinkIndex(i));
         let is_chosen = chosen.is_some() && joint == chosen;
+        let is_unknown = hangs_on(description, LinkIndex(i), &robot.unknown);
+        if is_unknown && !std::mem::replace(&mut said, true) {
+            let at_m = Point3::from(poses.all()[i].translation.vector);
+            scene.labels.push(Label3d { at_m, text: "not known".to_owned(), tint: Tint::Neutral });
+        }
         for visual in &link.visuals {
             let at = poses.all()[i] * visual.link_from_shape;
-            let tint = if is_chosen { Tint::Selected } else { Tint::Measured };
+            let tint = match (is_chosen, is_unknown) {
+                (true, _) => Tint::Selected,
+                (_, true) => Tint::Neutral,
+                _ => Tint::Measured,
+            };
             let solid = Solid::new(shape(&visual.shape), at, tint);
             scene.solids.push(match joint {
                 Some(joint) => solid.pick(PickId(joint.0 as u64)),
@@ -189,6 +200,18 @@ fn draw_ghost(scene: &mut Scene, rig: &Rig, measured: &Posture, goal: &Posture) 
             scene.solids.push(Solid::new(shape(&visual.shape), at, Tint::Ghost));
         }
     }
+}
+
+/// Whether one of some joints is between the base and a link.
+fn hangs_on(description: &Description, mut link: LinkIndex, joints: &[JointIndex]) -> bool {
+    while let (Some(joint), Some(above)) = (carrying_joint(description, link), description.joint_above(link))
+    {
+        if joints.contains(&joint) {
+            return true;
+        }
+        link = above.parent;
+    }
+    false
 }
 
 /// The nearest joint above a link that moves by itself.

@@ -21,8 +21,34 @@ pub(super) fn trouble(robot: &RobotView) -> Option<Guidance> {
         Connection::Lost { reason, .. } => {
             Some(say(reason.clone()).warn().then("Connect the robot…", connect))
         }
-        Connection::Connected { .. } => moving(&robot.motion),
+        Connection::Connected { .. } => moving(&robot.motion).or_else(|| silent(robot)),
     }
+}
+
+/// No servo answers, or some joint is not known: what that means comes before anything else.
+fn silent(robot: &RobotView) -> Option<Guidance> {
+    if robot.motion == MotionState::Unknown
+        && let Some(warning) = robot.bus.warnings.first()
+    {
+        return Some(say(warning.clone()).warn());
+    }
+    None
+}
+
+/// A joint that has to be taken hold of anew, or is not known.
+fn joint_trouble(robot: &RobotView) -> Option<Guidance> {
+    let troubled = |joint: &&plumbline_engine::view::JointView| joint.let_go || joint.no_force;
+    let joint = robot
+        .joints
+        .iter()
+        .find(|joint| robot.unknown.contains(&joint.joint))
+        .or_else(|| robot.joints.iter().find(troubled))?;
+    let guidance = say(format!("{}: {}", joint.title, closed(joint.problem.as_deref()?))).warn();
+    Some(if robot.unknown.contains(&joint.joint) {
+        guidance
+    } else {
+        guidance.then("Hold all joints", Action::Robot(RobotAction::TorqueOn))
+    })
 }
 
 fn moving(motion: &MotionState) -> Option<Guidance> {
@@ -44,6 +70,9 @@ pub(super) fn robot(view: &View) -> Guidance {
     }
     if let Some(why) = &robot.refusal {
         return say(why.clone()).warn();
+    }
+    if let Some(guidance) = joint_trouble(robot) {
+        return guidance;
     }
     match &robot.motion {
         MotionState::Limp => say("The joints are limp: they can be turned by hand, and sink.")

@@ -26,6 +26,9 @@ pub enum RobotCommand {
     ListPorts,
     /// Asks the bus anew who is there.
     Scan,
+    /// Lets servos that wait longer than they need to before each answer wait less. They keep that in
+    /// their permanent memory, and take it only while they are limp.
+    ShortenAnswers,
     /// Switches the torque of some joints on (they hold where they are) or off (they sink).
     Torque {
         /// Which; empty means all.

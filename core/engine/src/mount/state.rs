@@ -251,7 +251,8 @@ impl MountState {
 fn ready(around: &Surroundings<'_>) -> Result<(Arc<StereoCalibration>, Posture), String> {
     let calibration =
         around.calibration.clone().ok_or("The eyes are not calibrated yet. Do step 1, Eyes, first.")?;
-    let posture = around.robot.measured.clone();
+    let head = around.robot.rig.as_ref().map(|rig| [rig.eyes.pan, rig.eyes.tilt]);
+    let posture = head.and_then(|head| around.robot.known(&head).cloned());
     let posture =
         posture.ok_or("The head's angles are not known. Connect to the robot or the twin first.")?;
     Ok((calibration, posture))

@@ -38,6 +38,9 @@ pub trait Arm: Send {
     /// Switches torque; joints that get it hold where they are, others sink.
     fn torque(&self, joints: &[JointIndex], on: bool) -> Result<(), Refusal>;
 
+    /// Lets servos that are limp answer sooner, which they keep for good.
+    fn shorten_answers(&self) -> Result<(), Refusal>;
+
     /// Who was found when it was connected.
     fn census(&self) -> Census;
 }

@@ -54,6 +54,7 @@ fn patient() -> ArmOptions {
     ArmOptions {
         timing: BusTiming { answer_margin: Duration::from_millis(40), ..BusTiming::default() },
         cycle_deadline: Duration::from_millis(60),
+        write_window: Duration::from_millis(60),
         missed_cycles: 25,
         ..ArmOptions::default()
     }
@@ -99,6 +100,10 @@ impl Arm for DrivenArm {
 
     fn torque(&self, joints: &[JointIndex], on: bool) -> Result<(), Refusal> {
         if on { self.driver.engage(joints) } else { self.driver.relax(joints) }
+    }
+
+    fn shorten_answers(&self) -> Result<(), Refusal> {
+        self.driver.shorten_answers()
     }
 
     fn census(&self) -> Census {

@@ -45,7 +45,11 @@ impl Worker {
             joints: self.joints(state, measured.as_ref()),
             commanded: state.and_then(|state| state.commanded.clone()),
             tip: self.tip.clone(),
-            tip_place: measured.as_ref().map(|posture| self.tip_place(posture)),
+            tip_place: measured
+                .as_ref()
+                .filter(|_| state.is_some_and(|state| self.chain.joints().iter().all(|j| state.knows(*j))))
+                .map(|posture| self.tip_place(posture)),
+            unknown: state.map_or_else(Default::default, |state| state.unknown.clone()),
             measured,
             trail: self.trail.iter().map(|(_, place)| *place).collect(),
             preview: self.preview.as_ref().map(|(_, preview)| preview.clone()),
@@ -62,6 +66,7 @@ impl Worker {
             return MotionState::Moving { what, fraction: None, remaining: None };
         }
         match &state.motion {
+            Motion::Unknown => MotionState::Unknown,
             Motion::Limp => MotionState::Limp,
             // These are how it should be; anything else is worth a word.
             Motion::Holding(
@@ -80,8 +85,10 @@ impl Worker {
     }
 
     fn joints(&self, state: Option<&JointState>, measured: Option<&Posture>) -> Arc<[JointView]> {
-        let row =
-            |(i, servo): (usize, &Servo)| self.joint(i, servo, state.and_then(|s| s.joints.get(i)), measured);
+        let row = |(i, servo): (usize, &Servo)| {
+            let reading = state.and_then(|s| Some((s.of(servo.joint)?, s.knows(servo.joint))));
+            self.joint(i, servo, reading, measured)
+        };
         self.rig.servos.iter().enumerate().map(row).collect()
     }
 
@@ -89,10 +96,12 @@ impl Worker {
         &self,
         place: usize,
         servo: &Servo,
-        reading: Option<&JointReading>,
+        reading: Option<(&JointReading, bool)>,
         measured: Option<&Posture>,
     ) -> JointView {
         let limits = self.rig.limits(servo.joint);
+        let is_known = reading.is_some_and(|(_, is_known)| is_known);
+        let reading = reading.map(|(reading, _)| reading);
         JointView {
             joint: servo.joint,
             name: servo.joint_name.clone(),
@@ -101,13 +110,15 @@ impl Worker {
             model: servo.model.clone(),
             limits,
             limits_now: measured.map_or(limits, |posture| self.rig.limits_in(servo.joint, posture)),
-            angle_rad: reading.and_then(|r| r.angle_rad),
+            angle_rad: reading.and_then(|r| r.angle_rad).filter(|_| is_known),
             goal_rad: reading.and_then(|r| r.goal_rad),
             speed_rad_s: reading.and_then(|r| r.speed_rad_s),
             load: reading.and_then(|r| r.load),
             temperature_c: reading.and_then(|r| r.temperature_c),
             voltage_v: reading.and_then(|r| r.voltage_v),
             torque_on: reading.and_then(|r| r.torque_on),
+            let_go: reading.is_some_and(|r| r.let_go),
+            no_force: reading.is_some_and(|r| r.torque_on == Some(true) && r.force == Some(0.0)),
             age: reading.and_then(|r| r.age),
             problem: reading.and_then(|r| r.problem.clone()),
             history: self.histories.of(place),
@@ -127,12 +138,16 @@ impl Worker {
         let census = self.arm.as_ref().map(|arm| arm.census()).unwrap_or_default();
         let Some(state) = state else { return BusView::default() };
         let counts = &state.bus.counts;
+        let silent = state.unknown.iter().filter_map(|joint| Some(self.rig.servo_of(*joint)?.id));
+        let is_board = |id: &u8| self.rig.boards.iter().any(|board| board.id == *id);
+        let boards = census.missing.iter().copied().filter(is_board);
         BusView {
             cycles_per_s: state.bus.complete_per_s,
             cycles: state.bus.complete_cycles,
             faults: super::connect::faults(counts),
             retries: super::connect::retries(counts),
-            missing: census.missing,
+            missing: silent.chain(boards).collect(),
+            slow_answers: state.slow_answers,
             unexpected: census.unexpected,
             warnings: census.warnings.into_iter().chain(state.warnings.iter().cloned()).collect(),
         }
@@ -159,12 +174,13 @@ impl RobotView {
             && self.tip == other.tip
             && (self.speed - other.speed).abs() < f64::EPSILON
             && self.measured.is_some() == other.measured.is_some()
+            && self.unknown == other.unknown
             && self.joints.len() == other.joints.len()
-            && self
-                .joints
-                .iter()
-                .zip(other.joints.iter())
-                .all(|(a, b)| a.torque_on == b.torque_on && a.problem.is_some() == b.problem.is_some())
+            && self.joints.iter().zip(other.joints.iter()).all(|(a, b)| {
+                a.torque_on == b.torque_on
+                    && a.let_go == b.let_go
+                    && a.problem.is_some() == b.problem.is_some()
+            })
     }
 
     /// Whether no number that can be read has changed; ages and cycle counts do not count.

@@ -26,6 +26,7 @@ enum Asked {
 #[derive(Default)]
 struct Record {
     asked: Vec<Asked>,
+    unknown: Vec<JointIndex>,
     gone: Option<String>,
 }
 
@@ -35,13 +36,20 @@ struct FakeArm {
 }
 
 impl Arm for FakeArm {
+    fn shorten_answers(&self) -> Result<(), Refusal> {
+        Ok(())
+    }
+
     fn state(&self) -> Option<Arc<JointState>> {
+        let unknown = self.record.lock().expect("no test panics in here").unknown.clone().into();
         Some(Arc::new(JointState {
             stamp: Stamp { seq: 1, captured_at: Instant::now() },
             joints: Arc::<[JointReading]>::from([]),
             motion: Motion::Holding(HoldReason::Connected),
             stopped: false,
             measured: Some(self.posture.clone()),
+            unknown,
+            slow_answers: 0,
             commanded: Some(self.posture.clone()),
             bus: BusStatistics::default(),
             outcomes: Arc::from([]),

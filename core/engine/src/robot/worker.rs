@@ -6,7 +6,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use plumbline_hardware::joints::{Motion, Move, MoveId, MoveOutcome, Pace, Refusal, Setpoint, SetpointKind};
+use plumbline_hardware::joints::{
+    Chains, Motion, Move, MoveId, MoveOutcome, Pace, Refusal, Setpoint, SetpointKind,
+};
 use plumbline_model::frame::{Point, Robot};
 use plumbline_model::robot::{Chain, JointIndex, Posture, Reach, Rig};
 
@@ -74,6 +76,8 @@ pub struct Worker {
     pub(super) desk: TwinDesk,
     pub(super) tip: String,
     pub(super) chain: Chain,
+    /// Which joints move together.
+    together: Chains,
     reach: Option<Reach>,
     pub(super) paths: Paths,
     pub(super) preview: Option<(Resolved, Preview)>,
@@ -109,6 +113,7 @@ impl Worker {
             desk,
             chain: chain.expect("the base is a link, and a rig's tips are checked when it is read"),
             reach: Reach::with_model(&rig, &tip, paths.model()).ok(),
+            together: Chains::of(&rig.description),
             tip,
             paths,
             preview: None,
@@ -129,16 +134,16 @@ impl Worker {
         }
     }
 
-    /// Whether there is something to look at often.
-    pub fn is_awake(&self) -> bool {
-        self.arm.is_some() || self.desk.is_running()
-    }
-
     /// Takes the place of a worker that failed: twins are counted on, so that a new one is told from
     /// those before.
     pub fn in_place_of_one_that_started(mut self, twins: u64) -> Self {
         self.twins_started = twins;
         self
+    }
+
+    /// Whether there is something to look at often.
+    pub fn is_awake(&self) -> bool {
+        self.arm.is_some() || self.desk.is_running()
     }
 
     /// Messages for the operator since the last call.
@@ -229,6 +234,9 @@ impl Worker {
                 Ok(())
             }
             RobotCommand::Scan => self.scan(),
+            RobotCommand::ShortenAnswers => {
+                self.arm()?.shorten_answers().map_err(|refusal| sentence(&refusal.to_string()))
+            }
             RobotCommand::Torque { joints, on } => self.torque(&joints, on),
             RobotCommand::Preview(destination) => self.show(&destination),
             RobotCommand::ClearPreview => {
@@ -339,6 +347,13 @@ impl Worker {
         self.arm.as_ref()?.state()?.measured.clone()
     }
 
+    /// Whether it is known where some joints are, and what moves with them.
+    fn knows(&self, joints: &[JointIndex]) -> Result<(), String> {
+        let Some(state) = self.arm.as_ref().and_then(|arm| arm.state()) else { return Ok(()) };
+        let known = self.together.check(&self.rig, joints, &state.unknown);
+        known.map_err(|refusal| sentence(&refusal.to_string()))
+    }
+
     fn torque(&mut self, joints: &[JointIndex], on: bool) -> Result<(), String> {
         let all: Vec<JointIndex> = self.rig.servos.iter().map(|servo| servo.joint).collect();
         let joints = if joints.is_empty() { &all } else { joints };
@@ -354,6 +369,7 @@ impl Worker {
         let around =
             Surroundings { rig: &self.rig, reach: self.reach.as_ref(), present: &present, poses: &poses };
         let resolved = resolve(destination, &around)?;
+        self.knows(&resolved.joints)?;
         self.preview_of(resolved);
         Ok(())
     }
@@ -381,6 +397,7 @@ impl Worker {
     fn run_preview(&mut self) -> Result<(), String> {
         let (resolved, _) = self.preview.take().ok_or("No move is shown. Choose where to go first.")?;
         let present = self.present().ok_or("The joints have not been read yet.")?;
+        self.knows(&resolved.joints)?;
         // The arm may have moved since it was shown.
         self.paths.check(&present, &resolved.end)?;
         self.begin(resolved)
@@ -389,6 +406,7 @@ impl Worker {
     fn turn_head(&mut self, pan_rad: f64, tilt_rad: f64) -> Result<(), String> {
         let present = self.present().ok_or("The joints have not been read yet.")?;
         let joints = vec![self.rig.eyes.pan, self.rig.eyes.tilt];
+        self.knows(&joints)?;
         let end = present.with(&joints, &[pan_rad, tilt_rad]);
         self.paths.check(&present, &end)?;
         self.begin(Resolved { title: "the head to its next pose".to_owned(), end, joints })
@@ -421,6 +439,7 @@ impl Worker {
             Some(jog) => (jog.rates, jog.until) = (rates, until),
             None => {
                 let goal = self.present().ok_or("The joints have not been read yet.")?;
+                self.knows(self.chain.joints())?;
                 self.refusal = None;
                 (self.preview, self.running) = (None, None);
                 self.jog = Some(Jog { rates, until, last: now, goal });
@@ -491,6 +510,7 @@ impl Worker {
             self.present().ok_or("The joints have not been read yet, so there is nothing to save.")?;
         let all: Vec<JointIndex> = self.rig.servos.iter().map(|servo| servo.joint).collect();
         let joints = if joints.is_empty() { &all } else { joints };
+        self.knows(joints)?;
         let rig = self.rig.clone();
         let clamped = |joint: &JointIndex| {
             // An encoder may read half a tick beyond the limit at which it stands.
@@ -536,7 +556,9 @@ impl Worker {
         if let Some(since) = self.connected_at {
             self.histories.note(now.saturating_duration_since(since).as_secs_f64(), &state.joints);
         }
-        if let Some(posture) = &state.measured {
+        if let Some(posture) = &state.measured
+            && self.chain.joints().iter().all(|joint| state.knows(*joint))
+        {
             self.follow_tip(posture, now);
         }
     }

@@ -19,9 +19,11 @@ pub struct RobotView {
     pub stopped: bool,
     /// All joints with a servo, in the order of the rig file.
     pub joints: Arc<[JointView]>,
-    /// Present angles by the encoders; joints that do not answer stay where they were last seen.
+    /// Present angles by the encoders; those of `unknown` joints are where they were last seen.
     /// `None` before the first complete reading.
     pub measured: Option<Posture>,
+    /// Joints whose servo does not answer or is not who it should be: where they are is not known.
+    pub unknown: Arc<[JointIndex]>,
     /// Angles that the servos were sent last; `None` when nothing was sent.
     pub commanded: Option<Posture>,
     /// The tip that jogging and Cartesian targets speak of.
@@ -42,6 +44,13 @@ pub struct RobotView {
     pub ports: Option<Arc<[PortView]>>,
     /// Share of the usual speed at which moves run, 0–2.
     pub speed: f64,
+}
+
+impl RobotView {
+    /// The present angles, if those of all the given joints are known.
+    pub fn known(&self, joints: &[JointIndex]) -> Option<&Posture> {
+        self.measured.as_ref().filter(|_| joints.iter().all(|joint| !self.unknown.contains(joint)))
+    }
 }
 
 /// How the robot is connected.
@@ -83,7 +92,7 @@ impl Connection {
 /// What the arm does.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum MotionState {
-    /// Not known: not connected.
+    /// Not known: not connected, or no servo answers.
     #[default]
     Unknown,
     /// No servo has torque: joints can be turned by hand, and sink.
@@ -135,6 +144,11 @@ pub struct JointView {
     pub voltage_v: Option<f64>,
     /// Whether it holds.
     pub torque_on: Option<bool>,
+    /// It was silent since it was taken hold of, or holds without having been: nothing is sent to it
+    /// before its torque is switched on anew.
+    pub let_go: bool,
+    /// It has torque on and no force: its servo shut down after an overload.
+    pub no_force: bool,
     /// Age of the angle.
     pub age: Option<Duration>,
     /// What is wrong with it and what to do.
@@ -218,6 +232,8 @@ pub struct BusView {
     pub missing: Vec<u8>,
     /// Ids on the bus that the rig does not know, with their model.
     pub unexpected: Vec<(u8, String)>,
+    /// Servos that wait longer before each answer than they need to.
+    pub slow_answers: usize,
     /// What the operator should know, with what to do (latency timer, one id twice).
     pub warnings: Vec<String>,
 }

@@ -4,6 +4,7 @@ use super::*;
 use image::Rgb;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// Delivers an image every `period`, numbered in its first pixel, until it is unplugged.
 struct NumberCamera {

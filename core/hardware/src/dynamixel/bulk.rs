@@ -32,7 +32,10 @@ impl Bus {
             let until = deadline.min(Instant::now() + self.answer_time(longest));
             let found = match self.next_found(until) {
                 Ok(found) => found,
-                Err(Ended::Bus(error)) => return Err(error),
+                Err(Ended::Bus(error)) => {
+                    self.rescued = answers.into_iter().filter_map(Result::ok).collect();
+                    return Err(error);
+                }
                 Err(Ended::TimeOver) => {
                     // The one whose turn it was is at fault; those behind it wait for it.
                     if self.deframer.clear() > 0 {

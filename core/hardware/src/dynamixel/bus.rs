@@ -29,6 +29,10 @@ const PATIENCE: Duration = Duration::from_millis(40);
 /// An answer that was given up is waited for no longer than this where it would do harm.
 const OWED: Duration = Duration::from_millis(60);
 
+/// What nobody waits for is taken off the line for no longer than this: whoever floods the line
+/// must not keep anything from being said, the stop least of all.
+const DRAIN: Duration = Duration::from_millis(3);
+
 /// Timing of a bus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BusTiming {
@@ -59,7 +63,11 @@ pub struct Bus {
     echo: Vec<u8>,
     /// Servos whose answers were given up and may still come.
     pub(super) owed: Vec<u8>,
+    /// Answers that had come when a conversation was interrupted.
+    pub(super) rescued: Vec<Status>,
     stop: Option<std::sync::Arc<AtomicBool>>,
+    /// The line was looked at once more after the time of this question was over.
+    looked_late: bool,
     patient: bool,
     /// The margin for answers now.
     margin: Duration,
@@ -83,7 +91,9 @@ impl Bus {
             counts: BusCounts::default(),
             echo: vec![],
             owed: vec![],
+            rescued: vec![],
             stop: None,
+            looked_late: false,
             patient: false,
             margin: timing.answer_margin,
         }
@@ -146,6 +156,13 @@ impl Bus {
         let instruction = Instruction::Write { address, data: data.to_vec() };
         // A late answer to a question must not be taken for the confirmation.
         self.ask(id, &instruction, Some(0), self.far())
+    }
+
+    /// The same in a single attempt; returns whether it was confirmed. For what must not be said
+    /// once more without looking: between two attempts a servo may have lost its power and sunk.
+    pub(crate) fn write_once(&mut self, id: u8, address: u16, data: &[u8]) -> Result<bool, BusError> {
+        let instruction = Instruction::Write { address, data: data.to_vec() };
+        Ok(self.ask_once(id, &instruction, Some(0), self.far())?.is_ok())
     }
 
     /// Waits for answers of a servo that were given up and may still come, so that they are not
@@ -343,6 +360,12 @@ impl Bus {
             }
             let left = until.saturating_duration_since(Instant::now());
             if left.is_zero() {
+                // Who got no processor for a while finds the answer there that came meanwhile.
+                if !std::mem::replace(&mut self.looked_late, true)
+                    && self.receive(Duration::ZERO).map_err(Ended::Bus)? > 0
+                {
+                    continue;
+                }
                 // Bytes that looked like the beginning of an echo were none.
                 if self.echo.is_empty() || self.deframer.pending() == 0 {
                     return Err(Ended::TimeOver);
@@ -376,7 +399,8 @@ impl Bus {
 
     /// Takes what nobody waits for any more: late answers, echoes of what has no answer.
     pub(super) fn drain(&mut self) -> Result<(), BusError> {
-        while self.receive(Duration::ZERO)? > 0 {}
+        let end = Instant::now() + DRAIN;
+        while self.receive(Duration::ZERO)? > 0 && Instant::now() < end {}
         self.echo.clear();
         self.take_strays();
         self.counts.stray_bytes += self.deframer.clear() as u64;
@@ -403,6 +427,7 @@ impl Bus {
         let sent = self.port.write_all(&bytes).and_then(|()| self.port.flush());
         sent.map_err(|error| BusError::PortGone { port: self.port.name(), detail: error.to_string() })?;
         self.wire.bytes_out += bytes.len() as u64;
+        self.looked_late = false;
         self.echo = bytes;
         if self.owed.len() > 64 {
             self.owed.clear();
@@ -410,14 +435,24 @@ impl Bus {
         Ok(())
     }
 
-    /// Lets answers that are on their way pass, so that what is sent next does not collide with
-    /// them: until the line is quiet for 1 ms, at most `longest`.
-    pub(crate) fn let_pass(&mut self, longest: Duration) -> Result<(), BusError> {
+    /// Lets answers that are on their way come in, so that what is sent next does not collide with
+    /// them: until the line is quiet for 1 ms, at most `longest`. Returns them, with those that had
+    /// come when the conversation was interrupted: they tell where the joints are now.
+    pub(crate) fn let_come(&mut self, longest: Duration) -> Result<Vec<Status>, BusError> {
         let end = Instant::now() + longest;
-        while Instant::now() < end && self.receive(SLICE)? > 0 {}
+        while self.receive(SLICE)? > 0 && Instant::now() < end {}
+        let mut answers = std::mem::take(&mut self.rescued);
+        while let Some(found) = self.deframer.pop() {
+            if let Found::Frame(frame) = found
+                && let Ok(status) = self.protocol.status(&frame)
+                && !status.error.is_transmission()
+            {
+                answers.push(status);
+            }
+        }
         self.deframer.clear();
         self.echo.clear();
-        Ok(())
+        Ok(answers)
     }
 }
 

@@ -37,6 +37,7 @@ pub use fault::{BusCounts, FaultCounts, FaultKind};
 pub use instruction::{BROADCAST, BulkItem, Instruction, LARGEST_ID};
 pub use packet::{DecodeError, EncodeError, Frame, Protocol, Status};
 pub use port::{PortInfo, ServoPort, latency_hint, list_ports, open_port};
+pub(crate) use scan::Answer;
 pub use scan::{BusScan, ExpectedServo, FoundServo, ScanRange, WrongModel};
 pub use status_error::StatusError;
 pub use wire_time::WireTime;

@@ -21,6 +21,17 @@ pub struct FoundServo {
 }
 
 impl FoundServo {
+    /// From the first bytes of its memory; shorter ones were refused before.
+    fn of(id: u8, identity: &[u8]) -> Self {
+        let byte = |i: usize| identity.get(i).copied().unwrap_or(0);
+        Self { id, model_number: u16::from_le_bytes([byte(0), byte(1)]), firmware: byte(2) }
+    }
+
+    /// Whether it is of a model, as control tables are called.
+    pub fn is_model(&self, model: &str) -> bool {
+        ControlTable::of_model(model).is_some_and(|table| table.number == self.model_number)
+    }
+
     /// Name of its model, if it is known.
     pub fn model(&self) -> Option<&'static str> {
         ControlTable::of_number(self.model_number).map(|table| table.model.as_str())
@@ -124,9 +135,12 @@ const ATTEMPTS: u32 = 3;
 const LONG: Duration = Duration::from_millis(100);
 
 /// What one id answered.
-enum Answer {
+pub(crate) enum Answer {
+    /// Nothing.
     Silent,
+    /// Who it is.
     Found(FoundServo),
+    /// Two at once, it seems.
     Collision,
 }
 
@@ -138,7 +152,7 @@ impl BusScan {
             Answer::Found(found) => {
                 match expected {
                     None => self.unexpected.push(found.clone()),
-                    Some(expected) if !is_model(&found, &expected.model) => {
+                    Some(expected) if !found.is_model(&expected.model) => {
                         self.wrong_model
                             .push(WrongModel { expected: expected.clone(), found: found.clone() });
                     }
@@ -183,9 +197,20 @@ impl Bus {
         Ok(scan)
     }
 
+    /// Reads the model of an id, in one attempt: the inner error is the servo's fault.
+    pub(crate) fn identify_once(
+        &mut self,
+        id: u8,
+        deadline: Instant,
+    ) -> Result<Result<FoundServo, FaultKind>, BusError> {
+        let instruction = Instruction::Read { address: 0, length: IDENTITY_BYTES };
+        let answer = self.ask_once(id, &instruction, Some(usize::from(IDENTITY_BYTES)), deadline)?;
+        Ok(answer.map(|status| FoundServo::of(id, &status.data)))
+    }
+
     /// Reads the model of an id. Two servos with one id answer at once: their bytes collide, or
     /// come twice, again and again; once may be noise, or an answer that comes late.
-    fn identify(&mut self, id: u8, expected: bool) -> Result<Answer, BusError> {
+    pub(crate) fn identify(&mut self, id: u8, expected: bool) -> Result<Answer, BusError> {
         let instruction = Instruction::Read { address: 0, length: IDENTITY_BYTES };
         let (mut broken, mut doubled, mut attempt) = (0, 0, 0);
         loop {
@@ -196,8 +221,7 @@ impl Bus {
             self.be_patient(false);
             match answer? {
                 Ok(status) if !self.another_answer(id)? => {
-                    let model_number = u16::from_le_bytes([status.data[0], status.data[1]]);
-                    return Ok(Answer::Found(FoundServo { id, model_number, firmware: status.data[2] }));
+                    return Ok(Answer::Found(FoundServo::of(id, &status.data)));
                 }
                 Ok(_) => doubled += 1,
                 Err(FaultKind::Missing | FaultKind::Late | FaultKind::WrongId) => {}
@@ -216,8 +240,4 @@ impl Bus {
             }
         }
     }
-}
-
-fn is_model(found: &FoundServo, model: &str) -> bool {
-    ControlTable::of_model(model).is_some_and(|table| table.number == found.model_number)
 }

@@ -70,7 +70,9 @@ pub enum MoveOutcome {
 /// What the arm does.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
-    /// No servo has torque.
+    /// No servo answers: whether anything holds is not known.
+    Unknown,
+    /// No servo that answers has torque.
     Limp,
     /// Stands where it is.
     Holding(HoldReason),

@@ -1,5 +1,8 @@
-//! What the thread of the bus does in each cycle: reads the stop, takes what is asked, moves the
-//! goals by a small step that all limits allow, exchanges with the servos, and tells.
+//! What the thread of the bus does in each cycle: reads the stop, reads every servo, takes what is
+//! asked, moves the goals by a small step that all limits allow, sends those that changed, and tells.
+//!
+//! Reading comes right before writing, so that a goal rests on what the servo said a few
+//! milliseconds ago: that it holds, and where it is.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -7,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 
+use super::chains::Chains;
 use super::command::{Move, MoveId, MoveOutcome, Setpoint};
 use super::driver::expected_servos;
 use super::exchange::Exchange;
@@ -15,6 +19,8 @@ use super::limiter::Limiter;
 use super::options::ArmOptions;
 use super::rate::Rate;
 use super::refusal::{HoldReason, Refusal};
+use super::slot::{Bar, Identity, Slot};
+use super::torque::{barred, unknown};
 use super::trajectory::Trajectory;
 use crate::dynamixel::{BusError, BusScan, ScanRange};
 
@@ -25,6 +31,7 @@ pub(super) enum Request {
     Hold,
     Torque { joints: Vec<JointIndex>, on: bool },
     Scan(ScanRange),
+    ShortenAnswers,
 }
 
 /// What moves the goals.
@@ -35,8 +42,11 @@ pub(super) enum Mode {
     Follow { given_at: Instant, setpoint: Setpoint, speeds_rad_s: Posture },
 }
 
-/// An angle older than this is not what a joint is held at, s.
-const FRESH: Duration = Duration::from_millis(150);
+/// A joint is held at an angle read no longer ago than this; else where it is read next. Held at an
+/// older one, it would be moved back to where it was.
+const FRESH: Duration = Duration::from_millis(40);
+/// A motion begins from angles read no longer ago than this.
+const RECENT: Duration = Duration::from_millis(600);
 /// Ends of moves that are remembered.
 const OUTCOMES: usize = 16;
 /// A cycle that took longer moves the goals no farther than this, s.
@@ -45,6 +55,9 @@ const LONGEST_STEP_S: f64 = 0.05;
 pub(super) struct Controller {
     pub(super) exchange: Exchange,
     pub(super) limiter: Limiter,
+    pub(super) chains: Chains,
+    /// Joints with a servo that this program does not know how to talk to.
+    voiceless: Vec<JointIndex>,
     pub(super) options: ArmOptions,
     pub(super) mode: Mode,
     /// Goals as commanded last; joints without a goal as measured.
@@ -68,8 +81,12 @@ impl Controller {
         let n = exchange.slots.len();
         let mut guards = options.guards.clone();
         guards.push(Arc::new(FloorGuard::new(&rig)));
+        let has_slot = |joint: &JointIndex| exchange.slots.iter().any(|slot| slot.reading.joint == *joint);
+        let voiceless = rig.servos.iter().map(|s| s.joint).filter(|joint| !has_slot(joint)).collect();
         Self {
             exchange,
+            chains: Chains::of(&rig.description),
+            voiceless,
             limiter: Limiter { rig, guards },
             options,
             mode: Mode::Hold(HoldReason::Connected),
@@ -161,6 +178,13 @@ impl Controller {
         }
         self.stop_seen &= self.options.stop.is_pressed();
         self.exchange.bus.interrupt_on((!self.stop_seen).then(|| self.options.stop.flag()));
+        let complete = self.exchange.read_all(now + self.options.cycle_deadline)?;
+        if complete {
+            self.complete += 1;
+            self.rate.count(Instant::now());
+        }
+        self.rate.count_strays(Instant::now(), self.exchange.bus.counts().stray_bytes);
+        self.begin_commanded();
         for request in requests {
             self.take(request)?;
         }
@@ -168,34 +192,35 @@ impl Controller {
         self.watch(now);
         self.advance(now, dt_s);
         self.send()?;
-        let complete = self.exchange.read_all(now + self.options.cycle_deadline)?;
-        if complete {
-            self.complete += 1;
-            self.rate.count(Instant::now());
-        }
         self.rate.last_cycle = self.exchange.bus.wire().since(&wire_before);
-        self.begin_commanded();
         Ok(())
     }
 
-    /// STOP: every servo with torque is told to stay where it is, before anything else is said.
+    /// STOP: what moves is told to stay where it is, and every other servo with torque once more what
+    /// it was told, before anything else is said.
     fn answer_stop(&mut self) -> Result<(), BusError> {
         self.stop_seen = true;
         self.exchange.bus.interrupt_on(None);
-        // An answer on its way would collide with the hold; one bulk read lasts 2 ms.
-        self.exchange.bus.let_pass(Duration::from_millis(4))?;
+        // An answer on its way would collide with the hold, and tells where the joint is; one bulk
+        // read lasts 4 ms.
+        self.exchange.take_late(Duration::from_millis(5))?;
         self.hold(HoldReason::Stop);
         self.send()
     }
 
-    /// Goals become where the joints are, and whatever moved ends.
+    /// The goals of joints that move become where they are; whatever moved ends.
     pub(super) fn hold(&mut self, reason: HoldReason) {
+        let moving = self.moving();
         if let Some(commanded) = &mut self.commanded {
-            for slot in &self.exchange.slots {
-                let fresh = slot.reading.read_at.is_some_and(|at| at.elapsed() < FRESH);
-                let known = slot.reading.angle_rad.filter(|_| fresh).or(slot.reading.goal_rad);
-                if let Some(angle_rad) = known {
-                    commanded[slot.reading.joint] = angle_rad;
+            for slot in self.exchange.slots.iter_mut().filter(|slot| slot.holds_torque()) {
+                slot.insist = true;
+                let joint = slot.reading.joint;
+                if !moving.contains(&joint) && !is_turning(slot) {
+                    continue;
+                }
+                match slot.reading.angle_rad.filter(|_| slot.silence() < FRESH) {
+                    Some(angle_rad) => commanded[joint] = angle_rad,
+                    None => slot.hold_pending = true,
                 }
             }
         }
@@ -238,23 +263,11 @@ impl Controller {
         match request {
             Request::Hold => self.hold(HoldReason::Asked),
             Request::Scan(range) => self.scan_again(range)?,
-            Request::Torque { joints, on } => {
-                // A moving joint that goes limp, or a limp one that holds, ends the motion.
+            Request::ShortenAnswers => {
                 self.stay(MoveOutcome::Replaced, HoldReason::Asked);
-                for i in 0..self.exchange.slots.len() {
-                    let joint = self.exchange.slots[i].reading.joint;
-                    if !(joints.is_empty() || joints.contains(&joint)) {
-                        continue;
-                    }
-                    if let Some(refusal) = self.exchange.switch_torque(i, on)? {
-                        self.refuse(refusal);
-                    } else if let (Some(commanded), Some(angle_rad)) =
-                        (&mut self.commanded, self.exchange.slots[i].reading.angle_rad)
-                    {
-                        commanded[joint] = angle_rad;
-                    }
-                }
+                self.exchange.shorten_return_delays(self.options.return_delay.as_secs_f64())?;
             }
+            Request::Torque { joints, on } => self.switch_torque(&joints, on)?,
             Request::Move(id, wanted) => match self.begin_move(&wanted) {
                 Ok(line) => {
                     self.stay(MoveOutcome::Replaced, HoldReason::Asked);
@@ -266,27 +279,55 @@ impl Controller {
         Ok(())
     }
 
-    /// Asks anew who is on the bus, while the arm stands. A servo that is back takes part again.
+    fn switch_torque(&mut self, joints: &[JointIndex], on: bool) -> Result<(), BusError> {
+        // A moving joint that goes limp, or a limp one that holds, ends the motion.
+        self.stay(MoveOutcome::Replaced, HoldReason::Asked);
+        let hot_c = self.limiter.rig.gate.hot_c;
+        for i in 0..self.exchange.slots.len() {
+            let slot = &self.exchange.slots[i];
+            let joint = slot.reading.joint;
+            if !(joints.is_empty() || joints.contains(&joint)) {
+                continue;
+            }
+            // Waiting for each of many that are silent would take seconds.
+            if slot.silent && joints.len() != 1 {
+                let refusal = barred(slot).unwrap_or_else(|| unknown(slot));
+                self.refuse(refusal);
+                continue;
+            }
+            if let Some(refusal) = self.exchange.switch_torque(i, on, hot_c)? {
+                self.refuse(refusal);
+            }
+            let slot = &self.exchange.slots[i];
+            let held_rad = slot.reading.goal_rad.filter(|_| slot.holds_torque()).or(slot.reading.angle_rad);
+            if let (Some(commanded), Some(angle_rad)) = (&mut self.commanded, held_rad) {
+                commanded[joint] = angle_rad;
+            }
+        }
+        Ok(())
+    }
+
+    /// Asks anew who is on the bus, while the arm stands. A servo that is back takes part again,
+    /// limp until it is taken hold of; one that is not who the rig says is used no more.
     fn scan_again(&mut self, range: ScanRange) -> Result<(), BusError> {
         self.stay(MoveOutcome::Replaced, HoldReason::Asked);
         let scan = self.exchange.bus.scan(&expected_servos(&self.limiter.rig), range)?;
         for slot in &mut self.exchange.slots {
-            if !slot.in_use() && scan.found.iter().any(|found| found.id == slot.unit.id()) {
-                slot.missed = 0;
-            }
+            note_scan(slot, &scan);
         }
         self.scan = Arc::new(scan);
-        Ok(())
+        self.exchange.note_return_delays(self.options.return_delay.as_secs_f64())
     }
 
-    fn begin_move(&self, wanted: &Move) -> Result<Trajectory, Refusal> {
+    fn begin_move(&mut self, wanted: &Move) -> Result<Trajectory, Refusal> {
         let joints: Vec<JointIndex> = wanted.goals.iter().map(|(joint, _)| *joint).collect();
         let (commanded, measured) = self.may_move(&joints)?;
         self.limiter.plan(&commanded, &measured, wanted)
     }
 
-    /// Whether these joints may move at all; where they are commanded to be, and where they are.
-    fn may_move(&self, joints: &[JointIndex]) -> Result<(Posture, Posture), Refusal> {
+    /// Whether these joints may move at all; where they are commanded to be, and where they are. A
+    /// joint that hangs farther from its goal than one step sets out from where it is.
+    fn may_move(&mut self, joints: &[JointIndex]) -> Result<(Posture, Posture), Refusal> {
         if self.options.stop.is_pressed() {
             return Err(Refusal::Stopped);
         }
@@ -295,20 +336,9 @@ impl Controller {
         }
         for joint in joints {
             let slot = self.exchange.slots.iter().find(|slot| slot.reading.joint == *joint);
-            let slot = slot.ok_or(Refusal::NoServo { joint: *joint })?;
-            let (joint, name) = (*joint, slot.unit.servo.title.clone());
-            let fresh = slot.reading.read_at.is_some_and(|at| at.elapsed() < FRESH * 4);
-            if !fresh || !slot.in_use() {
-                return Err(Refusal::Unknown { joint, name });
-            }
-            if !slot.holds_torque() {
-                return Err(Refusal::Limp { joint, name });
-            }
-            let limit_c = self.limiter.rig.gate.hot_c;
-            if let Some(temperature_c) = slot.reading.temperature_c.filter(|t| *t >= limit_c) {
-                return Err(Refusal::Hot { joint, name, temperature_c, limit_c });
-            }
+            may_move(slot.ok_or(Refusal::NoServo { joint: *joint })?, self.limiter.rig.gate.hot_c)?;
         }
+        self.chains.check(&self.limiter.rig, joints, &self.unknown())?;
         let unknown = || {
             let slot = self.exchange.slots.iter().find(|slot| slot.reading.angle_rad.is_none());
             let (joint, name) = slot.map_or((JointIndex(0), "the arm".to_owned()), |slot| {
@@ -316,7 +346,16 @@ impl Controller {
             });
             Refusal::Unknown { joint, name }
         };
-        Ok((self.commanded.clone().ok_or_else(unknown)?, self.measured().ok_or_else(unknown)?))
+        let measured = self.measured().ok_or_else(unknown)?;
+        let mut commanded = self.commanded.clone().ok_or_else(unknown)?;
+        for joint in joints {
+            // NaN fails the comparison.
+            if !((commanded[*joint] - measured[*joint]).abs() <= self.limiter.rig.gate.step_rad) {
+                commanded[*joint] = measured[*joint];
+            }
+        }
+        self.commanded = Some(commanded.clone());
+        Ok((commanded, measured))
     }
 
     pub(super) fn heartbeat_age(&self) -> Option<Duration> {
@@ -360,20 +399,27 @@ impl Controller {
         }
     }
 
-    /// Sends the goals of all joints with torque.
+    /// Sends goals where they differ from what the servos were told.
     fn send(&mut self) -> Result<(), BusError> {
-        let Some(commanded) = self.commanded.clone() else { return Ok(()) };
-        // A joint that was never sent a goal keeps the one it has until something moves it: its
-        // own goal may be elsewhere than it is.
-        let refusal = self.exchange.send_goals(|_, slot| Some(commanded[slot.reading.joint]))?;
-        if let Some(refusal) = refusal {
+        let window = self.options.write_window;
+        let Some(commanded) = &mut self.commanded else { return Ok(()) };
+        for slot in &mut self.exchange.slots {
+            let known = slot.reading.angle_rad.filter(|_| slot.hold_pending && slot.may_be_written(FRESH));
+            if let Some(angle_rad) = known {
+                commanded[slot.reading.joint] = angle_rad;
+                slot.hold_pending = false;
+            }
+        }
+        let commanded = commanded.clone();
+        if let Some(refusal) = self.exchange.send_goals(window, |slot| commanded[slot.reading.joint])? {
             self.hold(HoldReason::Refused(refusal.clone()));
             self.refuse(refusal);
         }
         Ok(())
     }
 
-    /// All joints as measured; `None` until every servo in use was read.
+    /// All joints as measured, those that are not known as last seen; `None` until every servo in
+    /// use was read.
     pub(super) fn measured(&self) -> Option<Posture> {
         let mut posture = self.limiter.rig.description.rest();
         for slot in &self.exchange.slots {
@@ -386,24 +432,48 @@ impl Controller {
         Some(posture)
     }
 
-    /// What is commanded before anything was: what a servo holds already, else where it is. A
-    /// limp joint's goal is where it was turned to by hand.
+    /// Joints of which it is not known where they are.
+    pub(super) fn unknown(&self) -> Vec<JointIndex> {
+        let slots = self.exchange.slots.iter().filter(|slot| !slot.is_known());
+        slots.map(|slot| slot.reading.joint).chain(self.voiceless.iter().copied()).collect()
+    }
+
+    /// Whether all that moves was read just now, and may be written.
+    pub(super) fn is_fresh(&self, joints: &[JointIndex]) -> bool {
+        let window = self.options.write_window;
+        let slot = |joint: &JointIndex| self.exchange.slots.iter().find(|slot| slot.reading.joint == *joint);
+        joints.iter().all(|joint| slot(joint).is_some_and(|slot| slot.may_be_written(window)))
+    }
+
+    /// What is commanded before anything was: what a servo holds already, else where it is. The
+    /// goal of a joint that does not hold is where it is.
     fn begin_commanded(&mut self) {
         let Some(measured) = self.measured() else { return };
-        let step_rad = self.limiter.rig.gate.step_rad;
         let slots = &self.exchange.slots;
         let commanded = self.commanded.get_or_insert_with(|| {
             let mut held = measured.clone();
             for slot in slots.iter().filter(|slot| slot.holds_torque()) {
-                let near = |goal_rad: &f64| (goal_rad - held[slot.reading.joint]).abs() <= step_rad;
-                if let Some(goal_rad) = slot.reading.goal_rad.filter(near) {
+                if let Some(goal_rad) = slot.goal_rad() {
                     held[slot.reading.joint] = goal_rad;
                 }
             }
             held
         });
-        for slot in slots.iter().filter(|slot| !slot.holds_torque()) {
-            commanded[slot.reading.joint] = measured[slot.reading.joint];
+        let stands = matches!(self.mode, Mode::Hold(_));
+        let step_rad = self.limiter.rig.gate.step_rad;
+        for slot in slots {
+            let joint = slot.reading.joint;
+            // NaN fails the comparison.
+            let is_near = |goal_rad: &f64| (goal_rad - measured[joint]).abs() <= step_rad;
+            if !slot.holds_torque() {
+                commanded[joint] = measured[joint];
+            } else if stands && !is_near(&commanded[joint]) {
+                // It was told elsewhere, or hangs far from its goal: what is never written is not
+                // what it is commanded to.
+                if let Some(goal_rad) = slot.goal_rad() {
+                    commanded[joint] = goal_rad;
+                }
+            }
         }
     }
 
@@ -415,4 +485,53 @@ impl Controller {
             self.note_bus_error(sent);
         }
     }
+}
+
+/// Faster than this a joint turns, rad/s.
+const TURNS_RAD_S: f64 = 0.1;
+
+fn is_turning(slot: &Slot) -> bool {
+    slot.reading.speed_rad_s.is_some_and(|speed| speed.abs() > TURNS_RAD_S)
+}
+
+/// Whether one joint may move.
+fn may_move(slot: &Slot, limit_c: f64) -> Result<(), Refusal> {
+    let (joint, name) = (slot.unit.servo.joint, slot.unit.servo.title.clone());
+    if let Some(refusal) = barred(slot) {
+        return Err(refusal);
+    }
+    if !slot.is_known() || slot.silence() >= RECENT {
+        return Err(Refusal::Unknown { joint, name });
+    }
+    if !slot.holds_torque() && (slot.let_go || slot.reading.torque_on == Some(true)) {
+        return Err(Refusal::LetGo { joint, name });
+    }
+    if !slot.holds_torque() {
+        return Err(Refusal::Limp { joint, name });
+    }
+    if slot.has_no_force() {
+        return Err(Refusal::NoForce { joint, name });
+    }
+    if let Some(temperature_c) = slot.reading.temperature_c.filter(|t| *t >= limit_c) {
+        return Err(Refusal::Hot { joint, name, temperature_c, limit_c });
+    }
+    Ok(())
+}
+
+/// What a scan says of a servo.
+pub(super) fn note_scan(slot: &mut Slot, scan: &BusScan) {
+    let id = slot.unit.id();
+    if scan.duplicates_suspected.contains(&id) {
+        return slot.bar(Bar::Doubled);
+    }
+    if let Some(wrong) = scan.wrong_model.iter().find(|wrong| wrong.found.id == id) {
+        return slot.bar(Bar::WrongModel(wrong.found.clone()));
+    }
+    if !scan.found.iter().any(|found| found.id == id) {
+        return;
+    }
+    if slot.silent {
+        (slot.silent, slot.missed, slot.verify) = (false, 0, true);
+    }
+    slot.identity = Identity::Right;
 }

@@ -9,9 +9,10 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, Sender, TrySendError};
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 
+use super::chains::Chains;
 use super::command::{Motion, Move, MoveId, MoveOutcome, Setpoint};
-use super::controller::{Controller, Request};
-use super::exchange::Exchange;
+use super::controller::{Controller, Request, note_scan};
+use super::exchange::{Exchange, Silence};
 use super::limiter::Limiter;
 use super::options::ArmOptions;
 use super::reading::JointState;
@@ -33,6 +34,7 @@ pub struct ArmDriver {
     shared: Arc<Shared>,
     requests: Sender<Request>,
     limiter: Limiter,
+    chains: Chains,
     stop: StopSwitch,
     scan: BusScan,
     ids: AtomicU64,
@@ -62,8 +64,8 @@ pub fn expected_servos(rig: &Rig) -> Vec<ExpectedServo> {
 }
 
 impl ArmDriver {
-    /// Looks who is on the bus, reads all joints, and starts the thread. Nothing moves, and torque
-    /// stays as it is. Servos that do not answer, or are not what the rig expects, stay out of use.
+    /// Looks who is on the bus, reads all joints, and starts the thread. Nothing moves, nothing is
+    /// written, and torque stays as it is. Servos that do not answer, or are not what the rig expects, stay out of use.
     ///
     /// # Errors
     /// When nobody answers, or the port is gone.
@@ -71,32 +73,25 @@ impl ArmDriver {
         let timing = BusTiming { baud: rig.bus.baud, ..options.timing };
         let mut bus = Bus::new(port, options.protocol, timing);
         let scan = bus.scan(&expected_servos(&rig), ScanRange::Expected)?;
-        let unusable = |id: u8| {
-            scan.duplicates_suspected.contains(&id)
-                || scan.wrong_model.iter().any(|wrong| wrong.found.id == id)
-        };
         if scan.found.is_empty() && scan.duplicates_suspected.is_empty() {
             return Err(BusError::Silent { port: bus.port_name(), baud: timing.baud });
         }
-        let units =
-            rig.servos.iter().filter(|servo| !unusable(servo.id)).filter_map(ServoUnit::new).collect();
-        let mut exchange = Exchange::new(bus, units, rig.gate.speed_rad_s);
+        let units = rig.servos.iter().filter_map(ServoUnit::new).collect();
+        let silence = Silence { cycles: options.missed_cycles, time: options.silence };
+        let mut exchange = Exchange::new(bus, units, rig.gate.speed_rad_s, rig.gate.step_rad, silence);
         for slot in &mut exchange.slots {
-            if !scan.found.iter().any(|found| found.id == slot.unit.id()) {
-                slot.missed = u32::MAX;
-            }
+            note_scan(slot, &scan);
+            // Who it is was asked just now; who holds already goes on holding where it was told to.
+            (slot.verify, slot.found_at_start) = (false, !slot.silent);
         }
         exchange.bus.be_patient(true);
-        exchange.read_torques()?;
-        if let Some(delay) = options.return_delay {
-            exchange.shorten_return_delays(delay.as_secs_f64())?;
-        }
-        exchange.bus.be_patient(false);
+        exchange.note_return_delays(options.return_delay.as_secs_f64())?;
         let stop = options.stop.clone();
         let limiter = Limiter { rig: rig.clone(), guards: options.guards.clone() };
         let mut controller = Controller::new(exchange, scan.clone(), rig, options);
         let limiter = Limiter { guards: controller.guards(), ..limiter };
         controller.cycle(std::iter::empty(), None);
+        controller.exchange.bus.be_patient(false);
         let shared = Arc::new(Shared {
             ring: Mutex::default(),
             setpoint: Mutex::default(),
@@ -112,7 +107,8 @@ impl ArmDriver {
             })
             .map_err(|error| BusError::NoThread { detail: error.to_string() })?;
         let ids = AtomicU64::new(1);
-        Ok(Self { shared, requests, limiter, stop, scan, ids, thread: Some(thread) })
+        let chains = Chains::of(&limiter.rig.description);
+        Ok(Self { shared, requests, limiter, chains, stop, scan, ids, thread: Some(thread) })
     }
 
     /// Who was on the bus when it was connected; what a later scan found stands in
@@ -161,6 +157,8 @@ impl ArmDriver {
             return Err(Refusal::Gone(reason.clone()));
         }
         let unknown = || Refusal::Unknown { joint: JointIndex(0), name: "the arm".to_owned() };
+        let joints: Vec<JointIndex> = wanted.goals.iter().map(|(joint, _)| *joint).collect();
+        self.chains.check(&self.limiter.rig, &joints, &state.unknown)?;
         let start = state.commanded.as_ref().ok_or_else(unknown)?;
         let present = state.measured.as_ref().ok_or_else(unknown)?;
         self.limiter.plan(start, present, wanted).map(|line| Duration::from_secs_f64(line.duration_s))
@@ -211,7 +209,8 @@ impl ArmDriver {
         self.request(Request::Hold)
     }
 
-    /// Switches torque on; the joints (empty: all) hold where they are.
+    /// Takes hold: switches torque on; the joints (empty: all) hold where they are. One that shut
+    /// down after an overload is given its force again.
     ///
     /// # Errors
     /// When too much waits, or the driver ended.
@@ -226,6 +225,15 @@ impl ArmDriver {
     /// When too much waits, or the driver ended.
     pub fn relax(&self, joints: &[JointIndex]) -> Result<(), Refusal> {
         self.request(Request::Torque { joints: joints.to_vec(), on: false })
+    }
+
+    /// Lets servos that wait longer than they need to before each answer wait less. They keep that in
+    /// their memory for good, and take it only while they are limp; others are left alone.
+    ///
+    /// # Errors
+    /// When too much waits, or the driver ended.
+    pub fn shorten_answers(&self) -> Result<(), Refusal> {
+        self.request(Request::ShortenAnswers)
     }
 
     fn request(&self, request: Request) -> Result<(), Refusal> {

@@ -1,22 +1,28 @@
 //! The joints of a robot, moved only within its limits.
 //!
 //! [`ArmDriver`] is the only way to move anything: it owns the bus, and the bus's writing side is
-//! private to this crate. Each cycle reads the stop, moves the goals by a step that all limits
-//! allow, sends all goals in one packet, and reads every servo.
+//! private to this crate. Each cycle reads the stop, reads every servo, moves the goals by a step
+//! that all limits allow, and sends those that changed in one packet.
 //!
 //! - A goal is never sent farther ahead of the present angle than the rig's step limit: whatever
 //!   becomes of the program, the arm stands within one step of where it was.
+//! - A servo is written to only while it is known: who it is, that it holds, and where it is, all read
+//!   in the same cycle. One that was silent, lost its power or its torque is limp until the operator
+//!   takes hold of it; what stands is told nothing.
+//! - Where a joint is not known, nothing of its chain moves ([`Chains`]).
 //! - [`StopSwitch`] passes every queue and interrupts every wait; it latches.
 //! - [`Heartbeat`] and the deadline of a [`Setpoint`] make the arm hold when nobody is there.
 //! - A [`Refusal`] says which joint, which limit and by how much; nothing is clamped in silence.
 //!   Where a joint stays behind, the whole move waits for it.
-//! - Holding means that every servo with torque is told to stay at its present angle. A loaded
-//!   joint hangs a little below its goal, and settles by as much again.
+//! - Holding means that what moved is told to stay at its present angle. A loaded joint hangs a
+//!   little below its goal, and settles by as much again; what stood keeps its goal.
 
+mod chains;
 mod command;
 mod controller;
 mod driver;
 mod exchange;
+mod goals;
 mod guard;
 mod limiter;
 mod motion;
@@ -28,7 +34,9 @@ mod refusal;
 mod report;
 mod ring;
 mod servo_unit;
+mod slot;
 mod stop;
+mod torque;
 mod touch;
 mod trajectory;
 mod watch;
@@ -36,6 +44,7 @@ mod watch;
 #[cfg(test)]
 mod tests;
 
+pub use chains::Chains;
 pub use command::{Motion, Move, MoveId, MoveOutcome, Pace, Setpoint, SetpointKind};
 pub use driver::{ArmDriver, expected_servos};
 pub use guard::{FloorGuard, Guard};

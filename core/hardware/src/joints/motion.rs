@@ -6,8 +6,8 @@ use plumbline_model::robot::{JointIndex, Posture};
 
 use super::command::{MoveOutcome, SetpointKind};
 use super::controller::{Controller, Mode};
-use super::exchange::Slot;
 use super::refusal::HoldReason;
+use super::slot::Slot;
 
 /// After the last goal the joints get this long to come to rest.
 const SETTLE: Duration = Duration::from_millis(500);
@@ -34,6 +34,10 @@ impl Controller {
     pub(super) fn advance(&mut self, now: Instant, dt_s: f64) {
         let (Some(commanded), Some(measured)) = (self.commanded.clone(), self.measured()) else { return };
         let joints = self.moving();
+        if !self.is_fresh(&joints) {
+            // What was not read just now is not moved; with it the rest waits.
+            return self.pause();
+        }
         let wanted = match &mut self.mode {
             Mode::Hold(_) => return,
             Mode::Move { .. } => return self.advance_move(now, dt_s, &commanded, &measured, &joints),
@@ -63,7 +67,14 @@ impl Controller {
         }
         if self.note_behind(now, &commanded, &measured, &wanted, &joints) {
             self.commanded = Some(wanted);
-        } else if let Mode::Follow { speeds_rad_s, .. } = &mut self.mode {
+        } else {
+            self.pause();
+        }
+    }
+
+    /// Jogging starts anew from rest.
+    fn pause(&mut self) {
+        if let Mode::Follow { speeds_rad_s, .. } = &mut self.mode {
             *speeds_rad_s = Posture::new(vec![0.0; speeds_rad_s.len()]);
         }
     }

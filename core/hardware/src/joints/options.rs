@@ -28,10 +28,13 @@ pub struct ArmOptions {
     pub heartbeat_timeout: Duration,
     /// Limits beyond those of joints; the floor is always among them.
     pub guards: Vec<Arc<dyn Guard>>,
-    /// Servos that wait longer before they answer are told to wait this long; `None` leaves them.
-    pub return_delay: Option<Duration>,
-    /// A moving servo that does not answer for this many cycles, and for the time of `silence`,
-    /// makes the arm hold.
+    /// Servos that wait longer than this before they answer are told of; nothing is written to them
+    /// unasked.
+    pub return_delay: Duration,
+    /// A goal is written only to a servo whose angle was read no longer ago than this.
+    pub write_window: Duration,
+    /// A servo that does not answer for this many cycles, and for the time of `silence`, is silent:
+    /// what was known of it is not any more, and what moves with it is held.
     pub missed_cycles: u32,
     /// See `missed_cycles`.
     pub silence: Duration,
@@ -54,7 +57,8 @@ impl Default for ArmOptions {
             heartbeat: None,
             heartbeat_timeout: Duration::from_secs(1),
             guards: vec![],
-            return_delay: Some(Duration::from_micros(10)),
+            return_delay: Duration::from_micros(10),
+            write_window: Duration::from_millis(30),
             missed_cycles: 6,
             silence: Duration::from_millis(200),
             following_timeout: Duration::from_millis(1500),

@@ -2,25 +2,42 @@
 
 use plumbline_model::robot::Gate;
 
-use super::exchange::Slot;
+use super::slot::Slot;
+use super::torque::barred;
 
 /// What is wrong and what to do; the worst first.
 pub(super) fn of(slot: &Slot, gate: &Gate) -> Option<String> {
     let id = slot.unit.id();
-    if !slot.in_use() {
-        return Some(format!(
-            "servo {id} does not answer and is left out: check its cable and power; it is asked again now and then"
-        ));
+    if let Some(refusal) = barred(slot) {
+        return Some(refusal.to_string());
+    }
+    if slot.silent {
+        return Some(match &slot.complaint {
+            Some(words) => format!("servo {id} is left out: {words}"),
+            None => format!(
+                "servo {id} does not answer and is left out, where its joint is, is not known: check its cable and power; it is asked again twice a second"
+            ),
+        });
     }
     if slot.torque_lost {
         return Some(format!(
-            "servo {id} switched its torque off by itself: let it cool down or lighten its load, then switch torque on"
+            "servo {id} lost its torque: its power was cut, or it was overloaded or too hot; support the joint, then switch torque on"
+        ));
+    }
+    if slot.let_go {
+        return Some(format!(
+            "servo {id} did not answer for a while: nothing is sent to it until you switch torque on, which holds it where it is then"
         ));
     }
     if slot.missed > 2 {
         return Some(format!(
             "servo {id} did not answer in the last {} cycles: check its cable",
             slot.missed
+        ));
+    }
+    if slot.has_no_force() {
+        return Some(format!(
+            "servo {id} shut down after an overload and has no force, though its torque is on: support and lighten the joint, then switch torque on, which gives it force again"
         ));
     }
     if let Some(temperature_c) = slot.reading.temperature_c.filter(|t| *t >= gate.hot_c) {
@@ -37,5 +54,27 @@ pub(super) fn warm(title: &str, temperature_c: f64, gate: &Gate) -> String {
     format!(
         "{title} is at {temperature_c:.0} °C; nothing moves from {:.0} °C on: relax the arm in the next pause",
         gate.hot_c
+    )
+}
+
+/// Nobody answers any more.
+pub(super) const ALL_SILENT: &str = "no servo answers: their power seems to be off, or the cable is unplugged. When they are back nothing moves and all are limp until you switch torque on";
+
+/// Bytes per second that belong to nothing from which on somebody else talks on the line.
+pub(super) const FLOOD_BYTES_PER_S: f64 = 2000.0;
+
+/// Somebody else talks.
+pub(super) fn flood(bytes_per_s: f64) -> String {
+    format!(
+        "the servo line carries {:.0} kB a second that no servo should send: unplug whatever else talks on it; nothing is moved on what cannot be read",
+        bytes_per_s / 1e3
+    )
+}
+
+/// Servos that wait before they answer.
+pub(super) fn slow(count: usize, longest_s: f64) -> String {
+    format!(
+        "{count} servos wait up to {:.2} ms before each answer, which makes the bus slow: relax the arm and choose \"Shorten answers\", which writes it to their memory once",
+        longest_s * 1e3
     )
 }

@@ -31,8 +31,13 @@ pub struct JointReading {
     pub voltage_v: Option<f64>,
     /// Current, A.
     pub current_a: Option<f64>,
-    /// Whether it holds.
+    /// Whether its torque is on, as the servo said last; `None` when it is silent.
     pub torque_on: Option<bool>,
+    /// Share of the stall torque that it may use: 0 after it shut down for an overload, so that it
+    /// has torque on and no force.
+    pub force: Option<f64>,
+    /// It was silent since it was taken hold of: nothing is sent to it until it is taken hold of anew.
+    pub let_go: bool,
     /// When the angle was read, host clock.
     pub read_at: Option<Instant>,
     /// Age of the angle when the state was published.
@@ -54,6 +59,8 @@ impl JointReading {
             voltage_v: None,
             current_a: None,
             torque_on: None,
+            force: None,
+            let_go: false,
             read_at: None,
             age: None,
             problem: None,
@@ -89,9 +96,12 @@ pub struct JointState {
     pub motion: Motion,
     /// Whether STOP is latched.
     pub stopped: bool,
-    /// All joints as measured; joints without a servo or not yet read stand as at rest. `None`
-    /// until every servo in use was read once.
+    /// All joints as measured; joints without a servo stand as at rest, those that are `unknown`
+    /// where they were last seen. `None` until every servo in use was read once.
     pub measured: Option<Posture>,
+    /// Joints whose servo is silent, was never read, or is not who the rig says: where they are is
+    /// not known, whatever `measured` holds for them.
+    pub unknown: Arc<[JointIndex]>,
     /// All joints as commanded last, the others as measured.
     pub commanded: Option<Posture>,
     /// The bus.
@@ -102,6 +112,9 @@ pub struct JointState {
     pub refusal: Option<(u64, Refusal)>,
     /// What the operator should know, a sentence each (a servo gets warm).
     pub warnings: Arc<[String]>,
+    /// Servos that wait longer before each answer than they need to; see
+    /// [`ArmDriver::shorten_answers`](super::ArmDriver::shorten_answers).
+    pub slow_answers: usize,
     /// Why the port is gone.
     pub gone: Option<String>,
     /// Who was on the bus when it was last asked.
@@ -112,6 +125,11 @@ impl JointState {
     /// The reading of a joint.
     pub fn of(&self, joint: JointIndex) -> Option<&JointReading> {
         self.joints.iter().find(|reading| reading.joint == joint)
+    }
+
+    /// Whether it is known where a joint is; joints without a servo do not move.
+    pub fn knows(&self, joint: JointIndex) -> bool {
+        !self.unknown.contains(&joint)
     }
 
     /// How a move ended, if it did and not too many ended since.

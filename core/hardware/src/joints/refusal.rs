@@ -112,6 +112,52 @@ pub enum Refusal {
         /// Its name.
         name: String,
     },
+    /// Where another joint of its chain is, is not known.
+    #[error(
+        "{name} stays, because it is not known where {unknown_name} is, and with it the rest of that arm: check the cable and power of that servo"
+    )]
+    UnknownInChain {
+        /// The joint that was to move.
+        joint: JointIndex,
+        /// Its name.
+        name: String,
+        /// The joint that is not known.
+        unknown: JointIndex,
+        /// Its name.
+        unknown_name: String,
+    },
+    /// It is not who the rig says.
+    #[error("the servo of {name} (id {servo}) is not used: {why}")]
+    Barred {
+        /// The joint.
+        joint: JointIndex,
+        /// Its name.
+        name: String,
+        /// Id.
+        servo: u8,
+        /// What is wrong and what to do.
+        why: String,
+    },
+    /// It was silent.
+    #[error(
+        "the servo of {name} did not answer for a while, so nothing is sent to it: look where it stands, then take hold of it (torque on)"
+    )]
+    LetGo {
+        /// The joint.
+        joint: JointIndex,
+        /// Its name.
+        name: String,
+    },
+    /// It shut down after an overload.
+    #[error(
+        "the servo of {name} shut down after an overload and has no force: support the joint, lighten it, then give it force again (torque on)"
+    )]
+    NoForce {
+        /// The joint.
+        joint: JointIndex,
+        /// Its name.
+        name: String,
+    },
     /// Stop is pressed.
     #[error("STOP is pressed: release it first")]
     Stopped,
@@ -200,7 +246,7 @@ pub enum HoldReason {
     },
     /// A servo switched its own torque off.
     #[error(
-        "the servo of {name} (id {servo}) switched its torque off by itself: it was overloaded or too hot; let it cool down, then switch torque on"
+        "the servo of {name} (id {servo}) lost its torque: its power was cut, or it was overloaded or too hot; support the joint, then take hold of it (torque on)"
     )]
     TorqueLost {
         /// The joint.

@@ -9,6 +9,7 @@ use super::command::Motion;
 use super::controller::{Controller, Mode};
 use super::problem;
 use super::reading::{BusStatistics, JointState};
+use super::torque::slow_answers;
 
 impl Controller {
     /// What is known now.
@@ -20,14 +21,29 @@ impl Controller {
             let mut reading = slot.reading.clone();
             reading.age = reading.read_at.map(|at| now.duration_since(at));
             reading.problem = problem::of(slot, gate);
+            reading.let_go = slot.let_go;
             if let Some(temperature_c) = reading.temperature_c.filter(|t| *t >= gate.warm_c) {
                 warnings.push(problem::warm(&slot.unit.servo.title, temperature_c, gate));
             }
             reading
         });
         let joints: Arc<[_]> = joints.collect();
+        let slots = &self.exchange.slots;
+        let all_silent = !slots.is_empty() && slots.iter().all(|slot| !slot.in_use());
+        if all_silent {
+            warnings.insert(0, problem::ALL_SILENT.to_owned());
+        }
+        let strays_per_s = self.rate.strays_per_s();
+        if strays_per_s > problem::FLOOD_BYTES_PER_S {
+            warnings.push(problem::flood(strays_per_s));
+        }
+        let slow = slow_answers(slots);
+        if let Some((count, longest)) = slow {
+            warnings.push(problem::slow(count, longest.as_secs_f64()));
+        }
         let limp = joints.iter().all(|reading| reading.torque_on != Some(true));
         let motion = match &self.mode {
+            Mode::Hold(_) if all_silent && self.gone.is_none() => Motion::Unknown,
             Mode::Hold(_) if limp && self.gone.is_none() => Motion::Limp,
             Mode::Hold(reason) => Motion::Holding(reason.clone()),
             Mode::Move { id, line, fraction, .. } => {
@@ -43,6 +59,8 @@ impl Controller {
             motion,
             stopped: self.options.stop.is_pressed(),
             measured: self.measured(),
+            unknown: self.unknown().into(),
+            slow_answers: slow.map(|(count, _)| count).unwrap_or(0),
             commanded: self.commanded.clone(),
             bus: BusStatistics {
                 cycles: self.seq,
@@ -51,7 +69,7 @@ impl Controller {
                 last_cycle: self.rate.last_cycle,
                 last_wire_s: self.rate.last_cycle.seconds(
                     timing.baud,
-                    self.options.return_delay.unwrap_or(Duration::from_micros(500)).as_secs_f64(),
+                    slow.map_or(self.options.return_delay, |(_, longest)| longest).as_secs_f64(),
                     0.0,
                 ),
                 counts: self.exchange.bus.counts().clone(),

@@ -120,6 +120,8 @@ mod tests {
                 outcomes: Arc::from([]),
                 refusal: None,
                 warnings: Arc::from([]),
+                unknown: Arc::from([]),
+                slow_answers: 0,
                 gone: None,
                 scan: Arc::default(),
             }));

@@ -14,23 +14,39 @@ pub(super) struct ServoUnit {
     pub block: (u16, u16),
 }
 
-/// What a cycle reads of a servo.
+/// What a cycle reads of a servo, all of one moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Measured {
-    pub angle_rad: Option<f64>,
+    pub torque_on: Option<bool>,
+    /// The goal's register.
+    pub goal: Option<Ticks>,
+    /// Share of the stall torque that it may use; zero after an overload shutdown.
+    pub torque_limit: Option<f64>,
+    /// The position as it counts it; `None` when that is none of a servo in joint mode.
+    pub ticks: Option<Ticks>,
     pub speed_rad_s: Option<f64>,
     pub load: Option<f64>,
     pub voltage_v: Option<f64>,
     pub temperature_c: Option<f64>,
 }
 
-const BLOCK: [Item; 5] = [
+/// From torque to temperature: what a servo was told lies beside what it does, so that one answer
+/// says whether it is still the servo that was told (after a loss of power, torque is off).
+const BLOCK: [Item; 8] = [
+    Item::TorqueEnable,
+    Item::GoalPosition,
+    Item::TorqueLimit,
     Item::PresentPosition,
     Item::PresentSpeed,
     Item::PresentLoad,
     Item::PresentVoltage,
     Item::PresentTemperature,
 ];
+
+/// Ticks of a whole turn.
+const TURN: i32 = LAST_TICK as i32 + 1;
+/// A joint may read this far beyond the first or last tick: it was pushed over the seam.
+pub(super) const OVER_THE_SEAM: i32 = 64;
 
 impl ServoUnit {
     /// `None` when the model is not known or cannot move.
@@ -55,16 +71,17 @@ impl ServoUnit {
 
     /// What the bytes of the cycle's block say.
     pub fn measured(&self, data: &[u8]) -> Measured {
-        let first = self.block.0;
+        let raw = |item| self.table.register(item)?.in_data(self.block.0, data);
         let si = |item| {
             let register: &Register = self.table.register(item)?;
-            Some(register.si(register.in_data(first, data)?))
+            Some(register.si(register.in_data(self.block.0, data)?))
         };
+        let position = |item| raw(item).filter(|raw| *raw <= LAST_TICK).map(Ticks);
         Measured {
-            angle_rad: self
-                .ticks(data)
-                .and_then(|ticks| self.table.motor_rad(ticks))
-                .map(|m| self.servo.joint_rad(m)),
+            torque_on: raw(Item::TorqueEnable).map(|on| on != 0),
+            goal: position(Item::GoalPosition),
+            torque_limit: si(Item::TorqueLimit),
+            ticks: position(Item::PresentPosition),
             speed_rad_s: si(Item::PresentSpeed).map(|speed| self.sign() * speed / self.servo.ratio),
             load: si(Item::PresentLoad).map(|load| self.sign() * load),
             voltage_v: si(Item::PresentVoltage),
@@ -72,19 +89,33 @@ impl ServoUnit {
         }
     }
 
-    /// The position, if it is one that a servo in joint mode can have.
-    fn ticks(&self, data: &[u8]) -> Option<Ticks> {
-        let raw = self.table.register(Item::PresentPosition)?.in_data(self.block.0, data)?;
-        (raw <= LAST_TICK).then_some(Ticks(raw))
+    /// Angle of the joint (rad) at a count, which may lie a little beyond the seam of the turn.
+    pub fn joint_rad(&self, ticks: i32) -> Option<f64> {
+        let register = self.table.register(Item::PresentPosition)?;
+        let tick_rad = register.si(1) - register.si(0);
+        Some(self.servo.joint_rad(register.si(0) + f64::from(ticks) * tick_rad))
+    }
+
+    /// Where to send it for an angle (rad). A place a little beyond the seam of the turn is the
+    /// last tick before it: sent across, the servo would take a whole turn.
+    pub fn goal_ticks(&self, joint_rad: f64) -> Result<Ticks, Refusal> {
+        let out = || self.out_of_range(joint_rad);
+        let register = self.table.register(Item::GoalPosition).ok_or_else(out)?;
+        let tick_rad = register.si(1) - register.si(0);
+        let count = ((self.servo.motor_rad(joint_rad) - register.si(0)) / tick_rad).round();
+        let over = f64::from(OVER_THE_SEAM);
+        // NaN fails the comparison.
+        if !(count >= -over && count <= f64::from(LAST_TICK) + over) {
+            return Err(out());
+        }
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it was made to fit")]
+        Ok(Ticks(count.clamp(0.0, f64::from(LAST_TICK)) as u16))
     }
 
     /// Bytes of goal position and moving speed, which lie side by side from
-    /// [`goal_address`](Self::goal_address) on, for an angle (rad) and a largest speed (rad/s) of
-    /// the joint.
-    pub fn goal_bytes(&self, joint_rad: f64, speed_rad_s: f64) -> Result<Vec<u8>, Refusal> {
-        let motor_rad = self.servo.motor_rad(joint_rad);
-        let ticks = self.table.ticks(motor_rad).ok_or_else(|| self.out_of_range(joint_rad))?;
-        let mut bytes = ticks.0.to_le_bytes().to_vec();
+    /// [`goal_address`](Self::goal_address) on, with a largest speed (rad/s) of the joint.
+    pub fn goal_bytes(&self, goal: Ticks, speed_rad_s: f64) -> Vec<u8> {
+        let mut bytes = goal.0.to_le_bytes().to_vec();
         if let Some(register) = self.table.register(Item::MovingSpeed) {
             // Zero would mean "as fast as possible".
             let largest = 0x3FF;
@@ -93,14 +124,7 @@ impl ServoUnit {
                 .map_or(largest, |raw| raw.min(largest));
             bytes.extend_from_slice(&raw.max(1).to_le_bytes());
         }
-        Ok(bytes)
-    }
-
-    /// Angle of the joint (rad) that the bytes of the goal's register stand for.
-    pub fn goal_rad(&self, data: &[u8]) -> Option<f64> {
-        let register = self.table.register(Item::GoalPosition)?;
-        let raw = register.in_data(register.address, data).filter(|raw| *raw <= LAST_TICK)?;
-        Some(self.servo.joint_rad(register.si(raw)))
+        bytes
     }
 
     /// Where goals are written; `None` for a servo without goals.
@@ -111,8 +135,7 @@ impl ServoUnit {
     /// The angle that is really sent for a wanted one, after rounding to ticks.
     #[cfg(test)]
     pub fn rounded_rad(&self, joint_rad: f64) -> Option<f64> {
-        let ticks = self.table.ticks(self.servo.motor_rad(joint_rad))?;
-        self.table.motor_rad(ticks).map(|motor_rad| self.servo.joint_rad(motor_rad))
+        self.joint_rad(i32::from(self.goal_ticks(joint_rad).ok()?.0))
     }
 
     fn out_of_range(&self, joint_rad: f64) -> Refusal {
@@ -124,5 +147,69 @@ impl ServoUnit {
         let beyond_rad = limits.excess_rad(joint_rad);
         let limit_rad = joint_rad - beyond_rad;
         Refusal::Position { joint, name, wanted_rad: joint_rad, limit_rad, beyond_rad }
+    }
+}
+
+/// Which turn a count belongs to: a joint that stood near one end of the turn and reads near the
+/// other went over the seam, for it cannot have turned all the way. `near` is where it is known to
+/// have been a moment ago. Beyond [`OVER_THE_SEAM`] the count is taken as it is.
+pub(super) fn unwrapped(ticks: Ticks, near: Option<i32>) -> i32 {
+    let plain = i32::from(ticks.0);
+    let Some(near) = near else { return plain };
+    let others = [plain - TURN, plain + TURN];
+    let possible = |count: &i32| (-OVER_THE_SEAM..=i32::from(LAST_TICK) + OVER_THE_SEAM).contains(count);
+    let mut best = plain;
+    for other in others.into_iter().filter(possible) {
+        if (other - near).abs() < (best - near).abs() {
+            best = other;
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_model::robot::Rig;
+
+    use super::*;
+
+    #[test]
+    fn a_count_beside_the_seam_belongs_to_where_the_joint_was() {
+        for (ticks, near, expected) in [
+            (4095, Some(0), -1),
+            (4090, Some(-1), -6),
+            (0, Some(-6), 0),
+            (0, Some(4095), 4096),
+            (3, Some(4096), 4099),
+            (4095, Some(4099), 4095),
+            (4095, None, 4095),
+            (0, None, 0),
+            (2048, Some(0), 2048),
+            // Too far over the seam to be a push.
+            (3900, Some(0), 3900),
+            (300, Some(4095), 300),
+        ] {
+            assert_eq!(unwrapped(Ticks(ticks), near), expected, "{ticks} near {near:?}");
+        }
+    }
+
+    #[test]
+    fn a_finger_over_the_seam_is_held_on_its_own_side() {
+        let rig = Rig::built_in("nico").expect("comes with the program");
+        for name in ["r_thumb_x", "r_indexfinger_x", "l_thumb_z", "r_wrist_x"] {
+            let joint = rig.description.find_joint(name).expect("a joint");
+            let unit = ServoUnit::new(rig.servo_of(joint).expect("a servo")).expect("known");
+            for (count, held) in [(-1, 0), (-64, 0), (0, 0), (4095, 4095), (4096, 4095), (4159, 4095)] {
+                let angle_rad = unit.joint_rad(count).expect("an angle");
+                assert_eq!(unit.goal_ticks(angle_rad), Ok(Ticks(held)), "{name} at {count}");
+            }
+            for count in [-66, 4162] {
+                let angle_rad = unit.joint_rad(count).expect("an angle");
+                assert!(
+                    matches!(unit.goal_ticks(angle_rad), Err(Refusal::Position { .. })),
+                    "{name} at {count}"
+                );
+            }
+        }
     }
 }

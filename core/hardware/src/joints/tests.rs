@@ -50,8 +50,8 @@ fn a_wrist_turns_by_half_and_by_a_quarter_of_its_motor() {
     for (name, ratio) in [("r_wrist_z", 2.0), ("r_wrist_x", 4.0)] {
         let servo = rig.servo_of(joint(&rig, name)).expect("it has a servo");
         let unit = ServoUnit::new(servo).expect("known");
-        let turned = unit.measured(&(2048u16 + 1024).to_le_bytes()).angle_rad.expect("a position")
-            - unit.measured(&2048u16.to_le_bytes()).angle_rad.expect("a position");
+        let turned =
+            unit.joint_rad(2048 + 1024).expect("a position") - unit.joint_rad(2048).expect("a position");
         assert!((turned.abs() - std::f64::consts::FRAC_PI_2 / ratio).abs() < 1e-9, "{name}: {turned}");
     }
 }

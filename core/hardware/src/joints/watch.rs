@@ -24,6 +24,13 @@ impl Controller {
         {
             return self.stay(MoveOutcome::Held(HoldReason::JogEnded), HoldReason::JogEnded);
         }
+        let unknown = self.unknown();
+        if let Err(refusal) = self.chains.check(&self.limiter.rig, &moving, &unknown)
+            && matches!(refusal, Refusal::UnknownInChain { .. })
+        {
+            self.refuse(refusal.clone());
+            return self.hold(HoldReason::Refused(refusal));
+        }
         if let Some(reason) = (0..self.exchange.slots.len()).find_map(|i| self.unfit(i, &moving, now)) {
             self.hold(reason);
         }
@@ -38,11 +45,14 @@ impl Controller {
         if !moving.contains(&joint) {
             return None;
         }
-        if slot.missed >= self.options.missed_cycles && slot.silence() >= self.options.silence {
+        if !slot.in_use() {
             return Some(HoldReason::NoAnswer { joint, name, servo, cycles: slot.missed });
         }
         if slot.torque_lost || reading.torque_on == Some(false) {
             return Some(HoldReason::TorqueLost { joint, name, servo });
+        }
+        if slot.has_no_force() {
+            return Some(HoldReason::Refused(Refusal::NoForce { joint, name }));
         }
         if slot.alarm {
             let words = slot.complaint.clone().unwrap_or_default();

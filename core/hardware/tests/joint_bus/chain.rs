@@ -41,27 +41,33 @@ pub struct FakeServo {
     pub blocked: bool,
     /// Fault and for how many answers.
     pub fault: Option<(Fault, u32)>,
+    /// Whether it has power. Without, it neither hears nor answers nor holds, and its weight moves it.
+    pub powered: bool,
+    /// How fast its weight moves it while nothing holds it, ticks/s.
+    pub sinks_ticks_s: f64,
+    /// Times a goal or an "on" switched its torque on.
+    pub switched_on: u32,
 }
 
 /// A packet with goals, as it arrived.
 pub struct Told {
     pub at: Instant,
-    /// Servo, goal, where the servo was, what it had told last (ticks).
-    pub goals: Vec<(u8, u16, f64, u16)>,
+    /// Servo, goal, where the servo was, what it had told last and before (ticks).
+    pub goals: Vec<(u8, u16, f64, [u16; 2])>,
 }
 
 pub struct Chain {
     pub servos: BTreeMap<u8, FakeServo>,
     pub told: Vec<Told>,
-    /// Where each servo last said that it was.
-    reported: BTreeMap<u8, u16>,
+    /// Where each servo last said that it was, and where it had said before that.
+    reported: BTreeMap<u8, [u16; 2]>,
     pub echo: bool,
     /// Instructions other than reads: id and instruction.
     pub written: Vec<(u8, Instruction)>,
-    /// A servo that does not hear what is written to all.
-    pub deaf: Option<u8>,
     /// Closes the line in the middle of the next answer.
     pub hang_up: bool,
+    /// Sends bytes without a pause.
+    pub flood: bool,
     moved_at: Instant,
 }
 
@@ -75,6 +81,9 @@ impl FakeServo {
             fastest_rad_s: 6.0,
             blocked: false,
             fault: None,
+            powered: true,
+            sinks_ticks_s: 0.0,
+            switched_on: 0,
         };
         servo.set(Item::ModelNumber, table.number);
         servo.set(Item::FirmwareVersion, 36);
@@ -82,6 +91,8 @@ impl FakeServo {
         servo.set(Item::ReturnDelayTime, 250);
         servo.set(Item::PresentVoltage, 120);
         servo.set(Item::PresentTemperature, 38);
+        servo.set(Item::MaxTorque, 1000);
+        servo.set(Item::TorqueLimit, 1000);
         servo
     }
 
@@ -96,8 +107,26 @@ impl FakeServo {
         self.table.register(item).and_then(|r| r.in_data(0, &self.memory)).unwrap_or(0)
     }
 
+    /// Off: it forgets everything that is not in its permanent memory. On: limp, with its goal where
+    /// it is, as after every start (MX-64 manual: Torque Enable is 0 after power-on).
+    pub fn power(&mut self, on: bool) {
+        self.powered = on;
+        self.set(Item::TorqueEnable, 0);
+        self.set(Item::MovingSpeed, 0);
+        self.set(Item::Led, 0);
+        self.set(Item::TorqueLimit, self.get(Item::MaxTorque));
+        self.set(Item::GoalPosition, self.position.round() as u16);
+    }
+
     fn advance(&mut self, dt_s: f64) {
-        if self.get(Item::TorqueEnable) == 0 || self.blocked || !self.table.moves {
+        if !self.table.moves || self.blocked {
+            return;
+        }
+        if !self.powered || self.get(Item::TorqueEnable) == 0 {
+            self.position = (self.position + self.sinks_ticks_s * dt_s).clamp(0.0, 4095.0);
+            return;
+        }
+        if self.get(Item::TorqueLimit) == 0 && self.table.register(Item::TorqueLimit).is_some() {
             return;
         }
         let speed = self.table.register(Item::MovingSpeed).map_or(0.0, |r| r.si(self.get(Item::MovingSpeed)));
@@ -141,13 +170,13 @@ impl Chain {
             reported: BTreeMap::new(),
             echo: false,
             written: vec![],
-            deaf: None,
             hang_up: false,
+            flood: false,
             moved_at: Instant::now(),
         }
     }
 
-    fn advance(&mut self) {
+    pub fn advance(&mut self) {
         let dt_s = self.moved_at.elapsed().as_secs_f64();
         self.moved_at = Instant::now();
         self.servos.values_mut().for_each(|servo| servo.advance(dt_s));
@@ -175,11 +204,9 @@ impl Chain {
                 let mut goals = vec![];
                 for (id, bytes) in &data {
                     let before = self.servos.get(id).map_or(0.0, |servo| servo.position);
-                    let reported = self.reported.get(id).copied().unwrap_or(0);
+                    let reported = self.reported.get(id).copied().unwrap_or([0; 2]);
                     goals.push((*id, u16::from_le_bytes([bytes[0], bytes[1]]), before, reported));
-                    if self.deaf != Some(*id) {
-                        self.store(*id, address, bytes);
-                    }
+                    self.store(*id, address, bytes);
                 }
                 self.written.push((BROADCAST, Instruction::SyncWrite { address, length, data }));
                 self.told.push(Told { at, goals });
@@ -190,18 +217,20 @@ impl Chain {
     }
 
     fn store(&mut self, id: u8, address: u16, data: &[u8]) {
-        let Some(servo) = self.servos.get_mut(&id) else { return };
+        let Some(servo) = self.servos.get_mut(&id).filter(|servo| servo.powered) else { return };
+        let was_on = servo.get(Item::TorqueEnable);
         let begin = usize::from(address);
         servo.memory[begin..begin + data.len()].copy_from_slice(data);
         // Protocol 1.0: a goal switches the torque on.
         if servo.table.register(Item::GoalPosition).is_some_and(|r| r.address == address) {
             servo.set(Item::TorqueEnable, 1);
         }
+        servo.switched_on += u32::from(servo.get(Item::TorqueEnable) > was_on);
     }
 
     /// A servo's answer; `None` when it keeps silent.
     fn status(&mut self, id: u8, address: u16, length: u16) -> Option<Vec<u8>> {
-        let servo = self.servos.get_mut(&id)?;
+        let servo = self.servos.get_mut(&id).filter(|servo| servo.powered)?;
         let data = servo.data(address, length);
         let fault = servo.fault.take();
         if let Some((kind, left)) = &fault
@@ -214,7 +243,8 @@ impl Chain {
         match fault.map(|(kind, _)| kind) {
             None => {
                 if length >= 8 {
-                    self.reported.insert(id, servo.get(Item::PresentPosition));
+                    let before = self.reported.get(&id).map_or(0, |[last, _]| *last);
+                    self.reported.insert(id, [servo.get(Item::PresentPosition), before]);
                 }
             }
             Some(Fault::Silent) => return None,
@@ -270,6 +300,20 @@ impl PtyChain {
         self.lock().servos.get_mut(&id).expect("a servo").fault = Some((fault, answers));
     }
 
+    /// Cuts the power of all servos, or gives it back.
+    pub fn power(&self, on: bool) {
+        let mut chain = self.lock();
+        chain.advance();
+        chain.servos.values_mut().for_each(|servo| servo.power(on));
+    }
+
+    /// Cuts the power of one servo, or gives it back.
+    pub fn power_of(&self, id: u8, on: bool) {
+        let mut chain = self.lock();
+        chain.advance();
+        chain.servos.get_mut(&id).expect("a servo").power(on);
+    }
+
     /// The other end of the line goes away.
     pub fn close(&mut self) {
         self.end.store(true, Ordering::Release);
@@ -291,6 +335,13 @@ fn play(master: &OwnedFd, chain: &Mutex<Chain>, end: &AtomicBool) {
     while !end.load(Ordering::Acquire) {
         let mut fds = [PollFd::new(master, PollFlags::IN)];
         let wait = Timespec { tv_sec: 0, tv_nsec: 2_000_000 };
+        let flood = chain.lock().unwrap_or_else(PoisonError::into_inner).flood;
+        if flood {
+            // What does not fit is lost, as on a real line.
+            let _ = rustix::io::ioctl_fionbio(master, true);
+            let _ = rustix::io::write(master, &[0x55; 512]);
+        }
+        let wait = if flood { Timespec { tv_sec: 0, tv_nsec: 100_000 } } else { wait };
         let ready = poll(&mut fds, Some(&wait)).unwrap_or(0) > 0;
         if !ready || !fds[0].revents().contains(PollFlags::IN) {
             if ready {

@@ -87,9 +87,16 @@ fn a_moving_servo_that_falls_silent_holds_the_arm_and_says_so() {
     let begin = state.measured.as_ref().expect("known")[elbow];
     assert!(matches!(run(&driver, elbow, begin + 0.1, 0.5), MoveOutcome::Arrived { .. }));
     assert!(matches!(run(&driver, pan, 0.0, 0.5), MoveOutcome::Refused(Refusal::Unknown { .. })));
-    // It comes back.
+    // It comes back: left alone until it is taken hold of.
+    let told = chain.lock().written.len();
     chain.lock().servos.get_mut(&id_of(&rig, pan)).expect("there").fault = None;
-    await_state(&driver, "it answers again", |s| s.of(pan).is_some_and(|r| r.problem.is_none()));
+    let state = await_state(&driver, "it answers again", |s| s.knows(pan));
+    let problem = state.of(pan).and_then(|r| r.problem.clone()).expect("told");
+    assert!(problem.contains("switch torque on"), "{problem}");
+    assert!(matches!(run(&driver, pan, 0.0, 0.5), MoveOutcome::Refused(Refusal::LetGo { .. })));
+    assert_eq!(chain.lock().written.len(), told, "nothing is written meanwhile");
+    driver.engage(&[pan]).expect("queued");
+    await_state(&driver, "it is taken hold of", |s| s.of(pan).is_some_and(|r| r.problem.is_none()));
     assert!(matches!(run(&driver, pan, 0.0, 0.5), MoveOutcome::Arrived { .. }));
 }
 
@@ -111,26 +118,6 @@ fn an_overloaded_servo_holds_the_arm() {
     let other = joint(&rig, "r_elbow_y");
     let begin = driver.state().measured.as_ref().expect("read")[other];
     assert!(matches!(run(&driver, other, begin + 0.1, 0.5), MoveOutcome::Arrived { .. }));
-}
-
-#[test]
-fn a_servo_that_lost_its_torque_is_told() {
-    let (rig, chain, driver) = ready();
-    let finger = joint(&rig, "r_thumb_x");
-    // Switched off between two cycles, the next goal would switch it on again; a servo that was
-    // restarted by hand has lost its torque for good, as goals do not reach it for a while.
-    chain.lock().deaf = Some(id_of(&rig, finger));
-    chain.lock().servos.get_mut(&id_of(&rig, finger)).expect("there").set(Item::TorqueEnable, 0);
-    await_state(&driver, "told", |s| {
-        let problem = s.of(finger).and_then(|r| r.problem.as_ref());
-        problem.is_some_and(|problem| problem.contains("switched its torque off"))
-    });
-    chain.lock().deaf = None;
-    std::thread::sleep(Duration::from_millis(100));
-    assert!(!super::world::has_torque(&chain, id_of(&rig, finger)), "it is left off");
-    driver.engage(&[finger]).expect("queued");
-    await_state(&driver, "on again", |s| s.of(finger).is_some_and(|r| r.problem.is_none()));
-    assert!(super::world::has_torque(&chain, id_of(&rig, finger)));
 }
 
 #[test]

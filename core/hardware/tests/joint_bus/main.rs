@@ -6,6 +6,8 @@ mod faults;
 mod killed;
 mod limits;
 mod moving;
+mod power;
 mod scanning;
+mod seam;
 mod stopping;
 mod world;

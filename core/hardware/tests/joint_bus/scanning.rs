@@ -89,10 +89,14 @@ fn two_servos_with_one_id_stay_out_of_use_and_the_rest_works() {
     let driver = ArmDriver::connect(port, rig.clone(), ArmOptions::default()).expect("the others answer");
     assert_eq!(driver.scan().duplicates_suspected, [id_of(&rig, elbow)]);
     driver.engage(&[]).expect("the queue is empty");
-    await_state(&driver, "torque on", |s| s.joints.iter().all(|j| j.torque_on == Some(true)));
+    await_state(&driver, "torque on", |s| {
+        s.joints.iter().all(|j| j.torque_on == Some(true) || j.joint == elbow) && !s.knows(elbow)
+    });
     let id = driver.start_move(super::world::turn(elbow, 1.6, 0.3)).expect("the queue is empty");
     let outcome = driver.wait_for(id, std::time::Duration::from_secs(2)).expect("it is refused");
-    assert!(format!("{outcome:?}").contains("NoServo"), "{outcome:?}");
+    let plumbline_hardware::joints::MoveOutcome::Refused(refusal) = outcome else { panic!("{outcome:?}") };
+    assert!(matches!(refusal, Refusal::Barred { .. }), "{refusal}");
+    assert!(refusal.to_string().contains("two servos answer to its id"), "{refusal}");
     assert!(!super::world::has_torque(&chain, id_of(&rig, elbow)), "it was never written to");
 }
 

@@ -41,9 +41,15 @@ pub fn ready() -> (Arc<Rig>, PtyChain, ArmDriver) {
 
 pub fn ready_with(options: ArmOptions) -> (Arc<Rig>, PtyChain, ArmDriver) {
     let (rig, chain, driver) = limp_with(options);
-    let all_on = |state: &JointState| state.joints.iter().all(|j| j.torque_on == Some(true));
+    take_hold(&driver);
+    (rig, chain, driver)
+}
+
+/// All joints get torque.
+pub fn take_hold(driver: &ArmDriver) {
+    let all_on = |state: &JointState| state.joints.iter().all(|j| j.torque_on == Some(true) && !j.let_go);
     // On a busy machine a servo may have to be asked again, as an operator would.
-    for _ in 0..3 {
+    for _ in 0..6 {
         if all_on(&driver.state()) {
             break;
         }
@@ -53,8 +59,7 @@ pub fn ready_with(options: ArmOptions) -> (Arc<Rig>, PtyChain, ArmDriver) {
             std::thread::sleep(Duration::from_millis(2));
         }
     }
-    await_state(&driver, "torque on", all_on);
-    (rig, chain, driver)
+    await_state(driver, "torque on", all_on);
 }
 
 pub fn await_state(driver: &ArmDriver, what: &str, is_so: impl Fn(&JointState) -> bool) -> Arc<JointState> {
@@ -85,7 +90,7 @@ pub fn assert_goals_stay_near(rig: &Rig, chain: &PtyChain) {
     for told in &chain.lock().told {
         for (id, goal, _, reported) in &told.goals {
             let servo = rig.servos.iter().find(|servo| servo.id == *id).expect("in the rig");
-            let ahead_rad = (f64::from(*goal) - f64::from(*reported)).abs() * tick_rad / servo.ratio.abs();
+            let ahead_rad = (f64::from(*goal) - f64::from(reported[0])).abs() * tick_rad / servo.ratio.abs();
             assert!(
                 ahead_rad <= rig.gate.step_rad + tick_rad,
                 "{}: a goal {ahead_rad} rad ahead of the present angle",

@@ -88,7 +88,7 @@ impl Bank {
         let suspect = self.suspect();
         let doubled = self.faults.contains(&Fault::TwoWithOneId);
         for (i, unit) in self.units.iter_mut().enumerate() {
-            if Some(i) == missing || (unit.id() != id && id != BROADCAST) {
+            if Some(i) == missing || !unit.powered || (unit.id() != id && id != BROADCAST) {
                 continue;
             }
             act(unit);

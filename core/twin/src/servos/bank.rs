@@ -34,6 +34,8 @@ pub(crate) struct Bank {
 #[derive(Clone, Debug)]
 pub(super) struct Unit {
     pub memory: Memory,
+    /// Whether it has power.
+    pub powered: bool,
     /// Error bits that stay while their cause does.
     pub alarm: u8,
     loaded_s: f64,
@@ -59,7 +61,7 @@ impl Bank {
                 model: model.to_owned(),
                 known: ControlTable::all().iter().map(|t| t.model.as_str()).collect::<Vec<_>>().join(", "),
             })?;
-            units.push(Unit { memory: Memory::new(table, id), alarm: 0, loaded_s: 0.0 });
+            units.push(Unit { memory: Memory::new(table, id), powered: true, alarm: 0, loaded_s: 0.0 });
         }
         let mut bank = Self { rig, units, faults: BTreeSet::new() };
         bank.hold(angles_rad);
@@ -96,6 +98,19 @@ impl Bank {
             self.faults.insert(fault);
         } else {
             self.faults.remove(&fault);
+        }
+        self.switch_power();
+    }
+
+    /// Gives power to whom no fault takes it, and takes it from the others.
+    fn switch_power(&mut self) {
+        let all = self.faults.contains(&Fault::PowerCut);
+        let one = self.suspect().filter(|_| self.faults.contains(&Fault::ElbowPowerCut));
+        for (i, unit) in self.units.iter_mut().enumerate() {
+            let powered = !all && one != Some(i);
+            if powered != unit.powered {
+                unit.power(powered);
+            }
         }
     }
 
@@ -151,6 +166,24 @@ impl Bank {
 }
 
 impl Unit {
+    /// Without power it forgets all but its permanent memory. With it again it is limp, its goal is
+    /// where it is, and its torque limit is the largest (MX-64 manual: Torque Enable, Goal Position
+    /// and Torque Limit after power-on).
+    fn power(&mut self, on: bool) {
+        self.powered = on;
+        (self.alarm, self.loaded_s) = (0, 0.0);
+        let memory = &mut self.memory;
+        memory.set(Item::TorqueEnable, 0);
+        memory.set(Item::Led, 0);
+        memory.set(Item::MovingSpeed, 0);
+        memory.set(Item::PGain, 32);
+        if let Some(here) = memory.get(Item::PresentPosition) {
+            memory.set(Item::GoalPosition, here);
+        }
+        // A model without a largest torque in its memory: all it can.
+        memory.set(Item::TorqueLimit, memory.get(Item::MaxTorque).unwrap_or(1023));
+    }
+
     /// Alarms and what the shutdown register does about them.
     fn watch(&mut self, reading: Reading, dt_s: f64) {
         let Some(shutdown) = self.memory.get(Item::Shutdown) else { return };

@@ -26,6 +26,10 @@ pub enum Fault {
     TwoWithOneId,
     /// One servo (the elbow of the first arm) grows hot.
     HotServo,
+    /// The power of all servos is off: they neither hear nor answer nor hold.
+    PowerCut,
+    /// The power of one servo (the elbow of the first arm) is off.
+    ElbowPowerCut,
     /// The port is gone.
     PortClosed,
     /// The port vanishes in the middle of the next answer.
@@ -34,7 +38,7 @@ pub enum Fault {
 
 impl Fault {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Dropped,
         Self::Late,
         Self::Garbled,
@@ -45,6 +49,8 @@ impl Fault {
         Self::MissingServo,
         Self::TwoWithOneId,
         Self::HotServo,
+        Self::PowerCut,
+        Self::ElbowPowerCut,
         Self::PortClosed,
         Self::PortClosedMidAnswer,
     ];
@@ -62,6 +68,8 @@ impl Fault {
             Self::MissingServo => "missing-servo",
             Self::TwoWithOneId => "two-with-one-id",
             Self::HotServo => "hot-servo",
+            Self::PowerCut => "power-cut",
+            Self::ElbowPowerCut => "elbow-power-cut",
             Self::PortClosed => "port-closed",
             Self::PortClosedMidAnswer => "port-closed-mid-answer",
         }
@@ -85,6 +93,8 @@ impl Fault {
             Self::MissingServo => "The servo of the elbow is unplugged.",
             Self::TwoWithOneId => "Two servos answer to the id of the elbow.",
             Self::HotServo => "The servo of the elbow grows hot.",
+            Self::PowerCut => "The power of all servos is off. Switched on again, they are limp.",
+            Self::ElbowPowerCut => "The power of the elbow's servo is off. Switched on again, it is limp.",
             Self::PortClosed => "The port is unplugged.",
             Self::PortClosedMidAnswer => "The port is unplugged in the middle of an answer.",
         }

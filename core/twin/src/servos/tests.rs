@@ -354,3 +354,36 @@ fn a_servo_that_strains_for_long_lets_go() {
     }
     assert!(!bank.drive(servo).torque_on, "2.2 s");
 }
+
+#[test]
+fn without_power_nobody_answers_and_after_it_all_are_limp_where_they_are() {
+    const HEAD: u8 = 19;
+    for (fault, others) in [(Fault::PowerCut, 0), (Fault::ElbowPowerCut, 1)] {
+        let mut host = Host::new(&[]);
+        let place = host.bank.lock().expect("whole").suspect().expect("an elbow");
+        let held = host.bank.lock().expect("whole").units[place].memory.get(Item::GoalPosition);
+        host.bank.lock().expect("whole").set_fault(fault, true);
+        let pings = |host: &mut Host, id| host.say(id, &Instruction::Ping).statuses.len();
+        assert_eq!((pings(&mut host, ELBOW), pings(&mut host, HEAD)), (0, others), "{fault:?}");
+        {
+            let mut bank = host.bank.lock().expect("whole");
+            assert!(!bank.drive(place).torque_on, "it holds nothing");
+            // It sinks.
+            bank.units[place].memory.set(Item::PresentPosition, 1500);
+            bank.set_fault(Fault::HotServo, true);
+            assert!(!bank.units[place].powered, "another fault gives no power");
+            bank.set_fault(fault, false);
+        }
+        assert_eq!(pings(&mut host, ELBOW), 1);
+        let bank = host.bank.lock().expect("whole");
+        let memory = &bank.units[place].memory;
+        assert_eq!(memory.get(Item::TorqueEnable), Some(0));
+        assert_ne!(held, Some(1500));
+        assert_eq!(
+            memory.get(Item::GoalPosition),
+            Some(1500),
+            "its goal is where it was when the power came"
+        );
+        assert_eq!(memory.get(Item::TorqueLimit), memory.get(Item::MaxTorque));
+    }
+}

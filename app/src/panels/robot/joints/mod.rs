@@ -146,7 +146,8 @@ fn state(robot: &RobotView, joint: &JointView) -> JointState {
         proposed_rad: proposed,
         load: joint.load,
         temperature_c: joint.temperature_c,
-        torque_on: joint.torque_on,
+        // What is not taken hold of, or has no force, is offered to be switched on.
+        torque_on: joint.torque_on.map(|on| on && !joint.let_go && !joint.no_force),
     }
 }
 

@@ -74,6 +74,10 @@ impl FakeArm {
 }
 
 impl Arm for FakeArm {
+    fn shorten_answers(&self) -> Result<(), Refusal> {
+        Ok(())
+    }
+
     fn state(&self) -> Option<Arc<JointState>> {
         let made = self.made();
         let sign = if made.seq.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -89,6 +93,8 @@ impl Arm for FakeArm {
             voltage_v: Some(12.0),
             current_a: None,
             torque_on: Some(made.torque_on),
+            force: Some(1.0),
+            let_go: false,
             read_at: Some(made.now),
             age: Some(Duration::ZERO),
             problem: None,
@@ -99,6 +105,8 @@ impl Arm for FakeArm {
             motion: made.motion.clone(),
             stopped: false,
             measured: Some(measured),
+            unknown: Arc::from([]),
+            slow_answers: 0,
             commanded: Some(made.commanded.clone()),
             bus: BusStatistics::default(),
             outcomes: made.outcomes.clone().into(),

@@ -1,0 +1,240 @@
+//! What is known of one servo, and whether anything may be written to it.
+//!
+//! A servo is *in hand* from the moment the operator takes hold of it (or the program finds it
+//! holding when it connects) until it is relaxed, loses its torque, or falls silent. Only a servo in
+//! hand is ever sent a goal: in protocol 1.0 a goal switches torque on, and a servo whose power was
+//! cut may have sunk far from where it was.
+
+use std::time::{Duration, Instant};
+
+use super::reading::JointReading;
+use super::servo_unit::{ServoUnit, unwrapped};
+use crate::dynamixel::{FoundServo, Status, Ticks};
+
+/// Where a joint was this long ago tells which side of the seam it is on: the fastest servo needs
+/// more than 0.4 s for half a turn.
+const NEAR: Duration = Duration::from_millis(300);
+/// Less force than this share of the stall torque is none.
+const NO_FORCE: f64 = 0.02;
+
+/// Who a servo is.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Identity {
+    /// Not asked since it was silent.
+    Unknown,
+    /// Who the rig says.
+    Right,
+    /// Somebody else: nothing is ever written to it.
+    Barred(Bar),
+}
+
+/// Why a servo is never used.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Bar {
+    /// Another model than the rig says.
+    WrongModel(FoundServo),
+    /// Two servos have its id.
+    Doubled,
+}
+
+/// A servo, what is known of it, and how it answers.
+#[derive(Clone, Debug)]
+pub(super) struct Slot {
+    pub unit: ServoUnit,
+    pub reading: JointReading,
+    pub identity: Identity,
+    /// Taken hold of by the operator, and not silent or limp since.
+    pub in_hand: bool,
+    /// When first read it is in hand if it holds: so it was found when the bus was opened.
+    pub found_at_start: bool,
+    /// Cycles in a row in which it was asked for itself and did not answer rightly.
+    pub missed: u32,
+    /// Left out for its silence; asked again now and then.
+    pub silent: bool,
+    /// It was in hand when it fell silent.
+    pub let_go: bool,
+    /// It missed a question: who it is is asked before anything is written.
+    pub verify: bool,
+    /// What it complained about last.
+    pub complaint: Option<String>,
+    /// Whether it raises an alarm (overload, overheating).
+    pub alarm: bool,
+    /// Whether its torque was on and is off without our doing.
+    pub torque_lost: bool,
+    /// Count of the position, over the seam of the turn where it was pushed there.
+    pub ticks: Option<i32>,
+    /// The goal that its register holds.
+    pub goal: Option<Ticks>,
+    /// It is to be held where it is read next.
+    pub hold_pending: bool,
+    /// Its goal is written though its register holds it already.
+    pub insist: bool,
+    /// Wait before its answers, s, when it is longer than it needs to be.
+    pub slow_answers_s: Option<f64>,
+    pub reads_singly: bool,
+    pub no_bulk: u32,
+    /// Cycle of the last reading.
+    pub read_in: u64,
+    /// Cycle in which it was asked for itself last.
+    pub asked_in: u64,
+}
+
+impl Slot {
+    pub fn new(unit: ServoUnit) -> Self {
+        let reading = JointReading::new(unit.servo.joint, unit.id());
+        let reads_singly = !unit.table.bulk_read;
+        Self {
+            unit,
+            reading,
+            identity: Identity::Unknown,
+            in_hand: false,
+            found_at_start: false,
+            missed: 0,
+            silent: true,
+            let_go: false,
+            verify: false,
+            complaint: None,
+            alarm: false,
+            torque_lost: false,
+            ticks: None,
+            goal: None,
+            hold_pending: false,
+            insist: false,
+            slow_answers_s: None,
+            reads_singly,
+            no_bulk: 0,
+            read_in: 0,
+            asked_in: 0,
+        }
+    }
+
+    /// Whether it takes part in every cycle.
+    pub fn in_use(&self) -> bool {
+        !self.silent && !self.is_barred()
+    }
+
+    pub fn is_barred(&self) -> bool {
+        matches!(self.identity, Identity::Barred(_))
+    }
+
+    /// Whether its angle is known: read, and not silent since.
+    pub fn is_known(&self) -> bool {
+        self.in_use() && self.reading.angle_rad.is_some()
+    }
+
+    /// Time since the last answer; long before the first.
+    pub fn silence(&self) -> Duration {
+        self.reading.read_at.map_or(Duration::MAX, |at| at.elapsed())
+    }
+
+    /// Whether its torque is on and it is ours to command.
+    pub fn holds_torque(&self) -> bool {
+        self.in_hand && self.reading.torque_on == Some(true)
+    }
+
+    /// Whether it has torque on and no force: it shut down after an overload.
+    pub fn has_no_force(&self) -> bool {
+        self.reading.force.is_some_and(|share| share < NO_FORCE)
+    }
+
+    /// Whether a goal may be written: who it is, where it is and that it holds were read no longer
+    /// than `window` ago.
+    pub fn may_be_written(&self, window: Duration) -> bool {
+        self.identity == Identity::Right
+            && self.in_use()
+            && self.holds_torque()
+            && !self.verify
+            && !self.has_no_force()
+            && self.silence() <= window
+    }
+
+    /// Takes what a cycle read.
+    pub fn take(&mut self, status: &Status, cycle: u64) {
+        let measured = self.unit.measured(&status.data);
+        self.complaint = (!status.error.is_none()).then(|| status.error.to_string());
+        self.alarm = status.error.is_alarm();
+        let Some(ticks) = measured.ticks else {
+            self.missed = self.missed.saturating_add(1);
+            self.complaint = Some("its position is out of range: take it out of multi-turn mode".to_owned());
+            return;
+        };
+        let holds = measured.torque_on == Some(true);
+        let goal = measured.goal.map(|goal| i32::from(goal.0));
+        let near = self.ticks.filter(|_| self.silence() < NEAR).or(goal.filter(|_| holds));
+        let ticks = unwrapped(ticks, near);
+        self.ticks = Some(ticks);
+        self.goal = measured.goal;
+        let reading = &mut self.reading;
+        reading.angle_rad = self.unit.joint_rad(ticks);
+        reading.speed_rad_s = measured.speed_rad_s;
+        reading.load = measured.load;
+        reading.voltage_v = measured.voltage_v;
+        reading.temperature_c = measured.temperature_c;
+        reading.force = measured.torque_limit;
+        reading.read_at = Some(Instant::now());
+        (self.missed, self.silent, self.read_in) = (0, false, cycle);
+        self.take_torque(holds);
+    }
+
+    fn take_torque(&mut self, holds: bool) {
+        if self.in_hand && !holds {
+            self.torque_lost = true;
+        }
+        self.in_hand &= holds;
+        if std::mem::take(&mut self.found_at_start) && holds {
+            self.in_hand = true;
+            self.reading.goal_rad = self.goal_rad();
+        }
+        if !holds {
+            self.reading.goal_rad = None;
+        }
+        self.reading.torque_on = Some(holds);
+    }
+
+    /// Angle of the goal in its register, rad.
+    pub fn goal_rad(&self) -> Option<f64> {
+        self.unit.joint_rad(i32::from(self.goal?.0))
+    }
+
+    /// It was asked for itself and did not answer.
+    pub fn miss(&mut self) {
+        self.missed = self.missed.saturating_add(1);
+        self.verify = true;
+        self.found_at_start = false;
+        self.complaint = None;
+    }
+
+    /// It has not answered for too long: whatever was known of it is not any more.
+    pub fn fall_silent(&mut self) {
+        if self.silent {
+            return;
+        }
+        self.let_go |= self.in_hand;
+        (self.silent, self.in_hand, self.verify) = (true, false, true);
+        (self.torque_lost, self.alarm, self.hold_pending, self.insist) = (false, false, false, false);
+        (self.goal, self.ticks) = (None, None);
+        if self.identity == Identity::Right {
+            self.identity = Identity::Unknown;
+        }
+        let reading = &mut self.reading;
+        (reading.torque_on, reading.goal_rad, reading.force) = (None, None, None);
+        (reading.speed_rad_s, reading.load, reading.current_a) = (None, None, None);
+    }
+
+    /// Who answered to its id.
+    pub fn identified(&mut self, found: FoundServo) {
+        if found.is_model(&self.unit.servo.model) {
+            self.identity = Identity::Right;
+            self.verify = false;
+        } else {
+            self.bar(Bar::WrongModel(found));
+        }
+    }
+
+    /// It is never written to again, until a scan finds who should be there.
+    pub fn bar(&mut self, bar: Bar) {
+        self.fall_silent();
+        self.silent = true;
+        self.identity = Identity::Barred(bar);
+    }
+}
