@@ -186,6 +186,19 @@ fn a_source_that_died_shows_failed_and_is_opened_again() {
 }
 
 #[test]
+fn a_silent_source_shows_lost_and_is_back_when_it_gives_a_sign_of_life() {
+    let bench = Bench::start(None);
+    bench.open_pairs();
+    bench.until("a picture", |view| view.live.raw.is_some());
+    bench.trial.strike(WatchedThread::Source, Strike::Hang(Duration::from_millis(5500)));
+    let view = bench.until("silence", |view| view.fault(WatchedThread::Source).is_some());
+    assert!(matches!(view.source.status, SourceStatus::Lost { .. }), "{:?}", view.source.status);
+    assert!(says(&view, "What brings the images gives no sign of life"));
+    let view = bench.until("life", |view| view.threads.is_empty());
+    assert_eq!(view.source.status, SourceStatus::Running);
+}
+
+#[test]
 fn live_stages_that_died_show_failed_and_are_started_again() {
     let bench = Bench::start(None);
     bench.open_pairs();

@@ -8,14 +8,14 @@ use plumbline_model::StereoFrame;
 use super::player::{Control, Note, Player, Polled};
 use crate::bell::Bell;
 use crate::slot::Putter;
-use crate::view::SourceView;
+use crate::view::{SourceStatus, SourceView};
 use crate::watched::{self, Pulse, Watched};
 
 /// Commands that may wait while a camera is being opened.
 const WAITING: usize = 64;
 /// Beyond the time that it waits anyway: without a sign of life for this long it is taken to hang.
 const SILENT: Duration = Duration::from_secs(3);
-/// Cameras take their time to be opened, and so does what draws the twin's eyes.
+/// Cameras take their time to be opened, what draws the twin's eyes too, and so does winding a video.
 const SILENT_WHILE_OPENING: Duration = Duration::from_secs(60);
 
 /// Where the thread puts what it has.
@@ -69,7 +69,9 @@ impl Drop for SourceThread {
 fn run(player: &mut Player, controls: &Receiver<Control>, wires: &Wires, pulse: &Pulse) {
     let mut told = SourceView::default();
     loop {
-        pulse.promise(SILENT);
+        // A lost source is opened again in between.
+        let is_lost = matches!(told.status, SourceStatus::Lost { .. });
+        pulse.promise(if is_lost { SILENT_WHILE_OPENING } else { SILENT });
         let (polled, mut notes) = player.poll();
         let wait = match polled {
             Polled::Frame(frame) => {
@@ -87,10 +89,10 @@ fn run(player: &mut Player, controls: &Receiver<Control>, wires: &Wires, pulse: 
             Ok(control) => {
                 if let Control::Open(_) | Control::OpenPaths(_) = control {
                     tell_opening(&told, wires);
-                    pulse.promise(SILENT_WHILE_OPENING);
                 }
+                pulse.promise(SILENT_WHILE_OPENING);
                 let mut notes = player.control(control);
-                told.status = crate::view::SourceStatus::Opening;
+                told.status = SourceStatus::Opening;
                 tell(player, &mut told, &mut notes, wires);
             }
             Err(RecvTimeoutError::Timeout) => {}
@@ -101,7 +103,7 @@ fn run(player: &mut Player, controls: &Receiver<Control>, wires: &Wires, pulse: 
 
 /// Opening takes seconds with cameras; meanwhile the window says so.
 fn tell_opening(told: &SourceView, wires: &Wires) {
-    let opening = SourceView { status: crate::view::SourceStatus::Opening, ..told.clone() };
+    let opening = SourceView { status: SourceStatus::Opening, ..told.clone() };
     wires.views.put(opening);
     wires.bell.ring();
 }

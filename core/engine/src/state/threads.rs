@@ -55,6 +55,7 @@ impl State {
                 self.before_silence = before;
             }
             WatchedThread::Source => {
+                self.source_before_silence = fault.is_silent().then(|| self.source.view().clone());
                 let status = SourceStatus::Lost { reason, since: fault.since, attempts: 0 };
                 self.source.update(SourceView { status, ..SourceView::clone(self.source.view()) });
             }
@@ -78,7 +79,12 @@ impl State {
                     self.robot_changed(News { robot, twin, twins_started: self.twins_started });
                 }
             }
-            WatchedThread::Source | WatchedThread::Engine | WatchedThread::Journal => {}
+            WatchedThread::Source => {
+                if let Some(view) = self.source_before_silence.take() {
+                    self.source.update(SourceView::clone(&view));
+                }
+            }
+            WatchedThread::Engine | WatchedThread::Journal => {}
         }
         if was_silent {
             let text = format!("There is a sign of life again: {}.", thread.title());
