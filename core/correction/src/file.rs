@@ -4,19 +4,21 @@
 //! { "format": "plumbline correction model", "version": 1,
 //!   "answer":     { "method": "m3", "network": { "members": [ … ] } },
 //!   "trust":      { "border": …, "spread": … },
-//!   "provenance": { "session": …, "touches": [ … ], "options": …, "cross_validation": … } }
+//!   "provenance": { "session": …, "touches": [ … ], "options": …, "cross_validation": … },
+//!   "self_test":  [ { "pixel": …, "target_m": …, "sd_m": … }, … ] }
 //! ```
 //!
 //! A network holds its normalization; lengths are meters, touch pixels px.
 
 use std::path::Path;
 
-use plumbline_model::formats::Replacement;
+use plumbline_model::files::{self, Size};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::file_error::FileError;
 use crate::model::{CorrectionModel, Parts, Provenance, Trust};
+use crate::self_test::{Answer, EXACT_M};
 
 const FORMAT: &str = "plumbline correction model";
 const VERSION: u64 = 1;
@@ -28,6 +30,9 @@ struct Document {
     answer: Parts,
     trust: Option<Trust>,
     provenance: Provenance,
+    /// What it answered when it was written; empty in files of older programs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    self_test: Vec<Answer>,
 }
 
 impl CorrectionModel {
@@ -43,6 +48,7 @@ impl CorrectionModel {
             answer: self.parts.clone(),
             trust: self.trust.clone(),
             provenance: self.provenance.clone(),
+            self_test: self.answers(),
         };
         let text = serde_json::to_string(&document).map_err(|error| FileError::damaged(file, error))?;
         replace(file, text.as_bytes())
@@ -65,9 +71,10 @@ impl CorrectionModel {
         }
         let document: Document =
             serde_json::from_value(value).map_err(|error| FileError::damaged(file, error))?;
-        let Document { answer: parts, trust, provenance, .. } = document;
+        let Document { answer: parts, trust, provenance, self_test, .. } = document;
         let model = Self { parts, trust, provenance };
         model.sound(file)?;
+        model.check_answers(file, &self_test, EXACT_M)?;
         Ok(model)
     }
 
@@ -98,7 +105,7 @@ fn is_own(value: &Value) -> bool {
 }
 
 pub(crate) fn bytes(file: &Path) -> Result<Vec<u8>, FileError> {
-    std::fs::read(file).map_err(|source| FileError::Unreadable { file: file.to_path_buf(), source })
+    Ok(files::read(file, Size::MODEL)?)
 }
 
 pub(crate) fn json(file: &Path) -> Result<Value, FileError> {
@@ -108,10 +115,7 @@ pub(crate) fn json(file: &Path) -> Result<Value, FileError> {
         .map_err(|error| FileError::not_a_model(file, format!("it is no JSON: {error}")))
 }
 
-/// Writes under a temporary name and moves the file to its place.
+/// Writes a file in one step.
 pub(crate) fn replace(file: &Path, bytes: &[u8]) -> Result<(), FileError> {
-    let replacement = Replacement::of(file);
-    std::fs::write(replacement.temporary(), bytes)
-        .map_err(|source| FileError::Unwritable { file: file.to_path_buf(), source })?;
-    replacement.commit().map_err(|error| FileError::replacing(file, error))
+    Ok(files::write(file, bytes)?)
 }

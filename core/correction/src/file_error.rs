@@ -2,27 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use plumbline_model::FormatError;
-
 /// Why a model file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// It cannot be opened.
-    #[error("{} cannot be read ({source}): check the path and the permissions", .file.display())]
-    Unreadable {
-        /// Which file.
-        file: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// It cannot be written.
-    #[error("{} cannot be written ({source}): check the folder, its permissions and the free space", .file.display())]
-    Unwritable {
-        /// Which file.
-        file: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    /// The file itself cannot be read or written.
+    #[error(transparent)]
+    File(#[from] plumbline_model::files::FileError),
     /// It is no JSON, or lacks something.
     #[error("{} is no correction model ({reason}): choose a file that was exported as a model, or export it again", .file.display())]
     NotAModel {
@@ -48,6 +33,16 @@ pub enum FileError {
         file: PathBuf,
         /// What is wrong with it.
         reason: String,
+    },
+    /// It does not answer as it did when it was written.
+    #[error(
+        "the model in {} no longer answers as it did when it was written ({} off), so a number in it was changed or damaged: use a copy of the file as it was, or train again", .file.display(), millimeters(*.off_m)
+    )]
+    OtherAnswers {
+        /// Which file.
+        file: PathBuf,
+        /// Largest difference of an answer or of a stated error, m.
+        off_m: f64,
     },
     /// Weights of another shape.
     #[error("the weights in {} have the shapes {found}; needed are kernel 2×H, bias H, kernel H×K, bias K with K = 2 (M2) or 3 (M3): export the network from touch pixel to x, y (z)", .file.display())]
@@ -78,6 +73,10 @@ pub enum FileError {
     NotANetwork,
 }
 
+fn millimeters(m: f64) -> String {
+    if m.is_finite() { format!("{:.3} mm", 1e3 * m) } else { "beyond all measure".to_owned() }
+}
+
 impl FileError {
     pub(crate) fn not_a_model(file: &Path, reason: impl ToString) -> Self {
         Self::NotAModel { file: file.to_path_buf(), reason: reason.to_string() }
@@ -89,10 +88,5 @@ impl FileError {
 
     pub(crate) fn graph(file: &Path, reason: impl ToString) -> Self {
         Self::Graph { file: file.to_path_buf(), reason: reason.to_string() }
-    }
-
-    /// Of moving a file to its place.
-    pub(crate) fn replacing(file: &Path, error: FormatError) -> Self {
-        Self::Unwritable { file: file.to_path_buf(), source: std::io::Error::other(error.to_string()) }
     }
 }

@@ -81,7 +81,7 @@ fn spoiled_files_are_refused_in_a_sentence() {
     std::fs::write(&spoiled, "{").expect("written");
     assert!(CorrectionModel::read(&spoiled).expect_err("cut off").to_string().contains("no JSON"));
     let absent = CorrectionModel::import(&folder.path().join("absent.json")).expect_err("absent");
-    assert!(matches!(absent, FileError::Unreadable { .. }));
+    assert!(matches!(absent, FileError::File(_)));
 }
 
 #[test]
@@ -255,4 +255,85 @@ fn a_spread_that_was_shrunk_is_damage() {
     document["trust"]["of_sets_m"] = json!([-1.0, 0.0, 0.0]);
     std::fs::write(&file, document.to_string()).expect("written");
     assert!(matches!(CorrectionModel::read(&file), Err(FileError::Damaged { .. })));
+}
+
+/// Multiplies the largest of a model's numbers in a list by a thousand.
+fn thousandfold(list: &mut Value) {
+    let numbers = list.as_array_mut().expect("a list");
+    let size = |value: &Value| value.as_f64().expect("a number").abs();
+    let largest = numbers.iter_mut().max_by(|a, b| size(a).total_cmp(&size(b))).expect("numbers");
+    *largest = json!(1000.0 * largest.as_f64().expect("a number"));
+}
+
+#[test]
+fn a_model_that_answers_otherwise_than_it_did_is_refused() {
+    let folder = tempdir().expect("a folder");
+    let (file, spoiled) = (folder.path().join("model.json"), folder.path().join("spoiled.json"));
+    trained(Method::M3).write(&file).expect("written");
+    let of_weight =
+        |value: &mut Value| thousandfold(&mut value["answer"]["network"]["members"][2]["weights"][1]);
+    let of_spread = |value: &mut Value| value["trust"]["of_sets_m"] = json!([0.5, 0.0, 0.0]);
+    let of_bias = |value: &mut Value| value["answer"]["network"]["members"][0]["bias"][0] = json!(0.731);
+    let of_border = |value: &mut Value| {
+        let outline = value["trust"]["border"].as_object_mut().expect("a border");
+        let points = outline.values_mut().filter_map(Value::as_array_mut).max_by_key(|list| list.len());
+        let points = points.expect("a list of points");
+        let half = points.len() / 2;
+        points.truncate(half);
+    };
+    let said = changed(&file, &spoiled, of_border).to_string();
+    assert!(said.contains("spoiled.json"), "{said}");
+    for change in [of_weight as fn(&mut Value), of_spread, of_bias] {
+        let said = changed(&file, &spoiled, change).to_string();
+        assert!(said.contains("spoiled.json no longer answers as it did"), "{said}");
+        assert!(said.contains("mm off") && said.contains("train again"), "{said}");
+    }
+    trained(Method::M1).write(&file).expect("written");
+    let heights = changed(&file, &spoiled, |value| value["answer"]["heights"]["z_m"][1][3] = json!(0.5));
+    assert!(matches!(heights, FileError::OtherAnswers { .. }), "{heights}");
+}
+
+/// Files of older programs hold their touches and how well these are met.
+#[test]
+fn a_model_without_kept_answers_is_held_to_its_own_touches() {
+    let folder = tempdir().expect("a folder");
+    let (file, older) = (folder.path().join("model.json"), folder.path().join("older.json"));
+    for method in Method::ALL {
+        trained(method).write(&file).expect("written");
+        let mut value: Value = serde_json::from_slice(&std::fs::read(&file).expect("there")).expect("JSON");
+        assert!(value.as_object_mut().expect("a document").remove("self_test").is_some());
+        std::fs::write(&older, value.to_string()).expect("written");
+        CorrectionModel::read(&older).expect("still read");
+        match method {
+            Method::M1 => value["answer"]["placement"]["x"][2] = json!(0.9),
+            _ => thousandfold(&mut value["answer"]["network"]["members"][0]["weights"][0]),
+        }
+        std::fs::write(&older, value.to_string()).expect("written");
+        let said = CorrectionModel::read(&older).expect_err("it misses its touches").to_string();
+        assert!(said.contains("no longer answers as it did"), "{said}");
+    }
+}
+
+#[test]
+fn imported_networks_that_send_the_arm_nowhere_are_refused() {
+    let folder = tempdir().expect("a folder");
+    let file = folder.path().join("weights.json");
+    let mut w = weights(64, 3);
+    w[2].as_array_mut().expect("rows").iter_mut().for_each(thousandfold);
+    std::fs::write(&file, json!(w).to_string()).expect("written");
+    let said = CorrectionModel::import(&file).expect_err("meters away").to_string();
+    assert!(said.contains("damaged") && said.contains("a point sent to the arm"), "{said}");
+
+    // ONNX keeps the answers beside the graph.
+    let model = trained(Method::M2);
+    let (good, bad) = (folder.path().join("m2.onnx"), folder.path().join("bad.onnx"));
+    model.write_onnx(&good).expect("written");
+    let mut bytes = std::fs::read(&good).expect("there");
+    let heights = b"\"z_m\":[[0.0";
+    let at = bytes.windows(heights.len()).position(|window| window == heights).expect("heights");
+    bytes[at + heights.len() - 1] = b'9';
+    bytes[at + heights.len() - 2] = b'.';
+    std::fs::write(&bad, bytes).expect("written");
+    let said = CorrectionModel::import(&bad).expect_err("another height").to_string();
+    assert!(said.contains("no longer answers as it did"), "{said}");
 }

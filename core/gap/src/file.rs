@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use plumbline_model::FormatError;
-use plumbline_model::formats::{Replacement, read_text};
+use plumbline_model::files::{self, told};
+use plumbline_model::formats::read_text;
 
 use crate::finding::{FORMAT, Finding};
 
@@ -54,7 +55,7 @@ impl Finding {
         let text = read_text(file)?;
         let misfit = |error: serde_json::Error| FindingFileError::NotFinding {
             file: file.to_owned(),
-            reason: error.to_string(),
+            reason: told(&error.to_string()),
         };
         let head: Head = serde_json::from_str(&text).map_err(misfit)?;
         if head.format != FORMAT {
@@ -74,10 +75,8 @@ impl Finding {
     pub fn write(&self, file: &Path) -> Result<(), FindingFileError> {
         let text = serde_json::to_string_pretty(self).map_err(|error| FindingFileError::NotFinding {
             file: file.to_owned(),
-            reason: error.to_string(),
+            reason: told(&error.to_string()),
         })?;
-        let replacement = Replacement::of(file);
-        replacement.fill(&text)?;
-        Ok(replacement.commit()?)
+        Ok(files::write(file, text).map_err(FormatError::from)?)
     }
 }

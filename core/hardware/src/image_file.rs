@@ -4,6 +4,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 use image::{DynamicImage, ImageError, ImageFormat, ImageReader, RgbImage};
+use plumbline_model::files::{self, FileError, Size};
 
 use crate::jpeg;
 
@@ -113,7 +114,7 @@ pub fn load_image(path: &Path) -> Result<LoadedImage, ImageProblem> {
 
 /// Width and height from the head of the file, if it has a readable one.
 pub(crate) fn image_size(path: &Path) -> Option<(u32, u32)> {
-    ImageReader::open(path).ok()?.with_guessed_format().ok()?.into_dimensions().ok()
+    files::open_image(path).ok()?.into_dimensions().ok()
 }
 
 /// Last part of a path, for messages.
@@ -122,9 +123,13 @@ pub(crate) fn file_name(path: &Path) -> String {
 }
 
 fn read(path: &Path, file: &str) -> Result<Vec<u8>, ImageProblem> {
-    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => ImageProblem::Missing { file: file.to_owned() },
-        _ => ImageProblem::Unreadable { file: file.to_owned(), detail: error.to_string() },
+    let refused = |detail: String| ImageProblem::Unreadable { file: file.to_owned(), detail };
+    let bytes = files::read(path, Size::IMAGE).map_err(|error| match error {
+        error if error.is_absent() => ImageProblem::Missing { file: file.to_owned() },
+        FileError::Unreadable { source, .. } => refused(source.to_string()),
+        FileError::NotAFile { kind, .. } => refused(format!("it is {kind}")),
+        FileError::Dangling { to, .. } => refused(format!("it is a link to {}, which is gone", to.display())),
+        other => refused(other.to_string()),
     })?;
     if bytes.is_empty() {
         return Err(ImageProblem::Empty { file: file.to_owned() });

@@ -8,6 +8,7 @@ use image::RgbImage;
 use opencv::core::Mat;
 use opencv::prelude::*;
 use opencv::videoio::{self, VideoCapture};
+use plumbline_model::files::{self, FileError, Size};
 use plumbline_model::{Eye, Stamp, StereoFrame};
 
 use crate::cv;
@@ -245,17 +246,7 @@ impl Video {
     fn open(path: &Path) -> Result<Self, SourceError> {
         let problem =
             |problem: &str| SourceError::Video { path: path.to_path_buf(), problem: problem.to_owned() };
-        match std::fs::metadata(path) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                return Err(problem("there is no such file; check the path"));
-            }
-            Err(error) => return Err(problem(&format!("{error}; check its permissions"))),
-            Ok(found) if found.is_dir() => return Err(problem("it is a folder; give a video file")),
-            Ok(found) if found.len() == 0 => {
-                return Err(problem("the file is empty; the recording was interrupted"));
-            }
-            Ok(_) => {}
-        }
+        check(path).map_err(|reason| problem(&reason))?;
         cv::quiet();
         let unreadable =
             "it is not a video, or of a kind that is not read; convert it to MP4 (H.264) or AVI (MJPG)";
@@ -312,6 +303,7 @@ impl Video {
             problem: format!("it cannot be wound to {time_s:.2} s ({})", cv::message(&error)),
         };
         if index < 1.0 {
+            check(&self.path).map_err(|problem| SourceError::Video { path: self.path.clone(), problem })?;
             self.capture = VideoCapture::from_file(&self.path, self.reader).map_err(failed)?;
             self.next_index = 0;
         } else {
@@ -319,6 +311,20 @@ impl Video {
             self.next_index = index as usize;
         }
         Ok(())
+    }
+}
+
+/// Checks what OpenCV opens by its name: a pipe would wait for ever.
+fn check(path: &Path) -> Result<(), String> {
+    match files::open(path, Size::VIDEO) {
+        Err(error) if error.is_absent() => Err("there is no such file; check the path".to_owned()),
+        Err(FileError::Unreadable { source, .. }) => Err(format!("{source}; check its permissions")),
+        Err(FileError::NotAFile { kind, .. }) => Err(format!("it is {kind}; give a video file")),
+        Err(error) => Err(error.to_string()),
+        Ok(opened) if opened.metadata().is_ok_and(|about| about.len() == 0) => {
+            Err("the file is empty; the recording was interrupted".to_owned())
+        }
+        Ok(_) => Ok(()),
     }
 }
 

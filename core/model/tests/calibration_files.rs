@@ -445,7 +445,7 @@ fn what_is_no_calibration_is_told_apart() {
     let error = read_any(&[folder.path().to_path_buf()]).expect_err("a folder").to_string();
     assert!(error.contains("left.yaml and right.yaml"), "{error}");
     let absent = read_any(&[folder.path().join("absent.yaml")]).expect_err("absent");
-    assert!(matches!(absent, FormatError::Unreadable { .. }), "{absent}");
+    assert!(matches!(absent, FormatError::File(_)), "{absent}");
     assert!(matches!(read_any(&[]), Err(FormatError::FileCount { .. })));
 }
 
@@ -456,4 +456,103 @@ fn one_ros_file_is_half_a_calibration() {
     ros::write(&fisheye_eyes(), &files[0], &files[1]).expect("written");
     let error = read_any(&files[..1]).expect_err("one eye").to_string();
     assert!(error.contains("one eye") && error.contains("right eye's file"), "{error}");
+}
+
+/// Changes a written calibration of this program and reads it.
+fn spoiled(from: &str, to: &str) -> Result<StereoCalibration, FormatError> {
+    let folder = folder();
+    let file = folder.path().join("rig-cameras.yaml");
+    native::write(&calibration(), &file).expect("written");
+    let text = read_text(&file);
+    let changed = text.replacen(from, to, 1);
+    assert_ne!(changed, text, "the test changes something");
+    fs::write(&file, changed).expect("written");
+    native::read(&file)
+}
+
+#[test]
+fn cameras_that_cannot_be_are_refused() {
+    for (from, to, words) in [
+        ("fx_px: 150.1", "fx_px: 150123.1", ["cameras.left", "150123.1235 px cannot be a focal length"]),
+        ("translation_m: [-0.06993", "translation_m: [-69.93", ["right_from_left", "69.93"]),
+        (
+            "translation_m: [-0.06993",
+            "translation_m: [-1e308",
+            ["right_from_left", "cannot be a distance between the eyes"],
+        ),
+        ("cx_px: 321.3", "cx_px: -1e308", ["cameras.left", "principal point"]),
+        ("k1_k2_k3_k4: [-0.0084", "k1_k2_k3_k4: [-8400.0", ["cameras.left", "coefficient of a fisheye lens"]),
+    ] {
+        let error = spoiled(from, to).expect_err("it cannot be").to_string();
+        assert!(words.iter().all(|word| error.contains(word)), "{error}");
+    }
+}
+
+#[test]
+fn a_calibration_that_answers_otherwise_than_it_did_is_refused() {
+    for (from, to) in [
+        ("fx_px: 150.1", "fx_px: 157.1"),
+        ("translation_m: [-0.06993", "translation_m: [-0.0799"),
+        ("k1_k2_k3_k4: [-0.0084", "k1_k2_k3_k4: [-0.0184"),
+        ("cy_px: 239.6", "cy_px: 239.7"),
+    ] {
+        let error = spoiled(from, to).expect_err("changed");
+        assert!(matches!(error, FormatError::OtherAnswers { .. }), "{error}");
+        let said = error.to_string();
+        assert!(said.contains("self_test") && said.contains("calibrate again"), "{said}");
+    }
+    // What no answer depends on is kept as well.
+    for (from, to, what) in [
+        ("square_mean_m: 0.03008", "square_mean_m: 30.08", "summary"),
+        ("[left, 0, 33.6", "[left, 0, 333.6", "residuals"),
+        ("translation_m: [0.01, -0.02", "translation_m: [0.01, -0.0200001", "places of the board"),
+        ("- [[100.0, 200.0]", "- [[100.0, -1.0e+308]", "corners"),
+        ("- [-4.28571", "- [-4.98571", "covariance"),
+    ] {
+        let said = spoiled(from, to).expect_err("changed").to_string();
+        assert!(said.contains(&format!("the {what} in this file are not those")), "{said}");
+    }
+    // Files of older programs have none.
+    let folder = folder();
+    let file = folder.path().join("rig-cameras.yaml");
+    native::write(&calibration(), &file).expect("written");
+    let text = read_text(&file);
+    let (before, after) = text.split_once("self_test:").expect("it is there");
+    let rest = after.split_once("complete:").expect("the end").1;
+    fs::write(&file, format!("{before}complete:{rest}")).expect("written");
+    assert_eq!(native::read(&file).expect("read"), calibration());
+}
+
+#[test]
+fn foreign_cameras_that_cannot_be_are_refused() {
+    let folder = folder();
+    let files = ["left.yaml", "right.yaml"].map(|name| folder.path().join(name));
+    let mut eyes = fisheye_eyes();
+    if let CameraModel::Fisheye(lens) = &mut eyes.left.model {
+        lens.fx_px *= 1000.0;
+    }
+    ros::write(&eyes, &files[0], &files[1]).expect("written");
+    let error = read_any(&files).expect_err("a telescope").to_string();
+    assert!(
+        error.contains("left.yaml") && error.contains("camera_matrix") && error.contains("focal length"),
+        "{error}"
+    );
+    kalibr::write(&eyes, &files[0]).expect("written");
+    let error = read_any(&files[..1]).expect_err("a telescope").to_string();
+    assert!(error.contains("cam0.intrinsics") && error.contains("focal length"), "{error}");
+}
+
+#[test]
+fn files_that_nest_beyond_all_measure_are_refused() {
+    let folder = folder();
+    let file = folder.path().join("deep.yaml");
+    for text in [
+        format!("format: {}{}\n", "[".repeat(20_000), "]".repeat(20_000)),
+        format!("format:\n {}1\n", "- ".repeat(20_000)),
+        format!("format: {}1{}\n", "{a: ".repeat(20_000), "}".repeat(20_000)),
+    ] {
+        fs::write(&file, text).expect("written");
+        let error = read_any(std::slice::from_ref(&file)).expect_err("too deep").to_string();
+        assert!(error.contains("levels deep"), "{error}");
+    }
 }

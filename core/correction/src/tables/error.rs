@@ -3,7 +3,9 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use plumbline_model::FormatError;
+use plumbline_model::files::FileError;
+
+use plumbline_model::plausible::Implausible;
 
 use crate::border::BorderError;
 
@@ -27,17 +29,9 @@ impl fmt::Display for Cell {
 /// Why a table cannot be read, changed, used or written.
 #[derive(Debug, thiserror::Error)]
 pub enum TableError {
-    /// The operating system refused to read.
-    #[error("{} cannot be read ({source}): check its name and that you may read it", file.display())]
-    Unreadable {
-        /// The file.
-        file: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// The file could not be replaced.
+    /// The file itself cannot be read or written.
     #[error(transparent)]
-    Unwritable(#[from] FormatError),
+    File(#[from] FileError),
     /// Not a table of text.
     #[error("{}: {reason}; save the table as comma-separated text in UTF-8", file.display())]
     NotCsv {
@@ -97,6 +91,22 @@ pub enum TableError {
     NotFinite {
         /// Which one.
         column: &'static str,
+    },
+    /// A coordinate or value that cannot be.
+    #[error("{column} of the point: {what}")]
+    ImplausiblePoint {
+        /// Which one.
+        column: &'static str,
+        /// What cannot be, and why.
+        what: Box<Implausible>,
+    },
+    /// A cell of a file that cannot be.
+    #[error("{cell}: {what}. Correct the cell or remove the line")]
+    Implausible {
+        /// Where.
+        cell: Cell,
+        /// What cannot be, and why.
+        what: Box<Implausible>,
     },
     /// No such point.
     #[error("there is no point {index}: the table has {count}, counted from 0")]

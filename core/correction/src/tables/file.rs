@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use plumbline_model::formats::Replacement;
+use plumbline_model::files::{self, Size, shortened};
 
 use super::error::{Cell, TableError};
-use super::table::{Node, Table, is_same_place};
+use super::table::{Node, Table, is_same_place, quantity};
 
 impl<N: Node> Table<N> {
     /// Reads a table: a header with the columns in this order, then one line per point. The
@@ -14,8 +14,7 @@ impl<N: Node> Table<N> {
     /// # Errors
     /// With file, line and column of what is wrong.
     pub fn read(file: &Path) -> Result<Self, TableError> {
-        let bytes = std::fs::read(file)
-            .map_err(|source| TableError::Unreadable { file: file.to_path_buf(), source })?;
+        let bytes = files::read(file, Size::SHORT)?;
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
         let not_csv =
             |error: csv::Error| TableError::NotCsv { file: file.to_path_buf(), reason: error.to_string() };
@@ -26,7 +25,7 @@ impl<N: Node> Table<N> {
             let found = header.iter().collect::<Vec<_>>().join(",");
             return Err(TableError::Header {
                 file: file.to_path_buf(),
-                found,
+                found: shortened(&found),
                 expected: N::COLUMNS.join(","),
             });
         }
@@ -62,9 +61,7 @@ impl<N: Node> Table<N> {
             let cells: Vec<String> = point.numbers().iter().map(|number| format!("{number:?}")).collect();
             text += &(cells.join(",") + "\n");
         }
-        let replacement = Replacement::of(file);
-        replacement.fill(&text)?;
-        Ok(replacement.commit()?)
+        Ok(files::write(file, text)?)
     }
 }
 
@@ -76,10 +73,16 @@ fn row<N: Node>(file: &Path, line: u64, record: &csv::StringRecord) -> Result<N,
     let mut numbers = Vec::with_capacity(record.len());
     for (&column, text) in N::COLUMNS.iter().zip(record) {
         match text.parse::<f64>() {
-            Ok(number) if number.is_finite() => numbers.push(number),
+            Ok(number) if number.is_finite() => {
+                if let Some(Err(what)) = quantity(column).map(|quantity| quantity.check(number)) {
+                    let cell = Cell { file, line, column };
+                    return Err(TableError::Implausible { cell, what: Box::new(what) });
+                }
+                numbers.push(number);
+            }
             _ => {
                 let cell = Cell { file, line, column };
-                return Err(TableError::NotANumber { cell, found: text.to_owned() });
+                return Err(TableError::NotANumber { cell, found: shortened(text) });
             }
         }
     }

@@ -2,22 +2,14 @@
 
 use std::path::PathBuf;
 
-use plumbline_model::formats::FormatError;
+use plumbline_model::files::FileError;
 
 /// Why a model cannot be read, written or changed.
 #[derive(Debug, thiserror::Error)]
 pub enum RigModelError {
-    /// Cannot be read.
-    #[error("{file} cannot be read ({source}): check that it is there and may be read")]
-    Unreadable {
-        /// The file.
-        file: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// Cannot be written.
+    /// The file itself cannot be read or written.
     #[error(transparent)]
-    Unwritable(#[from] FormatError),
+    File(#[from] FileError),
     /// Something else.
     #[error(
         "{file} is no model with effects that this program reads: {reason}. Search the gap and write it again"

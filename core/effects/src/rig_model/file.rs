@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use plumbline_model::formats::Replacement;
+use plumbline_model::files::{self, Size};
+use plumbline_model::formats::depth;
 use plumbline_model::robot::Rig;
 use serde::{Deserialize, Serialize};
 
@@ -35,8 +36,7 @@ impl RigModel {
     /// When the file cannot be read, is none, of another version or of another rig, or holds an effect
     /// that is unknown or has no place in the rig.
     pub fn read(file: &Path, rig: &Rig) -> Result<Self, RigModelError> {
-        let bytes = std::fs::read(file)
-            .map_err(|source| RigModelError::Unreadable { file: file.to_owned(), source })?;
+        let bytes = files::read(file, Size::TEXT)?;
         let not = |reason: String| RigModelError::NotModel { file: file.to_owned(), reason };
         let text = String::from_utf8(bytes).map_err(|_| not("it is no text".to_owned()))?;
         Self::parse(file, text.strip_prefix('\u{feff}').unwrap_or(&text), rig)
@@ -44,6 +44,7 @@ impl RigModel {
 
     fn parse(file: &Path, text: &str, rig: &Rig) -> Result<Self, RigModelError> {
         let not = |reason: String| RigModelError::NotModel { file: file.to_owned(), reason };
+        depth::check(depth::of_toml(text)).map_err(not)?;
         let keys: toml::Table =
             toml::from_str(text).map_err(|error| not(format!("it is not TOML ({})", error.message())))?;
         match keys.get("rig_model") {
@@ -87,9 +88,7 @@ impl RigModel {
     /// When it holds what cannot be read again, or the file cannot be written.
     pub fn write(&self, file: &Path, rig: &Rig) -> Result<(), RigModelError> {
         let text = self.to_toml(file, rig)?;
-        let replacement = Replacement::of(file);
-        replacement.fill(&text)?;
-        Ok(replacement.commit()?)
+        Ok(files::write(file, text)?)
     }
 }
 

@@ -3,6 +3,9 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use crate::files::FileError;
+use crate::plausible::Implausible;
+
 /// Where in a file something is: the file, the key and, where it is known, the line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
@@ -30,25 +33,9 @@ impl fmt::Display for Place {
 /// Why a calibration (or the manifest of a session) could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FormatError {
-    /// The operating system refused to read.
-    #[error("{} cannot be read ({source}): check that the file exists and that you may read it", file.display())]
-    Unreadable {
-        /// The file.
-        file: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// The operating system refused to write.
-    #[error(
-        "{} cannot be written ({source}): choose a folder that exists, has free space and lets you write; what was there before is unchanged",
-        file.display()
-    )]
-    Unwritable {
-        /// The file.
-        file: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
+    /// The file itself cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// Nothing in it.
     #[error("{} is empty: it was probably cut off while it was copied or saved; copy or write it again", file.display())]
     Empty {
@@ -160,6 +147,34 @@ pub enum FormatError {
         /// What is there.
         found: String,
     },
+    /// A number that cannot be what it is said to be.
+    #[error("{place}: {what}. Correct it, or write the file again")]
+    Implausible {
+        /// Where.
+        place: Place,
+        /// What cannot be, and why.
+        what: Box<Implausible>,
+    },
+    /// Cameras that do not see what they saw when the file was written.
+    #[error(
+        "{place}: these cameras no longer answer as they did when the file was written ({} off), so a number in it was changed or damaged: use a copy of the file as it was, or calibrate again", pixels(*.off_px)
+    )]
+    OtherAnswers {
+        /// The answer that was kept.
+        place: Place,
+        /// How far off the answer is now, px; infinite where there is none.
+        off_px: f64,
+    },
+    /// Evidence that is not what it was when the file was written.
+    #[error(
+        "{place}: the {what} in this file are not those that it was written with, so a number was changed or damaged: use a copy of the file as it was, or calibrate again"
+    )]
+    ChangedSince {
+        /// Where the sum was kept.
+        place: Place,
+        /// What was changed, in the plural or as a whole.
+        what: &'static str,
+    },
     /// A lens or distortion model that this program does not have.
     #[error(
         "{place} names the model \"{found}\", which is not supported: supported are {supported}; calibrate with one of them"
@@ -222,6 +237,10 @@ pub enum FormatError {
         /// What to do.
         instead: &'static str,
     },
+}
+
+fn pixels(off_px: f64) -> String {
+    if off_px.is_finite() { format!("{off_px:.3} px") } else { "out of sight".to_owned() }
 }
 
 fn alternatives(names: &[String]) -> String {

@@ -4,6 +4,7 @@
 //! OpenCV FileStorage needs OpenCV and is read and written by the vision package, with the same
 //! errors and checks.
 
+pub mod depth;
 mod document;
 mod error;
 pub mod kalibr;
@@ -22,7 +23,6 @@ use std::path::{Path, PathBuf};
 
 pub use error::{FormatError, Place};
 pub use rectification::Rectification;
-pub use text_file::Replacement;
 
 use crate::calibration::StereoCalibration;
 use crate::camera::ModelKind;

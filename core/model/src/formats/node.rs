@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::error::{FormatError, Place};
+use crate::plausible::Quantity;
 
 /// One value of a document.
 #[derive(Clone, Debug)]
@@ -31,8 +32,9 @@ impl Value {
             Self::Null => "empty".to_owned(),
             Self::Flag(value) => value.to_string(),
             Self::Integer(value) => value.to_string(),
-            Self::Number(value) => value.to_string(),
-            Self::Text(text) => format!("the text \"{}\"", text.chars().take(60).collect::<String>()),
+            // The usual form of 1e308 has 309 digits.
+            Self::Number(value) => format!("{value:?}"),
+            Self::Text(text) => format!("the text \"{}\"", crate::files::shortened(text)),
             Self::List(items) => format!("a list of {}", items.len()),
             Self::Map(_) => "a group of keys".to_owned(),
         }
@@ -83,6 +85,36 @@ impl<'a> Field<'a> {
     /// An error at this place: another number of elements.
     pub fn wrong_size(&self, expected: impl Into<String>, found: impl Into<String>) -> FormatError {
         FormatError::WrongSize { place: self.place(), expected: expected.into(), found: found.into() }
+    }
+
+    /// Refuses a number that cannot be what it is said to be. What is no number is left to others.
+    pub fn of(self, quantity: Quantity) -> Result<Self, FormatError> {
+        self.numbers_are(quantity, std::slice::from_ref(self.node))?;
+        Ok(self)
+    }
+
+    /// The same for each number of a list.
+    pub fn each_of(self, quantity: Quantity) -> Result<Self, FormatError> {
+        if let Value::List(nodes) = &self.node.value {
+            self.numbers_are(quantity, nodes)?;
+        }
+        Ok(self)
+    }
+
+    fn numbers_are(&self, quantity: Quantity, nodes: &[Node]) -> Result<(), FormatError> {
+        for node in nodes {
+            let value = match node.value {
+                Value::Integer(value) => value as f64,
+                // What is not finite has words of its own.
+                Value::Number(value) if value.is_finite() => value,
+                _ => continue,
+            };
+            quantity.check(value).map_err(|what| FormatError::Implausible {
+                place: Place { line: Some(node.line), ..self.place() },
+                what: Box::new(what),
+            })?;
+        }
+        Ok(())
     }
 
     /// The keys of a group.

@@ -14,9 +14,9 @@ use super::error::FormatError;
 use super::lens::{self, LensNumbers, StereoNumbers};
 use super::node::Field;
 use super::rectification::Rectification;
-use super::text_file::Replacement;
 use super::yaml;
 use crate::camera::{Camera, ModelKind};
+use crate::files::Replacement;
 use crate::pixel::Eye;
 use crate::stereo::StereoCameras;
 
@@ -28,11 +28,11 @@ pub fn write(cameras: &StereoCameras, left: &Path, right: &Path) -> Result<(), F
     let rectification = Rectification::of(cameras);
     let texts = Eye::BOTH.map(|eye| camera_info(cameras, &rectification, eye));
     // Both are complete before either takes its place.
-    let replacements = [Replacement::of(left), Replacement::of(right)];
+    let replacements = [Replacement::of(left)?, Replacement::of(right)?];
     for (replacement, text) in replacements.iter().zip(&texts) {
         replacement.fill(text)?;
     }
-    replacements.into_iter().try_for_each(Replacement::commit)
+    Ok(replacements.into_iter().try_for_each(Replacement::commit)?)
 }
 
 fn camera_info(cameras: &StereoCameras, rectification: &Rectification, eye: Eye) -> String {
@@ -138,7 +138,7 @@ fn read_eye(root: &Field<'_>) -> Result<EyeInfo, FormatError> {
     let (r, p) = (root.get("rectification_matrix")?, root.get("projection_matrix")?);
     let rotation = lens::rotation(&Matrix3::from_row_slice(&read_matrix(&r, 3, 3)?), &r.place())?;
     Ok(EyeInfo {
-        camera: Camera { model: lens.model()?, width_px, height_px },
+        camera: lens.camera(width_px, height_px)?,
         name: root.find("camera_name")?.map(|name| name.text()).transpose()?.unwrap_or_default(),
         rectified_from_eye: rotation.to_rotation_matrix().into_inner(),
         translation: projection_translation(&p)?,

@@ -1,5 +1,8 @@
 //! What can be wrong with a robot description or a rig file, and what to do about it.
 
+use crate::files::FileError;
+use crate::plausible::Implausible;
+
 /// Why a description (URDF) cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DescriptionError {
@@ -83,6 +86,14 @@ pub enum DescriptionError {
         /// What is wrong.
         what: String,
     },
+    /// A number that cannot be.
+    #[error("{place}: {what}. Correct it in the description")]
+    Implausible {
+        /// Which joint or link.
+        place: String,
+        /// What cannot be, and why.
+        what: Implausible,
+    },
     /// A joint that copies another which does not move by itself.
     #[error("joint {joint} copies {source_joint}, which is not a joint that moves by itself")]
     Mimic {
@@ -96,7 +107,10 @@ pub enum DescriptionError {
 /// Why a rig file cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RigError {
-    /// The file cannot be read.
+    /// The file itself cannot be read: what [`FileError`] says.
+    #[error("{0}")]
+    File(String),
+    /// There is no such rig.
     #[error("{file} cannot be read: {reason}")]
     Unreadable {
         /// The file.
@@ -166,4 +180,10 @@ pub enum RigError {
         /// The rig file.
         file: String,
     },
+}
+
+impl From<FileError> for RigError {
+    fn from(error: FileError) -> Self {
+        Self::File(error.to_string())
+    }
 }

@@ -12,6 +12,8 @@ use super::error::RigError;
 use super::rig::{Bus, EyeMount, Gate, Rig, RigPart, TableTop, WorkPatch};
 use super::rig_file::{ArmPart, EyesPart, PosePart, Reader, ScreenPart, TablePart, WorkspacePart};
 use crate::camera::{Camera, CameraModel, Fisheye};
+use crate::files::{self, Size, told};
+use crate::formats::depth;
 use crate::frame::{Direction, Point, Pose};
 use crate::session::Touchscreen;
 use crate::stereo::StereoCameras;
@@ -50,8 +52,10 @@ impl Rig {
             return bare(file, &text, toml::Table::new());
         }
         let shown = file.display().to_string();
+        depth::check(depth::of_toml(&text))
+            .map_err(|reason| RigError::NotRig { file: shown.clone(), reason })?;
         let table: toml::Table = toml::from_str(&text)
-            .map_err(|error| RigError::NotRig { file: shown.clone(), reason: error.to_string() })?;
+            .map_err(|error| RigError::NotRig { file: shown.clone(), reason: told(&error.to_string()) })?;
         if OF_COMPLETE_RIGS.iter().all(|key| table.contains_key(*key)) {
             return Self::read(file);
         }
@@ -66,8 +70,7 @@ impl Rig {
 }
 
 fn read(file: &Path) -> Result<String, RigError> {
-    std::fs::read_to_string(file)
-        .map_err(|error| RigError::Unreadable { file: file.display().to_string(), reason: error.to_string() })
+    Ok(files::read_text(file, Size::TEXT)?)
 }
 
 /// The description that a file names, under a usual key or in a section of its own.
@@ -99,7 +102,7 @@ fn bare(file: &Path, urdf: &str, table: toml::Table) -> Result<Rig, RigError> {
     let title = text("title").unwrap_or_else(|| name.clone());
     let parts: Parts = table.try_into().map_err(|error: toml::de::Error| RigError::NotRig {
         file: shown.clone(),
-        reason: error.to_string(),
+        reason: told(&error.to_string()),
     })?;
     let reader = Reader { file: &shown, robot: &robot };
     let mut lacking = vec![RigPart::Servos, RigPart::Gate];

@@ -14,7 +14,10 @@ use super::rig::{
     WorkPatch,
 };
 use crate::camera::{Camera, CameraModel, Fisheye};
+use crate::files::{self, Size, told};
+use crate::formats::depth;
 use crate::frame::{Direction as Axis, Point, Pose};
+use crate::plausible::{self, Quantity};
 use crate::session::Touchscreen;
 use crate::stereo::StereoCameras;
 
@@ -212,12 +215,7 @@ impl Rig {
 
     /// Reads a rig file; the description it names lies beside it.
     pub fn read(file: &Path) -> Result<Self, RigError> {
-        let read = |path: &Path| {
-            std::fs::read_to_string(path).map_err(|error| RigError::Unreadable {
-                file: path.display().to_string(),
-                reason: error.to_string(),
-            })
-        };
+        let read = |path: &Path| Ok(files::read_text(path, Size::TEXT)?);
         let folder = file.parent().unwrap_or(Path::new(""));
         Self::parse(&file.display().to_string(), &read(file)?, |name| read(&folder.join(name)))
     }
@@ -228,8 +226,10 @@ impl Rig {
         text: &str,
         description: impl FnOnce(&str) -> Result<String, RigError>,
     ) -> Result<Self, RigError> {
+        depth::check(depth::of_toml(text))
+            .map_err(|reason| RigError::NotRig { file: file.to_owned(), reason })?;
         let parts: File = toml::from_str(text)
-            .map_err(|error| RigError::NotRig { file: file.to_owned(), reason: error.to_string() })?;
+            .map_err(|error| RigError::NotRig { file: file.to_owned(), reason: told(&error.to_string()) })?;
         let urdf = description(&parts.description)?;
         let robot = Description::from_urdf(&urdf)
             .map_err(|error| RigError::Description { file: parts.description.clone(), error })?;
@@ -291,7 +291,7 @@ impl Reader<'_> {
     }
 
     fn value(&self, place: &str, what: String) -> RigError {
-        RigError::Value { file: self.file.to_owned(), place: place.to_owned(), what }
+        RigError::Value { file: self.file.to_owned(), place: place.to_owned(), what: told(&what) }
     }
 
     fn finite(&self, place: &str, values: &[f64]) -> Result<(), RigError> {
@@ -299,6 +299,12 @@ impl Reader<'_> {
             Some(value) => Err(self.value(place, format!("{value} is not a number that can be used"))),
             None => Ok(()),
         }
+    }
+
+    /// Refuses numbers that cannot be what they are said to be.
+    fn plausible(&self, place: &str, quantity: Quantity, values: &[f64]) -> Result<(), RigError> {
+        self.finite(place, values)?;
+        quantity.check_all(values).map_err(|what| self.value(place, what.to_string()))
     }
 
     fn unknown(&self, place: &str, error: DescriptionError) -> RigError {
@@ -311,7 +317,10 @@ impl Reader<'_> {
 
     fn servo(&self, part: &ServoPart) -> Result<Servo, RigError> {
         let place = format!("servo {}", part.id);
-        self.finite(&place, &[part.offset_rad, part.ratio, part.motor_lower_rad, part.motor_upper_rad])?;
+        self.plausible(&place, plausible::ANGLE_RAD, &[part.offset_rad])?;
+        self.plausible(&place, plausible::RATIO, &[part.ratio])?;
+        let motor_rad = [part.motor_lower_rad, part.motor_upper_rad];
+        self.plausible(&place, plausible::JOINT_LIMIT_RAD, &motor_rad)?;
         if part.id > 252 {
             return Err(self.value(&place, "ids go from 0 to 252".to_owned()));
         }
@@ -372,7 +381,7 @@ impl Reader<'_> {
 
     fn coupled(&self, part: &CoupledPart) -> Result<CoupledLimit, RigError> {
         let place = format!("coupled limit of {}", part.joint);
-        self.finite(&place, part.table_rad.as_flattened())?;
+        self.plausible(&place, plausible::ANGLE_RAD, part.table_rad.as_flattened())?;
         let rising = part.table_rad.windows(2).all(|pair| pair[0][0] < pair[1][0]);
         if part.table_rad.len() < 2 || !rising || part.table_rad.iter().any(|row| row[1] < 0.0) {
             return Err(self.value(&place, "its table needs two or more rows [angle, largest], rising in the angle, with no negative largest value".to_owned()));
@@ -394,6 +403,13 @@ impl Reader<'_> {
         ];
         self.finite("eyes", vectors.as_flattened())?;
         let [position, rotation, right_rotation, right_translation] = vectors.map(Vector3::from);
+        self.plausible("eyes", plausible::LINK_LENGTH_M, &part.left_position_m)?;
+        self.plausible(
+            "eyes",
+            plausible::ANGLE_RAD,
+            &[part.left_rotation_rad, part.right_from_left_rotation_rad].concat(),
+        )?;
+        self.plausible("eyes", plausible::BASELINE_M, &[right_translation.norm()])?;
         Ok(EyeMount {
             link: self.robot.find_link(&part.link).map_err(|error| self.unknown("eyes", error))?,
             pan: self.joint("eyes", &part.pan)?,
@@ -421,12 +437,15 @@ impl Reader<'_> {
             skew_px: part.skew_px,
             k: part.k,
         };
-        Ok(Camera { model: CameraModel::Fisheye(lens), width_px: part.width_px, height_px: part.height_px })
+        let (width_px, height_px) = (part.width_px, part.height_px);
+        let camera = Camera { model: CameraModel::Fisheye(lens), width_px, height_px };
+        camera.check_plausible().map_err(|what| self.value(place, what.to_string()))?;
+        Ok(camera)
     }
 
     pub(super) fn table(&self, part: &TablePart) -> Result<TableTop, RigError> {
-        self.finite("table", &[part.height_m])?;
-        self.finite("table", &[part.x_range_m, part.y_range_m].concat())?;
+        self.plausible("table", plausible::PLACE_M, &[part.height_m])?;
+        self.plausible("table", plausible::PLACE_M, &[part.x_range_m, part.y_range_m].concat())?;
         if part.x_range_m[0] >= part.x_range_m[1] || part.y_range_m[0] >= part.y_range_m[1] {
             return Err(self.value("table", "ranges go from the smaller to the larger value".to_owned()));
         }
@@ -434,8 +453,8 @@ impl Reader<'_> {
     }
 
     pub(super) fn work_patch(&self, part: &WorkspacePart) -> Result<WorkPatch, RigError> {
-        self.finite("workspace", &[part.headroom_m])?;
-        self.finite("workspace", &[part.x_range_m, part.y_range_m].concat())?;
+        self.plausible("workspace", plausible::PLACE_M, &[part.headroom_m])?;
+        self.plausible("workspace", plausible::PLACE_M, &[part.x_range_m, part.y_range_m].concat())?;
         let rising = part.x_range_m[0] < part.x_range_m[1] && part.y_range_m[0] < part.y_range_m[1];
         if !rising || part.headroom_m <= 0.0 {
             let what = "ranges go from the smaller to the larger value, and the headroom is positive";
@@ -449,8 +468,9 @@ impl Reader<'_> {
             Axis::new(Vector3::from(vector))
                 .ok_or_else(|| self.value("touchscreen", format!("{name} has no direction")))
         };
+        self.plausible("touchscreen", plausible::DIRECTION, &[part.u_axis, part.v_axis].concat())?;
+        self.plausible("touchscreen", plausible::SCREEN_PLACE_M, &part.origin_m)?;
         self.finite("touchscreen", &[part.width_m, part.height_m])?;
-        self.finite("touchscreen", &part.origin_m)?;
         let (u_axis, v_axis) = (axis("u_axis", part.u_axis)?, axis("v_axis", part.v_axis)?);
         let sized = part.width_px > 0 && part.height_px > 0 && part.width_m > 0.0 && part.height_m > 0.0;
         if !sized || u_axis.vector().dot(&v_axis.vector()).abs() > 1e-6 {
@@ -458,6 +478,9 @@ impl Reader<'_> {
                 self.value("touchscreen", "sizes must be positive and the axes at right angles".to_owned())
             );
         }
+        self.plausible("touchscreen", plausible::SCREEN_SIDE_M, &[part.width_m, part.height_m])?;
+        let pixels = [f64::from(part.width_px), f64::from(part.height_px)];
+        self.plausible("touchscreen", plausible::SCREEN_SIDE_PX, &pixels)?;
         let [x, y, z] = part.origin_m;
         Ok(Touchscreen {
             width_px: part.width_px,
@@ -493,7 +516,8 @@ impl Reader<'_> {
         let place = format!("pose {}", part.name);
         let joint = |(name, angle_rad): (&String, &f64)| Ok((self.joint(&place, name)?, *angle_rad));
         let joints = part.joints_rad.iter().map(joint).collect::<Result<Vec<_>, RigError>>()?;
-        self.finite(&place, &joints.iter().map(|(_, angle)| *angle).collect::<Vec<_>>())?;
+        let angles_rad: Vec<f64> = joints.iter().map(|(_, angle)| *angle).collect();
+        self.plausible(&place, plausible::JOINT_ANGLE_RAD, &angles_rad)?;
         Ok(NamedPose {
             name: part.name.clone(),
             title: part.title.clone(),
@@ -507,6 +531,10 @@ impl Reader<'_> {
             "gate",
             &[p.warm_c, p.hot_c, p.load, p.speed_rad_s, p.usual_speed_rad_s, p.step_rad, p.floor_m],
         )?;
+        self.plausible("gate", plausible::TEMPERATURE_C, &[p.warm_c, p.hot_c])?;
+        self.plausible("gate", plausible::SPEED_RAD_S, &[p.speed_rad_s, p.usual_speed_rad_s])?;
+        self.plausible("gate", plausible::ANGLE_RAD, &[p.step_rad])?;
+        self.plausible("gate", plausible::PLACE_M, &[p.floor_m])?;
         let positive = p.speed_rad_s > 0.0 && p.usual_speed_rad_s > 0.0 && p.step_rad > 0.0;
         if !positive
             || p.warm_c >= p.hot_c

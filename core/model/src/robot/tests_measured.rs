@@ -91,7 +91,7 @@ fn without_a_description_it_says_what_to_add() {
     let error = Rig::read_measured(&folder.join("rig.toml")).expect_err("nothing to read");
     assert!(error.to_string().contains("description"), "{error}");
     let gone = Rig::read_measured(&folder.join("gone.toml")).expect_err("no file");
-    assert!(matches!(gone, RigError::Unreadable { .. }));
+    assert!(matches!(gone, RigError::File(_)));
 }
 
 #[test]

@@ -3,7 +3,9 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use crate::files::{FileError, MOST_ROWS};
 use crate::formats::FormatError;
+use crate::plausible::Implausible;
 
 /// A cell of a table: file, line and column.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -51,21 +53,16 @@ pub enum SessionError {
         /// "touchscreen" or "chain".
         section: &'static str,
     },
-    /// The operating system refused to read.
-    #[error("{} cannot be read ({source}): check that you may read it", file.display())]
-    Unreadable {
-        /// File or folder.
+    /// A file itself cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// More rows than any session has.
+    #[error(
+        "{} has more than {MOST_ROWS} rows, too many to work with: check that it is the right table, and divide it among several sessions", file.display()
+    )]
+    TooManyRows {
+        /// The table.
         file: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// The operating system refused to write.
-    #[error("{} cannot be written ({source}): choose a folder with free space where you may write; what was there before is unchanged", file.display())]
-    Unwritable {
-        /// File or folder.
-        file: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
     },
     /// Not even a header.
     #[error("{} is empty: a table starts with one line of column names; write the names or remove the file", file.display())]
@@ -137,6 +134,20 @@ pub enum SessionError {
         cell: Cell,
         /// What is there.
         found: String,
+    },
+    /// Numbers that cannot be, in so many rows that the column is another one than it says.
+    #[error(
+        "{cell}: {what}. So it is in {count} of the {rows} rows: correct the column or its unit, and open the session again"
+    )]
+    Implausible {
+        /// The first of them.
+        cell: Cell,
+        /// What cannot be, and why.
+        what: Box<Implausible>,
+        /// Rows that cannot be.
+        count: usize,
+        /// All rows.
+        rows: usize,
     },
     /// One coordinate without the others.
     #[error(

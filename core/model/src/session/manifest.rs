@@ -10,6 +10,7 @@ use super::error::SessionError;
 use crate::formats::node::Field;
 use crate::formats::{FormatError, text_file};
 use crate::frame::{Direction, Point, Robot};
+use crate::plausible;
 
 /// Version of the session format.
 const FORMAT: usize = 1;
@@ -102,8 +103,9 @@ impl Manifest {
                 "{FORMAT}, the version that this program knows (a newer program may be needed)"
             )));
         }
-        let text_or_empty =
-            |key: &str| Ok(root.find(key)?.map(|field| field.text()).transpose()?.unwrap_or_default());
+        let text_or_empty = |key: &str| -> Result<String, FormatError> {
+            Ok(root.find(key)?.map(|field| field.text()).transpose()?.unwrap_or_default())
+        };
         Ok(Self {
             rig: rig(&root)?,
             started: root.get("started")?.timestamp()?,
@@ -215,9 +217,9 @@ fn rig(root: &Field<'_>) -> Result<RigReference, FormatError> {
 }
 
 fn touchscreen(field: &Field<'_>) -> Result<Touchscreen, FormatError> {
-    let [x, y, z] = field.get("origin_m")?.exactly()?;
+    let [x, y, z] = field.get("origin_m")?.each_of(plausible::SCREEN_PLACE_M)?.exactly()?;
     let axis = |key: &str| {
-        let axis = field.get(key)?;
+        let axis = field.get(key)?.each_of(plausible::DIRECTION)?;
         let direction = Direction::<Robot>::new(Vector3::from(axis.exactly::<3>()?));
         direction.ok_or_else(|| axis.out_of_range("a direction that is not zero"))
     };
@@ -226,10 +228,10 @@ fn touchscreen(field: &Field<'_>) -> Result<Touchscreen, FormatError> {
         return Err(field.get("v_axis")?.out_of_range("at a right angle to u_axis"));
     }
     Ok(Touchscreen {
-        width_px: field.get("width_px")?.pixels()?,
-        height_px: field.get("height_px")?.pixels()?,
-        width_m: field.get("width_m")?.positive()?,
-        height_m: field.get("height_m")?.positive()?,
+        width_px: field.get("width_px")?.of(plausible::SCREEN_SIDE_PX)?.pixels()?,
+        height_px: field.get("height_px")?.of(plausible::SCREEN_SIDE_PX)?.pixels()?,
+        width_m: field.get("width_m")?.of(plausible::SCREEN_SIDE_M)?.positive()?,
+        height_m: field.get("height_m")?.of(plausible::SCREEN_SIDE_M)?.positive()?,
         origin: Point::new(x, y, z),
         u_axis,
         v_axis,

@@ -23,6 +23,8 @@ mod touches;
 
 use std::path::{Path, PathBuf};
 
+use crate::files;
+
 pub use error::{Cell, SessionError};
 pub use localizations::{LocalizationRow, LocalizationTable};
 pub use manifest::{Chain, Manifest, RigReference, Touchscreen};
@@ -71,27 +73,43 @@ impl Session {
             return Err(SessionError::NotAFolder { folder: folder.to_path_buf() });
         }
         let manifest = Manifest::read(&folder.join(names::MANIFEST))?;
-        let existing = |name: &str| Some(folder.join(name)).filter(|file| file.exists());
+        let existing = |name: &str| -> Result<Option<PathBuf>, SessionError> {
+            let file = folder.join(name);
+            Ok(files::present(&file)?.then_some(file))
+        };
         let joints = |file: &Path| manifest.chain_for(file).map(|chain| chain.joints.as_slice());
         let session = Self {
-            touches: existing(names::TOUCHES)
+            touches: existing(names::TOUCHES)?
                 .map(|file| {
                     manifest.touchscreen_for(&file)?;
                     TouchTable::read(&file, joints(&file)?)
                 })
                 .transpose()?,
-            localizations: existing(names::LOCALIZATIONS)
+            localizations: existing(names::LOCALIZATIONS)?
                 .map(|file| LocalizationTable::read(&file))
                 .transpose()?,
-            poses: existing(names::POSES).map(|file| PoseTable::read(&file, joints(&file)?)).transpose()?,
+            poses: existing(names::POSES)?.map(|file| PoseTable::read(&file, joints(&file)?)).transpose()?,
             stereo: StereoImages::list(&folder.join(names::STEREO))?,
-            log: existing(names::LOG),
+            log: existing(names::LOG)?,
             manifest,
         };
         if session.is_empty() {
             return Err(SessionError::NothingMeasured { folder: folder.to_path_buf() });
         }
         Ok(session)
+    }
+
+    /// Rows that hold a number that cannot be: table, row counted from 0, and what is wrong with it.
+    /// They are in the tables as rows in which nothing was measured.
+    pub fn implausible(&self) -> impl Iterator<Item = (&'static str, usize, &str)> {
+        let tables = [
+            (names::TOUCHES, self.touches.as_ref().map(TouchTable::implausible)),
+            (names::LOCALIZATIONS, self.localizations.as_ref().map(LocalizationTable::implausible)),
+            (names::POSES, self.poses.as_ref().map(PoseTable::implausible)),
+        ];
+        tables.into_iter().flat_map(|(name, rows)| {
+            rows.into_iter().flatten().map(move |(row, what)| (name, *row, what.as_str()))
+        })
     }
 
     fn is_empty(&self) -> bool {
@@ -106,8 +124,7 @@ impl Session {
     /// its predecessor in one step; tables that this session does not have, images and the log
     /// are left as they are.
     pub fn write(&self, folder: &Path) -> Result<(), SessionError> {
-        std::fs::create_dir_all(folder)
-            .map_err(|source| SessionError::Unwritable { file: folder.to_path_buf(), source })?;
+        files::make_folder(folder)?;
         let touches = self.touches.as_ref().map(|table| (names::TOUCHES, table.table()));
         let localizations = self.localizations.as_ref().map(|table| (names::LOCALIZATIONS, table.table()));
         let poses = self.poses.as_ref().map(|table| (names::POSES, table.table()));

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::error::SessionError;
+use crate::files::{self, FileError, is_hidden};
 use crate::pixel::Eye;
 
 /// Images of the same moment.
@@ -62,13 +63,16 @@ impl StereoImages {
 }
 
 fn list_eye(folder: &Path) -> Result<BTreeMap<String, PathBuf>, SessionError> {
-    if !folder.is_dir() {
+    if !files::present(folder)? {
         return Ok(BTreeMap::new());
     }
-    let unreadable = |source| SessionError::Unreadable { file: folder.to_path_buf(), source };
+    let unreadable = |source| FileError::Unreadable { file: folder.to_path_buf(), source };
     let mut images = BTreeMap::new();
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
         let file = entry.map_err(unreadable)?.path();
+        if is_hidden(&file) {
+            continue;
+        }
         let extension = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         if matches!(extension.as_deref(), Some("png" | "jpg" | "jpeg"))
             && let Some(name) = file.file_name()

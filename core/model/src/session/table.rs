@@ -1,10 +1,11 @@
 //! Tables of typed columns, kept in the order of the file, unknown columns included.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 use std::path::Path;
 
 use super::error::{Cell, SessionError};
-use crate::formats::Replacement;
+use crate::files::{self, MOST_ROWS, Size, shortened};
+use crate::plausible::Quantity;
 
 /// The values of a column, one per row; `None` where the cell is empty.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +40,9 @@ pub struct Column {
 pub struct Table {
     columns: Vec<Column>,
     row_count: usize,
+    /// Rows with a number that cannot be, counted from 0, and what is wrong with each. Their numbers
+    /// are in the columns, and in no row that is asked for.
+    implausible: BTreeMap<usize, String>,
 }
 
 impl ColumnValues {
@@ -87,7 +91,7 @@ impl ColumnValues {
             Self::Flags(cells) if trimmed.is_empty() => cells.push(None),
             Self::Numbers(cells) => match trimmed.parse::<f64>() {
                 Ok(value) if value.is_finite() => cells.push(Some(value)),
-                Ok(_) => return Err(SessionError::NotFinite { cell: cell(), found: trimmed.to_owned() }),
+                Ok(_) => return Err(SessionError::NotFinite { cell: cell(), found: shortened(trimmed) }),
                 Err(_) => return Err(wrong_type(cell(), "a number", trimmed)),
             },
             // Spreadsheets write TRUE and FALSE.
@@ -102,7 +106,7 @@ impl ColumnValues {
 }
 
 fn wrong_type(cell: Cell, expected: &'static str, found: &str) -> SessionError {
-    SessionError::WrongType { cell, expected, found: found.to_owned() }
+    SessionError::WrongType { cell, expected, found: shortened(found) }
 }
 
 impl Table {
@@ -115,7 +119,7 @@ impl Table {
             .into_iter()
             .filter(|column| required(&column.name) || !column.values.is_blank())
             .collect();
-        Self { columns, row_count }
+        Self { columns, row_count, implausible: BTreeMap::new() }
     }
 
     /// Reads a table; `kind` gives the type of the columns that the format defines.
@@ -123,8 +127,7 @@ impl Table {
         file: &Path,
         kind: impl Fn(&str) -> Option<ColumnKind>,
     ) -> Result<ReadTable<'_>, SessionError> {
-        let bytes = std::fs::read(file)
-            .map_err(|source| SessionError::Unreadable { file: file.to_path_buf(), source })?;
+        let bytes = files::read(file, Size::TEXT)?;
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
         // Lengths are checked here, so that the error can name the column.
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(bytes);
@@ -134,10 +137,17 @@ impl Table {
         let mut lines = Vec::new();
         while reader.read_record(&mut record).map_err(|error| not_csv(file, &error))? {
             let line = record.position().map_or(0, csv::Position::line);
+            if lines.len() == MOST_ROWS {
+                return Err(SessionError::TooManyRows { file: file.to_path_buf() });
+            }
             read_row(file, line, &record, &mut columns)?;
             lines.push(line);
         }
-        Ok(ReadTable { file, table: Self { columns, row_count: lines.len() }, lines })
+        Ok(ReadTable {
+            file,
+            table: Self { columns, row_count: lines.len(), implausible: BTreeMap::new() },
+            lines,
+        })
     }
 
     /// Writes the table in one step.
@@ -149,9 +159,7 @@ impl Table {
             writer.write_record(self.columns.iter().map(|column| column.values.text(row))).expect(in_memory);
         }
         let bytes = writer.into_inner().expect(in_memory);
-        let replacement = Replacement::of(file);
-        replacement.fill(&String::from_utf8_lossy(&bytes))?;
-        Ok(replacement.commit()?)
+        Ok(files::write(file, bytes)?)
     }
 
     /// Number of rows.
@@ -197,8 +205,17 @@ impl Table {
         }
     }
 
-    /// A cell of numbers; `None` if column, row or value is not there.
+    /// Rows with a number that cannot be, counted from 0: line, column, number, range and likely
+    /// cause. They count as rows in which nothing was measured.
+    pub fn implausible(&self) -> &BTreeMap<usize, String> {
+        &self.implausible
+    }
+
+    /// A cell of numbers; `None` if column, row or value is not there, or the row cannot be.
     pub(crate) fn number(&self, name: &str, row: usize) -> Option<f64> {
+        if self.implausible.contains_key(&row) {
+            return None;
+        }
         *self.numbers(name)?.get(row)?
     }
 
@@ -239,6 +256,45 @@ impl ReadTable<'_> {
     /// The error for a column that has to be there.
     pub fn missing(&self, column: &str, advice: &'static str) -> SessionError {
         SessionError::MissingColumn { file: self.file.to_path_buf(), column: column.to_owned(), advice }
+    }
+
+    /// Sets rows aside in which a number cannot be. A few are left out of what follows; when more than
+    /// a quarter of the rows are like that, the column is in another unit.
+    ///
+    /// # Errors
+    /// [`SessionError::Implausible`] with the first of them.
+    pub fn set_implausible_aside(
+        &mut self,
+        quantity: impl Fn(&str) -> Option<Quantity>,
+    ) -> Result<(), SessionError> {
+        let mut first = None;
+        for column in &self.table.columns {
+            let (ColumnValues::Numbers(cells), Some(quantity)) = (&column.values, quantity(&column.name))
+            else {
+                continue;
+            };
+            for (row, value) in cells.iter().enumerate() {
+                let Some(what) = value.and_then(|value| quantity.check(value).err()) else { continue };
+                let line = self.lines[row];
+                let name = shortened(&column.name);
+                self.table
+                    .implausible
+                    .entry(row)
+                    .or_insert_with(|| format!("line {line}, column {name}: {what}"));
+                first.get_or_insert((line, name, what));
+            }
+        }
+        let (count, rows) = (self.table.implausible.len(), self.table.row_count);
+        let too_many = count == rows || (count > 1 && 4 * count > rows);
+        match first.filter(|_| too_many) {
+            Some((line, column, what)) => Err(SessionError::Implausible {
+                cell: Cell { file: self.file.to_path_buf(), line, column },
+                what: Box::new(what),
+                count,
+                rows,
+            }),
+            None => Ok(()),
+        }
     }
 
     /// Requires that in each row the coordinates of a point are all given or all empty.
@@ -285,7 +341,7 @@ fn read_header(
     let mut columns = Vec::with_capacity(header.len());
     for name in header.iter().map(str::trim) {
         if !name.is_empty() && !seen.insert(name.to_owned()) {
-            return Err(SessionError::DuplicateColumn { file: file.to_path_buf(), column: name.to_owned() });
+            return Err(SessionError::DuplicateColumn { file: file.to_path_buf(), column: shortened(name) });
         }
         let kind = kind(name).unwrap_or(ColumnKind::Text);
         columns.push(Column { name: name.to_owned(), values: ColumnValues::new(kind) });

@@ -1,21 +1,41 @@
 //! The files of a set.
 
-use std::fs;
 use std::path::Path;
 
 use image::RgbImage;
 use image::codecs::jpeg::JpegEncoder;
+use plumbline_model::files::{self, FileError, Size, shortened};
 use plumbline_model::{ClassIndex, ClassNames};
 
 use super::labels::{Label, line};
 use super::{SetError, SetOptions, SetSummary, SetWorld};
 
-/// Makes the folders and writes what the set is.
+/// What made the set; the first of its files, so that a set whose drawing was ended is known, too.
+pub(super) const RECIPE: &str = "recipe.json";
+
+/// Checks that nothing else is in the folder, makes its folders, and writes what the set is.
+///
+/// A set may be drawn in parts and again, but never mixed with one of another seed: images of the
+/// same name would be replaced, and what one was to be judged by would be learned from.
 pub(super) fn prepare(out: &Path, options: &SetOptions) -> Result<(), SetError> {
+    files::make_folder(out)?;
+    if files::present(&out.join(RECIPE))? {
+        let text = files::read_text(&out.join(RECIPE), Size::SHORT)?;
+        let (found, wanted) = (origin(&text), origin(&recipe_text(options, &SetSummary::default())));
+        if found != wanted {
+            return Err(SetError::OtherSet { folder: out.to_owned(), found, wanted });
+        }
+    } else {
+        let listing = std::fs::read_dir(out).map_err(FileError::unreadable(out))?;
+        if listing.flatten().any(|entry| !files::is_hidden(&entry.path())) {
+            return Err(SetError::NotASet { folder: out.to_owned() });
+        }
+        recipe(out, options, &SetSummary::default())?;
+    }
     for split in ["train", "val"] {
         for kind in ["images", "labels"] {
             let folder = out.join(kind).join(split);
-            fs::create_dir_all(&folder).map_err(|source| SetError::Write { file: folder, source })?;
+            files::make_folder(&folder)?;
         }
     }
     write(&out.join("data.yaml"), data_yaml(options).as_bytes())
@@ -50,14 +70,34 @@ pub(super) fn one(
     write(&out.join("images").join(split).join(format!("{name}.jpg")), &jpeg)
 }
 
+/// What of a recipe decides which pair a number stands for, for people.
+fn origin(recipe: &str) -> String {
+    let value = |key: &str| {
+        let key = format!("\"{key}\":");
+        let line = recipe.lines().find_map(|line| line.trim().strip_prefix(&key));
+        line.map_or("unknown", |value| value.trim().trim_end_matches(',').trim_matches('"'))
+    };
+    format!(
+        "seed {}, world {}, {} of the pairs for validation, generator {}",
+        shortened(value("seed")),
+        shortened(value("world")),
+        shortened(value("val_share")),
+        shortened(value("generator"))
+    )
+}
+
 /// What made the set, and what is in it.
 pub(super) fn recipe(out: &Path, options: &SetOptions, summary: &SetSummary) -> Result<(), SetError> {
+    write(&out.join(RECIPE), recipe_text(options, summary).as_bytes())
+}
+
+fn recipe_text(options: &SetOptions, summary: &SetSummary) -> String {
     let counts: Vec<String> = ClassNames::published()
         .iter()
         .zip(summary.boxes)
         .map(|((_, name), count)| format!("    \"{name}\": {count}"))
         .collect();
-    let text = format!(
+    format!(
         "{{\n  \"format\": 1,\n  \"made_by\": \"plumbline {}\",\n  \"generator\": {},\n  \"seed\": {},\n  \"first\": {},\n  \"world\": \"{}\",\n  \"pairs\": {},\n  \"val_share\": {},\n  \"images_without_label\": {},\n  \"boxes\": {{\n{}\n  }}\n}}\n",
         env!("CARGO_PKG_VERSION"),
         super::GENERATOR,
@@ -71,15 +111,9 @@ pub(super) fn recipe(out: &Path, options: &SetOptions, summary: &SetSummary) -> 
         options.val_share,
         summary.empty_images,
         counts.join(",\n"),
-    );
-    write(&out.join("recipe.json"), text.as_bytes())
+    )
 }
 
-/// Under another name first, so that nobody reads half a file.
 fn write(file: &Path, bytes: &[u8]) -> Result<(), SetError> {
-    let failed = |source| SetError::Write { file: file.to_owned(), source };
-    let mut part = file.as_os_str().to_owned();
-    part.push(".part");
-    fs::write(&part, bytes).map_err(failed)?;
-    fs::rename(&part, file).map_err(failed)
+    Ok(files::write(file, bytes)?)
 }

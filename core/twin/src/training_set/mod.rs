@@ -19,7 +19,6 @@ mod scene;
 #[cfg(test)]
 mod tests;
 
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -137,14 +136,31 @@ pub enum SetError {
     /// An image could not be encoded.
     #[error("an image could not be encoded as JPEG: {0}. Try again; if it stays so, report it")]
     Encode(String),
-    /// A file could not be written.
-    #[error("{} could not be written: {source}. Check that the folder may be written and the disk is not full", file.display())]
-    Write {
-        /// The file.
-        file: PathBuf,
-        /// What the system said.
-        source: io::Error,
+    /// The folder holds another set.
+    #[error(
+        "{} holds a set that was drawn with {found}; now it would be drawn with {wanted}, and two sets in one folder cannot be told apart: choose an empty folder, or the same options to draw it again",
+        folder.display()
+    )]
+    OtherSet {
+        /// The folder.
+        folder: PathBuf,
+        /// How the set in it was drawn.
+        found: String,
+        /// How it would be drawn now.
+        wanted: String,
     },
+    /// The folder holds something else.
+    #[error(
+        "{} is not empty and holds no set that this program drew (no {}): choose an empty folder, so that nothing is mixed up or written over",
+        folder.display(), files::RECIPE
+    )]
+    NotASet {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// A file could not be read or written.
+    #[error(transparent)]
+    File(#[from] plumbline_model::files::FileError),
 }
 
 /// One pair with its labels.

@@ -250,3 +250,41 @@ fn the_twins_own_scenes_are_the_same_again_and_boxes_enclose_what_is_seen() {
     }
     assert!(boxes >= 6, "{boxes}");
 }
+
+#[test]
+fn a_folder_holds_one_set() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("set");
+    let options = SetOptions { pairs: 2, seed: 5, ..SetOptions::default() };
+    files::prepare(&out, &options).expect("a new folder");
+    // Drawn in parts, and again.
+    files::prepare(&out, &SetOptions { first: 2, pairs: 7, ..options }).expect("the same set");
+    let recipe = fs::read_to_string(out.join(files::RECIPE)).expect("written");
+    for other in [
+        SetOptions { seed: 6, ..options },
+        SetOptions { world: SetWorld::Twin, ..options },
+        SetOptions { val_share: 0.5, ..options },
+    ] {
+        let refused = files::prepare(&out, &other).expect_err("another set");
+        assert!(matches!(refused, SetError::OtherSet { .. }));
+        let words = refused.to_string();
+        assert!(
+            words.contains("holds a set that was drawn with seed 5, world randomised, 0.1 of"),
+            "{words}"
+        );
+        assert!(words.contains("choose an empty folder"), "{words}");
+    }
+    assert_eq!(fs::read_to_string(out.join(files::RECIPE)).expect("still there"), recipe);
+    fs::write(folder.path().join("thesis.txt"), "mine").expect("written");
+    let refused = files::prepare(folder.path(), &options).expect_err("somebody's folder");
+    assert!(
+        refused.to_string().contains("is not empty and holds no set that this program drew"),
+        "{refused}"
+    );
+    assert!(!folder.path().join("data.yaml").exists());
+    // A link to nothing is not "no recipe".
+    let other = folder.path().join("other");
+    fs::create_dir(&other).expect("a folder");
+    std::os::unix::fs::symlink("gone", other.join(files::RECIPE)).expect("a link");
+    assert!(matches!(files::prepare(&other, &options), Err(SetError::File(_))));
+}

@@ -6,6 +6,7 @@ use std::time::Instant;
 use image::RgbImage;
 use ort::session::Session;
 use plumbline_model::detection::{Detection, PixelBox};
+use plumbline_model::files::{self, FileError, Size};
 
 use super::heads::{Reader, Unusable};
 use super::letterbox::Letterbox;
@@ -42,12 +43,13 @@ impl Detector {
     pub fn open(path: &Path, options: &DetectorOptions) -> Result<Self, DetectError> {
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         let not_read = |reason: String| DetectError::NotRead { model: path.display().to_string(), reason };
-        let about = std::fs::metadata(path).map_err(|error| not_read(error.to_string()))?;
-        if about.is_dir() {
-            return Err(not_read("it is a folder".to_owned()));
-        }
-        std::fs::File::open(path).map_err(|error| not_read(error.to_string()))?;
-        if about.len() == 0 {
+        // The library opens it by its name, whatever it is.
+        let opened = files::open(path, Size::NETWORK).map_err(|error| match error {
+            FileError::Unreadable { source, .. } => not_read(source.to_string()),
+            FileError::NotAFile { kind, .. } => not_read(format!("it is {kind}")),
+            other => not_read(other.to_string()),
+        })?;
+        if opened.metadata().is_ok_and(|about| about.len() == 0) {
             return Err(DetectError::NotOnnx { model: name, reason: "the file is empty".to_owned() });
         }
         Self::new(name, &Source::File(path), Some(path), options)

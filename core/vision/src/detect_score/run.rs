@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use image::RgbImage;
-use plumbline_model::{Cancelled, ClassIndex, ClassNames, Detection, JobContext};
+use plumbline_model::{Cancelled, ClassIndex, ClassNames, Detection, JobContext, files};
 
 use super::{
     ConfusionMatrix, ConfusionOptions, FoundBox, IntervalOptions, Intervals, IouThresholds, ScoreIntervals,
@@ -331,7 +331,7 @@ fn run(
 
 /// The image, if it still is the one that was labeled.
 fn open(labeled: &LabeledImage) -> Result<RgbImage, String> {
-    let image = image::open(&labeled.path).map_err(|error| error.to_string())?.into_rgb8();
+    let image = files::read_image(&labeled.path).map_err(|error| error.to_string())?.into_rgb8();
     if image.dimensions() == labeled.size_px {
         return Ok(image);
     }

@@ -249,7 +249,7 @@ fn what_is_no_storage_is_refused() {
     expect("cut.json", b"{ \"M1\": { \"type_id\": \"opencv-matrix\", \"rows\": 3,", "OpenCV storage");
     expect("noise.yml", &[0xfe, 0x00, 0x81, 0x99], "not a text file");
     let absent = folder.path().join("absent.yml");
-    assert!(matches!(load(&[absent]), Err(FormatError::Unreadable { .. })));
+    assert!(matches!(load(&[absent]), Err(FormatError::File(_))));
     assert!(matches!(load(&[]), Err(FormatError::FileCount { .. })));
 }
 
@@ -265,4 +265,29 @@ fn a_refused_write_leaves_the_old_file() {
     assert!(matches!(error, Err(FormatError::NotFinite { .. })));
     assert_eq!(std::fs::read(&file[0]).expect("readable"), before);
     assert_eq!(std::fs::read_dir(folder.path()).expect("readable").count(), 1);
+}
+
+#[test]
+fn lenses_that_cannot_be_and_files_that_nest_too_deep_are_refused() {
+    let folder = folder();
+    let said = |change: &dyn Fn(&str) -> String| {
+        load(&damaged(folder.path(), change)).expect_err("it cannot be").to_string()
+    };
+    let mut eyes = fisheye_eyes();
+    if let CameraModel::Fisheye(lens) = &mut eyes.left.model {
+        lens.fx_px *= 1000.0;
+    }
+    let file = folder.path().join("telescope.yml");
+    let telescope = StereoCalibration::bare(eyes);
+    save(&telescope, std::slice::from_ref(&file), CalibrationFormat::OpenCvStorage).expect("written");
+    let refused = load(&[file]).expect_err("a telescope").to_string();
+    assert!(refused.contains("telescope.yml") && refused.contains("cannot be a focal length"), "{refused}");
+    for text in [
+        format!("%YAML:1.0\n---\na: {}\n", "[".repeat(20_000)),
+        format!("<?xml version=\"1.0\"?>\n<opencv_storage>{}</opencv_storage>\n", "<a>".repeat(20_000)),
+        format!("%YAML:1.0\n---\na:\n   {}1\n", "- ".repeat(20_000)),
+    ] {
+        let said = said(&|_| text.clone());
+        assert!(said.contains("levels deep"), "{said}");
+    }
 }

@@ -7,7 +7,8 @@ use opencv::core::{
     FileStorage, FileStorage_FORMAT_JSON, FileStorage_FORMAT_XML, FileStorage_FORMAT_YAML,
     FileStorage_MEMORY, FileStorage_WRITE, FileStorageTrait, Mat, MatTraitConst,
 };
-use plumbline_model::formats::{FormatError, Place, Rectification, Replacement, lens};
+use plumbline_model::files;
+use plumbline_model::formats::{FormatError, Place, Rectification, lens};
 use plumbline_model::{ModelKind, StereoCameras};
 
 /// Writes M1 D1 M2 D2 R T R1 R2 P1 P2 Q, the image size and the lens model, lengths in meters.
@@ -17,11 +18,9 @@ pub fn write(cameras: &StereoCameras, file: &Path) -> Result<(), FormatError> {
     let text = render(cameras, file).map_err(|error| FormatError::Syntax {
         place: Place { file: file.to_path_buf(), line: None, key: String::new() },
         language: "OpenCV storage",
-        reason: error.message,
+        reason: crate::cv_words::words(&error).to_owned(),
     })?;
-    let replacement = Replacement::of(file);
-    replacement.fill(&text)?;
-    replacement.commit()
+    Ok(files::write(file, text)?)
 }
 
 fn render(cameras: &StereoCameras, file: &Path) -> opencv::Result<String> {

@@ -1,10 +1,10 @@
 //! A made-up lab: chessboard pairs and a table with toys, seen by eyes like NICO's. For trying the
 //! program without a camera and for pictures of it; nothing measured comes from here.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use image::RgbImage;
 use nalgebra::{Isometry3, Point3, Vector3};
+use plumbline_model::files::{self, FileError};
 use plumbline_model::workspace::Workspace;
 use plumbline_model::{Cancelled, Chessboard, Eye, JobContext};
 
@@ -17,13 +17,8 @@ pub enum SampleError {
     #[error("cancelled")]
     Cancelled(#[from] Cancelled),
     /// A folder or file could not be written.
-    #[error("{path} cannot be written ({source}): choose a folder that you may write to")]
-    Unwritable {
-        /// Which.
-        path: PathBuf,
-        /// Why.
-        source: image::ImageError,
-    },
+    #[error(transparent)]
+    File(#[from] FileError),
 }
 
 /// The sample's chessboard: 9×6 squares of 30 mm.
@@ -58,14 +53,11 @@ fn save(scene: &Scene, folder: &Path, name: &str, seed: u64) -> Result<(), Sampl
     for eye in Eye::BOTH {
         let folder = folder.join(eye.to_string());
         let path = folder.join(name);
-        let write = |image: &RgbImage| {
-            std::fs::create_dir_all(&folder).map_err(image::ImageError::IoError)?;
-            image.save(&path)
-        };
         let sharp = scene.render_rgb(&nico_like_eyes(), eye, 1.5, seed);
         // The blur of a cheap lens.
         let image = image::imageops::blur(&sharp, 0.6);
-        write(&image).map_err(|source| SampleError::Unwritable { path: path.clone(), source })?;
+        files::make_folder(&folder)?;
+        files::write_png(&path, &image.into())?;
     }
     Ok(())
 }

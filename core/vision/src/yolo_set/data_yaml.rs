@@ -5,6 +5,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use plumbline_model::ClassNames;
+use plumbline_model::files::{self, Size};
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
 use super::{Split, YoloSetError};
@@ -36,7 +37,7 @@ struct Raw {
 impl DataYaml {
     /// Reads and checks it.
     pub fn read(file: &Path) -> Result<Self, YoloSetError> {
-        let bytes = std::fs::read(file).map_err(YoloSetError::io(file))?;
+        let bytes = files::read(file, Size::SHORT)?;
         let bad = |reason: String| YoloSetError::DataYaml { file: file.to_owned(), reason };
         let text = String::from_utf8(bytes).map_err(|_| bad("it is no text in UTF-8".to_owned()))?;
         let text = text.trim_start_matches('\u{feff}');

@@ -16,6 +16,9 @@ pub enum YoloSetError {
     /// A row or an image is wrong.
     #[error(transparent)]
     Problem(#[from] LabelProblem),
+    /// A file itself cannot be read or written.
+    #[error(transparent)]
+    File(#[from] plumbline_model::files::FileError),
     /// A file or folder cannot be read or written.
     #[error("{}: {source}. Check the path, the permissions and the free space", .file.display())]
     Io {

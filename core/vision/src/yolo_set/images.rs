@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::path::{Component, Path, PathBuf};
 
+use plumbline_model::files::{self, Size};
+
 use super::YoloSetError;
 use super::problem::{LabelProblem, RowProblem};
 
@@ -77,7 +79,7 @@ fn of_list(
     images: &mut BTreeSet<PathBuf>,
     problems: &mut Vec<LabelProblem>,
 ) -> Result<(), YoloSetError> {
-    let text = std::fs::read_to_string(list).map_err(YoloSetError::io(list))?;
+    let text = files::read_text(list, Size::TEXT)?;
     let beside = list.parent().unwrap_or(Path::new(""));
     for (index, line) in text.lines().enumerate() {
         let line = line.trim();

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use plumbline_model::JobContext;
+use plumbline_model::files::{self, Size};
 
 use super::data_yaml::DataYaml;
 use super::images::{images_of, label_file_of};
@@ -57,7 +58,7 @@ fn labeled(path: PathBuf, split: Split, scenes: &SceneTable, survey: &mut YoloSu
     let scene = scenes.get(&path).unwrap_or_else(|| scene_of(&path));
     let mut image = LabeledImage { path, size_px, scene, boxes: Vec::new(), split: Some(split) };
     let file = label_file_of(&image.path);
-    match std::fs::read(&file) {
+    match files::read(&file, Size::TEXT) {
         Ok(bytes) => match String::from_utf8(bytes) {
             Ok(text) => boxes(&file, &text, &mut image, survey),
             Err(_) => {
@@ -65,7 +66,7 @@ fn labeled(path: PathBuf, split: Split, scenes: &SceneTable, survey: &mut YoloSu
                 return;
             }
         },
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => survey.without_labels += 1,
+        Err(error) if error.is_absent() => survey.without_labels += 1,
         Err(error) => {
             // An image whose labels cannot be read is not one with nothing on it.
             let what = RowProblem::Unreadable { reason: error.to_string() };
@@ -95,7 +96,6 @@ fn boxes(file: &Path, text: &str, image: &mut LabeledImage, survey: &mut YoloSur
 
 /// Width × height from the head of the file, without decoding it.
 fn size_of(path: &Path) -> Result<(u32, u32), String> {
-    let reader = image::ImageReader::open(path).map_err(|error| error.to_string())?;
-    let reader = reader.with_guessed_format().map_err(|error| error.to_string())?;
+    let reader = files::open_image(path).map_err(|error| error.to_string())?;
     reader.into_dimensions().map_err(|error| error.to_string())
 }

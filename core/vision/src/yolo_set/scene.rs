@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use plumbline_model::files::{self, Size};
+
 use super::YoloSetError;
 
 /// Name of the table of scenes beside `data.yaml`: file name of an image and its scene.
@@ -74,10 +76,10 @@ impl SceneTable {
 /// The table beside a `data.yaml`; empty where there is none.
 pub(super) fn read_table(data_yaml: &Path) -> Result<SceneTable, YoloSetError> {
     let file = table_file(data_yaml.parent().unwrap_or(Path::new("")));
-    let text = match std::fs::read_to_string(&file) {
+    let text = match files::read_text(&file, Size::TEXT) {
         Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(SceneTable::default()),
-        Err(source) => return Err(YoloSetError::Io { file, source }),
+        Err(error) if error.is_absent() => return Ok(SceneTable::default()),
+        Err(error) => return Err(error.into()),
     };
     let mut table = SceneTable::default();
     let bad = |line: usize| YoloSetError::DataYaml {

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use plumbline_model::JobContext;
-use plumbline_model::formats::Replacement;
+use plumbline_model::files::{self, Replacement, Size};
 
 use super::data_yaml::{DataYaml, check_names, text as data_yaml_text};
 use super::images::{images_of, label_file_of};
@@ -101,7 +101,7 @@ struct Existing {
 
 fn existing(set: &YoloSet, folder: &Path, data_yaml: &Path) -> Result<Existing, YoloSetError> {
     let mut existing = Existing::default();
-    if !data_yaml.exists() {
+    if !files::present(data_yaml)? {
         let mut entries = match std::fs::read_dir(folder) {
             Ok(entries) => entries,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(existing),
@@ -182,28 +182,23 @@ fn name_of(image: &Path) -> String {
 }
 
 fn same_content(a: &Path, b: &Path) -> Result<bool, YoloSetError> {
-    let read = |file: &Path| std::fs::read(file).map_err(YoloSetError::io(file));
+    let read = |file: &Path| files::read(file, Size::IMAGE);
     Ok(a == b || read(a)? == read(b)?)
 }
 
 fn copy(from: &Path, to: &Path, link: bool) -> Result<(), YoloSetError> {
     make_folder_of(to)?;
-    let replacement = Replacement::of(to);
+    let replacement = Replacement::of(to)?;
     if !(link && std::fs::hard_link(from, replacement.temporary()).is_ok()) {
+        files::check(from, Size::IMAGE)?;
         std::fs::copy(from, replacement.temporary()).map_err(YoloSetError::io(from))?;
     }
-    finish(replacement, to)
+    Ok(replacement.commit()?)
 }
 
 fn write_text(file: &Path, text: &str) -> Result<(), YoloSetError> {
     make_folder_of(file)?;
-    let replacement = Replacement::of(file);
-    std::fs::write(replacement.temporary(), text).map_err(YoloSetError::io(file))?;
-    finish(replacement, file)
-}
-
-fn finish(replacement: Replacement, file: &Path) -> Result<(), YoloSetError> {
-    replacement.commit().map_err(|error| YoloSetError::io(file)(std::io::Error::other(error.to_string())))
+    Ok(files::write(file, text)?)
 }
 
 fn make_folder_of(file: &Path) -> Result<(), YoloSetError> {
@@ -229,7 +224,7 @@ fn write_scenes(set: &YoloSet, folder: &Path, data_yaml: &Path) -> Result<(), Yo
 fn write_description(set: &YoloSet, folder: &Path, data_yaml: &Path) -> Result<(), YoloSetError> {
     let parts: Vec<Split> =
         Split::ALL.into_iter().filter(|split| folder.join("images").join(split.key()).is_dir()).collect();
-    if !data_yaml.exists() {
+    if !files::present(data_yaml)? {
         // Trainers insist on both.
         let both = Split::ALL.into_iter().filter(|split| *split != Split::Test || parts.contains(split));
         for split in [Split::Train, Split::Val] {
@@ -251,6 +246,6 @@ fn write_description(set: &YoloSet, folder: &Path, data_yaml: &Path) -> Result<(
     if lines.is_empty() {
         return Ok(());
     }
-    let old = std::fs::read_to_string(data_yaml).map_err(YoloSetError::io(data_yaml))?;
+    let old = files::read_text(data_yaml, Size::SHORT)?;
     write_text(data_yaml, &format!("{}\n{lines}", old.trim_end()))
 }

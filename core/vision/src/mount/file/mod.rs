@@ -6,7 +6,8 @@ mod write;
 
 use std::path::{Path, PathBuf};
 
-use plumbline_model::formats::{FormatError, Replacement, read_text};
+use plumbline_model::files::{self, told};
+use plumbline_model::formats::{FormatError, depth, read_text};
 use plumbline_model::robot::Rig;
 use serde::Deserialize;
 
@@ -73,9 +74,7 @@ impl MountCalibration {
              # left_position_m = [{}, {}, {}]\n# left_rotation_rad = [{}, {}, {}]\n{body}",
             position.x, position.y, position.z, rotation.x, rotation.y, rotation.z
         );
-        let replacement = Replacement::of(file);
-        replacement.fill(&text)?;
-        Ok(replacement.commit()?)
+        Ok(files::write(file, text).map_err(FormatError::from)?)
     }
 
     /// Reads a mount that was made for `rig`.
@@ -83,8 +82,10 @@ impl MountCalibration {
         let text = read_text(file)?;
         let refused = |error: toml::de::Error| MountFileError::NotMount {
             file: file.to_path_buf(),
-            reason: error.to_string().trim_end().to_owned(),
+            reason: told(error.to_string().trim_end()),
         };
+        let too_deep = |reason| MountFileError::NotMount { file: file.to_path_buf(), reason };
+        depth::check(depth::of_toml(&text)).map_err(too_deep)?;
         // The version first: what a newer program writes may have other keys.
         #[derive(Deserialize)]
         struct Version {
