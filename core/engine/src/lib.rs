@@ -13,6 +13,8 @@ mod gaps;
 mod job_list;
 pub mod jobs;
 pub mod journal;
+#[cfg(all(test, target_os = "linux"))]
+mod kept;
 pub mod label_sets;
 mod live;
 mod models;

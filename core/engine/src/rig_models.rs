@@ -32,7 +32,7 @@ pub fn file(folder: &Path) -> PathBuf {
 /// A sentence, when there is a file that cannot be used.
 pub fn load(folder: &Path, rig: &Rig) -> Result<RigModel, String> {
     let file = file(folder);
-    if !file.exists() {
+    if !plumbline_model::files::present(&file).map_err(|error| sentence(&error.to_string()))? {
         return Ok(RigModel::nominal(rig));
     }
     RigModel::read(&file, rig).map_err(|error| sentence(&error.to_string()))

@@ -1,8 +1,11 @@
 //! Sentences for people.
 
+use plumbline_model::files::told;
+
 /// Error texts begin with a small letter so that they can stand inside a sentence. A file name at
 /// the beginning stays as it is.
 pub fn sentence(text: &str) -> String {
+    let text = &told(text);
     let begins_with_a_file =
         text.split_whitespace().next().is_some_and(|word| word.contains(['/', '.', '_']));
     let mut characters = text.chars();

@@ -4,6 +4,8 @@
 //! no thread and reads no clock.
 
 mod figures;
+#[cfg(all(test, target_os = "linux"))]
+mod kept_tests;
 pub mod path;
 #[cfg(test)]
 mod path_tests;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use plumbline_model::formats::Replacement;
+use plumbline_model::files;
 
 use crate::view::DetectionSettings;
 
@@ -23,9 +23,9 @@ impl Store {
     /// # Errors
     /// A sentence.
     pub fn read(&self) -> Result<DetectionSettings, String> {
-        let text = match std::fs::read_to_string(&self.file) {
+        let text = match files::read_text(&self.file, files::Size::SHORT) {
             Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            Err(error) if error.is_absent() => {
                 return Ok(DetectionSettings::default());
             }
             Err(error) => return Err(self.unusable(&error)),
@@ -49,9 +49,7 @@ impl Store {
             std::fs::create_dir_all(folder).map_err(|error| self.cannot(&error))?;
         }
         let text = serde_json::to_string_pretty(settings).map_err(|error| self.cannot(&error))?;
-        let replacement = Replacement::of(&self.file);
-        let written = replacement.fill(&text).and_then(|()| replacement.commit());
-        written.map_err(|error| self.cannot(&error))
+        files::write(&self.file, text).map_err(|error| crate::text::sentence(&error.to_string()))
     }
 
     fn unusable(&self, reason: &dyn std::fmt::Display) -> String {

@@ -4,10 +4,12 @@
 use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
+use plumbline_model::files::{self, FileError, Size};
 use plumbline_model::formats::native;
 use plumbline_model::{FormatError, StereoCalibration};
 use serde::{Deserialize, Serialize};
 
+use crate::text::sentence;
 use crate::view::EarlierCalibration;
 
 /// Accepted calibrations in a folder.
@@ -29,6 +31,9 @@ pub enum StoreError {
         /// What the system says.
         error: std::io::Error,
     },
+    /// A file itself.
+    #[error("{}", sentence(&.0.to_string()))]
+    File(#[from] FileError),
     /// The calibration's own file.
     #[error("{0}")]
     Calibration(#[from] FormatError),
@@ -80,11 +85,14 @@ impl Store {
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
             Err(error) => return Err(self.io()(error)),
         };
-        let in_use = std::fs::read_to_string(self.folder.join(IN_USE)).unwrap_or_default();
+        let in_use = match files::read_text(&self.folder.join(IN_USE), Size::SHORT) {
+            Err(error) if !error.is_absent() => return Err(error.into()),
+            read => read.unwrap_or_default(),
+        };
         let mut found: Vec<EarlierCalibration> = listing
             .flatten()
             .map(|entry| entry.path())
-            .filter(|path| path.extension().is_some_and(|extension| extension == CALIBRATION))
+            .filter(|path| !files::is_hidden(path) && path.extension().is_some_and(|extension| extension == CALIBRATION))
             .filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned()))
             .map(|id| {
                 let entry = self.entry(&id);
@@ -122,7 +130,7 @@ impl Store {
 
     /// What is written beside a calibration; from its file if that was lost.
     fn entry(&self, id: &str) -> Entry {
-        let text = std::fs::read_to_string(self.file(id, ENTRY)).unwrap_or_default();
+        let text = files::read_text(&self.file(id, ENTRY), Size::SHORT).unwrap_or_default();
         match toml::from_str::<Entry>(&text) {
             Ok(entry) => Entry { id: id.to_owned(), ..entry },
             Err(_) => {
@@ -135,15 +143,7 @@ impl Store {
     }
 
     fn write_atomically(&self, path: &Path, text: &str) -> Result<(), StoreError> {
-        let temporary = path.with_extension("tmp");
-        let write = || -> std::io::Result<()> {
-            use std::io::Write;
-            let mut file = std::fs::File::create(&temporary)?;
-            file.write_all(text.as_bytes())?;
-            file.sync_all()?;
-            std::fs::rename(&temporary, path)
-        };
-        write().map_err(|error| StoreError::Io { path: path.to_owned(), error })
+        Ok(files::write(path, text)?)
     }
 
     fn io(&self) -> impl FnOnce(std::io::Error) -> StoreError {

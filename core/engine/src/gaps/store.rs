@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use jiff::Timestamp;
 use plumbline_gap::Finding;
 use plumbline_gap::finding::ShownUnit;
-use plumbline_model::formats::Replacement;
+use plumbline_model::files::{self, Size};
 use serde::{Deserialize, Serialize};
 
 use super::sessions::TableStamp;
+use crate::text::sentence;
 use crate::view::FindingEntry;
 
 /// Version of the file.
@@ -117,9 +118,7 @@ impl Store {
         let id = self.free_name(kept.made);
         let file = self.file(&id);
         let text = serde_json::to_string(&kept).map_err(|error| cannot(&file, &error))?;
-        let replacement = Replacement::of(&file);
-        let written = replacement.fill(&text).and_then(|()| replacement.commit());
-        written.map_err(|error| cannot(&file, &error))?;
+        files::write(&file, text).map_err(|error| sentence(&error.to_string()))?;
         Ok(Named { id, kept })
     }
 
@@ -150,7 +149,7 @@ impl Store {
 }
 
 fn read(file: &Path) -> Result<Named, String> {
-    let text = std::fs::read_to_string(file).map_err(|error| unusable(file, &error))?;
+    let text = files::read_text(file, Size::MODEL).map_err(|error| unusable(file, &error))?;
     let kept: KeptFinding = serde_json::from_str(&text).map_err(|error| unusable(file, &error))?;
     if kept.format != FORMAT {
         let reason = format!("format {}, this program reads {FORMAT}", kept.format);

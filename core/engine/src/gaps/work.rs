@@ -6,7 +6,7 @@ use std::sync::Arc;
 use plumbline_effects::RigModel;
 use plumbline_gap::Options;
 use plumbline_model::robot::Rig;
-use plumbline_model::{JobContext, Session};
+use plumbline_model::{JobContext, Session, files};
 use plumbline_report::ReportContext;
 
 use super::model;
@@ -235,12 +235,10 @@ fn write_report(
     } else {
         plumbline_report::html(&finding.kept.finding, context).into_bytes()
     };
-    std::fs::write(file, page).map_err(|error| {
-        JobError::Failed(format!(
-            "{} cannot be written ({error}). Check the folder and the free space.",
-            file.display()
-        ))
-    })
+    let sessions = finding.kept.sessions.iter().map(|session| session.folder.as_path());
+    files::output(file, &sessions.collect::<Vec<_>>())
+        .and_then(|()| files::write(file, page))
+        .map_err(|error| JobError::Failed(sentence(&error.to_string())))
 }
 
 /// Everything that can be read is; what cannot is told.

@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use plumbline_model::formats::Replacement;
+use plumbline_model::files::{self, Size};
 use plumbline_model::{ClassNames, JobContext};
 use plumbline_vision::yolo_set::{LabelProblem, RowProblem, Split, YoloSet, label_file_of, scene_of};
 
@@ -204,7 +204,7 @@ pub fn create(folder: &Path, names: &ClassNames) -> Result<(), JobError> {
 
 /// Names of images to be looked at again.
 fn read_to_check(folder: &Path) -> BTreeSet<String> {
-    let text = std::fs::read_to_string(folder.join(TO_CHECK)).unwrap_or_default();
+    let text = files::read_text(&folder.join(TO_CHECK), Size::TEXT).unwrap_or_default();
     text.lines().map(|line| line.trim().to_owned()).filter(|line| !line.is_empty()).collect()
 }
 
@@ -221,8 +221,7 @@ pub fn write(file: &Path, text: &str) -> Result<(), JobError> {
     if let Some(folder) = file.parent() {
         std::fs::create_dir_all(folder).map_err(|error| cannot(folder, &error))?;
     }
-    let replacement = Replacement::of(file);
-    replacement.fill(text).and_then(|()| replacement.commit()).map_err(|error| cannot(file, &error))
+    files::write(file, text).map_err(|error| JobError::failed(sentence(&error.to_string())))
 }
 
 /// That a file cannot be written.

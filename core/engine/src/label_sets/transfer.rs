@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use image::RgbImage;
-use plumbline_model::formats::Replacement;
+use plumbline_model::files::{self, FileError, Replacement, Size};
 use plumbline_model::{ClassNames, Eye, JobContext, StereoFrame};
 use plumbline_vision::yolo_set::{
     ClassMapping, LabeledImage, MappingProposal, Split, SplitOptions, WriteOptions, YoloSet, label_file_of,
@@ -40,8 +40,8 @@ pub fn capture(frame: &StereoFrame, folder: &Path) -> Result<Vec<Entry>, JobErro
     }
     let written: Vec<Replacement> =
         pair.iter().map(|(eye, image)| png(image, &file(*eye))).collect::<Result<_, _>>()?;
-    for (replacement, (eye, _)) in written.into_iter().zip(&pair) {
-        replacement.commit().map_err(|error| cannot(&file(*eye), &error))?;
+    for replacement in written {
+        replacement.commit().map_err(refused)?;
     }
     let entry = |(eye, image): &(Eye, &std::sync::Arc<RgbImage>)| {
         let file = file(*eye);
@@ -52,10 +52,14 @@ pub fn capture(frame: &StereoFrame, folder: &Path) -> Result<Vec<Entry>, JobErro
 
 /// Without loss, so that nothing is learned from the artifacts of a second compression.
 fn png(image: &RgbImage, file: &Path) -> Result<Replacement, JobError> {
-    let replacement = Replacement::of(file);
+    let replacement = Replacement::of(file).map_err(refused)?;
     let written = image.save_with_format(replacement.temporary(), image::ImageFormat::Png);
     written.map_err(|error| cannot(file, &error))?;
     Ok(replacement)
+}
+
+fn refused(error: FileError) -> JobError {
+    JobError::failed(sentence(&error.to_string()))
 }
 
 /// Writes a data set to train with.
@@ -154,9 +158,10 @@ pub fn import(plan: &ImportPlan, folder: &Path, context: &dyn JobContext) -> Res
         if *labeled {
             store::write(&label_file_of(&target), &label_text(&image.boxes, image.size_px))?;
         }
-        let replacement = Replacement::of(&target);
+        let replacement = Replacement::of(&target).map_err(refused)?;
+        files::check(&image.path, Size::IMAGE).map_err(refused)?;
         std::fs::copy(&image.path, replacement.temporary()).map_err(|error| cannot(&target, &error))?;
-        replacement.commit().map_err(|error| cannot(&target, &error))?;
+        replacement.commit().map_err(refused)?;
     }
     Ok(())
 }

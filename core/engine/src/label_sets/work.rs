@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use image::RgbImage;
-use plumbline_model::{ClassNames, JobContext, StereoFrame};
+use plumbline_model::{ClassNames, JobContext, StereoFrame, files};
 use plumbline_vision::yolo_set::{ClassMapping, SplitOptions, YoloSet};
 
 use super::store::{self, Entry, OpenedSet};
@@ -241,7 +241,7 @@ fn short(path: &std::path::Path) -> String {
 }
 
 fn remembered(memory: &std::path::Path) -> Option<PathBuf> {
-    let text = std::fs::read_to_string(memory).ok()?;
+    let text = files::read_text(memory, files::Size::SHORT).ok()?;
     let path = PathBuf::from(text.trim());
     path.join("data.yaml").is_file().then_some(path)
 }
@@ -261,8 +261,7 @@ fn opened(
 
 /// Reads an image; an error is a sentence.
 pub fn read_image(file: &std::path::Path) -> Result<RgbImage, String> {
-    let reader = image::ImageReader::open(file).and_then(image::ImageReader::with_guessed_format);
-    let image = reader.map_err(|error| error.to_string()).and_then(|r| r.decode().map_err(|e| e.to_string()));
+    let image = files::read_image(file);
     image.map(image::DynamicImage::into_rgb8).map_err(|error| {
         format!(
             "{} cannot be read ({error}). Restore the file or take it out of the data set.",

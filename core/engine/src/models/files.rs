@@ -4,6 +4,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 use plumbline_correction::{CorrectionModel, FileError};
+use plumbline_model::files::{self, Size};
 use plumbline_model::robot::Rig;
 
 use super::screen::same_size;
@@ -15,8 +16,8 @@ const HEAD: u64 = 256;
 /// Reads a model of any kind, whatever its file is called.
 pub(crate) fn read_any(file: &Path) -> Result<CorrectionModel, FileError> {
     let mut head = Vec::new();
-    let opened = std::fs::File::open(file).and_then(|opened| opened.take(HEAD).read_to_end(&mut head));
-    opened.map_err(|source| FileError::Unreadable { file: file.to_path_buf(), source })?;
+    let opened = files::open(file, Size::MODEL)?;
+    opened.take(HEAD).read_to_end(&mut head).map_err(files::FileError::unreadable(file))?;
     // ONNX begins with the bytes of a number, JSON with a bracket.
     let first = head.iter().find(|byte| !byte.is_ascii_whitespace() && !b"\xef\xbb\xbf".contains(byte));
     let called = |name: &str| file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(name));

@@ -7,11 +7,12 @@ use std::sync::Arc;
 
 use jiff::Timestamp;
 use plumbline_correction::{CorrectionModel, Method};
-use plumbline_model::formats::Replacement;
+use plumbline_model::files::{self as whole_files, Size};
 use serde::{Deserialize, Serialize};
 
 use super::files;
 use super::screen::Corners;
+use crate::text::sentence;
 
 /// Version of the list.
 const FORMAT: u32 = 1;
@@ -79,16 +80,16 @@ impl Store {
     /// A sentence, when there is something that cannot be read or is another robot's.
     pub fn read(&self, rig: &str) -> Result<(History, Option<Arc<CorrectionModel>>), String> {
         let list = self.list();
-        if !list.exists() {
-            return Ok((History::new(rig), None));
-        }
         let unusable = |reason: String| {
             format!(
                 "{} cannot be used ({reason}). No model is in use; move the file away, train or import one and accept it.",
                 list.display()
             )
         };
-        let text = std::fs::read_to_string(&list).map_err(|error| unusable(error.to_string()))?;
+        if !whole_files::present(&list).map_err(|error| unusable(error.to_string()))? {
+            return Ok((History::new(rig), None));
+        }
+        let text = whole_files::read_text(&list, Size::TEXT).map_err(|error| unusable(error.to_string()))?;
         let history: History = serde_json::from_str(&text).map_err(|error| unusable(error.to_string()))?;
         if history.format != FORMAT {
             return Err(unusable(format!("format {}, this program reads {FORMAT}", history.format)));
@@ -167,9 +168,9 @@ impl Store {
                 _ => Ok(()),
             };
         };
-        let text = std::fs::read_to_string(self.file(&kept.file));
+        let text = whole_files::read_text(&self.file(&kept.file), Size::MODEL);
         let text = text.map_err(|error| cannot(&self.file(&kept.file), &error.to_string()))?;
-        if std::fs::read_to_string(&copy).is_ok_and(|present| present == text) {
+        if whole_files::read_text(&copy, Size::MODEL).is_ok_and(|present| present == text) {
             return Ok(());
         }
         replace(&copy, &text)
@@ -198,12 +199,8 @@ impl Store {
 }
 
 fn replace(file: &Path, text: &str) -> Result<(), String> {
-    let write = || {
-        let replacement = Replacement::of(file);
-        replacement.fill(text)?;
-        replacement.commit()
-    };
-    write().map_err(|error| cannot(file, &error.to_string()))
+    whole_files::write(file, text)
+        .map_err(|error| format!("{} The model in use stays.", sentence(&error.to_string())))
 }
 
 fn cannot(file: &Path, reason: &str) -> String {

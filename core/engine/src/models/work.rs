@@ -208,6 +208,8 @@ impl ModelsWork {
                 Ok(ModelsResult::Imported { model: Arc::new(model), map })
             }
             Self::Export { model, onnx, file } => {
+                plumbline_model::files::export(&file)
+                    .map_err(|error| JobError::failed(crate::text::sentence(&error.to_string())))?;
                 let written =
                     if onnx { files::write_onnx(&model, &file) } else { files::write(&model, &file) };
                 written.map_err(JobError::Failed)?;

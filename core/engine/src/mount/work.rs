@@ -95,8 +95,11 @@ impl MountWork {
                 mount.write(&file).map_err(|error| JobError::failed(sentence(&error.to_string())))?;
                 Ok(MountResult::Saved(mount))
             }
-            Self::Restore { file, .. } if !file.exists() => Ok(MountResult::Restored(None)),
             Self::Restore { file, rig } => {
+                let there = plumbline_model::files::present(&file);
+                if !there.map_err(|error| JobError::failed(sentence(&error.to_string())))? {
+                    return Ok(MountResult::Restored(None));
+                }
                 let mount = MountCalibration::read(&file, &rig)
                     .map_err(|error| JobError::failed(sentence(&error.to_string())))?;
                 Ok(MountResult::Restored(Some(Arc::new(mount))))

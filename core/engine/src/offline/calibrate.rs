@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use plumbline_model::camera::ModelKind;
 use plumbline_model::formats::native;
-use plumbline_model::{CalibrationOptions, InnerCorners, JobContext, StereoCalibration};
+use plumbline_model::{CalibrationOptions, InnerCorners, JobContext, StereoCalibration, files};
 use plumbline_vision::calibrate;
 use serde::Serialize;
 
@@ -105,6 +105,9 @@ pub fn calibrate_stereo(
     args: &CalibrateArgs,
     context: &dyn JobContext,
 ) -> Result<CalibrateReport, OfflineError> {
+    if let Some(out) = &args.out {
+        files::output(out, &[&args.left, &args.right])?;
+    }
     let finding = Part { whole: context, begin: 0.0, end: 0.6 };
     let pairs = find_board([&args.left, &args.right], args.board, args.square_m, &args.exclude, &finding)?;
     let options = CalibrationOptions { model: args.model, ..CalibrationOptions::default() };

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use plumbline_hardware::{load_image, natural_order};
+use plumbline_model::files;
 use plumbline_model::{Detection, JobContext};
 use plumbline_vision::detect::{
     DetectSettings, DetectTiming, Detector, DetectorInfo, DetectorOptions, shipped_detector,
 };
-use plumbline_vision::yolo_set::is_image_name;
+use plumbline_vision::yolo_set::{is_image_name, label_file_of};
 use serde::Serialize;
 
 use super::OfflineError;
@@ -90,16 +91,20 @@ pub fn detect(args: &DetectArgs, context: &dyn JobContext) -> Result<DetectRepor
         Some(file) => file.clone(),
         None => shipped_detector().ok_or(OfflineError::NoDetector)?.file,
     };
-    let files = image_files(&args.images)?;
-    let mut detector = Detector::open(&model, &args.options)?;
-    let mut work = Work { report: empty(model, detector.info().clone()), timings: Vec::new(), refused: None };
+    let images = image_files(&args.images)?;
     let labels = args.labels_out.as_deref();
     if let Some(folder) = labels {
+        check_labels(folder, &images)?;
+    }
+    let mut detector = Detector::open(&model, &args.options)?;
+    let mut work = Work { report: empty(model, detector.info().clone()), timings: Vec::new(), refused: None };
+    if let Some(folder) = labels {
+        files::make_folder(folder)?;
         write_names(folder, &work.report.detector)?;
     }
-    for (done, file) in files.iter().enumerate() {
+    for (done, file) in images.iter().enumerate() {
         context.checkpoint()?;
-        context.report(done as f64 / files.len() as f64, "detecting");
+        context.report(done as f64 / images.len() as f64, "detecting");
         work.image(&mut detector, file, &args.settings, labels)?;
     }
     context.report(1.0, "detecting");
@@ -146,7 +151,7 @@ impl Work {
         self.timings.push(timing);
         if let Some(folder) = labels {
             let path = folder.join(&name).with_extension("txt");
-            std::fs::write(&path, label_lines(&found, size)).map_err(OfflineError::io(&path))?;
+            files::write(&path, label_lines(&found, size))?;
         }
         let names = &self.report.detector.names;
         self.report.detections.extend(found.iter().map(|detection| FoundBox {
@@ -230,12 +235,30 @@ fn label_lines(found: &[Detection], size_px: (u32, u32)) -> String {
     text
 }
 
+const CLASSES: &str = "classes.txt";
+
+/// Labels that belong to the images are what detectors are judged by; they are not written over.
+fn check_labels(folder: &Path, images: &[PathBuf]) -> Result<(), OfflineError> {
+    for image in images {
+        let own = label_file_of(image);
+        let Some(name) = own.file_name() else { continue };
+        let target = folder.join(name);
+        if target.exists() {
+            files::output(&target, &[&own])?;
+        }
+        let names = folder.join(CLASSES);
+        if names.exists() {
+            files::output(&names, &[&own.with_file_name(CLASSES)])?;
+        }
+    }
+    Ok(())
+}
+
 /// The names, one per line in order, as labeling tools keep them beside the labels.
 fn write_names(folder: &Path, detector: &DetectorInfo) -> Result<(), OfflineError> {
-    std::fs::create_dir_all(folder).map_err(OfflineError::io(folder))?;
-    let path = folder.join("classes.txt");
+    let path = folder.join(CLASSES);
     let names: String = detector.names.iter().map(|(_, name)| format!("{name}\n")).collect();
-    std::fs::write(&path, names).map_err(OfflineError::io(&path))
+    Ok(files::write(&path, names)?)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use plumbline_model::JobContext;
+use plumbline_model::{JobContext, files};
 use plumbline_vision::detect::{Detector, DetectorOptions, shipped_detector};
 use plumbline_vision::detect_score::{
     EvaluateError, EvaluateOptions, Interval, Intervals, ModelEvaluation, PartOfJob, evaluate, matrix_csv,
@@ -139,15 +139,24 @@ pub fn detect_eval(
     args: &DetectEvalArgs,
     context: &dyn JobContext,
 ) -> Result<DetectEvalReport, OfflineError> {
-    let files = match args.models.as_slice() {
+    let models = match args.models.as_slice() {
         [] => vec![shipped_detector().ok_or(OfflineError::NoDetector)?.file],
         files => files.to_vec(),
     };
+    // The folder of the set, not only its description: its images and labels are what is judged by.
+    let set = args.data.parent().filter(|_| !args.data.is_dir());
+    let set = set.filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let set = if args.data.is_dir() { args.data.as_path() } else { set };
+    let mut inputs = vec![args.data.as_path(), set];
+    inputs.extend(models.iter().map(PathBuf::as_path));
+    if let Some(file) = &args.csv {
+        files::output(file, &inputs)?;
+    }
     let survey = YoloSet::survey(&args.data, &[args.split], context)?;
     let mut report = about(args, &survey);
     let mut judged: Vec<ModelEvaluation> = Vec::new();
-    for (part, file) in files.iter().enumerate() {
-        let part = PartOfJob { whole: context, part, parts: files.len() };
+    for (part, file) in models.iter().enumerate() {
+        let part = PartOfJob { whole: context, part, parts: models.len() };
         match one(file, args, &survey.set, &part) {
             Ok((model, evaluation)) => {
                 report.models.push(model);
@@ -158,23 +167,23 @@ pub fn detect_eval(
             ) => {
                 return Err(error);
             }
-            Err(error) if files.len() == 1 => return Err(error),
+            Err(error) if models.len() == 1 => return Err(error),
             Err(error) => report.failed.push(FailedModel { model: file.clone(), reason: error.to_string() }),
         }
     }
     if let (true, Some(first)) = (judged.is_empty(), report.failed.first()) {
-        let (models, example) = (files.len(), first.reason.clone());
+        let (models, example) = (models.len(), first.reason.clone());
         return Err(OfflineError::NoModelJudged { models, example });
     }
     if let Some(file) = &args.csv {
-        std::fs::write(file, scores_csv(&judged)).map_err(OfflineError::io(file))?;
+        files::write(file, scores_csv(&judged))?;
     }
     if let Some(folder) = &args.matrices {
-        std::fs::create_dir_all(folder).map_err(OfflineError::io(folder))?;
+        files::make_folder(folder)?;
         for model in &judged {
             let file = folder.join(format!("{}.csv", model.model.trim_end_matches(".onnx")));
-            std::fs::write(&file, matrix_csv(&model.matrix, &model.class_names))
-                .map_err(OfflineError::io(&file))?;
+            files::output(&file, &inputs)?;
+            files::write(&file, matrix_csv(&model.matrix, &model.class_names))?;
         }
     }
     Ok(report)

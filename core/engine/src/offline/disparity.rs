@@ -1,10 +1,9 @@
 //! `plumbline disparity`: the disparity map of a pair.
 
-use std::io::BufWriter;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use plumbline_model::{JobContext, Workspace};
+use plumbline_model::{JobContext, Workspace, files};
 use plumbline_vision::calibration_file;
 use plumbline_vision::disparity::{Matcher, Settings, write_pfm};
 use plumbline_vision::rectify::Rectifier;
@@ -69,6 +68,12 @@ pub struct Geometry {
 
 /// Rectifies if a calibration is given, matches, writes.
 pub fn disparity(args: &DisparityArgs, context: &dyn JobContext) -> Result<DisparityReport, OfflineError> {
+    if let Some(out) = &args.out {
+        let images = [args.left.as_path(), &args.right];
+        let inputs: Vec<&Path> =
+            images.into_iter().chain(args.cameras.iter().map(PathBuf::as_path)).collect();
+        files::output(out, &inputs)?;
+    }
     let mut notes = Vec::new();
     let left = image::imageops::grayscale(&read_image(&args.left, &mut notes)?);
     let right = image::imageops::grayscale(&read_image(&args.right, &mut notes)?);
@@ -99,10 +104,7 @@ pub fn disparity(args: &DisparityArgs, context: &dyn JobContext) -> Result<Dispa
     let milliseconds = begun.elapsed().as_secs_f64() * 1000.0;
     context.report(0.9, "writing");
     if let Some(out) = &args.out {
-        let file = std::fs::File::create(out).map_err(OfflineError::io(out))?;
-        let mut file = BufWriter::new(file);
-        write_pfm(&map, &mut file).map_err(OfflineError::io(out))?;
-        std::io::Write::flush(&mut file).map_err(OfflineError::io(out))?;
+        files::write_with(out, |file| write_pfm(&map, file))?;
     }
     let geometry = rectifier.as_ref().map(|rectifier| {
         let pair = rectifier.aimed();

@@ -209,6 +209,9 @@ pub enum OfflineError {
         /// What is wrong with one.
         example: String,
     },
+    /// A file itself cannot be read or written, or is an input that would be lost.
+    #[error(transparent)]
+    File(#[from] plumbline_model::files::FileError),
     /// A file cannot be read or written.
     #[error("{}: {error}. Check the path, the permissions and the free space", .path.display())]
     Io {

@@ -9,7 +9,7 @@ use plumbline_effects::{Measurements, RigModel};
 use plumbline_gap::finding::{Dependence, NamedEffect, NextExperiment, Shown, ShownUnit};
 use plumbline_gap::{Finding, Options, Verdict, find};
 use plumbline_model::robot::Rig;
-use plumbline_model::{JobContext, Session};
+use plumbline_model::{JobContext, Session, files};
 use plumbline_report::ReportContext;
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -128,6 +128,7 @@ pub struct NextReport {
 /// Reads the sessions, looks for the gap, and writes what is asked for.
 pub fn gap(args: &GapArgs, context: &dyn JobContext) -> Result<GapReport, OfflineError> {
     let given = read(&args.sessions, args.rig_model.as_deref())?;
+    check_outputs(args, &given)?;
     let options = Options { seed: args.seed, ..Options::default() };
     let finding = find(&given.measurements, &options, context)?;
     let mut report = GapReport::of(finding);
@@ -138,6 +139,25 @@ pub fn gap(args: &GapArgs, context: &dyn JobContext) -> Result<GapReport, Offlin
         write_report(&given, &report.finding, file)?;
     }
     Ok(report)
+}
+
+/// Before the search, which takes minutes.
+fn check_outputs(args: &GapArgs, given: &Given) -> Result<(), OfflineError> {
+    let rig_files = args.sessions.iter().zip(&given.sessions);
+    let rig_files: Vec<PathBuf> = rig_files.filter_map(|(folder, s)| session::rig_file(s, folder)).collect();
+    let mut inputs: Vec<&Path> = args.sessions.iter().chain(&rig_files).map(PathBuf::as_path).collect();
+    // A model with effects may be written over: it is written with its history, so nothing is lost.
+    let model = args.rig_model.as_deref();
+    inputs.extend(model.filter(|_| !given.has_history));
+    if let Some(file) = &args.add_to {
+        files::output(file, &inputs)?;
+    }
+    if let Some(report) = &args.report {
+        inputs.extend(model);
+        inputs.extend(args.add_to.as_deref());
+        files::output(report, &inputs)?;
+    }
+    Ok(())
 }
 
 /// Writes the model with all effects that can be added; as it was where there is none.
@@ -176,7 +196,7 @@ fn write_report(given: &Given, finding: &Finding, file: &Path) -> Result<(), Off
     } else {
         plumbline_report::html(finding, &page).into_bytes()
     };
-    std::fs::write(file, bytes).map_err(OfflineError::io(file))
+    Ok(files::write(file, bytes)?)
 }
 
 /// Rows of all sessions, which must be of this robot.
@@ -208,6 +228,8 @@ struct Given {
     rig: Rig,
     model: RigModel,
     measurements: Measurements,
+    /// Whether the model that was given is one with effects, whose file keeps what it was before.
+    has_history: bool,
 }
 
 /// Reads all sessions; their robot is that of the first one, or of the rig model.
@@ -224,6 +246,7 @@ fn read(folders: &[PathBuf], rig_model: Option<&Path>) -> Result<Given, OfflineE
         same_rig(&rig, &session::rig_of(other, folder)?, title)?;
     }
     let mut model = RigModel::nominal(&rig);
+    let mut has_history = false;
     if let Some(file) = rig_model {
         match ModelFile::read(file, &rig)? {
             ModelFile::Rig(other) => {
@@ -231,12 +254,15 @@ fn read(folders: &[PathBuf], rig_model: Option<&Path>) -> Result<Given, OfflineE
                 rig = *other;
             }
             ModelFile::Placement(placement) => rig.touchscreen = placement.screen,
-            ModelFile::Effects(effects) => model = *effects,
+            ModelFile::Effects(effects) => {
+                model = *effects;
+                has_history = true;
+            }
         }
     }
     let measurements = model.put_into(Measurements::of_sessions(&sessions, &rig)?);
     let sessions = sessions.into_iter().map(|(_, session)| session).collect();
-    Ok(Given { sessions, rig, model, measurements })
+    Ok(Given { sessions, rig, model, measurements, has_history })
 }
 
 fn same_rig(first: &Rig, other: &Rig, whose: &str) -> Result<(), OfflineError> {

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use plumbline_effects::RigModel;
 use plumbline_effects::rig_model::is_rig_model;
 use plumbline_model::Session;
+use plumbline_model::files::{self, Size};
+use plumbline_model::formats::depth;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::RigReference;
 use plumbline_model::touchscreen::ScreenPlacement;
@@ -27,6 +29,14 @@ pub(crate) fn rig_of(session: &Session, folder: &Path) -> Result<Rig, OfflineErr
     }
 }
 
+/// The rig file that a session names, if it is not one that comes with the program.
+pub(super) fn rig_file(session: &Session, folder: &Path) -> Option<PathBuf> {
+    match &session.manifest.rig {
+        RigReference::Named(_) => None,
+        RigReference::File(file) => Some(folder.join(file)),
+    }
+}
+
 /// What `--rig-model` may be.
 #[derive(Clone, Debug)]
 pub(super) enum ModelFile {
@@ -42,14 +52,14 @@ impl ModelFile {
     /// Reads any of them, told apart by their keys; `rig` is the robot that a placement or a model
     /// with effects must belong to.
     pub fn read(file: &Path, rig: &Rig) -> Result<Self, OfflineError> {
-        let text = std::fs::read_to_string(file).map_err(OfflineError::io(file))?;
+        let text = files::read_text(file, Size::TEXT)?;
         let unknown = |reason: String| OfflineError::RigModel { file: PathBuf::from(file), reason };
-        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         if text.trim_start().starts_with('<') {
             return Ok(Self::Rig(Box::new(Rig::read_measured(file)?)));
         }
-        let keys: toml::Table =
-            toml::from_str(text).map_err(|error| unknown(format!("it is not TOML ({})", error.message())))?;
+        depth::check(depth::of_toml(&text)).map_err(unknown)?;
+        let keys: toml::Table = toml::from_str(&text)
+            .map_err(|error| unknown(format!("it is not TOML ({})", error.message())))?;
         if is_rig_model(&keys) {
             return Ok(Self::Effects(Box::new(RigModel::read(file, rig)?)));
         }

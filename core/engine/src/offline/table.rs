@@ -2,7 +2,20 @@
 
 use std::path::Path;
 
+use plumbline_model::files::{self, MOST_ROWS, Size, shortened};
+use plumbline_model::plausible::{self, Quantity};
+
 use super::OfflineError;
+
+/// What a column holds.
+fn quantity(column: &str) -> Option<Quantity> {
+    match column {
+        "u_px" | "v_px" => Some(plausible::IMAGE_PX),
+        "x_m" | "y_m" | "z_m" => Some(plausible::TARGET_M),
+        "roll_rad" | "pitch_rad" | "yaw_rad" => Some(plausible::ANGLE_RAD),
+        _ => None,
+    }
+}
 
 /// A table whose cells in the columns asked for are finite numbers.
 #[derive(Debug)]
@@ -20,7 +33,7 @@ impl Table {
         optional: &[&'static str],
         needs: &'static str,
     ) -> Result<Self, OfflineError> {
-        let bytes = std::fs::read(file).map_err(OfflineError::io(file))?;
+        let bytes = files::read(file, Size::TEXT)?;
         let bad =
             |line: usize, reason: String| OfflineError::Table { file: file.to_owned(), line, reason, needs };
         let text = String::from_utf8(bytes)
@@ -40,22 +53,35 @@ impl Table {
         }
         let place = |name: &str| header.iter().position(|column| *column == name);
         if let Some(missing) = needed.iter().find(|name| place(name).is_none()) {
-            let reason = format!("there is no column {missing} in the header \"{}\"", header.join(","));
+            let reason =
+                format!("there is no column {missing} in the header \"{}\"", shortened(&header.join(",")));
             return Err(bad(1, reason));
         }
         let (columns, places): (Vec<&'static str>, Vec<usize>) =
             needed.iter().chain(optional).filter_map(|name| Some((*name, place(name)?))).unzip();
         let mut rows = Vec::new();
         for (index, line) in lines.filter(|(_, line)| !line.trim().is_empty()) {
+            if rows.len() == MOST_ROWS {
+                return Err(bad(
+                    index + 1,
+                    format!("there are more than {MOST_ROWS} rows: divide the table"),
+                ));
+            }
             let cells: Vec<&str> = line.split(',').map(str::trim).collect();
             if cells.len() != header.len() {
                 let reason = format!("{} cells instead of {}", cells.len(), header.len());
                 return Err(bad(index + 1, reason));
             }
             let number = |place: &usize| {
-                cells[*place].parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(|| {
-                    bad(index + 1, format!("\"{}\" in column {} is no number", cells[*place], header[*place]))
-                })
+                let value =
+                    cells[*place].parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(|| {
+                        let cell = shortened(cells[*place]);
+                        bad(index + 1, format!("\"{cell}\" in column {} is no number", header[*place]))
+                    })?;
+                match quantity(header[*place]).map(|quantity| quantity.check(value)) {
+                    Some(Err(what)) => Err(bad(index + 1, format!("column {}: {what}", header[*place]))),
+                    _ => Ok(value),
+                }
             };
             rows.push(places.iter().map(number).collect::<Result<_, _>>()?);
         }

@@ -9,7 +9,7 @@ use plumbline_correction::{
 };
 use plumbline_model::robot::RigPart;
 use plumbline_model::session::Screen;
-use plumbline_model::{JobContext, Pixel};
+use plumbline_model::{JobContext, Pixel, files};
 use serde::Serialize;
 
 use super::{OfflineError, session};
@@ -70,7 +70,11 @@ pub fn train(args: &TrainArgs, context: &dyn JobContext) -> Result<TrainReport, 
         // Said before the work, not after it.
         return Err(FileError::NotANetwork.into());
     }
+    files::output(&args.out, &[&args.session])?;
     let (recorded, rig) = session::open(&args.session)?;
+    if let Some(file) = session::rig_file(&recorded, &args.session) {
+        files::output(&args.out, &[&file])?;
+    }
     rig.need(RigPart::Touchscreen)?;
     let chain = recorded.manifest.chain.as_ref();
     // A session without touches has no use for a chain, and is told so.

@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
-use plumbline_model::formats::Replacement;
+use plumbline_model::files::{self, Size};
 use plumbline_model::session::{Chain, ExtraColumn, Manifest, RigReference, TouchTable, Touchscreen, names};
 use plumbline_model::touch_plan::Purpose;
 use serde::Serialize;
@@ -242,13 +242,11 @@ fn write_json(file: &Path, value: &impl Serialize) -> Result<(), String> {
     let text = serde_json::to_string(value).map_err(|error| {
         format!("{} cannot be put into words ({error}). Please report it.", file.display())
     })?;
-    let replacement = Replacement::of(file);
-    replacement.fill(&text).and_then(|()| replacement.commit()).map_err(|error| sentence(&error.to_string()))
+    files::write(file, text).map_err(|error| sentence(&error.to_string()))
 }
 
 fn read_json<T: DeserializeOwned>(file: &Path) -> Result<T, String> {
-    let text = std::fs::read_to_string(file)
-        .map_err(|error| format!("{} cannot be read ({error}).", file.display()))?;
+    let text = files::read_text(file, Size::MODEL).map_err(|error| sentence(&error.to_string()))?;
     serde_json::from_str(&text).map_err(|error| format!("{} is damaged ({error}).", file.display()))
 }
 

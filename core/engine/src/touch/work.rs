@@ -235,12 +235,14 @@ impl TouchWork {
 
 fn restore(folder: &std::path::Path, rig: &Rig) -> TouchResult {
     let file = folder.join(PLACEMENT_FILE);
-    let placement = file.exists().then(|| {
-        let read = ScreenPlacement::read(&file, &rig.name);
-        read.map(Arc::new).map_err(|error| {
-            format!("{} Until then the nominal place is used.", sentence(&error.to_string()))
-        })
-    });
+    let nominal = |error: &dyn std::fmt::Display| {
+        format!("{} Until then the nominal place is used.", sentence(&error.to_string()))
+    };
+    let placement = match plumbline_model::files::present(&file) {
+        Ok(false) => None,
+        Ok(true) => Some(ScreenPlacement::read(&file, &rig.name).map(Arc::new).map_err(|error| nominal(&error))),
+        Err(error) => Some(Err(nominal(&error))),
+    };
     // A rig without this finger cannot touch anyway; planning says so.
     let reach = TouchArea::reached_by(rig, TIP).ok().flatten();
     TouchResult::Restored { placement, runs: store::list(&folder.join("sessions")), reach }

@@ -4,11 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use plumbline_model::StereoCalibration;
+use plumbline_model::files;
 use plumbline_model::formats::{CalibrationFormat, mrcal};
 use plumbline_vision::calibration_file;
 
 use crate::command::ExportFormat;
 use crate::jobs::JobError;
+use crate::text::sentence;
 
 /// Write a calibration to a file.
 #[derive(Clone, Debug)]
@@ -24,7 +26,7 @@ pub struct Export {
 impl Export {
     /// Writes it; gives the files written.
     pub fn run(self) -> Result<Vec<PathBuf>, JobError> {
-        let (files, format) = match self.format {
+        let (targets, format) = match self.format {
             ExportFormat::Plumbline => (vec![self.file], CalibrationFormat::Native),
             ExportFormat::OpenCv => (vec![self.file], CalibrationFormat::OpenCvStorage),
             ExportFormat::Kalibr => (vec![self.file], CalibrationFormat::KalibrCamchain),
@@ -38,12 +40,16 @@ impl Export {
                         "This calibration carries no corners, because it was read from another program's file. Solve collected pairs to write corners.",
                     )
                 })?;
+                files::export(&self.file).map_err(|error| JobError::failed(sentence(&error.to_string())))?;
                 mrcal::write_corners(evidence, &self.file).map_err(JobError::failed)?;
                 return Ok(vec![self.file]);
             }
         };
-        calibration_file::save(&self.calibration, &files, format).map_err(JobError::failed)?;
-        Ok(files)
+        for file in &targets {
+            files::export(file).map_err(|error| JobError::failed(sentence(&error.to_string())))?;
+        }
+        calibration_file::save(&self.calibration, &targets, format).map_err(JobError::failed)?;
+        Ok(targets)
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use image::RgbImage;
 use plumbline_model::session::{Manifest, RigReference, names};
-use plumbline_model::{Eye, StereoFrame};
+use plumbline_model::{Eye, StereoFrame, files};
 
 use crate::jobs::JobError;
 
@@ -27,10 +27,12 @@ impl Keep {
         for (eye, image) in [(Eye::Left, &self.frame.left), (Eye::Right, &self.frame.right)] {
             let folder = self.folder.join(names::STEREO).join(eye.to_string());
             std::fs::create_dir_all(&folder).map_err(|error| not_kept(&folder, &error))?;
-            write_image(image, &folder.join(format!("{}.png", self.name)))?;
+            let file = folder.join(format!("{}.png", self.name));
+            let image = image::DynamicImage::from(RgbImage::clone(image));
+            files::write_png(&file, &image).map_err(|error| not_kept(&file, &error))?;
         }
         let manifest = self.folder.join(names::MANIFEST);
-        if !manifest.exists() {
+        if !files::present(&manifest).map_err(|error| not_kept(&manifest, &error))? {
             let content = Manifest {
                 rig: RigReference::Named("nico".to_owned()),
                 started: self.started,
@@ -44,15 +46,6 @@ impl Keep {
         }
         Ok(self.folder)
     }
-}
-
-/// Under a temporary name first: half an image is worse than none.
-fn write_image(image: &RgbImage, file: &Path) -> Result<(), JobError> {
-    let temporary = file.with_extension("png.tmp");
-    image
-        .save_with_format(&temporary, image::ImageFormat::Png)
-        .map_err(|error| not_kept(file, &error))
-        .and_then(|()| std::fs::rename(&temporary, file).map_err(|error| not_kept(file, &error)))
 }
 
 fn not_kept(file: &Path, error: &dyn std::fmt::Display) -> JobError {
@@ -89,5 +82,76 @@ mod tests {
         let names: Vec<&str> = read.stereo.pairs.iter().map(|pair| pair.name.as_str()).collect();
         assert_eq!(names, ["capture 001.png", "capture 002.png"]);
         assert_eq!(image::open(&read.stereo.pairs[0].left).expect("an image").into_rgb8(), *image);
+    }
+
+    /// Keeps a pair of a size that takes a while to write.
+    #[cfg(target_os = "linux")]
+    fn keep(session: &Path, number: usize) -> Result<PathBuf, JobError> {
+        let image =
+            RgbImage::from_fn(160, 120, |x, y| image::Rgb([(x * y) as u8, (x ^ y) as u8, number as u8]));
+        let image = Arc::new(image);
+        let frame = StereoFrame {
+            stamp: Stamp { seq: 0, captured_at: std::time::Instant::now() },
+            left: image.clone(),
+            right: image,
+            time_difference_s: None,
+            name: None,
+        };
+        let (folder, started) = (session.to_owned(), jiff::Timestamp::UNIX_EPOCH);
+        Keep { frame, name: format!("capture {number:04}"), folder, started }.run()
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_kill_leaves_whole_pairs() {
+        const TEST: &str = "eyes::work::keep::tests::a_kill_leaves_whole_pairs";
+        let count = |session: &Path| Session::read(session).map_or(0, |read| read.stereo.pairs.len());
+        if let Some(folder) = crate::kept::writing() {
+            let session = folder.join("session");
+            let there = count(&session);
+            for number in crate::kept::until_killed() {
+                keep(&session, there + number).expect("kept");
+            }
+            return;
+        }
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let session = folder.path().join("session");
+        // The first pair brings the manifest.
+        keep(&session, 0).expect("kept");
+        let mut pairs = 1;
+        for nth in 0..15 {
+            crate::kept::kill(TEST, folder.path(), nth);
+            let read = Session::read(&session).expect("a session");
+            assert!(read.stereo.unpaired.len() <= 1 && read.stereo.pairs.len() >= pairs, "kill {nth}");
+            pairs = read.stereo.pairs.len();
+            for pair in &read.stereo.pairs {
+                for file in [&pair.left, &pair.right] {
+                    assert!(image::open(file).is_ok(), "kill {nth}: half of {}", file.display());
+                }
+            }
+        }
+        assert!(pairs > 15, "{pairs} pairs");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_told_and_leaves_no_half_image() {
+        const TEST: &str = "eyes::work::keep::tests::a_full_disk_is_told_and_leaves_no_half_image";
+        if let Some(folder) = crate::kept::writing() {
+            match keep(&folder.join("session"), 1) {
+                Err(JobError::Failed(why)) => assert!(why.contains("is in memory only"), "{why}"),
+                other => panic!("kept on a full disk: {other:?}"),
+            }
+            return;
+        }
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let session = folder.path().join("session");
+        keep(&session, 0).expect("kept");
+        for room in [0, 1024] {
+            assert!(crate::kept::run_on_full_disk(TEST, folder.path(), room).success(), "room for {room}");
+            let read = Session::read(&session).expect("a session");
+            assert_eq!((read.stereo.pairs.len(), read.stereo.unpaired.len()), (1, 0));
+            assert_eq!(std::fs::read_dir(session.join("stereo/left")).expect("there").count(), 1);
+        }
     }
 }

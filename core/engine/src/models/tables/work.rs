@@ -107,6 +107,8 @@ impl TablesWork {
                 Ok(TablesResult::Imported(ReadTable::Yaw(Arc::new(yaw))))
             }
             Self::Export { table, file, tables } => {
+                plumbline_model::files::export(&file)
+                    .map_err(|error| JobError::failed(sentence(&error.to_string())))?;
                 match (table, &tables.height, &tables.yaw) {
                     (GraspTable::Height, Some(height), _) => height.write(&file).map_err(words)?,
                     (GraspTable::Yaw, _, Some(yaw)) => yaw.write(&file).map_err(words)?,
@@ -172,16 +174,12 @@ pub(in crate::models) fn restore(folder: &Path) -> (Tables, Vec<String>) {
 }
 
 fn read_one<N: Node>(file: &Path, problems: &mut Vec<String>) -> Option<Arc<Table<N>>> {
-    if !file.exists() {
-        return None;
-    }
-    match Table::read(file) {
-        Ok(table) => Some(Arc::new(table)),
-        Err(error) => {
-            problems.push(sentence(&error.to_string()));
-            None
-        }
-    }
+    let read = match plumbline_model::files::present(file) {
+        Ok(false) => return None,
+        Ok(true) => Table::read(file).map_err(|error| error.to_string()),
+        Err(error) => Err(error.to_string()),
+    };
+    read.map(Arc::new).map_err(|problem| problems.push(sentence(&problem))).ok()
 }
 
 /// Errors and fields of tables.
