@@ -5,6 +5,7 @@ use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
 use std::sync::Mutex;
 
+use plumbline_model::files::told;
 use plumbline_model::{Cancelled, JobContext};
 use serde::Serialize;
 
@@ -96,7 +97,7 @@ fn words(error: &anyhow::Error) -> String {
             text = format!("{text}{sep}{cause}");
         }
     }
-    text
+    told(&text)
 }
 
 /// Says why the work could not be done.

@@ -4,6 +4,8 @@ use std::path::PathBuf;
 use std::thread;
 use std::time::Duration;
 
+use plumbline_model::files;
+
 use super::PlumblineWindow;
 use super::frame_time::resident_mb;
 
@@ -60,7 +62,7 @@ impl PlumblineWindow {
                 "resident_before_mb": self.resident_before_mb,
                 "resident_mb": resident_mb(),
             });
-            if let Err(error) = std::fs::write(file, report.to_string()) {
+            if let Err(error) = files::write(file, report.to_string()) {
                 log::error!("the frame times could not be written to {}: {error}", file.display());
             }
         }
@@ -81,7 +83,8 @@ pub(super) fn save_picture(
         let saved = image::RgbaImage::from_raw(width as u32, height as u32, rgba)
             .ok_or_else(|| "the picture is incomplete".to_owned())
             .and_then(|image| {
-                image::DynamicImage::from(image).to_rgb8().save(&file).map_err(|error| error.to_string())
+                let image = image::DynamicImage::from(image).to_rgb8();
+                files::write_png(&file, &image.into()).map_err(|error| error.to_string())
             });
         match &saved {
             Ok(()) => log::info!("saved {}", file.display()),

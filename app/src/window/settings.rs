@@ -1,11 +1,11 @@
 //! What the window remembers from one start to the next.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use egui_tiles::Tree;
 use plumbline_engine::SourceSpec;
+use plumbline_model::files::{self, FileError, Size};
 use serde::{Deserialize, Serialize};
 
 use super::steps::{Pane, Screen, default_arrangement};
@@ -89,24 +89,20 @@ impl WindowSettings {
 
     /// Reads the file; a missing file gives the defaults.
     pub fn load(file: &Path) -> Result<Self, SettingsError> {
-        let text = match std::fs::read_to_string(file) {
+        let text = match files::read_text(file, Size::SHORT) {
             Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Self::default()),
-            Err(error) => return Err(SettingsError::Read { file: file.to_owned(), error }),
+            Err(error) if error.is_absent() => return Ok(Self::default()),
+            Err(error) => return Err(SettingsError::Read { error }),
         };
         serde_json::from_str(&text).map_err(|error| SettingsError::Parse { file: file.to_owned(), error })
     }
 
-    /// Writes the file under another name first, so that a crash leaves the old one.
-    pub fn save(&self, file: &Path) -> std::io::Result<()> {
+    /// Writes the file in one step, so that a crash leaves the old one or the new one.
+    pub fn save(&self, file: &Path) -> Result<(), FileError> {
         if let Some(folder) = file.parent() {
-            std::fs::create_dir_all(folder)?;
+            files::make_folder(folder)?;
         }
-        let new = file.with_extension("json.new");
-        let mut out = std::fs::File::create(&new)?;
-        out.write_all(&serde_json::to_vec_pretty(self)?)?;
-        out.sync_all()?;
-        std::fs::rename(new, file)
+        files::write_with(file, |out| Ok(serde_json::to_writer_pretty(out, self)?))
     }
 }
 
@@ -114,12 +110,10 @@ impl WindowSettings {
 #[derive(Debug, thiserror::Error)]
 pub enum SettingsError {
     /// Not readable.
-    #[error("The window's settings in {} cannot be read ({error}); it starts with the default layout.", file.display())]
+    #[error("The window's settings cannot be used: {error}. It starts with the default layout.")]
     Read {
-        /// Which file.
-        file: PathBuf,
-        /// What the system said.
-        error: std::io::Error,
+        /// Which file, and why.
+        error: FileError,
     },
     /// Not what was expected.
     #[error(
