@@ -26,9 +26,14 @@ pub fn opencv_info() -> Result<OpenCvInfo, String> {
     })
 }
 
-/// OpenCV's own message, without its file and line.
+/// What OpenCV's error means, for people. Its own text, which speaks of its source code, is in the log.
 pub(crate) fn message(error: &opencv::Error) -> String {
-    error.message.trim().to_owned()
+    log::warn!("OpenCV: {}", error.message.trim());
+    match error.code {
+        opencv::core::StsNoMem => "there is not enough memory; close other programs".to_owned(),
+        opencv::core::StsNotImplemented => "this build of OpenCV cannot do it".to_owned(),
+        _ => "OpenCV refused it; what it said is in the log".to_owned(),
+    }
 }
 
 /// Keeps OpenCV's readers from writing to standard error: what goes wrong is told by ours.
@@ -74,6 +79,15 @@ mod tests {
         let info = opencv_info().expect("it is linked");
         assert!(info.version.starts_with("4."), "{info:?}");
         assert!(info.threads >= 1, "{info:?}");
+    }
+
+    #[test]
+    fn assertions_stay_in_the_log() {
+        let raw = "OpenCV(4.6.0) ./modules/imgproc/src/color.cpp:182: error: (-215:Assertion failed) !_src.empty() in function 'cvtColor'";
+        for code in [opencv::core::StsAssert, opencv::core::StsNoMem, opencv::core::StsError] {
+            let words = message(&opencv::Error::new(code, raw));
+            assert!(!words.contains("Assertion") && !words.contains("modules"), "{words}");
+        }
     }
 
     #[test]

@@ -137,7 +137,11 @@ impl Controller {
     }
 
     /// One cycle. Never fails: a port that is gone is told in the state.
-    pub fn cycle(&mut self, requests: impl Iterator<Item = Request>, setpoint: Option<(Instant, Setpoint)>) {
+    pub fn cycle(
+        &mut self,
+        requests: impl Iterator<Item = Request>,
+        setpoint: impl FnOnce() -> Option<(Instant, Setpoint)>,
+    ) {
         self.seq += 1;
         if self.gone.is_some() {
             for request in requests {
@@ -167,7 +171,7 @@ impl Controller {
     fn try_cycle(
         &mut self,
         requests: impl Iterator<Item = Request>,
-        setpoint: Option<(Instant, Setpoint)>,
+        setpoint: impl FnOnce() -> Option<(Instant, Setpoint)>,
     ) -> Result<(), BusError> {
         let now = Instant::now();
         let dt_s = now.duration_since(self.last_cycle_at).as_secs_f64().min(LONGEST_STEP_S);
@@ -188,7 +192,8 @@ impl Controller {
         for request in requests {
             self.take(request)?;
         }
-        self.take_setpoint(setpoint);
+        // Looked at after the requests: whoever ended it before a move must not see it replace that.
+        self.take_setpoint(setpoint());
         self.watch(now);
         self.advance(now, dt_s);
         self.send()?;

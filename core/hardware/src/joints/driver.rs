@@ -90,7 +90,7 @@ impl ArmDriver {
         let limiter = Limiter { rig: rig.clone(), guards: options.guards.clone() };
         let mut controller = Controller::new(exchange, scan.clone(), rig, options);
         let limiter = Limiter { guards: controller.guards(), ..limiter };
-        controller.cycle(std::iter::empty(), None);
+        controller.cycle(std::iter::empty(), || None);
         controller.exchange.bus.be_patient(false);
         let shared = Arc::new(Shared {
             ring: Mutex::default(),
@@ -274,8 +274,7 @@ fn run(controller: Controller, queue: &Receiver<Request>, shared: &Shared) {
 fn drive(mut controller: Controller, queue: &Receiver<Request>, shared: &Shared) {
     let mut next = Instant::now();
     while !shared.end.load(Ordering::Acquire) {
-        let setpoint = newest_setpoint(shared);
-        controller.cycle(queue.try_iter(), setpoint);
+        controller.cycle(queue.try_iter(), || newest_setpoint(shared));
         lock(&shared.ring).push(Arc::new(controller.state()));
         controller.on_state();
         next = (next + controller.period()).max(Instant::now());

@@ -53,8 +53,8 @@ impl Exchange {
         }
         self.bus.await_owed(id)?;
         match self.bus.identify(id, true)? {
-            Answer::Silent => return Ok(Some(unknown(&self.slots[i]))),
-            Answer::Collision => self.slots[i].bar(Bar::Doubled),
+            // Whether two have its id is decided by a scan, which looks at nothing else meanwhile.
+            Answer::Silent | Answer::Collision => return Ok(Some(unknown(&self.slots[i]))),
             Answer::Found(found) => self.slots[i].identified(found),
         }
         if let Some(refusal) = barred(&self.slots[i]) {
