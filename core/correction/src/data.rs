@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{Matrix2, Vector2};
+use plumbline_model::decompose;
 use plumbline_model::robot::Chain;
 use plumbline_model::session::{Screen, Session, TouchRow, TouchTable, Touchscreen};
 use plumbline_model::{Pixel, Point, Robot};
@@ -11,6 +12,9 @@ use plumbline_model::{Pixel, Point, Robot};
 pub const FEWEST_TOUCHES: usize = 4;
 /// Touches whose spread across is smaller than this part of the spread along count as a line.
 const LINE_RATIO: f64 = 0.05;
+/// Points sent may lie farther out than the arm reaches: the real arm may be longer, and corrections
+/// are small against this.
+const REACH_MARGIN: f64 = 1.25;
 
 /// A touch to learn from.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,6 +87,20 @@ pub enum DataError {
         /// Why the others were left out.
         left_out: Vec<String>,
     },
+    /// Points sent that the arm cannot be sent to.
+    #[error(
+        "the points sent of {count} of the {rows} touches lie up to {farthest_m:.2} m from the robot, whose arm reaches {reach_m:.2} m: the columns target_x_m, target_y_m, target_z_m of touches.csv are in another unit, or of another robot; correct them"
+    )]
+    BeyondReach {
+        /// How many.
+        count: usize,
+        /// All rows.
+        rows: usize,
+        /// The farthest, m.
+        farthest_m: f64,
+        /// Reach of the arm, m.
+        reach_m: f64,
+    },
     /// All touches lie on a line.
     #[error(
         "all {found} touches lie on a line (spread across it {:.1} mm, along it {:.0} mm): touch places to both sides of it",
@@ -132,8 +150,20 @@ impl TouchData {
         let rows: Vec<TouchRow> = table.rows().collect();
         let same_height = commonest(rows.iter().map(|row| row.screen_height_m));
         let same_payload = commonest(rows.iter().map(|row| row.payload_kg));
+        let reach_m = REACH_MARGIN * chain.farthest_m();
+        let beyond = |row: &TouchRow| row.target.map(|sent| sent.range_m()).filter(|m| *m > reach_m);
+        let farthest_m = rows.iter().filter_map(beyond).fold(0.0, f64::max);
+        let count = rows.iter().filter(|row| beyond(row).is_some()).count();
+        if count == rows.len() || (count > 1 && 4 * count > rows.len()) {
+            let (rows, reach_m) = (rows.len(), chain.farthest_m());
+            return Err(DataError::BeyondReach { count, rows, farthest_m, reach_m });
+        }
         for (index, row) in rows.iter().enumerate() {
-            if bits(row.screen_height_m) != same_height {
+            if let Some(what) = table.implausible().get(&index) {
+                gathered.leave_out_because(format!("holds what cannot be ({what})"));
+            } else if beyond(row).is_some() {
+                gathered.leave_out("was sent to a point that the arm cannot reach");
+            } else if bits(row.screen_height_m) != same_height {
                 gathered.leave_out("stood at another height of the screen than most");
             } else if bits(row.payload_kg) != same_payload {
                 gathered.leave_out("carried another payload than most");
@@ -247,8 +277,9 @@ fn spread_m(places: impl ExactSizeIterator<Item = Vector2<f64>> + Clone) -> (f64
     let mean: Vector2<f64> = places.clone().sum::<Vector2<f64>>() / count;
     let offsets = places.map(|place| place - mean);
     let scatter: Matrix2<f64> = offsets.map(|offset| offset * offset.transpose() / count).sum();
-    let eigenvalues = scatter.symmetric_eigenvalues();
-    (eigenvalues.max().max(0.0).sqrt(), eigenvalues.min().max(0.0).sqrt())
+    // Without an answer there is no spread, which is refused as a line is.
+    let variances_m2 = decompose::symmetric_eigenvalues(scatter).unwrap_or_else(Vector2::zeros);
+    (variances_m2.max().max(0.0).sqrt(), variances_m2.min().max(0.0).sqrt())
 }
 
 /// For each joint of the chain its place in the table; the name of the first that is missing.
@@ -298,11 +329,15 @@ impl RowReader<'_> {
 #[derive(Default)]
 struct Gathered {
     touches: Vec<Touch>,
-    left_out: BTreeMap<&'static str, usize>,
+    left_out: BTreeMap<String, usize>,
 }
 
 impl Gathered {
     fn leave_out(&mut self, reason: &'static str) {
+        self.leave_out_because(reason.to_owned());
+    }
+
+    fn leave_out_because(&mut self, reason: String) {
         *self.left_out.entry(reason).or_default() += 1;
     }
 

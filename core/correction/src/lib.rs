@@ -24,6 +24,7 @@ mod onnx;
 pub mod options;
 pub mod placement;
 mod published;
+mod self_test;
 pub mod repeats;
 pub mod tables;
 pub mod train;

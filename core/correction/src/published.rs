@@ -6,6 +6,7 @@
 
 use std::path::Path;
 
+use plumbline_model::files::shortened;
 use serde_json::Value;
 
 use crate::file::json;
@@ -13,6 +14,7 @@ use crate::file_error::FileError;
 use crate::heights::HeightGrid;
 use crate::model::{CorrectionModel, Parts, Provenance};
 use crate::network::{Activation, Ensemble, Network, Scaling};
+use crate::self_test::EXACT_M;
 
 /// Mean and spread of all inputs of the published networks, px.
 const INPUT: (f64, f64) = (799.522_45, 363.955_20);
@@ -83,6 +85,7 @@ impl CorrectionModel {
         };
         let model = Self { parts, trust: None, provenance };
         model.sound(file)?;
+        model.check_answers(file, &[], EXACT_M)?;
         Ok(model)
     }
 }
@@ -200,7 +203,7 @@ impl Found {
         let vectors = self.vectors.iter().map(|v| v.len().to_string());
         let ragged = (0..self.ragged).map(|_| "rows of different lengths".to_owned());
         let shapes: Vec<String> = matrices.chain(vectors).chain(ragged).collect();
-        if shapes.is_empty() { "none".to_owned() } else { shapes.join(", ") }
+        if shapes.is_empty() { "none".to_owned() } else { shortened(&shapes.join(", ")) }
     }
 }
 

@@ -26,6 +26,8 @@ const FEWEST_TO_JUDGE: usize = crate::data::FEWEST_TOUCHES - 1;
 /// Standard deviation of the draw of the hidden layer.
 /// Small: over the touches the units bend gently, as the arm's error does.
 const DRAW_SD: f64 = 0.2;
+/// An arm that misses by more than this (rms) is not the one that was touched with, m.
+const LARGEST_RMS_M: f64 = 0.15;
 /// Loss points that may wait for their receiver.
 const WAITING: usize = 256;
 
@@ -89,6 +91,16 @@ pub enum TrainError {
         /// Where.
         iteration: usize,
     },
+    /// What was learned does not even answer for what it was learned from.
+    #[error(
+        "{} misses the touches that it was trained on by {:.0} mm, where an arm is off by some millimeters: pixels and points sent do not belong together; look for a wrong unit, screen or robot in the session", .method.name(), 1e3 * .rms_m
+    )]
+    Nonsense {
+        /// What was trained.
+        method: Method,
+        /// √(mean squared error in space), m.
+        rms_m: f64,
+    },
     /// The border cannot be drawn.
     #[error(transparent)]
     Border(#[from] BorderError),
@@ -135,6 +147,7 @@ pub fn train(
         Ok((residuals_m, of_areas_m, parts))
     })?;
     job.checkpoint()?;
+    fits(&parts.residuals_m(data), method)?;
     let errors = of_areas_m.iter().map(|residual| residual.map(|m| -m)).collect::<Vec<_>>();
     let spread = Spread::fit_blocked(&data.pixels(), &errors, &areas.of_touch, &border)?;
     let trust = Trust::new(border, spread, data, &residuals_m);
@@ -150,6 +163,13 @@ pub fn train(
         remarks: vec![],
     };
     Ok(CorrectionModel { parts, trust: Some(trust), provenance })
+}
+
+/// Refuses what misses its own touches by more than any arm does.
+fn fits(residuals_m: &[[f64; 3]], method: Method) -> Result<(), TrainError> {
+    let sum: f64 = residuals_m.iter().flatten().map(|m| m * m).sum();
+    let rms_m = (sum / residuals_m.len().max(1) as f64).sqrt();
+    if rms_m <= LARGEST_RMS_M { Ok(()) } else { Err(TrainError::Nonsense { method, rms_m }) }
 }
 
 /// Errors of a method on touches whose block was held out from training.

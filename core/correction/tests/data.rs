@@ -149,3 +149,38 @@ fn a_measured_line_is_a_line() {
         assert!(matches!(error, DataError::OnALine { .. }), "{line}: {error}");
     }
 }
+
+#[test]
+fn points_that_the_arm_cannot_be_sent_to_are_left_out_or_refused() {
+    let mut all = rows(20);
+    let sent = |row: &mut TouchRow, factor: f64| {
+        let point = row.target.expect("sent").coords;
+        row.target = Some(Point::new(point.x, point.y, point.z * factor));
+    };
+    // One height that is 57 times too large.
+    sent(&mut all[3], 57.0);
+    let data = read(&session(&all)).expect("one row only");
+    assert_eq!(data.len(), 19);
+    assert_eq!(data.left_out, ["1 row was sent to a point that the arm cannot reach"]);
+    all.iter_mut().for_each(|row| sent(row, 57.0));
+    let said = read(&session(&all)).expect_err("all of them").to_string();
+    assert!(said.contains("of the 20 touches lie up to") && said.contains("target_z_m"), "{said}");
+}
+
+#[test]
+fn pixels_and_points_that_do_not_belong_together_make_no_model() {
+    use plumbline_correction::{Method, TrainOptions, train};
+    let mut touches = touches(60, 1e-3, 3);
+    // A mirror image of the table, sent twice as far.
+    touches.iter_mut().for_each(|touch| {
+        let sent = touch.sent.coords;
+        touch.sent = Point::new(2.5 * sent.x - 0.6, -2.5 * sent.y, sent.z);
+    });
+    let data = TouchData::new(touches, screen(), vec![]).expect("numbers");
+    let error = train(&data, Method::M1, &TrainOptions::default(), &plumbline_model::Unattended, &mut |_| ());
+    let said = error.expect_err("nonsense").to_string();
+    assert!(
+        said.contains("M1 misses the touches that it was trained on by") && said.contains("unit"),
+        "{said}"
+    );
+}

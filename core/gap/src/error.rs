@@ -30,6 +30,18 @@ pub enum GapError {
         /// Measured over predicted.
         factor: f64,
     },
+    /// Nothing fits, in no unit.
+    #[error(
+        "{session}: with its frames placed as well as can be, half of the rows still lie more than {:.1} m from where \
+         the model of the robot has them: check that the session names the right robot, tip and joints, and the units \
+         of its columns", .off_m
+    )]
+    AnotherRobot {
+        /// Which session.
+        session: String,
+        /// Median distance, m.
+        off_m: f64,
+    },
     /// A column that should change has one value.
     #[error(
         "{session}: {column} has the same value in every row although the arm moved: it was not logged. Leave the \

@@ -206,3 +206,34 @@ fn times_that_go_backwards_copies_and_clipped_rows_are_said() {
         assert!(finding.warnings.iter().any(|said| said.contains(words)), "{words}: {:?}", finding.warnings);
     }
 }
+
+/// What is read from files is looked at first; rows may come from elsewhere.
+#[test]
+fn a_wild_number_does_not_hold_the_search() {
+    for wild in [-1e308, 1e200, 1e80] {
+        for mut measurements in
+            [touches(&one_by_one(40), &[], 9), poses(&one_by_one(40), &[], 9), places(1, &[], 1e-3, 9)]
+        {
+            measurements.rows[11].measured[1] = wild;
+            // Whatever comes of it, it comes.
+            match looked_at(&measurements) {
+                Ok(finding) => {
+                    assert_eq!(finding.comparison.residuals.len(), measurements.rows.len(), "{wild}")
+                }
+                Err(error) => assert!(!error.to_string().is_empty(), "{wild}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn rows_of_another_robot_are_refused() {
+    let mut measurements = poses(&one_by_one(40), &[], 10);
+    for (i, row) in measurements.rows.iter_mut().enumerate() {
+        // As far apart as another, larger arm reaches, in no order that this one could follow.
+        row.measured =
+            vec![((i * 37) % 41) as f64 / 10.0, ((i * 23) % 43) as f64 / 10.0, ((i * 31) % 29) as f64 / 10.0];
+    }
+    let said = looked_at(&measurements).expect_err("nothing fits").to_string();
+    assert!(said.contains("check that the session names the right robot"), "{said}");
+}

@@ -28,6 +28,9 @@ pub const DISPARITY_STEP_PX: f64 = 1.0 / 16.0;
 /// take longer), from the robot's lap to the far wall.
 pub const DEFAULT_SIZE_PX: (u32, u32) = (496, 240);
 
+/// Views of more pixels are not made: their maps alone would take a gigabyte.
+const MOST_PIXELS: u64 = 32_000_000;
+
 /// Part of the view left free around the workspace, on each side.
 const MARGIN: f64 = 0.01;
 
@@ -76,6 +79,16 @@ pub enum AimError {
     /// No width or no height.
     #[error("a view of {width_px}x{height_px} px is too small: ask for at least 16x16")]
     Size {
+        /// Width asked for.
+        width_px: u32,
+        /// Height asked for.
+        height_px: u32,
+    },
+    /// More pixels than can be worked on.
+    #[error(
+        "a view of {width_px}x{height_px} px is larger than any that can be worked on ({} million pixels): the focal length or the size of the images in the calibration is probably wrong; calibrate again, or use a copy of the file as it was", MOST_PIXELS / 1_000_000
+    )]
+    TooLarge {
         /// Width asked for.
         width_px: u32,
         /// Height asked for.
@@ -358,8 +371,8 @@ impl Axes {
                 height_px: size_px.1,
                 f_px,
                 lens_px,
-                needed_width_px: (lens_px * width).ceil() as u32 + 1,
-                needed_height_px: (lens_px * height).ceil() as u32 + 1,
+                needed_width_px: ((lens_px * width).ceil() as u32).saturating_add(1),
+                needed_height_px: ((lens_px * height).ceil() as u32).saturating_add(1),
             });
         }
         let middle = |range: &[f64; 2]| 0.5 * (range[0] + range[1]) * f_px;
@@ -395,7 +408,13 @@ fn center(pixels: u32) -> f64 {
 }
 
 fn check_size((width_px, height_px): (u32, u32)) -> Result<(), AimError> {
-    if width_px < 16 || height_px < 16 { Err(AimError::Size { width_px, height_px }) } else { Ok(()) }
+    if width_px < 16 || height_px < 16 {
+        Err(AimError::Size { width_px, height_px })
+    } else if u64::from(width_px) * u64::from(height_px) > MOST_PIXELS {
+        Err(AimError::TooLarge { width_px, height_px })
+    } else {
+        Ok(())
+    }
 }
 
 #[cfg(test)]

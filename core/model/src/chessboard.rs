@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use crate::frame::{Board, Point};
+use crate::plausible;
 
 /// A chessboard of `inner_columns` × `inner_rows` inner corners.
 ///
@@ -32,7 +33,7 @@ pub enum BoardError {
         /// Inner rows asked for.
         rows: u32,
     },
-    /// Not a positive length.
+    /// Not the length of a square that is held in front of eyes.
     #[error(
         "a square of {0} m cannot be used: measure the side of one square and give it in millimeters, for example 30"
     )]
@@ -51,7 +52,7 @@ impl Chessboard {
         if !(usable(inner_columns.max(inner_rows), 3) && usable(inner_columns.min(inner_rows), 2)) {
             return Err(BoardError::Size { columns: inner_columns, rows: inner_rows });
         }
-        if !(square_m.is_finite() && square_m > 0.0 && square_m < 10.0) {
+        if !plausible::SQUARE_M.contains(square_m) {
             return Err(BoardError::Square(square_m));
         }
         Ok(Self { inner_columns, inner_rows, square_m })
@@ -137,7 +138,9 @@ mod tests {
     #[test]
     fn unusable_boards_say_what_to_give() {
         assert!(Chessboard::new(8, 1, 0.03).is_err());
-        assert!(Chessboard::new(8, 5, f64::NAN).is_err());
+        for wild in [f64::NAN, 0.0, -0.03, 30.0, 1e-9] {
+            assert!(Chessboard::new(8, 5, wild).is_err(), "{wild}");
+        }
         assert!(Chessboard::from_squares(0, 6, 0.03).is_err());
         let message = "8by5".parse::<InnerCorners>().expect_err("not a size").to_string();
         assert!(message.contains("8x5"), "{message}");

@@ -94,8 +94,9 @@ impl<F: Frame> From<Point3<f64>> for Point<F> {
 impl<F: Frame> Direction<F> {
     /// Normalizes; `None` when the vector is too short or not finite.
     pub fn new(vector: Vector3<f64>) -> Option<Self> {
+        // The length of a vector of wild components is not finite, which leaves a unit of length zero.
         nalgebra::Unit::try_new(vector, 1e-12)
-            .filter(|unit| unit.iter().all(|c| c.is_finite()))
+            .filter(|unit| vector.norm().is_finite() && unit.iter().all(|c| c.is_finite()))
             .map(|vector| Self { vector, frame: PhantomData })
     }
 
@@ -270,5 +271,6 @@ mod tests {
     fn a_zero_vector_has_no_direction() {
         assert!(Direction::<Robot>::new(Vector3::zeros()).is_none());
         assert!(Direction::<Robot>::new(Vector3::new(f64::NAN, 0.0, 1.0)).is_none());
+        assert!(Direction::<Robot>::new(Vector3::new(1e308, 1e308, 0.0)).is_none());
     }
 }

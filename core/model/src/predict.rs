@@ -86,6 +86,14 @@ pub enum PredictError {
     /// The rig was only measured and has no such part.
     #[error(transparent)]
     Lacks(#[from] crate::robot::RigError),
+    /// A row with a number that cannot be.
+    #[error("{table}, {what}. Correct the cell, or delete the row: every row is predicted in its place")]
+    Implausible {
+        /// The table.
+        table: &'static str,
+        /// Line, column, number, range and likely cause.
+        what: String,
+    },
     /// A joint that moves the tip was not logged.
     #[error(
         "joint {joint} moves {tip} but is not among the joints of the session's chain: give the rig that the session was recorded with"
@@ -131,6 +139,9 @@ pub fn predict_session(
     rig: &Rig,
     screen: Option<&Touchscreen>,
 ) -> Result<SessionPrediction, PredictError> {
+    if let Some((table, _, what)) = session.implausible().next() {
+        return Err(PredictError::Implausible { table, what: what.to_owned() });
+    }
     let chain = || session.manifest.chain.as_ref().ok_or(PredictError::Missing("chain"));
     let mut prediction = SessionPrediction::default();
     if let Some(table) = &session.touches {

@@ -92,7 +92,7 @@ fn touches() -> Vec<TouchRow> {
         load: vec![None, Some(-0.2)],
     };
     let bare = TouchRow {
-        commanded_rad: vec![Some(1e300), Some(0.0)],
+        commanded_rad: vec![Some(-1.0e-300), Some(0.0)],
         encoder_rad: vec![None; 2],
         temperature_c: vec![None; 2],
         load: vec![None; 2],
@@ -289,6 +289,131 @@ fn tables_that_cannot_be_used_say_where() {
     let posed = |table: &'static str| [("session.toml", MANIFEST), ("poses.csv", table)];
     refused(&posed("cmd_a_rad,meas_x_m,meas_y_m,meas_z_m\n"), &["poses.csv", "cmd_b_rad or enc_b_rad"]);
     refused(&posed("cmd_a_rad,enc_b_rad,meas_x_m,meas_y_m\n"), &["poses.csv", "meas_z_m"]);
+}
+
+/// Ten good rows and what is given, of the columns of [`TOUCHES`] and more.
+fn among_good_rows(more: &str) -> String {
+    let good = "0.1,0.2,960.0,540.5,0.3,-0.1,0.06,0.0,0.0\n".repeat(10);
+    format!(
+        "cmd_a_rad,cmd_b_rad,touch_u_px,touch_v_px,target_x_m,target_y_m,target_z_m,screen_height_m,payload_kg\n{good}{more}"
+    )
+}
+
+#[test]
+fn a_row_that_cannot_be_is_set_aside_and_named() {
+    for (row, words) in [
+        (
+            "1e9,0.2,960,540,0.3,0,0.06,0,0",
+            ["line 12, column cmd_a_rad", "1.000e9 rad cannot be a joint angle"],
+        ),
+        (
+            "0.1,0.2,-1e308,540,0.3,0,0.06,0,0",
+            ["column touch_u_px", "-1.000e308 px cannot be a coordinate of a touch"],
+        ),
+        ("0.1,0.2,960,540,300,0,0.06,0,0", ["column target_x_m", "looks like millimeters"]),
+        ("0.1,0.2,960,540,0.3,0,0.06,5,0", ["column screen_height_m", "5 m cannot be a height of the block"]),
+        (
+            "0.1,0.2,960,540,0.3,0,0.06,0,-5",
+            ["column payload_kg", "-5 kg cannot be a payload, which is 0 to 20 kg"],
+        ),
+    ] {
+        let table = among_good_rows(&format!("{row}\n"));
+        let session =
+            session_of(&[("session.toml", MANIFEST), ("touches.csv", &table)]).expect("one row only");
+        let aside: Vec<_> = session.implausible().collect();
+        let [(name, at, what)] = aside[..] else { panic!("one row: {aside:?}") };
+        assert_eq!((name, at), ("touches.csv", 10));
+        assert!(words.iter().all(|word| what.contains(word)), "{what}");
+        let touches = session.touches.as_ref().expect("there");
+        assert_eq!(touches.row_count(), 11, "its place is kept");
+        let row = touches.row(10).expect("a row");
+        assert_eq!(
+            (row.touch, row.target, row.payload_kg, row.commanded_rad),
+            (None, None, None, vec![None; 2])
+        );
+        assert!(touches.row(9).expect("a row").touch.is_some());
+    }
+}
+
+#[test]
+fn a_column_that_cannot_be_is_refused() {
+    let bad = |column: usize, value: &str| {
+        let text = among_good_rows("");
+        let lines = text.lines().enumerate().map(|(i, line)| {
+            let mut cells: Vec<&str> = line.split(',').collect();
+            if i > 0 {
+                cells[column] = value;
+            }
+            cells.join(",") + "\n"
+        });
+        lines.collect::<String>()
+    };
+    for (column, value, words) in [
+        (
+            4,
+            "300",
+            ["touches.csv, line 2, column target_x_m: 300 m", "in 10 of the 10 rows: correct the column"],
+        ),
+        (1, "90", ["column cmd_b_rad", "it looks like degrees, where radians belong"]),
+        (7, "5", ["column screen_height_m", "-0.5 to 1 m"]),
+        (8, "-5", ["column payload_kg", "nothing weighs less than nothing"]),
+    ] {
+        refused(&[("session.toml", MANIFEST), ("touches.csv", &bad(column, value))], &words);
+    }
+    let located = |truth: &str, estimate: &str| {
+        format!(
+            "true_x_m,true_y_m,true_z_m,est_x_m,est_y_m,est_z_m\n{}",
+            format!("{truth},{estimate}\n").repeat(5)
+        )
+    };
+    let in_millimeters = located("300,-200,50", "310,-190,52");
+    refused(
+        &[("session.toml", MANIFEST), ("localizations.csv", &in_millimeters)],
+        &["localizations.csv, line 2, column true_x_m: 300 m", "millimeters", "5 of the 5 rows"],
+    );
+    // An estimate that failed lands on the wall.
+    let failed = located("0.3,-0.2,0.05", "5.1,-2.0,1.2");
+    let session =
+        session_of(&[("session.toml", MANIFEST), ("localizations.csv", &failed)]).expect("it can be");
+    assert_eq!(session.implausible().count(), 0);
+    let posed = "cmd_a_rad,cmd_b_rad,meas_x_m,meas_y_m,meas_z_m\n0.1,0.2,1514.2,-520.7,119.4\n";
+    refused(
+        &[("session.toml", MANIFEST), ("poses.csv", posed)],
+        &["meas_x_m", "-200 to 200 m", "millimeters"],
+    );
+}
+
+#[test]
+fn screens_that_cannot_be_are_refused() {
+    let with = |from: &str, to: &str, words: &[&str]| {
+        let text = MANIFEST.replace(from, to);
+        assert_ne!(text, MANIFEST, "the test changes something");
+        refused(&[("session.toml", &text), ("touches.csv", TOUCHES)], words);
+    };
+    with(
+        "height_m = 0.267",
+        "height_m = 5.0",
+        &["session.toml, line 8", "touchscreen.height_m", "5 m cannot be"],
+    );
+    with("width_m = 0.475", "width_m = 475", &["touchscreen.width_m", "looks like millimeters"]);
+    with("0.2375, 0.056]", "0.2375, 5.0]", &["touchscreen.origin_m", "an arm has to reach it"]);
+    with("[0.0, -1.0, 0.0]", "[0.0, -1e308, 0.0]", &["touchscreen.u_axis", "a component of a direction"]);
+    with("width_px = 1920", "width_px = 900000", &["touchscreen.width_px", "1 to 20000 px"]);
+}
+
+#[test]
+fn manifests_that_nest_beyond_all_measure_are_refused() {
+    for deep in [
+        format!("a = {}1{}\n", "[".repeat(20_000), "]".repeat(20_000)),
+        format!("a = {}1{}\n", "{b = ".repeat(20_000), "}".repeat(20_000)),
+        format!("{}a = 1\n", "b.".repeat(20_000)),
+        format!("[{}a]\n", "b.".repeat(20_000)),
+    ] {
+        refused(
+            &[("session.toml", &format!("{MANIFEST}{deep}")), ("touches.csv", TOUCHES)],
+            &["levels deep"],
+        );
+    }
 }
 
 #[test]

@@ -7,6 +7,7 @@
 pub mod calibrate;
 pub mod calibration_file;
 pub mod chessboard;
+mod cv_words;
 pub mod depth;
 pub mod detect;
 pub mod detect_places;

@@ -7,7 +7,7 @@ use plumbline_model::aim::AimedPair;
 use plumbline_model::{Eye, Pixel, Rectified};
 use rayon::prelude::*;
 
-use crate::mat;
+use crate::{cv_words, mat};
 
 /// The same thing of both eyes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +56,7 @@ pub enum RectifyError {
         eye: Eye,
     },
     /// OpenCV refused.
-    #[error("OpenCV could not rectify the image: {0}")]
+    #[error("the image could not be rectified: {}", cv_words::words(.0))]
     OpenCv(#[from] opencv::Error),
 }
 

@@ -87,7 +87,7 @@ fn labeled_objects_of_real_pairs_are_paired_and_lie_on_one_table() {
     }
     let middle = on_table.iter().sum::<Vector3<f64>>() / on_table.len() as f64;
     let scatter: Matrix3<f64> = on_table.iter().map(|p| (p - middle) * (p - middle).transpose()).sum();
-    let plane = scatter.symmetric_eigen();
+    let plane = plumbline_model::decompose::symmetric_eigen(scatter).expect("finite");
     let rms_m = (plane.eigenvalues.min().max(0.0) / on_table.len() as f64).sqrt();
     sigmas.sort_by(f64::total_cmp);
     off_line_px.sort_by(f64::total_cmp);

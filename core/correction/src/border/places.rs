@@ -1,6 +1,7 @@
 //! Places that were touched: repeats merged, their spacing, outliers left out.
 
 use nalgebra::{Matrix2, Vector2};
+use plumbline_model::decompose;
 
 use super::BorderError;
 
@@ -43,8 +44,9 @@ fn covariance(points: &[Vector2<f64>]) -> Matrix2<f64> {
 }
 
 fn is_line(points: &[Vector2<f64>]) -> bool {
-    let variances = covariance(points).symmetric_eigenvalues();
-    variances.min().max(0.0).sqrt() <= LINE_SHARE * variances.max().sqrt()
+    // What cannot be taken apart has no area that anything could be told of.
+    decompose::symmetric_eigenvalues(covariance(points))
+        .is_none_or(|variances| variances.min().max(0.0).sqrt() <= LINE_SHARE * variances.max().sqrt())
 }
 
 /// One place for repeats, whatever the order of the points.

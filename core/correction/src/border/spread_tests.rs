@@ -80,7 +80,7 @@ fn monomials(pixel: Pixel<Screen>, degree: i32) -> Vec<f64> {
 fn fitted(pixels: &[Pixel<Screen>], sent: &[[f64; 3]], degree: i32) -> [DVector<f64>; 3] {
     let rows: Vec<Vec<f64>> = pixels.iter().map(|&pixel| monomials(pixel, degree)).collect();
     let matrix = DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j]);
-    let svd = matrix.svd(true, true);
+    let svd = plumbline_model::decompose::svd(matrix, true, true).expect("finite");
     std::array::from_fn(|axis| {
         let right = DVector::from_fn(sent.len(), |i, _| sent[i][axis]);
         svd.solve(&right, 1e-12).expect("both factors were computed")

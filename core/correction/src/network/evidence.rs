@@ -7,6 +7,7 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 use plumbline_model::JobContext;
+use plumbline_model::decompose;
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
@@ -75,14 +76,14 @@ pub fn fit_evidence(
     let mut objective = fit.objective(&row_weights, &draw);
     for _ in 0..ROUNDS {
         job.checkpoint()?;
-        objective.estimate_precision(&draw, &fit.output.sd);
+        objective.estimate_precision(&draw, &fit.output.sd)?;
         let layer = objective.evaluate(&draw).ok_or(FitError::Diverged { iteration: 0 })?;
         row_weights = fit.row_weights(&fit.residuals(&objective, &layer)?);
         let precision = objective.precision.clone();
         objective = fit.objective(&row_weights, &draw);
         objective.precision = precision;
     }
-    objective.estimate_precision(&draw, &fit.output.sd);
+    objective.estimate_precision(&draw, &fit.output.sd)?;
     let evaluate = |place: DMatrix<f64>| {
         let layer = objective.evaluate(&place)?;
         Some(At { value: layer.value, gradient: layer.gradient.clone(), place, evaluation: layer })
@@ -197,11 +198,12 @@ impl Objective<'_> {
     /// Estimates the precisions for a hidden layer: those under which the outputs are likeliest.
     /// x and y share the precision of their weights, in meters: the same table bends both. `unit_m`
     /// is the size of a scaled output.
-    fn estimate_precision(&mut self, hidden: &DMatrix<f64>, unit_m: &[f64]) {
+    fn estimate_precision(&mut self, hidden: &DMatrix<f64>, unit_m: &[f64]) -> Result<(), FitError> {
         let (_, features) = self.features(hidden);
         let bent = self.bent(&features);
         let transposed = bent.transpose();
-        let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(&transposed * &bent);
+        let SymmetricEigen { eigenvalues, eigenvectors } =
+            decompose::symmetric_eigen(&transposed * &bent).ok_or(FitError::Diverged { iteration: 0 })?;
         let along = eigenvectors.transpose() * (&transposed * &self.bend);
         let largest = eigenvalues.max().max(f64::MIN_POSITIVE);
         let (rows, least) = (bent.nrows() as f64, LEAST_RIDGE * largest);
@@ -229,6 +231,7 @@ impl Objective<'_> {
             noise: outputs.iter().map(|output| output.noise).collect(),
             weights: outputs.iter().map(|output| output.ridge * output.noise).collect(),
         };
+        Ok(())
     }
 }
 

@@ -21,4 +21,5 @@ const OUTPUT: &str = "sent_m";
 /// Keys of the metadata.
 const HEIGHTS: &str = "plumbline_heights";
 const TRUST: &str = "plumbline_trust";
+const SELF_TEST: &str = "plumbline_self_test";
 const METHOD: &str = "plumbline_method";

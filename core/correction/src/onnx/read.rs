@@ -6,12 +6,13 @@ use std::path::Path;
 use prost::Message;
 
 use super::proto::{Attribute, Graph, Model, Node, Tensor};
-use super::{HEIGHTS, TRUST};
+use super::{HEIGHTS, SELF_TEST, TRUST};
 use crate::file::bytes;
 use crate::file_error::FileError;
 use crate::model::CorrectionModel;
 use crate::network::{Activation, Ensemble, Network, Scaling};
 use crate::published::{normalization_of, normalize_as_published};
+use crate::self_test::{Answer, ROUNDED_M};
 
 impl CorrectionModel {
     /// Reads a network with one hidden layer, or an average of such networks, from ONNX: Gemm or
@@ -50,6 +51,9 @@ impl CorrectionModel {
         let mut imported = Self::imported(file, network, heights, remarks)?;
         imported.trust = trust.map_err(|error| FileError::damaged(file, error))?;
         imported.sound(file)?;
+        let kept = own(SELF_TEST).map(|text| serde_json::from_str::<Vec<Answer>>(text)).transpose();
+        let kept = kept.map_err(|error| FileError::damaged(file, error))?.unwrap_or_default();
+        imported.check_answers(file, &kept, ROUNDED_M)?;
         imported.provenance.software =
             format!("{} {}", model.producer_name, model.producer_version).trim().to_owned();
         Ok(imported)

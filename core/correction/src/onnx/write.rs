@@ -7,7 +7,7 @@ use prost::Message;
 use super::proto::{
     Dimension, Entry, FLOAT, Graph, Model, Node, OperatorSet, Shape, Tensor, TensorType, Type, ValueInfo,
 };
-use super::{HEIGHTS, INPUT, METHOD, OUTPUT, TRUST};
+use super::{HEIGHTS, INPUT, METHOD, OUTPUT, SELF_TEST, TRUST};
 use crate::file::replace;
 use crate::file_error::FileError;
 use crate::model::{CorrectionModel, Parts};
@@ -35,6 +35,7 @@ impl CorrectionModel {
         if let Some(trust) = &self.trust {
             metadata.push(entry(TRUST, text(serde_json::to_string(trust))?));
         }
+        metadata.push(entry(SELF_TEST, text(serde_json::to_string(&self.answers()))?));
         let model = Model {
             ir_version: IR_VERSION,
             producer_name: "plumbline".to_owned(),

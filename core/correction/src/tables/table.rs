@@ -1,5 +1,6 @@
 //! Points of a table, and changing them.
 
+use plumbline_model::plausible::{self, Quantity};
 use serde::{Deserialize, Serialize};
 
 use super::TableError;
@@ -113,7 +114,20 @@ impl<N: Node> Table<N> {
 pub(super) fn check_finite<N: Node>(point: &N) -> Result<(), TableError> {
     match point.numbers().iter().position(|number| !number.is_finite()) {
         Some(k) => Err(TableError::NotFinite { column: N::COLUMNS[k] }),
-        None => Ok(()),
+        None => N::COLUMNS.iter().zip(point.numbers()).try_for_each(|(&column, number)| {
+            let wrong = |what| TableError::ImplausiblePoint { column, what: Box::new(what) };
+            quantity(column).map_or(Ok(()), |quantity| quantity.check(number)).map_err(wrong)
+        }),
+    }
+}
+
+/// What a column of a table holds.
+pub(super) fn quantity(column: &str) -> Option<Quantity> {
+    match column {
+        "x_m" | "y_m" => Some(plausible::TARGET_M),
+        "z_m" | "height_m" => Some(plausible::GRASP_HEIGHT_M),
+        "yaw_rad" => Some(plausible::ANGLE_RAD),
+        _ => None,
     }
 }
 

@@ -311,6 +311,14 @@ fn bad_files_are_refused_with_file_line_and_column() {
             "a table of 3 points cannot be interpolated: it needs at least 4",
         ),
         (String::new(), "line 1: the columns are \"\""),
+        (
+            good.replace("0.2,0.3,0.1", "200,0.3,0.1"),
+            "heights.csv, line 4, column x_m: 200 m cannot be a coordinate of a point sent to the arm",
+        ),
+        (
+            good.replace("0.2,0.3,0.1", "0.2,0.3,35"),
+            "it looks like millimeters or centimeters, where meters belong",
+        ),
     ] {
         let message = refused(&text);
         assert!(message.contains(words), "{message}");

@@ -1,6 +1,6 @@
 //! From sessions to rows.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::Point3;
 use plumbline_model::Session;
@@ -63,6 +63,11 @@ struct Reader<'a> {
     cells: HashMap<String, usize>,
 }
 
+/// Refuses a row with a number that cannot be.
+fn can_be(implausible: &BTreeMap<usize, String>, row: usize) -> Result<(), String> {
+    implausible.get(&row).map_or(Ok(()), |what| Err(format!("{what} (this row only)")))
+}
+
 /// The arm of a session and where its joints are in the session's columns.
 struct Columns {
     order: Vec<usize>,
@@ -116,20 +121,22 @@ impl Reader<'_> {
         self.apparatuses.push(apparatus);
         if let Some(table) = &session.touches {
             for (i, row) in table.rows().enumerate() {
-                let read = self.touch(number, i, &row, &columns, session);
+                let read = can_be(table.implausible(), i)
+                    .and_then(|()| self.touch(number, i, &row, &columns, session));
                 self.take(number, What::Touch, i, read);
             }
         }
         if let Some(table) = &session.poses {
             for (i, row) in table.rows().enumerate() {
-                let read = self.pose(number, i, &row, &columns);
+                let read = can_be(table.implausible(), i).and_then(|()| self.pose(number, i, &row, &columns));
                 self.take(number, What::Pose, i, read);
             }
         }
         if let Some(table) = &session.localizations {
             let head = table.head_joints().to_vec();
             for (i, row) in table.rows().enumerate() {
-                let read = self.localization(number, i, &row, &head);
+                let read =
+                    can_be(table.implausible(), i).and_then(|()| self.localization(number, i, &row, &head));
                 self.take(number, What::Place, i, read);
             }
         }
@@ -160,6 +167,17 @@ impl Reader<'_> {
     ) -> Result<Observation, String> {
         let screen = of.manifest.touchscreen.as_ref().ok_or("no touchscreen")?;
         let pixel = touch.touch.ok_or("no pixel was touched")?;
+        // A panel errs near its border, but not by its own size.
+        let beside = |at_px: f64, count: u32| {
+            let count = f64::from(count);
+            !(-count..=2.0 * count).contains(&at_px)
+        };
+        if beside(pixel.u_px, screen.width_px) || beside(pixel.v_px, screen.height_px) {
+            return Err(format!(
+                "the touch lies far beside the screen of {} × {} px",
+                screen.width_px, screen.height_px
+            ));
+        }
         let commanded_rad = columns.of(&touch.commanded_rad);
         let encoder_rad = columns.of(&touch.encoder_rad);
         let angles = encoder_rad.as_ref().or(commanded_rad.as_ref()).ok_or("an angle is missing")?;

@@ -82,3 +82,22 @@ fn no_session_is_said_so() {
     let error = Measurements::of_sessions(&[], &rig).expect_err("nothing given");
     assert_eq!(error, MeasurementsError::NoSession);
 }
+
+#[test]
+fn rows_that_cannot_be_are_left_out_by_name() {
+    let rig = Rig::built_in("nico").expect("comes along");
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("written");
+    write("session.toml", "format = 1\nrig = \"nico\"\nstarted = 2026-01-01T00:00:00Z\n");
+    let mut text = "true_x_m,true_y_m,true_z_m,est_x_m,est_y_m,est_z_m\n".to_owned();
+    for i in 0..8 {
+        let x_m = if i == 2 { "-1e308".to_owned() } else { format!("0.{i}2") };
+        text += &format!("0.3,0.1,0.05,{x_m},0.1,0.05\n");
+    }
+    write("localizations.csv", &text);
+    let session = Session::read(folder.path()).expect("one row only");
+    let measurements = Measurements::of_sessions(&[("made up".to_owned(), session)], &rig).expect("usable");
+    let out = measurements.left_out.iter().find(|out| out.row == 2).expect("left out");
+    assert!(out.why.contains("line 4, column est_x_m: -1.000e308 m cannot be"), "{}", out.why);
+    assert!(measurements.rows.iter().all(|row| row.row != 2));
+}

@@ -1,6 +1,7 @@
 //! What would bring more, tried out on a copy of the plan.
 
 use nalgebra::{DMatrix, DVector, Vector3};
+use plumbline_model::decompose;
 use plumbline_model::robot::Rig;
 use serde::{Deserialize, Serialize};
 
@@ -139,7 +140,7 @@ impl Scene<'_> {
             if error.norm() < REACHED_M {
                 break;
             }
-            let inverse = self.jacobian(angles.as_slice()).pseudo_inverse(1e-3).ok()?;
+            let inverse = decompose::pseudo_inverse(self.jacobian(angles.as_slice()), 1e-3)?;
             let step = inverse * DVector::from_column_slice(error.as_slice());
             // A long step leaves the range in which the arm is nearly linear.
             angles += &step * (0.5 / step.amax()).min(1.0);
@@ -155,7 +156,7 @@ impl Scene<'_> {
     /// Angles with the tip nearly in place and joints turned as far as they then can.
     fn aside(&self, angles_rad: &[f64], sign: f64) -> Option<Vec<f64>> {
         let jacobian = self.jacobian(angles_rad);
-        let inverse = jacobian.clone().pseudo_inverse(1e-3).ok()?;
+        let inverse = decompose::pseudo_inverse(jacobian.clone(), 1e-3)?;
         let free = DMatrix::identity(self.arm.len(), self.arm.len()) - inverse * jacobian;
         let best =
             (0..free.ncols()).max_by(|a, b| free.column(*a).norm().total_cmp(&free.column(*b).norm()))?;

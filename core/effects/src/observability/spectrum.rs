@@ -2,7 +2,8 @@
 
 use std::ops::AddAssign;
 
-use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use plumbline_model::decompose;
 use rayon::prelude::*;
 
 use super::tangent::{ContactTangent, STEP};
@@ -82,11 +83,14 @@ impl Information {
 
     /// Frees the screen's place and takes the rest apart.
     pub fn spectrum(&self) -> Spectrum {
-        let solved = self.gauge.clone().pseudo_inverse(1e-9 * self.gauge.amax()).unwrap_or_default();
+        let solved = decompose::pseudo_inverse(self.gauge.clone(), 1e-9 * self.gauge.amax());
+        let solved = solved.unwrap_or_else(|| DMatrix::zeros(self.gauge.ncols(), self.gauge.nrows()));
         let touches = &self.effects - &self.mixed * solved * self.mixed.transpose();
         let touches = 0.5 * (&touches + touches.transpose());
-        let eigenvalues = SymmetricEigen::new(touches.clone()).eigenvalues;
-        let mut singular: Vec<f64> = eigenvalues.iter().map(|value| value.max(0.0).sqrt()).collect();
+        // What cannot be taken apart tells nothing.
+        let eigenvalues = decompose::symmetric_eigenvalues(touches.clone());
+        let mut singular: Vec<f64> =
+            eigenvalues.iter().flat_map(|values| values.iter()).map(|value| value.max(0.0).sqrt()).collect();
         singular.sort_by(|a, b| b.total_cmp(a));
         let with_encoders = &touches + DMatrix::from_diagonal(&self.encoders);
         Spectrum { singular, all: with_encoders, starts: self.starts.clone() }
@@ -178,7 +182,7 @@ impl Spectrum {
         let (start, end) = (self.starts[a], self.starts[b]);
         let (rows, columns) = (self.starts[a + 1] - start, self.starts[b + 1] - end);
         let cosines = white_a.tr_mul(&self.all.view((start, end), (rows, columns))) * white_b;
-        cosines.singular_values().min()
+        decompose::singular_values(cosines).map_or(0.0, |values| values.min())
     }
 
     /// Columns that make the parameters of an effect independent and of unit size; directions
@@ -186,7 +190,7 @@ impl Spectrum {
     fn whitener(&self, effect: usize) -> Option<DMatrix<f64>> {
         let (start, end) = (self.starts[effect], self.starts[effect + 1]);
         let block = self.all.view((start, start), (end - start, end - start)).into_owned();
-        let eigen = SymmetricEigen::new(block);
+        let eigen = decompose::symmetric_eigen(block)?;
         let columns: Vec<DVector<f64>> = eigen
             .eigenvalues
             .iter()

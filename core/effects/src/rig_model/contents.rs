@@ -2,6 +2,7 @@
 
 use jiff::Timestamp;
 use nalgebra::Isometry3;
+use plumbline_model::plausible;
 use plumbline_model::robot::{DescriptionError, Rig};
 use plumbline_model::session::Touchscreen;
 use serde::{Deserialize, Serialize};
@@ -14,6 +15,16 @@ use crate::library::{Effect, Kind};
 
 /// How far a screen may lie from another one and still be the same, m.
 const SAME_SCREEN_M: f64 = 1e-6;
+
+/// No effect is so many times its usual size.
+const MOST_TYPICAL: f64 = 100.0;
+
+/// Refuses a screen that cannot be.
+fn usable_screen(screen: &Touchscreen) -> Result<(), String> {
+    let sides = plausible::SCREEN_SIDE_M.check_all(&[screen.width_m, screen.height_m]);
+    let checked = sides.and_then(|()| plausible::SCREEN_PLACE_M.check_all(screen.origin.coords.iter()));
+    checked.map_err(|what| format!("one of its touchscreens cannot be: {what}"))
+}
 
 /// What is in force.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -301,6 +312,25 @@ impl Contents {
             if let Some(number) = numbers.chain(reported).find(|number| !number.is_finite()) {
                 return Err(format!("its effect {name} holds {number}"));
             }
+            for (value, parameter) in effect.values.iter().zip(known.parameters()) {
+                let most = MOST_TYPICAL * parameter.typical;
+                if value.abs() > most {
+                    return Err(format!(
+                        "its effect {name} has {} = {value:.4e}, where robots have about ±{} and none has more than \
+                         {most}: a number was changed or damaged; search the gap and write the file again",
+                        parameter.name, parameter.typical
+                    ));
+                }
+            }
+        }
+        for placed in &self.screens {
+            [&placed.nominal, &placed.screen].into_iter().try_for_each(usable_screen)?;
+        }
+        for placed in &self.externals {
+            let at_m = placed.external_from_robot.translation.vector;
+            plausible::EXTERNAL_M
+                .check_all(at_m.iter())
+                .map_err(|what| format!("the frame of the session {} cannot be: {what}", placed.session))?;
         }
         Ok(())
     }

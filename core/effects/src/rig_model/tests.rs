@@ -170,6 +170,9 @@ fn files_that_are_none_are_refused_with_words() {
         (good.replace("r_elbow_y", "r_elbow_q"), "search the gap again"),
         (good.replace("values = [0.031]", "values = []"), "0 values instead of 1"),
         (good.replace("values = [0.031]", "values = [inf]"), "holds inf"),
+        (good.replace("values = [0.031]", "values = [31.0]"), "where robots have about"),
+        (good.replace("width_m = 0.475", "width_m = 475.0"), "it looks like millimeters"),
+        (good.replace("rig = \"nico\"", &format!("a = {}", "[".repeat(20_000))), "levels deep"),
         (good.replace("quaternion_xyzw = [", "quaternion_xyzw = [3.0, 0.0, 0.0, 0.0] #"), "length 1"),
         (good.replace("width_px = 1920", "width_px = 0"), "no size"),
         (good[..good.len() / 2].to_owned(), "is no model with effects"),
@@ -185,5 +188,5 @@ fn files_that_are_none_are_refused_with_words() {
     std::fs::write(&file, [0xff, 0xfe, 0x00]).expect("written");
     assert!(RigModel::read(&file, &rig).expect_err("no text").to_string().contains("no text"));
     let missing = RigModel::read(&folder.path().join("none.toml"), &rig).expect_err("missing");
-    assert!(missing.to_string().contains("check that it is there"), "{missing}");
+    assert!(missing.to_string().contains("check that the file exists"), "{missing}");
 }

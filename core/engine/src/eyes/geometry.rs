@@ -1,6 +1,7 @@
 //! How surely two pixels say where a point is.
 
 use nalgebra::{Matrix3, Matrix3x2, Vector3};
+use plumbline_model::decompose;
 use plumbline_model::{Eye, LeftCamera, ParameterCovariance, Pixel, Point, Raw, StereoCameras};
 use plumbline_vision::locate::from_calibration;
 
@@ -47,7 +48,7 @@ pub fn point_sigma_m(
     if let Some(covariance) = covariance {
         sum += from_calibration(cameras, covariance, pixels[0], pixels[1])?;
     }
-    let largest = sum.symmetric_eigenvalues().max();
+    let largest = decompose::symmetric_eigenvalues(sum)?.max();
     (largest.is_finite() && largest >= 0.0).then(|| largest.sqrt())
 }
 
@@ -106,7 +107,7 @@ mod tests {
             let error = cameras.triangulate(noisy[0], noisy[1]).expect("in front").coords - point.coords;
             sum += error * error.transpose() / 16.0;
         }
-        let spread_m = sum.symmetric_eigenvalues().max().sqrt();
+        let spread_m = decompose::symmetric_eigenvalues(sum).expect("finite").max().sqrt();
         assert!((predicted_m / spread_m - 1.0).abs() < 0.02, "{predicted_m} against {spread_m}");
     }
 

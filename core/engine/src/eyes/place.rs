@@ -6,6 +6,7 @@
 //! columns and the translation are read off (Zhang 2000, section 3.1).
 
 use nalgebra::{DMatrix, Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use plumbline_model::decompose;
 use plumbline_model::frame::{Board, LeftCamera, RightCamera};
 use plumbline_model::{
     Camera, CameraModel, Chessboard, Corners, Fisheye, ModelKind, Pinhole, Point, Pose, StereoCameras,
@@ -125,7 +126,7 @@ fn homography(
             rows[(2 * i + 1, 6 + j)] = -y * value;
         }
     }
-    let eigen = (rows.transpose() * &rows).symmetric_eigen();
+    let eigen = decompose::symmetric_eigen(rows.transpose() * &rows)?;
     let smallest = eigen.eigenvalues.imin();
     let h = eigen.eigenvectors.column(smallest);
     let normalized = Matrix3::new(h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8]);
@@ -154,7 +155,7 @@ fn pose_of(homography: &Matrix3<f64>) -> Option<Isometry3<f64>> {
     // A board is in front of the lens.
     let scale = if h3.z < 0.0 { -1.0 / length } else { 1.0 / length };
     let (r1, r2) = (h1 * scale, h2 * scale);
-    let svd = Matrix3::from_columns(&[r1, r2, r1.cross(&r2)]).svd(true, true);
+    let svd = decompose::svd(Matrix3::from_columns(&[r1, r2, r1.cross(&r2)]), true, true)?;
     let rotation = svd.u? * svd.v_t?;
     if rotation.determinant() < 0.0 {
         return None;

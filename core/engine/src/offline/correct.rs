@@ -1,6 +1,6 @@
 //! `plumbline correct`: which point must be sent so that the fingertip lands on a pixel.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use plumbline_correction::CorrectionModel;
 use plumbline_model::session::Screen;
@@ -65,6 +65,7 @@ pub fn correct(args: &CorrectArgs, context: &dyn JobContext) -> Result<CorrectRe
     context.checkpoint()?;
     let model = files::read_any(&args.model)?;
     let table = Table::read(&args.points, &["u_px", "v_px"], &[], NEEDS)?;
+    near_the_screen(&model, &table, &args.points)?;
     let known = |sd_m: f64| sd_m.is_finite().then_some(sd_m);
     let point = |row: &Vec<f64>| {
         let answer = model.correct(Pixel::new(row[0], row[1]));
@@ -88,6 +89,31 @@ pub fn correct(args: &CorrectArgs, context: &dyn JobContext) -> Result<CorrectRe
     let mut remarks = model.provenance().remarks.clone();
     remarks.extend(off_screen(&model, &points));
     Ok(CorrectReport { model: model.method().name().to_lowercase(), points, remarks })
+}
+
+/// Refuses pixels that lie farther beside the screen of the model than the screen is large: there the
+/// model's answer says nothing.
+fn near_the_screen(model: &CorrectionModel, table: &Table, file: &Path) -> Result<(), OfflineError> {
+    let options = model.provenance().options.as_ref();
+    let Some(screen) = options.and_then(|options| options.screen.as_ref()) else { return Ok(()) };
+    let beside = |at_px: f64, count: u32| !(-f64::from(count)..=2.0 * f64::from(count)).contains(&at_px);
+    let wild = |row: &Vec<f64>| beside(row[0], screen.width_px) || beside(row[1], screen.height_px);
+    match table.rows().iter().position(wild) {
+        None => Ok(()),
+        Some(row) => Err(OfflineError::Table {
+            file: file.to_owned(),
+            line: row + 2,
+            reason: format!(
+                "the pixel ({}, {}) lies farther beside the touchscreen of {} × {} px that the model was trained on \
+                 than the screen is large",
+                table.rows()[row][0],
+                table.rows()[row][1],
+                screen.width_px,
+                screen.height_px
+            ),
+            needs: NEEDS,
+        }),
+    }
 }
 
 /// What to say when pixels are not on the screen that the model was trained on: its size, since the

@@ -9,6 +9,7 @@ use nalgebra::{
 use plumbline_effects::Assumed;
 use plumbline_effects::measurements::{Measurements, What};
 use plumbline_model::JobContext;
+use plumbline_model::decompose;
 use rayon::prelude::*;
 
 use super::statistics::robust_sd;
@@ -95,7 +96,7 @@ fn kabsch(pairs: &[(Vector3<f64>, Vector3<f64>)]) -> Option<Isometry3<f64>> {
     let from = pairs.iter().map(|(from, _)| from).sum::<Vector3<f64>>() / count;
     let to = pairs.iter().map(|(_, to)| to).sum::<Vector3<f64>>() / count;
     let spread: Matrix3<f64> = pairs.iter().map(|(a, b)| (b - to) * (a - from).transpose()).sum();
-    let svd = spread.svd(true, true);
+    let svd = decompose::svd(spread, true, true)?;
     let (u, v_t) = (svd.u?, svd.v_t?);
     let mirror = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, (u * v_t).determinant().signum()));
     let turn = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(u * mirror * v_t));

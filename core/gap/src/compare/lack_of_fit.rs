@@ -10,6 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use plumbline_effects::Assumed;
 use plumbline_effects::measurements::{Measurements, What};
 use plumbline_model::JobContext;
+use plumbline_model::decompose;
 use rand::rngs::StdRng;
 use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
@@ -166,7 +167,9 @@ impl Projector {
         if columns.ncols() == 0 || columns.nrows() == 0 {
             return Self(DMatrix::zeros(columns.nrows(), 0));
         }
-        let eigen = (columns.transpose() * &columns).symmetric_eigen();
+        let Some(eigen) = decompose::symmetric_eigen(columns.transpose() * &columns) else {
+            return Self(DMatrix::zeros(columns.nrows(), 0));
+        };
         let kept: Vec<DVector<f64>> = (0..eigen.eigenvalues.len())
             .filter(|&k| eigen.eigenvalues[k] > 1e-8)
             .map(|k| &columns * eigen.eigenvectors.column(k) / eigen.eigenvalues[k].sqrt())
@@ -346,7 +349,9 @@ fn columns(covariates: &Covariates, rows: &[usize], most: usize) -> DMatrix<f64>
         return DMatrix::zeros(count, 0);
     }
     let matrix = DMatrix::from_columns(&linear);
-    let eigen = (matrix.transpose() * &matrix).symmetric_eigen();
+    let Some(eigen) = decompose::symmetric_eigen(matrix.transpose() * &matrix) else {
+        return DMatrix::zeros(count, 0);
+    };
     let mut order: Vec<usize> = (0..linear.len()).collect();
     order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
     let directions: Vec<DVector<f64>> = order

@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use plumbline_effects::measurements::{Measurements, Observation, What};
+use plumbline_model::decompose;
 use rayon::prelude::*;
 
 /// An arm's reach: what a rad of a joint moves, roughly, m.
@@ -121,7 +122,10 @@ fn principal(centered: DMatrix<f64>) -> DMatrix<f64> {
     if centered.nrows() < 2 || centered.ncols() == 0 {
         return DMatrix::zeros(centered.nrows(), 0);
     }
-    let eigen = (centered.transpose() * &centered / centered.nrows() as f64).symmetric_eigen();
+    let spread = centered.transpose() * &centered / centered.nrows() as f64;
+    let Some(eigen) = decompose::symmetric_eigen(spread) else {
+        return DMatrix::zeros(centered.nrows(), 0);
+    };
     let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
     order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
     let widest = eigen.eigenvalues[order[0]].max(0.0).sqrt();

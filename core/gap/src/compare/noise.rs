@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
 use plumbline_effects::measurements::{Measurements, Unit, What};
+use plumbline_model::decompose;
 
 use super::drift::{Deviation, Drift, drift};
 use super::neighbors::Points;
@@ -210,7 +211,7 @@ fn near_neighbors(measurements: &Measurements, residuals: &[Option<Vec<f64>>], w
             if c == 0 { 1.0 } else { points.at[(around[k], c - 1)] - points.at[(i, c - 1)] }
         });
         // The value of the plane here is its constant: weights are the first row of its inverse.
-        let Ok(inverse) = plane.pseudo_inverse(1e-9) else { continue };
+        let Some(inverse) = decompose::pseudo_inverse(plane, 1e-9) else { continue };
         let weights = inverse.row(0);
         let inflate = (1.0 + weights.norm_squared()).sqrt();
         for (c, spread) in spread.iter_mut().enumerate() {
@@ -239,11 +240,12 @@ fn less_fit(columns: &DMatrix<f64>, values: DMatrix<f64>) -> DMatrix<f64> {
             .map(|column| column / column.norm().max(1e-300))
             .collect::<Vec<DVector<f64>>>(),
     );
-    match scaled.clone().svd(true, true).solve(&values, 1e-9) {
-        Ok(fit) => {
+    let fit = decompose::svd(scaled.clone(), true, true).and_then(|svd| svd.solve(&values, 1e-9).ok());
+    match fit {
+        Some(fit) => {
             let free = (columns.nrows() - columns.ncols()) as f64 / columns.nrows() as f64;
             (values - scaled * fit) / free.sqrt()
         }
-        Err(_) => values,
+        None => values,
     }
 }

@@ -5,6 +5,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use plumbline_effects::measurements::{Measurements, Observation, What};
 use plumbline_effects::{Assumed, EyesDeviation};
 use plumbline_model::JobContext;
+use plumbline_model::decompose;
 
 use super::frames;
 use super::statistics::{median, robust_sd};
@@ -24,6 +25,8 @@ const THIN: f64 = 0.15;
 /// Frames placed, a model of the right unit is not off by more, m. Below it no unit is suspected
 /// of angles that are possible in both.
 const GROSS_M: f64 = 0.04;
+/// What is off by more than this, frames placed and in whatever unit, is another robot, m.
+const ANOTHER_ROBOT_M: f64 = 0.3;
 /// The right unit makes residuals smaller at least by this.
 const CLEARLY: f64 = 5.0;
 
@@ -219,7 +222,7 @@ fn gradient(predicted: &[Vec<f64>], measured: &[f64]) -> Option<f64> {
         let root = |i: usize| weights[i].sqrt();
         let columns = DMatrix::from_fn(count, 3, |i, c| root(i) * (predicted[i][c] - middle[c]));
         let values = DVector::from_fn(count, |i, _| root(i) * (measured[i] - level));
-        let svd = columns.svd(true, true);
+        let svd = decompose::svd(columns, true, true)?;
         // Touches lie on a plane: across it the prediction says nothing.
         let thin = THIN * svd.singular_values.max();
         let solution = svd.solve(&values, thin).ok()?;
@@ -277,6 +280,10 @@ fn angles_by_fit(
                 ));
             }
         }
+    }
+    if off > ANOTHER_ROBOT_M {
+        let session = measurements.apparatuses[session].title.clone();
+        return Err(GapError::AnotherRobot { session, off_m: off });
     }
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 use plumbline_effects::arm::{Arm, Deviation};
+use plumbline_model::decompose;
 
 /// A pose found for a place must reach it within this, m.
 const REACHED_M: f64 = 1e-4;
@@ -22,7 +23,7 @@ pub(super) fn moved(arm: &Arm, from: &[f64], by: Vector3<f64>) -> Option<Vec<f64
 /// Angles with the tip in place and the joints that are free turned one way or the other.
 pub(super) fn other_posture(arm: &Arm, from: &[f64], sign: f64) -> Option<Vec<f64>> {
     let jacobian = jacobian(arm, from);
-    let inverse = jacobian.clone().pseudo_inverse(DAMPING).ok()?;
+    let inverse = decompose::pseudo_inverse(jacobian.clone(), DAMPING)?;
     let free = DMatrix::identity(arm.len(), arm.len()) - inverse * jacobian;
     let best = (0..free.ncols()).max_by(|a, b| free.column(*a).norm().total_cmp(&free.column(*b).norm()))?;
     let turn = free.column(best).clone_owned();
@@ -39,7 +40,7 @@ pub(super) fn other_posture(arm: &Arm, from: &[f64], sign: f64) -> Option<Vec<f6
 
 /// Direction of motion of each joint (−1, 0, 1) when the tip moves along `way`.
 pub(super) fn directions(arm: &Arm, angles: &[f64], way: &Vector3<f64>) -> Option<Vec<f64>> {
-    let inverse = jacobian(arm, angles).pseudo_inverse(DAMPING).ok()?;
+    let inverse = decompose::pseudo_inverse(jacobian(arm, angles), DAMPING)?;
     let speed = inverse * DVector::from_column_slice(way.as_slice());
     let fastest = speed.amax();
     (fastest > 0.0)
@@ -55,7 +56,7 @@ fn reach(arm: &Arm, from: &[f64], start: &[f64], by: Vector3<f64>) -> Option<Vec
         if error.norm() < REACHED_M {
             break;
         }
-        let inverse = jacobian(arm, angles.as_slice()).pseudo_inverse(DAMPING).ok()?;
+        let inverse = decompose::pseudo_inverse(jacobian(arm, angles.as_slice()), DAMPING)?;
         let step = inverse * DVector::from_column_slice(error.as_slice());
         angles += &step * (0.5 / step.amax()).min(1.0);
     }

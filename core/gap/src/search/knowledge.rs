@@ -1,6 +1,7 @@
 //! What the data can say about every candidate.
 
 use nalgebra::Cholesky;
+use plumbline_model::decompose;
 
 use super::library::Library;
 use super::look::Look;
@@ -111,5 +112,5 @@ fn cosine(look: &Look, one: usize, other: usize) -> f64 {
     let mixed = a(p.columns(), q.columns());
     let Some(half) = left.solve_lower_triangular(&mixed) else { return 0.0 };
     let Some(whole) = right.solve_lower_triangular(&half.transpose()) else { return 0.0 };
-    whole.singular_values().max().min(1.0)
+    decompose::singular_values(whole).map_or(0.0, |values| values.max().min(1.0))
 }

@@ -1,8 +1,9 @@
 //! The error of one row, as an operator would measure it.
 
-use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Point3, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Point3, Vector2, Vector3};
 use plumbline_effects::Assumed;
 use plumbline_effects::measurements::{Measurements, Observation, What};
+use plumbline_model::decompose;
 
 use crate::compare::{nominal_place_m, of_arm};
 use crate::floor::Floor;
@@ -58,7 +59,7 @@ pub(crate) fn inferred_place_m(
     let mut at = nominal_place_m(measurements, row)?;
     for _ in 0..STEPS {
         let (miss, slope) = seen_from(measurements, row, assumed, at)?;
-        let step = slope.svd(true, true).solve(&miss, 1e-12).ok()?;
+        let step = decompose::svd(slope, true, true)?.solve(&miss, 1e-12).ok()?;
         let step = Vector3::new(step[0], step[1], step[2]);
         if !step.iter().all(|value| value.is_finite()) {
             return None;
@@ -113,7 +114,7 @@ pub(crate) fn noise_of(
         }
         What::Place => {
             let (_, slope) = seen_from(measurements, row, assumed, row.truth_m?)?;
-            let back = slope.pseudo_inverse(1e-12).ok()?;
+            let back = decompose::pseudo_inverse(slope, 1e-12)?;
             let noise = DMatrix::from_diagonal(&DVector::from_iterator(3, sd.iter().map(|s| s * s)));
             let spread = &back * noise * back.transpose();
             Some(mean_length_2d(spread.fixed_view::<2, 2>(0, 0).into_owned()))
@@ -123,7 +124,8 @@ pub(crate) fn noise_of(
 
 /// Mean length of a normal vector in the plane: that of a round one, stretched by direction.
 fn mean_length_2d(covariance: Matrix2<f64>) -> f64 {
-    let eigen = SymmetricEigen::new(covariance).eigenvalues;
+    let eigen =
+        decompose::symmetric_eigenvalues(covariance).unwrap_or_else(|| Vector2::repeat(f64::INFINITY));
     let count = 64;
     let sum: f64 = (0..count)
         .map(|k| {
@@ -136,7 +138,8 @@ fn mean_length_2d(covariance: Matrix2<f64>) -> f64 {
 
 /// The same in space.
 fn mean_length_3d(covariance: Matrix3<f64>) -> f64 {
-    let eigen = SymmetricEigen::new(covariance).eigenvalues;
+    let eigen =
+        decompose::symmetric_eigenvalues(covariance).unwrap_or_else(|| Vector3::repeat(f64::INFINITY));
     let count = 400;
     // Evenly over the sphere: the golden angle around, equal steps along the axis.
     let golden = std::f64::consts::PI * (3.0 - 5.0_f64.sqrt());

@@ -1,6 +1,7 @@
 //! Which covariates gave the effects away.
 
 use nalgebra::{DMatrix, DVector, Vector3};
+use plumbline_model::decompose;
 
 use crate::covariates::Covariates;
 
@@ -39,7 +40,7 @@ fn share(covariates: &Covariates, arrows: &[(usize, Vector3<f64>)], c: usize) ->
         let scaled = 2.0 * (known[i].0 - low) / (high - low) - 1.0;
         scaled.powi(i32::try_from(k).unwrap_or(0))
     });
-    let svd = curve.clone().svd(true, true);
+    let svd = decompose::svd(curve.clone(), true, true)?;
     let (mut explained, mut whole) = (0.0, 0.0);
     for axis in 0..3 {
         let values = DVector::from_iterator(count, known.iter().map(|(_, arrow)| arrow[axis]));

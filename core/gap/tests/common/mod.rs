@@ -4,7 +4,7 @@
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use plumbline_effects::measurements::Observation;
-use plumbline_effects::{Assumed, Effect, Measurements, Present};
+use plumbline_effects::{Assumed, Effect, EyesDeviation, Measurements, Present};
 use plumbline_model::Session;
 use plumbline_model::robot::Rig;
 use rand::rngs::StdRng;
@@ -188,13 +188,16 @@ pub fn poses(plan: &Plan, hidden: &[Present], seed: u64) -> Measurements {
 
 /// A grid of places whose estimates are in another unit than meters.
 pub fn places_estimated_in(factor: f64) -> Measurements {
-    let mut text =
-        "true_x_m,true_y_m,true_z_m,est_x_m,est_y_m,est_z_m,head_head_z_rad,head_head_y_rad\n".to_owned();
-    for i in 0..36 {
-        let (x, y) = (0.2 + 0.1 * f64::from(i / 9), -0.4 + 0.1 * f64::from(i % 9));
-        text += &format!("{x},{y},0.05,{},{},{},0,-0.523599\n", x * factor, y * factor, 0.05 * factor);
+    // Files like that are refused when they are read: these rows come from elsewhere.
+    let mut measurements = places(1, &[], 0.0, 1);
+    let eyes = measurements.apparatuses[0].eyes.clone().expect("a robot with eyes");
+    let nominal = EyesDeviation::none(eyes.neck.len());
+    for row in &mut measurements.rows {
+        let robot_from_left = eyes.robot_from_left(&row.neck_rad, &nominal);
+        let estimate = robot_from_left * eyes.place(&row.measured).expect("an estimate");
+        row.measured = eyes.natural(&(robot_from_left.inverse() * (estimate * factor))).to_vec();
     }
-    read("localizations.csv", &text)
+    measurements
 }
 
 /// A grid of places that the eyes estimate, 9 by 4 or more.

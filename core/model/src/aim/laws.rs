@@ -194,6 +194,39 @@ fn a_view_coarser_than_the_lens_is_refused_and_the_size_it_names_works() {
 }
 
 #[test]
+fn views_that_no_memory_holds_are_refused() {
+    let mut eyes = nico();
+    for camera in [&mut eyes.left, &mut eyes.right] {
+        if let crate::camera::CameraModel::Fisheye(lens) = &mut camera.model {
+            (lens.fx_px, lens.fy_px) = (1000.0 * lens.fx_px, 1000.0 * lens.fy_px);
+        }
+    }
+    let workspace = Workspace::default();
+    let Err(AimError::Coarse { needed_width_px, needed_height_px, .. }) =
+        AimedPair::suited(&eyes, &workspace)
+    else {
+        panic!("a lens a thousand times finer does not fit into a usual view");
+    };
+    let too_large = AimedPair::at_workspace(&eyes, &workspace, (needed_width_px, needed_height_px));
+    let said = too_large.expect_err("billions of pixels").to_string();
+    assert!(said.contains("32 million pixels") && said.contains("calibrate again"), "{said}");
+    for camera in [&mut eyes.left, &mut eyes.right] {
+        if let crate::camera::CameraModel::Fisheye(lens) = &mut camera.model {
+            (lens.fx_px, lens.fy_px) = (1e308, 1e308);
+        }
+    }
+    // The size that would be needed has no number: it must not wrap to a small one.
+    assert!(matches!(
+        AimedPair::suited(&eyes, &workspace),
+        Err(AimError::Coarse { needed_width_px: u32::MAX, needed_height_px: u32::MAX, .. })
+    ));
+    assert!(matches!(
+        AimedPair::at_workspace(&eyes, &workspace, (u32::MAX, u32::MAX)),
+        Err(AimError::TooLarge { .. })
+    ));
+}
+
+#[test]
 fn turning_down_moves_the_view_down_and_nothing_else() {
     let level = AimedPair::turned_down(&nico(), 0.0, 1.2, (640, 480)).expect("aimable");
     for down_rad in [-0.4, 0.0, 0.3, 0.8] {

@@ -11,6 +11,7 @@ pub use fisheye::Fisheye;
 pub use pinhole::Pinhole;
 
 use crate::pixel::{Pixel, Raw};
+use crate::plausible::{self, Implausible};
 
 /// Why a point has no pixel, or a pixel no direction.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -191,6 +192,33 @@ impl Camera {
     /// Image size (width, height) in pixels.
     pub fn size_px(&self) -> (u32, u32) {
         (self.width_px, self.height_px)
+    }
+
+    /// Refuses a lens that no camera has: what every reader asks.
+    ///
+    /// # Errors
+    /// With the first number that cannot be.
+    pub fn check_plausible(&self) -> Result<(), Implausible> {
+        let (width, height) = (f64::from(self.width_px), f64::from(self.height_px));
+        plausible::IMAGE_SIDE_PX.check_all(&[width, height])?;
+        let longer = width.max(height);
+        let shares = |quantity: plausible::Quantity, [least, most]: [f64; 2], side: f64| {
+            quantity.within(least * side, most * side, quantity.reason)
+        };
+        let (fx, fy) = self.model.focal_px();
+        shares(plausible::FOCAL_PX, plausible::FOCAL_SHARES, longer).check_all(&[fx, fy])?;
+        let center = self.model.principal_point();
+        shares(plausible::CENTER_PX, plausible::CENTER_SHARES, width).check(center.u_px)?;
+        shares(plausible::CENTER_PX, plausible::CENTER_SHARES, height).check(center.v_px)?;
+        match &self.model {
+            CameraModel::Fisheye(lens) => {
+                shares(plausible::SKEW_PX, [-1.0, 1.0], longer).check(lens.skew_px)?;
+                plausible::FISHEYE_K.check_all(&lens.k)
+            }
+            CameraModel::Pinhole(lens) => {
+                plausible::PINHOLE_K.check_all(&[lens.k1, lens.k2, lens.p1, lens.p2, lens.k3])
+            }
+        }
     }
 
     /// Pixel of a point in the camera's frame, whether or not it falls on the image.

@@ -143,5 +143,5 @@ fn read_camera(camera: &Field<'_>) -> Result<Camera, FormatError> {
     let [width_px, height_px] = sizes[..] else {
         return Err(resolution.wrong_size("2 numbers (width, height)", sizes.len().to_string()));
     };
-    Ok(Camera { model: lens.model()?, width_px, height_px })
+    lens.camera(width_px, height_px)
 }

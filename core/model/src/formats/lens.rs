@@ -10,13 +10,14 @@ use super::error::{FormatError, Place};
 use crate::camera::{Camera, CameraModel, Fisheye, ModelKind, Pinhole};
 use crate::frame::{LeftCamera, Pose, RightCamera};
 use crate::pixel::Eye;
+use crate::plausible;
 use crate::stereo::StereoCameras;
 
 /// Farther apart than this (m) no pair of eyes sits; the file is then in another unit.
-pub const LARGEST_PLAUSIBLE_BASELINE_M: f64 = 1.0;
+pub const LARGEST_PLAUSIBLE_BASELINE_M: f64 = plausible::BASELINE_M.most;
 
 /// Closer together than this (m) two optical centers are one.
-const SMALLEST_BASELINE_M: f64 = 1e-6;
+const SMALLEST_BASELINE_M: f64 = plausible::BASELINE_M.least;
 
 /// Matrices printed with five digits miss being rotations by less than this.
 const ROTATION_TOLERANCE: f64 = 1e-3;
@@ -37,6 +38,20 @@ pub struct LensNumbers {
 }
 
 impl LensNumbers {
+    /// The camera with an image of this size, if the numbers make one.
+    pub fn camera(&self, width_px: u32, height_px: u32) -> Result<Camera, FormatError> {
+        let camera = Camera { model: self.model()?, width_px, height_px };
+        match camera.check_plausible() {
+            Ok(()) => Ok(camera),
+            Err(what) => {
+                let of_coefficients =
+                    [plausible::FISHEYE_K, plausible::PINHOLE_K].iter().any(|k| k.name == what.quantity.name);
+                let place = if of_coefficients { &self.distortion_place } else { &self.matrix_place };
+                Err(FormatError::Implausible { place: place.clone(), what: Box::new(what) })
+            }
+        }
+    }
+
     /// The lens, if the numbers make one.
     pub fn model(&self) -> Result<CameraModel, FormatError> {
         let m = &self.matrix;

@@ -12,6 +12,11 @@ use super::node::{Node, Value};
 
 /// Parses one YAML document.
 pub(crate) fn parse(file: &Path, text: &str) -> Result<Node, FormatError> {
+    super::depth::check(super::depth::of_yaml(text)).map_err(|reason| FormatError::Syntax {
+        place: Place { file: file.to_path_buf(), line: None, key: String::new() },
+        language: "YAML",
+        reason,
+    })?;
     let options = serde_saphyr::options! {
         // Room for thousands of pairs; the defaults stop at a few hundred.
         budget: serde_saphyr::budget! {

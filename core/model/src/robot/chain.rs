@@ -105,6 +105,13 @@ impl Chain {
         self.joints.is_empty()
     }
 
+    /// No posture takes the tip farther than this from the origin of the robot frame, m: the sum of
+    /// all lengths.
+    pub fn farthest_m(&self) -> f64 {
+        let before = self.segments.iter().map(|segment| segment.before.translation.vector.norm());
+        before.sum::<f64>() + self.last.translation.vector.norm()
+    }
+
     /// Place of the tip; one angle (rad) per joint of the chain.
     pub fn robot_from_tip(&self, angles_rad: &[f64]) -> Pose<Robot, Tip> {
         debug_assert_eq!(angles_rad.len(), self.len());

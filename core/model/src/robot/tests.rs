@@ -166,6 +166,13 @@ fn a_broken_rig_is_refused_with_a_sentence() {
         ("baud =", "bauds =", "bauds"),
         ("link = \"right_index_tip\"", "link = \"right_toe\"", "no link called right_toe"),
         ("r_arm_x = ", "r_arm_x = 9.0 # ", "outside of its limits"),
+        ("height_m = 0.267", "height_m = 5.0", "touchscreen: 5 m cannot be a side of the visible area"),
+        ("width_m = 0.475", "width_m = 475.0", "it looks like millimeters, where meters belong"),
+        ("u_axis = [0.0, -1.0, 0.0]", "u_axis = [0.0, -1e308, 0.0]", "cannot be a component of a direction"),
+        ("m = [-0.0699274", "m = [-69.9274", "eyes: 69.9274 m cannot be a distance between the eyes"),
+        ("fx_px = 150.68417", "fx_px = 150684.17", "eyes.left: 150684.17 px cannot be a focal length"),
+        ("hot_c = 70.0", "hot_c = 70000.0", "gate: 70000 °C cannot be a temperature"),
+        ("motor_upper_rad = 1.570796", "motor_upper_rad = 1e308", "cannot be a limit of a joint"),
     ] {
         let message = rig_with(from, to);
         assert!(message.contains(words), "{message}");
@@ -195,6 +202,25 @@ fn a_broken_description_is_refused_with_a_sentence() {
     assert!(change(r#"lower="-1.5707""#, r#"lower="NaN""#).contains("no usable limits"));
     assert!(change(r#"<parent link="torso"/>"#, r#"<parent link="pelvis"/>"#).contains("pelvis"));
     assert!(change(r#"<axis xyz="0 0 1"/>"#, r#"<axis xyz="0 0 0"/>"#).contains("no direction"));
+    for (from, to, words) in [
+        ("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 1e308\"/>", "cannot be a length of a vector"),
+        ("<axis xyz=\"2 1 0\"/>", "<axis xyz=\"2e308 1 0\"/>", "r_thumb_x"),
+        ("<mass value=\"0.090439\"/>", "<mass value=\"-5\"/>", "-5 kg cannot be a mass of a link"),
+        ("xyz=\"0 0 -0.105\"", "xyz=\"0 0 -105\"", "-105 m cannot be a length of a link"),
+        ("rpy=\"0 3.14 0\"", "rpy=\"0 180 0\"", "it looks like degrees, where radians belong"),
+        ("upper=\"1.5707\"", "upper=\"1e308\"", "1.000e308 rad cannot be a limit of a joint"),
+        ("ixx=\"6e-05\"", "ixx=\"1e300\"", "cannot be a moment of inertia"),
+    ] {
+        let message = change(from, to);
+        assert!(message.contains(words), "{message}");
+    }
+    let deep = format!(
+        "<robot name=\"r\">{}{}</robot>",
+        "<link name=\"a\">".repeat(20_000),
+        "</link>".repeat(20_000)
+    );
+    assert!(refused(&deep).contains("it nests 20001 levels deep"), "{}", refused(&deep));
+    assert!(refused(&"<a>".repeat(20_000)).contains("levels deep"));
     assert!(refused("not xml").contains("not valid URDF"));
     assert!(refused("").contains("not valid URDF"));
 }

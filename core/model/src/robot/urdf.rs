@@ -9,6 +9,9 @@ use super::description::{
     Description, Inertia, Joint, JointIndex, JointKind, Limits, Link, LinkIndex, Mimic, Shape, Visual,
 };
 use super::error::DescriptionError as Error;
+use crate::files::told;
+use crate::formats::depth;
+use crate::plausible::{self, Implausible};
 
 impl Description {
     /// Reads the text of a URDF file. Meshes are left out; boxes, balls, cylinders and capsules
@@ -37,6 +40,8 @@ impl Description {
     }
 
     fn from_robot(robot: &urdf_rs::Robot) -> Result<Self, Error> {
+        robot.joints.iter().try_for_each(check_joint)?;
+        robot.links.iter().try_for_each(check_link)?;
         unique("link", robot.links.iter().map(|link| &link.name))?;
         unique("joint", robot.joints.iter().map(|joint| &joint.name))?;
         let order = Order::of(robot)?;
@@ -79,7 +84,50 @@ impl Description {
 }
 
 fn parse(text: &str) -> Result<urdf_rs::Robot, Error> {
-    urdf_rs::read_from_string(text).map_err(|error| Error::NotUrdf { reason: error.to_string() })
+    // The library works its way down by calling itself.
+    depth::check(depth::of_xml(text)).map_err(|reason| Error::NotUrdf { reason })?;
+    urdf_rs::read_from_string(text).map_err(|error| Error::NotUrdf { reason: told(&error.to_string()) })
+}
+
+/// Refuses a joint whose numbers cannot be.
+fn check_joint(joint: &urdf_rs::Joint) -> Result<(), Error> {
+    let refuse = |what: Implausible| Error::Implausible { place: format!("joint {}", joint.name), what };
+    check_origin(&joint.origin).map_err(refuse)?;
+    if !moves(joint) {
+        return Ok(());
+    }
+    // Largest first: the length of a vector of wild components is not finite.
+    let axis = Vector3::from(joint.axis.xyz.0);
+    if axis.iter().all(|component| component.is_finite()) && axis.amax() > 0.0 {
+        plausible::AXIS.check(axis.amax()).map_err(refuse)?;
+    }
+    let limits = [joint.limit.lower, joint.limit.upper];
+    plausible::JOINT_LIMIT_RAD.check_all(limits.iter().filter(|limit| limit.is_finite())).map_err(refuse)?;
+    if let Some(mimic) = &joint.mimic {
+        let (ratio, offset) = (mimic.multiplier.unwrap_or(1.0), mimic.offset.unwrap_or(0.0));
+        plausible::RATIO.check(ratio).and_then(|()| plausible::ANGLE_RAD.check(offset)).map_err(refuse)?;
+    }
+    Ok(())
+}
+
+/// Refuses a link whose numbers cannot be.
+fn check_link(link: &urdf_rs::Link) -> Result<(), Error> {
+    let refuse = |what: Implausible| Error::Implausible { place: format!("link {}", link.name), what };
+    check_origin(&link.inertial.origin).map_err(refuse)?;
+    check_inertial(&link.inertial).map_err(refuse)?;
+    link.visual.iter().try_for_each(|visual| check_origin(&visual.origin)).map_err(refuse)?;
+    link.collision.iter().try_for_each(|collision| check_origin(&collision.origin)).map_err(refuse)
+}
+
+fn check_origin(origin: &urdf_rs::Pose) -> Result<(), Implausible> {
+    plausible::LINK_LENGTH_M.check_all(&origin.xyz.0)?;
+    plausible::ANGLE_RAD.check_all(&origin.rpy.0)
+}
+
+fn check_inertial(inertial: &urdf_rs::Inertial) -> Result<(), Implausible> {
+    let i = &inertial.inertia;
+    plausible::LINK_MASS_KG.check(inertial.mass.value)?;
+    plausible::INERTIA_KGM2.check_all(&[i.ixx, i.ixy, i.ixz, i.iyy, i.iyz, i.izz])
 }
 
 /// Makes of a robot what can be measured: see [`Description::from_urdf_measured`]. The joints that
@@ -97,7 +145,9 @@ fn relax(robot: &mut urdf_rs::Robot) -> (Vec<(String, String)>, bool) {
             JointType::Fixed => {}
             JointType::Revolute | JointType::Continuous if !follows => {
                 let limit = &mut joint.limit;
-                let usable = limit.lower < limit.upper && limit.lower.is_finite() && limit.upper.is_finite();
+                // Some write a joint without limits with limits beyond all measure.
+                let can_be = |limit: f64| plausible::JOINT_LIMIT_RAD.contains(limit);
+                let usable = limit.lower < limit.upper && can_be(limit.lower) && can_be(limit.upper);
                 if !usable || matches!(joint.joint_type, JointType::Continuous) {
                     unlimited = true;
                     (limit.lower, limit.upper) = (-std::f64::consts::PI, std::f64::consts::PI);
@@ -115,10 +165,7 @@ fn relax(robot: &mut urdf_rs::Robot) -> (Vec<(String, String)>, bool) {
         link.visual.clear();
         link.collision.clear();
         // A mass that is no mass is one that is not known.
-        let inertia = &link.inertial.inertia;
-        let tensor = [inertia.ixx, inertia.ixy, inertia.ixz, inertia.iyy, inertia.iyz, inertia.izz];
-        let mass = &mut link.inertial.mass.value;
-        if !(mass.is_finite() && *mass >= 0.0 && tensor.iter().all(|value| value.is_finite())) {
+        if check_inertial(&link.inertial).and_then(|()| check_origin(&link.inertial.origin)).is_err() {
             link.inertial = urdf_rs::Inertial::default();
         }
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use toml::de::{DeTable, DeValue};
 
 use crate::formats::node::{Node, Value};
-use crate::formats::{FormatError, Place};
+use crate::formats::{FormatError, Place, depth};
 
 /// The error for text that is no TOML.
 pub(super) fn syntax(file: &Path, text: &str, error: &toml::de::Error) -> FormatError {
@@ -54,6 +54,11 @@ pub(super) fn parse(file: &Path, text: &str) -> Result<Node, FormatError> {
         };
         Node { line, value }
     }
+    depth::check(depth::of_toml(text)).map_err(|reason| FormatError::Syntax {
+        place: Place { file: file.to_path_buf(), line: None, key: String::new() },
+        language: "TOML",
+        reason,
+    })?;
     let document = DeTable::parse(text).map_err(|error| syntax(file, text, &error))?;
     Ok(Node { line: 1, value: table(text, document.get_ref()) })
 }

@@ -1,6 +1,7 @@
 //! How tables name and build the columns of joints, and tables from rows.
 
 use super::table::{Column, ColumnValues, Table};
+use crate::plausible::{self, Quantity};
 
 /// Collects rows into named columns, for writing.
 pub(crate) struct ColumnBuilder<'a, R> {
@@ -69,6 +70,20 @@ impl JointColumn {
     /// Joint of a column, if the column is one of these.
     pub fn joint(self, column: &str) -> Option<&str> {
         column.strip_prefix(self.prefix)?.strip_suffix(self.suffix).filter(|joint| !joint.is_empty())
+    }
+
+    /// What a column holds, by its name, if it is one of any joint.
+    pub fn quantity(column: &str) -> Option<Quantity> {
+        [
+            (Self::COMMANDED, plausible::JOINT_ANGLE_RAD),
+            (Self::ENCODER, plausible::JOINT_ANGLE_RAD),
+            (Self::HEAD, plausible::JOINT_ANGLE_RAD),
+            (Self::TORQUE, plausible::TORQUE_NM),
+            (Self::TEMPERATURE, plausible::TEMPERATURE_C),
+            (Self::LOAD, plausible::LOAD),
+        ]
+        .into_iter()
+        .find_map(|(columns, quantity)| columns.joint(column).map(|_| quantity))
     }
 
     /// Whether the column is that of one of the joints.

@@ -1,5 +1,6 @@
 //! `localizations.csv`: stereo vision located something whose place is known.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::error::SessionError;
@@ -7,6 +8,7 @@ use super::joint_columns::{ColumnBuilder, JointColumn};
 use super::table::{ColumnKind, Table};
 use crate::frame::{Point, Robot};
 use crate::pixel::{Pixel, Raw};
+use crate::plausible::{self, Quantity};
 
 const TRUE: [&str; 3] = ["true_x_m", "true_y_m", "true_z_m"];
 const ESTIMATE: [&str; 3] = ["est_x_m", "est_y_m", "est_z_m"];
@@ -14,6 +16,18 @@ const LEFT: [&str; 2] = ["left_u_px", "left_v_px"];
 const RIGHT: [&str; 2] = ["right_u_px", "right_v_px"];
 const NUMBERS: [&str; 2] = ["t_secs", "background_m"];
 const TEXTS: [&str; 3] = ["object", "group", "set"];
+
+/// What a column of numbers holds.
+fn quantity(column: &str) -> Option<Quantity> {
+    match column {
+        _ if TRUE.contains(&column) => Some(plausible::PLACE_M),
+        _ if ESTIMATE.contains(&column) => Some(plausible::ESTIMATE_M),
+        _ if LEFT.contains(&column) || RIGHT.contains(&column) => Some(plausible::IMAGE_PX),
+        "background_m" => Some(plausible::BACKGROUND_M),
+        "t_secs" => Some(plausible::TIME_S),
+        _ => JointColumn::quantity(column),
+    }
+}
 
 /// One localization. `None` means not measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,7 +85,7 @@ pub struct LocalizationTable {
 impl LocalizationTable {
     /// Reads the table; head joints are those that have a column.
     pub fn read(file: &Path) -> Result<Self, SessionError> {
-        let read = Table::read(file, |name| {
+        let mut read = Table::read(file, |name| {
             let number = JointColumn::HEAD.joint(name).is_some()
                 || [&TRUE[..], &ESTIMATE, &LEFT, &RIGHT, &NUMBERS].iter().any(|names| names.contains(&name));
             if number {
@@ -102,6 +116,7 @@ impl LocalizationTable {
         for names in [&TRUE[..], &ESTIMATE, &LEFT, &RIGHT] {
             read.require_whole_points(names)?;
         }
+        read.set_implausible_aside(quantity)?;
         let head_joints = read
             .table
             .columns()
@@ -109,6 +124,12 @@ impl LocalizationTable {
             .filter_map(|column| JointColumn::HEAD.joint(&column.name).map(str::to_owned))
             .collect();
         Ok(Self { head_joints, table: read.table })
+    }
+
+    /// Rows with a number that cannot be, counted from 0, and what is wrong with each; they are given
+    /// as rows in which nothing was measured.
+    pub fn implausible(&self) -> &BTreeMap<usize, String> {
+        self.table.implausible()
     }
 
     /// A table from rows; columns that no row has are left out, and the estimate is kept as

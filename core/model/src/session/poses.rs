@@ -1,11 +1,13 @@
 //! `poses.csv`: a point of the robot was measured from outside.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::error::SessionError;
 use super::joint_columns::{ColumnBuilder, JointColumn};
 use super::table::{ColumnKind, Table};
 use crate::frame::{Frame, Point};
+use crate::plausible::{self, Quantity};
 
 /// The fixed frame of an external measuring device; it need not be the robot's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +20,16 @@ const MEASURED: [&str; 3] = ["meas_x_m", "meas_y_m", "meas_z_m"];
 const NUMBERS: [&str; 2] = ["payload_kg", "t_secs"];
 const TEXTS: [&str; 3] = ["group", "approach", "set"];
 const OF_JOINTS: [JointColumn; 3] = [JointColumn::COMMANDED, JointColumn::ENCODER, JointColumn::TORQUE];
+
+/// What a column of numbers holds.
+fn quantity(column: &str) -> Option<Quantity> {
+    match column {
+        _ if MEASURED.contains(&column) => Some(plausible::EXTERNAL_M),
+        "payload_kg" => Some(plausible::PAYLOAD_KG),
+        "t_secs" => Some(plausible::TIME_S),
+        _ => JointColumn::quantity(column),
+    }
+}
 
 /// One measured pose. `None` means not measured.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -52,7 +64,7 @@ pub struct PoseTable {
 impl PoseTable {
     /// Reads the table of a chain with these joints.
     pub fn read(file: &Path, joints: &[String]) -> Result<Self, SessionError> {
-        let read = Table::read(file, |name| {
+        let mut read = Table::read(file, |name| {
             let of_joint = OF_JOINTS.iter().any(|column| column.is_of(name, joints));
             if of_joint || MEASURED.contains(&name) || NUMBERS.contains(&name) {
                 Some(ColumnKind::Number)
@@ -73,7 +85,14 @@ impl PoseTable {
             read.require(name, "add the measured place of the chain's tip")?;
         }
         read.require_whole_points(&MEASURED)?;
+        read.set_implausible_aside(quantity)?;
         Ok(Self { joints: joints.to_vec(), table: read.table })
+    }
+
+    /// Rows with a number that cannot be, counted from 0, and what is wrong with each; they are given
+    /// as rows in which nothing was measured.
+    pub fn implausible(&self) -> &BTreeMap<usize, String> {
+        self.table.implausible()
     }
 
     /// A table from rows; columns that no row has are left out, commanded angles only when every

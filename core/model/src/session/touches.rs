@@ -1,5 +1,6 @@
 //! `touches.csv`: a fingertip met the touchscreen.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::error::SessionError;
@@ -7,6 +8,7 @@ use super::joint_columns::{ColumnBuilder, JointColumn};
 use super::table::{ColumnKind, Table};
 use crate::frame::{Point, Robot};
 use crate::pixel::{Pixel, PixelSpace};
+use crate::plausible::{self, Quantity};
 
 /// The image on the touchscreen. (0, 0) is the center of its top-left pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +23,19 @@ const NUMBERS: [&str; 4] = ["screen_height_m", "payload_kg", "move_secs", "t_sec
 const TEXTS: [&str; 3] = ["group", "approach", "set"];
 const OF_JOINTS: [JointColumn; 4] =
     [JointColumn::COMMANDED, JointColumn::ENCODER, JointColumn::TEMPERATURE, JointColumn::LOAD];
+
+/// What a column of numbers holds.
+fn quantity(column: &str) -> Option<Quantity> {
+    match column {
+        _ if TOUCH.contains(&column) => Some(plausible::TOUCH_PX),
+        _ if TARGET.contains(&column) => Some(plausible::TARGET_M),
+        "screen_height_m" => Some(plausible::BLOCK_HEIGHT_M),
+        "payload_kg" => Some(plausible::PAYLOAD_KG),
+        "move_secs" => Some(plausible::MOVE_S),
+        "t_secs" => Some(plausible::TIME_S),
+        _ => JointColumn::quantity(column),
+    }
+}
 
 /// One touch. `None` means not measured.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -67,7 +82,7 @@ pub struct TouchTable {
 impl TouchTable {
     /// Reads the table of a chain with these joints.
     pub fn read(file: &Path, joints: &[String]) -> Result<Self, SessionError> {
-        let read = Table::read(file, |name| {
+        let mut read = Table::read(file, |name| {
             let of_joint = OF_JOINTS.iter().any(|column| column.is_of(name, joints));
             if of_joint || [&TOUCH[..], &TARGET, &NUMBERS].iter().any(|names| names.contains(&name)) {
                 Some(ColumnKind::Number)
@@ -84,7 +99,14 @@ impl TouchTable {
         }
         read.require_whole_points(&TOUCH)?;
         read.require_whole_points(&TARGET)?;
+        read.set_implausible_aside(quantity)?;
         Ok(Self { joints: joints.to_vec(), table: read.table })
+    }
+
+    /// Rows with a number that cannot be, counted from 0, and what is wrong with each; they are given
+    /// as rows in which nothing was measured.
+    pub fn implausible(&self) -> &BTreeMap<usize, String> {
+        self.table.implausible()
     }
 
     /// A table from rows; columns that no row has are left out.

@@ -125,5 +125,6 @@ pub(super) fn span_a_plane(targets: &[Target], screen: &Touchscreen) -> bool {
     let count = places.len() as f64;
     let mean = places.iter().sum::<nalgebra::Vector2<f64>>() / count;
     let scatter: nalgebra::Matrix2<f64> = places.iter().map(|p| (p - mean) * (p - mean).transpose()).sum();
-    targets.len() >= 3 && (scatter / count).symmetric_eigenvalues().min() > 0.02f64.powi(2)
+    let across = crate::decompose::symmetric_eigenvalues(scatter / count).map(|found| found.min());
+    targets.len() >= 3 && across.is_some_and(|variance_m2| variance_m2 > 0.02f64.powi(2))
 }

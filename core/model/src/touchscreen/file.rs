@@ -6,8 +6,10 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 use super::{PlacementError, ScreenPlacement};
+use crate::formats::depth;
 use crate::formats::text_file;
 use crate::frame::{Direction, Point, Robot};
+use crate::plausible;
 use crate::robot::Rig;
 use crate::session::Touchscreen;
 
@@ -92,6 +94,7 @@ impl ScreenPlacement {
 
     fn parse(file: &Path, text: &str) -> Result<Self, PlacementError> {
         let unusable = |reason: String| PlacementError::NotPlacement { file: file.to_path_buf(), reason };
+        depth::check(depth::of_toml(text)).map_err(unusable)?;
         let parts: File = toml::from_str(text).map_err(|error| unusable(error.message().to_owned()))?;
         parts.placement().map_err(unusable)
     }
@@ -167,10 +170,14 @@ impl ScreenPart {
             u_axis: axis("u_axis", self.u_axis)?,
             v_axis: axis("v_axis", self.v_axis)?,
         };
-        if screen.is_usable() {
-            Ok(screen)
-        } else {
-            Err("the screen has no size, or its axes are not at right angles".to_owned())
+        if !screen.is_usable() {
+            return Err("the screen has no size, or its axes are not at right angles".to_owned());
         }
+        let wrong = |what: plausible::Implausible| what.to_string();
+        plausible::SCREEN_PLACE_M.check_all(screen.origin.coords.iter()).map_err(wrong)?;
+        plausible::SCREEN_SIDE_M.check_all(&[screen.width_m, screen.height_m]).map_err(wrong)?;
+        let pixels = [f64::from(screen.width_px), f64::from(screen.height_px)];
+        plausible::SCREEN_SIDE_PX.check_all(&pixels).map_err(wrong)?;
+        Ok(screen)
     }
 }

@@ -5,6 +5,7 @@ use nalgebra::{
 };
 
 use super::PlacementError;
+use crate::decompose;
 use crate::frame::{Point, Robot};
 use crate::pixel::Pixel;
 use crate::session::{Screen, Touchscreen};
@@ -71,7 +72,7 @@ pub fn place_screen(
     let on_glass: Vec<Vector3<f64>> =
         touches.iter().map(|(pixel, _)| nominal.point_at(*pixel).coords.coords).collect();
     let fingertips: Vec<Vector3<f64>> = touches.iter().map(|(_, point)| point.coords.coords).collect();
-    let motion = rigid_motion(&on_glass, &fingertips);
+    let motion = rigid_motion(&on_glass, &fingertips).ok_or_else(wild)?;
     let screen = nominal.moved(&motion);
     let residuals: Vec<Vector3<f64>> =
         touches.iter().map(|(pixel, point)| point.coords - screen.point_at(*pixel).coords).collect();
@@ -99,6 +100,11 @@ pub fn place_screen(
         at: jiff::Timestamp::now(),
         rig: String::new(),
     })
+}
+
+/// Numbers of touches that no motion can be found from.
+fn wild() -> PlacementError {
+    PlacementError::NotFinite { what: "a fingertip or the screen".to_owned() }
 }
 
 fn check(nominal: &Touchscreen, touches: &[(Pixel<Screen>, Point<Robot>)]) -> Result<(), PlacementError> {
@@ -138,24 +144,24 @@ fn spread_across_m(nominal: &Touchscreen, touches: &[(Pixel<Screen>, Point<Robot
     let count = places.len() as f64;
     let mean = places.iter().sum::<Vector2<f64>>() / count;
     let scatter: Matrix2<f64> = places.iter().map(|p| (p - mean) * (p - mean).transpose()).sum();
-    (scatter / count).symmetric_eigenvalues().min().max(0.0).sqrt()
+    decompose::symmetric_eigenvalues(scatter / count).map_or(0.0, |found| found.min().max(0.0).sqrt())
 }
 
 /// The rigid motion that takes `from` nearest to `to`.
-fn rigid_motion(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Isometry3<f64> {
+fn rigid_motion(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Isometry3<f64>> {
     let count = from.len() as f64;
     let (mean_from, mean_to) =
         (from.iter().sum::<Vector3<f64>>() / count, to.iter().sum::<Vector3<f64>>() / count);
     let covariance: Matrix3<f64> =
         from.iter().zip(to).map(|(a, b)| (b - mean_to) * (a - mean_from).transpose()).sum();
-    let svd = covariance.svd(true, true);
-    let (Some(u), Some(v_t)) = (svd.u, svd.v_t) else { unreachable!("both were asked for") };
+    let svd = decompose::svd(covariance, true, true)?;
+    let (u, v_t) = (svd.u?, svd.v_t?);
     // Points of a plane fit a reflection as well as a rotation: the rotation is wanted.
     let mut keep = Matrix3::identity();
     keep[(2, 2)] = (u * v_t).determinant().signum();
     let rotation = Rotation3::from_matrix_unchecked(u * keep * v_t);
     let turn = UnitQuaternion::from_rotation_matrix(&rotation);
-    Isometry3::from_parts(Translation3::from(mean_to - turn * mean_from), turn)
+    Some(Isometry3::from_parts(Translation3::from(mean_to - turn * mean_from), turn))
 }
 
 fn plausible(

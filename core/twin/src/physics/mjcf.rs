@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Translation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Translation3, Unit, UnitQuaternion, Vector3};
+use plumbline_model::decompose;
 use plumbline_model::robot::{JointKind, Link, LinkIndex, Rig};
 
 use super::motor::Motor;
@@ -230,13 +231,15 @@ impl Writer<'_> {
     }
 
     fn inertia(&mut self, mass_kg: f64, center_m: Vector3<f64>, tensor: Matrix3<f64>, pad: &str) {
-        let eigen = SymmetricEigen::new(tensor);
-        let mut axes = eigen.eigenvectors;
+        // A tensor that has no axes is turned like its part; descriptions are checked when they are read.
+        let eigen = decompose::symmetric_eigen(tensor);
+        let mut axes = eigen.as_ref().map_or_else(Matrix3::identity, |eigen| eigen.eigenvectors);
         if axes.determinant() < 0.0 {
             axes.column_mut(2).neg_mut();
         }
         let turn = UnitQuaternion::from_matrix(&axes);
-        let moments = eigen.eigenvalues.map(|moment| moment.max(LEAST_INERTIA_KGM2));
+        let moments = eigen.map_or_else(Vector3::zeros, |eigen| eigen.eigenvalues);
+        let moments = moments.map(|moment| moment.max(LEAST_INERTIA_KGM2));
         let place = Isometry3::from_parts(Translation3::from(center_m), turn);
         let _ = writeln!(
             self.text,

@@ -1,7 +1,8 @@
 //! Where the solution starts, without a guess by anybody: board poses straight from viewing rays,
 //! and the focal length as the best of a ladder.
 
-use nalgebra::{Isometry3, Matrix3, SMatrix, SymmetricEigen, Vector3};
+use nalgebra::{Isometry3, Matrix3, SMatrix, Vector3};
+use plumbline_model::decompose;
 use plumbline_model::{CameraModel, Fisheye, ModelKind, Pinhole};
 
 use super::optimizer::Optimizer;
@@ -31,7 +32,7 @@ pub(crate) fn pose_from_rays(rays: &[Vector3<f64>], points: &[Vector3<f64>]) -> 
         }
         normal += row.transpose() * row;
     }
-    let eigen = SymmetricEigen::new(normal);
+    let eigen = decompose::symmetric_eigen(normal)?;
     let smallest = eigen.eigenvalues.imin();
     let h = eigen.eigenvectors.column(smallest);
     let column = |k: usize| Vector3::new(h[3 * k], h[3 * k + 1], h[3 * k + 2]);
@@ -55,7 +56,7 @@ fn plane(point: &Vector3<f64>, center: Vector3<f64>, size: f64) -> Vector3<f64> 
 
 /// Rotation whose first two columns are nearest to the given ones.
 fn nearest_rotation(x: &Vector3<f64>, y: &Vector3<f64>) -> Option<nalgebra::UnitQuaternion<f64>> {
-    let svd = Matrix3::from_columns(&[*x, *y, x.cross(y)]).svd(true, true);
+    let svd = decompose::svd(Matrix3::from_columns(&[*x, *y, x.cross(y)]), true, true)?;
     let (u, v_t) = (svd.u?, svd.v_t?);
     let sign = (u * v_t).determinant().signum();
     let rotation = u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v_t;

@@ -176,7 +176,7 @@ fn same_board(seen: InnerCorners, board: &Chessboard) -> bool {
 
 /// OpenCV's search in the image.
 fn search_with_opencv(gray: &GrayImage, board: &Chessboard) -> Result<Option<Vec<Vector2<f64>>>, NotSeen> {
-    let refused = |e: opencv::Error| NotSeen::BadImage(e.message);
+    let refused = |e: opencv::Error| NotSeen::BadImage(crate::cv_words::words(&e).to_owned());
     let mat = Mat::new_rows_cols_with_data(gray.height() as i32, gray.width() as i32, gray.as_raw())
         .map_err(refused)?;
     let size = Size::new(board.inner_columns as i32, board.inner_rows as i32);

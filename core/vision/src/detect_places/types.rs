@@ -1,6 +1,7 @@
 //! What is said about the objects of a pair of images.
 
 use nalgebra::Matrix3;
+use plumbline_model::decompose;
 use plumbline_model::{ClassIndex, Eye, LeftCamera, Point};
 
 use super::votes::Votes;
@@ -147,7 +148,9 @@ pub struct Estimate {
 impl Estimate {
     /// Standard deviation in the worst direction (nearly along the ray), m.
     pub fn sigma_m(&self) -> f64 {
-        self.covariance_m2.symmetric_eigenvalues().max().max(0.0).sqrt()
+        // A covariance that cannot be taken apart says that nothing is known.
+        decompose::symmetric_eigenvalues(self.covariance_m2)
+            .map_or(f64::INFINITY, |variances| variances.max().max(0.0).sqrt())
     }
 }
 

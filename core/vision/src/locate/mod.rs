@@ -18,6 +18,7 @@ mod tests;
 
 use image::GrayImage;
 use nalgebra::{DVector, Matrix3, Vector3};
+use plumbline_model::decompose;
 use plumbline_model::{
     Camera, CameraModel, Eye, LeftCamera, ParameterCovariance, Pixel, Point, Pose, Raw, StereoCalibration,
     StereoCameras,
@@ -223,9 +224,10 @@ impl Locator {
             covariance_m2 += from_calibration(&geometry.cameras, parameters, in_left_px, in_right_px)
                 .ok_or(NotLocated::TooFar)?;
         }
+        let variances_m2 = decompose::symmetric_eigenvalues(covariance_m2).ok_or(NotLocated::TooFar)?;
         Ok(Located {
             point,
-            sigma_m: covariance_m2.symmetric_eigenvalues().max().max(0.0).sqrt(),
+            sigma_m: variances_m2.max().max(0.0).sqrt(),
             match_sigma_m: by_match.norm(),
             covariance_m2,
             match_in_right: in_right_px,

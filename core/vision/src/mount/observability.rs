@@ -1,6 +1,7 @@
 //! Which directions of the mount the views can tell, in words.
 
-use nalgebra::{DMatrix, Isometry3, Matrix3, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, Isometry3, Matrix3, Vector3};
+use plumbline_model::decompose;
 use plumbline_model::robot::Rig;
 
 use super::error::MountError;
@@ -44,11 +45,9 @@ pub(super) fn check_head_poses(
             pairs += 1.0;
         }
     }
-    let mut strengths: Vec<f64> = SymmetricEigen::new(axes)
-        .eigenvalues
-        .iter()
-        .map(|v| (v.max(0.0) / f64::max(pairs, 1.0)).sqrt())
-        .collect();
+    let strengths = decompose::symmetric_eigenvalues(axes).unwrap_or_else(Vector3::zeros);
+    let mut strengths: Vec<f64> =
+        strengths.iter().map(|v| (v.max(0.0) / f64::max(pairs, 1.0)).sqrt()).collect();
     strengths.sort_by(f64::total_cmp);
     if strengths[1] < LEAST_SECOND_AXIS_RAD {
         let span = pan_tilt.map(|joint| {
@@ -120,7 +119,7 @@ pub(super) fn not_seen(
 
 /// Directions whose standard deviation is above `worst`, the worst first.
 fn weak_directions(covariance: &Matrix3<f64>, worst: f64) -> Vec<(Vector3<f64>, f64)> {
-    let eigen = SymmetricEigen::new(*covariance);
+    let Some(eigen) = decompose::symmetric_eigen(*covariance) else { return vec![] };
     let mut weak: Vec<_> = (0..3)
         .map(|i| (eigen.eigenvectors.column(i).into_owned(), eigen.eigenvalues[i].max(0.0).sqrt()))
         .filter(|(_, sigma)| *sigma > worst)

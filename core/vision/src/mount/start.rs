@@ -4,6 +4,7 @@
 use nalgebra::{
     DMatrix, DVector, Isometry3, Matrix3, Matrix6, Point3, Rotation3, UnitQuaternion, Vector3, Vector6,
 };
+use plumbline_model::decompose;
 use plumbline_model::{Eye, StereoCameras};
 
 use super::problem::Seen;
@@ -109,7 +110,7 @@ pub(super) fn hand_eye(
         let difference = rotation * eye.translation.vector - head.translation.vector;
         right.fixed_rows_mut::<3>(3 * i).copy_from(&difference);
     }
-    let place = system.svd(true, true).solve(&right, 1e-6).ok()?;
+    let place = decompose::svd(system, true, true)?.solve(&right, 1e-6).ok()?;
     let place = Vector3::new(place[0], place[1], place[2]);
     place.iter().all(|c| c.is_finite()).then(|| Isometry3::from_parts(place.into(), rotation))
 }
@@ -132,7 +133,7 @@ fn aligning_rotation(
     pairs: impl Iterator<Item = (Vector3<f64>, Vector3<f64>)>,
 ) -> Option<UnitQuaternion<f64>> {
     let correlation = pairs.map(|(from, to)| to * from.transpose()).sum::<Matrix3<f64>>();
-    let svd = correlation.svd(true, true);
+    let svd = decompose::svd(correlation, true, true)?;
     let (u, v_t) = (svd.u?, svd.v_t?);
     let mut strengths: Vec<f64> = svd.singular_values.iter().copied().collect();
     strengths.sort_by(f64::total_cmp);

@@ -1,6 +1,7 @@
 //! What goes into a calibration of the eyes' mount, and what comes out.
 
-use nalgebra::{Isometry3, Matrix6, SMatrix, SymmetricEigen, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix6, SMatrix, UnitQuaternion, Vector3};
+use plumbline_model::decompose;
 use plumbline_model::frame::{Board, Head, LeftCamera};
 use plumbline_model::robot::{EyeMount, Posture, Rig};
 use plumbline_model::session::Touchscreen;
@@ -272,7 +273,8 @@ impl MountCalibration {
         by_mount.fixed_view_mut::<3, 3>(0, 0).copy_from(&-arm.cross_matrix());
         by_mount.fixed_view_mut::<3, 3>(0, 3).fill_with_identity();
         let covariance = by_mount * self.covariance * by_mount.transpose();
-        SymmetricEigen::new(covariance).eigenvalues.max().max(0.0).sqrt()
+        decompose::symmetric_eigenvalues(covariance)
+            .map_or(f64::INFINITY, |variances| variances.max().max(0.0).sqrt())
     }
 }
 

@@ -9,7 +9,7 @@ use opencv::core::{
 };
 use plumbline_model::camera::Camera;
 use plumbline_model::formats::lens::{self, LensNumbers, StereoNumbers};
-use plumbline_model::formats::{FormatError, Place, ReadOptions, is_opencv_storage, read_text};
+use plumbline_model::formats::{FormatError, Place, ReadOptions, depth, is_opencv_storage, read_text};
 use plumbline_model::{Eye, ModelKind, StereoCameras};
 
 /// Names under which scripts store the same thing, for the left and the right eye.
@@ -107,6 +107,14 @@ impl Storage {
             let place = Place { file: file.to_path_buf(), line, key: String::new() };
             FormatError::Syntax { place, language: "OpenCV storage", reason }
         };
+        // OpenCV works its way down by calling itself.
+        let nested =
+            if text.trim_start().starts_with('<') { depth::of_xml(&text) } else { depth::of_yaml(&text) };
+        depth::check(nested).map_err(|reason| FormatError::Syntax {
+            place: Place { file: file.to_path_buf(), line: None, key: String::new() },
+            language: "OpenCV storage",
+            reason,
+        })?;
         let storage = FileStorage::new(&text, FileStorage_READ | FileStorage_MEMORY, "")
             .map_err(|error| refused(&error.message))?;
         match storage.is_opened() {
@@ -137,8 +145,14 @@ impl Storage {
 /// OpenCV hides line and reason in its message: `… in function '(60): Bad format …'`.
 fn parser_message(message: &str) -> (Option<usize>, String) {
     let message = message.trim().trim_end_matches('\'');
-    let Some((head, reason)) = message.rsplit_once("): ") else { return (None, message.to_owned()) };
-    let line = head.rsplit_once('(').and_then(|(_, line)| line.parse().ok());
+    let (line, reason) = match message.rsplit_once("): ") {
+        Some((head, reason)) => (head.rsplit_once('(').and_then(|(_, line)| line.parse().ok()), reason),
+        None => (None, message),
+    };
+    if crate::cv_words::is_raw(reason) {
+        log::warn!("OpenCV: {message}");
+        return (line, "OpenCV cannot make sense of it".to_owned());
+    }
     (line, reason.to_owned())
 }
 
@@ -179,7 +193,7 @@ impl Storages {
             distortion: distortion.values.as_slice().to_vec(),
             distortion_place: distortion.place,
         };
-        Ok(Camera { model: lens.model()?, width_px, height_px })
+        lens.camera(width_px, height_px)
     }
 
     fn model(&self, names: &[&str]) -> Result<Option<ModelKind>, FormatError> {

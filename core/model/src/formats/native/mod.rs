@@ -5,6 +5,7 @@
 //! give it back bit for bit.
 
 mod read;
+mod self_test;
 mod write;
 
 use std::path::Path;

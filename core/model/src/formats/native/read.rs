@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Isometry3, Quaternion, Translation3, UnitQuaternion};
 
-use super::{COMPLETE, FORMAT, VERSION};
+use super::{COMPLETE, FORMAT, VERSION, self_test};
 use crate::calibration::{
     CalibrationOptions, CornerResidual, Corners, Evidence, FitSummary, PairFit, PairObservation,
     ParameterCovariance, RejectedPair, StereoCalibration,
@@ -14,6 +14,7 @@ use crate::formats::error::{FormatError, Place};
 use crate::formats::node::Field;
 use crate::frame::{Frame, Pose};
 use crate::pixel::{Eye, Pixel};
+use crate::plausible::{self, Implausible};
 use crate::stereo::StereoCameras;
 
 /// Largest deviation of a quaternion's squared length from 1 that is rounding.
@@ -24,14 +25,22 @@ pub(crate) fn calibration(document: &Document) -> Result<StereoCalibration, Form
     let root = document.root();
     check_format(&root)?;
     let evidence = root.find("evidence")?.map(|field| evidence(&field)).transpose()?;
-    Ok(StereoCalibration {
-        cameras: cameras(&root.get("cameras")?)?,
+    let cameras = cameras(&root.get("cameras")?)?;
+    if let Some(answers) = root.find(self_test::KEY)? {
+        self_test::check(&cameras, &answers)?;
+    }
+    let calibration = StereoCalibration {
+        cameras,
         covariance: root.find("covariance")?.map(|field| covariance(&field)).transpose()?,
         summary: root.find("summary")?.map(|field| summary(&field)).transpose()?,
         per_pair: list(&root, "pairs", pair_fit)?,
         rejected: list(&root, "rejected", rejected_pair)?,
         evidence,
-    })
+    };
+    if let Some(sums) = root.find(self_test::SUMS)? {
+        self_test::check_sums(&calibration, &sums)?;
+    }
+    Ok(calibration)
 }
 
 fn check_format(root: &Field<'_>) -> Result<(), FormatError> {
@@ -85,11 +94,18 @@ fn model_kind(field: &Field<'_>) -> Result<ModelKind, FormatError> {
 }
 
 fn cameras(field: &Field<'_>) -> Result<StereoCameras, FormatError> {
-    Ok(StereoCameras {
+    let apart = field.get("right_from_left")?;
+    let cameras = StereoCameras {
         left: camera(&field.get("left")?)?,
         right: camera(&field.get("right")?)?,
-        right_from_left: pose(&field.get("right_from_left")?)?,
-    })
+        right_from_left: pose(&apart)?,
+    };
+    implausible(&apart, plausible::BASELINE_M.check(cameras.baseline_m()))?;
+    Ok(cameras)
+}
+
+fn implausible(field: &Field<'_>, checked: Result<(), Implausible>) -> Result<(), FormatError> {
+    checked.map_err(|what| FormatError::Implausible { place: field.place(), what: Box::new(what) })
 }
 
 fn camera(field: &Field<'_>) -> Result<Camera, FormatError> {
@@ -109,11 +125,13 @@ fn camera(field: &Field<'_>) -> Result<Camera, FormatError> {
             CameraModel::Pinhole(Pinhole { fx_px, fy_px, cx_px, cy_px, k1, k2, p1, p2, k3 })
         }
     };
-    Ok(Camera {
+    let camera = Camera {
         model,
         width_px: field.get("width_px")?.pixels()?,
         height_px: field.get("height_px")?.pixels()?,
-    })
+    };
+    implausible(field, camera.check_plausible())?;
+    Ok(camera)
 }
 
 fn pose<To: Frame, From: Frame>(field: &Field<'_>) -> Result<Pose<To, From>, FormatError> {
@@ -166,7 +184,7 @@ fn evidence(field: &Field<'_>) -> Result<Evidence, FormatError> {
     let board = Chessboard::new(
         whole("inner_columns")?,
         whole("inner_rows")?,
-        board_field.get("square_m")?.positive()?,
+        board_field.get("square_m")?.of(plausible::SQUARE_M)?.positive()?,
     )
     .map_err(|error| board_field.out_of_range(format!("a usable board ({error})")))?;
     let options = field.get("options")?;

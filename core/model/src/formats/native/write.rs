@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{COMPLETE, FORMAT, VERSION};
+use super::{COMPLETE, FORMAT, VERSION, self_test};
 use crate::calibration::{
     Corners, Evidence, FitSummary, PairFit, PairObservation, ParameterCovariance, RejectedPair,
     StereoCalibration,
@@ -80,6 +80,12 @@ pub(super) fn render(calibration: &StereoCalibration) -> String {
         evidence(&mut lines, made_from);
     }
     lines.list("pairs", &calibration.per_pair, pair_fit);
+    lines.line("# What these cameras answered when this was written: x, y, z in the left camera, and where");
+    lines.line("# the left and the right eye see it. Other answers mean that a number above was changed.");
+    lines.list(self_test::KEY, &self_test::answers(calibration), |lines, answer| {
+        lines.line(format!("- {}", numbers(answer)));
+    });
+    lines.value(self_test::SUMS, numbers(&self_test::sums(calibration)));
     lines.line("# The last line: a file without it was cut off.");
     lines.value(COMPLETE, "true");
     lines.text

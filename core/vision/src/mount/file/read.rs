@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use nalgebra::{Isometry3, Matrix6, Point3, Quaternion, SymmetricEigen, Translation3, UnitQuaternion};
+use nalgebra::{Isometry3, Matrix6, Point3, Quaternion, Translation3, UnitQuaternion};
+use plumbline_model::decompose;
+use plumbline_model::plausible::{self, Quantity};
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::{
     Camera, CameraModel, Chessboard, CornerResidual, Corners, Pixel, Point, Pose, StereoCameras,
@@ -54,9 +56,12 @@ impl Reader<'_> {
         self.positive("pixel_sigma_px", parts.pixel_sigma_px)?;
         self.finite("angle_sigma_rad", &parts.angle_sigma_rad)?;
         for zero in parts.head_zeros_rad.iter().flatten() {
-            self.finite("head_zeros_rad", &[zero.value, zero.sigma])?;
+            self.plausible("head_zeros_rad", plausible::ANGLE_RAD, &[zero.value, zero.sigma])?;
         }
         let board = parts.robot_from_board.map(|part| self.pose("robot_from_board", &part)).transpose()?;
+        if let Some(board) = &board {
+            self.plausible("robot_from_board", plausible::PLACE_M, board.translation.vector.as_slice())?;
+        }
         let board_covariance =
             parts.board_covariance.map(|part| self.covariance("board_covariance", &part.rows)).transpose()?;
         let evidence = self.evidence(parts.evidence, parts.rig)?;
@@ -93,6 +98,11 @@ impl Reader<'_> {
         }
     }
 
+    fn plausible(&self, place: &str, quantity: Quantity, values: &[f64]) -> Result<(), MountFileError> {
+        self.finite(place, values)?;
+        quantity.check_all(values).map_err(|what| self.value(place, &what.to_string()))
+    }
+
     fn positive(&self, place: &str, value: f64) -> Result<(), MountFileError> {
         self.finite(place, &[value])?;
         if value < 0.0 {
@@ -119,7 +129,8 @@ impl Reader<'_> {
         let matrix = Matrix6::from_fn(|i, j| rows[i][j]);
         let scale = matrix.amax();
         let symmetric = (matrix - matrix.transpose()).amax() <= 1e-9 * scale;
-        if !symmetric || SymmetricEigen::new(matrix).eigenvalues.min() < -1e-9 * scale {
+        let least = decompose::symmetric_eigenvalues(matrix).map(|variances| variances.min());
+        if !symmetric || least.is_none_or(|least| least < -1e-9 * scale) {
             return Err(self.value(place, "must be symmetric, with no negative variance along any direction"));
         }
         Ok(matrix)
@@ -133,7 +144,8 @@ impl Reader<'_> {
         }
         let mut residuals = Vec::with_capacity(part.residuals.len());
         for (eye, corner, u, v, du, dv, left_out) in part.residuals {
-            self.finite(&place, &[u, v, du, dv])?;
+            self.plausible(&place, plausible::IMAGE_PX, &[u, v])?;
+            self.plausible(&place, plausible::ERROR_PX, &[du, dv])?;
             residuals.push(CornerResidual {
                 eye,
                 corner,
@@ -155,6 +167,9 @@ impl Reader<'_> {
         let target = self.target(part.target)?;
         let views =
             part.view.into_iter().map(|view| self.view(view, part.joints.len())).collect::<Result<_, _>>()?;
+        let apart = self.pose("evidence.cameras.right_from_left", &part.cameras.right_from_left)?;
+        let place = "evidence.cameras.right_from_left";
+        self.plausible(place, plausible::BASELINE_M, &[apart.translation.vector.norm()])?;
         Ok(MountEvidence {
             rig,
             joints: part.joints,
@@ -162,9 +177,7 @@ impl Reader<'_> {
             cameras: StereoCameras {
                 left: self.lens("evidence.cameras.left", &part.cameras.left)?,
                 right: self.lens("evidence.cameras.right", &part.cameras.right)?,
-                right_from_left: Pose::new(
-                    self.pose("evidence.cameras.right_from_left", &part.cameras.right_from_left)?,
-                ),
+                right_from_left: Pose::new(apart),
             },
             target,
             options: part.options,
@@ -181,7 +194,7 @@ impl Reader<'_> {
                     .map_err(|error| self.value("evidence.target", &error.to_string()))?,
             ),
             TargetPart::KnownPoints { points_m } => {
-                self.finite("evidence.target.points_m", points_m.as_flattened())?;
+                self.plausible("evidence.target.points_m", plausible::PLACE_M, points_m.as_flattened())?;
                 Target::KnownPoints(points_m.into_iter().map(|p| Point::from(Point3::from(p))).collect())
             }
             TargetPart::Fingertip { tip } => Target::Fingertip { tip },
@@ -200,19 +213,21 @@ impl Reader<'_> {
         if let CameraModel::Fisheye(lens) = &mut model {
             lens.skew_px = part.skew_px;
         }
-        Ok(Camera { model, width_px: part.width_px, height_px: part.height_px })
+        let camera = Camera { model, width_px: part.width_px, height_px: part.height_px };
+        camera.check_plausible().map_err(|what| self.value(place, &what.to_string()))?;
+        Ok(camera)
     }
 
     fn view(&self, part: ViewPart, joints: usize) -> Result<HeadView, MountFileError> {
         let place = format!("evidence.view \"{}\"", part.name);
-        self.finite(&place, &part.angles_rad)?;
+        self.plausible(&place, plausible::JOINT_ANGLE_RAD, &part.angles_rad)?;
         if part.angles_rad.len() != joints {
             return Err(self.value(&place, &format!("needs one angle for each of {joints} joints")));
         }
         let pixels = |rows: Vec<PixelPart>| -> Result<Corners, MountFileError> {
             rows.into_iter()
                 .map(|row| {
-                    self.finite(&place, &row)?;
+                    self.plausible(&place, plausible::IMAGE_PX, &row)?;
                     match row[..] {
                         [] => Ok(None),
                         [u, v] => Ok(Some(Pixel::new(u, v))),
