@@ -134,6 +134,16 @@ pub fn run() -> ExitCode {
     }
 }
 
+/// Whether the command line understands these words, the program's name first; else what it says. Nothing
+/// is done.
+///
+/// # Errors
+/// What would be printed.
+pub fn understands(words: impl IntoIterator<Item = String>) -> Result<(), String> {
+    let matches = Arguments::command().try_get_matches_from(words).map_err(|error| error.to_string())?;
+    Arguments::from_arg_matches(&matches).map(|_| ()).map_err(|error| error.to_string())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

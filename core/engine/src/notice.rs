@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use jiff::Timestamp;
+use plumbline_model::files::told;
 use serde::{Deserialize, Serialize};
 
 /// How much a message matters.
@@ -51,7 +52,8 @@ impl Notices {
     /// Adds a message; the oldest one goes when there are too many. What was said last is not
     /// said again, only counted.
     pub fn add(&mut self, level: NoticeLevel, text: impl Into<String>) {
-        let text = text.into();
+        // What a file holds may be quoted in it.
+        let text = told(&text.into());
         self.view = None;
         if let Some(last) = self.newest.back_mut().filter(|last| last.level == level && last.text == text) {
             last.at = Timestamp::now();

@@ -21,6 +21,7 @@ use plumbline_hardware::joints::{Heartbeat, StopSwitch, Touch};
 use plumbline_model::frame::{Head, LeftCamera, Pose};
 use plumbline_model::session::Touchscreen;
 
+pub use poses::PoseLibrary;
 pub use thread::{RobotThread, Wires as RobotWires};
 pub use touch_order::{TouchMeasurement, TouchNews, TouchOrder, TouchRun, TouchStage};
 pub use twin_desk::TwinDesk;

@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 
+use plumbline_model::files::told;
 use serde::Deserialize;
 
 use crate::error::TwinError;
@@ -218,7 +219,7 @@ impl Scenario {
     /// When it is not TOML, has a key that is not known, or a value that makes no sense.
     pub fn from_toml(file: &str, text: &str) -> Result<Self, TwinError> {
         let wrong = |reason: String| TwinError::Scenario { file: file.to_owned(), reason };
-        let scenario: Self = toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
+        let scenario: Self = toml::from_str(text).map_err(|error| wrong(told(&error.to_string())))?;
         scenario.check().map_err(wrong)?;
         Ok(scenario)
     }

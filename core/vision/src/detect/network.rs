@@ -82,6 +82,12 @@ pub(super) fn words(error: &ort::Error) -> String {
     const MOST: usize = 240;
     let line =
         error.message().lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or("no reason given");
+    // Where in its source it was says nothing to people: "graph.cc:1587 void onnxruntime::F(…) what was wrong".
+    let line = match (line.find("onnxruntime::"), line.rfind(") ")) {
+        (Some(place), Some(end)) if end > place => line[end + 2..].trim(),
+        (Some(_), _) => "it is damaged inside",
+        _ => line,
+    };
     match line.char_indices().nth(MOST) {
         Some((end, _)) => format!("{}…", &line[..end]),
         None => line.trim_end_matches('.').to_owned(),

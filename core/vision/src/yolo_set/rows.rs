@@ -1,5 +1,6 @@
 //! Rows of a label file.
 
+use plumbline_model::files::shortened;
 use plumbline_model::{ClassIndex, PixelBox};
 
 use super::LabeledBox;
@@ -50,7 +51,7 @@ pub(super) fn text(labeled: &LabeledBox, size_px: (u32, u32)) -> String {
 fn class(text: &str, classes: usize) -> Result<ClassIndex, RowProblem> {
     // Some programs write all fields as numbers with a point.
     let whole = text.strip_suffix(".0").unwrap_or(text);
-    let class: usize = whole.parse().map_err(|_| RowProblem::NotAClass { text: text.to_owned() })?;
+    let class: usize = whole.parse().map_err(|_| RowProblem::NotAClass { text: shortened(text) })?;
     if class >= classes {
         return Err(RowProblem::UnknownClass { class, known: classes });
     }
@@ -58,13 +59,13 @@ fn class(text: &str, classes: usize) -> Result<ClassIndex, RowProblem> {
 }
 
 fn part(text: &str) -> Result<f64, RowProblem> {
-    let number: f64 = text.parse().map_err(|_| RowProblem::NotANumber { text: text.to_owned() })?;
+    let number: f64 = text.parse().map_err(|_| RowProblem::NotANumber { text: shortened(text) })?;
     if !number.is_finite() {
-        return Err(RowProblem::NotANumber { text: text.to_owned() });
+        return Err(RowProblem::NotANumber { text: shortened(text) });
     }
     // Six digits after the point leave a millionth of rounding.
     if !(-1e-6..=1.0 + 1e-6).contains(&number) {
-        return Err(RowProblem::OffImage { text: text.to_owned() });
+        return Err(RowProblem::OffImage { text: shortened(text) });
     }
     Ok(number)
 }

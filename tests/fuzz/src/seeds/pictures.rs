@@ -1,0 +1,50 @@
+//! Image files of all kinds that are read, and folders of pairs.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use image::{DynamicImage, ImageFormat, Luma, Rgb, RgbImage, Rgba};
+
+use super::{Problem, put};
+
+pub fn make(folder: &Path) -> Result<(), Problem> {
+    let shade = |x: u32, y: u32| ((x * 7 + y * 13) % 251) as u8;
+    let color = picture(24, 18);
+    let gray16 = image::ImageBuffer::from_fn(20, 14, |x, y| Luma([u16::from(shade(x, y)) * 257]));
+    let clear = image::ImageBuffer::from_fn(20, 14, |x, y| Rgba([shade(x, y), shade(y, x), 9, shade(x, x)]));
+    let images = [
+        ("color.png", DynamicImage::ImageRgb8(color.clone()), ImageFormat::Png),
+        ("gray16.png", DynamicImage::ImageLuma16(gray16), ImageFormat::Png),
+        ("clear.png", DynamicImage::ImageRgba8(clear), ImageFormat::Png),
+        ("color.jpg", DynamicImage::ImageRgb8(color.clone()), ImageFormat::Jpeg),
+    ];
+    for (name, image, format) in images {
+        put(folder, &format!("images/{name}"), encoded(&image, format)?)?;
+    }
+    for eye in ["left", "right"] {
+        for k in 0..3 {
+            let image = DynamicImage::ImageRgb8(picture(16 + 2 * (k % 2), 12));
+            let (name, format) = if k == 2 {
+                ("c.jpg".to_owned(), ImageFormat::Jpeg)
+            } else {
+                (format!("{k}.png"), ImageFormat::Png)
+            };
+            put(folder, &format!("pairs/{eye}/{name}"), encoded(&image, format)?)?;
+        }
+    }
+    Ok(())
+}
+
+/// A small picture with structure.
+pub fn picture(width: u32, height: u32) -> RgbImage {
+    RgbImage::from_fn(width, height, |x, y| {
+        Rgb([(x * 9) as u8, (y * 11) as u8, if (x / 3 + y / 3) % 2 == 0 { 200 } else { 30 }])
+    })
+}
+
+/// The bytes of an image file.
+pub fn encoded(image: &DynamicImage, format: ImageFormat) -> Result<Vec<u8>, Problem> {
+    let mut bytes = Cursor::new(vec![]);
+    image.write_to(&mut bytes, format)?;
+    Ok(bytes.into_inner())
+}

@@ -1,0 +1,80 @@
+//! Texts: scripts, commands, journals, a finding, a scenario, bytes on the wire.
+
+use std::path::Path;
+
+use jiff::Timestamp;
+use plumbline::WindowSettings;
+use plumbline_engine::journal::{Entry, Heading};
+use plumbline_engine::{Command, EyesCommand, LiveCommand, ProbePoint, SourceCommand, SourceSpec};
+use plumbline_hardware::dynamixel::{Instruction, Protocol};
+use plumbline_model::Eye;
+
+use super::{Problem, put};
+
+pub fn make(folder: &Path) -> Result<(), Problem> {
+    put(folder, "twin/lab.toml", include_str!("../../../../core/twin/scenarios/lab.toml"))?;
+    for (name, finding) in [
+        ("named", plumbline_report::sample::named()),
+        ("class", plumbline_report::sample::class()),
+        ("none", plumbline_report::sample::no_gap()),
+        ("pixels", plumbline_report::sample::pixels()),
+    ] {
+        let file = folder.join(format!("finding/{name}.json"));
+        std::fs::create_dir_all(folder.join("finding"))?;
+        finding.write(&file)?;
+    }
+    put(folder, "words/script.txt", SCRIPT)?;
+    put(folder, "words/arguments.txt", ARGUMENTS)?;
+    put(folder, "journal/journal.jsonl", journal()?)?;
+    let mut settings = WindowSettings::default();
+    for screen in [plumbline::Screen::Live, plumbline::Screen::Robot] {
+        settings.arrangement(screen);
+    }
+    std::fs::create_dir_all(folder.join("window"))?;
+    settings.save(&folder.join("window/window.json"))?;
+    for (name, protocol) in [("v1", Protocol::V1), ("v2", Protocol::V2)] {
+        put(folder, &format!("wire/{name}.bin"), wire(protocol)?)?;
+    }
+    Ok(())
+}
+
+/// Questions and answers one after the other, as they lie on the line.
+fn wire(protocol: Protocol) -> Result<Vec<u8>, Problem> {
+    let mut bytes = vec![];
+    for id in [1, 44, 200] {
+        bytes.extend(protocol.encode_instruction(id, &Instruction::Ping)?);
+        bytes.extend(protocol.encode_instruction(id, &Instruction::Read { address: 36, length: 8 })?);
+        bytes.extend(protocol.encode_status(id, 0, &[0xff, 0xff, 0xfd, 0x00, 9, 200, 7, 7])?);
+        bytes.extend(protocol.encode_instruction(id, &Instruction::Write { address: 30, data: vec![0, 8] })?);
+        bytes.extend(protocol.encode_status(id, 0x24, &[])?);
+    }
+    Ok(bytes)
+}
+
+const SCRIPT: &str = "collect;solve;wait:1.5;pair:3;probe:335,330;rate:15;picture:a.png;preview-pose:touch-ready;\
+look-at:0.3,0.1,0.05;reach:0.35,-0.1,0.08;preview-joint:r_elbow_y=40;speed:0.5;twin-board:3;twin-board-at:0.3,0.1,20;\
+twin-toy:Tomato,0.3,0.1;twin-warm-up:10;twin-fault:r_elbow_y=on;touch-correct:m3;detect-confidence:0.4;\
+detect-hide:Tomato;object:Tomato;gap-session:a;labels-box:Tomato,1,2,30,40;labels-choose:2;scores-cell:1,2;\
+scores-picture:3;models-accept-m1;connect-port:tty;quit";
+
+const ARGUMENTS: &str =
+    "--size\n1280x800\n--theme\ndark\n--screen\nlive\n--cameras\n0,2\n--twin\nlab\n--do\nwait:1;quit\n";
+
+/// Commands of several workflows.
+fn journal() -> Result<String, Problem> {
+    let commands: Vec<Command> = vec![
+        EyesCommand::ChooseBoard { columns: 9, rows: 6, square_m: 0.03 }.into(),
+        EyesCommand::MinutesSinceOn(Some(12.5)).into(),
+        LiveCommand::Probe(ProbePoint::Raw { eye: Eye::Left, u_px: 320.5, v_px: 240.0 }).into(),
+        SourceCommand::PairsPerSecond(12.5).into(),
+        SourceCommand::Open(SourceSpec::Folder("board".into())).into(),
+        EyesCommand::Solve.into(),
+    ];
+    let heading = Heading { journal: 1, software: "plumbline".to_owned(), started: Timestamp::UNIX_EPOCH };
+    let mut text = serde_json::to_string(&heading)? + "\n";
+    for (k, command) in commands.into_iter().enumerate() {
+        let entry = Entry { at_secs: 0.5 * k as f64, newest_seq: Some(k as u64), command };
+        text += &(serde_json::to_string(&entry)? + "\n");
+    }
+    Ok(text)
+}
