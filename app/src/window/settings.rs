@@ -71,6 +71,26 @@ impl Default for WindowSettings {
     }
 }
 
+/// Whether a part of the window stands in two places, or inside itself: drawing it would never end.
+fn is_knotted(tree: &Tree<Pane>) -> bool {
+    let mut seen = std::collections::HashSet::new();
+    let mut next: Vec<egui_tiles::TileId> = tree.root.into_iter().collect();
+    while let Some(id) = next.pop() {
+        if !seen.insert(id) {
+            return true;
+        }
+        if let Some(egui_tiles::Tile::Container(container)) = tree.tiles.get(id) {
+            next.extend(container.children().copied());
+        }
+    }
+    false
+}
+
+/// Sides of windows, points: larger ones have no screen, and drawing fails.
+const SIDES_POINTS: std::ops::RangeInclusive<f32> = 50.0..=16384.0;
+/// Scales; the shortcuts that change it stay inside.
+const ZOOMS: std::ops::RangeInclusive<f32> = 0.2..=5.0;
+
 impl WindowSettings {
     /// How many sources are remembered.
     pub const RECENT_SOURCES: usize = 8;
@@ -94,7 +114,22 @@ impl WindowSettings {
             Err(error) if error.is_absent() => return Ok(Self::default()),
             Err(error) => return Err(SettingsError::Read { error }),
         };
-        serde_json::from_str(&text).map_err(|error| SettingsError::Parse { file: file.to_owned(), error })
+        let settings: Self = serde_json::from_str(&text)
+            .map_err(|error| SettingsError::Parse { file: file.to_owned(), error })?;
+        match settings.unusable() {
+            None => Ok(settings),
+            Some(what) => Err(SettingsError::Value { file: file.to_owned(), what }),
+        }
+    }
+
+    /// A number with which no window can be shown, in words.
+    fn unusable(&self) -> Option<String> {
+        if self.arrangements.values().any(is_knotted) {
+            return Some("an arrangement with a part that contains itself".to_owned());
+        }
+        let side = self.size.into_iter().find(|side| !SIDES_POINTS.contains(side));
+        let side = side.map(|side| format!("a side of {side:?} points"));
+        side.or_else(|| (!ZOOMS.contains(&self.zoom)).then(|| format!("a scale of {:?}", self.zoom)))
     }
 
     /// Writes the file in one step, so that a crash leaves the old one or the new one.
@@ -114,6 +149,14 @@ pub enum SettingsError {
     Read {
         /// Which file, and why.
         error: FileError,
+    },
+    /// A number that no window can have.
+    #[error("The window's settings in {} hold {what}; it starts with the default layout.", file.display())]
+    Value {
+        /// Which file.
+        file: PathBuf,
+        /// Which number.
+        what: String,
     },
     /// Not what was expected.
     #[error(
@@ -172,5 +215,36 @@ mod tests {
         assert_eq!(settings.recent_sources.len(), WindowSettings::RECENT_SOURCES);
         assert_eq!(settings.recent_sources[0], SourceSpec::Cameras { left_index: 0, right_index: 17 });
         assert_eq!(settings.recent_sources[1], SourceSpec::Cameras { left_index: 0, right_index: 19 });
+    }
+
+    #[test]
+    fn numbers_that_no_window_can_have_are_named() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = folder.path().join("window.json");
+        for (size, zoom, said) in [
+            ([1280.0, 1e30], 1.0, "a side of 1e30 points"),
+            ([0.0, 800.0], 1.0, "a side of 0.0 points"),
+            ([1280.0, 800.0], 0.0, "a scale of 0.0"),
+            ([1280.0, 800.0], 1e9, "a scale of 1000000000.0"),
+        ] {
+            WindowSettings { size, zoom, ..Default::default() }.save(&file).expect("writable");
+            let error = WindowSettings::load(&file).expect_err("no window is like that").to_string();
+            assert!(error.contains(said) && error.contains("default layout"), "{error}");
+        }
+    }
+
+    #[test]
+    fn an_arrangement_that_contains_itself_is_refused() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = folder.path().join("window.json");
+        let mut settings = WindowSettings::default();
+        let tree = settings.arrangement(Screen::Live);
+        let root = tree.root.expect("it has one");
+        if let Some(egui_tiles::Tile::Container(container)) = tree.tiles.get_mut(root) {
+            container.add_child(root);
+        }
+        settings.save(&file).expect("writable");
+        let error = WindowSettings::load(&file).expect_err("drawing it would never end").to_string();
+        assert!(error.contains("contains itself"), "{error}");
     }
 }

@@ -161,8 +161,10 @@ pub fn ticks(low: f64, high: f64, about: usize) -> Vec<f64> {
         return vec![];
     }
     let step = round_down(span / about as f64);
-    let first = (low / step - 1e-9).ceil() as i64;
-    (first..).map(|i| i as f64 * step).take_while(|tick| *tick <= high + 1e-9 * span).collect()
+    let first = (low / step - 1e-9).ceil();
+    // At the end of what numbers can be, nothing is larger than the end.
+    let ticks = (0..=3 * about).map(|i| (first + i as f64) * step);
+    ticks.take_while(|tick| tick.is_finite() && *tick <= high + 1e-9 * span).collect()
 }
 
 /// The next of 1, 2, 5, 10, 20, … down.
@@ -197,6 +199,14 @@ mod tests {
         assert_eq!(ticks(-0.4, 2.1, 4), [0.0, 0.5, 1.0, 1.5, 2.0]);
         assert_eq!(ticks(0.0, 0.0, 5), Vec::<f64>::new());
         assert_eq!(ticks(f64::NAN, 1.0, 5), Vec::<f64>::new());
+        for (low, high) in [(0.0, f64::MAX), (f64::MIN / 2.0, f64::MAX / 4.0), (1e300, 1e300 * (1.0 + 1e-15))]
+        {
+            let found = ticks(low, high, 4);
+            assert!(
+                found.len() <= 13 && found.iter().all(|tick| tick.is_finite()),
+                "{low} {high}: {found:?}"
+            );
+        }
     }
 
     #[test]

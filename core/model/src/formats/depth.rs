@@ -63,7 +63,7 @@ fn end_of_tag(text: &str) -> usize {
 pub fn of_yaml(text: &str) -> usize {
     let (mut brackets, mut deepest) = (0usize, 0);
     for line in text.lines() {
-        let (mut levels, mut spaces) = (0, true);
+        let mut levels = 0usize;
         let (mut quoted, mut escaped) = (false, false);
         for (at, byte) in line.bytes().enumerate() {
             match byte {
@@ -77,11 +77,15 @@ pub fn of_yaml(text: &str) -> usize {
                 _ => {}
             }
             deepest = deepest.max(brackets);
-            // Each dash with a space opens a list, a question mark a group.
-            spaces &= matches!(byte, b' ' | b'-' | b'?');
-            levels += usize::from(spaces && matches!(byte, b'-' | b'?'));
+            // Each dash with a space opens a list, a question mark a group; some parsers take them
+            // behind a key, too.
+            levels = match byte {
+                b'-' | b'?' => levels + 1,
+                b' ' => levels,
+                _ => 0,
+            };
+            deepest = deepest.max(levels);
         }
-        deepest = deepest.max(levels);
     }
     let indented = text.lines().map(|line| line.len() - line.trim_start_matches(' ').len()).max();
     // A level is at least one space; long lines that go on are indented more, but not so far.
@@ -117,6 +121,8 @@ mod tests {
     fn groups_are_counted_by_brackets_dashes_and_indentation() {
         assert_eq!(of_yaml("a: [1, [2, 3]]\nb: \"[[[\"\n"), 2);
         assert_eq!(of_yaml("# [[[[\n- - - 1\n"), 3);
+        assert_eq!(of_yaml("rows: - - - - 1\n"), 4);
+        assert_eq!(of_yaml("at: 2026-01-02 - x\n"), 1);
         assert_eq!(of_yaml(&"[".repeat(20_000)), 20_000);
         assert_eq!(of_yaml(&"- ".repeat(500)), 500);
         assert!(of_yaml(&(0..400).map(|i| " ".repeat(i) + "a:\n").collect::<String>()) > DEEPEST);

@@ -173,22 +173,31 @@ fn column_of(text: &str, at: usize) -> usize {
 }
 
 fn scaled(text: &str, spans: &[(usize, usize)], (from, to): (usize, usize), factor: f64) -> Vec<u8> {
-    scaled_where(text, spans, factor, |start| (from..to).contains(&start))
+    let wanted = spans.iter().filter(|(start, _)| (from..to).contains(start));
+    with_scaled(text, wanted, factor)
 }
 
 fn scaled_column(text: &str, spans: &[(usize, usize)], column: usize, factor: f64) -> Vec<u8> {
-    scaled_where(text, spans, factor, |start| column_of(text, start) == column)
+    // In one pass: a line may be as long as the file.
+    let (mut at, mut here) = (0, 0);
+    let wanted = spans.iter().filter(|(start, _)| {
+        for byte in &text.as_bytes()[at..*start] {
+            match byte {
+                b'\n' => here = 0,
+                b',' => here += 1,
+                _ => {}
+            }
+        }
+        at = *start;
+        here == column
+    });
+    with_scaled(text, wanted, factor)
 }
 
-fn scaled_where(
-    text: &str,
-    spans: &[(usize, usize)],
-    factor: f64,
-    wanted: impl Fn(usize) -> bool,
-) -> Vec<u8> {
+fn with_scaled<'a>(text: &str, wanted: impl Iterator<Item = &'a (usize, usize)>, factor: f64) -> Vec<u8> {
     let mut out = String::with_capacity(text.len() * 2);
     let mut copied = 0;
-    for &(start, end) in spans.iter().filter(|(start, _)| wanted(*start)) {
+    for &(start, end) in wanted {
         out.push_str(&text[copied..start]);
         out.push_str(&times(&text[start..end], factor));
         copied = end;

@@ -22,7 +22,9 @@ pub fn readers() -> Vec<Reader> {
             std::thread::sleep(Duration::from_secs(1000));
             Heard::accepted(())
         }),
-        one("broken-memory", FILES, 1, |_| Heard::accepted(vec![1_u8; 3_000_000_000].len())),
+        one("broken-memory", FILES, 1, |_| {
+            Heard::accepted(std::hint::black_box(vec![1_u8; 3_000_000_000]).len())
+        }),
         one("broken-fault", FILES, 1, |_| Heard::accepted(f64::NAN)),
     ]
 }

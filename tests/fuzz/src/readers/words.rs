@@ -27,6 +27,8 @@ fn understood(file: &Path, before: &[&str], between: char) -> Heard {
         [] => text.split(between).map(str::to_owned).collect(),
         _ => vec![text],
     };
+    // A word on the command line has at most 128 KB; looking for what is meant by one takes its square.
+    let given = given.into_iter().map(|word| word.chars().take(4000).collect());
     let words = ["plumbline"].iter().chain(before).map(ToString::to_string).chain(given);
     plumbline::understands(words.take(2000)).into()
 }

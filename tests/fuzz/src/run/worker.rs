@@ -37,8 +37,8 @@ pub fn work(
     for index in cases {
         let folder = scratch.join(index.to_string());
         std::fs::create_dir_all(&folder)?;
-        tell(&json!(["begin", index]))?;
         let staged = stage(&reader, &seeds, seed, Some(index), &folder)?;
+        tell(&json!(["begin", index]))?;
         let begun = Instant::now();
         let (verdict, mut said) = find::outcome(&reader, &folder);
         let took = begun.elapsed().as_micros() as u64;

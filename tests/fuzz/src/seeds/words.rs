@@ -54,11 +54,11 @@ fn wire(protocol: Protocol) -> Result<Vec<u8>, Problem> {
 const SCRIPT: &str = "collect;solve;wait:1.5;pair:3;probe:335,330;rate:15;picture:a.png;preview-pose:touch-ready;\
 look-at:0.3,0.1,0.05;reach:0.35,-0.1,0.08;preview-joint:r_elbow_y=40;speed:0.5;twin-board:3;twin-board-at:0.3,0.1,20;\
 twin-toy:Tomato,0.3,0.1;twin-warm-up:10;twin-fault:r_elbow_y=on;touch-correct:m3;detect-confidence:0.4;\
-detect-hide:Tomato;object:Tomato;gap-session:a;labels-box:Tomato,1,2,30,40;labels-choose:2;scores-cell:1,2;\
+detect-hide:Tomato;object:Tomato;gap-session:a;labels-box:1,1,2,30,40;labels-choose:2;scores-cell:1,2;\
 scores-picture:3;models-accept-m1;connect-port:tty;quit";
 
 const ARGUMENTS: &str =
-    "--size\n1280x800\n--theme\ndark\n--screen\nlive\n--cameras\n0,2\n--twin\nlab\n--do\nwait:1;quit\n";
+    "--size\n1280x800\n--theme\ndark\n--screen\nlive\n--cameras\n0,2\n--twin\nlab\n--do\nwait:1;quit";
 
 /// Commands of several workflows.
 fn journal() -> Result<String, Problem> {
