@@ -20,6 +20,12 @@ pub type Window = Harness<'static, PlumblineWindow>;
 /// A run of touches takes minutes, and drawing on the processor is slow.
 const PATIENCE: Duration = Duration::from_secs(600);
 
+/// `PLUMBLINE_PATIENCE_S` for who looks for what a test waits for.
+fn patience() -> Duration {
+    let wanted = std::env::var("PLUMBLINE_PATIENCE_S").ok().and_then(|s| s.parse().ok());
+    wanted.map_or(PATIENCE, Duration::from_secs)
+}
+
 /// The window over the real engine; with the twin of a scenario, if one is named.
 pub fn window(data_dir: &Path, twin: Option<&str>) -> Window {
     window_on_trial(data_dir, twin, Trial::default())
@@ -51,7 +57,7 @@ pub fn until(window: &mut Window, what: &str, holds: impl Fn(&Window) -> bool) {
         if holds(window) {
             return;
         }
-        if start.elapsed() > PATIENCE {
+        if start.elapsed() > patience() {
             let view = view(window);
             panic!(
                 "waited in vain for {what}; robot {:?}, jobs {:?}, messages {:?}",

@@ -44,6 +44,10 @@ fn a_dead_robot_thread_is_said_within_a_second_and_started_again() {
     assert_eq!(robot(&window).motion, MotionState::Unknown);
     assert_eq!(robot(&window).bus.cycles_per_s, None);
 
+    // It is offered as soon as what failed has come to its end.
+    until(&mut window, "its end", |window| {
+        view(window).fault(WatchedThread::Robot).is_some_and(|fault| fault.can_start_again)
+    });
     click_containing(&mut window, "Start again");
     let asked = Instant::now();
     until(&mut window, "it runs", |window| view(window).threads.is_empty());

@@ -96,6 +96,8 @@ fn joint_view(rig: &Rig, i: usize, servo: &plumbline_model::robot::Servo, measur
         torque_on: Some(true),
         age: Some(Duration::from_millis(12)),
         problem: None,
+        let_go: false,
+        no_force: false,
         history: history.collect(),
     }
 }

@@ -7,6 +7,8 @@ use std::io::{self, Read as _, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use plumbline_model::duration;
+
 use super::deframer::{Deframer, Found};
 use super::error::BusError;
 use super::fault::{BusCounts, FaultKind};
@@ -219,7 +221,7 @@ impl Bus {
     pub(super) fn answer_time(&self, data: usize) -> Duration {
         let bytes = self.protocol.status_bytes(data) as f64;
         let margin = self.margin.max(if self.patient { PATIENCE } else { Duration::ZERO });
-        margin + Duration::from_secs_f64(bytes * 10.0 / f64::from(self.timing.baud.max(1)))
+        margin + duration::seconds(bytes * 10.0 / f64::from(self.timing.baud.max(1))).unwrap_or_default()
     }
 
     /// Sends, waits, and repeats until the answer is right, attempts are used up or `deadline` is

@@ -7,6 +7,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Sender, TrySendError};
+use plumbline_model::duration;
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 use super::chains::Chains;
@@ -161,7 +162,9 @@ impl ArmDriver {
         self.chains.check(&self.limiter.rig, &joints, &state.unknown)?;
         let start = state.commanded.as_ref().ok_or_else(unknown)?;
         let present = state.measured.as_ref().ok_or_else(unknown)?;
-        self.limiter.plan(start, present, wanted).map(|line| Duration::from_secs_f64(line.duration_s))
+        let line = self.limiter.plan(start, present, wanted)?;
+        // The limiter bounds it.
+        Ok(duration::seconds(line.duration_s).unwrap_or_default())
     }
 
     /// Asks for a move; it takes the place of whatever moves. How it ends, or that it is refused,

@@ -15,6 +15,8 @@ const SAMPLES: usize = 64;
 const ROUNDING_RAD: f64 = 2e-3;
 /// A move over nothing still takes this long, s.
 const SHORTEST_S: f64 = 0.05;
+/// A move that takes longer is a slip of the pen, s.
+const LONGEST_S: f64 = 1800.0;
 
 /// Knows the limits of a rig.
 pub(super) struct Limiter {
@@ -82,6 +84,14 @@ impl Limiter {
                 return Err(Refusal::NotAMove { what: format!("a speed of {peak} rad/s; give more than 0") });
             }
         };
+        // NaN fails the comparison.
+        if !(duration_s <= LONGEST_S) {
+            return Err(Refusal::NotAMove {
+                what: format!(
+                    "it would take {duration_s:.0} s, and none may take longer than {LONGEST_S:.0} s; give it more speed"
+                ),
+            });
+        }
         let wanted_rad_s = PEAK_OVER_MEAN * longest_rad / duration_s.max(1e-9);
         if let Some(joint) = longest.filter(|_| wanted_rad_s > limit_rad_s * (1.0 + 1e-9)) {
             let advice =

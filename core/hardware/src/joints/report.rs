@@ -1,8 +1,9 @@
 //! What the arm tells about itself.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
+use plumbline_model::duration;
 use plumbline_model::image_pair::Stamp;
 
 use super::command::Motion;
@@ -47,7 +48,8 @@ impl Controller {
             Mode::Hold(_) if limp && self.gone.is_none() => Motion::Limp,
             Mode::Hold(reason) => Motion::Holding(reason.clone()),
             Mode::Move { id, line, fraction, .. } => {
-                let remaining = Duration::from_secs_f64((1.0 - fraction).max(0.0) * line.duration_s);
+                let remaining =
+                    duration::seconds((1.0 - fraction).max(0.0) * line.duration_s).unwrap_or_default();
                 Motion::Moving { id: *id, fraction: *fraction, remaining }
             }
             Mode::Follow { .. } => Motion::Following,

@@ -75,7 +75,7 @@ fn goals_beyond_limits_are_refused_with_joint_limit_and_amount() {
         let refused = limiter.plan(&home, &home, &at(0.5, vec![(elbow, bad)]));
         assert!(matches!(refused, Err(Refusal::NotANumber { .. })), "{refused:?}");
     }
-    for pace in [0.0, -1.0, 1.5, f64::NAN] {
+    for pace in [0.0, -1.0, 1.5, f64::NAN, 1e-30, 5e-324] {
         assert!(matches!(
             limiter.plan(&home, &home, &at(pace, vec![(elbow, 1.6)])),
             Err(Refusal::NotAMove { .. })
