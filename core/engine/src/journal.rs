@@ -12,6 +12,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Sender};
 use jiff::Timestamp;
+use plumbline_model::files::{self, FileError, Size};
 use serde::{Deserialize, Serialize};
 
 use crate::bell::Bell;
@@ -55,6 +56,9 @@ pub enum JournalError {
         /// What the system says.
         error: std::io::Error,
     },
+    /// It is no file that can be read as a journal.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// A line is not what it should be.
     #[error(
         "{path}, line {line}: {reason}. This is not a journal of this program, or it was edited by hand."
@@ -189,7 +193,8 @@ impl Drop for Journal {
 pub fn read(path: &Path) -> Result<(Heading, Vec<Entry>), JournalError> {
     let io = |error| JournalError::Io { path: path.to_owned(), error };
     let bad = |line: usize, reason: String| JournalError::Line { path: path.to_owned(), line, reason };
-    let mut reader = BufReader::new(File::open(path).map_err(io)?);
+    // A pipe would never answer, a device never end.
+    let mut reader = BufReader::new(files::open(path, Size::TEXT)?);
     let mut text = String::new();
     reader.read_line(&mut text).map_err(io)?;
     let heading: Heading = serde_json::from_str(&text).map_err(|error| bad(1, error.to_string()))?;
@@ -259,6 +264,16 @@ mod tests {
     fn only_file(folder: &Path) -> PathBuf {
         let mut listing = std::fs::read_dir(folder).expect("folder");
         listing.next().expect("a journal").expect("readable").path()
+    }
+
+    #[test]
+    fn what_never_ends_is_no_journal() {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let endless = folder.path().join("journal.jsonl");
+        std::os::unix::fs::symlink("/dev/zero", &endless).expect("a link");
+        let error = read(&endless).expect_err("a device").to_string();
+        assert!(error.contains("journal.jsonl") && error.contains("not a file"), "{error}");
+        assert!(read(folder.path()).is_err());
     }
 
     #[test]

@@ -260,7 +260,7 @@ fn tables_come_back() {
         };
         let count = 6 + index as usize % 9;
         let heights =
-            (0..count).map(|k| place(k)).map(|(x_m, y_m)| HeightPoint { x_m, y_m, height_m: 0.1 * x_m });
+            (0..count).map(&mut place).map(|(x_m, y_m)| HeightPoint { x_m, y_m, height_m: 0.1 * x_m });
         let written = HeightTable::new(heights.collect()).expect("a table");
         written.write(&height).expect("written");
         assert_eq!(HeightTable::read(&height).expect("read"), written);
