@@ -8,6 +8,7 @@ use opencv::core::{
     FileStorageTraitConst, Mat, MatTraitConst, MatTraitConstManual,
 };
 use plumbline_model::camera::Camera;
+use plumbline_model::files::shortened;
 use plumbline_model::formats::lens::{self, LensNumbers, StereoNumbers};
 use plumbline_model::formats::{FormatError, Place, ReadOptions, depth, is_opencv_storage, read_text};
 use plumbline_model::{Eye, ModelKind, StereoCameras};
@@ -115,6 +116,11 @@ impl Storage {
             language: "OpenCV storage",
             reason,
         })?;
+        if let Some((line, tag)) = strange_tag(&text) {
+            let place = Place { file: file.to_path_buf(), line: Some(line), key: String::new() };
+            let reason = format!("it has the tag \"{tag}\", which OpenCV does not write");
+            return Err(FormatError::Syntax { place, language: "OpenCV storage", reason });
+        }
         let storage = FileStorage::new(&text, FileStorage_READ | FileStorage_MEMORY, "")
             .map_err(|error| refused(&error.message))?;
         match storage.is_opened() {
@@ -140,6 +146,21 @@ impl Storage {
         });
         at.map(|index| index + 1)
     }
+}
+
+/// The first tag of YAML that is not one of OpenCV behind a key, with its line: OpenCV's parser never
+/// comes back from some others.
+fn strange_tag(text: &str) -> Option<(usize, String)> {
+    if text.trim_start().starts_with('<') {
+        return None;
+    }
+    text.lines().enumerate().find_map(|(index, line)| {
+        let at = line.find('!')?;
+        let before = line[..at].trim_end();
+        let is_text = before.contains(['"', '\'', '#']);
+        let is_known = before.ends_with(':') && line[at..].starts_with("!!opencv-");
+        (!is_text && !is_known).then(|| (index + 1, shortened(&line[at..])))
+    })
 }
 
 /// OpenCV hides line and reason in its message: `… in function '(60): Bad format …'`.
