@@ -132,7 +132,7 @@ pub enum RigError {
         /// The description's file.
         file: String,
         /// What is wrong.
-        error: DescriptionError,
+        error: Box<DescriptionError>,
     },
     /// The rig speaks of a joint or link that the description does not have.
     #[error("{file}, {place}: {error}")]
@@ -142,7 +142,7 @@ pub enum RigError {
         /// Where in it.
         place: String,
         /// What is not known.
-        error: DescriptionError,
+        error: Box<DescriptionError>,
     },
     /// Two servos with one id, or two servos for one joint.
     #[error("{file}: {what}: give each servo its own id and its own joint")]

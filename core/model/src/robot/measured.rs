@@ -96,7 +96,7 @@ fn single_description(folder: &Path) -> Option<PathBuf> {
 fn bare(file: &Path, urdf: &str, table: toml::Table) -> Result<Rig, RigError> {
     let shown = file.display().to_string();
     let (robot, unlimited) = Description::from_urdf_measured(urdf)
-        .map_err(|error| RigError::Description { file: shown.clone(), error })?;
+        .map_err(|error| RigError::Description { file: shown.clone(), error: Box::new(error) })?;
     let text = |key: &str| table.get(key).and_then(toml::Value::as_str).map(str::to_owned);
     let name = text("name").unwrap_or_else(|| robot.name().to_owned());
     let title = text("title").unwrap_or_else(|| name.clone());

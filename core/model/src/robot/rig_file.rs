@@ -231,8 +231,10 @@ impl Rig {
         let parts: File = toml::from_str(text)
             .map_err(|error| RigError::NotRig { file: file.to_owned(), reason: told(&error.to_string()) })?;
         let urdf = description(&parts.description)?;
-        let robot = Description::from_urdf(&urdf)
-            .map_err(|error| RigError::Description { file: parts.description.clone(), error })?;
+        let robot = Description::from_urdf(&urdf).map_err(|error| RigError::Description {
+            file: parts.description.clone(),
+            error: Box::new(error),
+        })?;
         Reader { file, robot: &robot }.rig(parts)
     }
 }
@@ -308,7 +310,7 @@ impl Reader<'_> {
     }
 
     fn unknown(&self, place: &str, error: DescriptionError) -> RigError {
-        RigError::Unknown { file: self.file.to_owned(), place: place.to_owned(), error }
+        RigError::Unknown { file: self.file.to_owned(), place: place.to_owned(), error: Box::new(error) }
     }
 
     fn joint(&self, place: &str, name: &str) -> Result<JointIndex, RigError> {
