@@ -111,7 +111,7 @@ impl Gamepads {
     pub(super) fn newest(&self, is_focused: bool) -> Option<GamepadState> {
         let (at, state) = self.shared.newest().clone()?;
         // A window behind others must not move the robot.
-        (at.elapsed() < FRESH).then(|| GamepadState { enabled: state.enabled && is_focused, ..state })
+        (at.elapsed() < FRESH).then_some(GamepadState { enabled: state.enabled && is_focused, ..state })
     }
 
     /// Whether STOP was pressed on a gamepad since the last call. The arm holds already.

@@ -115,11 +115,13 @@ pub fn ended(mut command: Command) -> Ended {
     let began = Instant::now();
     let mut child = command.spawn().expect("the program starts");
     let read = |mut pipe: Box<dyn std::io::Read + Send>| {
-        std::thread::spawn(move || {
+        let reader = std::thread::Builder::new().name("what it says".to_owned());
+        let read = move || {
             let mut bytes = vec![];
             let _ = pipe.read_to_end(&mut bytes);
             String::from_utf8_lossy(&bytes).into_owned()
-        })
+        };
+        reader.spawn(read).expect("a thread")
     };
     let out = read(Box::new(child.stdout.take().expect("piped")));
     let err = read(Box::new(child.stderr.take().expect("piped")));

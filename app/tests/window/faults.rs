@@ -134,7 +134,7 @@ fn several_faults_are_counted_and_the_worst_comes_first() {
 #[test]
 fn what_the_journal_lacks_and_where_data_go_is_said() {
     let kept = KeptView {
-        problem: Some("You have no home folder. What is accepted goes to /tmp/x.".into()),
+        problem: Some("You have no home folder. What is accepted goes to a folder of its own.".into()),
         journal_lost: 12,
         ..KeptView::default()
     };

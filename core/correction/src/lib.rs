@@ -24,8 +24,8 @@ mod onnx;
 pub mod options;
 pub mod placement;
 mod published;
-mod self_test;
 pub mod repeats;
+mod self_test;
 pub mod tables;
 pub mod train;
 

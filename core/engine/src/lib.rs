@@ -40,8 +40,7 @@ pub use command::{
     DetectorChoice, ExportFormat, Exported, EyesCommand, FileLength, GapCommand, GapModel, GraspTable,
     HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LabelsCommand, LiveCommand, ModelsCommand,
     MountCommand, NoticeCommand, ProbePoint, Products, Provider, RobotCommand, ScoresCommand, ScreenContact,
-    ScreenWindow, SetPart, SourceCommand, TablesCommand, TouchCommand, TwinCommand,
-    WatchCommand,
+    ScreenWindow, SetPart, SourceCommand, TablesCommand, TouchCommand, TwinCommand, WatchCommand,
 };
 pub use context::Action;
 pub use engine::{Engine, Wake};

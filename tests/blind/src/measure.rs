@@ -45,7 +45,8 @@ pub fn size_sigmas(places_m: &[Vector3<f64>], moved_m: &[Vector3<f64>], sigma_m:
     }
     let normal: Matrix6<f64> = (design.transpose() * &design).fixed_view::<6, 6>(0, 0).into();
     let toward: Vector6<f64> = (design.transpose() * &right).fixed_rows::<6>(0).into();
-    let motion = plumbline_model::decompose::pseudo_inverse(normal, 1e-12).map_or_else(Vector6::zeros, |inverse| inverse * toward);
+    let motion = plumbline_model::decompose::pseudo_inverse(normal, 1e-12)
+        .map_or_else(Vector6::zeros, |inverse| inverse * toward);
     let left = right - design * motion;
     (left.norm_squared() / (3 * n).max(1) as f64).sqrt()
 }

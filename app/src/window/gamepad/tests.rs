@@ -50,8 +50,12 @@ impl Bench {
         let (wake, woken) = crossbeam_channel::bounded(8);
         let gamepads = Gamepads::watch(
             move || Some(FakePads { deeds: received, plugged: Some(Sticks::default()) }),
-            Arc::new(move || drop(stop.try_send(Instant::now()))),
-            move || drop(wake.try_send(())),
+            Arc::new(move || {
+                let _ = stop.try_send(Instant::now());
+            }),
+            move || {
+                let _ = wake.try_send(());
+            },
         );
         Self { gamepads, deeds, stopped, woken }
     }

@@ -92,7 +92,9 @@ impl Store {
         let mut found: Vec<EarlierCalibration> = listing
             .flatten()
             .map(|entry| entry.path())
-            .filter(|path| !files::is_hidden(path) && path.extension().is_some_and(|extension| extension == CALIBRATION))
+            .filter(|path| {
+                !files::is_hidden(path) && path.extension().is_some_and(|extension| extension == CALIBRATION)
+            })
             .filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned()))
             .map(|id| {
                 let entry = self.entry(&id);

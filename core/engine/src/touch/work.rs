@@ -240,7 +240,9 @@ fn restore(folder: &std::path::Path, rig: &Rig) -> TouchResult {
     };
     let placement = match plumbline_model::files::present(&file) {
         Ok(false) => None,
-        Ok(true) => Some(ScreenPlacement::read(&file, &rig.name).map(Arc::new).map_err(|error| nominal(&error))),
+        Ok(true) => {
+            Some(ScreenPlacement::read(&file, &rig.name).map(Arc::new).map_err(|error| nominal(&error)))
+        }
         Err(error) => Some(Err(nominal(&error))),
     };
     // A rig without this finger cannot touch anyway; planning says so.

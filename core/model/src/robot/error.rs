@@ -92,7 +92,7 @@ pub enum DescriptionError {
         /// Which joint or link.
         place: String,
         /// What cannot be, and why.
-        what: Implausible,
+        what: Box<Implausible>,
     },
     /// A joint that copies another which does not move by itself.
     #[error("joint {joint} copies {source_joint}, which is not a joint that moves by itself")]

@@ -91,7 +91,10 @@ fn parse(text: &str) -> Result<urdf_rs::Robot, Error> {
 
 /// Refuses a joint whose numbers cannot be.
 fn check_joint(joint: &urdf_rs::Joint) -> Result<(), Error> {
-    let refuse = |what: Implausible| Error::Implausible { place: format!("joint {}", joint.name), what };
+    let refuse = |what: Implausible| Error::Implausible {
+        place: format!("joint {}", joint.name),
+        what: Box::new(what),
+    };
     check_origin(&joint.origin).map_err(refuse)?;
     if !moves(joint) {
         return Ok(());
@@ -112,7 +115,8 @@ fn check_joint(joint: &urdf_rs::Joint) -> Result<(), Error> {
 
 /// Refuses a link whose numbers cannot be.
 fn check_link(link: &urdf_rs::Link) -> Result<(), Error> {
-    let refuse = |what: Implausible| Error::Implausible { place: format!("link {}", link.name), what };
+    let refuse =
+        |what: Implausible| Error::Implausible { place: format!("link {}", link.name), what: Box::new(what) };
     check_origin(&link.inertial.origin).map_err(refuse)?;
     check_inertial(&link.inertial).map_err(refuse)?;
     link.visual.iter().try_for_each(|visual| check_origin(&visual.origin)).map_err(refuse)?;

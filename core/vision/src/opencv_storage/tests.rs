@@ -296,8 +296,12 @@ fn lenses_that_cannot_be_and_files_that_nest_too_deep_are_refused() {
 fn tags_that_opencv_never_comes_back_from_are_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("eyes.yaml");
-    save(&StereoCalibration::bare(fisheye_eyes()), &[file.clone()], CalibrationFormat::OpenCvStorage)
-        .expect("written");
+    save(
+        &StereoCalibration::bare(fisheye_eyes()),
+        std::slice::from_ref(&file),
+        CalibrationFormat::OpenCvStorage,
+    )
+    .expect("written");
     let text = std::fs::read_to_string(&file).expect("there");
     let at = text.find("data: [").expect("a matrix") + "data: [".len();
     std::fs::write(&file, format!("{} !!binary x,{}", &text[..at], &text[at..])).expect("written");
