@@ -49,6 +49,8 @@ pub enum ArmState {
     Stopped,
     /// Connected, and no servo answers: whether it holds is not known.
     Unknown,
+    /// Some servos do not answer: where their joints are, and whether they hold, is not known.
+    PartlyKnown,
     /// No arm is connected.
     NotConnected,
 }
@@ -62,6 +64,7 @@ impl ArmState {
             Self::Free => "arm free",
             Self::Stopped => "stopped",
             Self::Unknown => "arm not known",
+            Self::PartlyKnown => "arm partly known",
             Self::NotConnected => "no arm connected",
         }
     }

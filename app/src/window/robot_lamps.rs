@@ -27,6 +27,7 @@ pub(super) fn arm_state(robot: &RobotView) -> ArmState {
         MotionState::Moving { .. } => ArmState::Moving,
         MotionState::Limp => ArmState::Free,
         MotionState::Unknown => ArmState::Unknown,
+        _ if !robot.unknown.is_empty() => ArmState::PartlyKnown,
         _ if robot.stopped => ArmState::Stopped,
         MotionState::Holding { .. } => ArmState::Held,
     }

@@ -6,6 +6,8 @@ use std::time::Duration;
 use plumbline_hardware::dynamixel::open_port;
 use plumbline_hardware::joints::{ArmDriver, ArmOptions};
 
+use rustix::process::{Pid, Signal, kill_process};
+
 use super::chain::PtyChain;
 use super::world::{assert_goals_stay_near, await_state, has_torque, id_of, joint, nico, turn};
 
@@ -26,6 +28,12 @@ fn child_that_moves_until_it_is_killed() {
 
 #[test]
 fn a_killed_process_leaves_the_arm_within_a_step_of_where_it_was() {
+    for signal in [Signal::KILL, Signal::TERM] {
+        ended_by(signal);
+    }
+}
+
+fn ended_by(signal: Signal) {
     let rig = nico();
     let chain = PtyChain::of(&rig);
     // It is slower than its goals, so that they run ahead as far as they may.
@@ -46,13 +54,13 @@ fn a_killed_process_leaves_the_arm_within_a_step_of_where_it_was() {
         std::thread::sleep(Duration::from_millis(5));
     }
     let there = chain.lock().servos[&pan].position;
-    child.kill().expect("it runs");
+    kill_process(Pid::from_child(&child), signal).expect("it runs");
     child.wait().expect("it ended");
     assert!((there - begin).abs() > 150.0, "it did move");
     std::thread::sleep(Duration::from_millis(600));
     let rests = chain.lock().servos[&pan].position;
     let step_ticks = rig.gate.step_rad / std::f64::consts::TAU * 4096.0;
-    eprintln!("moved on by {:.1} of at most {step_ticks:.1} ticks after the kill", (rests - there).abs());
+    eprintln!("moved on by {:.1} of at most {step_ticks:.1} ticks after {signal:?}", (rests - there).abs());
     assert!((rests - there).abs() <= step_ticks + 2.0, "{}", rests - there);
     assert!(has_torque(&chain, pan), "it holds");
     assert_goals_stay_near(&rig, &chain);
