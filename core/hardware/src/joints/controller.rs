@@ -64,6 +64,8 @@ pub(super) struct Controller {
     pub(super) commanded: Option<Posture>,
     stop_seen: bool,
     pub(super) behind_since: Vec<Option<Instant>>,
+    /// Since when a motion waits for readings that are fresh enough.
+    pub(super) waits_since: Option<Instant>,
     pub(super) heavy_since: Vec<Option<Instant>>,
     pub(super) outcomes: VecDeque<(MoveId, MoveOutcome)>,
     pub(super) refusal: Option<(u64, Refusal)>,
@@ -93,6 +95,7 @@ impl Controller {
             commanded: None,
             stop_seen: false,
             behind_since: vec![None; n],
+            waits_since: None,
             heavy_since: vec![None; n],
             outcomes: VecDeque::new(),
             refusal: None,
@@ -245,6 +248,7 @@ impl Controller {
             }
         }
         self.behind_since.fill(None);
+        self.waits_since = None;
         self.heavy_since.fill(None);
         self.mode = Mode::Hold(reason);
     }

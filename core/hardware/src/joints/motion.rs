@@ -35,9 +35,9 @@ impl Controller {
         let (Some(commanded), Some(measured)) = (self.commanded.clone(), self.measured()) else { return };
         let joints = self.moving();
         if !self.is_fresh(&joints) {
-            // What was not read just now is not moved; with it the rest waits.
-            return self.pause();
+            return self.wait_for_readings(now, &joints);
         }
+        self.waits_since = None;
         let wanted = match &mut self.mode {
             Mode::Hold(_) => return,
             Mode::Move { .. } => return self.advance_move(now, dt_s, &commanded, &measured, &joints),
@@ -70,6 +70,23 @@ impl Controller {
         } else {
             self.pause();
         }
+    }
+
+    /// What was not read just now is not moved; with it the rest waits, but not for ever.
+    fn wait_for_readings(&mut self, now: Instant, joints: &[JointIndex]) {
+        let since = now.duration_since(*self.waits_since.get_or_insert(now));
+        if since < self.options.following_timeout {
+            return self.pause();
+        }
+        let waited_for = self
+            .exchange
+            .slots
+            .iter()
+            .filter(|slot| joints.contains(&slot.reading.joint))
+            .max_by_key(|slot| slot.silence());
+        let Some(slot) = waited_for else { return };
+        let (joint, name, age) = (slot.reading.joint, slot.unit.servo.title.clone(), slot.silence());
+        self.hold(HoldReason::Slow { joint, name, age, since });
     }
 
     /// Jogging starts anew from rest.

@@ -220,6 +220,22 @@ pub enum HoldReason {
         /// Allowed.
         limit: f64,
     },
+    /// A servo that has to move is read too seldom.
+    #[error(
+        "the servo of {name} is read too seldom to move it safely (nothing newer than {:.0} ms for {:.1} s): look what the bus lamp says about the adapter, and close other programs",
+        .age.as_secs_f64() * 1e3,
+        .since.as_secs_f64()
+    )]
+    Slow {
+        /// The joint.
+        joint: JointIndex,
+        /// Its name.
+        name: String,
+        /// Age of its angle.
+        age: Duration,
+        /// For how long.
+        since: Duration,
+    },
     /// A servo that has to move does not answer.
     #[error("the servo of {name} (id {servo}) did not answer in {cycles} cycles: check its cable and power")]
     NoAnswer {

@@ -70,6 +70,7 @@ impl Exchange {
             if self.try_take_hold(i)? {
                 let slot = &mut self.slots[i];
                 (slot.in_hand, slot.torque_lost, slot.let_go, slot.verify) = (true, false, false, false);
+                (slot.hold_pending, slot.insist) = (false, false);
                 slot.reading.goal_rad = slot.goal_rad();
                 return Ok(None);
             }

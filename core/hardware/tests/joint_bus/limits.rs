@@ -174,3 +174,15 @@ fn a_defect_inside_is_told_and_the_arm_stays() {
     assert!((chain.lock().servos[&id_of(&rig, pan)].position - there).abs() <= step_ticks);
     assert!(super::world::has_torque(&chain, id_of(&rig, pan)));
 }
+
+#[test]
+fn a_joint_that_is_read_too_seldom_is_not_moved_and_says_so() {
+    let options = ArmOptions { write_window: Duration::ZERO, ..ArmOptions::default() };
+    let (rig, chain, driver) = ready_with(options);
+    let pan = joint(&rig, "head_z");
+    let told = chain.lock().told.len();
+    let outcome = run(&driver, pan, 0.5, 0.3);
+    assert!(matches!(outcome, MoveOutcome::Held(HoldReason::Slow { .. })), "{outcome:?}");
+    assert!(format!("{:?}", driver.state().motion).contains("Slow"));
+    assert_eq!(chain.lock().told.len(), told, "no goal rests on an old angle");
+}
