@@ -115,6 +115,42 @@ fn nobody_but_judges_reads_what_the_twin_hides() {
 }
 
 #[test]
+fn one_place_writes_files() {
+    // Each with a reason of its own: the writer itself; lines that are added to a file as things
+    // happen; a probe of whether a folder can be written to, with nothing in it.
+    let writers = ["core/model/src/files/", "core/engine/src/journal.rs", "core/engine/src/doctor.rs"];
+    // Put together here, so that this file does not contain them itself.
+    let ways = ["fs::wr", "File::cr", "File::op", "OpenO"]
+        .iter()
+        .zip(["ite(", "eate", "tions()", "ptions"])
+        .map(|(start, end)| (*start).to_owned() + end);
+    let ways: Vec<String> = ways.collect();
+    let (mut others, mut seen) = (Vec::new(), 0);
+    for (name, text) in tracked_text_files() {
+        let in_program =
+            ["core/", "app/", "widgets/"].iter().any(|part| name.starts_with(part)) && name.contains("/src/");
+        let file = name.rsplit('/').next().unwrap_or_default();
+        if !in_program || !name.ends_with(".rs") || file.contains("tests") || file.starts_with("laws") {
+            continue;
+        }
+        let program = text.split("#[cfg(test)]").next().unwrap_or_default();
+        if !ways.iter().any(|way| program.contains(way.as_str())) {
+            continue;
+        }
+        match writers.iter().any(|writer| name.starts_with(writer)) {
+            true => seen += 1,
+            false => others.push(name),
+        }
+    }
+    assert!(seen >= writers.len(), "this test must be able to see those that write");
+    assert!(
+        others.is_empty(),
+        "these write files themselves; plumbline_model::files does it so that a full disk and a kill \
+         leave the old file: {others:?}"
+    );
+}
+
+#[test]
 fn every_package_follows_the_workspace() {
     for package in packages() {
         let Package { name, manifest, .. } = &package;

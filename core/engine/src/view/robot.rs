@@ -157,6 +157,26 @@ pub struct JointView {
     pub history: Arc<[JointSample]>,
 }
 
+impl JointView {
+    /// The same joint when nobody knows anything of it any more.
+    pub fn without_readings(&self) -> Self {
+        Self {
+            angle_rad: None,
+            goal_rad: None,
+            speed_rad_s: None,
+            load: None,
+            temperature_c: None,
+            voltage_v: None,
+            torque_on: None,
+            let_go: false,
+            no_force: false,
+            age: None,
+            problem: None,
+            ..self.clone()
+        }
+    }
+}
+
 /// A joint some time ago.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointSample {

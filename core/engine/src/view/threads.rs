@@ -75,24 +75,12 @@ pub(crate) fn robot_without_its_thread(before: &RobotView, reason: &str) -> Robo
         | Connection::Connected { to, .. }
         | Connection::Lost { to, .. } => to.clone(),
     };
-    let unknown = |joint: &JointView| JointView {
-        angle_rad: None,
-        goal_rad: None,
-        speed_rad_s: None,
-        load: None,
-        temperature_c: None,
-        voltage_v: None,
-        torque_on: None,
-        age: None,
-        problem: None,
-        ..joint.clone()
-    };
     RobotView {
         connection: Connection::Lost { to, reason: reason.to_owned() },
         motion: MotionState::Unknown,
         // Whoever looks after the threads has pressed it.
         stopped: true,
-        joints: before.joints.iter().map(unknown).collect(),
+        joints: before.joints.iter().map(JointView::without_readings).collect(),
         measured: None,
         commanded: None,
         tip_place: None,

@@ -12,12 +12,13 @@ use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 use super::chains::Chains;
 use super::command::{Motion, Move, MoveId, MoveOutcome, Setpoint};
-use super::controller::{Controller, Request, note_scan};
+use super::controller::Controller;
 use super::exchange::{Exchange, Silence};
 use super::limiter::Limiter;
 use super::options::ArmOptions;
 use super::reading::JointState;
 use super::refusal::{HoldReason, Refusal};
+use super::requests::{Request, note_scan};
 use super::ring::StateRing;
 use super::servo_unit::ServoUnit;
 use super::stop::StopSwitch;

@@ -32,6 +32,7 @@ mod rate;
 mod reading;
 mod refusal;
 mod report;
+mod requests;
 mod ring;
 mod servo_unit;
 mod slot;
