@@ -34,7 +34,7 @@ fn same(ours: [Option<f64>; 12], reference: &Value) {
 /// truth.
 #[test]
 fn made_up_boxes_score_as_in_the_reference_tool() {
-    let file: Value = serde_json::from_str(include_str!("fixtures/made_up_boxes.json")).expect("JSON");
+    let file: Value = serde_json::from_str(include_str!("../fixtures/made_up_boxes.json")).expect("JSON");
     let mut images = vec![ScoredImage::default(); file["images"].as_u64().expect("a count") as usize];
     for row in file["truth"].as_array().expect("rows") {
         images[row[0].as_u64().expect("an image") as usize].truth.push(TruthBox {
