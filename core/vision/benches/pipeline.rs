@@ -1,5 +1,5 @@
 //! Times of the live pipeline and its parts, and its ratio to the published pipeline in the
-//! same run: `cargo bench -p plumbline-vision`.
+//! same run: `cargo bench -p plumbline-vision --features peers`. Without the feature, ours alone.
 //!
 //! Works on a real pair if the measured data are at hand, else on a made-up one.
 
@@ -11,9 +11,9 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use plumbline_model::aim::AimedPair;
 use plumbline_model::{Workspace, measured_data};
 use plumbline_vision::depth::PointMap;
-use plumbline_vision::disparity::bench::{
-    LivePipeline, NEAREST_M, PublishedPipeline, compare_with_published,
-};
+#[cfg(feature = "peers")]
+use plumbline_vision::disparity::bench::PublishedPipeline;
+use plumbline_vision::disparity::bench::{LivePipeline, NEAREST_M, compare_with_published};
 use plumbline_vision::disparity::{Matcher, Settings};
 use plumbline_vision::rectify::Rectifier;
 use plumbline_vision::synthetic::{Plane, Scene, granite_texture, nico_like_eyes};
@@ -71,16 +71,25 @@ fn pipeline(criterion: &mut Criterion) {
     group.bench_function("points", |b| b.iter(|| PointMap::new(&map, &pair)));
     let mut ours = LivePipeline::new(&pair, NEAREST_M).expect("usable range");
     group.bench_function("all, ours", |b| b.iter(|| ours.run(&left, &right)));
+    #[cfg(feature = "peers")]
     let mut published = PublishedPipeline::new(&pair.cameras).expect("fisheye eyes");
+    #[cfg(feature = "peers")]
     group.bench_function("all, published", |b| b.iter(|| published.run(&left, &right)));
     group.finish();
 
     let report = compare_with_published(&left, &right, &pair, NEAREST_M, ROUNDS).expect("both pipelines run");
+    let (Some(published_ms), Some(ratio)) = (report.published_ms, report.ratio()) else {
+        eprintln!(
+            "ours {:.2} ms; to compare with the published pipeline, add --features peers",
+            report.ours_ms
+        );
+        return;
+    };
     eprintln!(
         "ours {:.2} ms, published {:.2} ms: ratio {:.3} on {} threads; depth step at 0.6 m {:.2} mm against {:.2} mm",
         report.ours_ms,
-        report.published_ms,
-        report.ratio,
+        published_ms,
+        ratio,
         report.threads,
         1e3 * report.depth_step_ours_m,
         1e3 * report.depth_step_published_m

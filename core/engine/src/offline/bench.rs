@@ -272,9 +272,18 @@ fn pipeline() -> Result<Vec<Figure>, OfflineError> {
 
 fn pipeline_figures(report: &ComparisonReport) -> Vec<Figure> {
     let title = |what: &str| format!("rectify, match and place a 640×480 pair: {what}");
+    let time = Figure::new(title("time"), report.ours_ms, "ms");
+    let fraction = title("time as a fraction of the published pipeline's");
+    const WITHOUT: &str = "built without the published pipeline: run ./plumbline bench";
     vec![
-        Figure::new(title("time"), report.ours_ms, "ms").peer("published", report.published_ms),
-        Figure::new(title("time as a fraction of the published pipeline's"), report.ratio, "").at_most(0.25),
+        match report.published_ms {
+            Some(published_ms) => time.peer("published", published_ms),
+            None => time,
+        },
+        match report.ratio() {
+            Some(ratio) => Figure::new(fraction, ratio, "").at_most(0.25),
+            None => Figure::missing(fraction, WITHOUT),
+        },
         Figure::new(title("depth step at 0.6 m"), report.depth_step_ours_m * 1000.0, "mm")
             .at_most(2.2)
             .peer("published", report.depth_step_published_m * 1000.0),

@@ -1,28 +1,17 @@
-//! Our live pipeline against the one published for this robot, timed in turns on the same
-//! pair, with the same number of threads.
-//!
-//! The published one rectifies the whole fisheye view to 640×480 px at a focal length of only
-//! 35 px, matches with OpenCV's three-way semi-global matcher over 192 disparities in both
-//! directions, smooths with the weighted-least-squares filter and reprojects.
+//! Our live pipeline against the one published for this robot (`published`, with the feature
+//! `peers` only), timed in turns on the same pair, with the same number of threads.
 
 use std::time::Instant;
 
 use image::GrayImage;
-use opencv::calib3d::{
-    StereoMatcherTrait, StereoSGBM, StereoSGBM_MODE_SGBM_3WAY, fisheye_init_undistort_rectify_map,
-    fisheye_stereo_rectify, reproject_image_to_3d,
-};
-use opencv::core::{BORDER_CONSTANT, CV_16SC2, CV_32F, Mat, MatTraitConst, Ptr, Rect, Scalar, Size};
-use opencv::imgproc::{INTER_LINEAR, remap};
-use opencv::prelude::{DisparityFilterTrait, DisparityWLSFilterTrait};
-use opencv::ximgproc::{DisparityWLSFilter, create_disparity_wls_filter, create_right_matcher};
 use plumbline_model::aim::{AimError, AimedPair, DISPARITY_STEP_PX};
-use plumbline_model::{CameraModel, Eye, StereoCameras};
 
 use super::{DisparityError, DisparityMap, Matcher, Settings};
 use crate::depth::{PointMap, SizeMismatch};
-use crate::mat;
-use crate::rectify::{Pair, Rectifier, RectifyError};
+use crate::rectify::{Rectifier, RectifyError};
+
+#[cfg(feature = "peers")]
+pub use super::published::PublishedPipeline;
 
 /// Depth at which the steps are compared, meters: the far edge of the table.
 pub const COMPARED_AT_M: f64 = 0.6;
@@ -32,26 +21,15 @@ pub const COMPARED_AT_M: f64 = 0.6;
 pub const NEAREST_M: f64 = 0.17;
 
 /// Focal length of the published rectified views, pixels.
-const PUBLISHED_F_PX: f64 = 35.0524;
-/// Column of their axes, left and right.
-const PUBLISHED_CX_PX: [f64; 2] = [300.237, 246.677];
-/// Row of their axes.
-const PUBLISHED_CY_PX: f64 = 233.738;
-
-/// Rows of numbers as OpenCV wants them.
-fn matrix<const ROWS: usize>(rows: &[[f64; 4]; ROWS]) -> Result<Mat, opencv::Error> {
-    Mat::from_slice(rows.as_flattened())?.reshape(1, ROWS as i32)?.try_clone()
-}
+pub(super) const PUBLISHED_F_PX: f64 = 35.0524;
 
 /// Figures of one comparison.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct ComparisonReport {
     /// Rectification, disparity and 3D of one pair by us, median, milliseconds.
     pub ours_ms: f64,
-    /// Same by the published pipeline, milliseconds.
-    pub published_ms: f64,
-    /// Ours divided by published.
-    pub ratio: f64,
+    /// Same by the published pipeline, milliseconds; `None` where the program was built without it.
+    pub published_ms: Option<f64>,
     /// Depth of 1/16 px at [`COMPARED_AT_M`] in our view, meters.
     pub depth_step_ours_m: f64,
     /// Same in the published view, meters.
@@ -113,108 +91,10 @@ impl LivePipeline {
     }
 }
 
-/// The published pipeline.
-pub struct PublishedPipeline {
-    maps: Pair<[Mat; 2]>,
-    q: Mat,
-    left: Ptr<StereoSGBM>,
-    right: Ptr<opencv::calib3d::StereoMatcher>,
-    filter: Ptr<DisparityWLSFilter>,
-    f_px: f64,
-    baseline_m: f64,
-}
-
-impl PublishedPipeline {
-    /// Its rectification (balance 0, field of view scaled by 0.6) and its matcher.
-    pub fn new(cameras: &StereoCameras) -> Result<Self, ComparisonError> {
-        let size = Size::new(cameras.left.width_px as i32, cameras.left.height_px as i32);
-        let (k_left, d_left) = intrinsics(cameras, Eye::Left)?;
-        let (k_right, d_right) = intrinsics(cameras, Eye::Right)?;
-        let rotation = cameras.right_from_left.rotation();
-        // Column-major memory of the transpose is row-major memory of the matrix.
-        let r = Mat::from_slice(rotation.transpose().as_slice())?.reshape(1, 3)?.try_clone()?;
-        let t = Mat::from_slice(cameras.right_from_left.translation_m().as_slice())?
-            .reshape(1, 3)?
-            .try_clone()?;
-        let [mut r1, mut r2, mut unused_p1, mut unused_p2, mut unused_q] =
-            std::array::from_fn(|_| Mat::default());
-        fisheye_stereo_rectify(
-            &k_left,
-            &d_left,
-            &k_right,
-            &d_right,
-            size,
-            &r,
-            &t,
-            &mut r1,
-            &mut r2,
-            &mut unused_p1,
-            &mut unused_p2,
-            &mut unused_q,
-            0,
-            size,
-            0.0,
-            0.6,
-        )?;
-        // The projection is the published one: what OpenCV proposes for a lens that sees 90° off
-        // its axis differs from version to version, down to a focal length of one pixel.
-        let (f, cy) = (PUBLISHED_F_PX, PUBLISHED_CY_PX);
-        let [cx_left, cx_right] = PUBLISHED_CX_PX;
-        let baseline_m = cameras.baseline_m();
-        let p = |cx: f64, shift: f64| matrix(&[[f, 0.0, cx, shift], [0.0, f, cy, 0.0], [0.0, 0.0, 1.0, 0.0]]);
-        let (p1, p2) = (p(cx_left, 0.0)?, p(cx_right, -f * baseline_m)?);
-        let q = matrix(&[
-            [1.0, 0.0, 0.0, -cx_left],
-            [0.0, 1.0, 0.0, -cy],
-            [0.0, 0.0, 0.0, f],
-            [0.0, 0.0, 1.0 / baseline_m, -(cx_left - cx_right) / baseline_m],
-        ])?;
-        let maps = |k: &Mat, d: &Mat, r: &Mat, p: &Mat| -> Result<[Mat; 2], opencv::Error> {
-            let [mut whole, mut fraction] = [Mat::default(), Mat::default()];
-            fisheye_init_undistort_rectify_map(k, d, r, p, size, CV_16SC2, &mut whole, &mut fraction)?;
-            Ok([whole, fraction])
-        };
-        let maps =
-            Pair { left: maps(&k_left, &d_left, &r1, &p1)?, right: maps(&k_right, &d_right, &r2, &p2)? };
-        let sgbm = || StereoSGBM::create(0, 192, 5, 600, 2400, 1, 0, 15, 200, 2, StereoSGBM_MODE_SGBM_3WAY);
-        let left = sgbm()?;
-        let right = create_right_matcher(sgbm()?.into())?;
-        let mut filter = create_disparity_wls_filter(sgbm()?.into())?;
-        filter.set_lambda(8000.0)?;
-        filter.set_sigma_color(1.5)?;
-        Ok(Self { maps, q, left, right, filter, f_px: f, baseline_m })
-    }
-
-    /// Rectifies, matches, filters and places one raw gray pair: x, y, z per pixel.
-    pub fn run(&mut self, left: &GrayImage, right: &GrayImage) -> Result<Mat, opencv::Error> {
-        let view = |image: &GrayImage, [whole, fraction]: &[Mat; 2]| -> Result<Mat, opencv::Error> {
-            let mut view = Mat::default();
-            remap(
-                &mat::gray(image)?,
-                &mut view,
-                whole,
-                fraction,
-                INTER_LINEAR,
-                BORDER_CONSTANT,
-                Scalar::default(),
-            )?;
-            Ok(view)
-        };
-        let (left, right) = (view(left, &self.maps.left)?, view(right, &self.maps.right)?);
-        let [mut left_disparity, mut right_disparity, mut filtered, mut scaled, mut points] =
-            std::array::from_fn(|_| Mat::default());
-        self.left.compute(&left, &right, &mut left_disparity)?;
-        self.right.compute(&right, &left, &mut right_disparity)?;
-        let everywhere = Rect::default();
-        self.filter.filter(&left_disparity, &left, &mut filtered, &right_disparity, everywhere, &right)?;
-        filtered.convert_to(&mut scaled, CV_32F, 1.0 / 16.0, 0.0)?;
-        reproject_image_to_3d(&scaled, &mut points, &self.q, false, -1)?;
-        Ok(points)
-    }
-
-    /// Depth (meters) of one step of 1/16 px at depth `range_m`.
-    pub fn depth_step_m(&self, range_m: f64) -> f64 {
-        range_m * range_m * DISPARITY_STEP_PX / (self.f_px * self.baseline_m)
+impl ComparisonReport {
+    /// Our time as a fraction of the published pipeline's.
+    pub fn ratio(&self) -> Option<f64> {
+        Some(self.ours_ms / self.published_ms?)
     }
 }
 
@@ -245,41 +125,38 @@ fn compare(
     threads: usize,
 ) -> Result<ComparisonReport, ComparisonError> {
     let mut ours = LivePipeline::new(pair, nearest_m)?;
-    let mut published = PublishedPipeline::new(&pair.cameras)?;
     let measured_fraction = ours.run(left, right)?.0.measured_fraction();
+    #[cfg(feature = "peers")]
+    let mut published = PublishedPipeline::new(&pair.cameras)?;
+    #[cfg(feature = "peers")]
     published.run(left, right)?;
-    let (mut ours_ms, mut published_ms) = (Vec::new(), Vec::new());
+    let (mut ours_ms, mut published_ms): (Vec<f64>, Vec<f64>) = (vec![], vec![]);
     for _ in 0..rounds {
-        let start = Instant::now();
-        std::hint::black_box(ours.run(left, right)?);
-        ours_ms.push(start.elapsed().as_secs_f64() * 1e3);
-        let start = Instant::now();
-        std::hint::black_box(published.run(left, right)?);
-        published_ms.push(start.elapsed().as_secs_f64() * 1e3);
+        timed(&mut ours_ms, || ours.run(left, right))?;
+        #[cfg(feature = "peers")]
+        timed(&mut published_ms, || published.run(left, right))?;
     }
-    let (ours_ms, published_ms) = (median(&mut ours_ms), median(&mut published_ms));
     Ok(ComparisonReport {
-        ours_ms,
-        published_ms,
-        ratio: ours_ms / published_ms,
+        ours_ms: median(&mut ours_ms).unwrap_or(f64::NAN),
+        published_ms: median(&mut published_ms),
         depth_step_ours_m: pair.depth_step_m(COMPARED_AT_M),
-        depth_step_published_m: published.depth_step_m(COMPARED_AT_M),
+        depth_step_published_m: COMPARED_AT_M * COMPARED_AT_M * DISPARITY_STEP_PX
+            / (PUBLISHED_F_PX * pair.cameras.baseline_m()),
         measured_fraction,
         rounds,
         threads,
     })
 }
 
-fn median(values: &mut [f64]) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    values[values.len() / 2]
+/// Adds the milliseconds that something takes.
+fn timed<T, E>(all_ms: &mut Vec<f64>, act: impl FnOnce() -> Result<T, E>) -> Result<(), E> {
+    let start = Instant::now();
+    std::hint::black_box(act()?);
+    all_ms.push(start.elapsed().as_secs_f64() * 1e3);
+    Ok(())
 }
 
-/// Camera matrix and distortion as OpenCV wants them.
-fn intrinsics(cameras: &StereoCameras, eye: Eye) -> Result<(Mat, Mat), ComparisonError> {
-    let CameraModel::Fisheye(m) = cameras.camera(eye).model else { return Err(ComparisonError::NotFisheye) };
-    let k = [m.fx_px, m.skew_px, m.cx_px, 0.0, m.fy_px, m.cy_px, 0.0, 0.0, 1.0];
-    let k = Mat::from_slice(&k)?.reshape(1, 3)?.try_clone()?;
-    let d = Mat::from_slice(&m.k)?.reshape(1, 4)?.try_clone()?;
-    Ok((k, d))
+fn median(values: &mut [f64]) -> Option<f64> {
+    values.sort_unstable_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
 }

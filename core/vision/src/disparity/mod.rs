@@ -19,6 +19,8 @@ mod fill;
 mod map;
 mod paths;
 mod pfm;
+#[cfg(feature = "peers")]
+mod published;
 mod refine;
 mod search;
 mod select;
