@@ -134,11 +134,19 @@ fn names_are_those_of_the_command_line() {
         image-shift focal-or-baseline eye-roll lens-distortion disparity-steps background-bleed \
         foreground-fattening seen-surface box-bias eye-latency speed-overshoot";
     let known: Vec<&str> = known.split_whitespace().collect();
-    assert_eq!(Kind::ALL.map(Kind::id).to_vec(), known);
+    assert_eq!(Kind::ALL.iter().map(|kind| kind.id()).collect::<Vec<_>>(), known);
     for kind in Kind::ALL {
-        assert_eq!(Kind::of_id(kind.id()), Some(kind));
+        assert_eq!(Kind::of_id(kind.id()), Some(*kind));
         assert!(kind.parameters().iter().all(|parameter| parameter.typical > 0.0));
     }
+}
+
+#[test]
+fn every_effect_of_the_library_has_words() {
+    for kind in Kind::ALL {
+        assert!(kind.meaning().ends_with('.') && kind.remedy().ends_with('.'), "{}", kind.id());
+    }
+    assert_eq!(Kind::of_id("no-such-effect"), None);
 }
 
 #[test]

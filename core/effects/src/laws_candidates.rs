@@ -112,8 +112,8 @@ fn every_kind_is_a_candidate_where_rows_can_show_it() {
     let kinds: BTreeSet<Kind> = candidates.iter().map(|effect| effect.kind).collect();
     let never = [Kind::DisparitySteps, Kind::EyeLatency];
     for kind in Kind::ALL {
-        let known_not = never.contains(&kind);
-        assert_eq!(kinds.contains(&kind), !known_not, "{}", kind.id());
+        let known_not = never.contains(kind);
+        assert_eq!(kinds.contains(kind), !known_not, "{}", kind.id());
     }
     let mut names = BTreeSet::new();
     for effect in &candidates {

@@ -11,11 +11,8 @@ mod pdf;
 pub mod sample;
 mod svg;
 mod values;
-mod words;
 
 use plumbline_gap::Finding;
-
-pub use words::{meaning, remedy};
 
 /// What the page says beyond the finding.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -35,7 +32,7 @@ pub struct ReportContext {
 pub struct HistoryEntry {
     /// Its name ("nominal", "joint zero of the elbow added").
     pub name: String,
-    /// Mean error on rows that were not used, in the unit of the finding (mm or px).
+    /// Mean error on rows that were not used, in the unit of the finding (m or px).
     pub gap: f64,
 }
 

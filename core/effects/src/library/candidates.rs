@@ -2,6 +2,7 @@
 
 use crate::measurements::{Measurements, Observation};
 
+use super::entry::Shape;
 use super::{Effect, Kind, Situation};
 
 /// At most this many moments are tried for a step.
@@ -32,9 +33,9 @@ impl Effect {
         let eyes = measurements.apparatuses.iter().find_map(|apparatus| apparatus.eyes.as_ref());
         let known = Known::of(measurements);
         Kind::ALL
-            .into_iter()
-            .filter(|kind| known.shows(*kind))
-            .flat_map(|kind| Self::sites(kind, arm, eyes))
+            .iter()
+            .filter(|kind| (kind.entry().shown)(&known))
+            .flat_map(|kind| Self::sites(*kind, arm, eyes))
             .flat_map(|effect| known.shapes(effect))
             .collect()
     }
@@ -45,20 +46,16 @@ impl Effect {
         let Some([low, high]) = self.shape_range.filter(|[low, high]| low < high) else {
             return vec![self.clone()];
         };
-        let shapes: Vec<f64> = match self.kind {
-            Kind::SlippedHorn | Kind::ScreenBumped => {
+        let shapes: Vec<f64> = match self.kind.entry().shape {
+            Shape::Moment => {
                 let moments = moments(&Known::of(measurements).arm_secs);
                 let inside: Vec<f64> = moments.into_iter().filter(|t| (low..=high).contains(t)).collect();
                 thinned(&inside, MOST_MOMENTS)
             }
-            Kind::ServoWarmUp | Kind::Creep => {
-                (0..=6).map(|k| low * (high / low).powf(f64::from(k) / 6.0)).collect()
-            }
-            Kind::TorqueLimit => (0..=6).map(|k| low + (high - low) * f64::from(k) / 6.0).collect(),
-            Kind::ToothRipple => {
-                (low.ceil() as i64..=high.floor() as i64).map(|order| order as f64).collect()
-            }
-            _ => return vec![self.clone()],
+            Shape::TimeConstant(_) => (0..=6).map(|k| low * (high / low).powf(f64::from(k) / 6.0)).collect(),
+            Shape::Limit => (0..=6).map(|k| low + (high - low) * f64::from(k) / 6.0).collect(),
+            Shape::Teeth => (low.ceil() as i64..=high.floor() as i64).map(|order| order as f64).collect(),
+            Shape::None | Shape::OnceOrTwice | Shape::Growth(_) | Shape::Either(_) => vec![],
         };
         if shapes.is_empty() {
             return vec![self.clone()];
@@ -68,21 +65,21 @@ impl Effect {
 }
 
 /// What is known of the rows.
-struct Known {
-    touches: bool,
-    arm: bool,
-    eyes: bool,
-    background: bool,
+pub(super) struct Known {
+    pub(super) touches: bool,
+    pub(super) arm: bool,
+    pub(super) eyes: bool,
+    pub(super) background: bool,
     /// Some row starts from commanded angles.
-    commanded: bool,
+    pub(super) commanded: bool,
     /// Some row has encoders that lag.
-    lag: bool,
-    directions: bool,
+    pub(super) lag: bool,
+    pub(super) directions: bool,
     /// The side of approach is known, if only one.
-    direction: bool,
-    speeds: bool,
+    pub(super) direction: bool,
+    pub(super) speeds: bool,
     /// Times of the arm's rows in which it was held, longest, s.
-    longest_hold_s: f64,
+    pub(super) longest_hold_s: f64,
     /// Times of the arm's and the eyes' rows, sorted.
     arm_secs: Vec<f64>,
     eye_secs: Vec<f64>,
@@ -123,75 +120,53 @@ impl Known {
         }
     }
 
-    fn shows(&self, kind: Kind) -> bool {
-        match kind {
-            Kind::JointZero
-            | Kind::JointScale
-            | Kind::JointEccentricity
-            | Kind::ToothRipple
-            | Kind::GravityBacklash
-            | Kind::JointSag
-            | Kind::SidewaysGive
-            | Kind::LinkBending
-            | Kind::JointCoupling
-            | Kind::AxisSkew
-            | Kind::LinkLength
-            | Kind::TipOffset
-            | Kind::BaseTilt
-            | Kind::TorsoLean
-            | Kind::PayloadMass => self.arm,
-            Kind::Backlash => self.directions,
-            Kind::Stiction => self.directions && self.commanded,
-            Kind::ServoDroop | Kind::TorqueLimit => self.arm && self.commanded,
-            Kind::Creep => self.longest_hold_s >= SHORTEST_HOLD_S,
-            Kind::EarlyLog => self.lag,
-            Kind::ServoWarmUp => span(&self.arm_secs) >= SHORTEST_SPAN_S,
-            Kind::SlippedHorn => moments(&self.arm_secs).len() >= 4,
-            Kind::ScreenBumped => self.touches && moments(&self.arm_secs).len() >= 4,
-            Kind::FingerBend | Kind::FingerRoll => self.touches,
-            Kind::TouchDrag => self.touches && self.direction,
-            Kind::ScreenScale | Kind::ScreenTilt | Kind::ScreenBow | Kind::PanelEdge => self.touches,
-            Kind::SpeedOvershoot => self.speeds,
-            Kind::CameraMount
-            | Kind::HeadJoint
-            | Kind::EyeYaw
-            | Kind::ImageShift
-            | Kind::FocalOrBaseline
-            | Kind::EyeRoll
-            | Kind::LensDistortion
-            | Kind::SeenSurface
-            | Kind::BoxBias => self.eyes,
-            Kind::BackgroundBleed | Kind::ForegroundFattening => self.background,
-            // Steps are a sawtooth in depth, which no tangent shows; latency needs motion, which
-            // no column holds.
-            Kind::DisparitySteps | Kind::EyeLatency => false,
-        }
+    /// Time from the arm's first row to its last, s.
+    pub(super) fn arm_span_s(&self) -> f64 {
+        span(&self.arm_secs)
+    }
+
+    /// Whether the arm's rows last long enough for a time law.
+    pub(super) fn arm_lasts(&self) -> bool {
+        self.arm_span_s() >= SHORTEST_SPAN_S
+    }
+
+    /// Whether there are moments between the arm's rows at which something may have changed.
+    pub(super) fn has_moments(&self) -> bool {
+        moments(&self.arm_secs).len() >= 4
+    }
+
+    /// Whether joints were held long enough to creep.
+    pub(super) fn is_held(&self) -> bool {
+        self.longest_hold_s >= SHORTEST_HOLD_S
     }
 
     /// The effect in every shape that is tried.
     fn shapes(&self, effect: Effect) -> Vec<Effect> {
-        match effect.kind {
-            Kind::JointEccentricity => vec![effect.clone(), effect.with_shape(Some(2.0))],
-            Kind::ToothRipple => {
+        match effect.kind.entry().shape {
+            Shape::None => vec![effect],
+            Shape::OnceOrTwice => vec![effect.clone(), effect.with_shape(Some(2.0))],
+            Shape::Teeth => {
                 let angles = effect.joint.and_then(|j| self.angles_rad.get(j));
                 let orders: Vec<f64> = angles.map_or(vec![], |angles| resolved(angles));
                 with_shapes(&effect, &orders, ORDERS)
             }
-            Kind::TorqueLimit => {
+            Shape::Limit => {
                 let torques = effect.joint.and_then(|j| self.torques_nm.get(j));
                 let limits = torques.map_or(vec![], |torques| limits(torques));
                 let most = torques.and_then(|torques| torques.last()).copied().unwrap_or(0.0);
                 with_shapes(&effect, &limits, [EASY_TORQUE_NM, most])
             }
-            Kind::ServoWarmUp => with_shapes(&effect, &constants(span(&self.arm_secs)), [30.0, 3600.0]),
-            Kind::Creep => with_shapes(&effect, &constants(self.longest_hold_s), [30.0, 3600.0]),
-            Kind::SlippedHorn | Kind::ScreenBumped => {
+            Shape::TimeConstant(lasts_s) => with_shapes(&effect, &constants(lasts_s(self)), [30.0, 3600.0]),
+            Shape::Moment => {
                 let all = moments(&self.arm_secs);
                 let ends = [all.first(), all.last()].map(|end| end.copied().unwrap_or(0.0));
                 with_shapes(&effect, &thinned(&all, MOST_MOMENTS), ends)
             }
-            Kind::EyeYaw if span(&self.eye_secs) >= SHORTEST_SPAN_S => {
+            Shape::Growth(_) => {
                 let span_s = span(&self.eye_secs);
+                if span_s < SHORTEST_SPAN_S {
+                    return vec![effect];
+                }
                 let grown = YAW_CONSTANTS_S
                     .iter()
                     .filter(|constant| **constant <= 2.0 * span_s)
@@ -199,8 +174,7 @@ impl Known {
                 let grown: Vec<Effect> = grown.map(|shape| effect.clone().with_shape(Some(shape))).collect();
                 [vec![effect], grown].concat()
             }
-            Kind::FocalOrBaseline => vec![effect.clone(), effect.with_shape(Some(1.0))],
-            _ => vec![effect],
+            Shape::Either(_) => vec![effect.clone(), effect.with_shape(Some(1.0))],
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::kind::YAW_WARM_UP;
+use super::entry::{EyeSite, Shape, Site};
 use super::{Kind, Parameter};
 use crate::arm::Arm;
 use crate::eyes::Eyes;
@@ -19,22 +19,18 @@ pub struct Effect {
     pub site: String,
     /// What it is and where, for people.
     pub title: String,
-    /// What does not enter the prediction linearly, by kind; `None` where there is no such thing:
-    ///
-    /// - joint-eccentricity, tooth-ripple: periods per turn (`None`: one);
-    /// - servo-warm-up, creep: time constant, s;
-    /// - slipped-horn, screen-bumped: moment, s;
-    /// - torque-limit: largest torque that is held, N m;
-    /// - eye-yaw: `None` is constant, else it grows with time: see [`Self::growth_s`];
-    /// - focal-or-baseline: `None` is the focal length, 1 the baseline.
+    /// What does not enter the prediction linearly, by kind: periods per turn (`None`: one), a
+    /// time constant (s), a moment (s), a torque (N m), which of two things (`None`: the first). An
+    /// eye that turns is constant without it and grows with it: see [`Self::growth_s`]. `None`
+    /// where there is no such thing.
     pub shape: Option<f64>,
     /// Between which shapes the true one lies, as far as the grid of candidates tells.
     pub shape_range: Option<[f64; 2]>,
     /// Place of the joint in the arm (or neck), for effects of one joint or link.
     pub(super) joint: Option<usize>,
-    /// Two directions across the axis, own frame, for a skewed axis.
+    /// Two directions across the axis of its joint, own frame.
     pub(crate) across: Option<[Vector3<f64>; 2]>,
-    /// The joint that pulls this one along.
+    /// The joint before its own.
     pub(super) partner: Option<String>,
     /// Not one effect but one of this kind at every site, each with its own values: a robot that
     /// was put together by hand has every zero off. Parameters are theirs in turn.
@@ -47,20 +43,19 @@ const MOST_MEMBERS: usize = 12;
 impl Effect {
     /// Every effect that a plan of touches is scored by, at every site of an arm.
     pub fn all(arm: &Arm) -> Vec<Self> {
-        Kind::OF_PLANS
-            .into_iter()
-            .flat_map(|kind| Self::sites(kind, Some(arm), None))
+        Kind::ALL
+            .iter()
+            .filter(|kind| kind.is_planned())
+            .flat_map(|kind| Self::sites(*kind, Some(arm), None))
             .filter(|effect| !effect.site.is_empty())
             .collect()
     }
 
     /// A kind of effect at every site that an arm or eyes offer, in its first shape.
     pub fn sites(kind: Kind, arm: Option<&Arm>, eyes: Option<&Eyes>) -> Vec<Self> {
-        if kind.is_of_eyes() {
-            eyes.map_or(vec![], |eyes| of_eyes(kind, eyes))
-        } else {
-            arm.map_or(vec![], |arm| of_arm(kind, arm))
-        }
+        let of_arm = arm.map_or(vec![], |arm| of_arm(kind, arm));
+        let of_eyes = eyes.map_or(vec![], |eyes| of_eyes(kind, eyes));
+        of_arm.into_iter().chain(of_eyes).collect()
     }
 
     /// The effect of this name at this site, as a file or the command line gives it; `None` when
@@ -115,10 +110,10 @@ impl Effect {
     pub fn parameters(&self) -> &'static [Parameter] {
         if !self.members.is_empty() {
             let count: usize = self.members.iter().map(|member| member.parameters().len()).sum();
-            return &self.kind.parameters_of_many()[..count];
+            return &self.kind.entry().site.parameters_of_every()[..count];
         }
-        match (self.kind, self.shape) {
-            (Kind::EyeYaw, Some(_)) => YAW_WARM_UP,
+        match (self.kind.entry().shape, self.shape) {
+            (Shape::Growth(parameters), Some(_)) => parameters,
             _ => self.kind.parameters(),
         }
     }
@@ -133,10 +128,15 @@ impl Effect {
     /// in thousandths of its seconds after the point (240.06: 240 s, after 60 s).
     pub fn growth_s(&self) -> Option<(f64, f64)> {
         let shape = self.shape?;
-        match self.kind {
-            Kind::EyeYaw => Some((shape.trunc(), (shape.fract() * 1e6).round() / 1e3)),
-            Kind::ServoWarmUp | Kind::Creep => Some((shape, 0.0)),
-            _ => None,
+        match self.kind.entry().shape {
+            Shape::Growth(_) => Some((shape.trunc(), (shape.fract() * 1e6).round() / 1e3)),
+            Shape::TimeConstant(_) => Some((shape, 0.0)),
+            Shape::None
+            | Shape::OnceOrTwice
+            | Shape::Teeth
+            | Shape::Limit
+            | Shape::Moment
+            | Shape::Either(_) => None,
         }
     }
 
@@ -147,70 +147,68 @@ impl Effect {
 }
 
 fn of_arm(kind: Kind, arm: &Arm) -> Vec<Effect> {
-    if kind.is_of_joint() {
+    let one = |site: &str| vec![Effect::new(kind, site, "", None)];
+    match kind.entry().site {
+        Site::Joint => joints(kind, arm, 0),
         // The first joint has none before it.
-        let first = usize::from(kind == Kind::JointCoupling);
-        let single = (first..arm.len()).map(|joint| {
-            let part = &arm.parts[joint];
-            let mut effect = Effect::new(kind, &part.joint, &part.title, Some(joint));
-            match kind {
-                Kind::AxisSkew => effect.across = Some(across(&part.axis)),
-                Kind::JointCoupling => effect.partner = Some(arm.parts[joint - 1].joint.clone()),
-                _ => {}
-            }
-            effect
-        });
-        let shared = kind.is_shared().then(|| Effect::new(kind, "", "all joints alike", None));
-        let single: Vec<Effect> = single.collect();
-        let every = every(kind, "every joint", &single);
-        return single.into_iter().chain(shared).chain(every).collect();
-    }
-    match kind {
-        Kind::LinkLength => {
-            let single: Vec<Effect> = links(kind, arm).collect();
-            let every = every(kind, "every link", &single);
-            single.into_iter().chain(every).collect()
+        Site::JointAfterAnother => joints(kind, arm, 1),
+        Site::JointOrAllAlike => {
+            let mut all = joints(kind, arm, 0);
+            all.push(Effect::new(kind, "", "all joints alike", None));
+            all
         }
-        Kind::LinkBending => links(kind, arm).collect(),
-        Kind::TipOffset | Kind::FingerRoll | Kind::TouchDrag | Kind::FingerBend | Kind::SpeedOvershoot => {
-            vec![Effect::new(kind, "tip", "", None)]
-        }
-        Kind::PayloadMass => {
-            let palm = arm.parts.last().map_or("tip", |part| part.link.as_str());
-            vec![Effect::new(kind, palm, "", None)]
-        }
-        Kind::BaseTilt | Kind::TorsoLean => vec![Effect::new(kind, "base", "", None)],
-        _ => vec![Effect::new(kind, "screen", "", None)],
+        Site::JointOrEvery(_) => and_every(kind, "every joint", joints(kind, arm, 0)),
+        Site::Link => links(kind, arm),
+        Site::LinkOrEvery(_) => and_every(kind, "every link", links(kind, arm)),
+        Site::Tip | Site::Contact | Site::WholeArm => one("tip"),
+        Site::Palm => one(arm.parts.last().map_or("tip", |part| part.link.as_str())),
+        Site::Base => one("base"),
+        Site::Screen => one("screen"),
+        Site::OfEyes(_) => vec![],
     }
 }
 
 fn of_eyes(kind: Kind, eyes: &Eyes) -> Vec<Effect> {
-    match kind {
-        Kind::HeadJoint => {
+    let Site::OfEyes(site) = kind.entry().site else { return vec![] };
+    match site {
+        EyeSite::Neck => {
             let joints = eyes.neck.parts.iter().enumerate();
             joints.map(|(j, part)| Effect::new(kind, &part.joint, &part.title, Some(j))).collect()
         }
-        Kind::EyeYaw | Kind::ImageShift | Kind::EyeRoll => vec![Effect::new(kind, "right", "", None)],
-        _ => vec![Effect::new(kind, "eyes", "", None)],
+        EyeSite::Right => vec![Effect::new(kind, "right", "", None)],
+        EyeSite::Both => vec![Effect::new(kind, "eyes", "", None)],
     }
 }
 
-/// One effect for all of these, for kinds that come at every site at once when an arm is put
-/// together.
-fn every(kind: Kind, whose: &str, single: &[Effect]) -> Option<Effect> {
-    let at_once = matches!(kind, Kind::JointZero | Kind::AxisSkew | Kind::LinkLength);
-    (at_once && (2..=MOST_MEMBERS).contains(&single.len()))
-        .then(|| Effect { members: single.to_vec(), ..Effect::new(kind, "", whose, None) })
+/// These, and one effect for all of them.
+fn and_every(kind: Kind, whose: &str, mut single: Vec<Effect>) -> Vec<Effect> {
+    if (2..=MOST_MEMBERS).contains(&single.len()) {
+        single.push(Effect { members: single.clone(), ..Effect::new(kind, "", whose, None) });
+    }
+    single
+}
+
+/// Joints of an arm from one of them on.
+fn joints(kind: Kind, arm: &Arm, first: usize) -> Vec<Effect> {
+    (first..arm.len())
+        .map(|j| {
+            let part = &arm.parts[j];
+            let partner = j.checked_sub(1).map(|before| arm.parts[before].joint.clone());
+            let across = Some(across(&part.axis));
+            Effect { across, partner, ..Effect::new(kind, &part.joint, &part.title, Some(j)) }
+        })
+        .collect()
 }
 
 /// Links between the joints of an arm; the way to the tip belongs to the tip's offset.
-fn links(kind: Kind, arm: &Arm) -> impl Iterator<Item = Effect> {
-    (1..arm.len()).filter(|&j| arm.parts[j].before.translation.vector.norm() > SHORTEST_LINK_M).map(
-        move |j| {
+fn links(kind: Kind, arm: &Arm) -> Vec<Effect> {
+    (1..arm.len())
+        .filter(|&j| arm.parts[j].before.translation.vector.norm() > SHORTEST_LINK_M)
+        .map(|j| {
             let link = &arm.parts[j - 1].link;
             Effect::new(kind, link, &link.replace('_', " "), Some(j))
-        },
-    )
+        })
+        .collect()
 }
 
 /// Two directions at right angles to an axis and to each other.

@@ -1,14 +1,17 @@
 //! The effects: names, sites, usual sizes, what each does to arm, screen or eyes, which of them
 //! rows can show, and their parameters as people read them.
 //!
+//! All that is known of a kind stands in one entry (`kinds`).
+//!
 //! Sizes follow one rule: the standard deviation of a parameter is half of the upper end of the
 //! range that is plausible for a robot of this kind, so that none is favored.
 
 mod act;
-mod act_eyes;
 mod candidates;
 mod effect;
+mod entry;
 mod kind;
+mod kinds;
 mod report;
 mod situation;
 mod surface;

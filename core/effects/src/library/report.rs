@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Effect, Kind};
+use super::Effect;
+use super::entry::Shape;
 
 /// Standard deviations on either side of a 95 % interval.
 const NINETY_FIVE: f64 = 1.96;
@@ -31,31 +32,44 @@ impl Effect {
         if self.is_of_every_site() {
             return self.of_members(values, covariance);
         }
-        let fit = Fit { values, covariance };
-        match self.kind {
-            Kind::JointEccentricity | Kind::ToothRipple => self.wave(&fit),
-            Kind::Backlash | Kind::GravityBacklash | Kind::Stiction => vec![fit.size(0, "width_rad")],
-            Kind::ServoDroop => vec![fit.stiffness()],
-            Kind::JointCoupling => {
-                let text = self.partner.clone();
-                vec![
-                    fit.plain(0, "ratio"),
-                    Reported { name: "from_joint".to_owned(), value: 0.0, low: 0.0, high: 0.0, text },
-                ]
-            }
-            Kind::AxisSkew => self.skew(&fit),
-            Kind::TorqueLimit => vec![self.shape("torque_nm"), fit.plain(0, "give_rad_per_nm")],
-            Kind::FocalOrBaseline => {
-                let mut scale = fit.plain(0, "scale");
-                let which = if self.shape.is_some() { "distance of the eyes" } else { "focal length" };
-                scale.text = Some(which.to_owned());
-                vec![scale]
-            }
-            _ => {
-                let own = self.parameters().iter().enumerate().map(|(k, one)| fit.plain(k, one.name));
-                own.chain(self.times()).collect()
-            }
-        }
+        (self.kind.entry().reported)(self, &Fit { values, covariance })
+    }
+
+    /// Its parameters as they are, and what its shape says about times.
+    pub(super) fn plain(&self, fit: &Fit<'_>) -> Vec<Reported> {
+        let own = self.parameters().iter().enumerate().map(|(k, one)| fit.plain(k, one.name));
+        own.chain(self.times()).collect()
+    }
+
+    /// Of something whose sign says only to which side it counts.
+    pub(super) fn size(&self, fit: &Fit<'_>) -> Vec<Reported> {
+        vec![fit.size(0, self.parameters()[0].name)]
+    }
+
+    /// Of a compliance that is told as a stiffness.
+    pub(super) fn stiffness(&self, fit: &Fit<'_>) -> Vec<Reported> {
+        vec![fit.stiffness()]
+    }
+
+    /// Of what another joint pulls along.
+    pub(super) fn coupled(&self, fit: &Fit<'_>) -> Vec<Reported> {
+        let text = self.partner.clone();
+        vec![
+            fit.plain(0, "ratio"),
+            Reported { name: "from_joint".to_owned(), value: 0.0, low: 0.0, high: 0.0, text },
+        ]
+    }
+
+    /// Of what begins at a torque.
+    pub(super) fn limit(&self, fit: &Fit<'_>) -> Vec<Reported> {
+        vec![self.shape("torque_nm"), fit.plain(0, self.parameters()[0].name)]
+    }
+
+    /// Of one of two things, by its shape.
+    pub(super) fn either(&self, fit: &Fit<'_>) -> Vec<Reported> {
+        let Shape::Either([first, second]) = self.kind.entry().shape else { return self.plain(fit) };
+        let which = if self.shape.is_some() { second } else { first };
+        vec![Reported { text: Some(which.to_owned()), ..fit.plain(0, self.parameters()[0].name) }]
     }
 
     /// Those of every member, with the name of its site before.
@@ -78,10 +92,10 @@ impl Effect {
 
     /// What its shape says about times.
     fn times(&self) -> Vec<Reported> {
-        match self.kind {
-            Kind::SlippedHorn | Kind::ScreenBumped => vec![self.shape("t_secs")],
-            Kind::ServoWarmUp | Kind::Creep => vec![self.shape("time_constant_s")],
-            Kind::EyeYaw => self.growth_s().map_or(vec![], |(constant_s, delay_s)| {
+        match self.kind.entry().shape {
+            Shape::Moment => vec![self.shape("t_secs")],
+            Shape::TimeConstant(_) => vec![self.shape("time_constant_s")],
+            Shape::Growth(_) => self.growth_s().map_or(vec![], |(constant_s, delay_s)| {
                 let known = |name: &str, value: f64| Reported {
                     name: name.to_owned(),
                     value,
@@ -91,7 +105,7 @@ impl Effect {
                 };
                 vec![known("time_constant_s", constant_s), known("delay_s", delay_s)]
             }),
-            _ => vec![],
+            Shape::None | Shape::OnceOrTwice | Shape::Teeth | Shape::Limit | Shape::Either(_) => vec![],
         }
     }
 
@@ -102,7 +116,7 @@ impl Effect {
     }
 
     /// a sin(k q + φ) of a sine and a cosine.
-    fn wave(&self, fit: &Fit<'_>) -> Vec<Reported> {
+    pub(super) fn wave(&self, fit: &Fit<'_>) -> Vec<Reported> {
         let (sine, cosine) = (fit.values[0], fit.values[1]);
         let amplitude = sine.hypot(cosine);
         let scale = if amplitude > 0.0 { 1.0 / amplitude } else { 0.0 };
@@ -127,7 +141,7 @@ impl Effect {
 
     /// Turns about x, y, z of the joint of two turns across its axis; what lies along the axis
     /// cannot be seen.
-    fn skew(&self, fit: &Fit<'_>) -> Vec<Reported> {
+    pub(super) fn skew(&self, fit: &Fit<'_>) -> Vec<Reported> {
         let [a, b] = self.across.unwrap_or_default();
         let names = ["rot_x_rad", "rot_y_rad", "rot_z_rad"];
         (0..3)
@@ -144,7 +158,7 @@ impl Effect {
 }
 
 /// Values with their covariance.
-struct Fit<'a> {
+pub(super) struct Fit<'a> {
     values: &'a [f64],
     covariance: &'a DMatrix<f64>,
 }

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3x6, Matrix3xX, Vector3};
 
 use super::PlannedContact;
 use crate::arm::{Arm, Deviation};
-use crate::library::{Effect, Kind, Situation, Surface};
+use crate::library::{Effect, Situation, Surface};
 
 /// Difference step, in usual sizes of a parameter: small enough to be linear, large enough for
 /// the last digits not to matter (cubic error and rounding both near 1e-6 of the tangent).
@@ -50,7 +50,7 @@ impl ContactTangent {
             let parameters = effect.parameters();
             for (k, parameter) in parameters.iter().enumerate() {
                 let mut values = vec![0.0; parameters.len()];
-                if from_encoders && effect.kind == Kind::ServoDroop {
+                if from_encoders && effect.kind.is_seen_by_encoder() {
                     columns.push(Vector3::zeros());
                     let mut deviation = none.clone();
                     effect.deviate(&situation, &[parameter.typical], &mut deviation);

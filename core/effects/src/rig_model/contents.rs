@@ -258,14 +258,8 @@ impl ModelEffect {
 
     /// Whether it follows the tip and not the arm: another tip of the same hand does not have it.
     pub(super) fn is_of_the_tip(&self) -> bool {
-        self.site == "tip" && self.id != Kind::SpeedOvershoot.id()
+        Kind::of_id(&self.id).is_some_and(Kind::is_of_tip)
     }
-}
-
-/// Whether an effect is there only while the finger meets the touchscreen.
-pub(super) fn is_of_contact(effect: &Effect) -> bool {
-    let finger = matches!(effect.kind, Kind::FingerBend | Kind::FingerRoll | Kind::TouchDrag);
-    finger || effect.site == "screen"
 }
 
 impl Contents {

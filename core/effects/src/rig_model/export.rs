@@ -8,13 +8,10 @@ use plumbline_model::robot::{Description, DescriptionError, JointKind, Rig};
 
 use super::{ModelEffect, RigModel};
 use crate::arm::{Arm, Deviation};
-use crate::library::{Kind, Situation};
+use crate::library::Situation;
 
 /// What stays the same in every situation is exported within this, m and rad.
 const EXACT: f64 = 1e-9;
-/// Effects that are an origin in the description.
-const ORIGINS: [Kind; 5] =
-    [Kind::JointZero, Kind::AxisSkew, Kind::LinkLength, Kind::TipOffset, Kind::BaseTilt];
 
 /// A description with the effects that fit into it.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,7 +103,7 @@ impl RigModel {
         for effect in effects {
             let Some(present) = effect.on(Some(&arm), None) else { continue };
             let kind = present.effect.kind;
-            if ORIGINS.contains(&kind) && (kind != Kind::TipOffset || tip_joint.is_some()) {
+            if kind.is_origin() && (!kind.is_of_tip() || tip_joint.is_some()) {
                 present.effect.deviate(&situation, &present.values, &mut deviation);
                 inside.push(effect.name());
             }

@@ -7,7 +7,6 @@ use plumbline_model::session::{LocalizationTable, PoseTable, Screen, Session, To
 use plumbline_model::{Pixel, Point, Raw, Robot};
 
 use super::RigModel;
-use super::contents::is_of_contact;
 use crate::arm::Arm;
 use crate::eyes::{Eyes, EyesDeviation};
 use crate::forward::{Assumed, Present};
@@ -129,7 +128,7 @@ impl RigModel {
 
 /// Those that are there without a touchscreen.
 pub(super) fn in_the_air(effects: &[Present]) -> Vec<Present> {
-    effects.iter().filter(|present| !is_of_contact(&present.effect)).cloned().collect()
+    effects.iter().filter(|present| !present.effect.kind.is_of_contact()).cloned().collect()
 }
 
 /// The pixel at this place along u and v from the middle of the image, m.

@@ -50,7 +50,7 @@ fn the_tip_gets_to_its_target_with_every_effect_of_usual_size() {
     let arm = Arm::of_rig(&rig, TIP).expect("a tip");
     let start = rig.home().of(solver.joints());
     let (mut moved, mut reached) = (0, 0);
-    for of_library in Kind::ALL.into_iter().flat_map(|kind| Effect::sites(kind, Some(&arm), None)) {
+    for of_library in Kind::ALL.iter().flat_map(|kind| Effect::sites(*kind, Some(&arm), None)) {
         for (k, target) in targets(&rig, 4).into_iter().enumerate() {
             let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
             let here = usual(&rig, &of_library, sign).arm(&rig, TIP).expect("a tip");

@@ -1,12 +1,13 @@
 //! The effects: value, probability, what it means, what can be done, what it may be instead.
 
+use plumbline_effects::Kind;
 use plumbline_gap::finding::NamedEffect;
 use plumbline_gap::{Finding, Verdict};
 
 use super::{Area, Detail, GAP, GUTTER, HEADING, heading, rule};
 use crate::drawing::{Anchor, Drawing, Style, ink};
+use crate::font;
 use crate::values::{percent, significant, with_interval};
-use crate::{font, words};
 
 /// Parameters of one effect that are printed.
 const MOST_PARAMETERS: usize = 6;
@@ -74,12 +75,13 @@ impl Entry {
         let wrap = |text: &str, width: f64, style: Style, most: usize| {
             font::wrap(text, width, style.size, style.weight, most)
         };
-        let meaning = words::meaning(&effect.id).unwrap_or("An effect that this version has no words for.");
+        let kind = Kind::of_id(&effect.id);
+        let meaning = kind.map_or("An effect that this version has no words for.", Kind::meaning);
         let meaning = effect
             .not_addable
             .as_ref()
             .map_or(meaning.to_owned(), |why| format!("{meaning} Not added: {why}."));
-        let remedy = match (finding.verdict, words::remedy(&effect.id)) {
+        let remedy = match (finding.verdict, kind.map(Kind::remedy)) {
             (Verdict::NotInLibrary, _) | (_, None) => String::new(),
             (_, Some(remedy)) => format!("In the lab: {remedy}"),
         };

@@ -1,0 +1,225 @@
+//! What can be wrong with the eyes, and with what they make of an image.
+
+use super::{Act, Effect, Entry, EyeSite, Shape, Site, TILT, parameter, vector};
+
+/// Both eyes sit elsewhere in the head.
+pub(super) static CAMERA_MOUNT: Entry = Entry {
+    about: "eyes sit elsewhere in the head than in the model",
+    meaning: "The eyes sit elsewhere on the head than in the model.",
+    remedy: "Check the screws of the eyes; calibrate the mount again.",
+    parameters: &[
+        parameter("x_m", 0.02),
+        parameter("y_m", 0.02),
+        parameter("z_m", 0.02),
+        parameter("rot_x_rad", TILT),
+        parameter("rot_y_rad", TILT),
+        parameter("rot_z_rad", TILT),
+    ],
+    site: Site::OfEyes(EyeSite::Both),
+    shape: Shape::None,
+    shown: |rows| rows.eyes,
+    act: Act::Eyes(|_, _, values, deviation| {
+        deviation.mount_m += vector(values);
+        deviation.mount_rad += vector(&values[3..]);
+    }),
+    reported: Effect::plain,
+    is: &[],
+};
+
+/// Zero of a joint of the neck off.
+pub(super) static HEAD_JOINT: Entry = Entry {
+    about: "zero position of the neck off",
+    meaning: "The head stands elsewhere than its encoders say.",
+    remedy: "Look at targets from one side; check the zeros of the head.",
+    parameters: &[parameter("offset_rad", TILT)],
+    site: Site::OfEyes(EyeSite::Neck),
+    shape: Shape::None,
+    shown: |rows| rows.eyes,
+    act: Act::Eyes(|effect, _, values, deviation| {
+        if let Some(angle) = effect.joint.and_then(|j| deviation.neck_rad.get_mut(j)) {
+            *angle += values[0];
+        }
+    }),
+    reported: Effect::plain,
+    is: &[],
+};
+
+/// The right eye is turned sideways against the left one.
+pub(super) static EYE_YAW: Entry = Entry {
+    about: "right eye turned sideways against the left one",
+    meaning: "The eyes turn against each other, which falsifies depth.",
+    remedy: "Let the cameras warm up; check their mounts; calibrate warm.",
+    parameters: &[parameter("yaw_rad", 0.01)],
+    site: Site::OfEyes(EyeSite::Right),
+    shape: Shape::Growth(&[parameter("amplitude_rad", 0.01)]),
+    shown: |rows| rows.eyes,
+    act: Act::Eyes(|effect, situation, values, deviation| {
+        let part = if effect.shape.is_some() { effect.grown(situation.t_secs) } else { 1.0 };
+        deviation.right_rad.y += values[0] * part;
+    }),
+    reported: Effect::plain,
+    is: &[],
+};
+
+/// The image of one eye is shifted.
+pub(super) static IMAGE_SHIFT: Entry = Entry {
+    about: "image of the right eye shifted",
+    meaning: "The image of one eye is shifted on its sensor.",
+    remedy: "Check that the lens is screwed tight; calibrate warm.",
+    parameters: &[parameter("du_px", 1.5), parameter("dv_px", 1.5)],
+    site: Site::OfEyes(EyeSite::Right),
+    shape: Shape::None,
+    shown: |rows| rows.eyes,
+    act: Act::Eyes(|_, _, values, deviation| {
+        deviation.right_shift_px[0] += values[0];
+        deviation.right_shift_px[1] += values[1];
+    }),
+    reported: Effect::plain,
+    is: &[],
+};
+
+/// Focal length or baseline wrong.
+pub(super) static FOCAL_OR_BASELINE: Entry = Entry {
+    about: "focal length or distance of the eyes wrong",
+    meaning: "All distances come out too long or too short by the same share.",
+    remedy: "Calibrate again with a board whose squares were measured.",
+    parameters: &[parameter("scale", 0.05)],
+    site: Site::OfEyes(EyeSite::Both),
+    shape: Shape::Either(["focal length", "distance of the eyes"]),
+    shown: |rows| rows.eyes,
+    act: Act::Eyes(|effect, _, values, deviation| match effect.shape {
+        None => deviation.focal_scale += values[0],
+        Some(_) => deviation.baseline_scale += values[0],
+    }),
+    reported: Effect::either,
+    is: &[],
+};
+
+/// The right eye is rolled or pitched against the left one.
+pub(super) static EYE_ROLL: Entry = Entry {
+    about: "right eye rolled or pitched against the left one",
+    meaning: "One eye is rolled or pitched against the other.",
+    remedy: "Check the mounts of the eyes; calibrate the stereo pair again.",
+    parameters: &[parameter("roll_rad", 0.0025), parameter("pitch_rad", 0.0025)],
+    site: Site::OfEyes(EyeSite::Right),
+    shape: Shape::None,
+    shown: |rows| rows.eyes,
+    act: Act::Eyes(|_, _, values, deviation| {
+        deviation.right_rad.z += values[0];
+        deviation.right_rad.x += values[1];
+    }),
+    reported: Effect::plain,
+    is: &[],
+};
+
+/// Distortion of the lenses that the calibration left over.
+pub(super) static LENS_DISTORTION: Entry = Entry {
+    about: "lens distortion left over",
+    meaning: "Some lens distortion is left, growing towards the border of the image.",
+    remedy: "Calibrate with the board out to the corners of the image.",
+    parameters: &[parameter("k_px", 1.0)],
+    site: Site::OfEyes(EyeSite::Both),
+    shape: Shape::None,
+    shown: |rows| rows.eyes,
+    act: Act::Eyes(|_, _, values, deviation| deviation.distortion_px += values[0]),
+    reported: Effect::plain,
+    is: &[],
+};
+
+/// Disparities come in steps.
+pub(super) static DISPARITY_STEPS: Entry = Entry {
+    about: "disparity comes in steps",
+    meaning: "Depth comes in steps of the matcher.",
+    remedy: "Use the sub-pixel matcher, or a finer rectified image.",
+    parameters: &[parameter("step_px", 0.03)],
+    site: Site::OfEyes(EyeSite::Both),
+    shape: Shape::None,
+    shown: |_| false,
+    // Steps are a sawtooth in depth, which no tangent shows.
+    act: Act::Unseen,
+    reported: Effect::plain,
+    is: &[],
+};
+
+/// Depth of the background leaks into what is seen.
+pub(super) static BACKGROUND_BLEED: Entry = Entry {
+    about: "depth of the background leaks in",
+    meaning: "The matcher mixes the background into the depth of small things.",
+    remedy: "Put a card behind the hand, or use a smaller matching window.",
+    parameters: &[parameter("weight", 0.5)],
+    site: Site::OfEyes(EyeSite::Both),
+    shape: Shape::None,
+    shown: |rows| rows.background,
+    act: Act::Eyes(|_, situation, values, deviation| {
+        if situation.background_m.is_some() {
+            deviation.background_share += values[0];
+        }
+    }),
+    reported: Effect::plain,
+    is: &[],
+};
+
+/// What is near seems wider than it is.
+pub(super) static FOREGROUND_FATTENING: Entry = Entry {
+    about: "what is near seems wider than it is",
+    meaning: "Things look wider by half a matching window.",
+    remedy: "Use a smaller window, or measure in the middle of things.",
+    parameters: &[parameter("shift_px", 1.5)],
+    site: Site::OfEyes(EyeSite::Both),
+    shape: Shape::None,
+    shown: |rows| rows.background,
+    act: Act::Eyes(|_, situation, values, deviation| {
+        // Only as far as there is a step in depth behind the edge.
+        let range_m = situation.in_left_m.coords.norm();
+        let step = situation.background_m.map_or(0.0, |behind_m| 1.0 - range_m / behind_m.max(range_m));
+        deviation.box_px[0] += values[0] * step;
+    }),
+    reported: Effect::plain,
+    is: &[],
+};
+
+/// The eyes see the surface, not the middle.
+pub(super) static SEEN_SURFACE: Entry = Entry {
+    about: "eyes see the surface, not the middle",
+    meaning: "The eyes see the surface, the model means the center.",
+    remedy: "Enter the radius of the thing, or mark a point on it.",
+    parameters: &[parameter("radius_m", 0.02)],
+    site: Site::OfEyes(EyeSite::Both),
+    shape: Shape::None,
+    shown: |rows| rows.eyes,
+    act: Act::Eyes(|_, _, values, deviation| deviation.nearer_m += values[0]),
+    reported: Effect::plain,
+    is: &[],
+};
+
+/// The detector's box sits beside the object.
+pub(super) static BOX_BIAS: Entry = Entry {
+    about: "detected box sits beside the object",
+    meaning: "The detector's box is not centered on what it detects.",
+    remedy: "Label again, or use a printed marker.",
+    parameters: &[parameter("du_px", 4.0), parameter("dv_px", 4.0)],
+    site: Site::OfEyes(EyeSite::Both),
+    shape: Shape::None,
+    shown: |rows| rows.eyes,
+    act: Act::Eyes(|_, _, values, deviation| {
+        deviation.box_px[0] += values[0];
+        deviation.box_px[1] += values[1];
+    }),
+    reported: Effect::plain,
+    is: &[],
+};
+
+/// The eyes do not look at the same moment.
+pub(super) static EYE_LATENCY: Entry = Entry {
+    about: "eyes do not look at the same moment",
+    meaning: "The two images, or image and angles, are not of the same moment.",
+    remedy: "Hold still while measuring, or trigger both eyes together.",
+    parameters: &[parameter("latency_s", 0.025)],
+    site: Site::OfEyes(EyeSite::Both),
+    shape: Shape::None,
+    shown: |_| false,
+    // Latency needs motion, which no column holds.
+    act: Act::Unseen,
+    reported: Effect::plain,
+    is: &[],
+};
