@@ -82,9 +82,9 @@ fn a_hidden_effect_is_found_named_added_and_the_gap_shrinks() {
         effect.id,
         effect.site,
         100.0 * effect.probability,
-        shown.before,
-        shown.after,
-        shown.floor,
+        1e3 * shown.before,
+        1e3 * shown.after,
+        1e3 * shown.floor,
         left.finding.verdict,
     );
     let is_in_class = effect

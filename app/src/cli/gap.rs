@@ -167,7 +167,7 @@ fn one(text: &mut String, effect: &NamedEffect) {
 
 fn shown(text: &mut String, shown: &Shown) {
     let of = |value: f64| match shown.unit {
-        ShownUnit::Millimeter => format::mm(value * 1e-3),
+        ShownUnit::Meter => format::mm(value),
         ShownUnit::Pixel => format::px(value),
     };
     if shown.rows == 0 {

@@ -143,8 +143,8 @@ pub fn added() -> GapView {
         name: "nominal + 2 effects".to_owned(),
         effects: effects.collect(),
         history: vec![
-            step("joint-zero@r_elbow_y added", "2026-09-13T16:10:00Z", [6.71, 4.32, 3.02]),
-            step("joint-sag@r_shoulder_y added", "2026-09-14T11:04:00Z", [4.32, 3.58, 3.02]),
+            step("joint-zero@r_elbow_y added", "2026-09-13T16:10:00Z", [6.71e-3, 4.32e-3, 3.02e-3]),
+            step("joint-sag@r_shoulder_y added", "2026-09-14T11:04:00Z", [4.32e-3, 3.58e-3, 3.02e-3]),
         ],
         can_undo: true,
     };

@@ -136,7 +136,7 @@ pub fn with(
 
 fn gap(shown: &Shown) -> Option<StepGap> {
     (shown.rows > 0).then(|| StepGap {
-        unit: if shown.unit == ShownUnit::Pixel { "px" } else { "mm" }.to_owned(),
+        unit: if shown.unit == ShownUnit::Pixel { "px" } else { "m" }.to_owned(),
         rows: shown.rows,
         before: shown.before,
         after: shown.after,

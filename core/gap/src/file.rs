@@ -6,7 +6,10 @@ use plumbline_model::FormatError;
 use plumbline_model::files::{self, told};
 use plumbline_model::formats::read_text;
 
-use crate::finding::{FORMAT, Finding};
+use crate::finding::{FORMAT, Finding, ShownUnit};
+
+/// The oldest format that is read.
+const OLDEST: u32 = 1;
 
 /// Why a finding could not be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -58,14 +61,34 @@ impl Finding {
             reason: told(&error.to_string()),
         };
         let head: Head = serde_json::from_str(&text).map_err(misfit)?;
-        if head.format != FORMAT {
+        if !(OLDEST..=FORMAT).contains(&head.format) {
             return Err(FindingFileError::OtherFormat {
                 file: file.to_owned(),
                 found: head.format,
                 version: head.version,
             });
         }
-        serde_json::from_str(&text).map_err(misfit)
+        let mut finding: Self = serde_json::from_str(&text).map_err(misfit)?;
+        if finding.format == OLDEST {
+            finding.take_as_millimeters();
+        }
+        Ok(finding)
+    }
+
+    /// Makes meters of its lengths, and the newest format of it.
+    fn take_as_millimeters(&mut self) {
+        self.format = FORMAT;
+        let shown = &mut self.shown;
+        if shown.unit == ShownUnit::Pixel {
+            return;
+        }
+        let of_unseen = shown.unseen.iter_mut().flat_map(|of| [&mut of.before, &mut of.after, &mut of.floor]);
+        [&mut shown.before, &mut shown.after, &mut shown.floor]
+            .into_iter()
+            .chain(&mut shown.worst_tenth)
+            .chain(of_unseen)
+            .chain(self.effects.iter_mut().map(|effect| &mut effect.size_m))
+            .for_each(|length| *length *= 1e-3);
     }
 
     /// Writes it as JSON, in one step: the old file stays until the new one is whole.

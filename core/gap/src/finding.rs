@@ -4,8 +4,8 @@ use nalgebra::Isometry3;
 use plumbline_effects::measurements::{LeftOut, Unit, What};
 use serde::{Deserialize, Serialize};
 
-/// Version of the format of a saved finding.
-pub const FORMAT: u32 = 1;
+/// Version of the format of a saved finding. Format 1 had millimeters where this one has meters.
+pub const FORMAT: u32 = 2;
 
 /// The answer in a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -158,8 +158,9 @@ pub struct NamedEffect {
     pub covariance: Vec<f64>,
     /// Root mean square of what it does to the rows, in units of the floor.
     pub size_sigmas: f64,
-    /// The same in millimeters on the table (px for eye points).
-    pub size_mm: f64,
+    /// The same in meters on the table (px for eye points).
+    #[serde(alias = "size_mm")]
+    pub size_m: f64,
     /// Every name that the data cannot tell from this one, as `id@site`, itself first.
     pub class: Vec<ClassMember>,
     /// What experiment would tell them apart; `None` where the class has one member.
@@ -266,14 +267,14 @@ pub struct Shown {
     pub telling: Vec<usize>,
 }
 
-/// Unit of held-out errors: table millimeters, or image pixels where only pixels were measured.
+/// Unit of held-out errors: meters, or image pixels where only pixels were measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ShownUnit {
-    /// `before_mm`: error in the plane of screen or table for touches and places, in space for
-    /// poses.
-    Millimeter,
-    /// `before_px`: of image points.
+    /// Error in the plane of screen or table for touches and places, in space for poses.
+    #[serde(alias = "millimeter")]
+    Meter,
+    /// Of image points.
     Pixel,
 }
 
@@ -301,7 +302,7 @@ pub struct Unexplained {
     pub probability: f64,
     /// What the rest depends on, the strongest first; empty when nothing was found.
     pub depends_on: Vec<Dependence>,
-    /// Per millimeter of the gap how much is left, 0–1.
+    /// How much of the gap is left, 0–1.
     pub share: f64,
 }
 

@@ -112,7 +112,7 @@ fn digits(width: f64) -> usize {
 
 fn shrink(shown: &Shown) -> String {
     let rows = match shown.unit {
-        ShownUnit::Millimeter | ShownUnit::Pixel if shown.closure.is_none() => {
+        ShownUnit::Meter | ShownUnit::Pixel if shown.closure.is_none() => {
             return format!("The mean error is {}.", size(shown.before, shown.unit));
         }
         _ => "rows that were not used",
@@ -127,7 +127,7 @@ fn shrink(shown: &Shown) -> String {
 
 fn size(value: f64, unit: ShownUnit) -> String {
     match unit {
-        ShownUnit::Millimeter => format!("{value:.1} mm"),
+        ShownUnit::Meter => format!("{:.1} mm", value * 1e3),
         ShownUnit::Pixel => format!("{value:.2} px"),
     }
 }

@@ -155,6 +155,32 @@ fn work_stops_soon_when_cancelled_midway() {
     }
 }
 
+/// As the first format was written.
+const FORMAT_1: &str = r#"{
+  "format": 1, "rig": "nico", "sessions": ["morning"], "version": "0.1.0", "seed": 1,
+  "verdict": "named", "sentence": "The elbow's zero is off.",
+  "comparison": {
+    "rows": 245, "rows_kept": 243, "cells": 80, "kinds": [], "floor_from_repeats": true,
+    "p_value": 1e-9, "size_sigmas": 2.4, "is_gap": true, "residuals": []
+  },
+  "effects": [{
+    "id": "joint-zero", "site": "r_elbow_y", "title": "Right elbow: zero position off",
+    "probability": 0.94, "class_probability": 0.97, "parameters": [], "shape": null,
+    "values": [0.031], "covariance": [1e-6], "size_sigmas": 3.1, "size_mm": 4.8, "class": [],
+    "split_by": null, "runner_up": null, "not_addable": null
+  }],
+  "candidates": [],
+  "shown": {
+    "blocks": "5 folds, whole sets", "rows": 243, "unit": "millimeter", "before": 6.7, "after": 3.6,
+    "floor": 3.0, "closure": 0.84, "closure_range": [0.71, 0.93], "worst_tenth": [13.2, 7.4],
+    "inside_95": 0.94,
+    "unseen": { "what": "with a weight of 250 g", "rows": 40, "before": 8.4, "after": 3.9, "floor": 3.1 },
+    "covariates": [], "telling": []
+  },
+  "unexplained": { "p_value": 0.2, "probability": 0.02, "depends_on": [], "share": 0.1 },
+  "next": null, "placements": [], "left_out": [], "warnings": [], "seconds": 2.7
+}"#;
+
 #[test]
 fn findings_are_files() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -169,6 +195,25 @@ fn findings_are_files() {
     for (read, written) in read.comparison.residuals.iter().zip(&finding.comparison.residuals) {
         assert!((0..3).all(|c| (read.before_m[c] - written.before_m[c]).abs() < 1e-12));
     }
+    // Format 1 had millimeters.
+    std::fs::write(&file, FORMAT_1).expect("writable");
+    let old = Finding::read(&file).expect("an old file is read");
+    let (shown, unseen) = (&old.shown, old.shown.unseen.as_ref().expect("held out as a whole"));
+    let lengths = [shown.before, shown.after, shown.floor, unseen.before, unseen.after, unseen.floor];
+    let lengths = [&lengths[..], &shown.worst_tenth, &[old.effects[0].size_m]].concat();
+    for (found_m, was_mm) in lengths.iter().zip([6.7, 3.6, 3.0, 8.4, 3.9, 3.1, 13.2, 7.4, 4.8]) {
+        assert!((found_m - 1e-3 * was_mm).abs() < 1e-12, "{found_m} m, {was_mm} mm");
+    }
+    old.write(&file).expect("writable");
+    assert_eq!(Finding::read(&file).expect("of today's format").shown, old.shown);
+    let today = std::fs::read_to_string(&file).expect("readable");
+    assert!(
+        today.contains("\"size_m\"") && today.contains("\"meter\"") && !today.contains("_mm\""),
+        "{today}"
+    );
+    let pixels = FORMAT_1.replace("millimeter", "pixel");
+    std::fs::write(&file, pixels).expect("writable");
+    assert_eq!(Finding::read(&file).expect("an old file is read").shown.before, 6.7);
     std::fs::write(&file, "{\"format\": 99, \"version\": \"7.0\"}").expect("writable");
     let error = Finding::read(&file).expect_err("of another version").to_string();
     assert!(error.contains("format 99") && error.contains("7.0"), "{error}");

@@ -51,7 +51,7 @@ fn one_effect_is_named_and_sized_and_the_gap_closes() {
         assert!(matches!(finding.verdict, Verdict::Named | Verdict::Class), "{:?}", finding.verdict);
         assert!(names(&finding, hidden), "{:?}", finding.effects);
         let shown = &finding.shown;
-        assert_eq!(shown.unit, ShownUnit::Millimeter);
+        assert_eq!(shown.unit, ShownUnit::Meter);
         let closure = shown.closure.expect("there was a gap");
         assert!(closure > 0.8, "{closure}: {} {} {}", shown.before, shown.after, shown.floor);
         let [low, high] = shown.closure_range.expect("many blocks");

@@ -59,11 +59,11 @@ fn print(finding: &Finding) {
     println!(
         "{}: {:.2} -> {:.2}, floor {:.2} over {} rows; worst tenth {:.1?}, inside {:.2}, closure {:?} {:?}",
         shown.blocks,
-        shown.before,
-        shown.after,
-        shown.floor,
+        1e3 * shown.before,
+        1e3 * shown.after,
+        1e3 * shown.floor,
         shown.rows,
-        shown.worst_tenth,
+        shown.worst_tenth.map(|error| 1e3 * error),
         shown.inside_95,
         shown.closure,
         shown.closure_range
@@ -89,7 +89,7 @@ fn touches_of_the_real_arm() {
     let Some(measurements) = session("nico-touch/touch-245") else { return };
     let finding = found(&measurements);
     assert!(finding.comparison.is_gap);
-    assert!(finding.shown.before > 4.0 && finding.shown.before < 7.0, "{}", finding.shown.before);
+    assert!(finding.shown.before > 4e-3 && finding.shown.before < 7e-3, "{}", finding.shown.before);
     assert!(finding.shown.after < finding.shown.before);
 }
 
@@ -100,7 +100,7 @@ fn touches_of_the_real_arm_by_commands_alone() {
     let finding = found(&measurements);
     assert!(finding.comparison.is_gap);
     // A least-squares placement in the plane alone leaves 6.7 mm; here heights hold the frame too.
-    assert!((finding.shown.before - 6.7).abs() < 1.0, "{}", finding.shown.before);
+    assert!((finding.shown.before - 6.7e-3).abs() < 1e-3, "{}", finding.shown.before);
     assert!(finding.shown.after < 0.75 * finding.shown.before);
 }
 
@@ -109,5 +109,5 @@ fn places_of_the_real_eyes() {
     let Some(measurements) = session("nico-vision/grid-z5") else { return };
     let finding = found(&measurements);
     assert!(finding.comparison.is_gap);
-    assert!((finding.shown.before - 36.8).abs() < 1.5, "{}", finding.shown.before);
+    assert!((finding.shown.before - 36.8e-3).abs() < 1.5e-3, "{}", finding.shown.before);
 }

@@ -18,9 +18,9 @@ pub fn context() -> ReportContext {
         date: "21 November 2026".to_owned(),
         model: "nominal model".to_owned(),
         history: vec![
-            entry("nominal", 6.71),
-            entry("zero of the elbow", 4.32),
-            entry("+ sag of the shoulder", 3.58),
+            entry("nominal", 6.71e-3),
+            entry("zero of the elbow", 4.32e-3),
+            entry("+ sag of the shoulder", 3.58e-3),
         ],
         screen_m: Some([[0.26, 0.28], [0.26, -0.28], [0.58, -0.28], [0.58, 0.28]]),
     }
@@ -79,7 +79,7 @@ pub fn not_in_library() -> Finding {
         effects: vec![like],
         ..base()
     };
-    finding.shown.after = 5.3;
+    finding.shown.after = 5.3e-3;
     finding.shown.closure = Some(0.38);
     finding.shown.closure_range = Some([0.2, 0.51]);
     finding.unexplained = Unexplained {
@@ -105,9 +105,9 @@ pub fn no_gap() -> Finding {
         ..base()
     };
     finding.shown = Shown {
-        before: 3.1,
-        after: 3.1,
-        floor: 3.0,
+        before: 3.1e-3,
+        after: 3.1e-3,
+        floor: 3.0e-3,
         closure: None,
         closure_range: None,
         unseen: None,
@@ -184,6 +184,7 @@ pub fn pixels() -> Finding {
     let mut finding = named();
     finding.shown.unit = ShownUnit::Pixel;
     (finding.shown.before, finding.shown.after, finding.shown.floor) = (2.31, 0.42, 0.31);
+    finding.shown.worst_tenth = [13.2, 7.4];
     finding.shown.unseen = None;
     finding.comparison.kinds = vec![KindComparison {
         what: What::EyePoints,
@@ -233,20 +234,20 @@ fn base() -> Finding {
         shown: Shown {
             blocks: "5 folds of whole sets".to_owned(),
             rows: 245,
-            unit: ShownUnit::Millimeter,
-            before: 6.71,
-            after: 3.58,
-            floor: 2.98,
+            unit: ShownUnit::Meter,
+            before: 6.71e-3,
+            after: 3.58e-3,
+            floor: 2.98e-3,
             closure: Some(0.84),
             closure_range: Some([0.71, 0.93]),
-            worst_tenth: [13.2, 7.4],
+            worst_tenth: [13.2e-3, 7.4e-3],
             inside_95: 0.94,
             unseen: Some(Unseen {
                 what: "with a weight of 250 g".to_owned(),
                 rows: 40,
-                before: 8.4,
-                after: 3.9,
-                floor: 3.0,
+                before: 8.4e-3,
+                after: 3.9e-3,
+                floor: 3.0e-3,
             }),
             covariates: vec![
                 ("angle of the elbow".to_owned(), "rad".to_owned()),
@@ -287,7 +288,7 @@ fn elbow_zero() -> NamedEffect {
         values: vec![0.031],
         covariance: vec![2.3e-6],
         size_sigmas: 2.1,
-        size_mm: 4.8,
+        size_m: 4.8e-3,
         class: vec![member("joint-zero", "r_elbow_y", "Elbow: zero position off", 1.0)],
         split_by: None,
         runner_up: Some(("link-length@r_lower_arm".to_owned(), 3.1)),
@@ -307,7 +308,7 @@ fn shoulder_sag() -> NamedEffect {
         values: vec![0.0112],
         covariance: vec![1.6e-6],
         size_sigmas: 1.2,
-        size_mm: 2.6,
+        size_m: 2.6e-3,
         class: vec![member(
             "joint-sag",
             "r_shoulder_y",

@@ -69,23 +69,23 @@ fn steps(ui: &mut Ui, model: &GapModelView) {
     let mut rows: Vec<IntervalRow> = vec![];
     let mut floor = None;
     let pixels = model.history.iter().any(|step| step.in_pixels);
-    let (quantity, factor) = if pixels { (Quantity::Pixels, 1.0) } else { (Quantity::Length, 1e-3) };
+    let quantity = if pixels { Quantity::Pixels } else { Quantity::Length };
     for step in &model.history {
         let Some([before, after, noise]) = step.errors else { continue };
         if rows.is_empty() {
             rows.push(IntervalRow {
                 name: "Nominal".to_owned(),
                 note: String::new(),
-                mean: Some(before * factor),
+                mean: Some(before),
                 interval: None,
                 role: Role::Difference,
             });
         }
-        floor = Some(noise * factor);
+        floor = Some(noise);
         rows.push(IntervalRow {
             name: clock(step.at),
             note: if step.undone { "taken back".to_owned() } else { String::new() },
-            mean: Some(after * factor),
+            mean: Some(after),
             interval: None,
             role: if step.undone { Role::Weak } else { Role::HeldOut },
         });

@@ -152,9 +152,9 @@ fn sizes(ui: &mut Ui, effect: &NamedEffect) {
             }
             ui.end_row();
         }
-        if effect.size_mm > 0.0 {
+        if effect.size_m > 0.0 {
             ui.label(theme::weak(ui, "does"));
-            ui.label(format::mm(effect.size_mm * 1e-3));
+            ui.label(format::mm(effect.size_m));
             let sigmas = format::significant(effect.size_sigmas, 2);
             ui.label(theme::weak(ui, format!("rms, {sigmas} × the noise")));
             ui.end_row();

@@ -66,12 +66,12 @@ fn bars(ui: &mut Ui, cx: &PanelContext<'_>, shown: &ShownFinding) {
     } else {
         ui.label(theme::strong(ui, "There is nothing to close: before is what noise alone would leave."));
     }
-    let (quantity, factor) = words::held_out(held_out.unit);
+    let quantity = words::held_out(held_out.unit);
     let row = |name: &str, note: &str, value: f64, interval: Option<[f64; 2]>, role| IntervalRow {
         name: name.to_owned(),
         note: note.to_owned(),
-        mean: Some(value * factor),
-        interval: interval.map(|ends| ends.map(|end| end * factor)),
+        mean: Some(value),
+        interval,
         role,
     };
     let mut rows = vec![
@@ -90,7 +90,7 @@ fn bars(ui: &mut Ui, cx: &PanelContext<'_>, shown: &ShownFinding) {
         rows.push(row("Before", "the other", other.before, None, Role::Weak));
         rows.push(row("After", "the other", other.after, after_range(other), Role::Weak));
     }
-    let levels = [Level { name: "noise alone", value: held_out.floor * factor, role: Role::NoiseFloor }];
+    let levels = [Level { name: "noise alone", value: held_out.floor, role: Role::NoiseFloor }];
     Intervals::new("Gap on held-out rows", &rows, quantity).levels(&levels).show(ui);
     let worst = held_out.worst_tenth.map(|error| words::error(held_out, error));
     let count = format::count(held_out.rows, "row");

@@ -16,18 +16,17 @@ pub fn quantity(of: &CoordinateComparison) -> Quantity {
     }
 }
 
-/// Quantity of held-out errors, and the factor that makes SI of the numbers of the finding.
-pub fn held_out(unit: ShownUnit) -> (Quantity, f64) {
+/// Quantity of held-out errors.
+pub fn held_out(unit: ShownUnit) -> Quantity {
     match unit {
-        ShownUnit::Millimeter => (Quantity::Length, 1e-3),
-        ShownUnit::Pixel => (Quantity::Pixels, 1.0),
+        ShownUnit::Meter => Quantity::Length,
+        ShownUnit::Pixel => Quantity::Pixels,
     }
 }
 
 /// "6.71 mm" of a number of the finding.
 pub fn error(shown: &Shown, value: f64) -> String {
-    let (quantity, factor) = held_out(shown.unit);
-    quantity.text(value * factor)
+    held_out(shown.unit).text(value)
 }
 
 /// The verdict, short enough for a heading.

@@ -184,7 +184,7 @@ pub enum StepKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StepGap {
-    /// `mm` or `px`.
+    /// `m` or `px`.
     pub unit: String,
     /// Rows judged.
     pub rows: usize,
@@ -200,6 +200,18 @@ pub struct StepGap {
     /// Its 95 % interval.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub closure_range: Option<[f64; 2]>,
+}
+
+impl StepGap {
+    /// Meters of what an older file has in millimeters.
+    pub(super) fn make_si(&mut self) {
+        if self.unit == "mm" {
+            self.unit = "m".to_owned();
+            [&mut self.before, &mut self.after, &mut self.floor]
+                .into_iter()
+                .for_each(|length| *length *= 1e-3);
+        }
+    }
 }
 
 impl Step {

@@ -7,10 +7,12 @@ use plumbline_model::formats::depth;
 use plumbline_model::robot::Rig;
 use serde::{Deserialize, Serialize};
 
-use super::{Contents, RigModel, RigModelError, Step};
+use super::{Contents, RigModel, RigModelError, Step, StepGap};
 
-/// Version of the format, the value of the key `rig_model`.
-pub const FORMAT: u32 = 1;
+/// Version of the format, the value of the key `rig_model`. Format 1 had gaps in millimeters.
+pub const FORMAT: u32 = 2;
+/// The oldest one that is read.
+const OLDEST: u32 = 1;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -48,7 +50,7 @@ impl RigModel {
         let keys: toml::Table =
             toml::from_str(text).map_err(|error| not(format!("it is not TOML ({})", error.message())))?;
         match keys.get("rig_model") {
-            Some(toml::Value::Integer(found)) if *found == i64::from(FORMAT) => {}
+            Some(toml::Value::Integer(found)) if (i64::from(OLDEST)..=i64::from(FORMAT)).contains(found) => {}
             Some(toml::Value::Integer(found)) => {
                 let (file, found) = (file.to_owned(), *found);
                 return Err(RigModelError::OtherVersion { file, found, known: FORMAT });
@@ -56,7 +58,8 @@ impl RigModel {
             Some(_) => return Err(not("its rig_model is no number".to_owned())),
             None => return Err(not("it has no key rig_model".to_owned())),
         }
-        let read: File = toml::from_str(text).map_err(|error| not(error.message().to_owned()))?;
+        let mut read: File = toml::from_str(text).map_err(|error| not(error.message().to_owned()))?;
+        read.history.iter_mut().filter_map(|step| step.gap.as_mut()).for_each(StepGap::make_si);
         if read.rig != rig.name {
             return Err(RigModelError::OtherRig { found: read.rig, expected: rig.name.clone() });
         }

@@ -37,11 +37,11 @@ fn addition(effects: Vec<ModelEffect>) -> Addition {
         sessions: vec!["morning".to_owned()],
         version: "0.1.0".to_owned(),
         gap: Some(StepGap {
-            unit: "mm".to_owned(),
+            unit: "m".to_owned(),
             rows: 49,
-            before: 6.7,
-            after: 3.6,
-            floor: 3.0,
+            before: 6.7e-3,
+            after: 3.6e-3,
+            floor: 3.0e-3,
             closure: Some(0.84),
             closure_range: Some([0.7, 0.9]),
         }),
@@ -96,6 +96,59 @@ fn what_is_written_is_read_again() {
     }
     let left: Vec<_> = std::fs::read_dir(folder.path()).expect("a folder").collect();
     assert_eq!(left.len(), 1, "no temporary file is left");
+}
+
+/// As the first format was written.
+const FORMAT_1: &str = r#"rig_model = 1
+rig = "nico"
+
+[[present.effects]]
+id = "joint-zero"
+site = "r_elbow_y"
+tip = "right_index_tip"
+values = [0.031]
+
+[[history]]
+kind = "added"
+at = "2026-09-14T11:04:00Z"
+effects = ["joint-zero@r_elbow_y"]
+[history.gap]
+unit = "mm"
+rows = 49
+before = 6.7
+after = 3.6
+floor = 3.0
+closure = 0.84
+
+[[history]]
+kind = "added"
+at = "2026-09-15T11:04:00Z"
+effects = ["camera-mount@eyes"]
+[history.gap]
+unit = "px"
+rows = 49
+before = 2.3
+after = 0.4
+floor = 0.3
+"#;
+
+#[test]
+fn gaps_of_the_first_format_become_meters() {
+    let (rig, folder) = (nico(), tempfile::tempdir().expect("temporary folder"));
+    let file = folder.path().join("model.toml");
+    std::fs::write(&file, FORMAT_1).expect("writable");
+    let old = RigModel::read(&file, &rig).expect("an old file is read");
+    old.write(&file, &rig).expect("written");
+    assert!(std::fs::read_to_string(&file).expect("readable").contains("rig_model = 2"));
+    for model in [&old, &RigModel::read(&file, &rig).expect("of today's format")] {
+        assert_eq!(model.effects().len(), 1);
+        let gaps: Vec<&StepGap> = model.history.iter().filter_map(|step| step.gap.as_ref()).collect();
+        assert_eq!((gaps[0].unit.as_str(), gaps[1].unit.as_str()), ("m", "px"));
+        for (found, length_m) in [(gaps[0].before, 6.7e-3), (gaps[0].after, 3.6e-3), (gaps[0].floor, 3e-3)] {
+            assert!((found - length_m).abs() < 1e-12, "{found} for {length_m}");
+        }
+        assert_eq!([gaps[1].before, gaps[1].after, gaps[1].floor], [2.3, 0.4, 0.3]);
+    }
 }
 
 #[test]
@@ -164,8 +217,8 @@ fn files_that_are_none_are_refused_with_words() {
     let good = elbow(&rig).to_toml(&file, &rig).expect("text");
     for (text, said) in [
         (good.replace("rig = \"nico\"", "rig = \"icub\""), "belongs to the robot \"icub\", not to \"nico\""),
-        (good.replace("rig_model = 1", "rig_model = 7"), "has format 7, this program reads 1"),
-        (good.replace("rig_model = 1", "format = 1"), "no key rig_model"),
+        (good.replace("rig_model = 2", "rig_model = 7"), "has format 7, this program reads 2"),
+        (good.replace("rig_model = 2", "format = 1"), "no key rig_model"),
         (good.replace("joint-zero", "joint-magic"), "a newer version of the program"),
         (good.replace("r_elbow_y", "r_elbow_q"), "search the gap again"),
         (good.replace("values = [0.031]", "values = []"), "0 values instead of 1"),

@@ -352,14 +352,14 @@ fn dependence(on: &Dependence) -> String {
 
 /// The numbers with the unit in their keys.
 fn held_out(shown: &Shown) -> Map<String, Value> {
-    let unit = match shown.unit {
-        ShownUnit::Millimeter => "mm",
-        ShownUnit::Pixel => "px",
+    let (unit, scale) = match shown.unit {
+        ShownUnit::Meter => ("mm", 1e3),
+        ShownUnit::Pixel => ("px", 1.0),
     };
     let mut keys = Map::new();
     keys.insert("rows".to_owned(), shown.rows.into());
     for (name, value) in [("before", shown.before), ("after", shown.after), ("floor", shown.floor)] {
-        keys.insert(format!("{name}_{unit}"), value.into());
+        keys.insert(format!("{name}_{unit}"), (value * scale).into());
     }
     keys.insert("closure".to_owned(), shown.closure.into());
     keys.insert("closure_range".to_owned(), shown.closure_range.map(Vec::from).into());
@@ -369,7 +369,7 @@ fn held_out(shown: &Shown) -> Map<String, Value> {
         of.insert("what".to_owned(), unseen.what.clone().into());
         of.insert("rows".to_owned(), unseen.rows.into());
         for (name, value) in [("before", unseen.before), ("after", unseen.after), ("floor", unseen.floor)] {
-            of.insert(format!("{name}_{unit}"), value.into());
+            of.insert(format!("{name}_{unit}"), (value * scale).into());
         }
         keys.insert("unseen".to_owned(), of.into());
     }

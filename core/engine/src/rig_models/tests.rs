@@ -80,7 +80,7 @@ fn named(id: &str, site: &str, value: f64) -> NamedEffect {
         values: vec![value],
         covariance: vec![1e-6],
         size_sigmas: 3.0,
-        size_mm: 4.0,
+        size_m: 4e-3,
         class: vec![ClassMember {
             id: id.to_owned(),
             site: site.to_owned(),
@@ -118,13 +118,13 @@ fn finding(effects: Vec<NamedEffect>) -> Finding {
         shown: Shown {
             blocks: "5 folds".to_owned(),
             rows: 80,
-            unit: ShownUnit::Millimeter,
-            before: 6.7,
-            after: 3.6,
-            floor: 3.0,
+            unit: ShownUnit::Meter,
+            before: 6.7e-3,
+            after: 3.6e-3,
+            floor: 3e-3,
             closure: Some(0.84),
             closure_range: None,
-            worst_tenth: [12.0, 6.0],
+            worst_tenth: [12e-3, 6e-3],
             inside_95: 0.95,
             unseen: None,
             covariates: vec![],
@@ -158,7 +158,7 @@ fn accepting_and_taking_back_live_on_disk() {
     let moved = middle.coords - nominal.coords - nalgebra::Vector3::new(-0.004, 0.002, -0.001);
     assert!(moved.norm() < 1e-12);
     let gaps: Vec<[f64; 2]> = history(&both).map(|(_, gap)| [gap.before, gap.after]).collect();
-    assert_eq!(gaps, [[6.7, 3.6]; 2]);
+    assert_eq!(gaps, [[6.7e-3, 3.6e-3]; 2]);
     let back = undo(&world, &rig).expect("a step");
     assert_eq!(back.contents.effects, one.contents.effects);
     assert_eq!(history(&back).count(), 1);

@@ -73,7 +73,7 @@ pub struct FindingEntry {
     pub verdict: Verdict,
     /// What was named, for people.
     pub named: Vec<String>,
-    /// Mean held-out errors: before, after, floor; in mm or px.
+    /// Mean held-out errors: before, after, floor; in m or px.
     pub errors: [f64; 3],
     /// Whether that is in pixels.
     pub in_pixels: bool,
@@ -125,7 +125,7 @@ pub struct ModelStep {
     pub title: String,
     /// Whether it was taken back since.
     pub undone: bool,
-    /// Mean held-out errors where they are known: before, after, floor; mm or px.
+    /// Mean held-out errors where they are known: before, after, floor; m or px.
     pub errors: Option<[f64; 3]>,
     /// Whether these are in pixels.
     pub in_pixels: bool,

@@ -140,7 +140,7 @@ fn named(effect: &Effect, probability: f64) -> NamedEffect {
         values: vec![],
         covariance: vec![],
         size_sigmas: 2.0,
-        size_mm: 2.0,
+        size_m: 2e-3,
         class: vec![member(effect, probability)],
         split_by: None,
         runner_up: None,

@@ -44,7 +44,7 @@ impl Finish<'_> {
             look: self.look,
             explored: self.explored,
             floor: self.floor,
-            floor_mm: floor_mm(self.measurements, self.floor),
+            floor_m: floor_m(self.measurements, self.floor),
             temperature: TEMPERATURE,
         };
         let mut named = evidence.name();
@@ -233,13 +233,13 @@ fn share_left(before: &[Option<f64>], after: &[Option<f64>], weights: &[f64], no
     if gap > 0.0 { (beyond(after) / gap).min(1.0) } else { 0.0 }
 }
 
-/// Length of one floor on the table, mm; of eye points, px.
-fn floor_mm(measurements: &Measurements, floor: &Floor) -> f64 {
+/// Length of one floor on the table, m; of eye points, px.
+fn floor_m(measurements: &Measurements, floor: &Floor) -> f64 {
     let Some(kind) = floor.kinds.first() else { return 0.0 };
     let length = |sd: &[f64]| sd.iter().map(|sd| sd * sd).sum::<f64>().sqrt();
     match kind.what {
-        What::Touch => 1e3 * length(&kind.sd[..2]),
-        What::Pose => 1e3 * length(&kind.sd),
+        What::Touch => length(&kind.sd[..2]),
+        What::Pose => length(&kind.sd),
         What::EyePoints => length(&kind.sd),
         What::Place => {
             let depths = measurements.rows.iter().filter(|row| row.what == What::Place).filter_map(|row| {
@@ -253,7 +253,7 @@ fn floor_mm(measurements: &Measurements, floor: &Floor) -> f64 {
                 .iter()
                 .find_map(|a| a.eyes.as_ref())
                 .map_or(0.0, |e| e.cameras.baseline_m());
-            1e3 * far * baseline * kind.sd[0].hypot(kind.sd[1]).hypot(far * kind.sd[2])
+            far * baseline * kind.sd[0].hypot(kind.sd[1]).hypot(far * kind.sd[2])
         }
     }
 }

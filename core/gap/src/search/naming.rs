@@ -62,8 +62,8 @@ pub(super) struct Evidence<'a> {
     pub look: &'a Look,
     pub explored: &'a Explored,
     pub floor: &'a Floor,
-    /// Length of a floor on the table, mm (px for eye points).
-    pub floor_mm: f64,
+    /// Length of a floor on the table, m (px for eye points).
+    pub floor_m: f64,
     pub temperature: f64,
 }
 
@@ -276,7 +276,7 @@ impl Evidence<'_> {
             shape: effect.shape,
             values,
             size_sigmas: size,
-            size_mm: size * self.floor_mm,
+            size_m: size * self.floor_m,
             class,
             split_by: None,
             runner_up,

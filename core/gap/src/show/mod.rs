@@ -183,12 +183,12 @@ fn place_strangers(
     }
 }
 
-/// Millimeters wherever a length was measured.
+/// Meters wherever a length was measured.
 fn unit_of(measurements: &Measurements) -> ShownUnit {
     if measurements.rows.iter().all(|row| row.what == What::EyePoints) {
         ShownUnit::Pixel
     } else {
-        ShownUnit::Millimeter
+        ShownUnit::Meter
     }
 }
 
@@ -197,14 +197,13 @@ fn counts(what: What, unit: ShownUnit) -> bool {
 }
 
 fn summary(rows: &[HeldOut], unit: ShownUnit, blocks: String, seed: u64) -> Shown {
-    let scale = if unit == ShownUnit::Pixel { 1.0 } else { 1e3 };
-    let [before, after, floor] = means(rows).map(|mean| mean * scale);
+    let [before, after, floor] = means(rows);
     let (inside, all) = rows.iter().fold((0, 0), |sum, row| (sum.0 + row.inside.0, sum.1 + row.inside.1));
     let worst = |of: fn(&HeldOut) -> f64| {
         let mut errors: Vec<f64> = rows.iter().map(of).collect();
         errors.sort_by(|a, b| b.total_cmp(a));
         errors.truncate((rows.len().div_ceil(10)).max(1));
-        errors.iter().sum::<f64>() / errors.len().max(1) as f64 * scale
+        errors.iter().sum::<f64>() / errors.len().max(1) as f64
     };
     Shown {
         blocks,

@@ -9,7 +9,7 @@ use plumbline_model::JobContext;
 use super::{Quiet, counts, means, unit_of, without};
 use crate::compare::Compared;
 use crate::error::GapError;
-use crate::finding::{ShownUnit, Unseen};
+use crate::finding::Unseen;
 use crate::options::Options;
 use crate::search::Found;
 
@@ -36,8 +36,7 @@ pub(super) fn unseen(
     if rows.is_empty() {
         return Ok(None);
     }
-    let scale = if unit == ShownUnit::Pixel { 1.0 } else { 1e3 };
-    let [before, after, floor] = means(&rows).map(|mean| mean * scale);
+    let [before, after, floor] = means(&rows);
     Ok(Some(Unseen { what, rows: rows.len(), before, after, floor }))
 }
 

@@ -190,8 +190,8 @@ fn values(effect: &NamedEffect) -> String {
     if effect.parameters.len() > MOST_PARAMETERS {
         parts.push("…".to_owned());
     }
-    let moved = format!("{} mm in these rows", significant(effect.size_mm, 2));
-    if effect.size_mm.is_finite() {
+    let moved = format!("{} mm in these rows", significant(1e3 * effect.size_m, 2));
+    if effect.size_m.is_finite() {
         parts.push(moved);
     }
     parts.join(", ")

@@ -26,17 +26,18 @@ pub fn summary(drawing: &mut Drawing, area: Area, finding: &Finding, context: &R
     }
 }
 
-fn unit(finding: &Finding) -> &'static str {
+/// Unit that held-out errors are printed in, and what one of the finding's is in it.
+fn unit(finding: &Finding) -> (&'static str, f64) {
     match finding.shown.unit {
-        ShownUnit::Millimeter => "mm",
-        ShownUnit::Pixel => "px",
+        ShownUnit::Meter => ("mm", 1e3),
+        ShownUnit::Pixel => ("px", 1.0),
     }
 }
 
 fn gap(drawing: &mut Drawing, area: Area, finding: &Finding) {
-    let (shown, unit) = (&finding.shown, unit(finding));
+    let (shown, (unit, scale)) = (&finding.shown, unit(finding));
     heading(drawing, area, "Mean error on rows that were not used");
-    let label = |value: f64| format!("{} {unit}", significant(value, 3));
+    let label = |value: f64| format!("{} {unit}", significant(value * scale, 3));
     let bar =
         |name: &str, value: f64, color| Bar { name: name.to_owned(), value, label: label(value), color };
     let mut all = vec![bar("before", shown.before, ink::BEFORE)];
@@ -61,9 +62,9 @@ fn gap(drawing: &mut Drawing, area: Area, finding: &Finding) {
         lines.push(format!(
             "Held out as a whole, {}: {} to {} {unit}, floor {}.",
             unseen.what,
-            significant(unseen.before, 3),
-            significant(unseen.after, 3),
-            significant(unseen.floor, 3)
+            significant(unseen.before * scale, 3),
+            significant(unseen.after * scale, 3),
+            significant(unseen.floor * scale, 3)
         ));
     }
     let mut y = y + 8.0;
@@ -114,7 +115,7 @@ fn printed(value: f64, coordinate: &CoordinateComparison) -> String {
 
 /// Models with their gaps, the last one after what was found now.
 fn history(drawing: &mut Drawing, area: Area, finding: &Finding, entries: &[HistoryEntry]) {
-    let unit = unit(finding);
+    let (unit, scale) = unit(finding);
     heading(drawing, area, &format!("Models so far, mean error in {unit} (dashed: noise floor)"));
     let shown = &entries[entries.len().saturating_sub(MOST_MODELS)..];
     let plot = Area { height: 50.0, y: area.y + HEADING + 4.0, ..area };
@@ -141,7 +142,7 @@ fn history(drawing: &mut Drawing, area: Area, finding: &Finding, entries: &[Hist
             let is_last = i + 1 == shown.len();
             let color = if is_last { ink::AFTER } else { ink::BEFORE };
             drawing.rect(middle - 0.5 * width, y, width, plot.bottom() - y, color);
-            let value = significant(entry.gap, 3);
+            let value = significant(entry.gap * scale, 3);
             drawing.anchored([middle, y - 2.5], value, style.bold().color(ink::STRONG), Anchor::Middle);
         }
         let mut y = plot.bottom() + 9.0;

@@ -199,7 +199,7 @@ fn numbers_that_are_none_do_not_reach_the_page() {
     finding.shown.before = f64::NAN;
     finding.shown.floor = f64::INFINITY;
     finding.effects[0].probability = f64::NAN;
-    finding.effects[0].size_mm = f64::NAN;
+    finding.effects[0].size_m = f64::NAN;
     finding.comparison.residuals[0].before_m = [f64::NAN; 3];
     finding.comparison.residuals[1].covariates = vec![];
     finding.shown.telling = vec![0, 99];
