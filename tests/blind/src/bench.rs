@@ -2,6 +2,7 @@
 
 use nalgebra::{Isometry3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use plumbline_model::pixel::Pixel;
+use plumbline_model::robot::servo::TICK_RAD;
 use plumbline_model::robot::{Chain, JointKind, LinkIndex, Rig};
 use plumbline_model::session::Touchscreen;
 
@@ -49,9 +50,6 @@ pub struct Bench {
     pub palm_m: Vector3<f64>,
 }
 
-/// Steps of an encoder in a turn of its motor.
-const TICKS: f64 = 4096.0;
-
 impl Bench {
     /// The arm of the rig that comes with the program.
     ///
@@ -81,9 +79,7 @@ impl Bench {
                     place: joint.parent_from_joint,
                     axis: axis.into_inner(),
                     masses: vec![],
-                    tick_rad: std::f64::consts::TAU
-                        / TICKS
-                        / rig.servo_of(*index).map_or(1.0, |servo| servo.ratio),
+                    tick_rad: TICK_RAD / rig.servo_of(*index).map_or(1.0, |servo| servo.ratio),
                 }),
                 _ => None,
             })

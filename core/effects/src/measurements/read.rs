@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use nalgebra::Point3;
 use plumbline_model::Session;
+use plumbline_model::robot::servo::TICK_RAD;
 use plumbline_model::robot::{DescriptionError, Rig, RigPart};
 use plumbline_model::session::{LocalizationRow, PoseRow, TouchRow};
 
@@ -371,8 +372,8 @@ fn cell_key(
 }
 
 /// A joint that stands nearer than this to where it was sent tells nothing of how it came there:
-/// half a step of an encoder with 4096 steps, rad.
-const STANDS_RAD: f64 = 0.5 * std::f64::consts::TAU / 4096.0;
+/// half a step of an encoder, rad.
+const STANDS_RAD: f64 = 0.5 * TICK_RAD;
 
 /// Last motion of each joint. `plus` and `minus` say that every joint arrived moving so. Without
 /// such a label friction tells it, where command and encoder were logged: a joint stops short of

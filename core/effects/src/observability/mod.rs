@@ -11,6 +11,7 @@ mod tangent;
 #[cfg(test)]
 mod tests;
 
+use plumbline_model::robot::servo::TICK_RAD;
 use plumbline_model::robot::{DescriptionError, Rig};
 use serde::{Deserialize, Serialize};
 
@@ -54,9 +55,9 @@ pub struct Noise {
 }
 
 impl Default for Noise {
-    /// 1 mm in the plane, 0.5 mm in height, one of 4096 encoder steps per turn.
+    /// 1 mm in the plane, 0.5 mm in height, one step of an encoder.
     fn default() -> Self {
-        Self { in_plane_m: 1e-3, height_m: 0.5e-3, encoder_rad: Some(std::f64::consts::TAU / 4096.0) }
+        Self { in_plane_m: 1e-3, height_m: 0.5e-3, encoder_rad: Some(TICK_RAD) }
     }
 }
 

@@ -7,7 +7,7 @@ use super::deframer::Found;
 use super::error::BusError;
 use super::fault::FaultKind;
 use super::instruction::{BROADCAST, BulkItem, Instruction};
-use super::packet::Status;
+use super::packet::{self, Status};
 
 impl Bus {
     /// Reads registers of many servos in one conversation. What did not come is a fault, counted;
@@ -60,7 +60,7 @@ impl Bus {
                     }
                 }
                 Found::Frame(frame) => {
-                    let Ok(status) = self.protocol.status(&frame) else { continue };
+                    let status = packet::decode_status(&frame);
                     let Some(i) = place(status.id).filter(|i| answers[*i].is_err()) else {
                         if !self.strange(status.id) {
                             told = Some(FaultKind::WrongId);

@@ -13,7 +13,7 @@ use super::deframer::{Deframer, Found};
 use super::error::BusError;
 use super::fault::{BusCounts, FaultKind};
 use super::instruction::{BROADCAST, Instruction};
-use super::packet::{Protocol, Status};
+use super::packet::{self, Status};
 use super::port::ServoPort;
 use super::wire_time::WireTime;
 
@@ -56,7 +56,6 @@ impl Default for BusTiming {
 /// A bus with servos on it.
 pub struct Bus {
     port: Box<dyn ServoPort>,
-    pub(super) protocol: Protocol,
     timing: BusTiming,
     pub(super) deframer: Deframer,
     pub(super) wire: WireTime,
@@ -83,12 +82,11 @@ pub(super) enum Ended {
 
 impl Bus {
     /// A bus on an open port.
-    pub fn new(port: Box<dyn ServoPort>, protocol: Protocol, timing: BusTiming) -> Self {
+    pub fn new(port: Box<dyn ServoPort>, timing: BusTiming) -> Self {
         Self {
             port,
-            protocol,
             timing,
-            deframer: Deframer::new(protocol),
+            deframer: Deframer::default(),
             wire: WireTime::default(),
             counts: BusCounts::default(),
             echo: vec![],
@@ -219,7 +217,7 @@ impl Bus {
 
     /// Time of an answer of `data` bytes on the wire, and the margin.
     pub(super) fn answer_time(&self, data: usize) -> Duration {
-        let bytes = self.protocol.status_bytes(data) as f64;
+        let bytes = packet::status_bytes(data) as f64;
         let margin = self.margin.max(if self.patient { PATIENCE } else { Duration::ZERO });
         margin + duration::seconds(bytes * 10.0 / f64::from(self.timing.baud.max(1))).unwrap_or_default()
     }
@@ -311,10 +309,7 @@ impl Bus {
                 }
                 Found::WrongCheck { .. } => return Ok(Err(FaultKind::Checksum)),
                 Found::Frame(frame) => {
-                    let Ok(status) = self.protocol.status(&frame) else {
-                        worst = Some(FaultKind::Garbled);
-                        continue;
-                    };
+                    let status = packet::decode_status(&frame);
                     if status.id != id {
                         if !self.strange(status.id) {
                             worst = Some(FaultKind::WrongId);
@@ -417,7 +412,7 @@ impl Bus {
                 Found::WrongCheck { .. } => {}
                 Found::Frame(frame) => {
                     if !self.strange(frame.id) {
-                        self.counts.stray_bytes += self.protocol.status_bytes(frame.data.len()) as u64;
+                        self.counts.stray_bytes += packet::status_bytes(frame.data.len()) as u64;
                     }
                 }
             }
@@ -425,7 +420,7 @@ impl Bus {
     }
 
     pub(super) fn send(&mut self, id: u8, instruction: &Instruction) -> Result<(), BusError> {
-        let bytes = self.protocol.encode_instruction(id, instruction)?;
+        let bytes = packet::encode_instruction(id, instruction)?;
         let sent = self.port.write_all(&bytes).and_then(|()| self.port.flush());
         sent.map_err(|error| BusError::PortGone { port: self.port.name(), detail: error.to_string() })?;
         self.wire.bytes_out += bytes.len() as u64;
@@ -445,11 +440,8 @@ impl Bus {
         while self.receive(SLICE)? > 0 && Instant::now() < end {}
         let mut answers = std::mem::take(&mut self.rescued);
         while let Some(found) = self.deframer.pop() {
-            if let Found::Frame(frame) = found
-                && let Ok(status) = self.protocol.status(&frame)
-                && !status.error.is_transmission()
-            {
-                answers.push(status);
+            if let Found::Frame(frame) = found {
+                answers.extend(Some(packet::decode_status(&frame)).filter(|it| !it.error.is_transmission()));
             }
         }
         self.deframer.clear();

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::OnceLock;
 
+use plumbline_model::robot::servo::{self, FULL, LAST_TICK, SIGN_BIT, TICKS_PER_TURN};
 use serde::Deserialize;
 
 /// A position as the servo counts it.
@@ -116,9 +117,29 @@ pub enum Coding {
     SignBit10,
 }
 
+impl Unit {
+    /// SI value of one count where the table does not say otherwise.
+    fn usual_scale(self) -> f64 {
+        match self {
+            Self::Raw | Self::Celsius | Self::Ampere => 1.0,
+            Self::Rad => servo::TICK_RAD,
+            Self::RadianPerSecond => servo::SPEED_RAD_S,
+            Self::RadianPerSecondSquared => servo::ACCELERATION_RAD_S2,
+            Self::Fraction => servo::FRACTION,
+            Self::Volt => servo::VOLTAGE_V,
+            Self::Second => servo::RETURN_DELAY_S,
+        }
+    }
+
+    /// Count that stands for zero where the table does not say otherwise.
+    fn usual_zero(self) -> u16 {
+        if self == Self::Rad { servo::MIDDLE_TICK } else { 0 }
+    }
+}
+
 /// One register.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(from = "Line")]
 pub struct Register {
     /// Where it begins.
     pub address: u16,
@@ -127,28 +148,44 @@ pub struct Register {
     /// Who may change it.
     pub access: Access,
     /// Unit of the SI value.
-    #[serde(default)]
     pub unit: Unit,
     /// SI value of one count.
-    #[serde(default = "one")]
     pub scale: f64,
     /// Count that stands for zero.
-    #[serde(default)]
     pub zero: u16,
     /// How the number is written.
-    #[serde(default)]
     pub coding: Coding,
 }
 
-fn one() -> f64 {
-    1.0
+/// A register as its file tells it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Line {
+    address: u16,
+    size: u16,
+    access: Access,
+    #[serde(default)]
+    unit: Unit,
+    scale: Option<f64>,
+    zero: Option<u16>,
+    #[serde(default)]
+    coding: Coding,
+}
+
+impl From<Line> for Register {
+    fn from(line: Line) -> Self {
+        let Line { address, size, access, unit, scale, zero, coding } = line;
+        let scale = scale.unwrap_or_else(|| unit.usual_scale());
+        let zero = zero.unwrap_or_else(|| unit.usual_zero());
+        Self { address, size, access, unit, scale, zero, coding }
+    }
 }
 
 impl Register {
     /// Largest number that fits.
     fn largest(&self) -> u16 {
         match (self.coding, self.size) {
-            (Coding::SignBit10, _) => 0x3FF,
+            (Coding::SignBit10, _) => FULL,
             (_, 1) => 0xFF,
             _ => u16::MAX,
         }
@@ -158,7 +195,7 @@ impl Register {
     pub fn si(&self, raw: u16) -> f64 {
         let count = match self.coding {
             Coding::Unsigned => f64::from(raw) - f64::from(self.zero),
-            Coding::SignBit10 => f64::from(raw & 0x3FF) * if raw & 0x400 == 0 { 1.0 } else { -1.0 },
+            Coding::SignBit10 => f64::from(raw & FULL) * if raw & SIGN_BIT == 0 { 1.0 } else { -1.0 },
         };
         count * self.scale
     }
@@ -168,7 +205,7 @@ impl Register {
         let count = (si / self.scale).round();
         let (size, sign) = match self.coding {
             Coding::Unsigned => (count + f64::from(self.zero), 0),
-            Coding::SignBit10 => (count.abs(), if count < 0.0 { 0x400 } else { 0 }),
+            Coding::SignBit10 => (count.abs(), if count < 0.0 { SIGN_BIT } else { 0 }),
         };
         // NaN fails the comparison.
         let fits = size >= 0.0 && size <= f64::from(self.largest());
@@ -263,19 +300,16 @@ impl ControlTable {
         Some(self.register(Item::PresentPosition)?.si(ticks.0))
     }
 
-    /// Nearest position of 4096 to a motor angle (rad); `None` when it is more than one tick out
+    /// Nearest position to a motor angle (rad); `None` when it is more than one tick out
     /// of range, or not a number. Half a turn is one tick more than there is, and counts as the
     /// last one.
     pub fn ticks(&self, motor_rad: f64) -> Option<Ticks> {
         match self.register(Item::GoalPosition)?.raw(motor_rad)? {
-            4096 => Some(Ticks(LAST_TICK)),
+            TICKS_PER_TURN => Some(Ticks(LAST_TICK)),
             ticks => (ticks <= LAST_TICK).then_some(Ticks(ticks)),
         }
     }
 }
-
-/// Largest position of a servo with 4096 per turn.
-pub const LAST_TICK: u16 = 4095;
 
 impl fmt::Display for ControlTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -1,12 +1,10 @@
 //! Finds packets in a stream of bytes that may be cut, garbled, or begin in the middle.
 
-use super::packet::{Frame, Protocol};
-use super::{protocol1, protocol2};
+use super::packet::{self, Frame, HEADER};
 
 /// Collects bytes and hands out packets.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Deframer {
-    protocol: Protocol,
     buffer: Vec<u8>,
 }
 
@@ -30,15 +28,10 @@ enum Start {
     NotYet,
     Junk(usize),
     Frame { length: usize, frame: Frame },
-    WrongCheck { id: u8, header: usize },
+    WrongCheck { id: u8 },
 }
 
 impl Deframer {
-    /// For a protocol.
-    pub fn new(protocol: Protocol) -> Self {
-        Self { protocol, buffer: vec![] }
-    }
-
     /// Takes bytes as they arrive.
     pub fn push(&mut self, bytes: &[u8]) {
         self.buffer.extend_from_slice(bytes);
@@ -58,34 +51,30 @@ impl Deframer {
 
     /// The next thing in the stream; `None` when more bytes are needed.
     pub fn pop(&mut self) -> Option<Found> {
-        let start = match self.protocol {
-            Protocol::V1 => start_1(&self.buffer),
-            Protocol::V2 => start_2(&self.buffer),
-        };
-        let (used, found) = match start {
+        let (used, found) = match start(&self.buffer) {
             Start::NotYet => return None,
             Start::Junk(bytes) => (bytes, Found::Garbage(bytes)),
             Start::Frame { length, frame } => (length, Found::Frame(frame)),
-            Start::WrongCheck { id, header } => (header, Found::WrongCheck { id }),
+            Start::WrongCheck { id } => (HEADER.len(), Found::WrongCheck { id }),
         };
         self.buffer.drain(..used);
         Some(found)
     }
 }
 
-/// Where `header`, or its beginning at the end of the buffer, first stands.
-fn find_header(buffer: &[u8], header: &[u8]) -> usize {
+/// Where the header, or its beginning at the end of the buffer, first stands.
+fn find_header(buffer: &[u8]) -> usize {
     (0..buffer.len())
         .find(|i| {
             let rest = &buffer[*i..];
-            let n = rest.len().min(header.len());
-            rest[..n] == header[..n]
+            let n = rest.len().min(HEADER.len());
+            rest[..n] == HEADER[..n]
         })
         .unwrap_or(buffer.len())
 }
 
-fn start_1(buffer: &[u8]) -> Start {
-    let junk = find_header(buffer, &protocol1::HEADER);
+fn start(buffer: &[u8]) -> Start {
+    let junk = find_header(buffer);
     if junk > 0 {
         return Start::Junk(junk);
     }
@@ -98,32 +87,12 @@ fn start_1(buffer: &[u8]) -> Start {
     if length < 2 {
         return Start::Junk(2);
     }
-    let Some(packet) = buffer.get(..length + 4) else { return Start::NotYet };
-    if protocol1::checksum(&packet[2..length + 3]) != packet[length + 3] {
-        return Start::WrongCheck { id: *id, header: 2 };
+    let Some(bytes) = buffer.get(..length + 4) else { return Start::NotYet };
+    if packet::checksum(&bytes[2..length + 3]) != bytes[length + 3] {
+        return Start::WrongCheck { id: *id };
     }
-    let frame = Frame { id: *id, code: packet[4], data: packet[5..length + 3].to_vec() };
+    let frame = Frame { id: *id, code: bytes[4], data: bytes[5..length + 3].to_vec() };
     Start::Frame { length: length + 4, frame }
-}
-
-fn start_2(buffer: &[u8]) -> Start {
-    let junk = find_header(buffer, &protocol2::HEADER);
-    if junk > 0 {
-        return Start::Junk(junk);
-    }
-    let [_, _, _, _, id, low, high, ..] = buffer else { return Start::NotYet };
-    let length = usize::from(u16::from_le_bytes([*low, *high]));
-    if length < 3 || length + 7 > protocol2::LONGEST {
-        return Start::Junk(4);
-    }
-    let Some(packet) = buffer.get(..length + 7) else { return Start::NotYet };
-    let (content, check) = packet.split_at(length + 5);
-    if protocol2::crc(content).to_le_bytes() != check {
-        return Start::WrongCheck { id: *id, header: 4 };
-    }
-    let plain = protocol2::without_stuffing(&content[7..]);
-    let Some((code, data)) = plain.split_first() else { return Start::Junk(4) };
-    Start::Frame { length: length + 7, frame: Frame { id: *id, code: *code, data: data.to_vec() } }
 }
 
 impl Deframer {

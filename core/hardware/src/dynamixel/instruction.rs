@@ -1,14 +1,12 @@
 //! What a host can tell servos to do.
 
-/// Id that every servo listens to and none answers (but to ping of protocol 2.0, bulk and sync
-/// read).
+/// Id that every servo listens to and none answers (but to a bulk read).
 pub const BROADCAST: u8 = 0xFE;
 
 /// Largest id a servo may have.
 pub const LARGEST_ID: u8 = 252;
 
-/// An instruction, the same for both protocols. What a protocol does not have is refused when it
-/// is encoded.
+/// An instruction. What would leave a servo as from the factory cannot be said.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Instruction {
     /// Answer, whoever you are.
@@ -36,27 +34,6 @@ pub enum Instruction {
     },
     /// Store what was kept.
     Action,
-    /// Back to the factory's values; protocol 2.0 says which are spared.
-    FactoryReset {
-        /// Empty for protocol 1.0.
-        data: Vec<u8>,
-    },
-    /// Start anew (2.0).
-    Reboot,
-    /// Forget turns or errors (2.0).
-    Clear {
-        /// What, with its key.
-        data: Vec<u8>,
-    },
-    /// Several servos answer one after the other with the same registers (2.0).
-    SyncRead {
-        /// First register.
-        address: u16,
-        /// Bytes.
-        length: u16,
-        /// Who, in the order of their answers.
-        ids: Vec<u8>,
-    },
     /// Several servos store the same registers at once; nobody answers.
     SyncWrite {
         /// First register.
@@ -70,11 +47,6 @@ pub enum Instruction {
     BulkRead {
         /// In the order of the answers.
         items: Vec<BulkItem>,
-    },
-    /// Several servos store different registers at once (2.0).
-    BulkWrite {
-        /// Servo, first register, bytes.
-        items: Vec<(u8, u16, Vec<u8>)>,
     },
 }
 
@@ -98,13 +70,8 @@ impl Instruction {
             Self::Write { .. } => 0x03,
             Self::RegWrite { .. } => 0x04,
             Self::Action => 0x05,
-            Self::FactoryReset { .. } => 0x06,
-            Self::Reboot => 0x08,
-            Self::Clear { .. } => 0x10,
-            Self::SyncRead { .. } => 0x82,
             Self::SyncWrite { .. } => 0x83,
             Self::BulkRead { .. } => 0x92,
-            Self::BulkWrite { .. } => 0x93,
         }
     }
 
@@ -116,13 +83,8 @@ impl Instruction {
             Self::Write { .. } => "write",
             Self::RegWrite { .. } => "reg write",
             Self::Action => "action",
-            Self::FactoryReset { .. } => "factory reset",
-            Self::Reboot => "reboot",
-            Self::Clear { .. } => "clear",
-            Self::SyncRead { .. } => "sync read",
             Self::SyncWrite { .. } => "sync write",
             Self::BulkRead { .. } => "bulk read",
-            Self::BulkWrite { .. } => "bulk write",
         }
     }
 }

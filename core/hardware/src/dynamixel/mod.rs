@@ -1,6 +1,6 @@
-//! Servos on a serial bus that speak Dynamixel protocol 1.0 or 2.0: packets, control tables, and
+//! Servos on a serial bus that speak Dynamixel protocol 1.0: packets, control tables, and
 //! the bus master. Who plays a servo (the twin, a test) uses the same packets from the other end:
-//! [`Deframer`], [`Protocol::instruction`], [`Protocol::encode_status`], [`ControlTable`].
+//! [`Deframer`], [`decode_instruction`], [`encode_status`], [`ControlTable`].
 //!
 //! The packets are our own. The crates there are (rustypot 1.13, dynamixel2 0.9) keep theirs
 //! private behind a blocking call on a serial port: a wait cannot be ended by the stop, faults
@@ -8,7 +8,7 @@
 //!
 //! Only this crate can write to a servo; see [`crate::joints`].
 //!
-//! Sources: ROBOTIS e-Manual, "DYNAMIXEL Protocol 1.0" and "2.0", and the manuals of MX-64 and
+//! Sources: ROBOTIS e-Manual, "DYNAMIXEL Protocol 1.0", and the manuals of MX-64 and
 //! MX-28; Seed Robotics' documentation of the EROS hands' registers.
 
 mod bulk;
@@ -20,8 +20,6 @@ mod fault;
 mod instruction;
 mod packet;
 mod port;
-mod protocol1;
-mod protocol2;
 mod scan;
 mod status_error;
 mod wire_time;
@@ -30,12 +28,15 @@ mod wire_time;
 mod tests;
 
 pub use bus::{Bus, BusTiming};
-pub use control_table::{Access, Coding, ControlTable, Item, LAST_TICK, Register, Ticks, Unit};
+pub use control_table::{Access, Coding, ControlTable, Item, Register, Ticks, Unit};
 pub use deframer::{Deframer, Found};
 pub use error::BusError;
 pub use fault::{BusCounts, FaultCounts, FaultKind};
 pub use instruction::{BROADCAST, BulkItem, Instruction, LARGEST_ID};
-pub use packet::{DecodeError, EncodeError, Frame, Protocol, Status};
+pub use packet::{
+    DecodeError, EncodeError, Frame, Status, decode_instruction, decode_status, encode_instruction,
+    encode_status,
+};
 pub use port::{PortInfo, ServoPort, latency_hint, list_ports, open_port};
 pub(crate) use scan::Answer;
 pub use scan::{BusScan, ExpectedServo, FoundServo, ScanRange, WrongModel};

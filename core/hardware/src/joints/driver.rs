@@ -73,7 +73,7 @@ impl ArmDriver {
     /// When nobody answers, or the port is gone.
     pub fn connect(port: Box<dyn ServoPort>, rig: Arc<Rig>, options: ArmOptions) -> Result<Self, BusError> {
         let timing = BusTiming { baud: rig.bus.baud, ..options.timing };
-        let mut bus = Bus::new(port, options.protocol, timing);
+        let mut bus = Bus::new(port, timing);
         let scan = bus.scan(&expected_servos(&rig), ScanRange::Expected)?;
         if scan.found.is_empty() && scan.duplicates_suspected.is_empty() {
             return Err(BusError::Silent { port: bus.port_name(), baud: timing.baud });

@@ -5,15 +5,13 @@ use std::time::Duration;
 
 use super::guard::Guard;
 use super::stop::{Heartbeat, StopSwitch};
-use crate::dynamixel::{BusTiming, Protocol};
+use crate::dynamixel::BusTiming;
 
 /// Called after every cycle, from the thread of the bus: wake the window, nothing more.
 pub type OnState = Box<dyn Fn() + Send>;
 
 /// How an arm is driven. Limits of joints, speed, step, temperature and load are those of the rig.
 pub struct ArmOptions {
-    /// Language of the bus.
-    pub protocol: Protocol,
     /// Timing of the bus; its rate is replaced by the rig's.
     pub timing: BusTiming,
     /// Time from one cycle to the next.
@@ -49,7 +47,6 @@ pub struct ArmOptions {
 impl Default for ArmOptions {
     fn default() -> Self {
         Self {
-            protocol: Protocol::V1,
             timing: BusTiming::default(),
             period: Duration::from_millis(16),
             cycle_deadline: Duration::from_millis(20),

@@ -1,9 +1,10 @@
 //! One servo and its joint: the only place where registers become angles of the joint and back.
 
+use plumbline_model::robot::servo::{FULL, LAST_TICK, TICKS_PER_TURN};
 use plumbline_model::robot::{Servo, ServoDirection};
 
 use super::refusal::Refusal;
-use crate::dynamixel::{ControlTable, Item, LAST_TICK, Register, Ticks};
+use crate::dynamixel::{ControlTable, Item, Register, Ticks};
 
 /// A servo with its registers.
 #[derive(Clone, Debug)]
@@ -44,7 +45,7 @@ const BLOCK: [Item; 8] = [
 ];
 
 /// Ticks of a whole turn.
-const TURN: i32 = LAST_TICK as i32 + 1;
+const TURN: i32 = TICKS_PER_TURN as i32;
 /// A joint may read this far beyond the first or last tick: it was pushed over the seam.
 pub(super) const OVER_THE_SEAM: i32 = 64;
 
@@ -118,10 +119,8 @@ impl ServoUnit {
         let mut bytes = goal.0.to_le_bytes().to_vec();
         if let Some(register) = self.table.register(Item::MovingSpeed) {
             // Zero would mean "as fast as possible".
-            let largest = 0x3FF;
-            let raw = register
-                .raw(speed_rad_s.abs() * self.servo.ratio.abs())
-                .map_or(largest, |raw| raw.min(largest));
+            let raw =
+                register.raw(speed_rad_s.abs() * self.servo.ratio.abs()).map_or(FULL, |raw| raw.min(FULL));
             bytes.extend_from_slice(&raw.max(1).to_le_bytes());
         }
         bytes

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use plumbline_model::robot::servo::FULL;
+
 use super::exchange::Exchange;
 use super::refusal::Refusal;
 use super::slot::{Bar, Identity, Slot};
@@ -115,7 +117,7 @@ impl Exchange {
                 most.in_data(most.address, &status.data)
             }
             // A model without that register: all it can.
-            None => limit.raw(1.0).or(Some(0x3FF)),
+            None => limit.raw(1.0).or(Some(FULL)),
         };
         if let Some(raw) = raw {
             self.bus.write_once(id, limit.address, &limit.bytes(raw))?;

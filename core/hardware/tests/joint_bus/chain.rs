@@ -9,7 +9,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::dynamixel::{
-    BROADCAST, ControlTable, Deframer, Found, Instruction, Item, Protocol, Ticks,
+    BROADCAST, ControlTable, Deframer, Found, Instruction, Item, Ticks, decode_instruction, encode_status,
 };
 use plumbline_model::robot::Rig;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
@@ -238,7 +238,7 @@ impl Chain {
         {
             servo.fault = Some((kind.clone(), left - 1));
         }
-        let encode = |id, error| Protocol::V1.encode_status(id, error, &data).expect("short");
+        let encode = |id, error| encode_status(id, error, &data).expect("short");
         let mut bytes = encode(id, 0);
         match fault.map(|(kind, _)| kind) {
             None => {
@@ -330,7 +330,7 @@ impl Drop for PtyChain {
 }
 
 fn play(master: &OwnedFd, chain: &Mutex<Chain>, end: &AtomicBool) {
-    let mut deframer = Deframer::new(Protocol::V1);
+    let mut deframer = Deframer::default();
     let mut buffer = [0; 1024];
     while !end.load(Ordering::Acquire) {
         let mut fds = [PollFd::new(master, PollFlags::IN)];
@@ -359,7 +359,7 @@ fn play(master: &OwnedFd, chain: &Mutex<Chain>, end: &AtomicBool) {
         }
         while let Some(found) = deframer.pop() {
             let Found::Frame(frame) = found else { continue };
-            let Ok(instruction) = Protocol::V1.instruction(&frame) else { continue };
+            let Ok(instruction) = decode_instruction(&frame) else { continue };
             let mut chain = chain.lock().unwrap_or_else(PoisonError::into_inner);
             let answer = chain.answer(frame.id, instruction, at);
             let hang_up = chain.hang_up && !answer.is_empty();

@@ -1,6 +1,6 @@
 //! Who is on the bus.
 
-use plumbline_hardware::dynamixel::{Bus, BusError, BusTiming, Protocol, ScanRange, open_port};
+use plumbline_hardware::dynamixel::{Bus, BusError, BusTiming, ScanRange, open_port};
 use plumbline_hardware::joints::{ArmDriver, ArmOptions, Refusal, expected_servos};
 
 use super::chain::{Chain, FakeServo, Fault, PtyChain};
@@ -8,7 +8,7 @@ use super::world::{await_state, id_of, joint, limp, nico};
 
 fn bus(chain: &PtyChain) -> Bus {
     let port = open_port(&chain.path, 1_000_000).expect("the pseudo-terminal is there");
-    Bus::new(port, Protocol::V1, BusTiming::default())
+    Bus::new(port, BusTiming::default())
 }
 
 #[test]

@@ -5,6 +5,7 @@
 //! - [`Description::forward`] places every link; [`Chain`] places one tip and differentiates it.
 //! - [`ik`] finds joint angles for a place of a tip, [`collision`] says what a posture or a way runs
 //!   into, [`Reach`] joins the two: from a posture and a target to a move that can be made.
+//! - [`servo`] says what a count of a servo's register means.
 //! - [`Rig`] is a robot on its table: servo ids and ratios, eye mounts, poses, touchscreen. All
 //!   numbers of a robot live in `assets/robots`, none in code.
 
@@ -18,6 +19,7 @@ mod posture;
 mod reach;
 mod rig;
 mod rig_file;
+pub mod servo;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -2,6 +2,8 @@
 //!
 //! All angles are joint angles as the encoder has them: behind the gear, before play and give.
 
+use plumbline_model::robot::servo::TICK_RAD;
+
 use super::motor::{Motor, MotorHeat};
 use crate::scenario::Holding;
 
@@ -35,8 +37,6 @@ pub struct Reading {
     pub voltage_v: f64,
 }
 
-/// A tick of the encoder, rad of the motor.
-const TICK_RAD: f64 = std::f64::consts::TAU / 4096.0;
 /// Supply with nothing to do, V, and its drop per servo at full load.
 const SUPPLY_V: f64 = 12.0;
 const DROP_V: f64 = 0.35;

@@ -1,6 +1,6 @@
 //! Who answers what to an instruction.
 
-use plumbline_hardware::dynamixel::{BROADCAST, Frame, Instruction, Item, Protocol};
+use plumbline_hardware::dynamixel::{BROADCAST, Frame, Instruction, Item, decode_instruction, encode_status};
 
 use super::bank::{Bank, Unit};
 use super::fault::Fault;
@@ -25,7 +25,7 @@ impl Bank {
     /// Carries an instruction out; gives the answers in the order in which they come.
     pub(crate) fn answer(&mut self, frame: &Frame) -> Vec<Answer> {
         let missing = self.missing();
-        match Protocol::V1.instruction(frame) {
+        match decode_instruction(frame) {
             Ok(Instruction::SyncWrite { address, data, .. }) => {
                 for (id, bytes) in data {
                     self.each(id, missing, |unit| {
@@ -61,6 +61,8 @@ impl Bank {
                 });
                 answers
             }
+            // Also a factory reset, which would change the id and leave the bus in a state that only
+            // a screwdriver mends: these servos refuse it.
             Err(_) if frame.id == BROADCAST => vec![],
             Err(_) => self.complain(frame.id, error_bit::INSTRUCTION),
         }
@@ -121,9 +123,10 @@ impl Unit {
                 self.written();
                 (level >= LEVEL_ALL).then(|| self.status(0, &[]))
             }
-            // A factory reset would change the id and leave the bus in a state that only a
-            // screwdriver mends: these servos refuse it.
-            _ => Some(self.status(error_bit::INSTRUCTION, &[])),
+            // For many at once; see [`Bank::answer`].
+            Instruction::SyncWrite { .. } | Instruction::BulkRead { .. } => {
+                Some(self.status(error_bit::INSTRUCTION, &[]))
+            }
         }
     }
 
@@ -143,7 +146,7 @@ impl Unit {
     fn status(&self, error: u8, data: &[u8]) -> Answer {
         let delay_s = self.memory.si(Item::ReturnDelayTime).unwrap_or(0.0) + UNDERSTANDING_S;
         // Registers are few enough that an answer always fits.
-        let bytes = Protocol::V1.encode_status(self.id(), error | self.alarm, data).unwrap_or_default();
+        let bytes = encode_status(self.id(), error | self.alarm, data).unwrap_or_default();
         Answer { bytes, delay_s }
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use plumbline_hardware::dynamixel::{ControlTable, Item};
 use plumbline_model::robot::Rig;
+use plumbline_model::robot::servo::{FACTORY_P_GAIN, FULL};
 
 use super::fault::Fault;
 use super::memory::{Memory, error_bit};
@@ -89,7 +90,7 @@ impl Bank {
             }
         }
         memory.set(Item::TorqueEnable, 1);
-        memory.set(Item::TorqueLimit, 1023);
+        memory.set(Item::TorqueLimit, FULL);
     }
 
     /// Switches a fault on or off.
@@ -131,14 +132,14 @@ impl Bank {
         let memory = &self.units[servo].memory;
         let motor_rad = memory.si(Item::GoalPosition).unwrap_or(0.0);
         // Speed zero means: as fast as it can.
-        let speed = memory.get(Item::MovingSpeed).filter(|raw| *raw & 0x3FF != 0);
+        let speed = memory.get(Item::MovingSpeed).filter(|raw| *raw & FULL != 0);
         let speed = speed.and_then(|_| memory.si(Item::MovingSpeed));
         Drive {
             torque_on: memory.get(Item::TorqueEnable) == Some(1),
             goal_rad: about.joint_rad(motor_rad),
             speed_rad_s: speed.map(|speed| speed.abs() / about.ratio),
             torque_limit: memory.si(Item::TorqueLimit).unwrap_or(1.0).clamp(0.0, 1.0),
-            gain: f64::from(memory.get(Item::PGain).unwrap_or(32)) / 32.0,
+            gain: f64::from(memory.get(Item::PGain).unwrap_or(FACTORY_P_GAIN)) / f64::from(FACTORY_P_GAIN),
         }
     }
 
@@ -176,12 +177,12 @@ impl Unit {
         memory.set(Item::TorqueEnable, 0);
         memory.set(Item::Led, 0);
         memory.set(Item::MovingSpeed, 0);
-        memory.set(Item::PGain, 32);
+        memory.set(Item::PGain, FACTORY_P_GAIN);
         if let Some(here) = memory.get(Item::PresentPosition) {
             memory.set(Item::GoalPosition, here);
         }
         // A model without a largest torque in its memory: all it can.
-        memory.set(Item::TorqueLimit, memory.get(Item::MaxTorque).unwrap_or(1023));
+        memory.set(Item::TorqueLimit, memory.get(Item::MaxTorque).unwrap_or(FULL));
     }
 
     /// Alarms and what the shutdown register does about them.

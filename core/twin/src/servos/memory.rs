@@ -1,6 +1,7 @@
 //! The registers of one servo.
 
 use plumbline_hardware::dynamixel::{Access, ControlTable, Item};
+use plumbline_model::robot::servo::{FACTORY_P_GAIN, FULL, LAST_TICK};
 
 /// Bits of the error byte of protocol 1.0.
 pub(crate) mod error_bit {
@@ -39,13 +40,13 @@ impl Memory {
         memory.set(Item::TemperatureLimit, 80);
         memory.set(Item::MinVoltageLimit, 60);
         memory.set(Item::MaxVoltageLimit, 160);
-        memory.set(Item::MaxTorque, 1023);
-        memory.set(Item::TorqueLimit, 1023);
+        memory.set(Item::MaxTorque, FULL);
+        memory.set(Item::TorqueLimit, FULL);
         memory.set(Item::StatusReturnLevel, 2);
         memory.set(Item::AlarmLed, 36);
         memory.set(Item::Shutdown, 36);
-        memory.set(Item::PGain, 32);
-        memory.set(Item::CcwAngleLimit, 4095);
+        memory.set(Item::PGain, FACTORY_P_GAIN);
+        memory.set(Item::CcwAngleLimit, LAST_TICK);
         memory
     }
 
@@ -75,7 +76,7 @@ impl Memory {
     /// Sets a register to the nearest value there is, from inside.
     pub(crate) fn set_si(&mut self, item: Item, si: f64) {
         let Some(register) = self.table.register(item) else { return };
-        let most = register.si(if register.size == 1 { 0xFF } else { 0x3FF });
+        let most = register.si(if register.size == 1 { 0xFF } else { FULL });
         let raw = register.raw(si).or_else(|| register.raw(si.clamp(-most, most)));
         if let Some(raw) = raw {
             self.set(item, raw);
@@ -140,7 +141,7 @@ impl Memory {
     fn goal_allowed(&self) -> bool {
         let Some(goal) = self.get(Item::GoalPosition) else { return true };
         let low = self.get(Item::CwAngleLimit).unwrap_or(0);
-        let high = self.get(Item::CcwAngleLimit).unwrap_or(4095);
+        let high = self.get(Item::CcwAngleLimit).unwrap_or(LAST_TICK);
         (low..=high).contains(&goal)
     }
 }

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use plumbline_hardware::dynamixel::{Deframer, Found, Protocol};
+use plumbline_hardware::dynamixel::{Deframer, Found};
 use plumbline_model::duration;
 use rand::{Rng, SeedableRng, rngs::StdRng};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
@@ -103,7 +103,7 @@ struct Line {
 
 impl Line {
     fn run(mut self) {
-        let mut deframer = Deframer::new(Protocol::V1);
+        let mut deframer = Deframer::default();
         let mut buffer = [0u8; 1024];
         while !self.end.load(Ordering::Relaxed) {
             if self.is_on(Fault::PortClosed) {

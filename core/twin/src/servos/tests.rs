@@ -5,7 +5,8 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::dynamixel::{
-    BulkItem, Deframer, Found, Instruction, Item, Protocol, ServoPort, Status, open_port,
+    BulkItem, Deframer, Found, Instruction, Item, ServoPort, Status, decode_status, encode_instruction,
+    open_port,
 };
 use plumbline_model::robot::Rig;
 
@@ -52,7 +53,7 @@ impl Host {
     }
 
     fn say(&mut self, id: u8, instruction: &Instruction) -> Heard {
-        let bytes = Protocol::V1.encode_instruction(id, instruction).expect("it fits");
+        let bytes = encode_instruction(id, instruction).expect("it fits");
         // Long for a loaded machine; an answer ends the wait.
         self.say_bytes(&bytes, 250)
     }
@@ -66,7 +67,7 @@ impl Host {
     fn hear(&mut self, patience: Duration) -> Heard {
         let (began, mut heard) = (Instant::now(), Heard::default());
         let mut until = began + patience;
-        let mut deframer = Deframer::new(Protocol::V1);
+        let mut deframer = Deframer::default();
         let mut buffer = [0; 512];
         while Instant::now() < until {
             let Ok(count) = self.port.read(&mut buffer) else { continue };
@@ -76,7 +77,7 @@ impl Host {
                 match found {
                     Found::Frame(frame) => {
                         heard.after = began.elapsed();
-                        heard.statuses.extend(Protocol::V1.status(&frame));
+                        heard.statuses.push(decode_status(&frame));
                     }
                     Found::Garbage(bytes) => heard.garbage += bytes,
                     Found::WrongCheck { .. } => heard.wrong_checks += 1,
@@ -223,8 +224,7 @@ fn sixty(fault: Fault) -> (usize, Heard) {
     let mut host = Host::new(&[fault]);
     let (mut good, mut all) = (0, Heard::default());
     for _ in 0..60 {
-        let bytes = Protocol::V1
-            .encode_instruction(ELBOW, &Instruction::Read { address: PRESENT_POSITION, length: 2 })
+        let bytes = encode_instruction(ELBOW, &Instruction::Read { address: PRESENT_POSITION, length: 2 })
             .expect("it fits");
         let heard = host.say_bytes(&bytes, 8);
         good += usize::from(heard.statuses.iter().any(|s| s.id == ELBOW && s.data.len() == 2));
@@ -258,7 +258,7 @@ fn late_answers_come_in_the_end() {
     let mut latest = Duration::ZERO;
     for _ in 0..25 {
         let read = Instruction::Read { address: PRESENT_POSITION, length: 2 };
-        let bytes = Protocol::V1.encode_instruction(ELBOW, &read).expect("it fits");
+        let bytes = encode_instruction(ELBOW, &read).expect("it fits");
         let heard = host.say_bytes(&bytes, 250);
         assert_eq!(heard.statuses.len(), 1);
         latest = latest.max(heard.after);
@@ -270,7 +270,7 @@ fn late_answers_come_in_the_end() {
 fn the_adapter_may_echo() {
     let mut host = Host::new(&[Fault::Echo]);
     let read = Instruction::Read { address: PRESENT_POSITION, length: 2 };
-    let bytes = Protocol::V1.encode_instruction(ELBOW, &read).expect("it fits");
+    let bytes = encode_instruction(ELBOW, &read).expect("it fits");
     let heard = host.say_bytes(&bytes, 250);
     assert_eq!(heard.statuses.len(), 2, "the own packet and the answer");
     assert_eq!(heard.statuses[0].error.byte(), 0x02, "a read looks like an error byte");
@@ -308,7 +308,7 @@ fn a_closed_port_is_an_error_to_the_host() {
 fn the_port_may_vanish_in_the_middle_of_an_answer() {
     let mut host = Host::new(&[Fault::PortClosedMidAnswer]);
     let read = Instruction::Read { address: PRESENT_POSITION, length: 2 };
-    let bytes = Protocol::V1.encode_instruction(ELBOW, &read).expect("it fits");
+    let bytes = encode_instruction(ELBOW, &read).expect("it fits");
     host.port.write_all(&bytes).expect("still there");
     let (mut received, mut gone, began) = (0, false, Instant::now());
     let mut buffer = [0; 64];

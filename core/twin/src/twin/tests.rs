@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::dynamixel::{
-    ControlTable, Deframer, Found, Instruction, Item, Protocol, ServoPort, open_port,
+    ControlTable, Deframer, Found, Instruction, Item, ServoPort, encode_instruction, open_port,
 };
 use plumbline_hardware::joints::TouchSource;
 use plumbline_model::Pose;
@@ -31,9 +31,9 @@ fn soon(what: &str, mut is_so: impl FnMut() -> bool) {
 
 /// Asks one servo; `None` without a whole answer.
 fn ask(port: &mut Box<dyn ServoPort>, id: u8, instruction: &Instruction) -> Option<Vec<u8>> {
-    let bytes = Protocol::V1.encode_instruction(id, instruction).expect("it fits");
+    let bytes = encode_instruction(id, instruction).expect("it fits");
     std::io::Write::write_all(port, &bytes).ok()?;
-    let mut deframer = Deframer::new(Protocol::V1);
+    let mut deframer = Deframer::default();
     let (mut buffer, began) = ([0; 256], Instant::now());
     while began.elapsed() < Duration::from_millis(100) {
         let Ok(count) = std::io::Read::read(port, &mut buffer) else { continue };

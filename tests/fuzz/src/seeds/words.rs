@@ -6,7 +6,7 @@ use jiff::Timestamp;
 use plumbline::WindowSettings;
 use plumbline_engine::journal::{Entry, Heading};
 use plumbline_engine::{Command, EyesCommand, LiveCommand, ProbePoint, SourceCommand, SourceSpec};
-use plumbline_hardware::dynamixel::{Instruction, Protocol};
+use plumbline_hardware::dynamixel::{Instruction, encode_instruction, encode_status};
 use plumbline_model::Eye;
 
 use super::{Problem, put};
@@ -32,21 +32,19 @@ pub fn make(folder: &Path) -> Result<(), Problem> {
     }
     std::fs::create_dir_all(folder.join("window"))?;
     settings.save(&folder.join("window/window.json"))?;
-    for (name, protocol) in [("v1", Protocol::V1), ("v2", Protocol::V2)] {
-        put(folder, &format!("wire/{name}.bin"), wire(protocol)?)?;
-    }
+    put(folder, "wire/v1.bin", wire()?)?;
     Ok(())
 }
 
 /// Questions and answers one after the other, as they lie on the line.
-fn wire(protocol: Protocol) -> Result<Vec<u8>, Problem> {
+fn wire() -> Result<Vec<u8>, Problem> {
     let mut bytes = vec![];
     for id in [1, 44, 200] {
-        bytes.extend(protocol.encode_instruction(id, &Instruction::Ping)?);
-        bytes.extend(protocol.encode_instruction(id, &Instruction::Read { address: 36, length: 8 })?);
-        bytes.extend(protocol.encode_status(id, 0, &[0xff, 0xff, 0xfd, 0x00, 9, 200, 7, 7])?);
-        bytes.extend(protocol.encode_instruction(id, &Instruction::Write { address: 30, data: vec![0, 8] })?);
-        bytes.extend(protocol.encode_status(id, 0x24, &[])?);
+        bytes.extend(encode_instruction(id, &Instruction::Ping)?);
+        bytes.extend(encode_instruction(id, &Instruction::Read { address: 36, length: 8 })?);
+        bytes.extend(encode_status(id, 0, &[0xff, 0xff, 0xfd, 0x00, 9, 200, 7, 7])?);
+        bytes.extend(encode_instruction(id, &Instruction::Write { address: 30, data: vec![0, 8] })?);
+        bytes.extend(encode_status(id, 0x24, &[])?);
     }
     Ok(bytes)
 }

@@ -7,6 +7,7 @@ use plumbline_hardware::joints::{
     HoldReason, JointState, Motion, Move, MoveId, MoveOutcome, Pace, Setpoint, SetpointKind, Touch,
     TouchSource,
 };
+use plumbline_model::robot::servo::TICK_RAD;
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 use plumbline_model::{Pixel, Point};
 
@@ -22,8 +23,6 @@ const STILL: Duration = Duration::from_millis(150);
 const STILL_TICKS: f64 = 1.5;
 /// They get this long.
 const SETTLE: Duration = Duration::from_secs(3);
-/// Ticks of a whole turn of a motor.
-const TICKS_PER_TURN: f64 = 4096.0;
 /// Share of the gate's load at which lowering ends: the gate itself would stop the arm.
 const LOAD_SHARE: f64 = 0.9;
 /// A goal on the way down is followed for this long when nothing newer comes.
@@ -414,5 +413,5 @@ fn has_arrived(state: &JointState, id: MoveId) -> Result<bool, String> {
 /// The smallest turn that a joint's encoder tells, rad.
 fn tick_rad(rig: &Rig, joint: JointIndex) -> f64 {
     let ratio = rig.servo_of(joint).map_or(1.0, |servo| servo.ratio.abs());
-    std::f64::consts::TAU / TICKS_PER_TURN / ratio
+    TICK_RAD / ratio
 }
