@@ -9,9 +9,6 @@
 //!
 //! The method with its assumptions is described in the package's README.
 
-#[cfg(test)]
-#[allow(clippy::print_stdout, reason = "figures are read from the test's output")]
-mod bench;
 mod explore;
 mod field;
 mod finish;
@@ -22,6 +19,8 @@ mod linear;
 mod look;
 mod naming;
 mod refit;
+#[cfg(test)]
+mod tests;
 mod variants;
 mod weights;
 

@@ -2,9 +2,10 @@
 
 use nalgebra::{DVector, Vector3};
 use plumbline_effects::measurements::{Apparatus, Measurements, Observation, What};
-use plumbline_effects::{Assumed, Effect, Kind, Present, Surface};
+use plumbline_effects::{Assumed, Kind, Present, Surface};
 use plumbline_model::Unattended;
 use plumbline_model::robot::Rig;
+use plumbline_model::robot::servo::TICK_RAD;
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
@@ -19,7 +20,6 @@ const START: [f64; 6] = [-0.2, 1.1, 0.5, 1.7, -0.3, 0.2];
 /// Noise of one touch: along the glass and in height, m.
 const NOISE_M: [f64; 3] = [1.0e-3, 1.0e-3, 0.7e-3];
 const PIXEL_M: f64 = 0.475 / 1920.0;
-const TICK_RAD: f64 = std::f64::consts::TAU / 4096.0;
 
 /// What was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,59 +28,6 @@ pub enum Plan {
     Plain,
     /// 60 places, three times, two sides, three heights, varied posture, with and without weight.
     Rich,
-}
-
-/// What is wrong.
-#[derive(Clone, Debug)]
-pub struct Truth {
-    /// Sizes of effects of the library, floors.
-    pub sizes: Vec<f64>,
-    /// Something else of this size.
-    pub other: Option<(Other, f64)>,
-    /// Small effects of everything.
-    pub dirt: bool,
-}
-
-/// Something that is in no library.
-#[derive(Clone, Copy, Debug)]
-pub enum Other {
-    /// A joint jumps at an angle.
-    Step,
-    /// A joint ripples, a few times per turn.
-    Ripple,
-    /// A joint turns with something that was not logged, slowly changing.
-    Hidden,
-    /// A joint lags by its direction, more in the middle of its range.
-    Loop,
-}
-
-impl Truth {
-    pub fn null() -> Self {
-        Self { sizes: vec![], other: None, dirt: true }
-    }
-    fn of(sizes: &[f64]) -> Self {
-        Self { sizes: sizes.to_vec(), other: None, dirt: true }
-    }
-    fn other(other: Other, size: f64) -> Self {
-        Self { sizes: vec![], other: Some((other, size)), dirt: true }
-    }
-}
-
-pub fn menu() -> Vec<(&'static str, Truth)> {
-    vec![
-        ("null", Truth::null()),
-        ("single 0.5", Truth::of(&[0.5])),
-        ("single 1", Truth::of(&[1.0])),
-        ("single 2", Truth::of(&[2.0])),
-        ("single 5", Truth::of(&[5.0])),
-        ("pair 2", Truth::of(&[2.0, 2.0])),
-        ("pair 4 1", Truth::of(&[4.0, 1.0])),
-        ("triple", Truth::of(&[4.0, 2.0, 2.0])),
-        ("off step", Truth::other(Other::Step, 2.0)),
-        ("off ripple", Truth::other(Other::Ripple, 2.0)),
-        ("off hidden", Truth::other(Other::Hidden, 2.0)),
-        ("off loop", Truth::other(Other::Loop, 2.0)),
-    ]
 }
 
 /// A plan with its nominal rows.
@@ -102,38 +49,22 @@ impl Bench {
         Self { nominal, library, framed }
     }
 
-    /// A case: rows, their floor as repeats show it, and the effects that are in it. `None` when
-    /// such an effect would have to be implausibly large.
-    pub fn case(&self, truth: &Truth, seed: u64) -> Option<(Measurements, Floor, Vec<Effect>)> {
+    /// A case with small effects of everything: rows, and their floor as repeats show it.
+    pub fn case(&self, seed: u64) -> Option<(Measurements, Floor)> {
         let mut random = StdRng::seed_from_u64(seed);
         let mut present: Vec<Present> = vec![];
-        let mut answer: Vec<Effect> = vec![];
-        for size in &truth.sizes {
-            let chosen = self.draw(*size, &present, &mut random)?;
-            answer.push(chosen.effect.clone());
-            present.push(chosen);
+        for _ in 0..6 {
+            let size = random.random_range(0.02..0.2);
+            present.extend(self.draw(size, &present, &mut random));
         }
-        if truth.dirt {
-            for _ in 0..6 {
-                let size = random.random_range(0.02..0.2);
-                present.extend(self.draw(size, &present, &mut random));
-            }
-        }
-        self.made(present, answer, truth.other, &mut random)
+        self.made(present, &mut random)
     }
 
     /// A case with one effect of this value.
-    pub fn certain(
-        &self,
-        id: &str,
-        site: &str,
-        value: f64,
-        seed: u64,
-    ) -> Option<(Measurements, Floor, Vec<Effect>)> {
+    pub fn certain(&self, id: &str, site: &str, value: f64, seed: u64) -> Option<(Measurements, Floor)> {
         let effect =
             self.library.effects.iter().find(|effect| effect.id() == id && effect.site == site)?.clone();
-        let present = vec![Present { effect: effect.clone(), values: vec![value] }];
-        self.made(present, vec![effect], None, &mut StdRng::seed_from_u64(seed))
+        self.made(vec![Present { effect, values: vec![value] }], &mut StdRng::seed_from_u64(seed))
     }
 
     /// Gives each cell the residuals of another one.
@@ -196,40 +127,12 @@ impl Bench {
         None
     }
 
-    fn made(
-        &self,
-        effects: Vec<Present>,
-        answer: Vec<Effect>,
-        other: Option<(Other, f64)>,
-        random: &mut StdRng,
-    ) -> Option<(Measurements, Floor, Vec<Effect>)> {
+    fn made(&self, effects: Vec<Present>, random: &mut StdRng) -> Option<(Measurements, Floor)> {
         let mut made = self.nominal.clone();
-        let moved = random_place(random);
-        let truth = Assumed { effects, placements: vec![moved; 1] };
-        let joint = random.random_range(1..5);
-        let (mut wander, mut phase) = (0.0, random.random_range(0.0..6.0));
-        let angles: Vec<f64> = made.rows.iter().map(|row| row.angles_rad()[joint]).collect();
-        let (low, high) = angles.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
-        // A floor is about 1 mm, a joint moves the tip by about 0.35 m/rad.
-        let turn_rad = other.map_or(0.0, |(_, size)| size * 1.2e-3 / 0.3);
+        let truth = Assumed { effects, placements: vec![random_place(random)] };
         for i in 0..made.rows.len() {
-            if i % 4 == 0 {
-                wander = 0.7 * wander + 0.7 * normal(random);
-            }
-            phase += 0.0;
             let mut row = made.rows[i].clone();
-            let share = (row.angles_rad()[joint] - low) / (high - low);
-            let extra = match other.map(|(other, _)| other) {
-                None => 0.0,
-                Some(Other::Step) => 2.0 * f64::from(u8::from(share > 0.55)),
-                Some(Other::Ripple) => 1.6 * (row.angles_rad()[joint] * 17.0 + phase).sin(),
-                Some(Other::Hidden) => wander * 1.4,
-                Some(Other::Loop) => {
-                    2.0 * row.direction[joint] * (1.0 - (2.0 * share - 1.0).powi(2)) - share * share
-                }
-            } * turn_rad;
-            let height = NOISE_M[2] * normal(random);
-            let seen = touch(&made, &mut row, &truth, (joint, extra), height)?;
+            let seen = touch(&made, &mut row, &truth, NOISE_M[2] * normal(random))?;
             for c in 0..2 {
                 let noisy = seen[c] + NOISE_M[c] * normal(random);
                 row.measured[c] = (noisy / PIXEL_M).round() * PIXEL_M;
@@ -237,26 +140,18 @@ impl Bench {
             made.rows[i] = row;
         }
         let floor = repeats(&made);
-        Some((made, floor, answer))
+        Some((made, floor))
     }
 }
 
 /// Moves the arm until the true tip is on the glass; angles are logged in ticks.
-fn touch(
-    made: &Measurements,
-    row: &mut Observation,
-    truth: &Assumed,
-    (joint, extra): (usize, f64),
-    height_m: f64,
-) -> Option<Vec<f64>> {
+fn touch(made: &Measurements, row: &mut Observation, truth: &Assumed, height_m: f64) -> Option<Vec<f64>> {
     let mut angles = row.angles_rad().to_vec();
     let mut seen = vec![];
     for _ in 0..4 {
         let at = |angles: &[f64]| {
             let mut shifted = row.clone();
-            let mut angles = angles.to_vec();
-            angles[joint] += extra;
-            shifted.encoder_rad = Some(angles);
+            shifted.encoder_rad = Some(angles.to_vec());
             made.predict(&shifted, truth)
         };
         seen = at(&angles)?;
@@ -271,7 +166,6 @@ fn touch(
         let step = (height_m - seen[2]) / square;
         angles.iter_mut().zip(&gradient).for_each(|(angle, g)| *angle += step * g);
     }
-    row.commanded_rad = Some(row.angles_rad().to_vec());
     row.encoder_rad = Some(angles.iter().map(|angle| (angle / TICK_RAD).round() * TICK_RAD).collect());
     row.commanded_rad = row.encoder_rad.clone();
     Some(seen)
