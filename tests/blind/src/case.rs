@@ -116,7 +116,7 @@ pub fn make(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) -> Result<Cas
             let clean: Vec<Option<Met>> = clean.iter().cloned().step_by(2).collect();
             let size = DIRT_SIGMAS * random.random_range(0.25..1.0);
             let all = [secrets.clone(), dirt.clone()].concat();
-            let secret = maker.candidate(&Kind::NAMED, &all, &mut random);
+            let secret = maker.candidate(Kind::NAMED, &all, &mut random);
             let Some(secret) = secret else { continue };
             let found = maker.size(&secret, &order, &few, &clean, &bare)?;
             let amount = secret.amount * size / found.max(1e-9);

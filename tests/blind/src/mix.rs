@@ -36,8 +36,8 @@ pub fn recipes(cases: usize, seed: u64) -> Vec<Recipe> {
             };
             // Every kind in its turn, in an order drawn by chance.
             let kind = match family {
-                Family::Single => Some(next(&mut named, &Kind::NAMED, design, &mut random)),
-                Family::OffLibrary => Some(next(&mut nameless, &Kind::NAMELESS, design, &mut random)),
+                Family::Single => Some(next(&mut named, Kind::NAMED, design, &mut random)),
+                Family::OffLibrary => Some(next(&mut nameless, Kind::NAMELESS, design, &mut random)),
                 _ => None,
             };
             Recipe {
@@ -79,8 +79,8 @@ mod tests {
         let count = |family| recipes.iter().filter(|recipe| recipe.family == family).count();
         assert_eq!(count(Family::Null), 24);
         assert!(count(Family::Single) > 90 && count(Family::Pair) > 20 && count(Family::Triple) > 10);
-        for kind in Kind::NAMED.into_iter().chain(Kind::NAMELESS) {
-            assert!(recipes.iter().any(|recipe| recipe.kind == Some(kind)), "{kind:?}");
+        for kind in Kind::NAMED.iter().chain(Kind::NAMELESS) {
+            assert!(recipes.iter().any(|recipe| recipe.kind == Some(*kind)), "{kind:?}");
         }
         let plain_backlash =
             recipes.iter().any(|r| r.kind == Some(Kind::Backlash) && r.design == Design::Plain);

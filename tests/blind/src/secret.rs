@@ -3,10 +3,25 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
+use strum::{IntoStaticStr, VariantArray};
 
 /// What kind of thing is wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    Serialize,
+    Deserialize,
+    IntoStaticStr,
+    VariantArray,
+)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum Kind {
     /// The driven part was mounted turned.
     JointZero,
@@ -50,88 +65,41 @@ pub enum Kind {
     /// The encoders were read before the finger was there.
     EarlyLog,
     /// Not in the library: a wave of the gear train, not whole in a turn.
+    #[strum(serialize = "(gear-train)")]
     GearTrain,
     /// Not in the library: a cable that jumps over an edge at an angle.
+    #[strum(serialize = "(cable-step)")]
     CableStep,
     /// Not in the library: a fingertip that sticks on the glass or slips, by friction.
+    #[strum(serialize = "(stick-slip)")]
     StickSlip,
     /// Not in the library: an encoder that is disturbed near a place of the table.
+    #[strum(serialize = "(magnet)")]
     Magnet,
     /// Not in the library: a deflection that remembers where the joint came from.
+    #[strum(serialize = "(hysteresis)")]
     Hysteresis,
     /// Not in the library: a bracket that softens as it warms.
+    #[strum(serialize = "(soft-when-warm)")]
     SoftWhenWarm,
     /// Not in the library: the other arm leans on the torso, and nobody logged it.
+    #[strum(serialize = "(other-arm)")]
     OtherArm,
 }
 
 impl Kind {
     /// Those that the library knows.
-    pub const NAMED: [Self; 20] = [
-        Self::JointZero,
-        Self::JointScale,
-        Self::JointEccentricity,
-        Self::Backlash,
-        Self::GravityBacklash,
-        Self::JointSag,
-        Self::SidewaysGive,
-        Self::JointCoupling,
-        Self::AxisSkew,
-        Self::LinkLength,
-        Self::TipOffset,
-        Self::FingerRoll,
-        Self::TouchDrag,
-        Self::TorsoLean,
-        Self::ScreenScale,
-        Self::ScreenBow,
-        Self::ScreenBumped,
-        Self::SlippedHorn,
-        Self::ServoWarmUp,
-        Self::EarlyLog,
-    ];
+    pub const NAMED: &'static [Self] = Self::VARIANTS.split_at(Self::KNOWN).0;
 
     /// Those that it does not know.
-    pub const NAMELESS: [Self; 7] = [
-        Self::GearTrain,
-        Self::CableStep,
-        Self::StickSlip,
-        Self::Magnet,
-        Self::Hysteresis,
-        Self::SoftWhenWarm,
-        Self::OtherArm,
-    ];
+    pub const NAMELESS: &'static [Self] = Self::VARIANTS.split_at(Self::KNOWN).1;
+
+    /// How many the library knows; they stand first.
+    const KNOWN: usize = Self::EarlyLog as usize + 1;
 
     /// Its name on the command line.
     pub fn id(self) -> &'static str {
-        match self {
-            Self::JointZero => "joint-zero",
-            Self::JointScale => "joint-scale",
-            Self::JointEccentricity => "joint-eccentricity",
-            Self::Backlash => "backlash",
-            Self::GravityBacklash => "gravity-backlash",
-            Self::JointSag => "joint-sag",
-            Self::SidewaysGive => "sideways-give",
-            Self::JointCoupling => "joint-coupling",
-            Self::AxisSkew => "axis-skew",
-            Self::LinkLength => "link-length",
-            Self::TipOffset => "tip-offset",
-            Self::FingerRoll => "finger-roll",
-            Self::TouchDrag => "touch-drag",
-            Self::TorsoLean => "torso-lean",
-            Self::ScreenScale => "screen-scale",
-            Self::ScreenBow => "screen-bow",
-            Self::ScreenBumped => "screen-bumped",
-            Self::SlippedHorn => "slipped-horn",
-            Self::ServoWarmUp => "servo-warm-up",
-            Self::EarlyLog => "early-log",
-            Self::GearTrain => "(gear-train)",
-            Self::CableStep => "(cable-step)",
-            Self::StickSlip => "(stick-slip)",
-            Self::Magnet => "(magnet)",
-            Self::Hysteresis => "(hysteresis)",
-            Self::SoftWhenWarm => "(soft-when-warm)",
-            Self::OtherArm => "(other-arm)",
-        }
+        self.into()
     }
 
     /// Whether the library knows it.

@@ -280,7 +280,7 @@ impl TwinDesk {
             board: state.board,
             screen_height_m: state.screen_height_m,
             payload_kg: state.payload_kg,
-            faults: Fault::ALL.into_iter().map(fault).collect(),
+            faults: Fault::ALL.iter().copied().map(fault).collect(),
             ..view
         }
     }

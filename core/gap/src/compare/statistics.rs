@@ -1,5 +1,7 @@
 //! Small statistics that several steps share.
 
+use statrs::function::beta::checked_beta_reg;
+
 /// Median; `None` of nothing.
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.into_iter().collect();
@@ -27,67 +29,11 @@ pub fn f_tail(value: f64, above: f64, below: f64) -> f64 {
     if !(value > 0.0) {
         return 1.0;
     }
-    incomplete_beta(below / 2.0, above / 2.0, below / (below + above * value))
+    checked_beta_reg(below / 2.0, above / 2.0, below / (below + above * value)).unwrap_or(f64::NAN)
 }
 
 /// Quantile of the normal distribution for the 95 % interval.
 pub const NORMAL_95: f64 = 1.959_964;
-
-/// Regularized incomplete beta function by its continued fraction (Lentz).
-fn incomplete_beta(a: f64, b: f64, x: f64) -> f64 {
-    if x <= 0.0 {
-        return 0.0;
-    }
-    if x >= 1.0 {
-        return 1.0;
-    }
-    let front = (ln_gamma(a + b) - ln_gamma(a) - ln_gamma(b) + a * x.ln() + b * (1.0 - x).ln()).exp();
-    // The fraction converges fast on one side of the mean only.
-    if x < (a + 1.0) / (a + b + 2.0) {
-        front * fraction(a, b, x) / a
-    } else {
-        1.0 - front * fraction(b, a, 1.0 - x) / b
-    }
-}
-
-fn fraction(a: f64, b: f64, x: f64) -> f64 {
-    let tiny = 1e-300;
-    let away = |value: f64| if value.abs() < tiny { tiny } else { value };
-    let mut d = 1.0 / away(1.0 - (a + b) * x / (a + 1.0));
-    let (mut c, mut product) = (1.0, d);
-    for m in 1..20_000 {
-        let m = f64::from(m);
-        let even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
-        d = 1.0 / away(1.0 + even * d);
-        c = away(1.0 + even / c);
-        product *= d * c;
-        let odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
-        d = 1.0 / away(1.0 + odd * d);
-        c = away(1.0 + odd / c);
-        product *= d * c;
-        if (d * c - 1.0).abs() < 1e-12 {
-            break;
-        }
-    }
-    product
-}
-
-/// Logarithm of the gamma function (Lanczos).
-fn ln_gamma(x: f64) -> f64 {
-    const COEFFICIENTS: [f64; 6] = [
-        76.180_091_729_471_46,
-        -86.505_320_329_416_77,
-        24.014_098_240_830_91,
-        -1.231_739_572_450_155,
-        0.120_865_097_386_617_9e-2,
-        -0.539_523_938_495_3e-5,
-    ];
-    let shifted = x + 5.5;
-    let base = (x + 0.5) * shifted.ln() - shifted;
-    let series: f64 = COEFFICIENTS.iter().enumerate().map(|(i, c)| c / (x + 1.0 + i as f64)).sum::<f64>()
-        + 1.000_000_000_190_015;
-    base + (2.506_628_274_631_000_5 * series / x).ln()
-}
 
 #[cfg(test)]
 mod tests {

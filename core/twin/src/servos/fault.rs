@@ -1,10 +1,13 @@
 //! What can be made to go wrong on the twin's bus.
 
 use serde::{Deserialize, Serialize};
+use strum::{EnumString, IntoStaticStr, VariantArray};
 
 /// A fault of the servo bus. Those that say "sometimes" hit about one answer in eight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(EnumString, IntoStaticStr, VariantArray)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum Fault {
     /// Some answers do not come.
     Dropped,
@@ -38,46 +41,16 @@ pub enum Fault {
 
 impl Fault {
     /// All of them.
-    pub const ALL: [Self; 14] = [
-        Self::Dropped,
-        Self::Late,
-        Self::Garbled,
-        Self::Cut,
-        Self::WrongChecksum,
-        Self::WrongId,
-        Self::Echo,
-        Self::MissingServo,
-        Self::TwoWithOneId,
-        Self::HotServo,
-        Self::PowerCut,
-        Self::ElbowPowerCut,
-        Self::PortClosed,
-        Self::PortClosedMidAnswer,
-    ];
+    pub const ALL: &'static [Self] = Self::VARIANTS;
 
     /// Short name.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Dropped => "dropped",
-            Self::Late => "late",
-            Self::Garbled => "garbled",
-            Self::Cut => "cut",
-            Self::WrongChecksum => "wrong-checksum",
-            Self::WrongId => "wrong-id",
-            Self::Echo => "echo",
-            Self::MissingServo => "missing-servo",
-            Self::TwoWithOneId => "two-with-one-id",
-            Self::HotServo => "hot-servo",
-            Self::PowerCut => "power-cut",
-            Self::ElbowPowerCut => "elbow-power-cut",
-            Self::PortClosed => "port-closed",
-            Self::PortClosedMidAnswer => "port-closed-mid-answer",
-        }
+        self.into()
     }
 
     /// The fault of a short name.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|fault| fault.name() == name)
+        name.parse().ok()
     }
 
     /// What happens, for people.

@@ -193,7 +193,7 @@ impl Twin {
     }
 
     fn clear_faults(&self) {
-        Fault::ALL.into_iter().for_each(|fault| self.set_fault(fault, false));
+        Fault::ALL.iter().for_each(|fault| self.set_fault(*fault, false));
     }
 
     fn set_fault(&self, fault: Fault, on: bool) {

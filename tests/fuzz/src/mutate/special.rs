@@ -4,11 +4,12 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 
 use rustix::fs::{CWD, FileType, Mode, mknodat};
+use strum::VariantArray;
 
 use crate::dice::Dice;
 
 /// No file, or no ordinary one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, VariantArray)]
 pub enum Special {
     /// A folder.
     Folder,
@@ -29,20 +30,9 @@ pub enum Special {
 }
 
 impl Special {
-    const ALL: [Self; 8] = [
-        Self::Folder,
-        Self::FullFolder,
-        Self::DanglingLink,
-        Self::CircularLink,
-        Self::Pipe,
-        Self::EndlessDevice,
-        Self::EmptyDevice,
-        Self::Missing,
-    ];
-
     /// One of them.
     pub fn any(dice: &mut Dice) -> Self {
-        *dice.pick(&Self::ALL)
+        *dice.pick(Self::VARIANTS)
     }
 
     /// Puts it in the place of a file.

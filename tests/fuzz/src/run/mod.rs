@@ -12,12 +12,14 @@ use std::time::Duration;
 
 pub use case::{Staged, stage};
 pub use parent::{replay, run};
+use strum::{EnumString, IntoStaticStr, VariantArray};
 pub use worker::work;
 
 use crate::readers::Reader;
 
 /// What came of a case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, EnumString, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "lowercase")]
 pub enum Verdict {
     /// The input was taken.
     Accepted,
@@ -37,8 +39,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// In the order of the table.
-    pub const ALL: [Self; 7] =
-        [Self::Accepted, Self::Refused, Self::Fault, Self::Panic, Self::Abort, Self::Hang, Self::Memory];
+    pub const ALL: &'static [Self] = Self::VARIANTS;
 
     /// Whether it is a defect.
     pub fn is_finding(self) -> bool {
@@ -47,20 +48,12 @@ impl Verdict {
 
     /// Name in the table and between the processes.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Accepted => "accepted",
-            Self::Refused => "refused",
-            Self::Fault => "fault",
-            Self::Panic => "panic",
-            Self::Abort => "abort",
-            Self::Hang => "hang",
-            Self::Memory => "memory",
-        }
+        self.into()
     }
 
     /// The one of this name.
     pub fn of_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|verdict| verdict.name() == name)
+        name.parse().ok()
     }
 }
 
@@ -153,16 +146,12 @@ impl Summary {
 
     /// All cases.
     pub fn cases(&self) -> u64 {
-        Verdict::ALL.into_iter().map(|verdict| self.count(verdict)).sum()
+        Verdict::ALL.iter().map(|verdict| self.count(*verdict)).sum()
     }
 
     /// Cases that are defects.
     pub fn defects(&self) -> u64 {
-        Verdict::ALL
-            .into_iter()
-            .filter(|verdict| verdict.is_finding())
-            .map(|verdict| self.count(verdict))
-            .sum()
+        Verdict::ALL.iter().filter(|verdict| verdict.is_finding()).map(|verdict| self.count(*verdict)).sum()
     }
 }
 

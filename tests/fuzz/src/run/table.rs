@@ -32,7 +32,7 @@ fn row(f: &mut fmt::Formatter<'_>, width: usize, name: &str, tally: &Tally) -> f
     let cases: u64 = tally.counts.values().sum();
     write!(f, "{name:width$} {cases:>7}")?;
     for verdict in Verdict::ALL {
-        write!(f, " {:>8}", tally.counts.get(&verdict).copied().unwrap_or(0))?;
+        write!(f, " {:>8}", tally.counts.get(verdict).copied().unwrap_or(0))?;
     }
     let mean_ms = tally.time.as_secs_f64() * 1e3 / cases.max(1) as f64;
     let slowest_ms = tally.slowest.as_secs_f64() * 1e3;
