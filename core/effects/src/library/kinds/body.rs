@@ -8,7 +8,6 @@ const USUAL_COMPLIANCE_RAD_PER_NM: f64 = 0.015;
 /// How hard a finger presses on the glass when it is noticed, N.
 const PRESSING_N: f64 = 1.0;
 
-/// Link longer or shorter.
 pub(super) static LINK_LENGTH: Entry = Entry {
     about: "wrong length",
     meaning: "The link is longer or shorter than in the model.",
@@ -25,7 +24,6 @@ pub(super) static LINK_LENGTH: Entry = Entry {
     is: &[Is::Planned, Is::Origin],
 };
 
-/// Fingertip elsewhere in the hand.
 pub(super) static TIP_OFFSET: Entry = Entry {
     about: "fingertip elsewhere than in the model",
     meaning: "The fingertip lies elsewhere in the hand than in the model.",
@@ -39,7 +37,6 @@ pub(super) static TIP_OFFSET: Entry = Entry {
     is: &[Is::Planned, Is::Origin],
 };
 
-/// The finger bends at contact.
 pub(super) static FINGER_BEND: Entry = Entry {
     about: "finger bends at contact",
     meaning: "The finger bends when it presses.",
@@ -57,7 +54,6 @@ pub(super) static FINGER_BEND: Entry = Entry {
     is: &[],
 };
 
-/// Contact wanders over the fingertip's pad.
 pub(super) static FINGER_ROLL: Entry = Entry {
     about: "contact wanders over the fingertip's pad",
     meaning: "The round pad touches with another point when the finger is inclined.",
@@ -71,7 +67,6 @@ pub(super) static FINGER_ROLL: Entry = Entry {
     is: &[Is::Planned],
 };
 
-/// Finger drags after touching down.
 pub(super) static TOUCH_DRAG: Entry = Entry {
     about: "finger drags after touching down",
     meaning: "The finger slides on after it has touched.",
@@ -85,7 +80,6 @@ pub(super) static TOUCH_DRAG: Entry = Entry {
     is: &[Is::Planned],
 };
 
-/// Base tilted or shifted against the screen.
 pub(super) static BASE_TILT: Entry = Entry {
     about: "torso tilted or shifted",
     meaning: "The torso stands tilted or shifted.",
@@ -102,7 +96,6 @@ pub(super) static BASE_TILT: Entry = Entry {
     is: &[Is::Planned, Is::Origin],
 };
 
-/// Torso leans under the arm's weight.
 pub(super) static TORSO_LEAN: Entry = Entry {
     about: "torso leans under the arm's weight",
     meaning: "The torso leans as the arm reaches out.",
@@ -116,7 +109,6 @@ pub(super) static TORSO_LEAN: Entry = Entry {
     is: &[Is::Planned],
 };
 
-/// Hand or weight heavier than thought.
 pub(super) static PAYLOAD_MASS: Entry = Entry {
     about: "hand heavier or lighter than in the model",
     meaning: "Hand or payload weighs more, or less, than the model says.",
@@ -134,7 +126,6 @@ pub(super) static PAYLOAD_MASS: Entry = Entry {
     is: &[Is::Planned],
 };
 
-/// Fast moves overshoot.
 pub(super) static SPEED_OVERSHOOT: Entry = Entry {
     about: "fast moves overshoot",
     meaning: "Fast moves end elsewhere than slow ones.",

@@ -2,7 +2,6 @@
 
 use super::{Act, Effect, Entry, EyeSite, Shape, Site, TILT, parameter, vector};
 
-/// Both eyes sit elsewhere in the head.
 pub(super) static CAMERA_MOUNT: Entry = Entry {
     about: "eyes sit elsewhere in the head than in the model",
     meaning: "The eyes sit elsewhere on the head than in the model.",
@@ -26,7 +25,6 @@ pub(super) static CAMERA_MOUNT: Entry = Entry {
     is: &[],
 };
 
-/// Zero of a joint of the neck off.
 pub(super) static HEAD_JOINT: Entry = Entry {
     about: "zero position of the neck off",
     meaning: "The head stands elsewhere than its encoders say.",
@@ -44,7 +42,6 @@ pub(super) static HEAD_JOINT: Entry = Entry {
     is: &[],
 };
 
-/// The right eye is turned sideways against the left one.
 pub(super) static EYE_YAW: Entry = Entry {
     about: "right eye turned sideways against the left one",
     meaning: "The eyes turn against each other, which falsifies depth.",
@@ -61,7 +58,6 @@ pub(super) static EYE_YAW: Entry = Entry {
     is: &[],
 };
 
-/// The image of one eye is shifted.
 pub(super) static IMAGE_SHIFT: Entry = Entry {
     about: "image of the right eye shifted",
     meaning: "The image of one eye is shifted on its sensor.",
@@ -78,7 +74,6 @@ pub(super) static IMAGE_SHIFT: Entry = Entry {
     is: &[],
 };
 
-/// Focal length or baseline wrong.
 pub(super) static FOCAL_OR_BASELINE: Entry = Entry {
     about: "focal length or distance of the eyes wrong",
     meaning: "All distances come out too long or too short by the same share.",
@@ -95,7 +90,6 @@ pub(super) static FOCAL_OR_BASELINE: Entry = Entry {
     is: &[],
 };
 
-/// The right eye is rolled or pitched against the left one.
 pub(super) static EYE_ROLL: Entry = Entry {
     about: "right eye rolled or pitched against the left one",
     meaning: "One eye is rolled or pitched against the other.",
@@ -112,7 +106,6 @@ pub(super) static EYE_ROLL: Entry = Entry {
     is: &[],
 };
 
-/// Distortion of the lenses that the calibration left over.
 pub(super) static LENS_DISTORTION: Entry = Entry {
     about: "lens distortion left over",
     meaning: "Some lens distortion is left, growing towards the border of the image.",
@@ -126,7 +119,6 @@ pub(super) static LENS_DISTORTION: Entry = Entry {
     is: &[],
 };
 
-/// Disparities come in steps.
 pub(super) static DISPARITY_STEPS: Entry = Entry {
     about: "disparity comes in steps",
     meaning: "Depth comes in steps of the matcher.",
@@ -141,7 +133,6 @@ pub(super) static DISPARITY_STEPS: Entry = Entry {
     is: &[],
 };
 
-/// Depth of the background leaks into what is seen.
 pub(super) static BACKGROUND_BLEED: Entry = Entry {
     about: "depth of the background leaks in",
     meaning: "The matcher mixes the background into the depth of small things.",
@@ -159,7 +150,6 @@ pub(super) static BACKGROUND_BLEED: Entry = Entry {
     is: &[],
 };
 
-/// What is near seems wider than it is.
 pub(super) static FOREGROUND_FATTENING: Entry = Entry {
     about: "what is near seems wider than it is",
     meaning: "Things look wider by half a matching window.",
@@ -178,7 +168,6 @@ pub(super) static FOREGROUND_FATTENING: Entry = Entry {
     is: &[],
 };
 
-/// The eyes see the surface, not the middle.
 pub(super) static SEEN_SURFACE: Entry = Entry {
     about: "eyes see the surface, not the middle",
     meaning: "The eyes see the surface, the model means the center.",
@@ -192,7 +181,6 @@ pub(super) static SEEN_SURFACE: Entry = Entry {
     is: &[],
 };
 
-/// The detector's box sits beside the object.
 pub(super) static BOX_BIAS: Entry = Entry {
     about: "detected box sits beside the object",
     meaning: "The detector's box is not centered on what it detects.",
@@ -209,7 +197,6 @@ pub(super) static BOX_BIAS: Entry = Entry {
     is: &[],
 };
 
-/// The eyes do not look at the same moment.
 pub(super) static EYE_LATENCY: Entry = Entry {
     about: "eyes do not look at the same moment",
     meaning: "The two images, or image and angles, are not of the same moment.",

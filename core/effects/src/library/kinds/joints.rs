@@ -5,7 +5,6 @@ use super::{Act, Effect, Entry, Is, Known, Shape, Site, TILT, Turning, parameter
 /// A tooth has two flanks: gravity has chosen one when it is clearly larger than this, N m.
 const SEATING_TORQUE_NM: f64 = 0.02;
 
-/// Encoder zero or horn mounted off.
 pub(super) static JOINT_ZERO: Entry = Entry {
     about: "zero position off",
     meaning: "The joint stands elsewhere than its encoder says, by the same angle everywhere.",
@@ -19,7 +18,6 @@ pub(super) static JOINT_ZERO: Entry = Entry {
     is: &[Is::Planned, Is::Origin],
 };
 
-/// Wrong gear ratio.
 pub(super) static JOINT_SCALE: Entry = Entry {
     about: "wrong gear ratio",
     meaning: "The joint turns further, or less far, than commanded, in proportion to its angle.",
@@ -33,7 +31,6 @@ pub(super) static JOINT_SCALE: Entry = Entry {
     is: &[Is::Planned],
 };
 
-/// Magnet or gear off center: once or twice per turn.
 pub(super) static JOINT_ECCENTRICITY: Entry = Entry {
     about: "encoder or gear off center",
     meaning: "The reading swings once or twice per turn: magnet or gear sits off the axis.",
@@ -47,7 +44,6 @@ pub(super) static JOINT_ECCENTRICITY: Entry = Entry {
     is: &[Is::Planned],
 };
 
-/// Teeth of a gear: many times per turn.
 pub(super) static TOOTH_RIPPLE: Entry = Entry {
     about: "gear teeth ripple",
     meaning: "The reading ripples with every tooth of a gear.",
@@ -61,7 +57,6 @@ pub(super) static TOOTH_RIPPLE: Entry = Entry {
     is: &[],
 };
 
-/// Play that follows the direction of motion.
 pub(super) static BACKLASH: Entry = Entry {
     about: "play that follows the direction of motion",
     meaning: "The joint stops on one side or the other of its play, as it last moved.",
@@ -75,7 +70,6 @@ pub(super) static BACKLASH: Entry = Entry {
     is: &[Is::Planned],
 };
 
-/// Play that gravity closes on one side.
 pub(super) static GRAVITY_BACKLASH: Entry = Entry {
     about: "play that gravity closes on one side",
     meaning: "The load pushes the gears to one flank; where the load turns over, the joint drops through its play.",
@@ -89,7 +83,6 @@ pub(super) static GRAVITY_BACKLASH: Entry = Entry {
     is: &[Is::Planned],
 };
 
-/// Friction stops the servo short of its goal; the encoder sees it.
 pub(super) static STICTION: Entry = Entry {
     about: "friction stops it short of its goal",
     meaning: "Friction stops the joint short of its goal, on the side it came from.",
@@ -103,7 +96,6 @@ pub(super) static STICTION: Entry = Entry {
     is: &[Is::SeenByEncoder],
 };
 
-/// The encoder was read before the joint had arrived.
 pub(super) static EARLY_LOG: Entry = Entry {
     about: "angle was logged before it had arrived",
     meaning: "Angles were logged before the arm had come to rest.",
@@ -117,7 +109,6 @@ pub(super) static EARLY_LOG: Entry = Entry {
     is: &[],
 };
 
-/// The zero wanders while the servo warms up.
 pub(super) static SERVO_WARM_UP: Entry = Entry {
     about: "zero position wanders while the servo warms up",
     meaning: "The joint's zero wanders while the servo warms up.",
@@ -131,7 +122,6 @@ pub(super) static SERVO_WARM_UP: Entry = Entry {
     is: &[],
 };
 
-/// The horn slipped at a moment.
 pub(super) static SLIPPED_HORN: Entry = Entry {
     about: "horn slipped at a moment",
     meaning: "From one moment on the joint stands elsewhere: something slipped.",
@@ -145,7 +135,6 @@ pub(super) static SLIPPED_HORN: Entry = Entry {
     is: &[],
 };
 
-/// The joint moves with the one before it (cable, tendon).
 pub(super) static JOINT_COUPLING: Entry = Entry {
     about: "pulled along by the joint before",
     meaning: "The joint moves along with another one: a cable or tendon pulls.",
@@ -159,7 +148,6 @@ pub(super) static JOINT_COUPLING: Entry = Entry {
     is: &[Is::Planned],
 };
 
-/// Axis not square.
 pub(super) static AXIS_SKEW: Entry = Entry {
     about: "axis not square",
     meaning: "The axis is not at the angle that the model gives it.",

@@ -5,7 +5,6 @@ use nalgebra::Vector3;
 use super::{Act, Effect, Entry, Is, Known, Shape, Site, Turning, parameter};
 use crate::arm::Deviation;
 
-/// The servo gives under load; the encoder sees it.
 pub(super) static SERVO_DROOP: Entry = Entry {
     about: "servo gives way under load",
     meaning: "The servo holds its goal like a spring and gives way under load; its encoder sees it.",
@@ -19,7 +18,6 @@ pub(super) static SERVO_DROOP: Entry = Entry {
     is: &[Is::Planned, Is::SeenByEncoder],
 };
 
-/// The bracket gives under load, about the axis; the encoder does not see it.
 pub(super) static JOINT_SAG: Entry = Entry {
     about: "bracket gives way under load",
     meaning: "The bracket behind the encoder bends under load; the encoder does not see it.",
@@ -33,7 +31,6 @@ pub(super) static JOINT_SAG: Entry = Entry {
     is: &[Is::Planned],
 };
 
-/// The joint gives under load, across the axis.
 pub(super) static SIDEWAYS_GIVE: Entry = Entry {
     about: "joint gives way sideways",
     meaning: "The joint gives way across its axis under load.",
@@ -49,7 +46,6 @@ pub(super) static SIDEWAYS_GIVE: Entry = Entry {
     is: &[Is::Planned],
 };
 
-/// A printed link bends under load.
 pub(super) static LINK_BENDING: Entry = Entry {
     about: "bends under load",
     meaning: "The link bends under the load.",
@@ -63,7 +59,6 @@ pub(super) static LINK_BENDING: Entry = Entry {
     is: &[],
 };
 
-/// A joint gives more the longer it holds.
 pub(super) static CREEP: Entry = Entry {
     about: "gives way more the longer it holds",
     meaning: "The arm sinks slowly while it holds a pose.",
@@ -77,7 +72,6 @@ pub(super) static CREEP: Entry = Entry {
     is: &[],
 };
 
-/// The servo cannot hold more than a certain torque; the encoder sees it.
 pub(super) static TORQUE_LIMIT: Entry = Entry {
     about: "servo cannot hold more than its torque limit",
     meaning: "The servo runs into its torque limit in stretched poses.",

@@ -4,7 +4,6 @@ use nalgebra::Vector3;
 
 use super::{Act, Effect, Entry, Is, Shape, Site, TILT_AND_SHIFT, parameter, vector};
 
-/// Screen pushed at a moment.
 pub(super) static SCREEN_BUMPED: Entry = Entry {
     about: "screen was pushed at a moment",
     meaning: "Screen or table moved during the measurement.",
@@ -22,7 +21,6 @@ pub(super) static SCREEN_BUMPED: Entry = Entry {
     is: &[],
 };
 
-/// Wrong size of the image.
 pub(super) static SCREEN_SCALE: Entry = Entry {
     about: "image larger or smaller than in the rig file",
     meaning: "A pixel of the screen has another size than the rig file says.",
@@ -39,7 +37,6 @@ pub(super) static SCREEN_SCALE: Entry = Entry {
     is: &[Is::Planned],
 };
 
-/// Screen tilted or shifted.
 pub(super) static SCREEN_TILT: Entry = Entry {
     about: "screen tilted or shifted",
     meaning: "The screen lies tilted or shifted.",
@@ -57,7 +54,6 @@ pub(super) static SCREEN_TILT: Entry = Entry {
     is: &[Is::Planned],
 };
 
-/// Glass bowed.
 pub(super) static SCREEN_BOW: Entry = Entry {
     about: "glass bowed",
     meaning: "The glass is bowed.",
@@ -74,7 +70,6 @@ pub(super) static SCREEN_BOW: Entry = Entry {
     is: &[Is::Planned],
 };
 
-/// The panel errs near its border.
 pub(super) static PANEL_EDGE: Entry = Entry {
     about: "touch panel errs near its border",
     meaning: "The touch panel errs near its border.",
