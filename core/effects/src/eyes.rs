@@ -6,7 +6,7 @@ use plumbline_model::stereo::StereoCameras;
 use plumbline_model::{Pixel, Raw};
 
 use crate::arm::Arm;
-use crate::measurements::Observation;
+use crate::observation::Observation;
 
 /// The eyes of a robot, nominal.
 #[derive(Clone, Debug)]

@@ -4,18 +4,10 @@ use nalgebra::{DMatrix, Isometry3, Point3, Translation3, UnitQuaternion, Vector3
 
 use crate::arm::Deviation;
 use crate::eyes::{EyeSituation, EyesDeviation};
-use crate::library::{Effect, Situation};
-use crate::measurements::{Measurements, Observation, What};
+use crate::library::{Effect, Present, Situation};
+use crate::measurements::Measurements;
+use crate::observation::{Observation, What};
 use crate::slopes::{ArmSlopes, EyesSlopes};
-
-/// An effect with the values of its parameters.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Present {
-    /// The effect at its site.
-    pub effect: Effect,
-    /// One value per parameter of [`Effect::parameters`].
-    pub values: Vec<f64>,
-}
 
 /// What predictions are made with.
 #[derive(Clone, Debug, PartialEq, Default)]

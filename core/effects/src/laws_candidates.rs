@@ -12,7 +12,8 @@ use plumbline_model::robot::Rig;
 
 use crate::arm::Arm;
 use crate::eyes::Eyes;
-use crate::forward::{Assumed, Present};
+use crate::forward::Assumed;
+use crate::library::Present;
 use crate::library::{Effect, Kind, Surface};
 use crate::measurements::{Apparatus, Measurements, Observation, What};
 

@@ -7,7 +7,8 @@ use plumbline_model::Session;
 use plumbline_model::robot::Rig;
 
 use crate::arm::{Arm, Deviation};
-use crate::forward::{Assumed, Present};
+use crate::forward::Assumed;
+use crate::library::Present;
 use crate::library::{Effect, Kind};
 use crate::measurements::{Measurements, MeasurementsError, What};
 

@@ -11,6 +11,7 @@
 //! - [`observability`]: scores a plan of touches by the effects it will be able to tell apart.
 
 pub mod arm;
+mod candidates;
 pub mod eyes;
 pub mod forward;
 #[cfg(test)]
@@ -22,15 +23,17 @@ mod laws_other_robots;
 pub mod library;
 pub mod measurements;
 pub mod observability;
+mod observation;
 pub mod rig_model;
 mod slopes;
 
 pub use arm::Part;
 pub use eyes::EyesDeviation;
-pub use forward::{Assumed, Present, Tangents};
-pub use library::{Effect, Kind, Parameter, Reported, Situation, Surface};
-pub use measurements::{Measurements, MeasurementsError, Observation, What};
+pub use forward::{Assumed, Tangents};
+pub use library::{Effect, Kind, Parameter, Present, Reported, Situation, Surface};
+pub use measurements::{Measurements, MeasurementsError};
 pub use observability::{
     Addition, Advice, EffectVisibility, Noise, PlanScore, PlannedContact, ScoreError, score,
 };
+pub use observation::{Observation, What};
 pub use rig_model::{RigModel, RigModelError};

@@ -6,7 +6,7 @@ use nalgebra::{Isometry3, Matrix3, Matrix3x2, Translation3, UnitQuaternion, Vect
 use crate::arm::{Arm, Deviation};
 use crate::eyes::{EyeSituation, Eyes, EyesDeviation};
 use crate::library::Surface;
-use crate::measurements::{Observation, What};
+use crate::observation::{Observation, What};
 
 /// Half of a difference over the parts of the surface, m or rad or as a share.
 const STEP: f64 = 1e-5;

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use plumbline_model::Eye;
 
 use crate::image_file::ImageProblem;
-use crate::source::other;
 
 /// A source cannot be opened, or is gone.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -213,5 +212,13 @@ impl SourceError {
             std::io::ErrorKind::NotADirectory => Self::NotAFolder { path },
             _ => Self::Unreadable { path, detail: error.to_string() },
         }
+    }
+}
+
+/// The eye that is not `eye`.
+pub(crate) fn other(eye: &Eye) -> Eye {
+    match eye {
+        Eye::Left => Eye::Right,
+        Eye::Right => Eye::Left,
     }
 }

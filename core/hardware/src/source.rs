@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use plumbline_model::{Eye, StereoFrame};
 
-use crate::error::{PairProblem, SourceError};
+use crate::error::{PairProblem, SourceError, other};
 use crate::image_file::ImageNote;
 use crate::replay::Replay;
 
@@ -192,12 +192,4 @@ fn unpaired(eye: Eye, files: &[String]) -> String {
         "{} {eye} images have no {partner} image of the same name and are left out: {named}{more}",
         files.len()
     )
-}
-
-/// The eye that is not `eye`.
-pub(crate) fn other(eye: &Eye) -> Eye {
-    match eye {
-        Eye::Left => Eye::Right,
-        Eye::Right => Eye::Left,
-    }
 }

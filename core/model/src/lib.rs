@@ -22,6 +22,7 @@ pub mod plausible;
 pub mod predict;
 pub mod robot;
 pub mod session;
+pub mod session_names;
 pub mod stereo;
 pub mod touch_plan;
 pub mod touchscreen;

@@ -4,10 +4,7 @@
 //! some degrees. Good enough to aim a view; not good enough to report positions in the robot's
 //! frame as measured.
 
-use std::sync::OnceLock;
-
 use crate::frame::{LeftCamera, Point, Pose, Robot};
-use crate::robot::Rig;
 
 /// The part of the table that the eyes have to see, and from where they see it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,17 +21,6 @@ pub struct Workspace {
     pub headroom_m: f64,
 }
 
-impl Default for Workspace {
-    /// That of the rig that comes with the program, its head at work over the table.
-    fn default() -> Self {
-        static USUAL: OnceLock<Workspace> = OnceLock::new();
-        *USUAL.get_or_init(|| {
-            let rig = Rig::built_in("nico").expect("the rig that comes with the program is tested");
-            rig.workspace(&rig.home())
-        })
-    }
-}
-
 impl Workspace {
     /// The four corners of the patch at `height_m` above the table, in the left camera's frame.
     pub fn corners_in_left(&self, height_m: f64) -> [Point<LeftCamera>; 4] {
@@ -48,6 +34,7 @@ impl Workspace {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::robot::Rig;
 
     fn robot_from_left(head_z_rad: f64, head_y_rad: f64) -> Pose<Robot, LeftCamera> {
         let rig = Rig::built_in("nico").expect("the rig that comes with the program");

@@ -11,10 +11,10 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use plumbline_model::aim::AimedPair;
 use plumbline_model::{Workspace, measured_data};
 use plumbline_vision::depth::PointMap;
-#[cfg(feature = "peers")]
-use plumbline_vision::disparity::bench::PublishedPipeline;
-use plumbline_vision::disparity::bench::{LivePipeline, NEAREST_M, compare_with_published};
 use plumbline_vision::disparity::{Matcher, Settings};
+#[cfg(feature = "peers")]
+use plumbline_vision::disparity_bench::PublishedPipeline;
+use plumbline_vision::disparity_bench::{LivePipeline, NEAREST_M, compare_with_published};
 use plumbline_vision::rectify::Rectifier;
 use plumbline_vision::synthetic::{Plane, Scene, granite_texture, nico_like_eyes};
 

@@ -1,14 +1,14 @@
 //! What is known of a kind of effect: its words, its parameters, where it sits, what rows show it
 //! and what it does.
 
-use super::candidates::Known;
+use super::known::Known;
 use super::report::Fit;
 use super::{Effect, Parameter, Reported, Situation};
 use crate::arm::Deviation;
 use crate::eyes::{EyeSituation, EyesDeviation};
 
 /// All that is known of a kind of effect.
-pub(super) struct Entry {
+pub(crate) struct Entry {
     /// What it is, for people; its site comes before it where it has one.
     pub about: &'static str,
     /// What it means for the robot, a sentence.
@@ -39,7 +39,7 @@ impl Entry {
 
 /// Where effects of a kind sit.
 #[derive(Clone, Copy)]
-pub(super) enum Site {
+pub(crate) enum Site {
     /// At each joint of the arm.
     Joint,
     /// The same, or as one size for all joints alike: parts of one make, one controller.
@@ -71,7 +71,7 @@ pub(super) enum Site {
 
 /// Where at the eyes.
 #[derive(Clone, Copy)]
-pub(super) enum EyeSite {
+pub(crate) enum EyeSite {
     /// At each joint of the neck.
     Neck,
     /// At the right eye, against the left one.
@@ -92,7 +92,7 @@ impl Site {
 
 /// What [`Effect::shape`] means for effects of a kind.
 #[derive(Clone, Copy)]
-pub(super) enum Shape {
+pub(crate) enum Shape {
     /// Nothing.
     None,
     /// Periods per turn: one (`None`) or two.
@@ -113,7 +113,7 @@ pub(super) enum Shape {
 
 /// What effects of a kind do.
 #[derive(Clone, Copy)]
-pub(super) enum Act {
+pub(crate) enum Act {
     /// Turns a joint by so much, rad.
     Turn(fn(&Turning<'_>) -> f64),
     /// Something else at a joint or link.
@@ -128,7 +128,7 @@ pub(super) enum Act {
 
 /// What may be true of a kind of effect.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Is {
+pub(crate) enum Is {
     /// A plan of touches is scored by it: it does not depend on time, speed or logging.
     Planned,
     /// An encoder sees it, so that a prediction from encoder angles already holds it.
@@ -138,7 +138,7 @@ pub(super) enum Is {
 }
 
 /// An effect at one joint in a situation.
-pub(super) struct Turning<'a> {
+pub(crate) struct Turning<'a> {
     pub effect: &'a Effect,
     pub situation: &'a Situation<'a>,
     /// Place of the joint in the arm.

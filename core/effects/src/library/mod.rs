@@ -7,17 +7,21 @@
 //! range that is plausible for a robot of this kind, so that none is favored.
 
 mod act;
-mod candidates;
 mod effect;
 mod entry;
 mod kind;
 mod kinds;
+mod known;
+mod present;
 mod report;
 mod situation;
 mod surface;
 
 pub use effect::Effect;
+pub(crate) use entry::Shape;
 pub use kind::{Kind, Parameter};
+pub(crate) use known::{Known, MOST_MOMENTS, differ, moments, sorted, thinned, with_shapes};
+pub use present::Present;
 pub use report::Reported;
 pub use situation::Situation;
 pub use surface::Surface;

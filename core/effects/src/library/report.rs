@@ -158,7 +158,7 @@ impl Effect {
 }
 
 /// Values with their covariance.
-pub(super) struct Fit<'a> {
+pub(crate) struct Fit<'a> {
     values: &'a [f64],
     covariance: &'a DMatrix<f64>,
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
 
 use crate::arm::{Arm, Frames};
-use crate::measurements::Observation;
+use crate::observation::Observation;
 
 /// All that effects depend on, in one pose of the arm on the screen.
 #[derive(Clone, Debug)]

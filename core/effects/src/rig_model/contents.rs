@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::file::{isometry_part, screen_part};
 use crate::arm::Arm;
 use crate::eyes::Eyes;
-use crate::forward::Present;
+use crate::library::Present;
 use crate::library::{Effect, Kind};
 
 /// How far a screen may lie from another one and still be the same, m.

@@ -9,7 +9,8 @@ use plumbline_model::{Pixel, Point, Raw, Robot};
 use super::RigModel;
 use crate::arm::Arm;
 use crate::eyes::{Eyes, EyesDeviation};
-use crate::forward::{Assumed, Present};
+use crate::forward::Assumed;
+use crate::library::Present;
 use crate::library::Surface;
 use crate::measurements::{Measurements, Observation, What};
 

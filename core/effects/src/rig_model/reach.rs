@@ -9,7 +9,8 @@ use plumbline_model::{Pixel, Point, Pose, Robot};
 use super::RigModel;
 use super::predict::in_the_air;
 use crate::arm::Arm;
-use crate::forward::{Assumed, Present};
+use crate::forward::Assumed;
+use crate::library::Present;
 use crate::library::Surface;
 use crate::measurements::{Apparatus, Measurements, Observation, What};
 

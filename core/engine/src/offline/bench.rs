@@ -15,8 +15,8 @@ use plumbline_model::{
     CalibrationOptions, Chessboard, JobContext, StereoCalibration, Unattended, measured_data,
 };
 use plumbline_vision::calibrate;
-use plumbline_vision::disparity::bench::{ComparisonReport, NEAREST_M, compare_with_published};
 use plumbline_vision::disparity::{Matcher, Settings};
+use plumbline_vision::disparity_bench::{ComparisonReport, NEAREST_M, compare_with_published};
 use serde::Serialize;
 
 use super::OfflineError;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::error::FileError;
-use crate::session::names;
+use crate::session_names as names;
 
 /// Files by which a folder is a session or a set of images, wherever in it they lie.
 const OWN_NAMES: [&str; 8] = [

@@ -1,6 +1,6 @@
 //! A robot on its table: servos, eyes, table, touchscreen, poses, limits.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
@@ -406,5 +406,16 @@ impl Rig {
             posture[self.eyes.tilt] += level(&wanted) - level(&axis);
         }
         (posture[self.eyes.pan], posture[self.eyes.tilt])
+    }
+}
+
+impl Default for Workspace {
+    /// That of the rig that comes with the program, its head at work over the table.
+    fn default() -> Self {
+        static USUAL: OnceLock<Workspace> = OnceLock::new();
+        *USUAL.get_or_init(|| {
+            let rig = Rig::built_in("nico").expect("the rig that comes with the program is tested");
+            rig.workspace(&rig.home())
+        })
     }
 }

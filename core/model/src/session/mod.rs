@@ -33,21 +33,7 @@ pub use stereo_images::{StereoImagePair, StereoImages, UnpairedImage};
 pub use table::{Column, ColumnValues, Table};
 pub use touches::{ExtraColumn, Screen, TouchRow, TouchTable};
 
-/// File names inside a session folder.
-pub mod names {
-    /// The manifest.
-    pub const MANIFEST: &str = "session.toml";
-    /// Touches of the touchscreen.
-    pub const TOUCHES: &str = "touches.csv";
-    /// Stereo localizations of known places.
-    pub const LOCALIZATIONS: &str = "localizations.csv";
-    /// Externally measured points of the robot.
-    pub const POSES: &str = "poses.csv";
-    /// Folder of stereo images.
-    pub const STEREO: &str = "stereo";
-    /// Live streams.
-    pub const LOG: &str = "log.mcap";
-}
+pub use crate::session_names as names;
 
 /// A session in memory.
 #[derive(Clone, Debug, PartialEq)]

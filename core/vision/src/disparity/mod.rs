@@ -12,15 +12,12 @@
 //! of what they show, and by patterns that repeat along the rows, which may be taken for one
 //! another.
 
-pub mod bench;
 mod census;
 mod cost;
 mod fill;
 mod map;
 mod paths;
 mod pfm;
-#[cfg(feature = "peers")]
-mod published;
 mod refine;
 mod search;
 mod select;

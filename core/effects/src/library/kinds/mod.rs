@@ -8,8 +8,8 @@ mod screen;
 
 use nalgebra::Vector3;
 
-use super::candidates::Known;
 use super::entry::{Act, Entry, EyeSite, Is, Shape, Site, Turning};
+use super::known::Known;
 use super::{Effect, Kind, Parameter};
 
 /// 1.5°, half of the 3° that a printed part or a table may be off.
@@ -34,7 +34,7 @@ fn vector(values: &[f64]) -> Vector3<f64> {
 
 impl Kind {
     /// All that is known of it. A new kind does not compile until it has an entry.
-    pub(super) fn entry(self) -> &'static Entry {
+    pub(crate) fn entry(self) -> &'static Entry {
         match self {
             Self::JointZero => &joints::JOINT_ZERO,
             Self::JointScale => &joints::JOINT_SCALE,

@@ -6,12 +6,15 @@ use std::time::Instant;
 use image::GrayImage;
 use plumbline_model::aim::{AimError, AimedPair, DISPARITY_STEP_PX};
 
-use super::{DisparityError, DisparityMap, Matcher, Settings};
 use crate::depth::{PointMap, SizeMismatch};
+use crate::disparity::{DisparityError, DisparityMap, Matcher, Settings};
 use crate::rectify::{Rectifier, RectifyError};
 
 #[cfg(feature = "peers")]
-pub use super::published::PublishedPipeline;
+mod published;
+
+#[cfg(feature = "peers")]
+pub use published::PublishedPipeline;
 
 /// Depth at which the steps are compared, meters: the far edge of the table.
 pub const COMPARED_AT_M: f64 = 0.6;

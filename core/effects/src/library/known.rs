@@ -1,12 +1,10 @@
-//! Which effects rows could show at all, and in which shapes.
+//! What is known of rows, and in which shapes an effect is looked for in them.
 
-use crate::measurements::{Measurements, Observation};
-
+use super::Effect;
 use super::entry::Shape;
-use super::{Effect, Kind, Situation};
 
 /// At most this many moments are tried for a step.
-const MOST_MOMENTS: usize = 15;
+pub(crate) const MOST_MOMENTS: usize = 15;
 /// Time constants that are tried, s.
 const TIME_CONSTANTS_S: [f64; 6] = [60.0, 120.0, 240.0, 480.0, 900.0, 1800.0];
 /// Time constants and delays that are tried for an eye that turns, s.
@@ -25,123 +23,53 @@ const EASY_TORQUE_NM: f64 = 0.1;
 /// Steps in angle or height below this are no difference.
 const SAME: f64 = 1e-9;
 
-impl Effect {
-    /// Every effect, at every site and in every shape of a grid, that these rows could show: by
-    /// the columns that are there. Whether they do show it is for the tangents to say.
-    pub fn candidates(measurements: &Measurements) -> Vec<Self> {
-        let arm = measurements.apparatuses.iter().find_map(|apparatus| apparatus.arm.as_ref());
-        let eyes = measurements.apparatuses.iter().find_map(|apparatus| apparatus.eyes.as_ref());
-        let known = Known::of(measurements);
-        Kind::ALL
-            .iter()
-            .filter(|kind| (kind.entry().shown)(&known))
-            .flat_map(|kind| Self::sites(*kind, arm, eyes))
-            .flat_map(|effect| known.shapes(effect))
-            .collect()
-    }
-
-    /// Shapes around this one, between its neighbors of the grid: to pin it down once it was
-    /// found. Itself alone where its shape is not a matter of degree.
-    pub fn refined(&self, measurements: &Measurements) -> Vec<Self> {
-        let Some([low, high]) = self.shape_range.filter(|[low, high]| low < high) else {
-            return vec![self.clone()];
-        };
-        let shapes: Vec<f64> = match self.kind.entry().shape {
-            Shape::Moment => {
-                let moments = moments(&Known::of(measurements).arm_secs);
-                let inside: Vec<f64> = moments.into_iter().filter(|t| (low..=high).contains(t)).collect();
-                thinned(&inside, MOST_MOMENTS)
-            }
-            Shape::TimeConstant(_) => (0..=6).map(|k| low * (high / low).powf(f64::from(k) / 6.0)).collect(),
-            Shape::Limit => (0..=6).map(|k| low + (high - low) * f64::from(k) / 6.0).collect(),
-            Shape::Teeth => (low.ceil() as i64..=high.floor() as i64).map(|order| order as f64).collect(),
-            Shape::None | Shape::OnceOrTwice | Shape::Growth(_) | Shape::Either(_) => vec![],
-        };
-        if shapes.is_empty() {
-            return vec![self.clone()];
-        }
-        with_shapes(self, &shapes, [low, high])
-    }
-}
-
 /// What is known of the rows.
-pub(super) struct Known {
-    pub(super) touches: bool,
-    pub(super) arm: bool,
-    pub(super) eyes: bool,
-    pub(super) background: bool,
+pub(crate) struct Known {
+    pub(crate) touches: bool,
+    pub(crate) arm: bool,
+    pub(crate) eyes: bool,
+    pub(crate) background: bool,
     /// Some row starts from commanded angles.
-    pub(super) commanded: bool,
+    pub(crate) commanded: bool,
     /// Some row has encoders that lag.
-    pub(super) lag: bool,
-    pub(super) directions: bool,
+    pub(crate) lag: bool,
+    pub(crate) directions: bool,
     /// The side of approach is known, if only one.
-    pub(super) direction: bool,
-    pub(super) speeds: bool,
+    pub(crate) direction: bool,
+    pub(crate) speeds: bool,
     /// Times of the arm's rows in which it was held, longest, s.
-    pub(super) longest_hold_s: f64,
+    pub(crate) longest_hold_s: f64,
     /// Times of the arm's and the eyes' rows, sorted.
-    arm_secs: Vec<f64>,
-    eye_secs: Vec<f64>,
+    pub(crate) arm_secs: Vec<f64>,
+    pub(crate) eye_secs: Vec<f64>,
     /// Largest torques of each joint and the angles that it took, sorted.
-    torques_nm: Vec<Vec<f64>>,
-    angles_rad: Vec<Vec<f64>>,
+    pub(crate) torques_nm: Vec<Vec<f64>>,
+    pub(crate) angles_rad: Vec<Vec<f64>>,
 }
 
 impl Known {
-    fn of(measurements: &Measurements) -> Self {
-        let rows = &measurements.rows;
-        let of_arm: Vec<&Observation> = rows.iter().filter(|row| row.what.is_placed()).collect();
-        let of_eyes: Vec<&Observation> = rows.iter().filter(|row| !row.what.is_placed()).collect();
-        let secs = |rows: &[&Observation]| sorted(rows.iter().filter_map(|row| row.t_secs));
-        let moves = |row: &&&Observation| row.move_secs.is_some();
-        let durations = sorted(of_arm.iter().filter(moves).filter_map(|row| row.move_secs));
-        let joints = of_arm.iter().map(|row| row.angles_rad().len()).max().unwrap_or(0);
-        let situations: Vec<Vec<f64>> = of_arm.iter().filter_map(|row| torques(measurements, row)).collect();
-        Self {
-            touches: measurements.has(crate::What::Touch),
-            arm: !of_arm.is_empty(),
-            eyes: !of_eyes.is_empty(),
-            background: of_eyes.iter().any(|row| row.background_m.is_some()),
-            commanded: of_arm.iter().any(|row| row.encoder_rad.is_none()),
-            lag: of_arm.iter().filter_map(|row| row.lag_rad()).flatten().any(|lag| lag.abs() > 1e-4),
-            directions: differ(of_arm.iter().map(|row| row.direction.first().copied().unwrap_or(0.0))),
-            direction: of_arm.iter().any(|row| row.direction.iter().any(|side| *side != 0.0)),
-            speeds: differ(durations.iter().copied()),
-            longest_hold_s: of_arm.iter().filter_map(|row| row.hold_secs).fold(0.0, f64::max),
-            arm_secs: secs(&of_arm),
-            eye_secs: secs(&of_eyes),
-            torques_nm: (0..joints)
-                .map(|j| sorted(situations.iter().filter_map(|nm| nm.get(j)).map(|nm| nm.abs())))
-                .collect(),
-            angles_rad: (0..joints)
-                .map(|j| sorted(of_arm.iter().filter_map(|row| row.angles_rad().get(j).copied())))
-                .collect(),
-        }
-    }
-
     /// Time from the arm's first row to its last, s.
-    pub(super) fn arm_span_s(&self) -> f64 {
+    pub(crate) fn arm_span_s(&self) -> f64 {
         span(&self.arm_secs)
     }
 
     /// Whether the arm's rows last long enough for a time law.
-    pub(super) fn arm_lasts(&self) -> bool {
+    pub(crate) fn arm_lasts(&self) -> bool {
         self.arm_span_s() >= SHORTEST_SPAN_S
     }
 
     /// Whether there are moments between the arm's rows at which something may have changed.
-    pub(super) fn has_moments(&self) -> bool {
+    pub(crate) fn has_moments(&self) -> bool {
         moments(&self.arm_secs).len() >= 4
     }
 
     /// Whether joints were held long enough to creep.
-    pub(super) fn is_held(&self) -> bool {
+    pub(crate) fn is_held(&self) -> bool {
         self.longest_hold_s >= SHORTEST_HOLD_S
     }
 
     /// The effect in every shape that is tried.
-    fn shapes(&self, effect: Effect) -> Vec<Effect> {
+    pub(crate) fn shapes(&self, effect: Effect) -> Vec<Effect> {
         match effect.kind.entry().shape {
             Shape::None => vec![effect],
             Shape::OnceOrTwice => vec![effect.clone(), effect.with_shape(Some(2.0))],
@@ -181,7 +109,7 @@ impl Known {
 
 /// One effect in several shapes, each with the range up to half of the way to its neighbors (the
 /// whole way for moments: the step may be anywhere between the rows that were tried).
-fn with_shapes(effect: &Effect, shapes: &[f64], ends: [f64; 2]) -> Vec<Effect> {
+pub(crate) fn with_shapes(effect: &Effect, shapes: &[f64], ends: [f64; 2]) -> Vec<Effect> {
     let at = |i: usize| shapes[i];
     (0..shapes.len())
         .map(|i| {
@@ -194,20 +122,13 @@ fn with_shapes(effect: &Effect, shapes: &[f64], ends: [f64; 2]) -> Vec<Effect> {
         .collect()
 }
 
-fn torques(measurements: &Measurements, row: &Observation) -> Option<Vec<f64>> {
-    let arm = measurements.apparatus(row).arm.as_ref()?;
-    let up = nalgebra::Vector3::z();
-    let situation = Situation::new(arm, row.angles_rad(), &row.direction, row.payload_kg, &up).during(row);
-    Some(situation.torques_nm().to_vec())
-}
-
-fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
+pub(crate) fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     values
 }
 
-fn differ(mut values: impl Iterator<Item = f64>) -> bool {
+pub(crate) fn differ(mut values: impl Iterator<Item = f64>) -> bool {
     values.next().is_some_and(|first| values.any(|value| (value - first).abs() > SAME))
 }
 
@@ -216,7 +137,7 @@ fn span(sorted: &[f64]) -> f64 {
 }
 
 /// Moments between rows.
-fn moments(sorted_s: &[f64]) -> Vec<f64> {
+pub(crate) fn moments(sorted_s: &[f64]) -> Vec<f64> {
     sorted_s
         .windows(2)
         .filter(|pair| pair[1] - pair[0] > 1e-6)
@@ -226,7 +147,7 @@ fn moments(sorted_s: &[f64]) -> Vec<f64> {
 
 /// At most so many of them, evenly spread over the rows, the ends left out: a step there is seen
 /// in too few rows.
-fn thinned(values: &[f64], most: usize) -> Vec<f64> {
+pub(crate) fn thinned(values: &[f64], most: usize) -> Vec<f64> {
     if values.len() <= most {
         return values.to_vec();
     }

@@ -15,7 +15,7 @@ use opencv::prelude::{DisparityFilterTrait, DisparityWLSFilterTrait};
 use opencv::ximgproc::{DisparityWLSFilter, create_disparity_wls_filter, create_right_matcher};
 use plumbline_model::{CameraModel, Eye, StereoCameras};
 
-use super::bench::{ComparisonError, PUBLISHED_F_PX};
+use super::{ComparisonError, PUBLISHED_F_PX};
 use crate::mat;
 use crate::rectify::Pair;
 

@@ -1,0 +1,86 @@
+//! Which effects rows could show at all, and in which shapes.
+
+use crate::library::{
+    Effect, Kind, Known, MOST_MOMENTS, Shape, Situation, differ, moments, sorted, thinned, with_shapes,
+};
+use crate::measurements::Measurements;
+use crate::observation::{Observation, What};
+
+impl Effect {
+    /// Every effect, at every site and in every shape of a grid, that these rows could show: by
+    /// the columns that are there. Whether they do show it is for the tangents to say.
+    pub fn candidates(measurements: &Measurements) -> Vec<Self> {
+        let arm = measurements.apparatuses.iter().find_map(|apparatus| apparatus.arm.as_ref());
+        let eyes = measurements.apparatuses.iter().find_map(|apparatus| apparatus.eyes.as_ref());
+        let known = Known::of(measurements);
+        Kind::ALL
+            .iter()
+            .filter(|kind| (kind.entry().shown)(&known))
+            .flat_map(|kind| Self::sites(*kind, arm, eyes))
+            .flat_map(|effect| known.shapes(effect))
+            .collect()
+    }
+
+    /// Shapes around this one, between its neighbors of the grid: to pin it down once it was
+    /// found. Itself alone where its shape is not a matter of degree.
+    pub fn refined(&self, measurements: &Measurements) -> Vec<Self> {
+        let Some([low, high]) = self.shape_range.filter(|[low, high]| low < high) else {
+            return vec![self.clone()];
+        };
+        let shapes: Vec<f64> = match self.kind.entry().shape {
+            Shape::Moment => {
+                let moments = moments(&Known::of(measurements).arm_secs);
+                let inside: Vec<f64> = moments.into_iter().filter(|t| (low..=high).contains(t)).collect();
+                thinned(&inside, MOST_MOMENTS)
+            }
+            Shape::TimeConstant(_) => (0..=6).map(|k| low * (high / low).powf(f64::from(k) / 6.0)).collect(),
+            Shape::Limit => (0..=6).map(|k| low + (high - low) * f64::from(k) / 6.0).collect(),
+            Shape::Teeth => (low.ceil() as i64..=high.floor() as i64).map(|order| order as f64).collect(),
+            Shape::None | Shape::OnceOrTwice | Shape::Growth(_) | Shape::Either(_) => vec![],
+        };
+        if shapes.is_empty() {
+            return vec![self.clone()];
+        }
+        with_shapes(self, &shapes, [low, high])
+    }
+}
+
+impl Known {
+    fn of(measurements: &Measurements) -> Self {
+        let rows = &measurements.rows;
+        let of_arm: Vec<&Observation> = rows.iter().filter(|row| row.what.is_placed()).collect();
+        let of_eyes: Vec<&Observation> = rows.iter().filter(|row| !row.what.is_placed()).collect();
+        let secs = |rows: &[&Observation]| sorted(rows.iter().filter_map(|row| row.t_secs));
+        let moves = |row: &&&Observation| row.move_secs.is_some();
+        let durations = sorted(of_arm.iter().filter(moves).filter_map(|row| row.move_secs));
+        let joints = of_arm.iter().map(|row| row.angles_rad().len()).max().unwrap_or(0);
+        let situations: Vec<Vec<f64>> = of_arm.iter().filter_map(|row| torques(measurements, row)).collect();
+        Self {
+            touches: measurements.has(What::Touch),
+            arm: !of_arm.is_empty(),
+            eyes: !of_eyes.is_empty(),
+            background: of_eyes.iter().any(|row| row.background_m.is_some()),
+            commanded: of_arm.iter().any(|row| row.encoder_rad.is_none()),
+            lag: of_arm.iter().filter_map(|row| row.lag_rad()).flatten().any(|lag| lag.abs() > 1e-4),
+            directions: differ(of_arm.iter().map(|row| row.direction.first().copied().unwrap_or(0.0))),
+            direction: of_arm.iter().any(|row| row.direction.iter().any(|side| *side != 0.0)),
+            speeds: differ(durations.iter().copied()),
+            longest_hold_s: of_arm.iter().filter_map(|row| row.hold_secs).fold(0.0, f64::max),
+            arm_secs: secs(&of_arm),
+            eye_secs: secs(&of_eyes),
+            torques_nm: (0..joints)
+                .map(|j| sorted(situations.iter().filter_map(|nm| nm.get(j)).map(|nm| nm.abs())))
+                .collect(),
+            angles_rad: (0..joints)
+                .map(|j| sorted(of_arm.iter().filter_map(|row| row.angles_rad().get(j).copied())))
+                .collect(),
+        }
+    }
+}
+
+fn torques(measurements: &Measurements, row: &Observation) -> Option<Vec<f64>> {
+    let arm = measurements.apparatus(row).arm.as_ref()?;
+    let up = nalgebra::Vector3::z();
+    let situation = Situation::new(arm, row.angles_rad(), &row.direction, row.payload_kg, &up).during(row);
+    Some(situation.torques_nm().to_vec())
+}

@@ -1,0 +1,152 @@
+//! One row of a session as predictions need it, and what it measured.
+
+use nalgebra::Point3;
+use plumbline_model::predict::Angles;
+
+/// What a row measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum What {
+    /// A fingertip met the touchscreen.
+    Touch,
+    /// A point of the robot was measured from outside.
+    Pose,
+    /// The eyes estimated a known place.
+    Place,
+    /// A known place was seen at a pixel of each eye.
+    EyePoints,
+}
+
+/// Unit of a natural coordinate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Unit {
+    /// m.
+    Meter,
+    /// rad.
+    Radian,
+    /// Raw pixels.
+    Pixel,
+}
+
+impl What {
+    /// Names and units of what a row of this kind measures.
+    ///
+    /// - Touch: along u and v of the screen from the middle of the image, and the height of the
+    ///   fingertip over the glass (measured: zero).
+    /// - Pose: x, y, z in the external frame.
+    /// - Place: bearing to the right and down in the left eye (tangents), and the disparity angle
+    ///   (baseline over depth), all nearly of the same noise.
+    /// - Eye points: u and v in the left image, u and v in the right one.
+    pub fn coordinates(self) -> &'static [(&'static str, Unit)] {
+        match self {
+            Self::Touch => {
+                &[("along u", Unit::Meter), ("along v", Unit::Meter), ("height over the glass", Unit::Meter)]
+            }
+            Self::Pose => &[("x", Unit::Meter), ("y", Unit::Meter), ("z", Unit::Meter)],
+            Self::Place => &[
+                ("bearing right", Unit::Radian),
+                ("bearing down", Unit::Radian),
+                ("disparity", Unit::Radian),
+            ],
+            Self::EyePoints => &[
+                ("left u", Unit::Pixel),
+                ("left v", Unit::Pixel),
+                ("right u", Unit::Pixel),
+                ("right v", Unit::Pixel),
+            ],
+        }
+    }
+
+    /// Number of natural coordinates.
+    #[allow(clippy::len_without_is_empty)] // Every kind measures something.
+    pub fn len(self) -> usize {
+        self.coordinates().len()
+    }
+
+    /// Whether the frame of the measurement is free against the robot: where the screen or the
+    /// external device stands is not known better than by the rows themselves.
+    pub fn is_placed(self) -> bool {
+        matches!(self, Self::Touch | Self::Pose)
+    }
+
+    /// The table that it comes from.
+    pub fn table(self) -> &'static str {
+        match self {
+            Self::Touch => "touches.csv",
+            Self::Pose => "poses.csv",
+            Self::Place | Self::EyePoints => "localizations.csv",
+        }
+    }
+}
+
+/// One row.
+#[derive(Clone, Debug)]
+pub struct Observation {
+    /// Which session, by place in [`crate::Measurements::apparatuses`].
+    pub session: usize,
+    /// Row of its table, from 0.
+    pub row: usize,
+    /// What it measured.
+    pub what: What,
+    /// Natural coordinates, as [`What::coordinates`].
+    pub measured: Vec<f64>,
+    /// Commanded angles, one per joint of the arm, where all are known, rad.
+    pub commanded_rad: Option<Vec<f64>>,
+    /// Encoder readings, the same way.
+    pub encoder_rad: Option<Vec<f64>>,
+    /// Last motion of each joint: −1, 0 (not known) or 1.
+    pub direction: Vec<f64>,
+    /// Known mass at the palm, kg.
+    pub payload_kg: f64,
+    /// Height of the block under the screen, m.
+    pub screen_height_m: f64,
+    /// Time since power-on of robot or eyes, s.
+    pub t_secs: Option<f64>,
+    /// Duration of the move, s.
+    pub move_secs: Option<f64>,
+    /// How long the same pose had been held without a move, s; where the times of its rows say.
+    pub hold_secs: Option<f64>,
+    /// Mean speed of each joint in the move that led here, rad/s, where the last command and the
+    /// duration of the move are known.
+    pub speed_rad_s: Option<Vec<f64>>,
+    /// Measured torque of each joint, N m, where all are known; positive where it drives the joint
+    /// to larger angles, as gravity's does.
+    pub torque_nm: Option<Vec<f64>>,
+    /// Servo temperature of each joint, °C, where all are known.
+    pub temperature_c: Option<Vec<f64>>,
+    /// Angles of the joints that carry the eyes, rad.
+    pub neck_rad: Vec<f64>,
+    /// The known place (robot frame, m) that the eyes looked at.
+    pub truth_m: Option<Point3<f64>>,
+    /// Distance of what lies behind it, m.
+    pub background_m: Option<f64>,
+    /// What was seen.
+    pub object: Option<String>,
+    /// Rows of one cell repeat the same measurement: same command, side, height, weight, session.
+    /// Counted from 0 over all sessions.
+    pub cell: usize,
+    /// Label that blocks cross-validation; rows without one are a block each by [`Self::cell`].
+    pub set: Option<String>,
+    /// Label of the side of approach.
+    pub approach: Option<String>,
+}
+
+impl Observation {
+    /// The angles that predictions start from: encoder readings where all are there, else the
+    /// commanded ones. Empty for what the eyes saw.
+    pub fn angles_rad(&self) -> &[f64] {
+        self.encoder_rad.as_deref().or(self.commanded_rad.as_deref()).unwrap_or_default()
+    }
+
+    /// From which angles predictions start.
+    pub fn angles(&self) -> Angles {
+        if self.encoder_rad.is_some() { Angles::Encoder } else { Angles::Commanded }
+    }
+
+    /// Commanded angle less encoder reading, where both are known, rad.
+    pub fn lag_rad(&self) -> Option<Vec<f64>> {
+        let (commanded, encoder) = (self.commanded_rad.as_ref()?, self.encoder_rad.as_ref()?);
+        Some(commanded.iter().zip(encoder).map(|(c, e)| c - e).collect())
+    }
+}
