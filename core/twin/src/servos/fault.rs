@@ -5,8 +5,8 @@ use strum::{EnumString, IntoStaticStr, VariantArray};
 
 /// A fault of the servo bus. Those that say "sometimes" hit about one answer in eight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[derive(EnumString, IntoStaticStr, VariantArray)]
 #[serde(rename_all = "kebab-case")]
+#[derive(EnumString, IntoStaticStr, VariantArray)]
 #[strum(serialize_all = "kebab-case")]
 pub enum Fault {
     /// Some answers do not come.
