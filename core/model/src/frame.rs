@@ -110,11 +110,6 @@ impl<F: Frame> Direction<F> {
         // atan2 keeps its precision for small angles, where acos loses it.
         self.vector.cross(&other.vector).norm().atan2(self.vector.dot(&other.vector))
     }
-
-    /// The point at `range_m` meters along this direction.
-    pub fn at_range(&self, range_m: f64) -> Point<F> {
-        Point::from(Point3::from(self.vector() * range_m))
-    }
 }
 
 impl<To: Frame, From: Frame> Pose<To, From> {

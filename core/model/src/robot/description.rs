@@ -304,14 +304,4 @@ impl Description {
         }
         LinkPoses { robot_from_link }
     }
-
-    /// Joints outside of their limits: which, its angle and how far outside (rad).
-    pub fn beyond_limits(&self, posture: &Posture) -> Vec<(JointIndex, f64)> {
-        let excess = |i| self.limits(JointIndex(i)).excess_rad(posture.angles_rad()[i]);
-        // NaN counts as outside.
-        (0..posture.len())
-            .map(|i| (JointIndex(i), excess(i)))
-            .filter(|(_, e)| e.abs() > 1e-9 || e.is_nan())
-            .collect()
-    }
 }

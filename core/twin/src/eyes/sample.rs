@@ -10,8 +10,6 @@ use crate::scene::{BodyIndex, Item, Light, Material, Pattern, Scenery, Shape, Sn
 
 /// Height of the table's top in the robot frame, meters.
 pub const TABLE_M: f64 = 0.05;
-/// Objects of the six toys.
-pub const TOYS: [u16; 6] = [1, 2, 3, 4, 5, 6];
 /// Object of the right hand and of the left hand.
 pub const HANDS: [u16; 2] = [7, 8];
 

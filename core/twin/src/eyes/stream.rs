@@ -142,13 +142,6 @@ impl EyeControls {
         self.shared.state().sensor = sensor;
         Ok(())
     }
-
-    /// Changes the rate from the next pair on, pairs per second.
-    pub fn set_rate_hz(&self, rate_hz: f64) -> Result<(), RenderError> {
-        self.shared.state().rate_hz = check_rate(rate_hz)?;
-        self.shared.wake.notify_all();
-        Ok(())
-    }
 }
 
 /// Lets everything else go first: without a graphics card the images are drawn by the processor,

@@ -244,11 +244,6 @@ impl World {
         self.servos[servo].drive = drive;
     }
 
-    /// What a servo was last told.
-    pub fn driven(&self, servo: usize) -> Drive {
-        self.servos[servo].drive
-    }
-
     /// Sends all joints to a posture at a speed (rad/s; `None`: as fast as they can).
     pub fn send(&mut self, posture: &Posture, speed_rad_s: Option<f64>) {
         let rig = self.rig.clone();

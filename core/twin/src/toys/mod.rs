@@ -7,12 +7,15 @@ use std::sync::LazyLock;
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
+use strum::{EnumString, IntoStaticStr};
 
 use crate::scene::{Material, Pattern, Shape};
 
 /// A toy on the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[derive(EnumString, IntoStaticStr)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Toy {
     /// A red ball, a little flat, with a green star.
     Tomato,
@@ -35,19 +38,12 @@ impl Toy {
 
     /// Short name, lower case.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Tomato => "tomato",
-            Self::Banana => "banana",
-            Self::Duck => "duck",
-            Self::Mushroom => "mushroom",
-            Self::Onion => "onion",
-            Self::Orange => "orange",
-        }
+        self.into()
     }
 
     /// The toy of a short name.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|toy| toy.name() == name)
+        name.parse().ok()
     }
 
     /// Radius of a ball of its size, m.

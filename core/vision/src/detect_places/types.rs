@@ -53,11 +53,6 @@ impl Seen {
             Self::One { eye, index, .. } => (eye == of).then_some(index),
         }
     }
-
-    /// Whether both eyes have it.
-    pub fn by_both(&self) -> bool {
-        matches!(self, Self::Both { .. })
-    }
 }
 
 /// Why a box has no partner in the other eye.
