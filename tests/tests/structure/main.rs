@@ -2,6 +2,8 @@
 
 mod files;
 mod markdown;
+mod modules;
+mod rooms;
 mod workspace;
 
 use std::collections::BTreeSet;
