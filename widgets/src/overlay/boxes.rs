@@ -2,7 +2,7 @@
 
 use egui::{Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, TextStyle, Vec2, vec2};
 
-use crate::image_view::ImageTransform;
+use crate::view_state::ImageTransform;
 use crate::theme::{ON_IMAGE, RIM, size};
 
 /// How much a box is to be seen.

@@ -8,7 +8,7 @@ pub(crate) use paint::arrow;
 
 use egui::{Align2, Color32, Painter, Rect, pos2};
 
-use crate::image_view::ImageTransform;
+use crate::view_state::ImageTransform;
 use crate::theme::{Role, Tokens};
 
 /// The color of a mark: a meaning, or a color of its own (from a color map).

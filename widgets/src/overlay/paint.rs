@@ -6,7 +6,7 @@ use egui::{
 };
 
 use super::{Mark, PointShape};
-use crate::image_view::ImageTransform;
+use crate::view_state::ImageTransform;
 use crate::theme::{ON_IMAGE, RIM, Tokens, size};
 
 pub(super) fn marks(marks: &[Mark], painter: &Painter, transform: &ImageTransform) {
