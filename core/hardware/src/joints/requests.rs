@@ -1,6 +1,7 @@
 //! What is asked of the thread of the bus, and whether it may be done: moves, goals that follow one
 //! another, torque, a new scan.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use plumbline_model::robot::{JointIndex, Posture};
