@@ -4,6 +4,7 @@ mod files;
 mod markdown;
 mod modules;
 mod rooms;
+mod shared;
 mod workspace;
 
 use std::collections::BTreeSet;
