@@ -137,8 +137,10 @@ fn one_place_writes_files() {
     for (name, text) in tracked_text_files() {
         let in_program =
             ["core/", "app/", "widgets/"].iter().any(|part| name.starts_with(part)) && name.contains("/src/");
-        let file = name.rsplit('/').next().unwrap_or_default();
-        if !in_program || !name.ends_with(".rs") || file.contains("tests") || file.starts_with("laws") {
+        let is_test = name
+            .split_once("/src/")
+            .is_some_and(|(_, below)| ["tests", "laws"].iter().any(|t| below.contains(t)));
+        if !in_program || !name.ends_with(".rs") || is_test {
             continue;
         }
         let program = text.split("#[cfg(test)]").next().unwrap_or_default();
