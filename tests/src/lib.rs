@@ -104,7 +104,7 @@ pub fn eye_renderer() -> Option<EyeRenderer> {
     match EyeRenderer::new(EyeOptions::default()) {
         Ok(renderer) => Some(renderer),
         Err(RenderError::NoAdapter) => {
-            eprintln!("skipped: no Vulkan device on this machine");
+            plumbline_model::measured_data::left_out("no Vulkan device on this machine");
             None
         }
         Err(error) => panic!("{error}"),

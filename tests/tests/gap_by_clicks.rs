@@ -5,8 +5,9 @@
 #![allow(clippy::print_stdout, reason = "figures of the run, with --nocapture")]
 
 use plumbline_blind::bench::Bench;
-use plumbline_blind::case::{Case, Family, Recipe, make_or_smaller};
+use plumbline_blind::case::{Case, make_or_smaller};
 use plumbline_blind::design::{Design, Planner};
+use plumbline_blind::recipe::{Family, Recipe};
 use plumbline_blind::secret::Kind;
 use plumbline_engine::gap::Verdict;
 use plumbline_engine::view::StepState;

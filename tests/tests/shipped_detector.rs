@@ -51,7 +51,7 @@ fn it_finds_toys_and_hands_on_real_images() {
     let folder = match measured_data::folder("nico-scenes") {
         Ok(folder) => folder,
         Err(reason) => {
-            eprintln!("skipped: {reason}");
+            eprintln!("{reason}");
             return;
         }
     };
@@ -69,7 +69,7 @@ fn it_finds_toys_and_hands_of_the_twin() {
     match training_set::generate(folder.path(), &options, &Unattended) {
         Ok(_) => {}
         Err(SetError::Render(error)) => {
-            eprintln!("skipped: {error}");
+            measured_data::left_out(error);
             return;
         }
         Err(error) => panic!("{error}"),

@@ -97,7 +97,7 @@ pub fn stop_button(ui: &mut Ui, arm: ArmState) -> Response {
         response.mark_changed();
     }
     paint_stop(&own, rect, &response, arm);
-    response.on_hover_text("Stops the arm and holds it. Esc and space do the same.")
+    response.on_hover_text("Stops the arm and holds it. Esc, space and B or Start of a gamepad do the same.")
 }
 
 fn paint_stop(ui: &Ui, rect: egui::Rect, response: &Response, arm: ArmState) {

@@ -35,6 +35,7 @@ pub mod table_map;
 pub mod texture;
 pub mod theme;
 pub mod touch_pattern;
+pub mod view_state;
 
 pub use bars::{BarRef, BarsResponse, PairBar, PairBars};
 pub use box_canvas::{BoxCanvas, CanvasBox, CanvasResponse, CanvasState, Placed};

@@ -19,8 +19,11 @@ const SLOW_BUS_HZ: f64 = 50.0;
 
 /// What the STOP button says.
 pub(super) fn arm_state(robot: &RobotView) -> ArmState {
-    if !robot.connection.is_connected() {
-        return ArmState::NotConnected;
+    match robot.connection {
+        Connection::None | Connection::Connecting { .. } => return ArmState::NotConnected,
+        // It is still there, and holds, or does not.
+        Connection::Lost { .. } => return ArmState::Unknown,
+        Connection::Connected { .. } => {}
     }
     match robot.motion {
         // Until it is known to stand, it is said to move.

@@ -9,7 +9,10 @@ use super::desk::{Desk, ended};
 fn draws(desk: &Desk) -> bool {
     let ended = desk.run("detector-set --pairs 1 --out probe");
     if ended.status != Some(0) {
-        println!("skipped: no images are drawn on this machine: {}", ended.said);
+        plumbline_model::measured_data::left_out(format!(
+            "no images are drawn on this machine: {}",
+            ended.said
+        ));
     }
     ended.status == Some(0)
 }

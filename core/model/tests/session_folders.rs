@@ -11,7 +11,7 @@ use plumbline_model::session::{
     Chain, LocalizationRow, LocalizationTable, Manifest, PoseRow, PoseTable, RigReference, TouchRow,
     TouchTable, Touchscreen,
 };
-use plumbline_model::{Direction, Eye, Pixel, Point, Session, SessionError};
+use plumbline_model::{Direction, Eye, Pixel, Point, Session, SessionError, measured_data};
 
 const MANIFEST: &str = "format = 1\nrig = \"nico\"\nstarted = 2026-11-21T10:04:00Z\n[touchscreen]\nwidth_px = 1920\nheight_px = 1080\nwidth_m = 0.475\nheight_m = 0.267\norigin_m = [0.53, 0.2375, 0.056]\nu_axis = [0.0, -1.0, 0.0]\nv_axis = [-1.0, 0.0, 0.0]\n[chain]\ntip = \"right_index_tip\"\njoints = [\"a\", \"b\"]\n";
 const TOUCHES: &str = "cmd_a_rad,cmd_b_rad,touch_u_px,touch_v_px\n0.1,0.2,960.0,540.5\n0.3,,,\n";
@@ -497,17 +497,14 @@ fn the_example_in_this_repository_is_a_session() {
 
 #[test]
 fn measured_sessions_are_read_and_written_without_loss() {
-    let Some(data) = common::measured_data() else {
-        eprintln!("skipped: no measured data beside the checkout and PLUMBLINE_DATA is not set");
-        return;
-    };
     let expected = [
         ("nico-touch/touch-245", 245, 0),
         ("nico-vision/grid-z5", 0, 36),
         ("nico-vision/grid-z5-pivot-corrected", 0, 36),
     ];
     for (name, touches, localizations) in expected {
-        let session = Session::read(&data.join(name)).expect(name);
+        let Ok(folder_of_session) = measured_data::folder(name) else { return };
+        let session = Session::read(&folder_of_session).expect(name);
         assert_eq!(session.touches.as_ref().map_or(0, TouchTable::row_count), touches, "{name}");
         assert_eq!(
             session.localizations.as_ref().map_or(0, LocalizationTable::row_count),

@@ -12,10 +12,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use plumbline_blind::answer::Answer;
 use plumbline_blind::bench::Bench;
-use plumbline_blind::case::{self, Recipe};
+use plumbline_blind::case;
 use plumbline_blind::design::Planner;
+use plumbline_blind::recipe::Recipe;
 use plumbline_blind::score::{Score, Verdict};
-use plumbline_blind::{mix, table};
+use plumbline_blind::{mix, table, words};
 use plumbline_gap::Options;
 
 #[path = "../judge/mod.rs"]
@@ -64,8 +65,8 @@ fn main() -> Result<(), AnyError> {
         .into_iter()
         .skip(arguments.first)
         .filter(|recipe| {
-            arguments.only.as_ref().is_none_or(|only| only.contains(&table::word(recipe.family)))
-                && arguments.plan.as_ref().is_none_or(|plan| *plan == table::word(recipe.design))
+            arguments.only.as_ref().is_none_or(|only| only.contains(&words::word(recipe.family)))
+                && arguments.plan.as_ref().is_none_or(|plan| *plan == words::word(recipe.design))
         })
         .collect();
     make_missing(&recipes, &folder)?;
@@ -160,8 +161,8 @@ fn list(answer: &Answer, verdict: &Result<Verdict, String>) {
     println!(
         "{:03} {} {}{}: {} → {said}",
         answer.case,
-        table::word(answer.family),
-        table::word(answer.design),
+        words::word(answer.family),
+        words::word(answer.design),
         if answer.dirt.is_empty() { "" } else { " dirt" },
         hidden.join(", ")
     );

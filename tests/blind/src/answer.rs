@@ -5,9 +5,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::case::Family;
 use crate::design::Design;
 use crate::error::BlindError;
+use crate::recipe::Family;
 
 /// What was hidden in a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

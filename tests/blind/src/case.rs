@@ -17,6 +17,7 @@ use crate::design::{Design, Planner};
 use crate::error::BlindError;
 use crate::measure::{residual_m, sigma_m, size_sigmas};
 use crate::mix::SIZES;
+use crate::recipe::{Family, Recipe};
 use crate::secret::{Kind, Secret};
 use crate::stage::{Cell, Met, Stage};
 
@@ -34,41 +35,6 @@ const DIRT_SIGMAS: f64 = 0.2;
 const USUAL_CHANCES: [f64; 7] = [0.5; 7];
 /// Draws before a case is given up.
 const DRAWS: usize = 24;
-
-/// What kind of case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Family {
-    /// Nothing is hidden.
-    Null,
-    /// One effect.
-    Single,
-    /// Two.
-    Pair,
-    /// Three.
-    Triple,
-    /// Something that the library does not have.
-    OffLibrary,
-}
-
-/// What a case shall be.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Recipe {
-    /// Its number.
-    pub number: usize,
-    /// What kind of case.
-    pub family: Family,
-    /// Which plan of touches.
-    pub design: Design,
-    /// Whether small things are wrong, too.
-    pub dirt: bool,
-    /// Wanted size of each effect, in sigmas.
-    pub size_sigmas: f64,
-    /// The kind that it must be, where that was asked for.
-    pub kind: Option<Kind>,
-    /// Of everything drawn by chance.
-    pub seed: u64,
-}
 
 /// A case: what was measured, and what nobody may read who is judged by it.
 pub struct Case {

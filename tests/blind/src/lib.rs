@@ -5,6 +5,7 @@
 //! - [`secret`]: what can be hidden.
 //! - [`world`], [`stage`]: the physics, touch by touch.
 //! - [`design`]: plans of touches.
+//! - [`recipe`], [`mix`]: which cases shall be made.
 //! - [`case`]: cases drawn by chance, their sessions and their answers.
 //! - [`score`], [`table`]: who found what.
 
@@ -16,10 +17,12 @@ mod error;
 mod heat;
 pub mod measure;
 pub mod mix;
+pub mod recipe;
 pub mod score;
 pub mod secret;
 pub mod stage;
 pub mod table;
+pub mod words;
 pub mod world;
 
 pub use error::BlindError;

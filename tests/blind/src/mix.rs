@@ -3,8 +3,8 @@
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
-use crate::case::{Family, Recipe};
 use crate::design::Design;
+use crate::recipe::{Family, Recipe};
 use crate::secret::Kind;
 
 /// Sizes of single effects, in sigmas.

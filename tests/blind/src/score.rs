@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::answer::{Answer, Hidden};
-use crate::case::Family;
+use crate::recipe::Family;
 
 /// A name that is stated with more than this is confident.
 const CONFIDENT: f64 = 0.8;
@@ -161,7 +161,7 @@ impl Score {
         self.cases += 1;
         self.seconds.extend(verdict.seconds);
         self.count_names(answer, verdict);
-        let plan = crate::table::word(answer.design);
+        let plan = crate::words::word(answer.design);
         match answer.family {
             Family::Null => {
                 self.null_named[usize::from(!answer.dirt.is_empty())].count(verdict.names());
@@ -169,7 +169,7 @@ impl Score {
             }
             Family::Single => self.count_single(answer, verdict, &plan),
             Family::Pair | Family::Triple => {
-                let key = (crate::table::word(answer.family), plan);
+                let key = (crate::words::word(answer.family), plan);
                 self.several.entry(key).or_default().count(&answer.hidden, verdict);
                 self.closures.extend(verdict.closure());
             }
@@ -205,7 +205,7 @@ impl Score {
 
     fn count_single(&mut self, answer: &Answer, verdict: &Verdict, plan: &str) {
         let Some(size) = answer.hidden.first().map(|hidden| hidden.size_sigmas) else { return };
-        let key = (plan.to_owned(), crate::table::nearest_size(size));
+        let key = (plan.to_owned(), crate::words::nearest_size(size));
         self.singles.entry(key).or_default().count(&answer.hidden, verdict);
         if size >= VISIBLE {
             self.singles_visible.entry(plan.to_owned()).or_default().count(&answer.hidden, verdict);

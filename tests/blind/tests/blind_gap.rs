@@ -6,8 +6,9 @@ mod judge;
 
 use plumbline_blind::answer::Answer;
 use plumbline_blind::bench::Bench;
-use plumbline_blind::case::{self, Family, Recipe};
+use plumbline_blind::case;
 use plumbline_blind::design::{Design, Planner};
+use plumbline_blind::recipe::{Family, Recipe};
 use plumbline_blind::score::{Score, Share};
 use plumbline_blind::secret::Kind;
 use plumbline_blind::table;

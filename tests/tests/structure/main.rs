@@ -2,6 +2,9 @@
 
 mod files;
 mod markdown;
+mod modules;
+mod rooms;
+mod shared;
 mod workspace;
 
 use std::collections::BTreeSet;
@@ -117,8 +120,13 @@ fn nobody_but_judges_reads_what_the_twin_hides() {
 #[test]
 fn one_place_writes_files() {
     // Each with a reason of its own: the writer itself; lines that are added to a file as things
-    // happen; a probe of whether a folder can be written to, with nothing in it.
-    let writers = ["core/model/src/files/", "core/engine/src/journal.rs", "core/engine/src/doctor.rs"];
+    // happen; a probe of whether a folder can be written to, with nothing in it; what tests count.
+    let writers = [
+        "core/model/src/files/",
+        "core/engine/src/journal.rs",
+        "core/engine/src/doctor.rs",
+        "core/model/src/measured_data.rs",
+    ];
     // Put together here, so that this file does not contain them itself.
     let ways = ["fs::wr", "File::cr", "File::op", "OpenO"]
         .iter()
@@ -129,8 +137,10 @@ fn one_place_writes_files() {
     for (name, text) in tracked_text_files() {
         let in_program =
             ["core/", "app/", "widgets/"].iter().any(|part| name.starts_with(part)) && name.contains("/src/");
-        let file = name.rsplit('/').next().unwrap_or_default();
-        if !in_program || !name.ends_with(".rs") || file.contains("tests") || file.starts_with("laws") {
+        let is_test = name
+            .split_once("/src/")
+            .is_some_and(|(_, below)| ["tests", "laws"].iter().any(|t| below.contains(t)));
+        if !in_program || !name.ends_with(".rs") || is_test {
             continue;
         }
         let program = text.split("#[cfg(test)]").next().unwrap_or_default();

@@ -4,9 +4,8 @@
 mod chrome;
 mod input;
 mod pixels;
-mod view_state;
 
-pub use view_state::{ImageTransform, ViewState};
+pub use crate::view_state::{ImageTransform, ViewState};
 
 use egui::{Color32, Rect, Response, Sense, Ui, Vec2, WidgetInfo, pos2};
 

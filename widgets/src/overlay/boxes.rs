@@ -2,8 +2,8 @@
 
 use egui::{Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, TextStyle, Vec2, vec2};
 
-use crate::image_view::ImageTransform;
 use crate::theme::{ON_IMAGE, RIM, size};
+use crate::view_state::ImageTransform;
 
 /// How much a box is to be seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

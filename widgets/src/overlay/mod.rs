@@ -8,8 +8,8 @@ pub(crate) use paint::arrow;
 
 use egui::{Align2, Color32, Painter, Rect, pos2};
 
-use crate::image_view::ImageTransform;
 use crate::theme::{Role, Tokens};
+use crate::view_state::ImageTransform;
 
 /// The color of a mark: a meaning, or a color of its own (from a color map).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,8 +6,8 @@ use egui::{
 };
 
 use super::{Mark, PointShape};
-use crate::image_view::ImageTransform;
 use crate::theme::{ON_IMAGE, RIM, Tokens, size};
+use crate::view_state::ImageTransform;
 
 pub(super) fn marks(marks: &[Mark], painter: &Painter, transform: &ImageTransform) {
     let pen = Pen { painter, transform, tokens: &ON_IMAGE };

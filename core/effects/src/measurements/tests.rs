@@ -16,10 +16,7 @@ fn measured(folder: &str) -> Option<(Session, Rig)> {
 
 #[test]
 fn without_effects_touches_are_predicted_as_the_model_does() {
-    let Some((session, rig)) = measured("nico-touch/touch-245") else {
-        eprintln!("skipped: the measured touches are not on this machine");
-        return;
-    };
+    let Some((session, rig)) = measured("nico-touch/touch-245") else { return };
     let nominal = predict_session(&session, &rig, None).expect("predictable");
     let screen = session.manifest.touchscreen.clone().unwrap_or_else(|| rig.touchscreen.clone());
     let sessions = [("touches".to_owned(), session)];
@@ -39,10 +36,7 @@ fn without_effects_touches_are_predicted_as_the_model_does() {
 
 #[test]
 fn without_effects_the_eyes_estimate_the_known_place() {
-    let Some((session, rig)) = measured("nico-vision/grid-z5") else {
-        eprintln!("skipped: the measured grid is not on this machine");
-        return;
-    };
+    let Some((session, rig)) = measured("nico-vision/grid-z5") else { return };
     let sessions = [("grid".to_owned(), session)];
     let measurements = Measurements::of_sessions(&sessions, &rig).expect("usable");
     let assumed = Assumed::nominal(&measurements);
@@ -60,10 +54,7 @@ fn without_effects_the_eyes_estimate_the_known_place() {
 
 #[test]
 fn tangents_have_a_column_for_every_parameter() {
-    let Some((session, rig)) = measured("nico-touch/touch-245") else {
-        eprintln!("skipped: the measured touches are not on this machine");
-        return;
-    };
+    let Some((session, rig)) = measured("nico-touch/touch-245") else { return };
     let sessions = [("touches".to_owned(), session)];
     let measurements = Measurements::of_sessions(&sessions, &rig).expect("usable");
     let arm = measurements.apparatuses[0].arm.as_ref().expect("touches have an arm");

@@ -58,6 +58,9 @@ impl Exchange {
             return self.note_dead_line();
         }
         self.read_singles(&singles[asked..], deadline, &mut open)?;
+        if Instant::now() >= deadline {
+            self.ask_one_more(&singles, &mut open)?;
+        }
         for _ in 1..self.bus.timing().attempts {
             for i in std::mem::take(&mut open) {
                 if Instant::now() >= deadline || !self.slots[i].in_use() {
@@ -82,6 +85,20 @@ impl Exchange {
         self.note_silence();
         let turn = self.turn;
         Ok(self.slots.iter().all(|slot| !slot.in_use() || slot.read_in == turn))
+    }
+
+    /// However slow the line is, one of those that gave no answer has its turn in each cycle, who was
+    /// read longest ago first: else nobody would ever be asked for itself, and a silent one that cuts
+    /// off the bulk read never be noticed.
+    fn ask_one_more(&mut self, singles: &[usize], open: &mut Vec<usize>) -> Result<(), BusError> {
+        let missed = singles.iter().copied().filter(|i| self.slots[*i].missed > 0);
+        let rest = open.iter().copied().chain(missed).filter(|i| self.slots[*i].asked_in != self.turn);
+        let next = rest.min_by_key(|i| (self.slots[*i].read_in, self.slots[*i].asked_in));
+        if let Some(i) = next {
+            open.retain(|other| *other != i);
+            self.read_one(i, Instant::now() + FIRST_ATTEMPT, open)?;
+        }
+        Ok(())
     }
 
     /// Who is read singly: first those that answer, each cycle beginning with another, so that who is
@@ -141,9 +158,11 @@ impl Exchange {
                 Err(_) => open.push(*i),
             }
         }
-        // The first of them is who kept the others waiting: they are asked before it.
+        // The first of them is who kept the others waiting: they are asked before it. But whoever was
+        // not reached for longest comes first, or where time is short its turn would never come.
         if open.len() > first_open {
             open[first_open..].rotate_left(1);
+            open[first_open..].sort_by_key(|i| self.slots[*i].read_in);
         }
         Ok(())
     }

@@ -19,6 +19,15 @@ pub(super) fn of(slot: &Slot, gate: &Gate) -> Option<String> {
             ),
         });
     }
+    if slot.is_overdue() {
+        return Some(match slot.reading.read_at {
+            Some(at) => format!(
+                "servo {id} was not read for {:.0} s, where its joint is, is not known: this computer or the servo line does not keep up; close other programs",
+                at.elapsed().as_secs_f64()
+            ),
+            None => format!("servo {id} has not been read yet"),
+        });
+    }
     if slot.torque_lost {
         return Some(format!(
             "servo {id} lost its torque: its power was cut, or it was overloaded or too hot; support the joint, then switch torque on"

@@ -14,6 +14,8 @@ use crate::dynamixel::{FoundServo, Status, Ticks};
 /// Where a joint was this long ago tells which side of the seam it is on: the fastest servo needs
 /// more than 0.4 s for half a turn.
 const NEAR: Duration = Duration::from_millis(300);
+/// An angle read longer ago than this says no more where the joint is.
+const KNOWN_FOR: Duration = Duration::from_secs(1);
 /// Less force than this share of the stall torque is none.
 const NO_FORCE: f64 = 0.02;
 
@@ -117,9 +119,15 @@ impl Slot {
         matches!(self.identity, Identity::Barred(_))
     }
 
-    /// Whether its angle is known: read, and not silent since.
+    /// Whether its angle is known: read a moment ago, and not silent since.
     pub fn is_known(&self) -> bool {
-        self.in_use() && self.reading.angle_rad.is_some()
+        self.in_use() && self.reading.angle_rad.is_some() && !self.is_overdue()
+    }
+
+    /// Whether it was not read for so long that nothing rests on its angle, though it is not known to
+    /// be silent: the line, or this machine, does not get around to it.
+    pub fn is_overdue(&self) -> bool {
+        self.silence() >= KNOWN_FOR
     }
 
     /// Time since the last answer; long before the first.

@@ -1,6 +1,6 @@
 //! Answers that are late, garbled, cut, missing, echoed, or of somebody else; lines that break.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use plumbline_hardware::dynamixel::{FaultKind, Item, open_port};
 use plumbline_hardware::joints::{ArmDriver, ArmOptions, HoldReason, Motion, MoveOutcome, Refusal};
@@ -66,6 +66,30 @@ fn an_adapter_that_echoes_is_noticed_and_does_no_harm() {
     assert!(matches!(run(&driver, pan, 0.1, 0.5), MoveOutcome::Arrived { .. }));
     let counts = driver.state().bus.counts.clone();
     assert!(counts.echoes > 100, "{counts:?}");
+}
+
+/// On a slow line (a busy machine, an adapter that collects bytes) a cycle is over before everybody
+/// behind the silent servo was asked: its turn comes nevertheless, and nobody else is blamed.
+#[test]
+fn a_silent_servo_is_named_on_a_slow_line_too() {
+    for pause in [Duration::from_millis(2), Duration::from_millis(5)] {
+        let (rig, chain, driver) = ready();
+        let elbow = joint(&rig, "r_elbow_y");
+        for servo in rig.servos.iter().filter(|servo| servo.joint != elbow) {
+            chain.fault(servo.id, Fault::Late(pause), u32::MAX);
+        }
+        chain.fault(id_of(&rig, elbow), Fault::Silent, u32::MAX);
+        let cut = Instant::now();
+        await_state(&driver, "an elbow that is not known", |s| s.unknown.contains(&elbow));
+        let took = cut.elapsed();
+        assert!(took < Duration::from_millis(1500), "{pause:?} per answer: {took:?}");
+        let state = await_state(&driver, "words for it", |s| {
+            let elbow = s.joints.iter().find(|j| j.joint == elbow).expect("a joint");
+            elbow.problem.as_ref().is_some_and(|p| p.contains("does not answer and is left out"))
+        });
+        assert!(state.joints.iter().all(|j| j.joint == elbow || !j.let_go), "nobody else is blamed");
+        await_state(&driver, "readings of everybody else", |s| s.unknown.to_vec() == [elbow]);
+    }
 }
 
 #[test]

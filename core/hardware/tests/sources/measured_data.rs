@@ -6,18 +6,9 @@ use plumbline_hardware::{FolderSource, PairFolder, Replay, Report, StereoSource}
 
 use crate::world::collect;
 
-/// A folder of the measured data, or why there is none.
+/// A folder of the measured data, if it is at hand.
 fn measured(name: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("PLUMBLINE_DATA").map_or_else(
-        || PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data"),
-        PathBuf::from,
-    );
-    let folder = root.join(name);
-    if !folder.is_dir() {
-        eprintln!("skipped: {name} is not at hand; set PLUMBLINE_DATA to the folder of measured data");
-        return None;
-    }
-    Some(folder)
+    plumbline_model::measured_data::folder(name).ok()
 }
 
 #[test]

@@ -1,8 +1,6 @@
 //! Eyes and calibrations made up for the tests. Every number is invented.
 #![allow(dead_code, reason = "each test program uses its own part")]
 
-use std::path::PathBuf;
-
 use nalgebra::{DMatrix, Vector3};
 use plumbline_model::camera::{Camera, CameraModel, Fisheye, Pinhole};
 use plumbline_model::{
@@ -137,10 +135,4 @@ pub fn calibration() -> StereoCalibration {
             source: "a folder: left/*.png, right/*.png".to_owned(),
         }),
     }
-}
-
-/// The folder of measured data, if it is there.
-pub fn measured_data() -> Option<PathBuf> {
-    let beside = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    std::env::var_os("PLUMBLINE_DATA").map(PathBuf::from).or(Some(beside)).filter(|path| path.is_dir())
 }

@@ -18,7 +18,7 @@ fn painter() -> Option<SetPainter> {
     match SetPainter::new(EyeOptions::default()) {
         Ok(painter) => Some(painter),
         Err(error) => {
-            eprintln!("skipped: {error}");
+            plumbline_model::measured_data::left_out(error);
             None
         }
     }

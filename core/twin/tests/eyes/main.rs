@@ -19,7 +19,7 @@ fn renderer() -> Option<EyeRenderer> {
     match EyeRenderer::new(EyeOptions::default()) {
         Ok(renderer) => Some(renderer),
         Err(RenderError::NoAdapter) => {
-            eprintln!("skipped: no Vulkan device on this machine");
+            plumbline_model::measured_data::left_out("no Vulkan device on this machine");
             None
         }
         Err(error) => panic!("{error}"),

@@ -115,7 +115,8 @@ fn problems_line(ui: &mut Ui, robot: &RobotView) {
     let mut with = robot.joints.iter().filter_map(|joint| Some((joint, joint.problem.as_ref()?)));
     let Some((joint, problem)) = with.next() else {
         let all = format::count(robot.joints.len(), "joint");
-        ui.label(theme::small(ui, format!("{all} without a problem")));
+        let how = if robot.connection.is_connected() { "without a problem" } else { "as last seen" };
+        ui.label(theme::small(ui, format!("{all} {how}")));
         return;
     };
     let more = match with.count() {
