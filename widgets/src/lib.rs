@@ -31,6 +31,7 @@ pub mod rail;
 pub mod residuals;
 pub mod scatter;
 pub mod scene3d;
+pub mod seen;
 pub mod table_map;
 pub mod texture;
 pub mod theme;
@@ -63,6 +64,7 @@ pub use rail::{RailStep, StepState};
 pub use residuals::{arrow_scale, residual_arrows};
 pub use scatter::{Scatter, ScatterSeries};
 pub use scene3d::{Scene, Scene3d, Scene3dResponse, SceneCamera};
+pub use seen::{Memo, Seen};
 pub use table_map::{
     BeforeAfter, Border, Outline, Place, PointsResponse, ScalarField, TableMap, TableMapResponse, TableMark,
     TablePoint, TableScene,

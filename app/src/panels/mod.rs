@@ -65,6 +65,7 @@ use plumbline_engine::{Exported, View};
 use plumbline_model::{Eye, StereoCalibration};
 use plumbline_widgets::colormap::Colormap;
 use plumbline_widgets::image_view::ViewState;
+use plumbline_widgets::seen::Seen;
 use plumbline_widgets::texture::TextureCache;
 
 use crate::window::{Outbox, Pane, Screen};
@@ -96,7 +97,7 @@ pub struct PanelState {
     /// Where the board has been.
     pub coverage: coverage::CountedCoverage,
     /// The proposal that was shown last.
-    pub proposal_seen: Option<usize>,
+    pub proposal_seen: Seen<StereoCalibration>,
     /// Which calibration is exported while there are two.
     pub exported: Exported,
     /// The robot.
@@ -130,7 +131,7 @@ impl Default for PanelState {
             chosen_eye: None,
             board: None,
             coverage: Default::default(),
-            proposal_seen: None,
+            proposal_seen: Seen::default(),
             exported: Exported::InUse,
             robot: RobotPanels::default(),
             twin: TwinPanels::default(),

@@ -14,6 +14,7 @@ use plumbline_engine::{
 };
 use plumbline_model::Eye;
 use plumbline_model::robot::JointIndex;
+use plumbline_widgets::Seen;
 
 use super::PlumblineWindow;
 use super::actions::Action;
@@ -426,7 +427,7 @@ impl PlumblineWindow {
     /// Opens the screen where the work goes on: judging once there is something to judge.
     pub(super) fn follow_the_work(&mut self) {
         let eyes = &self.view.eyes;
-        let now = eyes.proposal.as_ref().map(|proposal| Arc::as_ptr(&proposal.calibration) as usize);
+        let now = Seen::of_any(eyes.proposal.as_ref().map(|proposal| &proposal.calibration));
         if now.is_some() && now != self.panels.proposal_seen && self.settings.screen == Screen::Collect {
             self.settings.screen = Screen::Judge;
         }

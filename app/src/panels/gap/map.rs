@@ -7,6 +7,7 @@ use plumbline_engine::gap::finding::Residual;
 use plumbline_engine::view::ShownFinding;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format;
+use plumbline_widgets::seen::Seen;
 use plumbline_widgets::table_map::{BeforeAfter, Outline, Place, TableMap, TableMark, TableScene};
 use plumbline_widgets::theme::{self, Role, space};
 
@@ -142,24 +143,16 @@ fn plane(error_m: [f64; 3]) -> f64 {
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let what = "The map then shows how far measured and predicted places lie apart, before and after.";
     let Some(shown) = finding(ui, cx, what) else { return };
-    let key = Arc::as_ptr(&shown) as usize;
-    let drawn = match &cx.state.gap.map {
-        Some((of, drawn)) if *of == key => drawn.clone(),
-        _ => {
-            let touched = shown
-                .finding
-                .comparison
-                .kinds
-                .iter()
-                .any(|kind| kind.what == plumbline_engine::effects::measurements::What::Touch);
-            let corners = cx.view.gap.rig.as_ref().filter(|_| touched).map(|rig| {
+    let drawn = cx.state.gap.map.get(Seen::of(&shown), || {
+        let kinds = &shown.finding.comparison.kinds;
+        let touched =
+            kinds.iter().any(|kind| kind.what == plumbline_engine::effects::measurements::What::Touch);
+        let corners =
+            cx.view.gap.rig.as_ref().filter(|_| touched).map(|rig| {
                 rig.touchscreen.corners().map(|corner| [corner.coords.x, corner.coords.y]).to_vec()
             });
-            let drawn = Arc::new(Drawn::of(&shown, corners.unwrap_or_default()));
-            cx.state.gap.map = Some((key, drawn.clone()));
-            drawn
-        }
-    };
+        Drawn::of(&shown, corners.unwrap_or_default())
+    });
     padded(ui, |ui| {
         ui.horizontal(|ui| {
             let options = [(Errors::Before, "Before"), (Errors::After, "After"), (Errors::Both, "Both")];

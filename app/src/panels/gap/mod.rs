@@ -22,6 +22,7 @@ use plumbline_engine::view::{GapView, JobState, ShownFinding};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::glyph::{self, Glyph};
 use plumbline_widgets::theme::{self, Role};
+use plumbline_widgets::{Memo, Seen};
 
 use super::{PanelContext, padded};
 use crate::window::{Action, GapAction, Pane};
@@ -43,8 +44,8 @@ pub struct GapPanels {
     of: String,
     /// Whether the search ran in the last frame.
     pub searching_seen: bool,
-    map: Option<(usize, Arc<map::Drawn>)>,
-    scatter: Option<(usize, Arc<shown::Points>)>,
+    map: Memo<Seen<ShownFinding>, map::Drawn>,
+    scatter: Memo<(Seen<ShownFinding>, usize, shown::Along), shown::Points>,
 }
 
 /// Draws one of the panes of this step.

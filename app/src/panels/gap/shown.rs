@@ -10,6 +10,7 @@ use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::intervals::{IntervalRow, Intervals, Level};
 use plumbline_widgets::scatter::{Scatter, ScatterSeries};
+use plumbline_widgets::seen::Seen;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::{action_button, finding, padded, words};
@@ -152,16 +153,9 @@ fn against(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &Arc<ShownFinding>) {
         choice(ui, "Part of the residual", &mut cx.state.gap.along, &options);
     });
     cx.state.gap.covariate = Some(chosen);
-    let key =
-        (Arc::as_ptr(shown) as usize).wrapping_mul(31).wrapping_add(chosen * 4 + cx.state.gap.along as usize);
-    let points = match &cx.state.gap.scatter {
-        Some((of, points)) if *of == key => points.clone(),
-        _ => {
-            let points = Arc::new(points(finding, chosen, cx.state.gap.along as usize));
-            cx.state.gap.scatter = Some((key, points.clone()));
-            points
-        }
-    };
+    let along = cx.state.gap.along;
+    let key = (Seen::of(shown), chosen, along);
+    let points = cx.state.gap.scatter.get(key, || points(finding, chosen, along as usize));
     Scatter::new("Residual", &points.name, &points.series, Quantity::Length)
         .size(vec2(ui.available_width(), 190.0))
         .show(ui);

@@ -9,6 +9,7 @@ use plumbline_widgets::buttons::choice;
 use plumbline_widgets::colormap::{ColorScale, Colormap};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format::{self, Quantity};
+use plumbline_widgets::seen::Seen;
 use plumbline_widgets::table_map::{BeforeAfter, Border, Outline, Place, ScalarField, TableMap, TableScene};
 use plumbline_widgets::theme::{self, Role, space};
 
@@ -205,8 +206,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         .show(ui);
         return;
     };
-    let key = std::sync::Arc::as_ptr(map) as usize;
-    let drawn = cx.state.models.map.get(key, || Drawn::of(map));
+    let drawn = cx.state.models.map.get(Seen::of(map), || Drawn::of(map));
     padded(ui, |ui| {
         header(ui, cx, models);
         // A border is nothing to worry about; that there is none is.

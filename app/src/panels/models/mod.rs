@@ -17,6 +17,8 @@ use std::sync::Arc;
 
 use egui::{Button, Response, Ui};
 use plumbline_engine::correction::Method;
+use plumbline_engine::view::ModelMap;
+use plumbline_widgets::{Memo, Seen};
 
 use super::PanelContext;
 use crate::window::{Action, ModelsAction, Pane};
@@ -38,8 +40,8 @@ pub struct ModelsPanels {
     pub tables: tables::TablesPanel,
     /// Whether training ran in the last frame.
     pub training_seen: bool,
-    map: Memo<map::Drawn>,
-    standing: Memo<verdict::Facts>,
+    map: Memo<Seen<ModelMap>, map::Drawn>,
+    standing: Memo<verdict::Basis, verdict::Facts>,
 }
 
 impl Default for ModelsPanels {
@@ -68,39 +70,10 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
     }
 }
 
-/// What was made from a snapshot, kept as long as the snapshot stays the same.
-#[derive(Debug)]
-struct Memo<T> {
-    of: usize,
-    made: Option<Arc<T>>,
-}
-
-impl<T> Default for Memo<T> {
-    fn default() -> Self {
-        Self { of: 0, made: None }
-    }
-}
-
-impl<T> Memo<T> {
-    /// The keys are addresses of what it is made from; whoever made it holds them, so that none is
-    /// used again for something else meanwhile.
-    fn get(&mut self, of: usize, make: impl FnOnce() -> T) -> Arc<T> {
-        match &self.made {
-            Some(made) if self.of == of => made.clone(),
-            _ => {
-                let made = Arc::new(make());
-                self.of = of;
-                self.made = Some(made.clone());
-                made
-            }
-        }
-    }
-}
-
 /// What is told about all methods.
 fn facts(cx: &mut PanelContext<'_>) -> Arc<verdict::Facts> {
     let models = &cx.view.models;
-    cx.state.models.standing.get(verdict::Facts::key(models), || verdict::Facts::of(models))
+    cx.state.models.standing.get(verdict::Basis::of(models), || verdict::Facts::of(models))
 }
 
 /// A button of one of the actions, with its reason where it cannot be pressed.

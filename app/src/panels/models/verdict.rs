@@ -1,12 +1,11 @@
 //! Which model is best, and whether that can be told.
 
-use std::sync::Arc;
-
 use plumbline_engine::correction::{
     Comparison, CorrectionModel, Errors, Method, Repeats, TouchData, distance_2d_m, spread_of_repeats,
 };
 use plumbline_engine::view::{MapTouch, ModelMap, ModelsView};
 use plumbline_widgets::format::{self, Quantity};
+use plumbline_widgets::seen::Seen;
 
 /// A method on touches that it was not trained on.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,16 +31,27 @@ pub struct Facts {
     pub noise: Option<Repeats>,
     /// A sentence per method that is not the best: whether it can be told apart.
     pub apart: Vec<String>,
-    // Held, so that their addresses stay theirs.
-    _of: Kept,
 }
 
-#[derive(Debug, Default)]
-struct Kept {
-    _comparison: Option<Arc<Comparison>>,
-    _data: Option<Arc<TouchData>>,
-    _map: Option<Arc<ModelMap>>,
-    _in_use: Option<Arc<CorrectionModel>>,
+/// What the facts are made from.
+#[derive(Debug, PartialEq)]
+pub struct Basis {
+    comparison: Seen<Comparison>,
+    data: Seen<TouchData>,
+    map: Seen<ModelMap>,
+    in_use: Seen<CorrectionModel>,
+}
+
+impl Basis {
+    /// As the view has it now.
+    pub fn of(models: &ModelsView) -> Self {
+        Self {
+            comparison: Seen::of_any(models.comparison.as_ref()),
+            data: Seen::of_any(models.data.as_ref().and_then(|data| data.as_ref().ok())),
+            map: Seen::of_any(models.map.as_ref()),
+            in_use: Seen::of_any(models.in_use.as_ref()),
+        }
+    }
 }
 
 impl Facts {
@@ -62,28 +72,7 @@ impl Facts {
             noise: data.and_then(|data| spread_of_repeats(data)),
             apart,
             judged,
-            _of: Kept {
-                _comparison: models.comparison.clone(),
-                _data: data.cloned(),
-                _map: models.map.clone(),
-                _in_use: models.in_use.clone(),
-            },
         }
-    }
-
-    /// Changes when what it is made from does.
-    pub fn key(models: &ModelsView) -> usize {
-        let comparison = models.comparison.as_ref().map_or(0, |c| Arc::as_ptr(c) as usize);
-        let data = match &models.data {
-            Some(Ok(data)) => Arc::as_ptr(data) as usize,
-            _ => 0,
-        };
-        let map = models.map.as_ref().map_or(0, |map| Arc::as_ptr(map) as usize);
-        let in_use = models.in_use.as_ref().map_or(0, |model| Arc::as_ptr(model) as usize);
-        // Sums of addresses of different things; rotated, so that two do not cancel.
-        [comparison, data, map, in_use]
-            .into_iter()
-            .fold(17, |key: usize, part| key.rotate_left(13).wrapping_mul(31).wrapping_add(part))
     }
 
     /// "M3 is best: 4.40 mm on touches that it had not seen, against 21.3 mm without a model."

@@ -8,11 +8,13 @@ mod points;
 use std::time::Instant;
 
 use egui::{Button, ScrollArea, Ui};
+use plumbline_engine::correction::tables::{HeightTable, YawTable};
 use plumbline_engine::view::TablesView;
 use plumbline_engine::{GraspTable, ModelsCommand, TablesCommand, View};
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::colormap::{ColorScale, Colormap};
 use plumbline_widgets::format::Quantity;
+use plumbline_widgets::seen::Seen;
 use plumbline_widgets::table_map::{Outline, Place, ScalarField, TableMap, TableScene};
 use plumbline_widgets::theme::{self, Role, space};
 
@@ -44,8 +46,8 @@ pub struct TablesPanel {
 struct Moved {
     point: usize,
     at_m: [f64; 2],
-    /// Address of the table that it was moved in.
-    of: usize,
+    /// The table that it was moved in.
+    of: SeenTable,
     when: Instant,
 }
 
@@ -183,18 +185,26 @@ fn quantity(table: GraspTable) -> Quantity {
     }
 }
 
-/// Address of the table, which changes with every change of it.
-fn address(tables: &TablesView, table: GraspTable) -> usize {
-    match table {
-        GraspTable::Height => tables.height.as_ref().map_or(0, |t| std::sync::Arc::as_ptr(t) as usize),
-        GraspTable::Yaw => tables.yaw.as_ref().map_or(0, |t| std::sync::Arc::as_ptr(t) as usize),
+/// A table as it was seen; every change of it makes another one.
+#[derive(Debug, PartialEq)]
+enum SeenTable {
+    Height(Seen<HeightTable>),
+    Yaw(Seen<YawTable>),
+}
+
+impl SeenTable {
+    fn of(tables: &TablesView, table: GraspTable) -> Self {
+        match table {
+            GraspTable::Height => Self::Height(Seen::of_any(tables.height.as_ref())),
+            GraspTable::Yaw => Self::Yaw(Seen::of_any(tables.yaw.as_ref())),
+        }
     }
 }
 
 fn forget_what_is_gone(cx: &mut PanelContext<'_>, tables: &TablesView, count: usize) {
     let panel = &mut cx.state.models.tables;
     panel.chosen = panel.chosen.filter(|point| *point < count);
-    let now = address(tables, panel.table);
+    let now = SeenTable::of(tables, panel.table);
     panel.moved = panel
         .moved
         .take()
@@ -224,7 +234,7 @@ fn map(ui: &mut Ui, cx: &mut PanelContext<'_>, tables: &TablesView, rows: &[Poin
     if let Some((point, at_m)) = shown.points.moved
         && let Some(row) = rows.get(point)
     {
-        let of = address(tables, panel.table);
+        let of = SeenTable::of(tables, panel.table);
         panel.moved = Some(Moved { point, at_m, of, when: Instant::now() });
         panel.draft = None;
         let at_m = [at_m[0], at_m[1], row.at_m[2]];
