@@ -39,7 +39,7 @@ pub mod touch_pattern;
 
 pub use bars::{BarRef, BarsResponse, PairBar, PairBars};
 pub use box_canvas::{BoxCanvas, CanvasBox, CanvasResponse, CanvasState, Placed};
-pub use buttons::{ArmState, choice, primary_button, stop_button, stop_keys, stop_pressed};
+pub use buttons::{ArmState, accent_button, choice, primary_button, stop_button, stop_keys, stop_pressed};
 pub use colormap::{ColorScale, Colormap, Orientation, ScaleBar};
 pub use coverage::{Coverage, coverage_view};
 pub use empty::{EmptyState, Message, empty_state};

@@ -12,8 +12,9 @@ use std::time::Duration;
 use clap::Args;
 use plumbline_model::duration;
 
+use crate::operator::{Action, Screen};
 use crate::window::renderer::RendererChoice;
-use crate::window::{Action, LaunchOptions, Screen, ScriptStep, ThemeChoice, launch};
+use crate::window::{LaunchOptions, ScriptStep, ThemeChoice, launch};
 
 /// A script waits no longer than this between two steps.
 const LONGEST_WAIT: Duration = Duration::from_secs(24 * 3600);

@@ -32,22 +32,19 @@ mod verdict_line;
 pub use board::BoardDraft;
 pub use gap::GapErrors;
 pub use gap::GapPanels;
-pub(crate) use gap::{
-    add_label as gap_add_label, is_of_choice as gap_is_of_choice, show_inspector as show_gap_inspector,
-    touch_label as gap_touch_label,
-};
+pub(crate) use gap::show_inspector as show_gap_inspector;
 pub use labels::LabelsPanels;
 pub(crate) use labels::show_inspector as show_labels_inspector;
+pub(crate) use models::show_inspector as show_models_inspector;
 pub use models::{MapErrors, ModelsPanels};
-pub(crate) use models::{Standing, show_inspector as show_models_inspector, standing};
-pub(crate) use models::{arrow_scale, clock as models_clock, map_entry};
+pub(crate) use models::{arrow_scale, map_entry};
 pub use objects::ObjectsPanels;
 pub(crate) use objects::show_inspector as show_objects_inspector;
 pub(crate) use picture::key as picture_key;
 pub use probe::{ProbeState, probe_readout};
 pub(crate) use residuals::chosen_fit;
 pub use robot::RobotPanels;
-pub(crate) use robot::{move_sentence, moved_name, show_inspector as show_robot_inspector};
+pub(crate) use robot::show_inspector as show_robot_inspector;
 pub use scores::ScoresPanels;
 pub(crate) use scores::show_inspector as show_scores_inspector;
 pub(crate) use source_state::source_age;
@@ -68,7 +65,7 @@ use plumbline_widgets::image_view::ViewState;
 use plumbline_widgets::seen::Seen;
 use plumbline_widgets::texture::TextureCache;
 
-use crate::window::{Outbox, Pane, Screen};
+use crate::operator::{Outbox, Pane, Screen};
 
 /// How the panels are looked at: kept from frame to frame, never saved.
 pub struct PanelState {

@@ -17,22 +17,20 @@ use plumbline_model::robot::JointIndex;
 use plumbline_widgets::Seen;
 
 use super::PlumblineWindow;
-use super::actions::Action;
-use super::ask::{Ask, Asked};
-use super::detect_actions::DetectAction;
+use super::arrangement::default_arrangement;
+use super::ask::Ask;
 use super::dialogs::{Answer, Question};
 use super::frame_time::{FrameTimes, resident_mb};
-use super::gap_actions::{self, GapAction};
 use super::jogging::RENEW;
-use super::labels_actions::{LabelsAction, ScoresAction};
-use super::models_actions::ModelsAction;
-use super::outbox::Outbox;
-use super::robot_actions::RobotAction;
 use super::saving::save_picture;
 use super::script::ScriptStep;
 use super::settings::ThemeChoice;
-use super::steps::{Pane, Screen, default_arrangement};
-use super::touch_actions::{Preset, TouchAction};
+use super::sheet::Asked;
+use crate::operator::guidance::guidance;
+use crate::operator::{
+    Action, DetectAction, GapAction, LabelsAction, ModelsAction, Outbox, Pane, Preset, RobotAction,
+    ScoresAction, Screen, TouchAction, gap_plan,
+};
 
 /// A message of the window itself.
 pub(super) fn warning(text: impl Into<String>) -> Command {
@@ -101,7 +99,7 @@ impl PlumblineWindow {
                 self.panels.touch.window_open = !self.panels.touch.window_open;
             }
             Action::Next => {
-                if let Some(next) = super::guidance::guidance(&self.view, self.settings.screen).next {
+                if let Some(next) = guidance(&self.view, self.settings.screen).next {
                     self.act(ctx, next.action);
                 }
             }
@@ -175,7 +173,7 @@ impl PlumblineWindow {
             GapAction::ReportHtml => self.ask_for(ctx, Question::GapReport { pdf: false }),
             GapAction::ReportPdf => self.ask_for(ctx, Question::GapReport { pdf: true }),
             GapAction::NextExperiment => {
-                if let Some(plan) = gap_actions::plan(&self.view) {
+                if let Some(plan) = gap_plan(&self.view) {
                     self.settings.screen = Screen::Touch;
                     self.send(plan);
                 }

@@ -3,46 +3,36 @@
 //! Once per frame it takes the engine's newest view, draws it, and hands over what the operator
 //! asked for. It computes nothing, opens no file and waits for nothing.
 
-mod actions;
 mod apply;
+mod arrangement;
 mod ask;
 mod backend;
 mod connect;
-mod detect_actions;
 mod dialogs;
 mod drop;
 mod faults;
 mod frame_time;
 mod frame_times_overlay;
 mod gamepad;
-mod gap_actions;
-mod guidance;
 mod health;
 mod icon;
 mod inspector;
 mod jogging;
-mod labels_actions;
 mod launch;
 mod log_lines;
 mod log_panel;
-mod models_actions;
 mod notices;
-mod outbox;
 mod palette;
 mod rail;
 pub mod renderer;
-mod robot_actions;
 mod robot_lamps;
 mod saving;
 mod script;
 mod settings;
 mod sheet;
-mod shortcuts;
 mod source_menu;
 mod status_line;
-mod steps;
 mod tiles;
-mod touch_actions;
 mod touch_window;
 mod transport;
 mod world_menu;
@@ -55,28 +45,14 @@ use plumbline_engine::view::MotionState;
 use plumbline_engine::{JobId, Products, View};
 use plumbline_model::duration;
 
-pub use actions::{Action, format_name};
 pub use backend::{Backend, Stopper};
-pub use detect_actions::DetectAction;
-pub use gamepad::{GamepadState, STOP_BUTTONS};
-pub use gap_actions::GapAction;
-pub(crate) use gap_actions::plan as gap_plan;
-pub use guidance::{Verdict, capitalized, hint_text, other_board, verdict};
-pub(crate) use guidance::{done_of, minutes, wanted, what_moves};
-pub use labels_actions::{LabelsAction, ScoresAction};
 pub use launch::{LaunchOptions, launch};
 pub use log_lines::{LogStore, start as start_log};
-pub use models_actions::ModelsAction;
-pub use outbox::Outbox;
-pub use robot_actions::{MountAction, RobotAction, default_scenario};
 pub use script::ScriptStep;
 pub use settings::{ThemeChoice, WindowSettings};
-pub(crate) use source_menu::short_name as source_name;
-pub use steps::{Pane, Screen};
-pub use touch_actions::{Preset, TouchAction};
-pub(crate) use touch_actions::{is_under_way, screen_of, usual_area};
-pub use touch_window::{Monitor, TouchSurface, touch_surface, window_problem};
+pub use touch_window::{TouchSurface, touch_surface};
 
+use crate::operator::{Outbox, Screen, shortcuts};
 use crate::panels::PanelState;
 use ask::Ask;
 use dialogs::Dialogs;
@@ -354,11 +330,4 @@ impl eframe::App for PlumblineWindow {
         self.save_settings();
         self.write_frame_report();
     }
-}
-
-/// The one button that stands out.
-pub(crate) fn primary_button<'a>(ui: &egui::Ui, text: impl Into<String>) -> egui::Button<'a> {
-    let tokens = plumbline_widgets::theme::tokens(ui);
-    let style = plumbline_widgets::theme::strong_style(ui);
-    egui::Button::new(egui::RichText::new(text).text_style(style).color(tokens.on_accent)).fill(tokens.accent)
 }

@@ -11,8 +11,7 @@ use plumbline_engine::view::{Connection, MotionState, SourceStatus, StepState, T
 use plumbline_engine::{Command, View};
 use plumbline_model::{ClassIndex, PixelBox};
 
-use super::actions::Action;
-use super::steps::Pane;
+use crate::operator::{Action, Pane};
 use crate::panels::MapErrors;
 
 /// One thing to do.

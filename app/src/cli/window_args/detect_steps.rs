@@ -2,7 +2,8 @@
 
 use plumbline_engine::{DetectCommand, DetectorChoice};
 
-use crate::window::{Action, DetectAction, ScriptStep};
+use crate::operator::{Action, DetectAction};
+use crate::window::ScriptStep;
 
 type Step = Result<ScriptStep, String>;
 

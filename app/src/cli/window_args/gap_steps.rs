@@ -2,8 +2,9 @@
 
 use plumbline_engine::GapCommand;
 
+use crate::operator::{Action, GapAction, Pane, Screen};
 use crate::panels::GapErrors;
-use crate::window::{Action, GapAction, Pane, Screen, ScriptStep};
+use crate::window::ScriptStep;
 
 type Step = Result<ScriptStep, String>;
 

@@ -3,7 +3,8 @@
 use plumbline_engine::{ConfusionCell, LabelsCommand, ScoresCommand, SetPart};
 use plumbline_model::{ClassIndex, PixelBox};
 
-use crate::window::{Action, LabelsAction, Pane, ScoresAction, Screen, ScriptStep};
+use crate::operator::{Action, LabelsAction, Pane, ScoresAction, Screen};
+use crate::window::ScriptStep;
 
 type Step = Result<ScriptStep, String>;
 

@@ -2,7 +2,8 @@
 
 use plumbline_engine::{Command, Destination, RobotCommand, TwinCommand};
 
-use crate::window::{Action, MountAction, RobotAction, Screen, ScriptStep};
+use crate::operator::{Action, MountAction, RobotAction, Screen};
+use crate::window::ScriptStep;
 
 type Step = Result<ScriptStep, String>;
 

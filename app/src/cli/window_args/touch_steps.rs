@@ -3,8 +3,9 @@
 use plumbline_engine::correction::Method;
 use plumbline_engine::{Correction, TouchCommand};
 
+use crate::operator::{Action, ModelsAction, Pane, Preset, Screen, TouchAction};
 use crate::panels::MapErrors;
-use crate::window::{Action, ModelsAction, Pane, Preset, Screen, ScriptStep, TouchAction};
+use crate::window::ScriptStep;
 
 type Step = Result<ScriptStep, String>;
 

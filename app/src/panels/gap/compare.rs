@@ -9,10 +9,11 @@ use plumbline_widgets::glyph::Glyph;
 use plumbline_widgets::probability::{ShareRow, share_rows};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{action_button, is_of_choice, line, padded, state, words};
+use super::{action_button, line, padded, state};
+use crate::operator::words::clock;
+use crate::operator::words::gap as words;
+use crate::operator::{GapAction, is_of_choice};
 use crate::panels::PanelContext;
-use crate::panels::models_clock as clock;
-use crate::window::GapAction;
 
 /// Sessions that are seen without scrolling.
 const ROWS: usize = 5;

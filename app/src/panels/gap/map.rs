@@ -11,7 +11,8 @@ use plumbline_widgets::seen::Seen;
 use plumbline_widgets::table_map::{BeforeAfter, Outline, Place, TableMap, TableMark, TableScene};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{finding, padded, words};
+use super::{finding, padded};
+use crate::operator::words::gap as words;
 use crate::panels::PanelContext;
 use crate::panels::{arrow_scale, map_entry};
 

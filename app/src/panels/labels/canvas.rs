@@ -7,7 +7,7 @@ use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::theme::{self, space};
 
 use super::{PanelContext, action_button, color, drawn};
-use crate::window::{Action, LabelsAction};
+use crate::operator::{Action, LabelsAction};
 
 /// Height of the row of classes.
 const CLASSES_HEIGHT: f32 = 30.0;

@@ -11,9 +11,10 @@ use plumbline_widgets::intervals::{IntervalRow, Intervals, Level};
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::verdict::Facts;
-use super::{action_button, clock, facts};
+use super::{action_button, facts};
+use crate::operator::words::clock;
+use crate::operator::{Action, ModelsAction};
 use crate::panels::{PanelContext, padded};
-use crate::window::{Action, ModelsAction};
 
 /// The line of the spread of repeats. What it is an rms of stands beside means, so it says so.
 const REPEATS: &str = "repeats, rms";

@@ -10,9 +10,10 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, space};
 
-use super::{about, clock};
+use super::about;
+use crate::operator::Outbox;
+use crate::operator::words::clock;
 use crate::panels::PanelState;
-use crate::window::Outbox;
 
 /// What is known of the model that is shown.
 pub fn show(ui: &mut Ui, view: &View, _state: &mut PanelState, _outbox: &mut Outbox) {

@@ -11,7 +11,6 @@ mod verdict;
 pub use inspector::show as show_inspector;
 pub use map::Errors as MapErrors;
 pub(crate) use map::{arrow_scale, entry as map_entry};
-pub(crate) use verdict::{Standing, standing};
 
 use std::sync::Arc;
 
@@ -21,7 +20,7 @@ use plumbline_engine::view::ModelMap;
 use plumbline_widgets::{Memo, Seen};
 
 use super::PanelContext;
-use crate::window::{Action, ModelsAction, Pane};
+use crate::operator::{Action, ModelsAction, Pane};
 
 /// How models are looked at: kept from frame to frame, never saved.
 #[derive(Debug)]
@@ -85,14 +84,6 @@ fn action_button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: ModelsAction, t
         cx.outbox.act(Action::Models(action));
     }
     button
-}
-
-/// "14:02", or the day before it when that is not today.
-pub(crate) fn clock(at: jiff::Timestamp) -> String {
-    let zone = jiff::tz::TimeZone::system();
-    let (at, now) = (at.to_zoned(zone.clone()), jiff::Timestamp::now().to_zoned(zone));
-    let format = if at.date() == now.date() { "%H:%M" } else { "%-d %b %Y, %H:%M" };
-    at.strftime(format).to_string()
 }
 
 /// What the network of a method looks like as published, or what it is instead.

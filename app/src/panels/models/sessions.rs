@@ -10,9 +10,10 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{action_button, clock};
+use super::action_button;
+use crate::operator::ModelsAction;
+use crate::operator::words::clock;
 use crate::panels::PanelContext;
-use crate::window::ModelsAction;
 
 /// Sessions that are seen without scrolling.
 const ROWS: usize = 4;

@@ -12,7 +12,7 @@ use plumbline_widgets::texture::{Picture, Sampling};
 use plumbline_widgets::theme;
 
 use super::PanelContext;
-use crate::window::{Action, ScoresAction};
+use crate::operator::{Action, ScoresAction};
 
 const WIDE: f32 = 176.0;
 

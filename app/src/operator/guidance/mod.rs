@@ -4,18 +4,18 @@ mod detect;
 mod gap;
 mod models;
 mod robot;
+mod standing;
 mod touch;
 
+pub use gap::is_of_choice;
 pub use touch::{done_of, minutes, wanted, what_moves};
 
 use plumbline_engine::View;
 use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
 use plumbline_widgets::format;
 
-use super::actions::Action;
-use super::faults;
-use super::robot_actions::RobotAction;
-use super::steps::Screen;
+use super::words::capitalized;
+use super::{Action, RobotAction, Screen, faults};
 
 /// The bottom line.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,7 +68,7 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
 }
 
 /// A part of the program has failed, and what starts it again.
-pub(super) fn failed_inside(view: &View, screen: Screen) -> Option<Guidance> {
+pub fn failed_inside(view: &View, screen: Screen) -> Option<Guidance> {
     let fault = faults::most_urgent(view, screen)?;
     let guidance = say(&*fault.meaning).warn();
     // Where it cannot be started again the sentence says what to do instead.
@@ -86,12 +86,6 @@ fn stopped(view: &View, screen: Screen) -> Option<Guidance> {
 
 fn say(sentence: impl Into<String>) -> Guidance {
     Guidance { sentence: capitalized(&sentence.into()), warning: false, next: None }
-}
-
-/// Reasons of errors begin small, because they often follow a colon.
-pub fn capitalized(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 impl Guidance {

@@ -1,17 +1,25 @@
 //! Everything that can be asked for by name: by a button, a shortcut or the command palette.
 
+mod detect;
+mod gap;
+mod labels;
+mod models;
+mod robot;
+mod touch;
+
+pub use detect::DetectAction;
+pub use gap::{GapAction, plan as gap_plan};
+pub use labels::{LabelsAction, ScoresAction};
+pub use models::ModelsAction;
+pub use robot::{MountAction, RobotAction, default_scenario};
+pub use touch::{Preset, TouchAction, is_under_way, needs_window, screen_of, usual_area};
+
 use std::borrow::Cow;
 
 use plumbline_engine::view::SourceStatus;
 use plumbline_engine::{ExportFormat, Exported, View, WatchedThread};
 
-use super::detect_actions::DetectAction;
-use super::gap_actions::GapAction;
-use super::labels_actions::{LabelsAction, ScoresAction};
-use super::models_actions::ModelsAction;
-use super::robot_actions::{MountAction, RobotAction};
-use super::steps::Screen;
-use super::touch_actions::TouchAction;
+use super::screens::Screen;
 
 /// One thing that the operator can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,11 +5,9 @@ use plumbline_engine::correction::Method;
 use plumbline_engine::view::StepState;
 use plumbline_widgets::format;
 
+use super::standing::{Standing, standing};
 use super::{Guidance, say};
-use crate::panels::{Standing, standing};
-use crate::window::actions::Action;
-use crate::window::models_actions::ModelsAction;
-use crate::window::steps::Screen;
+use crate::operator::{Action, ModelsAction, Screen};
 
 pub(super) fn models(view: &View) -> Guidance {
     let models = &view.models;

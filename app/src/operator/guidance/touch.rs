@@ -6,9 +6,7 @@ use plumbline_model::touch_plan::Purpose;
 use plumbline_widgets::format;
 
 use super::{Guidance, robot, say};
-use crate::window::actions::Action;
-use crate::window::steps::Screen;
-use crate::window::touch_actions::{Preset, TouchAction, is_under_way, needs_window};
+use crate::operator::{Action, Preset, Screen, TouchAction, is_under_way, needs_window};
 
 pub(super) fn touch(view: &View) -> Guidance {
     let touch = &view.touch;

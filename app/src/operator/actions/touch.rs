@@ -7,7 +7,7 @@ use plumbline_engine::{Command, TouchCommand, View};
 use plumbline_model::session::Touchscreen;
 use plumbline_model::touch_plan::{PlanOptions, TouchArea};
 
-use super::touch_window::window_problem;
+use crate::operator::touch_monitor::window_problem;
 
 /// Of touching the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

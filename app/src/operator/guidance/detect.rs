@@ -5,8 +5,7 @@ use plumbline_engine::view::LabelState;
 use plumbline_widgets::format;
 
 use super::{Guidance, say};
-use crate::window::actions::Action;
-use crate::window::labels_actions::{LabelsAction, ScoresAction};
+use crate::operator::{Action, LabelsAction, ScoresAction};
 
 pub(super) fn images(view: &View) -> Guidance {
     let labels = &view.labels;

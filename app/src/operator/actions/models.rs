@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use plumbline_engine::correction::Method;
 use plumbline_engine::{Command, GraspTable, ModelsCommand, View};
 
-use super::touch_actions::{Preset, TouchAction};
+use super::touch::{Preset, TouchAction};
 
 /// Of correction models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
