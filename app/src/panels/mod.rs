@@ -1,6 +1,7 @@
 //! What the tiles show. A panel draws a snapshot and says what the operator asked for; it keeps
 //! nothing but how it is looked at.
 
+pub mod arrows;
 mod blend;
 mod board;
 mod comparison;
@@ -30,14 +31,12 @@ mod twin;
 mod verdict_line;
 
 pub use board::BoardDraft;
-pub use gap::GapErrors;
 pub use gap::GapPanels;
 pub(crate) use gap::show_inspector as show_gap_inspector;
 pub use labels::LabelsPanels;
 pub(crate) use labels::show_inspector as show_labels_inspector;
+pub use models::ModelsPanels;
 pub(crate) use models::show_inspector as show_models_inspector;
-pub use models::{MapErrors, ModelsPanels};
-pub(crate) use models::{arrow_scale, map_entry};
 pub use objects::ObjectsPanels;
 pub(crate) use objects::show_inspector as show_objects_inspector;
 pub(crate) use picture::key as picture_key;

@@ -23,7 +23,7 @@ use super::dialogs::{Answer, Question};
 use super::frame_time::{FrameTimes, resident_mb};
 use super::jogging::RENEW;
 use super::saving::save_picture;
-use super::script::ScriptStep;
+use super::script_step::ScriptStep;
 use super::settings::ThemeChoice;
 use super::sheet::Asked;
 use crate::operator::guidance::guidance;
@@ -369,13 +369,13 @@ impl PlumblineWindow {
     pub(super) fn do_script_step(&mut self, ctx: &egui::Context, step: ScriptStep) {
         match step {
             ScriptStep::Act(action) => self.act(ctx, action),
-            ScriptStep::ChoosePair(index) => {
+            ScriptStep::Pair(index) => {
                 self.panels.chosen_pair = self.view.eyes.collected.get(index).map(|pair| pair.name.clone());
             }
             ScriptStep::Probe([u_px, v_px]) => {
                 self.panels.probe.pinned = Some(ProbePoint::Raw { eye: Eye::Left, u_px, v_px });
             }
-            ScriptStep::ChooseObject(name) => self.panels.objects.choose_class(&self.view, &name),
+            ScriptStep::Object(name) => self.panels.objects.choose_class(&self.view, &name),
             ScriptStep::DrawBox(class, area) => {
                 if let Some(shown) = &self.view.labels.shown {
                     let (image, edit) = (shown.name.clone(), BoxEdit::Add { class, area });
@@ -383,10 +383,10 @@ impl PlumblineWindow {
                 }
             }
             ScriptStep::ChooseBox(index) => self.panels.labels.canvas.chosen = Some(index),
-            ScriptStep::ShowPane(pane) => self.show_pane(self.settings.screen, pane),
-            ScriptStep::ShowErrors(errors) => self.panels.models.errors = errors,
-            ScriptStep::ShowGapErrors(errors) => self.panels.gap.errors = errors,
-            ScriptStep::PairsPerSecond(rate) => self.backend.send(SourceCommand::PairsPerSecond(rate).into()),
+            ScriptStep::Show(pane) => self.show_pane(self.settings.screen, pane),
+            ScriptStep::Errors(errors) => {
+                (self.panels.models.errors, self.panels.gap.errors) = (errors, errors)
+            }
             ScriptStep::Measure => {
                 self.frame_times = FrameTimes::default();
                 self.resident_before_mb = resident_mb();
@@ -398,7 +398,7 @@ impl PlumblineWindow {
                     self.send(RobotCommand::Preview(to).into());
                 }
             }
-            ScriptStep::ChooseJoint(name) => self.panels.robot.chosen_joint = self.joint_called(&name),
+            ScriptStep::Joint(name) => self.panels.robot.chosen_joint = self.joint_called(&name),
             ScriptStep::Wait(_) => {}
             ScriptStep::Picture(file) => {
                 self.script.waiting_for_picture.store(true, Ordering::Relaxed);

@@ -28,6 +28,7 @@ pub mod renderer;
 mod robot_lamps;
 mod saving;
 mod script;
+mod script_step;
 mod settings;
 mod sheet;
 mod source_menu;
@@ -48,7 +49,7 @@ use plumbline_model::duration;
 pub use backend::{Backend, Stopper};
 pub use launch::{LaunchOptions, launch};
 pub use log_lines::{LogStore, start as start_log};
-pub use script::ScriptStep;
+pub use script_step::ScriptStep;
 pub use settings::{ThemeChoice, WindowSettings};
 pub use touch_window::{TouchSurface, touch_surface};
 

@@ -3,11 +3,13 @@
 use std::borrow::Cow;
 
 use plumbline_engine::{Command, GapCommand, GapModel, TouchCommand, View};
+use serde::Serialize;
 
 use super::touch::{Preset, TouchAction, usual_area};
 
 /// Of the gap between model and measurement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum GapAction {
     /// Looks anew which sessions there are.
     ListSessions,

@@ -4,11 +4,13 @@ use std::borrow::Cow;
 
 use plumbline_engine::correction::Method;
 use plumbline_engine::{Command, GraspTable, ModelsCommand, View};
+use serde::Serialize;
 
 use super::touch::{Preset, TouchAction};
 
 /// Of correction models.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum ModelsAction {
     /// Looks anew which sessions there are.
     ListSessions,

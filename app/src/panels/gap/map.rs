@@ -14,19 +14,7 @@ use plumbline_widgets::theme::{self, Role, space};
 use super::{finding, padded};
 use crate::operator::words::gap as words;
 use crate::panels::PanelContext;
-use crate::panels::{arrow_scale, map_entry};
-
-/// Which errors are drawn as arrows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Errors {
-    /// Without the effects.
-    Before,
-    /// With the effects.
-    After,
-    /// Both.
-    #[default]
-    Both,
-}
+use crate::panels::arrows::{Errors, arrow_scale, entry};
 
 /// Around everything that is shown, m.
 const MARGIN_M: f64 = 0.04;
@@ -183,14 +171,10 @@ fn legend(ui: &mut Ui, errors: Errors, drawn: &Drawn) {
     ui.label(theme::small(ui, format!("Measured − predicted, {times}; each row held out.{outliers}")));
     ui.horizontal(|ui| {
         if errors != Errors::After {
-            map_entry(
-                ui,
-                BeforeAfter::BEFORE,
-                &format!("before, {} on average", format::mm(drawn.mean_m[0])),
-            );
+            entry(ui, BeforeAfter::BEFORE, &format!("before, {} on average", format::mm(drawn.mean_m[0])));
         }
         if errors != Errors::Before {
-            map_entry(ui, BeforeAfter::AFTER, &format!("after, {} on average", format::mm(drawn.mean_m[1])));
+            entry(ui, BeforeAfter::AFTER, &format!("after, {} on average", format::mm(drawn.mean_m[1])));
         }
     });
 }

@@ -9,7 +9,6 @@ mod next;
 mod shown;
 
 pub use inspector::show as show_inspector;
-pub use map::Errors as GapErrors;
 
 use std::sync::Arc;
 
@@ -21,6 +20,7 @@ use plumbline_widgets::glyph::{self, Glyph};
 use plumbline_widgets::theme::{self, Role};
 use plumbline_widgets::{Memo, Seen};
 
+use super::arrows::Errors;
 use super::{PanelContext, padded};
 use crate::operator::{Action, GapAction, Pane};
 
@@ -28,7 +28,7 @@ use crate::operator::{Action, GapAction, Pane};
 #[derive(Debug, Default)]
 pub struct GapPanels {
     /// Which errors the map shows.
-    pub errors: map::Errors,
+    pub errors: Errors,
     /// The covariate that residuals are drawn against; `None`: the one that tells most.
     pub covariate: Option<usize>,
     /// Which part of the residual is drawn.

@@ -9,8 +9,6 @@ mod training;
 mod verdict;
 
 pub use inspector::show as show_inspector;
-pub use map::Errors as MapErrors;
-pub(crate) use map::{arrow_scale, entry as map_entry};
 
 use std::sync::Arc;
 
@@ -20,6 +18,7 @@ use plumbline_engine::view::ModelMap;
 use plumbline_widgets::{Memo, Seen};
 
 use super::PanelContext;
+use super::arrows::Errors;
 use crate::operator::{Action, ModelsAction, Pane};
 
 /// How models are looked at: kept from frame to frame, never saved.
@@ -32,7 +31,7 @@ pub struct ModelsPanels {
     /// Whether the published recipe is followed.
     pub published_recipe: bool,
     /// Which errors the map shows.
-    pub errors: map::Errors,
+    pub errors: Errors,
     /// Which field the map shows.
     pub field: map::Shown,
     /// How the tables are looked at.
@@ -49,7 +48,7 @@ impl Default for ModelsPanels {
             methods: [true; 3],
             seed: 1,
             published_recipe: false,
-            errors: map::Errors::Both,
+            errors: Errors::Both,
             field: map::Shown::Uncertainty,
             tables: tables::TablesPanel::default(),
             training_seen: false,
