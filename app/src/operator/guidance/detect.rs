@@ -4,7 +4,7 @@ use plumbline_engine::View;
 use plumbline_engine::view::LabelState;
 use plumbline_widgets::format;
 
-use super::{Guidance, say};
+use super::sentence::{Guidance, say};
 use crate::operator::{Action, LabelsAction, ScoresAction};
 
 pub(super) fn images(view: &View) -> Guidance {

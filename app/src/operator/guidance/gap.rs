@@ -5,7 +5,7 @@ use plumbline_engine::gap::Verdict;
 use plumbline_engine::view::{GapView, ShownFinding};
 use plumbline_widgets::format;
 
-use super::{Guidance, say};
+use super::sentence::{Guidance, say};
 use crate::operator::words::gap::{add_label, touch_label};
 use crate::operator::{Action, GapAction, Screen};
 

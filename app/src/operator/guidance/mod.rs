@@ -4,38 +4,20 @@ mod detect;
 mod gap;
 mod models;
 mod robot;
+mod sentence;
 mod standing;
 mod touch;
 
 pub use gap::is_of_choice;
+pub use sentence::Guidance;
 pub use touch::{done_of, minutes, wanted, what_moves};
 
 use plumbline_engine::View;
 use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
 use plumbline_widgets::format;
 
-use super::words::capitalized;
 use super::{Action, RobotAction, Screen, faults};
-
-/// The bottom line.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Guidance {
-    /// What is happening and what to do next.
-    pub sentence: String,
-    /// Whether it needs attention.
-    pub warning: bool,
-    /// The one button.
-    pub next: Option<NextButton>,
-}
-
-/// The one button of a screen.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NextButton {
-    /// Named by what it does.
-    pub label: String,
-    /// What it does.
-    pub action: Action,
-}
+use sentence::say;
 
 /// Fewest pairs that are worth solving without asking for more.
 pub const ENOUGH_PAIRS: usize = 10;
@@ -82,22 +64,6 @@ fn stopped(view: &View, screen: Screen) -> Option<Guidance> {
     let connected = view.robot.connection.is_connected();
     (moves && connected && view.robot.stopped)
         .then(|| say("Stopped: nothing moves until you press Release STOP, at the top right.").warn())
-}
-
-fn say(sentence: impl Into<String>) -> Guidance {
-    Guidance { sentence: capitalized(&sentence.into()), warning: false, next: None }
-}
-
-impl Guidance {
-    fn then(mut self, label: impl Into<String>, action: Action) -> Self {
-        self.next = Some(NextButton { label: label.into(), action });
-        self
-    }
-
-    fn warn(mut self) -> Self {
-        self.warning = true;
-        self
-    }
 }
 
 /// What is wrong or not yet there with the source; `None` when it delivers.

@@ -5,8 +5,8 @@ use plumbline_engine::correction::Method;
 use plumbline_engine::view::StepState;
 use plumbline_widgets::format;
 
+use super::sentence::{Guidance, say};
 use super::standing::{Standing, standing};
-use super::{Guidance, say};
 use crate::operator::{Action, ModelsAction, Screen};
 
 pub(super) fn models(view: &View) -> Guidance {

@@ -4,7 +4,7 @@ use plumbline_engine::View;
 use plumbline_engine::view::{Connection, MotionState, RobotView, StepState};
 use plumbline_widgets::format;
 
-use super::{Guidance, say};
+use super::sentence::{Guidance, say};
 use crate::operator::words::robot::{move_sentence, moved_name};
 use crate::operator::{Action, MountAction, RobotAction, Screen};
 
