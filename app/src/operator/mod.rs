@@ -8,6 +8,7 @@ pub mod guidance;
 mod outbox;
 mod screens;
 pub mod shortcuts;
+pub mod snapshot;
 mod touch_monitor;
 pub mod words;
 

@@ -124,7 +124,7 @@ fn is_unknown(name: &str, error: &serde_json::Error) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use plumbline_engine::correction::Method;
+    use crate::operator::snapshot::models::Method;
     use plumbline_engine::{
         ConfusionCell, DetectCommand, GapCommand, LabelsCommand, ScoresCommand, SourceCommand, TouchCommand,
         TwinCommand,

@@ -116,7 +116,7 @@ impl GapAction {
 /// The next experiment as a command to the touch step.
 pub fn plan(view: &View) -> Option<Command> {
     let next = view.gap.finding()?.next.as_ref()?;
-    let plan = plumbline_engine::gap::plan_for(next, usual_area(view)?)?;
+    let plan = crate::operator::snapshot::gap::plan_for(next, usual_area(view)?)?;
     Some(TouchCommand::Plan(plan).into())
 }
 

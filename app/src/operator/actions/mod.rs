@@ -16,13 +16,13 @@ pub use touch::{Preset, TouchAction, is_under_way, needs_window, screen_of, usua
 
 use std::borrow::Cow;
 
-use plumbline_engine::correction::Method;
 use plumbline_engine::view::SourceStatus;
 use plumbline_engine::{ExportFormat, Exported, View, WatchedThread};
 use serde::Serialize;
 use serde_json::Value;
 
 use super::screens::Screen;
+use crate::operator::snapshot::models::Method;
 
 /// One thing that the operator can do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -2,11 +2,11 @@
 
 use std::borrow::Cow;
 
-use plumbline_engine::correction::Method;
 use plumbline_engine::{Command, GraspTable, ModelsCommand, View};
 use serde::Serialize;
 
 use super::touch::{Preset, TouchAction};
+use crate::operator::snapshot::models::Method;
 
 /// Of correction models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

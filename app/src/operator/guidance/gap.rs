@@ -1,11 +1,11 @@
 //! What to do next with the gap: one button, named by what it does.
 
 use plumbline_engine::View;
-use plumbline_engine::gap::Verdict;
 use plumbline_engine::view::{GapView, ShownFinding};
 use plumbline_widgets::format;
 
 use super::sentence::{Guidance, say};
+use crate::operator::snapshot::gap::Verdict;
 use crate::operator::words::gap::{add_label, touch_label};
 use crate::operator::{Action, GapAction, Screen};
 

@@ -1,12 +1,12 @@
 //! What to do next with correction models: one button, named by what it does.
 
 use plumbline_engine::View;
-use plumbline_engine::correction::Method;
 use plumbline_engine::view::StepState;
 use plumbline_widgets::format;
 
 use super::sentence::{Guidance, say};
 use super::standing::{Standing, standing};
+use crate::operator::snapshot::models::Method;
 use crate::operator::{Action, ModelsAction, Screen};
 
 pub(super) fn models(view: &View) -> Guidance {

@@ -1,7 +1,8 @@
 //! Where the work on models stands.
 
-use plumbline_engine::correction::{CorrectionModel, Method};
 use plumbline_engine::view::ModelsView;
+
+use crate::operator::snapshot::models::{CorrectionModel, Method};
 
 /// Where the work on models stands, for the bottom line.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,12 +1,11 @@
 //! The gap in words: verdicts, units, names of effects.
 
 use plumbline_engine::View;
-use plumbline_engine::effects::measurements::Unit;
-use plumbline_engine::gap::Verdict;
-use plumbline_engine::gap::finding::{
-    CoordinateComparison, Experiment, Finding, Knowledge, NamedEffect, Shown, ShownUnit,
-};
 use plumbline_widgets::format::{self, Quantity};
+
+use crate::operator::snapshot::gap::{
+    CoordinateComparison, Experiment, Finding, Knowledge, NamedEffect, Shown, ShownUnit, Unit, Verdict,
+};
 
 /// Quantity of a natural coordinate; residuals in SI.
 pub fn quantity(of: &CoordinateComparison) -> Quantity {

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use egui::Ui;
-use plumbline_engine::gap::finding::Residual;
 use plumbline_engine::view::ShownFinding;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format;
@@ -12,6 +11,7 @@ use plumbline_widgets::table_map::{BeforeAfter, Outline, Place, TableMap, TableM
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::{finding, padded};
+use crate::operator::snapshot::gap::{Residual, What};
 use crate::operator::words::gap as words;
 use crate::panels::PanelContext;
 use crate::panels::arrows::{Errors, arrow_scale, entry};
@@ -134,8 +134,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let Some(shown) = finding(ui, cx, what) else { return };
     let drawn = cx.state.gap.map.get(Seen::of(&shown), || {
         let kinds = &shown.finding.comparison.kinds;
-        let touched =
-            kinds.iter().any(|kind| kind.what == plumbline_engine::effects::measurements::What::Touch);
+        let touched = kinds.iter().any(|kind| kind.what == What::Touch);
         let corners =
             cx.view.gap.rig.as_ref().filter(|_| touched).map(|rig| {
                 rig.touchscreen.corners().map(|corner| [corner.coords.x, corner.coords.y]).to_vec()

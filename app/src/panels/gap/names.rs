@@ -3,8 +3,6 @@
 
 use egui::{Checkbox, Frame, Grid, Margin, RichText, ScrollArea, Ui};
 use plumbline_engine::GapCommand;
-use plumbline_engine::gap::Verdict;
-use plumbline_engine::gap::finding::{Candidate, Finding, NamedEffect};
 use plumbline_engine::view::ShownFinding;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::empty::{EmptyState, Message};
@@ -16,6 +14,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::{action_button, finding, line, padded, state};
 use crate::operator::GapAction;
+use crate::operator::snapshot::gap::{Candidate, Finding, NamedEffect, Verdict};
 use crate::operator::words::gap as words;
 use crate::panels::PanelContext;
 

@@ -1,13 +1,13 @@
 //! What to measure next.
 
 use egui::{ScrollArea, Ui};
-use plumbline_engine::gap::Verdict;
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
 use plumbline_widgets::probability::{ShareRow, probability_bar, share_rows};
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::{action_button, finding, padded};
+use crate::operator::snapshot::gap::Verdict;
 use crate::operator::words::capitalized;
 use crate::operator::words::gap::touch_label;
 use crate::operator::{GapAction, gap_plan};

@@ -3,8 +3,6 @@
 use std::sync::Arc;
 
 use egui::{ComboBox, ScrollArea, Ui, vec2};
-use plumbline_engine::gap::Verdict;
-use plumbline_engine::gap::finding::{Finding, Shown};
 use plumbline_engine::view::ShownFinding;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format::{self, Quantity};
@@ -15,6 +13,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::{action_button, finding, padded};
 use crate::operator::GapAction;
+use crate::operator::snapshot::gap::{Finding, Residual, Shown, Verdict};
 use crate::operator::words::gap as words;
 use crate::panels::PanelContext;
 
@@ -179,9 +178,9 @@ fn points(finding: &Finding, covariate: usize, axis: usize) -> Points {
         other => (1.0, other),
     };
     let kept = || finding.comparison.residuals.iter().filter(|row| !row.outlier);
-    let series = |name, role, of: &dyn Fn(&plumbline_engine::gap::finding::Residual) -> [f64; 3]| {
+    let series = |name, role, of: &dyn Fn(&Residual) -> [f64; 3]| {
         let point = |row| {
-            let row: &plumbline_engine::gap::finding::Residual = row;
+            let row: &Residual = row;
             let across = row.covariates.get(covariate).copied().flatten()?;
             Some([across * factor, of(row)[axis]])
         };

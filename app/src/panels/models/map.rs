@@ -2,7 +2,6 @@
 
 use egui::Ui;
 use plumbline_engine::ModelsCommand;
-use plumbline_engine::correction::Method;
 use plumbline_engine::view::{Field, ModelMap, ModelsView};
 use plumbline_widgets::axis;
 use plumbline_widgets::buttons::choice;
@@ -13,6 +12,7 @@ use plumbline_widgets::seen::Seen;
 use plumbline_widgets::table_map::{BeforeAfter, Border, Outline, Place, ScalarField, TableMap, TableScene};
 use plumbline_widgets::theme::{self, Role, space};
 
+use crate::operator::snapshot::models::Method;
 use crate::panels::arrows::{Errors, arrow_scale, entry};
 use crate::panels::{PanelContext, padded};
 

@@ -13,12 +13,12 @@ pub use inspector::show as show_inspector;
 use std::sync::Arc;
 
 use egui::{Button, Response, Ui};
-use plumbline_engine::correction::Method;
 use plumbline_engine::view::ModelMap;
 use plumbline_widgets::{Memo, Seen};
 
 use super::PanelContext;
 use super::arrows::Errors;
+use crate::operator::snapshot::models::Method;
 use crate::operator::{Action, ModelsAction, Pane};
 
 /// How models are looked at: kept from frame to frame, never saved.

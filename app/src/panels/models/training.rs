@@ -2,7 +2,6 @@
 
 use egui::{DragValue, Ui, vec2};
 use plumbline_engine::ModelsCommand;
-use plumbline_engine::correction::{LossPoint, Method};
 use plumbline_engine::view::{JobState, ModelsView};
 use plumbline_widgets::buttons::{choice, primary_button};
 use plumbline_widgets::empty::{EmptyState, Message};
@@ -11,6 +10,7 @@ use plumbline_widgets::loss_curves::{LossCurve, LossCurves, loss_legend, loss_ra
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::{about, sessions};
+use crate::operator::snapshot::models::{LossPoint, Method};
 use crate::operator::{Action, ModelsAction, Screen};
 use crate::panels::{PanelContext, padded};
 

@@ -1,11 +1,12 @@
 //! Which model is best, and whether that can be told.
 
-use plumbline_engine::correction::{
-    Comparison, CorrectionModel, Errors, Method, Repeats, TouchData, distance_2d_m, spread_of_repeats,
-};
 use plumbline_engine::view::{MapTouch, ModelMap, ModelsView};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::seen::Seen;
+
+use crate::operator::snapshot::models::{
+    Comparison, CorrectionModel, Errors, Method, Repeats, TouchData, spread_of_repeats,
+};
 
 /// A method on touches that it was not trained on.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,7 +109,7 @@ fn judged(models: &ModelsView) -> Vec<Judged> {
 }
 
 fn without_model_m(touches: &[MapTouch]) -> Option<f64> {
-    let sum: f64 = touches.iter().map(|touch| distance_2d_m(&touch.before_m)).sum();
+    let sum: f64 = touches.iter().map(|touch| touch.before_m[0].hypot(touch.before_m[1])).sum();
     (!touches.is_empty()).then(|| sum / touches.len() as f64)
 }
 

@@ -3,12 +3,12 @@
 use std::time::Instant;
 
 use plumbline_engine::GraspTable;
-use plumbline_engine::correction::tables::{HeightTable, YawTable};
 use plumbline_engine::view::TablesView;
 use plumbline_widgets::format::Quantity;
 use plumbline_widgets::seen::Seen;
 
 use super::rows::PointRow;
+use crate::operator::snapshot::models::{HeightTable, YawTable};
 
 /// How the tables are looked at.
 #[derive(Debug, Default)]
