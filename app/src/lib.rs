@@ -1,11 +1,13 @@
 //! The program: a window and a command line over the same engine.
 
 mod cli;
+mod operator;
 mod panels;
 mod window;
 
 pub use cli::{run, understands};
+pub use operator::{Action, Outbox, Pane, Screen};
 pub use window::{
-    Action, Backend, LaunchOptions, LogStore, Outbox, Pane, PlumblineWindow, Screen, ScriptStep, Stopper,
-    ThemeChoice, TouchSurface, WindowOptions, WindowSettings, launch, start_log, touch_surface,
+    Backend, LaunchOptions, LogStore, PlumblineWindow, ScriptStep, Stopper, ThemeChoice, TouchSurface,
+    WindowOptions, WindowSettings, launch, start_log, touch_surface,
 };

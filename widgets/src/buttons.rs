@@ -36,6 +36,13 @@ pub fn primary_button(ui: &mut Ui, text: &str, why_not: Option<&str>) -> Respons
     .inner
 }
 
+/// A button that stands out among others, to be added where it is wanted.
+pub fn accent_button<'a>(ui: &Ui, text: impl Into<String>) -> Button<'a> {
+    let tokens = theme::tokens(ui);
+    let text = RichText::new(text).text_style(theme::strong_style(ui)).color(tokens.on_accent);
+    Button::new(text).fill(tokens.accent)
+}
+
 /// What the arm does right now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ArmState {

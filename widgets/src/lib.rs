@@ -31,6 +31,7 @@ pub mod rail;
 pub mod residuals;
 pub mod scatter;
 pub mod scene3d;
+pub mod seen;
 pub mod table_map;
 pub mod texture;
 pub mod theme;
@@ -39,7 +40,7 @@ pub mod view_state;
 
 pub use bars::{BarRef, BarsResponse, PairBar, PairBars};
 pub use box_canvas::{BoxCanvas, CanvasBox, CanvasResponse, CanvasState, Placed};
-pub use buttons::{ArmState, choice, primary_button, stop_button, stop_keys, stop_pressed};
+pub use buttons::{ArmState, accent_button, choice, primary_button, stop_button, stop_keys, stop_pressed};
 pub use colormap::{ColorScale, Colormap, Orientation, ScaleBar};
 pub use coverage::{Coverage, coverage_view};
 pub use empty::{EmptyState, Message, empty_state};
@@ -64,6 +65,7 @@ pub use rail::{RailStep, StepState};
 pub use residuals::{arrow_scale, residual_arrows};
 pub use scatter::{Scatter, ScatterSeries};
 pub use scene3d::{Scene, Scene3d, Scene3dResponse, SceneCamera};
+pub use seen::{Memo, Seen};
 pub use table_map::{
     BeforeAfter, Border, Outline, Place, PointsResponse, ScalarField, TableMap, TableMapResponse, TableMark,
     TablePoint, TableScene,

@@ -2,11 +2,14 @@
 //! when they are drawn.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 use egui::mutex::Mutex;
 use egui::{ColorImage, Context, TextureFilter, TextureHandle, TextureId, TextureOptions, TextureWrapMode};
-use image::RgbImage;
+use image::{GrayImage, RgbImage};
+
+use crate::seen::Seen;
 
 /// How a texture is magnified.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -34,12 +37,22 @@ impl Sampling {
 /// A picture that can be drawn. Cheap to clone; clones share their textures.
 #[derive(Clone)]
 pub struct Picture {
-    seq: u64,
+    of: Of,
+    /// Counts up when the content changes.
+    change: u64,
     image: Arc<ColorImage>,
     textures: Arc<Mutex<Textures>>,
 }
 
-/// The textures of one key, at most one per kind of sampling, each with the seq that it shows.
+/// What a picture was made from: what tells its content from another.
+#[derive(Clone, PartialEq)]
+enum Of {
+    Seq(u64),
+    Rgb(Seen<RgbImage>),
+    Gray(Seen<GrayImage>),
+}
+
+/// The textures of one key, at most one per kind of sampling, each with the change that it shows.
 #[derive(Default)]
 struct Textures {
     smooth: Option<(u64, TextureHandle)>,
@@ -48,9 +61,9 @@ struct Textures {
 }
 
 impl Picture {
-    /// Counts up when the content changes.
-    pub fn seq(&self) -> u64 {
-        self.seq
+    /// The number that its content is told by; `None` where an image itself tells.
+    pub fn seq(&self) -> Option<u64> {
+        if let Of::Seq(seq) = self.of { Some(seq) } else { None }
     }
 
     /// Width and height in pixels.
@@ -72,9 +85,9 @@ impl Picture {
             Sampling::Pixels => pixels,
         };
         match slot {
-            Some((seq, handle)) if *seq == self.seq => handle.id(),
-            Some((seq, handle)) => {
-                *seq = self.seq;
+            Some((shown, handle)) if *shown == self.change => handle.id(),
+            Some((shown, handle)) => {
+                *shown = self.change;
                 *uploads += 1;
                 handle.set(Arc::clone(&self.image), sampling.options());
                 handle.id()
@@ -82,7 +95,7 @@ impl Picture {
             None => {
                 *uploads += 1;
                 let handle = ctx.load_texture("picture", Arc::clone(&self.image), sampling.options());
-                slot.insert((self.seq, handle)).1.id()
+                slot.insert((self.change, handle)).1.id()
             }
         }
     }
@@ -93,7 +106,8 @@ impl Picture {
     }
 }
 
-/// The pictures of a window by name. Converts and uploads a picture only when its `seq` changed.
+/// The pictures of a window by name. Converts and uploads a picture only when its content changed:
+/// that is told by a `seq`, or by the image that it was made from.
 ///
 /// Give every view its own key: `"left raw"`, `"right raw"`, `"depth"`.
 #[derive(Default)]
@@ -109,25 +123,41 @@ impl TextureCache {
 
     /// As [`Self::get`], for images that another thread prepared.
     pub fn get_shared(&mut self, key: &str, seq: u64, make: impl FnOnce() -> Arc<ColorImage>) -> &Picture {
-        let stored = self.pictures.entry(key.to_owned());
-        match stored {
-            std::collections::hash_map::Entry::Occupied(entry) => {
-                let picture = entry.into_mut();
-                if picture.seq != seq {
-                    picture.seq = seq;
-                    picture.image = make();
-                }
-                picture
-            }
-            std::collections::hash_map::Entry::Vacant(entry) => {
-                entry.insert(Picture { seq, image: make(), textures: Arc::default() })
-            }
-        }
+        self.made(key, Of::Seq(seq), make)
     }
 
     /// The picture of a camera image, 8-bit RGB.
     pub fn rgb(&mut self, key: &str, seq: u64, image: &RgbImage) -> &Picture {
         self.get(key, seq, || color_image(image))
+    }
+
+    /// The picture of an image that never changes, told from others by itself.
+    pub fn rgb_of(&mut self, key: &str, image: &Arc<RgbImage>) -> &Picture {
+        self.made(key, Of::Rgb(Seen::of(image)), || Arc::new(color_image(image)))
+    }
+
+    /// As [`Self::rgb_of`], for a gray image.
+    pub fn gray_of(&mut self, key: &str, image: &Arc<GrayImage>) -> &Picture {
+        self.made(key, Of::Gray(Seen::of(image)), || {
+            Arc::new(ColorImage::from_gray([image.width() as usize, image.height() as usize], image.as_raw()))
+        })
+    }
+
+    fn made(&mut self, key: &str, of: Of, make: impl FnOnce() -> Arc<ColorImage>) -> &Picture {
+        match self.pictures.entry(key.to_owned()) {
+            Entry::Occupied(entry) => {
+                let picture = entry.into_mut();
+                if picture.of != of {
+                    picture.of = of;
+                    picture.change += 1;
+                    picture.image = make();
+                }
+                picture
+            }
+            Entry::Vacant(entry) => {
+                entry.insert(Picture { of, change: 0, image: make(), textures: Arc::default() })
+            }
+        }
     }
 
     /// The last picture under `key`, whatever its age.
@@ -197,6 +227,36 @@ mod tests {
         assert_eq!((color("left"), color("right")), (Some(Color32::WHITE), Some(Color32::BLACK)));
         cache.forget("left");
         assert!(cache.last("left").is_none() && cache.last("right").is_some());
+    }
+
+    /// Images that are gone before the next one comes, so that an allocator puts it where the last
+    /// one lay.
+    #[test]
+    fn an_image_at_an_address_that_was_used_before_is_another_picture() {
+        let mut cache = TextureCache::default();
+        for level in 0..200 {
+            let image = Arc::new(RgbImage::from_pixel(4, 3, image::Rgb([level, 0, 0])));
+            let shown = cache.rgb_of("thumbnail 1", &image).image().pixels[0];
+            assert_eq!(shown, Color32::from_rgb(level, 0, 0));
+            let image = Arc::new(GrayImage::from_pixel(4, 3, image::Luma([level])));
+            let shown = cache.gray_of("chosen left", &image).image().pixels[0];
+            assert_eq!(shown, Color32::from_gray(level));
+        }
+    }
+
+    #[test]
+    fn an_image_is_uploaded_once_and_a_number_tells_nothing_of_an_image() {
+        let ctx = Context::default();
+        let mut cache = TextureCache::default();
+        let image = Arc::new(RgbImage::new(4, 3));
+        for _ in 0..3 {
+            cache.rgb_of("left", &image).texture(&ctx, Sampling::Smooth);
+        }
+        assert_eq!(cache.last("left").map(|picture| (picture.uploads(), picture.seq())), Some((1, None)));
+        for seq in [0, 1] {
+            cache.rgb("left", seq, &image).texture(&ctx, Sampling::Smooth);
+        }
+        assert_eq!(cache.last("left").map(|picture| (picture.uploads(), picture.seq())), Some((3, Some(1))));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use plumbline_engine::offline::Figure;
 use serde::Deserialize;
 
 /// Calibrates, so that rectification, disparity and depth run, then looks at them.
-const SCRIPT: &str = "eyes;collect;solve;accept;live;rate:30;wait:3;measure;wait:20";
+const SCRIPT: &str = r#"go-collect;collect-recording;solve;accept;go-live;source:{"pairs-per-second":30};wait:3;measure;wait:20"#;
 const PATIENCE: Duration = Duration::from_secs(180);
 
 #[derive(Deserialize)]

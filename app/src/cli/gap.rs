@@ -4,14 +4,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use plumbline_engine::gap::Finding;
-use plumbline_engine::gap::finding::{
-    Comparison, CoordinateComparison, NamedEffect, NextExperiment, Shown, ShownUnit, Unexplained,
-};
 use plumbline_engine::offline::{self, GapArgs, GapReport};
 use plumbline_widgets::{format, parameter};
 
 use super::output::Output;
+use crate::operator::snapshot::gap::{
+    Comparison, CoordinateComparison, Finding, NamedEffect, NextExperiment, Shown, ShownUnit, Unexplained,
+};
 
 /// Arguments of `gap`.
 #[derive(Debug, Args)]
@@ -74,7 +73,7 @@ fn text(report: &GapReport) -> String {
 
 /// "12.3 mm", in the unit of a natural coordinate.
 fn coordinate(of: &CoordinateComparison, value: f64) -> String {
-    use plumbline_engine::effects::measurements::Unit;
+    use crate::operator::snapshot::gap::Unit;
     match of.unit {
         Unit::Meter => format::mm(value),
         Unit::Radian => format::degrees(value),

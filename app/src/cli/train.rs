@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use plumbline_engine::correction::Method;
 use plumbline_engine::offline::{self, TrainArgs, TrainReport};
 use plumbline_widgets::format;
 
 use super::output::Output;
+use crate::operator::snapshot::models::Method;
 
 /// Arguments of `train`.
 #[derive(Debug, Args)]

@@ -1,22 +1,12 @@
 //! What the command line says about the window.
 
-mod detect_steps;
-mod gap_steps;
-mod label_steps;
-mod robot_steps;
-mod touch_steps;
-
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::Args;
-use plumbline_model::duration;
 
+use crate::operator::Screen;
 use crate::window::renderer::RendererChoice;
-use crate::window::{Action, LaunchOptions, Screen, ScriptStep, ThemeChoice, launch};
-
-/// A script waits no longer than this between two steps.
-const LONGEST_WAIT: Duration = Duration::from_secs(24 * 3600);
+use crate::window::{LaunchOptions, ScriptStep, ThemeChoice, launch};
 
 #[derive(Debug, Args)]
 pub struct WindowArgs {
@@ -52,36 +42,8 @@ pub struct WindowArgs {
     /// Folder of accepted calibrations, in place of the user's data folder.
     #[arg(long, value_name = "DIR", hide_short_help = true)]
     data_dir: Option<PathBuf>,
-    /// Does things without an operator, one after the other, each once the one before is done:
-    /// collect, solve, judge, accept, compare, live, play, next, stop, palette, log, inspector,
-    /// messages, frame-times, pair:N, probe:U,V, rate:HZ, wait:SECONDS, measure, picture:FILE, quit;
-    /// with the robot: robot, mount, connect, connect-twin, connect-port:PATH, disconnect,
-    /// preview-pose:NAME, preview-joint:NAME=DEGREES, look-at:X,Y,Z, reach:X,Y,Z (meters), move,
-    /// forget, release, hold, speed:SHARE, joint:NAME, twin-board-tour, twin-board:N, twin-board-lay,
-    /// twin-board-at:X,Y,DEGREES,
-    /// twin-board-away, twin-toy:NAME,X,Y, twin-toy-away:NAME, twin-warm-up:MINUTES, twin-cool,
-    /// twin-fault:NAME=on, twin-reset, mount-plan, mount-tour, mount-capture, mount-solve,
-    /// mount-accept, mount-discard; touch, models, touch-plan-corners, touch-plan-quick,
-    /// touch-plan-train, touch-plan-rich, touch-plan-check, touch-correct:METHOD, touch-start,
-    /// touch-pause, touch-resume, touch-skip, touch-prepared, touch-finish, touch-close,
-    /// touch-accept-screen, touch-discard-screen, touch-nominal-screen, touch-window;
-    /// detect-boxes, detect-file:FILE, detect-shipped, detect-off, detect-confidence:SHARE,
-    /// detect-overlap:SHARE, detect-hide:CLASS, detect-show:CLASS, detect-all-classes, detect-reset,
-    /// object:CLASS;
-    /// gap, gap-session:FOLDER, gap-list, gap-nominal, gap-in-use, gap-find, gap-add, gap-next,
-    /// gap-report:FILE, gap-report-pdf:FILE, gap-delete, gap-undo, gap-take-out, gap-map-before,
-    /// gap-map-after, gap-map-both, gap-pane-compare, gap-pane-names, gap-pane-candidates,
-    /// gap-pane-shown, gap-pane-next, gap-pane-history;
-    /// models-list, models-train, models-accept, models-accept-m1 (m2, m3), models-show-m1 (m2, m3),
-    /// models-discard, models-undo, models-none, models-check, models-training, models-compared,
-    /// models-map, models-map-before, models-map-after, models-map-both, models-tables;
-    /// images, labels-open:FOLDER, labels-new:FOLDER, labels-add, labels-image:NAME, labels-next,
-    /// labels-previous, labels-next-open, labels-box:CLASS,X0,Y0,X1,Y1, labels-choose:N, labels-undo,
-    /// labels-redo, labels-copy, labels-propose, labels-accept, labels-nothing, labels-to-check,
-    /// labels-checks, labels-list, labels-import:FOLDER, labels-accept-import, labels-export:FOLDER,
-    /// labels-close; scores, scores-model:FILE, scores-set:FOLDER, scores-train, scores-evaluate,
-    /// scores-table, scores-classes, scores-cell:TRUTH,FOUND, scores-picture:N, scores-csv:FILE.
-    #[arg(long = "do", value_name = "STEPS", value_delimiter = ';', value_parser = step, hide_short_help = true)]
+    /// Does things without an operator.
+    #[arg(long = "do", value_name = "STEPS", value_delimiter = ';', long_help = ScriptStep::help(), hide_short_help = true)]
     script: Vec<ScriptStep>,
     /// Writes how long the frames took, as JSON, when the window is closed.
     #[arg(long, value_name = "FILE", hide_short_help = true)]
@@ -146,72 +108,16 @@ fn size(text: &str) -> Result<[f32; 2], String> {
 }
 
 fn screen(text: &str) -> Result<Screen, String> {
-    match text {
-        "live" => Ok(Screen::Live),
-        "eyes" | "collect" => Ok(Screen::Collect),
-        "judge" => Ok(Screen::Judge),
-        "accept" | "compare" => Ok(Screen::Accept),
-        "mount" => Ok(Screen::Mount),
-        "touch" => Ok(Screen::Touch),
-        "models" => Ok(Screen::Models),
-        "gap" => Ok(Screen::Gap),
-        "robot" => Ok(Screen::Robot),
-        "detect" | "images" => Ok(Screen::Images),
-        "scores" => Ok(Screen::Scores),
-        _ => Err("there are the screens live, collect, judge, accept, mount, touch, models, gap, robot, images and scores"
-            .to_owned()),
-    }
-}
-
-fn step(text: &str) -> Result<ScriptStep, String> {
-    let (name, value) = text.split_once(':').unwrap_or((text, ""));
-    let act = |action| Ok(ScriptStep::Act(action));
-    let seconds = |text: &str| {
-        let seconds = text.parse::<f64>().ok().and_then(duration::seconds);
-        seconds.filter(|time| *time <= LONGEST_WAIT)
+    let name = match text {
+        "eyes" => "collect",
+        "compare" => "accept",
+        "detect" => "images",
+        name => name,
     };
-    let rate = |text: &str| text.parse::<f64>().ok().filter(|hz| (0.01..=1000.0).contains(hz));
-    match name.trim() {
-        "collect" => act(Action::CollectRecording),
-        "capture" => act(Action::Capture),
-        "solve" => act(Action::Solve),
-        "accept" => act(Action::Accept),
-        "live" => act(Action::Go(Screen::Live)),
-        "eyes" => act(Action::Go(Screen::Collect)),
-        "judge" => act(Action::Go(Screen::Judge)),
-        "compare" => act(Action::Go(Screen::Accept)),
-        "play" => act(Action::PlayPause),
-        "forward" => act(Action::StepForward),
-        "next" => act(Action::Next),
-        "stop" => act(Action::Stop),
-        "palette" => act(Action::Palette),
-        "log" => act(Action::ToggleLog),
-        "inspector" => act(Action::ToggleInspector),
-        "messages" => act(Action::ToggleNotices),
-        "frame-times" => act(Action::ToggleFrameTimes),
-        "measure" => Ok(ScriptStep::Measure),
-        "quit" => Ok(ScriptStep::Quit),
-        "pair" => value.parse().map(ScriptStep::ChoosePair).map_err(|_| "pair:N wants a number".to_owned()),
-        "probe" => {
-            let at = value.split_once(',').and_then(|(u, v)| Some([u.parse().ok()?, v.parse().ok()?]));
-            at.map(ScriptStep::Probe).ok_or_else(|| "probe:U,V wants a pixel".to_owned())
-        }
-        "rate" => {
-            let wants = || "rate:HZ wants pairs per second between 0.01 and 1000".to_owned();
-            rate(value).map(ScriptStep::PairsPerSecond).ok_or_else(wants)
-        }
-        "wait" => {
-            let wants = || format!("wait:SECONDS wants a number from 0 to {}", LONGEST_WAIT.as_secs());
-            seconds(value).map(ScriptStep::Wait).ok_or_else(wants)
-        }
-        "picture" if !value.is_empty() => Ok(ScriptStep::Picture(value.into())),
-        other => robot_steps::step(other, value)
-            .or_else(|| touch_steps::step(other, value))
-            .or_else(|| gap_steps::step(other, value))
-            .or_else(|| label_steps::step(other, value))
-            .or_else(|| detect_steps::step(other, value))
-            .unwrap_or_else(|| Err(format!("\"{other}\" is not a step; plumbline --help lists them"))),
-    }
+    serde_json::from_value(name.into()).map_err(|_| {
+        "there are the screens live, collect, judge, accept, mount, touch, models, gap, robot, images and scores"
+            .to_owned()
+    })
 }
 
 #[cfg(test)]
@@ -225,18 +131,11 @@ mod tests {
     }
 
     #[test]
-    fn sizes_and_steps_say_what_they_want() {
+    fn sizes_and_screens_say_what_they_want() {
         assert_eq!(size("1280x800"), Ok([1280.0, 800.0]));
         assert!(size("1280").expect_err("one number").contains("1280x800"));
-        assert_eq!(step("probe:320,240.5"), Ok(ScriptStep::Probe([320.0, 240.5])));
-        assert_eq!(step("wait:1.5"), Ok(ScriptStep::Wait(Duration::from_millis(1500))));
-        assert!(step("dance").is_err());
-        for bad in ["wait:-1", "wait:NaN", "wait:inf", "wait:1e30", "wait:86401", "wait:soon"] {
-            assert!(step(bad).expect_err(bad).contains("from 0 to 86400"), "{bad}");
-        }
-        for bad in ["rate:0", "rate:-1", "rate:NaN", "rate:1e-30", "rate:1e9", "rate:fast"] {
-            assert!(step(bad).expect_err(bad).contains("between 0.01 and 1000"), "{bad}");
-        }
-        assert_eq!(step("rate:4"), Ok(ScriptStep::PairsPerSecond(4.0)));
+        assert_eq!(screen("judge"), Ok(Screen::Judge));
+        assert_eq!((screen("eyes"), screen("compare")), (Ok(Screen::Collect), Ok(Screen::Accept)));
+        assert!(screen("dance").expect_err("no screen").contains("images and scores"));
     }
 }

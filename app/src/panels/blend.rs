@@ -17,7 +17,7 @@ pub fn anaglyph(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     cx.outbox.want(Products { rectified: true, ..Products::default() });
     let Some(rectified) = &cx.view.live.rectified else { return show_missing(ui, cx, "Anaglyph") };
     let seq = picture::seq(&rectified.stamp);
-    let mixed = if cx.state.textures.last("anaglyph").is_some_and(|picture| picture.seq() == seq) {
+    let mixed = if cx.state.textures.last("anaglyph").is_some_and(|picture| picture.seq() == Some(seq)) {
         Ok(None)
     } else {
         compare::anaglyph(&rectified.left, &rectified.right).map(Some)

@@ -8,7 +8,7 @@ use plumbline_widgets::buttons::choice;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::PanelContext;
-use crate::window::{Action, other_board};
+use crate::operator::{Action, other_board};
 
 /// The board as it is being typed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,7 +8,7 @@ use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
 use super::PanelContext;
-use crate::window::{Action, Screen, verdict};
+use crate::operator::{Action, Screen, verdict};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let eyes = &cx.view.eyes;

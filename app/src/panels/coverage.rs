@@ -8,29 +8,12 @@ use plumbline_engine::view::CollectedPair;
 use plumbline_model::Eye;
 use plumbline_widgets::coverage::{Coverage, coverage_view};
 use plumbline_widgets::empty::{EmptyState, Message};
+use plumbline_widgets::{Memo, Seen};
 
 use super::PanelContext;
 
 /// Counted once per change of the collection, not per frame.
-#[derive(Default)]
-pub struct CountedCoverage {
-    of: Option<Arc<[Arc<CollectedPair>]>>,
-    counted: Option<Coverage>,
-}
-
-impl CountedCoverage {
-    fn of(
-        &mut self,
-        pairs: &Arc<[Arc<CollectedPair>]>,
-        image_size_px: Option<(u32, u32)>,
-    ) -> Option<&Coverage> {
-        if !self.of.as_ref().is_some_and(|counted| Arc::ptr_eq(counted, pairs)) {
-            self.counted = count(pairs, image_size_px);
-            self.of = Some(Arc::clone(pairs));
-        }
-        self.counted.as_ref()
-    }
-}
+pub type CountedCoverage = Memo<Seen<[Arc<CollectedPair>]>, Option<Coverage>>;
 
 /// So many images tell what the lens shows.
 const LOOKED_AT: usize = 12;
@@ -76,7 +59,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     // The images themselves know best; pairs from a file have none.
     let from_pairs = cx.view.eyes.collected.iter().find_map(|pair| pair.left_image.as_ref());
     let image_size_px = from_pairs.map(|image| image.dimensions()).or(cx.view.source.image_size_px);
-    let Some(coverage) = cx.state.coverage.of(&cx.view.eyes.collected, image_size_px) else {
+    let pairs = &cx.view.eyes.collected;
+    let counted = cx.state.coverage.get(Seen::of(pairs), || count(pairs, image_size_px));
+    let Some(coverage) = &*counted else {
         let message = Message::new(
             "No pairs yet",
             "Collected pairs show here which parts of both images, which distances and which tilts are still missing.",

@@ -11,7 +11,7 @@ use plumbline_widgets::overlay::{Mark, Overlay, PointShape};
 use plumbline_widgets::theme::Role;
 
 use super::{PanelContext, objects, picture, residuals, source_state};
-use crate::window::Screen;
+use crate::operator::Screen;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
     let collecting = matches!(cx.screen, Screen::Collect | Screen::Mount);

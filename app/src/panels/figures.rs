@@ -9,7 +9,7 @@ use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::PanelContext;
-use crate::window::{Action, Screen, verdict};
+use crate::operator::{Action, Screen, verdict};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let eyes = &cx.view.eyes;

@@ -7,7 +7,7 @@ use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
 use super::PanelContext;
-use crate::window::{Action, format_name};
+use crate::operator::{Action, format_name};
 
 const FORMATS: [ExportFormat; 5] = [
     ExportFormat::Plumbline,

@@ -1,6 +1,7 @@
 //! What the tiles show. A panel draws a snapshot and says what the operator asked for; it keeps
 //! nothing but how it is looked at.
 
+pub mod arrows;
 mod blend;
 mod board;
 mod comparison;
@@ -30,24 +31,19 @@ mod twin;
 mod verdict_line;
 
 pub use board::BoardDraft;
-pub use gap::GapErrors;
 pub use gap::GapPanels;
-pub(crate) use gap::{
-    add_label as gap_add_label, is_of_choice as gap_is_of_choice, show_inspector as show_gap_inspector,
-    touch_label as gap_touch_label,
-};
+pub(crate) use gap::show_inspector as show_gap_inspector;
 pub use labels::LabelsPanels;
 pub(crate) use labels::show_inspector as show_labels_inspector;
-pub use models::{MapErrors, ModelsPanels};
-pub(crate) use models::{Standing, show_inspector as show_models_inspector, standing};
-pub(crate) use models::{arrow_scale, clock as models_clock, map_entry};
+pub use models::ModelsPanels;
+pub(crate) use models::show_inspector as show_models_inspector;
 pub use objects::ObjectsPanels;
 pub(crate) use objects::show_inspector as show_objects_inspector;
 pub(crate) use picture::key as picture_key;
 pub use probe::{ProbeState, probe_readout};
 pub(crate) use residuals::chosen_fit;
 pub use robot::RobotPanels;
-pub(crate) use robot::{move_sentence, moved_name, show_inspector as show_robot_inspector};
+pub(crate) use robot::show_inspector as show_robot_inspector;
 pub use scores::ScoresPanels;
 pub(crate) use scores::show_inspector as show_scores_inspector;
 pub(crate) use source_state::source_age;
@@ -65,9 +61,10 @@ use plumbline_engine::{Exported, View};
 use plumbline_model::{Eye, StereoCalibration};
 use plumbline_widgets::colormap::Colormap;
 use plumbline_widgets::image_view::ViewState;
+use plumbline_widgets::seen::Seen;
 use plumbline_widgets::texture::TextureCache;
 
-use crate::window::{Outbox, Pane, Screen};
+use crate::operator::{Outbox, Pane, Screen};
 
 /// How the panels are looked at: kept from frame to frame, never saved.
 pub struct PanelState {
@@ -96,7 +93,7 @@ pub struct PanelState {
     /// Where the board has been.
     pub coverage: coverage::CountedCoverage,
     /// The proposal that was shown last.
-    pub proposal_seen: Option<usize>,
+    pub proposal_seen: Seen<StereoCalibration>,
     /// Which calibration is exported while there are two.
     pub exported: Exported,
     /// The robot.
@@ -130,7 +127,7 @@ impl Default for PanelState {
             chosen_eye: None,
             board: None,
             coverage: Default::default(),
-            proposal_seen: None,
+            proposal_seen: Seen::default(),
             exported: Exported::InUse,
             robot: RobotPanels::default(),
             twin: TwinPanels::default(),

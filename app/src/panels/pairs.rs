@@ -9,7 +9,7 @@ use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::PanelContext;
-use crate::window::{Action, RobotAction, hint_text};
+use crate::operator::{Action, RobotAction, hint_text};
 
 const ROW: f32 = 24.0;
 

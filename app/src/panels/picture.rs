@@ -4,7 +4,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use plumbline_model::{Eye, Stamp};
 
-use crate::window::Pane;
+use crate::operator::Pane;
 
 /// A number that changes with the image. The number of a pair alone would not do: another
 /// source counts from the same start.

@@ -7,7 +7,7 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
 use plumbline_widgets::theme::{self, Role, space};
 
-use crate::window::capitalized;
+use crate::operator::words::capitalized;
 
 /// Which point is measured: the one that was clicked, else the one under the mouse.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -11,7 +11,7 @@ use plumbline_widgets::overlay::Overlay;
 use plumbline_widgets::theme::Role;
 
 use super::{PanelContext, objects, picture, source_state};
-use crate::window::{Action, Outbox, Screen};
+use crate::operator::{Action, Outbox, Screen};
 
 const PAIR: &str = "Rectified pair";
 /// Distance of the lines, pixels.

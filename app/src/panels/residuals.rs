@@ -1,11 +1,8 @@
 //! The chosen pair: both images with what is left of their errors.
 
-use std::collections::hash_map::DefaultHasher;
-use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
-use egui::{ColorImage, Ui, vec2};
-use image::GrayImage;
+use egui::{Ui, vec2};
 use plumbline_engine::view::{CollectedPair, EyesView};
 use plumbline_model::{Eye, PairFit};
 use plumbline_widgets::empty::{EmptyState, Message};
@@ -91,26 +88,11 @@ pub fn collected_image(
 ) {
     let key = if eye == Eye::Left { "chosen left" } else { "chosen right" };
     let content = match pair.and_then(|pair| pair.image(eye)) {
-        Some(image) => Content::Picture(cx.state.textures.get(key, identity(image), || gray(image))),
+        Some(image) => Content::Picture(cx.state.textures.gray_of(key, image)),
         None => Content::Empty(Message::new(
             "The image is not at hand",
             "Only its corners are known, from a file: open the pairs and collect them to see the images.",
         )),
     };
     ImageView::new(label, content).overlay(overlay).size(size).show(ui, &mut cx.state.chosen[eye.index()]);
-}
-
-/// Pictures of collected pairs never change; their place in memory tells them apart while they
-/// are kept, and their content when the place was used again.
-fn identity(image: &Arc<GrayImage>) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    (Arc::as_ptr(image) as usize).hash(&mut hasher);
-    let bytes = image.as_raw();
-    bytes.len().hash(&mut hasher);
-    bytes.iter().step_by(997).for_each(|byte| byte.hash(&mut hasher));
-    hasher.finish()
-}
-
-fn gray(image: &GrayImage) -> ColorImage {
-    ColorImage::from_gray([image.width() as usize, image.height() as usize], image.as_raw())
 }

@@ -9,7 +9,7 @@ use plumbline_widgets::empty::Message;
 use plumbline_widgets::format;
 use plumbline_widgets::image_view::Content;
 
-use crate::window::{Action, Outbox, RobotAction};
+use crate::operator::{Action, Outbox, RobotAction};
 
 /// From this age on, the picture of a camera is called old.
 const OLD: Duration = Duration::from_millis(1500);

@@ -6,7 +6,8 @@ use egui::{Align, Button, Layout, RichText, Ui, UiBuilder, vec2};
 use plumbline_engine::{SourceCommand, SourceSpec};
 use plumbline_widgets::theme::{self, space};
 
-use crate::window::{Action, Outbox, RobotAction, source_name};
+use crate::operator::words::source_name;
+use crate::operator::{Action, Outbox, RobotAction};
 
 /// What can be opened, and in which case one would.
 const WAYS: [(Action, &str); 5] = [

@@ -10,7 +10,7 @@ use plumbline_widgets::table_map::{self, Outline, Place, ScalarField, TableScene
 use plumbline_widgets::theme;
 
 use super::PanelContext;
-use crate::window::{Action, Screen};
+use crate::operator::{Action, Screen};
 
 pub fn uncertainty(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let eyes = &cx.view.eyes;

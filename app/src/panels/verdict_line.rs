@@ -4,7 +4,7 @@ use egui::{RichText, Sense, Ui, Vec2};
 use plumbline_widgets::glyph::{self, Glyph};
 use plumbline_widgets::theme::{self, Role};
 
-use crate::window::Verdict;
+use crate::operator::Verdict;
 
 pub fn show(ui: &mut Ui, verdict: &Verdict) {
     let (sign, role) =

@@ -14,24 +14,23 @@ use plumbline_engine::{
 };
 use plumbline_model::Eye;
 use plumbline_model::robot::JointIndex;
+use plumbline_widgets::Seen;
 
 use super::PlumblineWindow;
-use super::actions::Action;
-use super::ask::{Ask, Asked};
-use super::detect_actions::DetectAction;
+use super::arrangement::default_arrangement;
+use super::ask::Ask;
 use super::dialogs::{Answer, Question};
 use super::frame_time::{FrameTimes, resident_mb};
-use super::gap_actions::{self, GapAction};
 use super::jogging::RENEW;
-use super::labels_actions::{LabelsAction, ScoresAction};
-use super::models_actions::ModelsAction;
-use super::outbox::Outbox;
-use super::robot_actions::RobotAction;
 use super::saving::save_picture;
-use super::script::ScriptStep;
+use super::script_step::ScriptStep;
 use super::settings::ThemeChoice;
-use super::steps::{Pane, Screen, default_arrangement};
-use super::touch_actions::{Preset, TouchAction};
+use super::sheet::Asked;
+use crate::operator::guidance::guidance;
+use crate::operator::{
+    Action, DetectAction, GapAction, LabelsAction, ModelsAction, Outbox, Pane, Preset, RobotAction,
+    ScoresAction, Screen, TouchAction, gap_plan,
+};
 
 /// A message of the window itself.
 pub(super) fn warning(text: impl Into<String>) -> Command {
@@ -100,7 +99,7 @@ impl PlumblineWindow {
                 self.panels.touch.window_open = !self.panels.touch.window_open;
             }
             Action::Next => {
-                if let Some(next) = super::guidance::guidance(&self.view, self.settings.screen).next {
+                if let Some(next) = guidance(&self.view, self.settings.screen).next {
                     self.act(ctx, next.action);
                 }
             }
@@ -174,7 +173,7 @@ impl PlumblineWindow {
             GapAction::ReportHtml => self.ask_for(ctx, Question::GapReport { pdf: false }),
             GapAction::ReportPdf => self.ask_for(ctx, Question::GapReport { pdf: true }),
             GapAction::NextExperiment => {
-                if let Some(plan) = gap_actions::plan(&self.view) {
+                if let Some(plan) = gap_plan(&self.view) {
                     self.settings.screen = Screen::Touch;
                     self.send(plan);
                 }
@@ -370,13 +369,13 @@ impl PlumblineWindow {
     pub(super) fn do_script_step(&mut self, ctx: &egui::Context, step: ScriptStep) {
         match step {
             ScriptStep::Act(action) => self.act(ctx, action),
-            ScriptStep::ChoosePair(index) => {
+            ScriptStep::Pair(index) => {
                 self.panels.chosen_pair = self.view.eyes.collected.get(index).map(|pair| pair.name.clone());
             }
             ScriptStep::Probe([u_px, v_px]) => {
                 self.panels.probe.pinned = Some(ProbePoint::Raw { eye: Eye::Left, u_px, v_px });
             }
-            ScriptStep::ChooseObject(name) => self.panels.objects.choose_class(&self.view, &name),
+            ScriptStep::Object(name) => self.panels.objects.choose_class(&self.view, &name),
             ScriptStep::DrawBox(class, area) => {
                 if let Some(shown) = &self.view.labels.shown {
                     let (image, edit) = (shown.name.clone(), BoxEdit::Add { class, area });
@@ -384,10 +383,10 @@ impl PlumblineWindow {
                 }
             }
             ScriptStep::ChooseBox(index) => self.panels.labels.canvas.chosen = Some(index),
-            ScriptStep::ShowPane(pane) => self.show_pane(self.settings.screen, pane),
-            ScriptStep::ShowErrors(errors) => self.panels.models.errors = errors,
-            ScriptStep::ShowGapErrors(errors) => self.panels.gap.errors = errors,
-            ScriptStep::PairsPerSecond(rate) => self.backend.send(SourceCommand::PairsPerSecond(rate).into()),
+            ScriptStep::Show(pane) => self.show_pane(self.settings.screen, pane),
+            ScriptStep::Errors(errors) => {
+                (self.panels.models.errors, self.panels.gap.errors) = (errors, errors)
+            }
             ScriptStep::Measure => {
                 self.frame_times = FrameTimes::default();
                 self.resident_before_mb = resident_mb();
@@ -399,7 +398,7 @@ impl PlumblineWindow {
                     self.send(RobotCommand::Preview(to).into());
                 }
             }
-            ScriptStep::ChooseJoint(name) => self.panels.robot.chosen_joint = self.joint_called(&name),
+            ScriptStep::Joint(name) => self.panels.robot.chosen_joint = self.joint_called(&name),
             ScriptStep::Wait(_) => {}
             ScriptStep::Picture(file) => {
                 self.script.waiting_for_picture.store(true, Ordering::Relaxed);
@@ -426,7 +425,7 @@ impl PlumblineWindow {
     /// Opens the screen where the work goes on: judging once there is something to judge.
     pub(super) fn follow_the_work(&mut self) {
         let eyes = &self.view.eyes;
-        let now = eyes.proposal.as_ref().map(|proposal| Arc::as_ptr(&proposal.calibration) as usize);
+        let now = Seen::of_any(eyes.proposal.as_ref().map(|proposal| &proposal.calibration));
         if now.is_some() && now != self.panels.proposal_seen && self.settings.screen == Screen::Collect {
             self.settings.screen = Screen::Judge;
         }

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 
 use egui::{Align2, DragValue, TextEdit, Ui, Vec2};
 use plumbline_engine::{
-    CameraDevice, Command, EyesCommand, LabelsCommand, RobotCommand, SourceCommand, SourceSpec, View,
+    CameraDevice, EyesCommand, LabelsCommand, RobotCommand, SourceCommand, SourceSpec, View,
 };
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
 use super::connect::{self, ConnectChoice};
 use super::dialogs::{Answer, Question};
-use super::sheet::sheet;
+use super::sheet::{Asked, buttons, sheet, title};
 
 /// An open sheet.
 #[derive(Debug)]
@@ -54,21 +54,6 @@ pub enum Ask {
         /// As it is being typed.
         title: String,
     },
-}
-
-/// What a sheet ended with.
-#[derive(Debug)]
-pub enum Asked {
-    /// Goes on.
-    Open,
-    /// Closed without an answer.
-    Closed,
-    /// For the engine.
-    Command(Command),
-    /// For the engine; the sheet shows what comes of it.
-    CommandKeepOpen(Command),
-    /// Paths for the window to use.
-    Answer(Answer),
 }
 
 impl Ask {
@@ -265,26 +250,4 @@ fn new_label_set(ui: &mut Ui, folder: &mut String, classes: &mut String) -> Aske
 fn saved_pose(name: &str) -> Asked {
     let title = name.trim().to_owned();
     Asked::Command(RobotCommand::SavePose { title, joints: Vec::new() }.into())
-}
-
-pub(super) fn title(ui: &mut Ui, title: &str, hint: &str) {
-    ui.heading(title);
-    ui.label(theme::weak(ui, hint));
-    ui.add_space(space::S);
-}
-
-/// Height of the row of buttons at the end of a sheet, points.
-const BUTTON_ROW_HEIGHT: f32 = 36.0;
-
-/// `Some(true)` when the work was asked for, `Some(false)` when it was called off.
-pub(super) fn buttons(ui: &mut Ui, verb: &str, enabled: bool) -> Option<bool> {
-    ui.add_space(space::S);
-    // One row high: left alone, the layout would take all the height there is and push the rest out.
-    let row = egui::vec2(ui.available_width(), BUTTON_ROW_HEIGHT);
-    ui.allocate_ui_with_layout(row, egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        let done = ui.add_enabled(enabled, super::primary_button(ui, verb)).clicked();
-        let cancelled = ui.button("Cancel").clicked();
-        if done { Some(true) } else { cancelled.then_some(false) }
-    })
-    .inner
 }

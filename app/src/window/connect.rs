@@ -7,8 +7,8 @@ use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::ask::{Asked, buttons, title};
-use super::robot_actions::default_scenario;
+use super::sheet::{Asked, buttons, title};
+use crate::operator::default_scenario;
 
 /// What has been chosen so far.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -147,6 +147,6 @@ fn offer_disconnect(ui: &mut Ui, robot: &RobotView) -> Asked {
 }
 
 fn warn(ui: &mut Ui, text: &str) {
-    let text = super::capitalized(text);
+    let text = crate::operator::words::capitalized(text);
     ui.label(RichText::new(text).color(Role::Warning.color(theme::tokens(ui))));
 }

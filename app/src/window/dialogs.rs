@@ -6,8 +6,9 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Sender, bounded};
-use plumbline_engine::correction::Method;
 use plumbline_engine::{ExportFormat, Exported, GraspTable};
+
+use crate::operator::snapshot::models::Method;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

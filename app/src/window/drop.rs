@@ -7,7 +7,7 @@ use plumbline_engine::{Command, EyesCommand, FileLength, LabelsCommand, ScoresCo
 use plumbline_widgets::buttons::STOP_SIZE;
 use plumbline_widgets::theme::{self, space};
 
-use super::steps::Screen;
+use crate::operator::Screen;
 
 /// What the dropped paths are taken for; an error says what could be dropped instead.
 pub fn command_for(paths: &[PathBuf], screen: Screen) -> Result<Command, String> {

@@ -7,40 +7,7 @@ use plumbline_widgets::format;
 use plumbline_widgets::lamp::{Health, Lamp};
 use plumbline_widgets::theme;
 
-use super::actions::Action;
-use super::outbox::Outbox;
-use super::steps::Screen;
-
-impl Action {
-    /// What starts a thread again, by its name for people.
-    pub(super) fn start_again_label(thread: WatchedThread) -> String {
-        format!("Start again: {}", thread.title())
-    }
-
-    /// Why a thread cannot be started again now.
-    pub(super) fn start_again_refusal(thread: WatchedThread, view: &View) -> Option<&'static str> {
-        match view.fault(thread) {
-            None => Some("it runs"),
-            Some(fault) if fault.can_start_again => None,
-            Some(fault) if fault.is_silent() => Some("it gives no sign of life, but has not ended"),
-            Some(_) => Some("it has not come to its end yet: wait a moment"),
-        }
-    }
-}
-
-/// The fault that matters most on a screen; what can hurt matters on every screen.
-pub(super) fn most_urgent(view: &View, screen: Screen) -> Option<&ThreadFault> {
-    let looks = matches!(screen, Screen::Live | Screen::Collect | Screen::Mount);
-    let matters = |fault: &&ThreadFault| match fault.thread {
-        WatchedThread::Engine | WatchedThread::Robot => true,
-        WatchedThread::Source => looks,
-        WatchedThread::Rectify | WatchedThread::Probe | WatchedThread::Detect => screen == Screen::Live,
-        WatchedThread::Corners => matches!(screen, Screen::Collect | Screen::Mount),
-        WatchedThread::Journal => false,
-    };
-    // They come in this order: the heart, the robot, the rest.
-    view.threads.iter().find(matters)
-}
+use crate::operator::{Action, Outbox};
 
 /// Whether a fault may leave people thinking that the arm is looked after.
 fn is_dangerous(fault: &ThreadFault) -> bool {

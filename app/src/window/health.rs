@@ -13,12 +13,8 @@ use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::lamp::{Health, Lamp};
 use plumbline_widgets::theme::{self, space};
 
-use super::actions::Action;
-use super::outbox::Outbox;
-use super::robot_actions::RobotAction;
-use super::shortcuts::shortcut_text;
-use super::steps::Screen;
 use super::{PlumblineWindow, faults, robot_lamps, world_menu};
+use crate::operator::{Action, Outbox, RobotAction, Screen, shortcut_text};
 use crate::panels::source_age;
 
 /// Below this width, points, the lamps take a row of their own.

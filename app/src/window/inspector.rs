@@ -10,9 +10,8 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
-use super::outbox::Outbox;
-use super::steps::Screen;
-use super::{PlumblineWindow, hint_text};
+use super::PlumblineWindow;
+use crate::operator::{Outbox, Screen, hint_text};
 use crate::panels::{
     PanelState, chosen_fit, probe_readout, show_gap_inspector, show_labels_inspector, show_models_inspector,
     show_objects_inspector, show_robot_inspector, show_scores_inspector, show_touch_inspector,

@@ -8,7 +8,8 @@ use plumbline_engine::{Engine, EngineSettings, SourceCommand, SourceSpec};
 
 use super::renderer::{self, RendererChoice};
 use super::settings::{ThemeChoice, WindowSettings, settings_file};
-use super::{PlumblineWindow, Screen, ScriptStep, WindowOptions, log_lines};
+use super::{PlumblineWindow, ScriptStep, WindowOptions, log_lines};
+use crate::operator::Screen;
 
 /// What the command line says about the window.
 #[derive(Clone, Debug, Default)]

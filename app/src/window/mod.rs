@@ -3,46 +3,38 @@
 //! Once per frame it takes the engine's newest view, draws it, and hands over what the operator
 //! asked for. It computes nothing, opens no file and waits for nothing.
 
-mod actions;
 mod apply;
+mod arrangement;
 mod ask;
 mod backend;
 mod connect;
-mod detect_actions;
 mod dialogs;
 mod drop;
 mod faults;
+mod frame;
 mod frame_time;
 mod frame_times_overlay;
 mod gamepad;
-mod gap_actions;
-mod guidance;
 mod health;
 mod icon;
 mod inspector;
 mod jogging;
-mod labels_actions;
 mod launch;
 mod log_lines;
 mod log_panel;
-mod models_actions;
 mod notices;
-mod outbox;
 mod palette;
 mod rail;
 pub mod renderer;
-mod robot_actions;
 mod robot_lamps;
 mod saving;
 mod script;
+mod script_step;
 mod settings;
 mod sheet;
-mod shortcuts;
 mod source_menu;
 mod status_line;
-mod steps;
 mod tiles;
-mod touch_actions;
 mod touch_window;
 mod transport;
 mod world_menu;
@@ -51,31 +43,14 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use plumbline_engine::view::MotionState;
 use plumbline_engine::{JobId, Products, View};
-use plumbline_model::duration;
 
-pub use actions::{Action, format_name};
 pub use backend::{Backend, Stopper};
-pub use detect_actions::DetectAction;
-pub use gamepad::{GamepadState, STOP_BUTTONS};
-pub use gap_actions::GapAction;
-pub(crate) use gap_actions::plan as gap_plan;
-pub use guidance::{Verdict, capitalized, hint_text, other_board, verdict};
-pub(crate) use guidance::{done_of, minutes, wanted, what_moves};
-pub use labels_actions::{LabelsAction, ScoresAction};
 pub use launch::{LaunchOptions, launch};
 pub use log_lines::{LogStore, start as start_log};
-pub use models_actions::ModelsAction;
-pub use outbox::Outbox;
-pub use robot_actions::{MountAction, RobotAction, default_scenario};
-pub use script::ScriptStep;
+pub use script_step::ScriptStep;
 pub use settings::{ThemeChoice, WindowSettings};
-pub(crate) use source_menu::short_name as source_name;
-pub use steps::{Pane, Screen};
-pub use touch_actions::{Preset, TouchAction};
-pub(crate) use touch_actions::{is_under_way, screen_of, usual_area};
-pub use touch_window::{Monitor, TouchSurface, touch_surface, window_problem};
+pub use touch_window::{TouchSurface, touch_surface};
 
 use crate::panels::PanelState;
 use ask::Ask;
@@ -158,12 +133,6 @@ pub struct PlumblineWindow {
     monitors_found_s: f64,
 }
 
-/// The arm holds without a sign of life from the window; this often it gets one while something
-/// moves.
-const SIGN_OF_LIFE: Duration = Duration::from_millis(100);
-/// For this long after a motion was asked for, the window expects it to begin.
-const BEGINS_WITHIN: Duration = Duration::from_secs(2);
-
 impl PlumblineWindow {
     /// A window over a running engine.
     pub fn new(ctx: &egui::Context, backend: Box<dyn Backend>, options: WindowOptions) -> Self {
@@ -210,155 +179,4 @@ impl PlumblineWindow {
     pub fn view(&self) -> &Arc<View> {
         &self.view
     }
-
-    fn before_frame(&mut self, ctx: &egui::Context) {
-        // Before anything that takes time.
-        if shortcuts::stop_asked(ctx) {
-            self.backend.stop();
-        }
-        self.backend.heartbeat();
-        self.view = self.backend.view();
-        if let Some(answer) = self.dialogs.poll() {
-            self.take_answer(ctx, answer);
-        }
-        self.notices.take(&self.view.notices);
-        self.log.refresh(self.settings.log_open);
-        self.follow_the_work();
-        let next = self.script.next(&self.view, ctx);
-        if let Some(step) = next {
-            self.do_script_step(ctx, step);
-        }
-        self.poll_gamepad(ctx);
-        // Ages and clocks move on although nothing else does.
-        ctx.request_repaint_after(if self.may_move() { SIGN_OF_LIFE } else { Duration::from_secs(1) });
-    }
-
-    /// Whether something moves or is about to, so that the window has to keep drawing.
-    fn may_move(&self) -> bool {
-        matches!(self.view.robot.motion, MotionState::Moving { .. })
-            || self.jogging.active()
-            || self.motion_asked.is_some_and(|asked| asked.elapsed() < BEGINS_WITHIN)
-    }
-
-    /// Only the robot's screen is jogged with one; its STOP counts everywhere.
-    fn poll_gamepad(&mut self, ctx: &egui::Context) {
-        if self.gamepads.take_stop() {
-            self.stop();
-        }
-        if let Some(trouble) = self.gamepads.take_trouble() {
-            self.backend.send(apply::warning(trouble));
-        }
-        let wanted = self.settings.screen == Screen::Robot;
-        let is_focused = ctx.input(|input| input.focused);
-        let state = wanted.then(|| self.gamepads.newest(is_focused)).flatten();
-        if let Some(pad) = &state {
-            ctx.request_repaint_after(if pad.enabled { jogging::RENEW } else { SIGN_OF_LIFE });
-        }
-        self.panels.robot.gamepad = state;
-    }
-
-    /// What the last frame took: everything that this thread did since the one before.
-    fn measure_frame(&mut self, clock_s: Option<f32>) {
-        let used = frame_time::thread_processor_time();
-        let took = match (used, self.processor_time_before) {
-            (Some(now), Some(before)) => now.checked_sub(before),
-            (Some(_), None) => None,
-            (None, _) => clock_s.and_then(|clock_s| duration::seconds(clock_s.into())),
-        };
-        self.processor_time_before = used;
-        if let Some(took) = took {
-            self.frame_times.add(took);
-        }
-    }
-
-    fn draw(&mut self, ui: &mut egui::Ui) {
-        let ctx = ui.ctx().clone();
-        let escape_pressed = ctx.input(|input| input.key_pressed(egui::Key::Escape));
-        let mut outbox = Outbox::default();
-        if self.settings.screen == Screen::Images && self.ask.is_none() && !self.palette.is_open() {
-            for action in shortcuts::take_label_keys(&ctx, &self.view) {
-                outbox.act(action);
-            }
-        }
-        for action in shortcuts::take_shortcuts(&ctx) {
-            outbox.act(action);
-        }
-        self.draw_frame(ui, &mut outbox);
-        self.show_touch_window(&ctx);
-        self.draw_sheets(&ctx, escape_pressed, &mut outbox);
-        self.take_drops(&ctx, &mut outbox);
-        self.carry_out(&ctx, outbox);
-        self.save_settings_if_changed(&ctx);
-    }
-
-    fn draw_frame(&mut self, ui: &mut egui::Ui, outbox: &mut Outbox) {
-        health::show(self, ui, outbox);
-        status_line::show(self, ui, outbox);
-        if self.settings.log_open {
-            self.log.show(ui);
-        }
-        rail::show(self, ui, outbox);
-        if self.settings.inspector_open {
-            inspector::show(self, ui, outbox);
-        }
-        if self.view.source.replay.is_some() {
-            transport::show(&self.view, ui, outbox);
-        }
-        tiles::show(self, ui, outbox);
-    }
-
-    fn draw_sheets(&mut self, ctx: &egui::Context, escape_pressed: bool, outbox: &mut Outbox) {
-        if let Some(action) = self.palette.show(ctx, &self.view, escape_pressed) {
-            outbox.act(action);
-        }
-        self.notices.show_new(ctx);
-        self.notices.show_history(ctx, escape_pressed, outbox);
-        self.show_ask(ctx, escape_pressed, outbox);
-        if self.frame_times_open {
-            frame_times_overlay::show(ctx, &self.frame_times, &self.renderer);
-        }
-    }
-
-    fn take_drops(&mut self, ctx: &egui::Context, outbox: &mut Outbox) {
-        let (hovered, dropped) = ctx.input(|input| {
-            let hovered: Vec<PathBuf> =
-                input.raw.hovered_files.iter().filter_map(|file| file.path.clone()).collect();
-            let dropped: Vec<PathBuf> =
-                input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect();
-            (hovered, dropped)
-        });
-        if !hovered.is_empty() {
-            drop::paint_preview(ctx, &drop::preview(&hovered, self.settings.screen));
-        }
-        if !dropped.is_empty() {
-            match drop::command_for(&dropped, self.settings.screen) {
-                Ok(command) => outbox.send(command),
-                Err(why) => outbox.send(apply::warning(why)),
-            }
-        }
-    }
-}
-
-impl eframe::App for PlumblineWindow {
-    fn logic(&mut self, ctx: &egui::Context, frame: &mut eframe::Frame) {
-        self.measure_frame(frame.info().cpu_usage);
-        self.before_frame(ctx);
-    }
-
-    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        self.find_monitors(frame, ui.input(|input| input.time));
-        self.draw(ui);
-    }
-
-    fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
-        self.save_settings();
-        self.write_frame_report();
-    }
-}
-
-/// The one button that stands out.
-pub(crate) fn primary_button<'a>(ui: &egui::Ui, text: impl Into<String>) -> egui::Button<'a> {
-    let tokens = plumbline_widgets::theme::tokens(ui);
-    let style = plumbline_widgets::theme::strong_style(ui);
-    egui::Button::new(egui::RichText::new(text).text_style(style).color(tokens.on_accent)).fill(tokens.accent)
 }

@@ -7,8 +7,8 @@ use plumbline_engine::{Notice, NoticeCommand, NoticeLevel};
 use plumbline_widgets::notifications::{Notifications, Severity};
 use plumbline_widgets::theme::space;
 
-use super::outbox::Outbox;
 use super::sheet::sheet;
+use crate::operator::Outbox;
 
 /// More new messages than this are not all put on screen.
 const MOST_AT_ONCE: usize = 2;

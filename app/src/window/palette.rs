@@ -6,9 +6,8 @@ use egui::{Key, Modifiers, ScrollArea, TextEdit, Ui};
 use plumbline_engine::View;
 use plumbline_widgets::theme::{self, space};
 
-use super::actions::{self, Action};
 use super::sheet::sheet;
-use super::shortcuts::shortcut_text;
+use crate::operator::{Action, actions, shortcut_text};
 
 /// Open or closed, and what was typed.
 #[derive(Debug, Default)]

@@ -8,10 +8,8 @@ use plumbline_widgets::rail::{RailStep, StepState};
 use plumbline_widgets::theme::{self, space};
 
 use super::PlumblineWindow;
-use super::actions::Action;
-use super::guidance::dropped;
-use super::outbox::Outbox;
-use super::steps::Screen;
+use crate::operator::guidance::dropped;
+use crate::operator::{Action, Outbox, Screen};
 use crate::panels::shown_calibration;
 
 const WIDTH: f32 = 176.0;

@@ -9,10 +9,7 @@ use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::lamp::{Health, Lamp};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::actions::Action;
-use super::outbox::Outbox;
-use super::robot_actions::RobotAction;
-use super::steps::Screen;
+use crate::operator::{Action, Outbox, RobotAction, Screen};
 
 /// Fewer complete cycles per second than this make motion rough.
 const SLOW_BUS_HZ: f64 = 50.0;
@@ -104,7 +101,9 @@ fn details(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
         KeyValue::text("Asked again", bus.retries.to_string()).help("Within the cycle's deadline"),
     ];
     rows.extend(
-        bus.faults.iter().map(|(kind, count)| KeyValue::text(super::capitalized(kind), count.to_string())),
+        bus.faults.iter().map(|(kind, count)| {
+            KeyValue::text(crate::operator::words::capitalized(kind), count.to_string())
+        }),
     );
     key_value_grid(ui, "bus", &rows);
     for warning in &bus.warnings {

@@ -2,57 +2,14 @@
 //! measurements are made by commands, not by hand.
 
 use std::collections::VecDeque;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use plumbline_engine::View;
 use plumbline_engine::view::{Connection, MotionState, SourceStatus, StepState, TouchPhase};
-use plumbline_engine::{Command, View};
-use plumbline_model::{ClassIndex, PixelBox};
 
-use super::actions::Action;
-use super::steps::Pane;
-use crate::panels::MapErrors;
-
-/// One thing to do.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ScriptStep {
-    /// As if its button were pressed.
-    Act(Action),
-    /// Hands a command to the engine.
-    Send(Command),
-    /// Shows one joint at an angle (degrees), without moving.
-    PreviewJoint(String, f64),
-    /// Chooses a joint for the inspector.
-    ChooseJoint(String),
-    /// Draws a box on the shown image of the data set.
-    DrawBox(ClassIndex, PixelBox),
-    /// Chooses a box of it, by place.
-    ChooseBox(usize),
-    /// Chooses the pair with this place in the list.
-    ChoosePair(usize),
-    /// Chooses the surest object of a class.
-    ChooseObject(String),
-    /// Brings a pane of the open screen to the front.
-    ShowPane(Pane),
-    /// Which errors the map of a model shows.
-    ShowErrors(MapErrors),
-    /// Which errors the map of the gap shows.
-    ShowGapErrors(crate::panels::GapErrors),
-    /// Keeps measuring at this pixel of the raw left image.
-    Probe([f64; 2]),
-    /// Forgets the frame times so far.
-    Measure,
-    /// Plays at so many pairs per second.
-    PairsPerSecond(f64),
-    /// Lets time pass.
-    Wait(Duration),
-    /// Saves a picture of the window.
-    Picture(PathBuf),
-    /// Closes the window.
-    Quit,
-}
+use super::script_step::ScriptStep;
 
 /// The steps that are left.
 #[derive(Debug)]

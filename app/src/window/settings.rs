@@ -8,7 +8,8 @@ use plumbline_engine::SourceSpec;
 use plumbline_model::files::{self, FileError, Size};
 use serde::{Deserialize, Serialize};
 
-use super::steps::{Pane, Screen, default_arrangement};
+use super::arrangement::default_arrangement;
+use crate::operator::{Pane, Screen};
 
 /// Dark, light, or as the desktop says.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]

@@ -1,7 +1,11 @@
 //! A sheet that floats over the window. It has no backdrop: nothing may ever cover STOP.
 
 use egui::{Align2, Area, Context, Frame, Id, Margin, Order, Ui, Vec2};
-use plumbline_widgets::theme::space;
+use plumbline_engine::Command;
+use plumbline_widgets::buttons::accent_button;
+use plumbline_widgets::theme::{self, space};
+
+use super::dialogs::Answer;
 
 /// What came of a sheet in this frame.
 pub struct SheetResponse<R> {
@@ -34,4 +38,42 @@ pub fn sheet<R>(
         });
     let close = escape_pressed || area.response.clicked_elsewhere() && !egui::Popup::is_any_open(ctx);
     SheetResponse { inner: area.inner, close }
+}
+
+/// What a sheet ended with.
+#[derive(Debug)]
+pub enum Asked {
+    /// Goes on.
+    Open,
+    /// Closed without an answer.
+    Closed,
+    /// For the engine.
+    Command(Command),
+    /// For the engine; the sheet shows what comes of it.
+    CommandKeepOpen(Command),
+    /// Paths for the window to use.
+    Answer(Answer),
+}
+
+/// What is asked, and what to know about it.
+pub(super) fn title(ui: &mut Ui, title: &str, hint: &str) {
+    ui.heading(title);
+    ui.label(theme::weak(ui, hint));
+    ui.add_space(space::S);
+}
+
+/// Height of the row of buttons at the end of a sheet, points.
+const BUTTON_ROW_HEIGHT: f32 = 36.0;
+
+/// `Some(true)` when the work was asked for, `Some(false)` when it was called off.
+pub(super) fn buttons(ui: &mut Ui, verb: &str, enabled: bool) -> Option<bool> {
+    ui.add_space(space::S);
+    // One row high: left alone, the layout would take all the height there is and push the rest out.
+    let row = egui::vec2(ui.available_width(), BUTTON_ROW_HEIGHT);
+    ui.allocate_ui_with_layout(row, egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        let done = ui.add_enabled(enabled, accent_button(ui, verb)).clicked();
+        let cancelled = ui.button("Cancel").clicked();
+        if done { Some(true) } else { cancelled.then_some(false) }
+    })
+    .inner
 }

@@ -1,16 +1,14 @@
 //! Where the images come from: what is open, and what else can be opened.
 
 use std::collections::VecDeque;
-use std::path::Path;
 
 use egui::{Button, Ui};
 use plumbline_engine::view::SourceStatus;
 use plumbline_engine::{SourceCommand, SourceSpec, View};
 use plumbline_widgets::theme;
 
-use super::actions::Action;
-use super::outbox::Outbox;
-use super::shortcuts::shortcut_text;
+use crate::operator::words::source_name;
+use crate::operator::{Action, Outbox, shortcut_text};
 
 /// Longest name on the button, characters.
 const LONGEST: usize = 28;
@@ -35,7 +33,7 @@ pub(super) fn entries(view: &View, recent: &VecDeque<SourceSpec>, ui: &mut Ui, o
         ui.separator();
         ui.label(theme::small(ui, "Opened before"));
         for spec in recent {
-            if ui.button(shortened(&short_name(spec))).on_hover_text(long_name(spec)).clicked() {
+            if ui.button(shortened(&source_name(spec))).on_hover_text(long_name(spec)).clicked() {
                 outbox.send(SourceCommand::Open(spec.clone()));
                 ui.close();
             }
@@ -58,43 +56,19 @@ pub(super) fn shortened(name: &str) -> String {
     format!("{kept}…")
 }
 
-/// The last parts of the paths.
-pub(crate) fn short_name(spec: &SourceSpec) -> String {
-    let last = |path: &Path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-    match spec {
-        SourceSpec::Folder(folder) => last(folder),
-        SourceSpec::Folders { left, right } => match (left.parent(), right.parent()) {
-            // The usual layout: one folder with `left` and `right` in it.
-            (Some(a), Some(b)) if a == b => last(a),
-            _ => format!("{} and {}", last(left), last(right)),
-        },
-        SourceSpec::Videos { left, right } => format!("{} and {}", last(left), last(right)),
-        SourceSpec::Twin => "the twin's eyes".to_owned(),
-        SourceSpec::Cameras { left_index, right_index } => format!("cameras {left_index} and {right_index}"),
-    }
-}
-
 fn long_name(spec: &SourceSpec) -> String {
     match spec {
         SourceSpec::Folder(folder) => folder.display().to_string(),
         SourceSpec::Folders { left, right } | SourceSpec::Videos { left, right } => {
             format!("left: {}\nright: {}", left.display(), right.display())
         }
-        SourceSpec::Cameras { .. } | SourceSpec::Twin => short_name(spec),
+        SourceSpec::Cameras { .. } | SourceSpec::Twin => source_name(spec),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn two_folders_of_one_parent_are_called_by_the_parent() {
-        let spec = SourceSpec::Folders { left: "data/board/left".into(), right: "data/board/right".into() };
-        assert_eq!(short_name(&spec), "board");
-        let spec = SourceSpec::Folders { left: "a/left".into(), right: "b/right".into() };
-        assert_eq!(short_name(&spec), "left and right");
-    }
 
     #[test]
     fn long_names_are_shortened_by_characters_not_bytes() {

@@ -3,14 +3,13 @@
 use egui::{Align, Layout, Panel, Ui};
 use plumbline_engine::view::{JobState, JobView};
 use plumbline_engine::{JobCommand, View};
+use plumbline_widgets::buttons::accent_button;
 use plumbline_widgets::progress::{ProgressAction, ProgressLine};
 use plumbline_widgets::theme::space;
 
-use super::actions::Action;
-use super::guidance::{Guidance, failed_inside, guidance};
-use super::outbox::Outbox;
-use super::shortcuts::shortcut_text;
-use super::{PlumblineWindow, primary_button};
+use super::PlumblineWindow;
+use crate::operator::guidance::{Guidance, failed_inside, guidance};
+use crate::operator::{Action, Outbox, shortcut_text};
 
 const HEIGHT: f32 = 52.0;
 
@@ -66,7 +65,7 @@ fn next_button(view: &View, guidance: &Guidance, ui: &mut Ui, outbox: &mut Outbo
     let Some(next) = &guidance.next else { return };
     let refusal = next.action.refusal(view);
     let keys = shortcut_text(ui.ctx(), Action::Next).unwrap_or_default();
-    let button = primary_button(ui, &next.label).min_size(egui::vec2(120.0, 36.0));
+    let button = accent_button(ui, &next.label).min_size(egui::vec2(120.0, 36.0));
     ui.spacing_mut().button_padding.x = space::M;
     let button = ui.add_enabled(refusal.is_none(), button);
     let button = button.on_hover_text(format!("{keys} does the same"));

@@ -7,8 +7,7 @@ use plumbline_engine::view::{Connection, SourceStatus};
 use plumbline_widgets::theme;
 
 use super::PlumblineWindow;
-use super::outbox::Outbox;
-use super::steps::{Pane, Screen};
+use crate::operator::{Outbox, Pane, Screen};
 use crate::panels::{self, PanelContext, PanelState, picture_key};
 
 pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {

@@ -5,9 +5,7 @@ use plumbline_engine::view::{ReplayView, SourceStatus};
 use plumbline_engine::{SourceCommand, View};
 use plumbline_widgets::theme::{self, space};
 
-use super::actions::Action;
-use super::outbox::Outbox;
-use super::shortcuts::shortcut_text;
+use crate::operator::{Action, Outbox, shortcut_text};
 
 pub(super) fn show(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
     let Some(replay) = view.source.replay else { return };

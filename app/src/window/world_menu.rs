@@ -8,11 +8,9 @@ use plumbline_engine::view::{Connection, SourceStatus};
 use plumbline_engine::{SourceSpec, View};
 use plumbline_widgets::theme;
 
-use super::actions::Action;
-use super::outbox::Outbox;
-use super::robot_actions::RobotAction;
-use super::shortcuts::shortcut_text;
 use super::source_menu;
+use crate::operator::words::source_name;
+use crate::operator::{Action, Outbox, RobotAction, shortcut_text};
 
 pub(super) fn show(view: &View, recent: &VecDeque<SourceSpec>, ui: &mut Ui, outbox: &mut Outbox) {
     let response = ui.button(format!("World: {}", name(view)));
@@ -48,15 +46,17 @@ fn name(view: &View) -> String {
     let robot = match &view.robot.connection {
         Connection::Connected { to, .. }
         | Connection::Connecting { to, .. }
-        | Connection::Lost { to, .. } => Some(source_menu::shortened(&super::capitalized(to))),
+        | Connection::Lost { to, .. } => {
+            Some(source_menu::shortened(&crate::operator::words::capitalized(to)))
+        }
         Connection::None => None,
     };
     match (robot, images) {
         (Some(robot), Some(SourceSpec::Twin) | None) => robot,
         (Some(robot), Some(spec)) => {
-            format!("{robot}, {}", source_menu::shortened(&source_menu::short_name(spec)))
+            format!("{robot}, {}", source_menu::shortened(&source_name(spec)))
         }
-        (None, Some(spec)) => source_menu::shortened(&source_menu::short_name(spec)),
+        (None, Some(spec)) => source_menu::shortened(&source_name(spec)),
         (None, None) => "none".to_owned(),
     }
 }

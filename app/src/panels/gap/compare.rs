@@ -9,10 +9,12 @@ use plumbline_widgets::glyph::Glyph;
 use plumbline_widgets::probability::{ShareRow, share_rows};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{action_button, is_of_choice, line, padded, state, words};
+use super::{action_button, line, padded, state};
+use crate::operator::snapshot::gap::What;
+use crate::operator::words::clock;
+use crate::operator::words::gap as words;
+use crate::operator::{GapAction, is_of_choice};
 use crate::panels::PanelContext;
-use crate::panels::models_clock as clock;
-use crate::window::GapAction;
 
 /// Sessions that are seen without scrolling.
 const ROWS: usize = 5;
@@ -194,8 +196,7 @@ fn compared(ui: &mut Ui, shown: &ShownFinding) {
     left_out(ui, shown);
 }
 
-fn kind_words(what: plumbline_engine::effects::measurements::What) -> &'static str {
-    use plumbline_engine::effects::measurements::What;
+fn kind_words(what: What) -> &'static str {
     match what {
         What::Touch => "touches",
         What::Pose => "poses measured from outside",

@@ -8,10 +8,11 @@ use plumbline_widgets::intervals::{IntervalRow, Intervals, Level};
 use plumbline_widgets::parameter;
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{action_button, padded, words};
+use super::{action_button, padded};
+use crate::operator::GapAction;
+use crate::operator::words::clock;
+use crate::operator::words::gap as words;
 use crate::panels::PanelContext;
-use crate::panels::models_clock as clock;
-use crate::window::GapAction;
 
 const ROW_HEIGHT: f32 = 26.0;
 
@@ -48,7 +49,7 @@ fn model(ui: &mut Ui, model: &GapModelView) {
     ui.label(if model.effects.is_empty() {
         "Nominal: the robot's description as it is.".to_owned()
     } else {
-        format!("{}:", crate::window::capitalized(&model.name))
+        format!("{}:", crate::operator::words::capitalized(&model.name))
     });
     for effect in &model.effects {
         let sizes: Vec<String> = effect

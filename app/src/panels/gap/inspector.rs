@@ -6,10 +6,10 @@ use plumbline_widgets::format;
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme;
 
-use super::words;
+use crate::operator::Outbox;
+use crate::operator::words::clock;
+use crate::operator::words::gap as words;
 use crate::panels::PanelState;
-use crate::panels::models_clock as clock;
-use crate::window::Outbox;
 
 /// What is known of the finding that is shown.
 pub fn show(ui: &mut Ui, view: &View, _state: &mut PanelState, _outbox: &mut Outbox) {

@@ -3,28 +3,18 @@
 use std::sync::Arc;
 
 use egui::Ui;
-use plumbline_engine::gap::finding::Residual;
 use plumbline_engine::view::ShownFinding;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format;
+use plumbline_widgets::seen::Seen;
 use plumbline_widgets::table_map::{BeforeAfter, Outline, Place, TableMap, TableMark, TableScene};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{finding, padded, words};
+use super::{finding, padded};
+use crate::operator::snapshot::gap::{Residual, What};
+use crate::operator::words::gap as words;
 use crate::panels::PanelContext;
-use crate::panels::{arrow_scale, map_entry};
-
-/// Which errors are drawn as arrows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Errors {
-    /// Without the effects.
-    Before,
-    /// With the effects.
-    After,
-    /// Both.
-    #[default]
-    Both,
-}
+use crate::panels::arrows::{Errors, arrow_scale, entry};
 
 /// Around everything that is shown, m.
 const MARGIN_M: f64 = 0.04;
@@ -142,24 +132,15 @@ fn plane(error_m: [f64; 3]) -> f64 {
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let what = "The map then shows how far measured and predicted places lie apart, before and after.";
     let Some(shown) = finding(ui, cx, what) else { return };
-    let key = Arc::as_ptr(&shown) as usize;
-    let drawn = match &cx.state.gap.map {
-        Some((of, drawn)) if *of == key => drawn.clone(),
-        _ => {
-            let touched = shown
-                .finding
-                .comparison
-                .kinds
-                .iter()
-                .any(|kind| kind.what == plumbline_engine::effects::measurements::What::Touch);
-            let corners = cx.view.gap.rig.as_ref().filter(|_| touched).map(|rig| {
+    let drawn = cx.state.gap.map.get(Seen::of(&shown), || {
+        let kinds = &shown.finding.comparison.kinds;
+        let touched = kinds.iter().any(|kind| kind.what == What::Touch);
+        let corners =
+            cx.view.gap.rig.as_ref().filter(|_| touched).map(|rig| {
                 rig.touchscreen.corners().map(|corner| [corner.coords.x, corner.coords.y]).to_vec()
             });
-            let drawn = Arc::new(Drawn::of(&shown, corners.unwrap_or_default()));
-            cx.state.gap.map = Some((key, drawn.clone()));
-            drawn
-        }
-    };
+        Drawn::of(&shown, corners.unwrap_or_default())
+    });
     padded(ui, |ui| {
         ui.horizontal(|ui| {
             let options = [(Errors::Before, "Before"), (Errors::After, "After"), (Errors::Both, "Both")];
@@ -189,14 +170,10 @@ fn legend(ui: &mut Ui, errors: Errors, drawn: &Drawn) {
     ui.label(theme::small(ui, format!("Measured − predicted, {times}; each row held out.{outliers}")));
     ui.horizontal(|ui| {
         if errors != Errors::After {
-            map_entry(
-                ui,
-                BeforeAfter::BEFORE,
-                &format!("before, {} on average", format::mm(drawn.mean_m[0])),
-            );
+            entry(ui, BeforeAfter::BEFORE, &format!("before, {} on average", format::mm(drawn.mean_m[0])));
         }
         if errors != Errors::Before {
-            map_entry(ui, BeforeAfter::AFTER, &format!("after, {} on average", format::mm(drawn.mean_m[1])));
+            entry(ui, BeforeAfter::AFTER, &format!("after, {} on average", format::mm(drawn.mean_m[1])));
         }
     });
 }

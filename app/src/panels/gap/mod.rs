@@ -7,30 +7,28 @@ mod map;
 mod names;
 mod next;
 mod shown;
-pub(crate) mod words;
 
 pub use inspector::show as show_inspector;
-pub use map::Errors as GapErrors;
-pub(crate) use names::add_label;
-pub(crate) use next::touch_label;
 
 use std::sync::Arc;
 
 use egui::{Button, Label, Response, RichText, Sense, Ui, vec2};
 use plumbline_engine::View;
-use plumbline_engine::view::{GapView, JobState, ShownFinding};
+use plumbline_engine::view::{JobState, ShownFinding};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::glyph::{self, Glyph};
 use plumbline_widgets::theme::{self, Role};
+use plumbline_widgets::{Memo, Seen};
 
+use super::arrows::Errors;
 use super::{PanelContext, padded};
-use crate::window::{Action, GapAction, Pane};
+use crate::operator::{Action, GapAction, Pane};
 
 /// How the gap is looked at: kept from frame to frame, never saved.
 #[derive(Debug, Default)]
 pub struct GapPanels {
     /// Which errors the map shows.
-    pub errors: map::Errors,
+    pub errors: Errors,
     /// The covariate that residuals are drawn against; `None`: the one that tells most.
     pub covariate: Option<usize>,
     /// Which part of the residual is drawn.
@@ -43,8 +41,8 @@ pub struct GapPanels {
     of: String,
     /// Whether the search ran in the last frame.
     pub searching_seen: bool,
-    map: Option<(usize, Arc<map::Drawn>)>,
-    scatter: Option<(usize, Arc<shown::Points>)>,
+    map: Memo<Seen<ShownFinding>, map::Drawn>,
+    scatter: Memo<(Seen<ShownFinding>, usize, shown::Along), shown::Points>,
 }
 
 /// Draws one of the panes of this step.
@@ -141,9 +139,4 @@ fn action_button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: GapAction, text
         cx.outbox.act(Action::Gap(action));
     }
     button
-}
-
-/// Whether the shown finding is about the sessions that are chosen now.
-pub(crate) fn is_of_choice(gap: &GapView) -> bool {
-    gap.shown.as_ref().is_some_and(|shown| shown.folders[..] == gap.chosen[..])
 }

@@ -2,10 +2,8 @@
 //! other candidate.
 
 use egui::{Checkbox, Frame, Grid, Margin, RichText, ScrollArea, Ui};
-use plumbline_engine::gap::Verdict;
-use plumbline_engine::gap::finding::{Candidate, Finding, NamedEffect};
+use plumbline_engine::GapCommand;
 use plumbline_engine::view::ShownFinding;
-use plumbline_engine::{GapCommand, View};
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
@@ -14,9 +12,11 @@ use plumbline_widgets::parameter;
 use plumbline_widgets::probability::{self, ShareRow, probability_bar, share_rows};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{action_button, finding, line, padded, state, words};
+use super::{action_button, finding, line, padded, state};
+use crate::operator::GapAction;
+use crate::operator::snapshot::gap::{Candidate, Finding, NamedEffect, Verdict};
+use crate::operator::words::gap as words;
 use crate::panels::PanelContext;
-use crate::window::GapAction;
 
 /// How the candidates are sorted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -237,7 +237,7 @@ fn add(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding) {
         };
         ui.label(theme::small(ui, what));
         ui.horizontal_wrapped(|ui| {
-            let text = add_label(cx.view, &wanted);
+            let text = words::add_label(cx.view, &wanted);
             let button = ui.add_enabled(!wanted.is_empty(), egui::Button::new(text));
             if button.clicked() {
                 cx.outbox.send(GapCommand::Add { effects: wanted });
@@ -257,18 +257,6 @@ fn add(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding) {
             action_button(ui, cx, GapAction::UseNominal, "Take all effects out");
         }
     });
-}
-
-/// "Add joint zero of the right elbow to the model".
-pub(crate) fn add_label(view: &View, effects: &[usize]) -> String {
-    let Some(shown) = &view.gap.shown else { return String::new() };
-    match effects {
-        [one] => match shown.finding.effects.get(*one) {
-            Some(effect) => format!("Add {} to the model", words::short(effect)),
-            None => String::new(),
-        },
-        several => format!("Add {} effects to the model", several.len()),
-    }
 }
 
 /// Every candidate with what the data say about it.

@@ -1,15 +1,17 @@
 //! What to measure next.
 
 use egui::{ScrollArea, Ui};
-use plumbline_engine::gap::Verdict;
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
 use plumbline_widgets::probability::{ShareRow, probability_bar, share_rows};
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::{action_button, finding, padded};
+use crate::operator::snapshot::gap::Verdict;
+use crate::operator::words::capitalized;
+use crate::operator::words::gap::touch_label;
+use crate::operator::{GapAction, gap_plan};
 use crate::panels::PanelContext;
-use crate::window::GapAction;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let what = "A finding says which experiment would tell most.";
@@ -24,7 +26,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     };
     padded(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            ui.label(theme::strong(ui, crate::window::capitalized(&next.what)));
+            ui.label(theme::strong(ui, capitalized(&next.what)));
             ui.label(&next.why);
             let minutes = format::significant(next.minutes, 2);
             ui.label(theme::weak(
@@ -35,7 +37,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             ui.label(theme::small(ui, "Expected probability of the right name after it"));
             probability_bar(ui, "After the experiment", next.expected_probability, Role::Predicted);
             ui.add_space(space::S);
-            if crate::window::gap_plan(cx.view).is_some() {
+            if gap_plan(cx.view).is_some() {
                 action_button(ui, cx, GapAction::NextExperiment, &touch_label(cx.view));
                 ui.label(theme::small(
                     ui,
@@ -63,21 +65,4 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             }
         });
     });
-}
-
-/// "Touch 40 targets: repeat with a 250 g weight".
-pub(crate) fn touch_label(view: &plumbline_engine::View) -> String {
-    use plumbline_engine::gap::finding::Experiment;
-    let next = view.gap.finding().and_then(|finding| finding.next.as_ref());
-    let Some(next) = next else { return "Plan the next experiment".to_owned() };
-    let how = match next.kind {
-        Experiment::OtherSide => " from the other side",
-        Experiment::Weight => " with a weight",
-        Experiment::RaisedScreen => " on a raised screen",
-        Experiment::OtherPosture => " with another posture of the elbow",
-        Experiment::Slower => " more slowly",
-        Experiment::Repeats => " again",
-        _ => "",
-    };
-    format!("Touch {}{how}", format::count(next.count, "target"))
 }

@@ -3,18 +3,19 @@
 use std::sync::Arc;
 
 use egui::{ComboBox, ScrollArea, Ui, vec2};
-use plumbline_engine::gap::Verdict;
-use plumbline_engine::gap::finding::{Finding, Shown};
 use plumbline_engine::view::ShownFinding;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::intervals::{IntervalRow, Intervals, Level};
 use plumbline_widgets::scatter::{Scatter, ScatterSeries};
+use plumbline_widgets::seen::Seen;
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{action_button, finding, padded, words};
+use super::{action_button, finding, padded};
+use crate::operator::GapAction;
+use crate::operator::snapshot::gap::{Finding, Residual, Shown, Verdict};
+use crate::operator::words::gap as words;
 use crate::panels::PanelContext;
-use crate::window::GapAction;
 
 /// Which part of the residual is drawn against a covariate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -152,16 +153,9 @@ fn against(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &Arc<ShownFinding>) {
         choice(ui, "Part of the residual", &mut cx.state.gap.along, &options);
     });
     cx.state.gap.covariate = Some(chosen);
-    let key =
-        (Arc::as_ptr(shown) as usize).wrapping_mul(31).wrapping_add(chosen * 4 + cx.state.gap.along as usize);
-    let points = match &cx.state.gap.scatter {
-        Some((of, points)) if *of == key => points.clone(),
-        _ => {
-            let points = Arc::new(points(finding, chosen, cx.state.gap.along as usize));
-            cx.state.gap.scatter = Some((key, points.clone()));
-            points
-        }
-    };
+    let along = cx.state.gap.along;
+    let key = (Seen::of(shown), chosen, along);
+    let points = cx.state.gap.scatter.get(key, || points(finding, chosen, along as usize));
     Scatter::new("Residual", &points.name, &points.series, Quantity::Length)
         .size(vec2(ui.available_width(), 190.0))
         .show(ui);
@@ -184,9 +178,9 @@ fn points(finding: &Finding, covariate: usize, axis: usize) -> Points {
         other => (1.0, other),
     };
     let kept = || finding.comparison.residuals.iter().filter(|row| !row.outlier);
-    let series = |name, role, of: &dyn Fn(&plumbline_engine::gap::finding::Residual) -> [f64; 3]| {
+    let series = |name, role, of: &dyn Fn(&Residual) -> [f64; 3]| {
         let point = |row| {
-            let row: &plumbline_engine::gap::finding::Residual = row;
+            let row: &Residual = row;
             let across = row.covariates.get(covariate).copied().flatten()?;
             Some([across * factor, of(row)[axis]])
         };

@@ -7,7 +7,7 @@ use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::theme::{self, space};
 
 use super::{PanelContext, action_button, color, drawn};
-use crate::window::{Action, LabelsAction};
+use crate::operator::{Action, LabelsAction};
 
 /// Height of the row of classes.
 const CLASSES_HEIGHT: f32 = 30.0;
@@ -28,9 +28,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         }
         Some(Ok(pixels)) => pixels,
     };
-    // Names of images are unique in a set, and so are sets on the disk.
-    let seq = seq_of(&shown.name, std::sync::Arc::as_ptr(pixels) as usize);
-    let picture = cx.state.textures.rgb("labels", seq, pixels).clone();
+    let picture = cx.state.textures.rgb_of("labels", pixels).clone();
     let boxes = drawn(shown, &set.names);
     let label = format!("Boxes of {}", shown.name);
     let canvas = BoxCanvas::new(&label, &picture, &boxes);
@@ -44,13 +42,6 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         let command = panels.placed(shown, placed);
         cx.outbox.send(command);
     }
-}
-
-fn seq_of(name: &str, pointer: usize) -> u64 {
-    use std::hash::{DefaultHasher, Hash, Hasher};
-    let mut hasher = DefaultHasher::new();
-    (name, pointer).hash(&mut hasher);
-    hasher.finish()
 }
 
 fn no_image(ui: &mut Ui, cx: &mut PanelContext<'_>) {

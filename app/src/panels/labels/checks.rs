@@ -3,11 +3,12 @@
 use egui::{Label, RichText, ScrollArea, Ui};
 use plumbline_engine::LabelsCommand;
 use plumbline_engine::view::ImportView;
+use plumbline_widgets::buttons::accent_button;
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
 use super::{PanelContext, action_button};
-use crate::window::{Action, LabelsAction, primary_button};
+use crate::operator::{Action, LabelsAction};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -79,7 +80,7 @@ fn import_plan(ui: &mut Ui, cx: &mut PanelContext<'_>, import: &ImportView) {
     }
     ui.add_space(space::S);
     ui.horizontal(|ui| {
-        if ui.add(primary_button(ui, "Accept the import")).clicked() {
+        if ui.add(accent_button(ui, "Accept the import")).clicked() {
             cx.outbox.act(Action::Labels(LabelsAction::AcceptImport));
         }
         action_button(ui, cx, LabelsAction::DiscardImport, "Discard");

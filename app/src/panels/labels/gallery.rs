@@ -1,7 +1,5 @@
 //! The images as a strip of small pictures.
 
-use std::sync::Arc;
-
 use egui::{Rect, ScrollArea, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 use plumbline_engine::LabelsCommand;
 use plumbline_widgets::glyph;
@@ -54,7 +52,7 @@ fn thumbnail(ui: &mut Ui, cx: &mut PanelContext<'_>, index: usize, rect: Rect, s
     ui.painter().rect_filled(rect, 3.0, tokens.backdrop);
     if let Some(small) = cx.view.labels.thumbnails.get(&image.name) {
         let key = format!("label thumbnail {index}");
-        let picture = cx.state.textures.rgb(&key, Arc::as_ptr(small) as u64, small);
+        let picture = cx.state.textures.rgb_of(&key, small);
         let texture = picture.texture(ui.ctx(), Sampling::Smooth);
         let [w, h] = picture.size_px().map(|n| n as f32);
         let scale = (rect.width() / w).min(rect.height() / h);

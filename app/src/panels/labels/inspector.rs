@@ -7,8 +7,8 @@ use plumbline_model::{ClassNames, PixelBox};
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
 use super::{color, drawn};
+use crate::operator::{Action, LabelsAction, Outbox};
 use crate::panels::PanelState;
-use crate::window::{Action, LabelsAction, Outbox};
 
 /// What is known of the shown image.
 pub fn show(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {

@@ -3,13 +3,14 @@
 use egui::{ScrollArea, Sense, Ui, vec2};
 use plumbline_engine::LabelsCommand;
 use plumbline_engine::view::{LabelImage, LabelState};
+use plumbline_widgets::buttons::accent_button;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format;
 use plumbline_widgets::glyph;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::{PanelContext, action_button, sign};
-use crate::window::{Action, LabelsAction, primary_button};
+use crate::operator::{Action, LabelsAction};
 
 const ROW: f32 = 26.0;
 
@@ -67,7 +68,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.label(theme::small(ui, summary));
     ui.add_space(space::XS);
     let why = LabelsAction::Capture.refusal(view);
-    let capture = ui.add_enabled(why.is_none(), primary_button(ui, "Add the present pair"));
+    let capture = ui.add_enabled(why.is_none(), accent_button(ui, "Add the present pair"));
     let hint = "Writes what both eyes see now into the data set (A)";
     if capture.on_hover_text(hint).on_disabled_hover_text(why.unwrap_or_default()).clicked() {
         cx.outbox.act(Action::Labels(LabelsAction::Capture));

@@ -19,7 +19,7 @@ use plumbline_widgets::glyph::Glyph;
 use plumbline_widgets::theme::Role;
 
 use super::{PanelContext, padded};
-use crate::window::{Action, LabelsAction, Pane};
+use crate::operator::{Action, LabelsAction, Pane};
 
 /// How data sets are looked at: kept from frame to frame, never saved.
 #[derive(Debug, Default)]

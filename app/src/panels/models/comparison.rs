@@ -2,7 +2,6 @@
 
 use egui::{Grid, RichText, ScrollArea, Ui};
 use plumbline_engine::ModelsCommand;
-use plumbline_engine::correction::{CorrectionModel, Method};
 use plumbline_engine::view::{ModelsView, StepState};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format::{self, Quantity};
@@ -11,9 +10,11 @@ use plumbline_widgets::intervals::{IntervalRow, Intervals, Level};
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::verdict::Facts;
-use super::{action_button, clock, facts};
+use super::{action_button, facts};
+use crate::operator::snapshot::models::{CorrectionModel, Method};
+use crate::operator::words::clock;
+use crate::operator::{Action, ModelsAction};
 use crate::panels::{PanelContext, padded};
-use crate::window::{Action, ModelsAction};
 
 /// The line of the spread of repeats. What it is an rms of stands beside means, so it says so.
 const REPEATS: &str = "repeats, rms";

@@ -4,15 +4,16 @@ use std::sync::Arc;
 
 use egui::Ui;
 use plumbline_engine::View;
-use plumbline_engine::correction::{CorrectionModel, Recipe};
 use plumbline_engine::view::ModelsView;
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, space};
 
-use super::{about, clock};
+use super::about;
+use crate::operator::Outbox;
+use crate::operator::snapshot::models::{CorrectionModel, Errors, Recipe};
+use crate::operator::words::clock;
 use crate::panels::PanelState;
-use crate::window::Outbox;
 
 /// What is known of the model that is shown.
 pub fn show(ui: &mut Ui, view: &View, _state: &mut PanelState, _outbox: &mut Outbox) {
@@ -43,7 +44,7 @@ pub fn show(ui: &mut Ui, view: &View, _state: &mut PanelState, _outbox: &mut Out
         rows.push(KeyValue::text("seed", options.seed.to_string()));
     }
     key_value_grid(ui, "model", &rows);
-    let errors = |title: &str, errors: Option<&plumbline_engine::correction::Errors>, ui: &mut Ui| {
+    let errors = |title: &str, errors: Option<&Errors>, ui: &mut Ui| {
         let Some(errors) = errors else { return };
         theme::group_heading(ui, title);
         let rows = [

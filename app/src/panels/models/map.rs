@@ -1,29 +1,20 @@
 //! A model over the table: what it corrects, what remains, and where the data end.
 
-use egui::{Sense, Stroke, Ui, vec2};
+use egui::Ui;
 use plumbline_engine::ModelsCommand;
-use plumbline_engine::correction::Method;
 use plumbline_engine::view::{Field, ModelMap, ModelsView};
 use plumbline_widgets::axis;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::colormap::{ColorScale, Colormap};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format::{self, Quantity};
+use plumbline_widgets::seen::Seen;
 use plumbline_widgets::table_map::{BeforeAfter, Border, Outline, Place, ScalarField, TableMap, TableScene};
 use plumbline_widgets::theme::{self, Role, space};
 
+use crate::operator::snapshot::models::Method;
+use crate::panels::arrows::{Errors, arrow_scale, entry};
 use crate::panels::{PanelContext, padded};
-
-/// Which errors are drawn as arrows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Errors {
-    /// Without a model.
-    Before,
-    /// With the model, each touch held out.
-    After,
-    /// Both.
-    Both,
-}
 
 /// Which field is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,9 +24,6 @@ pub enum Shown {
     /// Length of the correction.
     Correction,
 }
-
-/// Half of the arrows are longer than this on the table, m.
-const ARROW_M: f64 = 0.018;
 
 /// What is drawn of a map, made once per map.
 #[derive(Debug)]
@@ -163,15 +151,6 @@ fn means_m(map: &ModelMap) -> Option<[f64; 2]> {
     })
 }
 
-/// A round magnification that makes half of the arrows easy to see: 1, 2, 5, 10, …
-pub(crate) fn arrow_scale(lengths: impl Iterator<Item = f64>) -> f64 {
-    let mut lengths: Vec<f64> = lengths.collect();
-    lengths.sort_by(f64::total_cmp);
-    let median = lengths.get(lengths.len() / 2).copied().filter(|median| *median > 0.0);
-    let wanted = median.map_or(1.0, |median| (ARROW_M / median).clamp(1.0, 100.0));
-    [100.0, 50.0, 20.0, 10.0, 5.0, 2.0].into_iter().find(|scale| *scale <= wanted).unwrap_or(1.0)
-}
-
 /// "Inside the border targets shift 21 mm on average, outside 54 mm: do not trust it there."
 fn headline(map: &ModelMap, border: &Border) -> String {
     if !border.is_known() {
@@ -205,8 +184,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         .show(ui);
         return;
     };
-    let key = std::sync::Arc::as_ptr(map) as usize;
-    let drawn = cx.state.models.map.get(key, || Drawn::of(map));
+    let drawn = cx.state.models.map.get(Seen::of(map), || Drawn::of(map));
     padded(ui, |ui| {
         header(ui, cx, models);
         // A border is nothing to worry about; that there is none is.
@@ -291,18 +269,6 @@ fn legend(ui: &mut Ui, errors: Errors, drawn: &Drawn) {
             &format!("After, each touch held out: {} on average.", format::mm(after)),
         );
     }
-}
-
-/// A line in the color that it has on the map, and what it means.
-pub(crate) fn entry(ui: &mut Ui, role: Role, text: &str) {
-    ui.spacing_mut().interact_size.y = 14.0;
-    ui.horizontal(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(26.0, 14.0), Sense::hover());
-        ui.painter().rect_filled(rect, 3.0, theme::ON_IMAGE.panel);
-        let stroke = Stroke::new(2.0, role.color(&theme::ON_IMAGE));
-        ui.painter().hline(rect.shrink(5.0).x_range(), rect.center().y, stroke);
-        ui.label(theme::small(ui, text));
-    });
 }
 
 #[cfg(test)]

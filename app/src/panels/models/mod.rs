@@ -9,17 +9,17 @@ mod training;
 mod verdict;
 
 pub use inspector::show as show_inspector;
-pub use map::Errors as MapErrors;
-pub(crate) use map::{arrow_scale, entry as map_entry};
-pub(crate) use verdict::{Standing, standing};
 
 use std::sync::Arc;
 
 use egui::{Button, Response, Ui};
-use plumbline_engine::correction::Method;
+use plumbline_engine::view::ModelMap;
+use plumbline_widgets::{Memo, Seen};
 
 use super::PanelContext;
-use crate::window::{Action, ModelsAction, Pane};
+use super::arrows::Errors;
+use crate::operator::snapshot::models::Method;
+use crate::operator::{Action, ModelsAction, Pane};
 
 /// How models are looked at: kept from frame to frame, never saved.
 #[derive(Debug)]
@@ -31,15 +31,15 @@ pub struct ModelsPanels {
     /// Whether the published recipe is followed.
     pub published_recipe: bool,
     /// Which errors the map shows.
-    pub errors: map::Errors,
+    pub errors: Errors,
     /// Which field the map shows.
     pub field: map::Shown,
     /// How the tables are looked at.
     pub tables: tables::TablesPanel,
     /// Whether training ran in the last frame.
     pub training_seen: bool,
-    map: Memo<map::Drawn>,
-    standing: Memo<verdict::Facts>,
+    map: Memo<Seen<ModelMap>, map::Drawn>,
+    standing: Memo<verdict::Basis, verdict::Facts>,
 }
 
 impl Default for ModelsPanels {
@@ -48,7 +48,7 @@ impl Default for ModelsPanels {
             methods: [true; 3],
             seed: 1,
             published_recipe: false,
-            errors: map::Errors::Both,
+            errors: Errors::Both,
             field: map::Shown::Uncertainty,
             tables: tables::TablesPanel::default(),
             training_seen: false,
@@ -68,39 +68,10 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
     }
 }
 
-/// What was made from a snapshot, kept as long as the snapshot stays the same.
-#[derive(Debug)]
-struct Memo<T> {
-    of: usize,
-    made: Option<Arc<T>>,
-}
-
-impl<T> Default for Memo<T> {
-    fn default() -> Self {
-        Self { of: 0, made: None }
-    }
-}
-
-impl<T> Memo<T> {
-    /// The keys are addresses of what it is made from; whoever made it holds them, so that none is
-    /// used again for something else meanwhile.
-    fn get(&mut self, of: usize, make: impl FnOnce() -> T) -> Arc<T> {
-        match &self.made {
-            Some(made) if self.of == of => made.clone(),
-            _ => {
-                let made = Arc::new(make());
-                self.of = of;
-                self.made = Some(made.clone());
-                made
-            }
-        }
-    }
-}
-
 /// What is told about all methods.
 fn facts(cx: &mut PanelContext<'_>) -> Arc<verdict::Facts> {
     let models = &cx.view.models;
-    cx.state.models.standing.get(verdict::Facts::key(models), || verdict::Facts::of(models))
+    cx.state.models.standing.get(verdict::Basis::of(models), || verdict::Facts::of(models))
 }
 
 /// A button of one of the actions, with its reason where it cannot be pressed.
@@ -112,14 +83,6 @@ fn action_button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: ModelsAction, t
         cx.outbox.act(Action::Models(action));
     }
     button
-}
-
-/// "14:02", or the day before it when that is not today.
-pub(crate) fn clock(at: jiff::Timestamp) -> String {
-    let zone = jiff::tz::TimeZone::system();
-    let (at, now) = (at.to_zoned(zone.clone()), jiff::Timestamp::now().to_zoned(zone));
-    let format = if at.date() == now.date() { "%H:%M" } else { "%-d %b %Y, %H:%M" };
-    at.strftime(format).to_string()
 }
 
 /// What the network of a method looks like as published, or what it is instead.

@@ -4,15 +4,16 @@ use std::path::Path;
 
 use egui::{Button, Label, RichText, ScrollArea, Ui, vec2};
 use plumbline_engine::ModelsCommand;
-use plumbline_engine::correction::{Repeats, TouchData};
 use plumbline_engine::view::TouchSession;
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{action_button, clock};
+use super::action_button;
+use crate::operator::ModelsAction;
+use crate::operator::snapshot::models::{Repeats, TouchData};
+use crate::operator::words::clock;
 use crate::panels::PanelContext;
-use crate::window::ModelsAction;
 
 /// Sessions that are seen without scrolling.
 const ROWS: usize = 4;

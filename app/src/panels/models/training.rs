@@ -2,7 +2,6 @@
 
 use egui::{DragValue, Ui, vec2};
 use plumbline_engine::ModelsCommand;
-use plumbline_engine::correction::{LossPoint, Method};
 use plumbline_engine::view::{JobState, ModelsView};
 use plumbline_widgets::buttons::{choice, primary_button};
 use plumbline_widgets::empty::{EmptyState, Message};
@@ -11,8 +10,9 @@ use plumbline_widgets::loss_curves::{LossCurve, LossCurves, loss_legend, loss_ra
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::{about, sessions};
+use crate::operator::snapshot::models::{LossPoint, Method};
+use crate::operator::{Action, ModelsAction, Screen};
 use crate::panels::{PanelContext, padded};
-use crate::window::{Action, ModelsAction, Screen};
 
 const CHART_HEIGHT: f32 = 150.0;
 
@@ -87,7 +87,7 @@ fn button(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         Some("Choose at least one model.".to_owned())
     } else {
         let why = ModelsAction::TrainAll.refusal(cx.view);
-        why.map(|why| format!("{}.", crate::window::capitalized(why.trim_end_matches('.'))))
+        why.map(|why| format!("{}.", crate::operator::words::capitalized(why.trim_end_matches('.'))))
     };
     // Why the session cannot be used stands below its name already.
     let why =

@@ -1,12 +1,12 @@
 //! Which model is best, and whether that can be told.
 
-use std::sync::Arc;
-
-use plumbline_engine::correction::{
-    Comparison, CorrectionModel, Errors, Method, Repeats, TouchData, distance_2d_m, spread_of_repeats,
-};
 use plumbline_engine::view::{MapTouch, ModelMap, ModelsView};
 use plumbline_widgets::format::{self, Quantity};
+use plumbline_widgets::seen::Seen;
+
+use crate::operator::snapshot::models::{
+    Comparison, CorrectionModel, Errors, Method, Repeats, TouchData, spread_of_repeats,
+};
 
 /// A method on touches that it was not trained on.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,16 +32,27 @@ pub struct Facts {
     pub noise: Option<Repeats>,
     /// A sentence per method that is not the best: whether it can be told apart.
     pub apart: Vec<String>,
-    // Held, so that their addresses stay theirs.
-    _of: Kept,
 }
 
-#[derive(Debug, Default)]
-struct Kept {
-    _comparison: Option<Arc<Comparison>>,
-    _data: Option<Arc<TouchData>>,
-    _map: Option<Arc<ModelMap>>,
-    _in_use: Option<Arc<CorrectionModel>>,
+/// What the facts are made from.
+#[derive(Debug, PartialEq)]
+pub struct Basis {
+    comparison: Seen<Comparison>,
+    data: Seen<TouchData>,
+    map: Seen<ModelMap>,
+    in_use: Seen<CorrectionModel>,
+}
+
+impl Basis {
+    /// As the view has it now.
+    pub fn of(models: &ModelsView) -> Self {
+        Self {
+            comparison: Seen::of_any(models.comparison.as_ref()),
+            data: Seen::of_any(models.data.as_ref().and_then(|data| data.as_ref().ok())),
+            map: Seen::of_any(models.map.as_ref()),
+            in_use: Seen::of_any(models.in_use.as_ref()),
+        }
+    }
 }
 
 impl Facts {
@@ -62,28 +73,7 @@ impl Facts {
             noise: data.and_then(|data| spread_of_repeats(data)),
             apart,
             judged,
-            _of: Kept {
-                _comparison: models.comparison.clone(),
-                _data: data.cloned(),
-                _map: models.map.clone(),
-                _in_use: models.in_use.clone(),
-            },
         }
-    }
-
-    /// Changes when what it is made from does.
-    pub fn key(models: &ModelsView) -> usize {
-        let comparison = models.comparison.as_ref().map_or(0, |c| Arc::as_ptr(c) as usize);
-        let data = match &models.data {
-            Some(Ok(data)) => Arc::as_ptr(data) as usize,
-            _ => 0,
-        };
-        let map = models.map.as_ref().map_or(0, |map| Arc::as_ptr(map) as usize);
-        let in_use = models.in_use.as_ref().map_or(0, |model| Arc::as_ptr(model) as usize);
-        // Sums of addresses of different things; rotated, so that two do not cancel.
-        [comparison, data, map, in_use]
-            .into_iter()
-            .fold(17, |key: usize, part| key.rotate_left(13).wrapping_mul(31).wrapping_add(part))
     }
 
     /// "M3 is best: 4.40 mm on touches that it had not seen, against 21.3 mm without a model."
@@ -119,7 +109,7 @@ fn judged(models: &ModelsView) -> Vec<Judged> {
 }
 
 fn without_model_m(touches: &[MapTouch]) -> Option<f64> {
-    let sum: f64 = touches.iter().map(|touch| distance_2d_m(&touch.before_m)).sum();
+    let sum: f64 = touches.iter().map(|touch| touch.before_m[0].hypot(touch.before_m[1])).sum();
     (!touches.is_empty()).then(|| sum / touches.len() as f64)
 }
 
@@ -136,64 +126,4 @@ fn apart(comparison: &Comparison, best: Method) -> Vec<String> {
         })
     };
     Method::ALL.into_iter().filter(|method| *method != best).filter_map(sentence).collect()
-}
-
-/// Where the work on models stands, for the bottom line.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Standing {
-    /// Nothing to learn from.
-    NothingTouched,
-    /// The chosen session cannot be used: why.
-    Unusable(String),
-    /// Sessions are there, none is chosen.
-    NotChosen,
-    /// So many touches wait.
-    Recorded(usize),
-    /// Models are being trained.
-    Training,
-    /// The best proposal, and its mean error on unseen touches, m.
-    Proposed(Method, Option<f64>),
-    /// In use.
-    InUse(Method),
-}
-
-/// Where the work on models stands.
-pub fn standing(models: &ModelsView) -> Standing {
-    if models.training {
-        return Standing::Training;
-    }
-    if let Some(proposed) = best_proposal(models).filter(|_| !is_decided(models)) {
-        return proposed;
-    }
-    if let Some(model) = &models.in_use {
-        return Standing::InUse(model.method());
-    }
-    match &models.data {
-        Some(Ok(data)) => Standing::Recorded(data.len()),
-        Some(Err(why)) => Standing::Unusable(why.clone()),
-        None if models.session.is_some() => Standing::NotChosen,
-        None if models.sessions.iter().any(|session| session.problem.is_none()) => Standing::NotChosen,
-        None => Standing::NothingTouched,
-    }
-}
-
-/// Whether one of the models that were proposed together is in use: the others stay proposed, to be
-/// looked at, but nothing has to be decided any more.
-fn is_decided(models: &ModelsView) -> bool {
-    let (Some(comparison), Some(in_use)) = (&models.comparison, &models.in_use) else { return false };
-    let judged = |model: &CorrectionModel| {
-        let own = model.provenance().cross_validation.as_ref();
-        own.is_some() && comparison.of(model.method()) == own
-    };
-    judged(in_use) && models.proposals.iter().all(|model| judged(model) && model.method() != in_use.method())
-}
-
-/// Of several the one with the least error on unseen touches; an imported one may have none.
-fn best_proposal(models: &ModelsView) -> Option<Standing> {
-    let error_m = |model: &CorrectionModel| {
-        model.provenance().cross_validation.as_ref().map(|held_out| held_out.errors.mean_2d_m)
-    };
-    let or_last = |model: &CorrectionModel| error_m(model).unwrap_or(f64::INFINITY);
-    let best = models.proposals.iter().min_by(|a, b| or_last(a).total_cmp(&or_last(b)))?;
-    Some(Standing::Proposed(best.method(), error_m(best)))
 }

@@ -8,8 +8,8 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::big_figure;
 use plumbline_widgets::theme::{self, Role, space};
 
+use crate::operator::{Action, MountAction};
 use crate::panels::{PanelContext, padded};
-use crate::window::{Action, MountAction};
 
 /// Axes of the head: what moving along and turning about them means for an eye.
 const AXES: [(&str, &str); 3] = [("forward", "roll"), ("left", "nod"), ("up", "turn")];

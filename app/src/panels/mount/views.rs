@@ -7,8 +7,8 @@ use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
+use crate::operator::{Action, MountAction};
 use crate::panels::{PanelContext, padded};
-use crate::window::{Action, MountAction};
 
 const ROW: f32 = 24.0;
 

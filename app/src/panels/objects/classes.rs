@@ -8,7 +8,7 @@ use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, group_heading, space};
 
 use super::ObjectsPanels;
-use crate::window::Outbox;
+use crate::operator::Outbox;
 
 /// Sliders for the thresholds.
 pub fn thresholds(ui: &mut Ui, detect: &DetectView, panels: &mut ObjectsPanels, outbox: &mut Outbox) {

@@ -7,7 +7,7 @@ use plumbline_model::{ClassIndex, ClassNames};
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::drawing::DOUBT;
-use crate::window::{Action, DetectAction, Outbox};
+use crate::operator::{Action, DetectAction, Outbox};
 
 /// The detector in use, or why there is none, with what can be done about it.
 pub fn state(ui: &mut Ui, detect: &DetectView, outbox: &mut Outbox) {

@@ -7,7 +7,7 @@ use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, group_heading, space};
 
 use super::{ObjectsPanels, classes, details, detector, list, objects};
-use crate::window::{Action, DetectAction, Outbox};
+use crate::operator::{Action, DetectAction, Outbox};
 
 /// Draws all of it.
 pub fn show_inspector(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels, outbox: &mut Outbox) {

@@ -9,8 +9,8 @@ use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
 use super::RobotPanels;
-use super::words::{seconds, tip_title, whole_degrees};
-use crate::window::{Action, Outbox, RobotAction};
+use crate::operator::words::robot::{seconds, tip_title, whole_degrees};
+use crate::operator::{Action, Outbox, RobotAction};
 
 /// Shares of the usual speed that can be chosen.
 const SPEEDS: [(u32, &str); 4] = [(25, "25 %"), (50, "50 %"), (100, "100 %"), (150, "150 %")];
@@ -66,7 +66,7 @@ fn shown_move(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
         ));
         return;
     };
-    ui.label(crate::window::capitalized(&preview.title));
+    ui.label(crate::operator::words::capitalized(&preview.title));
     let mut rows = vec![KeyValue::text("Takes", seconds(preview.duration.as_secs_f64()))];
     if let Some((joint, by_rad)) = &preview.largest_turn {
         rows.push(KeyValue::text("Largest turn", whole_degrees(*by_rad)).help(joint.clone()));

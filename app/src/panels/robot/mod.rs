@@ -7,14 +7,12 @@ mod jog;
 mod joints;
 mod poses;
 mod scene;
-mod words;
 
 pub use inspector::show as show_inspector;
 pub use jog::show as show_jog;
 pub use joints::show as show_joints;
 pub use poses::show as show_poses;
 pub use scene::show as show_scene;
-pub use words::{move_sentence, moved_name};
 
 use std::time::Duration;
 
@@ -30,7 +28,7 @@ use plumbline_widgets::scene3d::SceneCamera;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::PanelContext;
-use crate::window::{Action, GamepadState, RobotAction};
+use crate::operator::{Action, GamepadState, RobotAction};
 
 /// From this age on, a reading of the joints is called old.
 const OLD: Duration = Duration::from_millis(1000);
@@ -110,7 +108,7 @@ fn without_joints(ui: &mut Ui, cx: &mut PanelContext<'_>, purpose: Option<&str>)
 }
 
 fn lost(ui: &mut Ui, reason: &str, with_button: bool) -> bool {
-    let reason = crate::window::capitalized(reason);
+    let reason = crate::operator::words::capitalized(reason);
     let message = Message::new("The robot is lost", &reason);
     EmptyState::failed(if with_button { message.button("Connect…") } else { message }).show(ui)
 }
@@ -118,7 +116,7 @@ fn lost(ui: &mut Ui, reason: &str, with_button: bool) -> bool {
 /// Says that what is shown is old, and why; `None` while it is fresh.
 fn stale_sentence(robot: &RobotView) -> Option<String> {
     if let Connection::Lost { reason, .. } = &robot.connection {
-        return Some(format!("As last seen. {}", crate::window::capitalized(reason)));
+        return Some(format!("As last seen. {}", crate::operator::words::capitalized(reason)));
     }
     let oldest = robot.joints.iter().filter_map(|joint| joint.age).min()?;
     (oldest > OLD).then(|| format!("Last reading {}: the bus gives no new one.", format::age(oldest)))
@@ -146,7 +144,7 @@ fn refusal_line(ui: &mut Ui, cx: &mut PanelContext<'_>, here: Asked) {
 }
 
 fn warning(ui: &mut Ui, text: &str) {
-    let text = crate::window::capitalized(text);
+    let text = crate::operator::words::capitalized(text);
     ui.label(RichText::new(text).color(Role::Warning.color(theme::tokens(ui))));
 }
 

@@ -8,8 +8,8 @@ use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
 use super::{Asked, cannot_show, refusal_line};
+use crate::operator::{Action, RobotAction};
 use crate::panels::{PanelContext, padded};
-use crate::window::{Action, RobotAction};
 
 const ROW: f32 = 30.0;
 

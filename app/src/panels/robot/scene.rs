@@ -10,8 +10,8 @@ use plumbline_widgets::theme::{self, space};
 
 use super::bodies::{Thing, scene, thing};
 use super::{Asked, cannot_show, refusal_line, stale_sentence};
+use crate::operator::{Action, RobotAction};
 use crate::panels::PanelContext;
-use crate::window::{Action, RobotAction};
 
 /// Below the picture: the chosen point and what can be done with it.
 const STRIP: f32 = 36.0;

@@ -1,7 +1,5 @@
 //! The images behind a cell of the confusion matrix: a strip, and one of them large.
 
-use std::sync::Arc;
-
 use egui::{Rect, ScrollArea, Sense, Stroke, StrokeKind, Ui, pos2, vec2};
 use plumbline_engine::ScoresCommand;
 use plumbline_engine::view::{CellPicture, OpenedCell};
@@ -14,7 +12,7 @@ use plumbline_widgets::texture::{Picture, Sampling};
 use plumbline_widgets::theme;
 
 use super::PanelContext;
-use crate::window::{Action, ScoresAction};
+use crate::operator::{Action, ScoresAction};
 
 const WIDE: f32 = 176.0;
 
@@ -61,8 +59,7 @@ fn title(cell: &OpenedCell, names: &ClassNames) -> String {
 
 fn texture(cx: &mut PanelContext<'_>, place: usize, picture: &CellPicture) -> Option<Picture> {
     let pixels = picture.pixels.as_ref().ok()?;
-    let seq = Arc::as_ptr(pixels) as u64;
-    Some(cx.state.textures.rgb(&format!("cell {place}"), seq, pixels).clone())
+    Some(cx.state.textures.rgb_of(&format!("cell {place}"), pixels).clone())
 }
 
 fn strip(ui: &mut Ui, cx: &mut PanelContext<'_>, names: &ClassNames, cell: &OpenedCell) {

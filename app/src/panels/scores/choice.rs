@@ -2,13 +2,13 @@
 
 use egui::{Label, ScrollArea, Ui};
 use plumbline_engine::{ScoresCommand, SetPart};
-use plumbline_widgets::buttons::choice;
+use plumbline_widgets::buttons::{accent_button, choice};
 use plumbline_widgets::format;
 use plumbline_widgets::progress::progress_bar;
 use plumbline_widgets::theme::{self, space};
 
 use super::{PanelContext, action_button, evaluating};
-use crate::window::{Action, ScoresAction, primary_button};
+use crate::operator::{Action, ScoresAction};
 
 /// Room for the button, or for how far the evaluation is.
 const START_HEIGHT: f32 = 44.0;
@@ -95,7 +95,7 @@ fn start(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         return;
     }
     let why = ScoresAction::Evaluate.refusal(cx.view);
-    let button = ui.add_enabled(why.is_none(), primary_button(ui, "Evaluate"));
+    let button = ui.add_enabled(why.is_none(), accent_button(ui, "Evaluate"));
     if button.on_disabled_hover_text(why.clone().unwrap_or_default()).clicked() {
         cx.outbox.act(Action::Scores(ScoresAction::Evaluate));
     }

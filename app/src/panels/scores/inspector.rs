@@ -8,8 +8,8 @@ use plumbline_widgets::theme::{self, Role, group_heading};
 
 use super::table::said_of;
 use super::{figure, interval};
+use crate::operator::Outbox;
 use crate::panels::PanelState;
-use crate::window::Outbox;
 
 /// What is known of the chosen model.
 pub fn show(ui: &mut Ui, view: &View, state: &mut PanelState, _outbox: &mut Outbox) {

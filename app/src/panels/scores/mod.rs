@@ -18,7 +18,7 @@ use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::image_view::ViewState;
 
 use super::{PanelContext, padded};
-use crate::window::{Action, Pane, ScoresAction};
+use crate::operator::{Action, Pane, ScoresAction};
 
 /// How scores are looked at: kept from frame to frame, never saved.
 #[derive(Debug, Default)]

@@ -6,7 +6,7 @@ use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::{PanelContext, action_button, figure, interval, judged, map50_95};
-use crate::window::ScoresAction;
+use crate::operator::ScoresAction;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let what = "Choose detectors and a labeled data set, then Evaluate. The table has a row per detector.";

@@ -5,8 +5,8 @@ use egui::Ui;
 use plumbline_engine::TouchCommand;
 use plumbline_model::touch_plan::{PlanOptions, TouchArea};
 
+use crate::operator::{Action, Preset, TouchAction};
 use crate::panels::PanelContext;
-use crate::window::{Action, Preset, TouchAction};
 
 /// The options as the operator has them.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,7 +1,6 @@
 //! The inspector of touching: the chosen touch, the model that corrects, the touch window.
 
 use egui::Ui;
-use plumbline_engine::correction::Method;
 use plumbline_engine::view::{ContactSource, TouchOutcome, TouchPhase, TouchState, TouchView};
 use plumbline_engine::{Correction, TouchCommand, View};
 use plumbline_widgets::format::{self, Quantity};
@@ -9,8 +8,9 @@ use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
 use super::{error_length_m, next_touch, touch_number, warning, words};
+use crate::operator::snapshot::models::Method;
+use crate::operator::{Action, Monitor, Outbox, TouchAction, is_under_way, screen_of, window_problem};
 use crate::panels::PanelState;
-use crate::window::{Action, Monitor, Outbox, TouchAction, is_under_way, screen_of, window_problem};
 
 /// What is known of the touch that is chosen, and how touches are made.
 pub fn show(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {
@@ -33,7 +33,7 @@ fn chosen(ui: &mut Ui, view: &View, one: &TouchState, next: bool, outbox: &mut O
         TouchOutcome::Unreachable(_) | TouchOutcome::Missed(_) => warning(ui, &words::outcome(one)),
         TouchOutcome::Touched => {}
         _ => {
-            ui.label(theme::weak(ui, crate::window::capitalized(&words::outcome(one))));
+            ui.label(theme::weak(ui, crate::operator::words::capitalized(&words::outcome(one))));
         }
     }
     if !one.inside {

@@ -12,8 +12,8 @@ use plumbline_widgets::theme::{self, Role, space};
 use plumbline_widgets::touch_pattern::{PatternArea, TouchMark, TouchMarkState, TouchPattern, error_scale};
 
 use super::{draft, error_length_m, next_touch, words};
+use crate::operator::{is_under_way, screen_of};
 use crate::panels::{PanelContext, padded};
-use crate::window::{is_under_way, screen_of};
 
 /// The longest error is drawn this long, as a share of the screen's width.
 const LONGEST_SHARE: f64 = 0.1;

@@ -22,7 +22,7 @@ use plumbline_model::robot::Posture;
 use plumbline_widgets::theme::{self, Role};
 
 use super::PanelContext;
-use crate::window::{Action, Monitor, Screen, TouchAction};
+use crate::operator::{Action, Monitor, Screen, TouchAction};
 use draft::Draft;
 
 /// How touching is looked at: kept from frame to frame, never saved.
@@ -77,7 +77,7 @@ fn error_length_m(touch: &TouchState) -> Option<f64> {
 }
 
 fn warning(ui: &mut Ui, text: &str) {
-    let text = crate::window::capitalized(text);
+    let text = crate::operator::words::capitalized(text);
     ui.label(RichText::new(text).color(Role::Warning.color(theme::tokens(ui))));
 }
 

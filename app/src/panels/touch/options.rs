@@ -6,8 +6,8 @@ use plumbline_widgets::buttons::choice;
 use plumbline_widgets::theme::{self, space};
 
 use super::words;
+use crate::operator::{screen_of, usual_area};
 use crate::panels::PanelContext;
-use crate::window::{screen_of, usual_area};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, options: &PlanOptions) {
     let mut edited = options.clone();

@@ -9,8 +9,8 @@ use plumbline_widgets::key_value::big_figure;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::{action_button, warning, words};
+use crate::operator::{Action, Preset, TouchAction};
 use crate::panels::{PanelContext, padded};
-use crate::window::{Action, Preset, TouchAction};
 
 /// Axes of the robot frame: what moving along and turning about them means for the screen.
 const AXES: [(&str, &str); 3] =

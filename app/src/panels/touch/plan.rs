@@ -8,8 +8,8 @@ use plumbline_widgets::key_value::big_figure;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::{draft, options, score};
+use crate::operator::{Action, Preset, TouchAction, is_under_way, minutes, screen_of, what_moves};
 use crate::panels::{PanelContext, padded};
-use crate::window::{Action, Preset, TouchAction, is_under_way, minutes, screen_of, what_moves};
 
 /// Presets: name, and what it is good for.
 const PRESETS: [(Preset, &str, &str); 5] = [

@@ -10,8 +10,8 @@ use plumbline_widgets::progress::progress_bar;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::{action_button, error_length_m, warning, words};
+use crate::operator::{Action, Screen, TouchAction, done_of, is_under_way, wanted};
 use crate::panels::{PanelContext, padded};
-use crate::window::{Action, Screen, TouchAction, done_of, is_under_way, wanted};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let touch = &cx.view.touch;

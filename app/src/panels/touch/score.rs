@@ -1,9 +1,10 @@
 //! What a plan will be able to tell apart, in plain words.
 
 use egui::{CollapsingHeader, Ui};
-use plumbline_engine::effects::observability::{EffectVisibility, PlanScore};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
+
+use crate::operator::snapshot::touch::{EffectVisibility, PlanScore};
 
 /// So many rows are enough to judge by.
 const ROWS: usize = 12;

@@ -6,8 +6,8 @@ use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
 use super::action_button;
+use crate::operator::RobotAction;
 use crate::panels::PanelContext;
-use crate::window::RobotAction;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let view = cx.view;

@@ -13,7 +13,7 @@ use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
 use super::{PanelContext, padded};
-use crate::window::{Action, RobotAction, default_scenario};
+use crate::operator::{Action, RobotAction, default_scenario};
 
 /// How the twin is looked at: kept from frame to frame, never saved.
 #[derive(Clone, Debug, Default)]

@@ -5,6 +5,7 @@ use gilrs::Button;
 
 use super::pads::stops;
 use super::*;
+use crate::operator::STOP_BUTTONS;
 
 const PATIENCE: Duration = Duration::from_secs(10);
 

@@ -8,9 +8,9 @@ use plumbline_widgets::theme::{ON_IMAGE, size, space};
 use plumbline_widgets::touch_pattern::{TargetLook, paint_felt, paint_target};
 
 use super::contacts::{Contact, ContactFilter};
-use super::window_problem;
+use crate::operator::words::capitalized;
+use crate::operator::{done_of, wanted, window_problem};
 use crate::panels::next_touch;
-use crate::window::{done_of, wanted};
 
 /// Radius of the ring of a target: about a fingertip wide on the glass, m.
 const RING_M: f64 = 0.006;
@@ -99,7 +99,7 @@ pub fn touch_surface(
     words(ui, rect, anchor, &head, &below);
     if let Some(problem) = window_problem(window, screen) {
         let at = rect.right_bottom() - vec2(space::L, space::L);
-        let problem = crate::window::capitalized(&problem);
+        let problem = capitalized(&problem);
         text(ui, at, Align2::RIGHT_BOTTOM, &problem, font(ui, TextStyle::Body), ON_IMAGE.warning);
     }
     commands

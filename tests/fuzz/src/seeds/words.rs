@@ -49,11 +49,19 @@ fn wire() -> Result<Vec<u8>, Problem> {
     Ok(bytes)
 }
 
-const SCRIPT: &str = "collect;solve;wait:1.5;pair:3;probe:335,330;rate:15;picture:a.png;preview-pose:touch-ready;\
-look-at:0.3,0.1,0.05;reach:0.35,-0.1,0.08;preview-joint:r_elbow_y=40;speed:0.5;twin-board:3;twin-board-at:0.3,0.1,20;\
-twin-toy:Tomato,0.3,0.1;twin-warm-up:10;twin-fault:r_elbow_y=on;touch-correct:m3;detect-confidence:0.4;\
-detect-hide:Tomato;object:Tomato;gap-session:a;labels-box:1,1,2,30,40;labels-choose:2;scores-cell:1,2;\
-scores-picture:3;models-accept-m1;connect-port:tty;quit";
+const SCRIPT: &str = concat!(
+    r#"collect-recording;solve;wait:1.5;pair:3;probe:335,330;picture:a.png;show:gap-names;"#,
+    r#"errors:both;object:Tomato;joint:r_elbow_y;preview-joint:"r_elbow_y",40;"#,
+    r#"draw-box:1,[1,2,30,40];choose-box:2;models-accept-m1;source:{"pairs-per-second":15};"#,
+    r#"robot:{"preview":{"pose":{"name":"touch-ready"}}};"#,
+    r#"robot:{"preview":{"look-at":{"point_m":[0.3,0.1,0.05]}}};robot:{"speed":0.5};"#,
+    r#"robot:{"connect-port":{"path":"tty"}};twin:{"hold-board":{"place":3}};"#,
+    r#"twin:{"lay-board":{"x_m":0.3,"y_m":0.1,"yaw_rad":0.3}};"#,
+    r#"twin:{"advance-warm-up":{"minutes":10}};twin:{"fault":{"name":"r_elbow_y","on":true}};"#,
+    r#"touch:{"correct-with":"m3"};detect:{"confidence":0.4};gap:{"choose":{"sessions":["a"]}};"#,
+    r#"scores:{"open-cell":{"model":0,"cell":{"truth":1,"found":2}}};scores:{"show-picture":3};"#,
+    r#"quit"#,
+);
 
 const ARGUMENTS: &str =
     "--size\n1280x800\n--theme\ndark\n--screen\nlive\n--cameras\n0,2\n--twin\nlab\n--do\nwait:1;quit";

@@ -5,8 +5,9 @@ use plumbline_engine::{GraspTable, TablesCommand};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::theme::{self, space};
 
-use super::points::PointRow;
-use super::{quantity, send};
+use super::panel::quantity;
+use super::rows::PointRow;
+use super::send;
 use crate::panels::PanelContext;
 
 pub(super) fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, rows: &[PointRow]) {

@@ -3,8 +3,9 @@
 use egui::{Align2, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use plumbline_widgets::theme::{self, Role};
 
-use super::points::{PointRow, label};
-use super::quantity;
+use super::panel::quantity;
+use super::points::label;
+use super::rows::PointRow;
 use crate::panels::PanelContext;
 
 const ROW_HEIGHT: f32 = 20.0;

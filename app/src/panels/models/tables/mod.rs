@@ -3,7 +3,11 @@
 
 mod editor;
 mod list;
+mod panel;
 mod points;
+mod rows;
+
+pub use panel::TablesPanel;
 
 use std::time::Instant;
 
@@ -11,51 +15,21 @@ use egui::{Button, ScrollArea, Ui};
 use plumbline_engine::view::TablesView;
 use plumbline_engine::{GraspTable, ModelsCommand, TablesCommand, View};
 use plumbline_widgets::buttons::choice;
-use plumbline_widgets::colormap::{ColorScale, Colormap};
 use plumbline_widgets::format::Quantity;
 use plumbline_widgets::table_map::{Outline, Place, ScalarField, TableMap, TableScene};
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::action_button;
+use crate::operator::{ModelsAction, screen_of};
 use crate::panels::{PanelContext, padded};
-use crate::window::{ModelsAction, screen_of};
-use points::{PointRow, layers_m, rows};
-
-/// How the tables are looked at.
-#[derive(Debug, Default)]
-pub struct TablesPanel {
-    /// Which table.
-    pub table: GraspTable,
-    /// Whether points are colored by their error rather than by their value.
-    pub by_error: bool,
-    /// Layer of the yaw table that is shown, m; `None` shows all.
-    pub layer_m: Option<f64>,
-    /// The chosen point, counted from 0.
-    pub chosen: Option<usize>,
-    /// Whether a click on the map adds a point.
-    pub adding: bool,
-    /// A point that is being edited in the fields.
-    draft: Option<PointRow>,
-    /// A point that was moved, until the engine has answered.
-    moved: Option<Moved>,
-}
-
-#[derive(Debug)]
-struct Moved {
-    point: usize,
-    at_m: [f64; 2],
-    /// Address of the table that it was moved in.
-    of: usize,
-    when: Instant,
-}
+use panel::{Moved, SeenTable, quantity};
+use rows::{PointRow, layers_m, rows};
 
 /// After this time a move that was not carried out is shown where it was.
 const ANSWER_WITHIN_S: u64 = 2;
 /// The part of the table that is shown where there are no points yet.
 const X_M: [f64; 2] = [0.20, 0.56];
 const Y_M: [f64; 2] = [-0.30, 0.30];
-/// Value of a point that is added where nothing is known: a palm just above the table, m.
-const FIRST_HEIGHT_M: f64 = 0.05;
 /// Height of the fields and the list below the map, points.
 const BELOW: f32 = 244.0;
 
@@ -175,26 +149,10 @@ fn words(table: GraspTable) -> &'static str {
     }
 }
 
-/// What the values of a table are.
-fn quantity(table: GraspTable) -> Quantity {
-    match table {
-        GraspTable::Height => Quantity::Length,
-        GraspTable::Yaw => Quantity::Angle,
-    }
-}
-
-/// Address of the table, which changes with every change of it.
-fn address(tables: &TablesView, table: GraspTable) -> usize {
-    match table {
-        GraspTable::Height => tables.height.as_ref().map_or(0, |t| std::sync::Arc::as_ptr(t) as usize),
-        GraspTable::Yaw => tables.yaw.as_ref().map_or(0, |t| std::sync::Arc::as_ptr(t) as usize),
-    }
-}
-
 fn forget_what_is_gone(cx: &mut PanelContext<'_>, tables: &TablesView, count: usize) {
     let panel = &mut cx.state.models.tables;
     panel.chosen = panel.chosen.filter(|point| *point < count);
-    let now = address(tables, panel.table);
+    let now = SeenTable::of(tables, panel.table);
     panel.moved = panel
         .moved
         .take()
@@ -224,7 +182,7 @@ fn map(ui: &mut Ui, cx: &mut PanelContext<'_>, tables: &TablesView, rows: &[Poin
     if let Some((point, at_m)) = shown.points.moved
         && let Some(row) = rows.get(point)
     {
-        let of = address(tables, panel.table);
+        let of = SeenTable::of(tables, panel.table);
         panel.moved = Some(Moved { point, at_m, of, when: Instant::now() });
         panel.draft = None;
         let at_m = [at_m[0], at_m[1], row.at_m[2]];
@@ -302,12 +260,4 @@ fn edit_buttons(ui: &mut Ui, cx: &mut PanelContext<'_>, tables: &TablesView, row
             send(cx, TablesCommand::Undo);
         }
     });
-}
-
-/// Colors of values or errors: none where there are none.
-fn colors(range: [f64; 2]) -> ColorScale {
-    // A table of one value still needs a range.
-    let [low, high] = range;
-    let pad = if high > low { 0.0 } else { 0.5 * high.abs().max(1e-3) };
-    ColorScale::new(Colormap::Viridis, [(low - pad) as f32, (high + pad) as f32])
 }

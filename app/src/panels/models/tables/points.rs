@@ -1,57 +1,19 @@
 //! The points of a table as rows, and how they look on the map.
 
 use plumbline_engine::GraspTable;
-use plumbline_engine::view::TablesView;
-use plumbline_widgets::colormap::ColorScale;
+use plumbline_widgets::colormap::{ColorScale, Colormap};
 use plumbline_widgets::overlay::Ink;
 use plumbline_widgets::table_map::{ScalarField, TablePoint};
 use plumbline_widgets::theme::Role;
 
-use super::{FIRST_HEIGHT_M, TablesPanel, colors, quantity};
+use super::panel::{TablesPanel, quantity};
+use super::rows::{LAYER_M, PointRow};
 
-/// Points nearer in height than this are of one layer, m.
-const LAYER_M: f64 = 0.005;
+/// Value of a point that is added where nothing is known: a palm just above the table, m.
+const FIRST_HEIGHT_M: f64 = 0.05;
+
 /// Radius of a point without an error, and of the one with the largest, points.
 const RADII: [f64; 2] = [4.5, 9.0];
-
-/// A point of either table.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PointRow {
-    /// Its place in the table, counted from 0.
-    pub index: usize,
-    /// Robot frame, m; z is 0 in the table of heights.
-    pub at_m: [f64; 3],
-    /// Height, m, or yaw, rad.
-    pub value: f64,
-    /// Measured minus predicted by the others, in the unit of the value.
-    pub error: Option<f64>,
-}
-
-/// The points of a table in its order.
-pub(super) fn rows(tables: &TablesView, table: GraspTable) -> Vec<PointRow> {
-    let row = |index: usize, at_m, value, errors: &[f64]| {
-        let error = errors.get(index).copied().filter(|error| error.is_finite());
-        PointRow { index, at_m, value, error }
-    };
-    match table {
-        GraspTable::Height => {
-            let points = tables.height.iter().flat_map(|height| height.points.iter().enumerate());
-            points.map(|(i, p)| row(i, [p.x_m, p.y_m, 0.0], p.height_m, &tables.height_errors_m)).collect()
-        }
-        GraspTable::Yaw => {
-            let points = tables.yaw.iter().flat_map(|yaw| yaw.points.iter().enumerate());
-            points.map(|(i, p)| row(i, [p.x_m, p.y_m, p.z_m], p.yaw_rad, &tables.yaw_errors_rad)).collect()
-        }
-    }
-}
-
-/// Heights of the layers, lowest first.
-pub(super) fn layers_m(rows: &[PointRow]) -> Vec<f64> {
-    let mut heights: Vec<f64> = rows.iter().map(|row| row.at_m[2]).collect();
-    heights.sort_by(f64::total_cmp);
-    heights.dedup_by(|a, b| (*a - *b).abs() < LAYER_M);
-    heights
-}
 
 /// The others stay in sight, faint, and cannot be touched.
 fn is_faint(row: &PointRow, panel: &TablesPanel) -> bool {
@@ -67,6 +29,14 @@ pub(super) fn scale(rows: &[PointRow], by_error: bool) -> Option<ColorScale> {
     let values = rows.iter().filter_map(|row| shown_value(row, by_error));
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     (low <= high).then(|| colors([if by_error { 0.0 } else { low }, high]))
+}
+
+/// Colors of values or errors: none where there are none.
+fn colors(range: [f64; 2]) -> ColorScale {
+    // A table of one value still needs a range.
+    let [low, high] = range;
+    let pad = if high > low { 0.0 } else { 0.5 * high.abs().max(1e-3) };
+    ColorScale::new(Colormap::Viridis, [(low - pad) as f32, (high + pad) as f32])
 }
 
 /// The points as the map draws them: colored by value or error, larger where they miss by more.
@@ -115,6 +85,7 @@ pub(super) fn value_at(
 
 #[cfg(test)]
 mod tests {
+    use super::super::rows::layers_m;
     use super::*;
 
     fn row(index: usize, z_m: f64, error: Option<f64>) -> PointRow {

@@ -55,5 +55,5 @@ fn figures(ui: &mut Ui, joint: &JointView) {
 /// Without the side, which the group says.
 fn short_title(title: &str) -> String {
     let rest = ["Right ", "Left "].iter().find_map(|side| title.strip_prefix(side));
-    crate::window::capitalized(rest.unwrap_or(title))
+    crate::operator::words::capitalized(rest.unwrap_or(title))
 }

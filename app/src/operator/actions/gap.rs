@@ -3,11 +3,13 @@
 use std::borrow::Cow;
 
 use plumbline_engine::{Command, GapCommand, GapModel, TouchCommand, View};
+use serde::Serialize;
 
-use super::touch_actions::{Preset, TouchAction, usual_area};
+use super::touch::{Preset, TouchAction, usual_area};
 
 /// Of the gap between model and measurement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum GapAction {
     /// Looks anew which sessions there are.
     ListSessions,
@@ -112,9 +114,9 @@ impl GapAction {
 }
 
 /// The next experiment as a command to the touch step.
-pub(crate) fn plan(view: &View) -> Option<Command> {
+pub fn plan(view: &View) -> Option<Command> {
     let next = view.gap.finding()?.next.as_ref()?;
-    let plan = plumbline_engine::gap::plan_for(next, usual_area(view)?)?;
+    let plan = crate::operator::snapshot::gap::plan_for(next, usual_area(view)?)?;
     Some(TouchCommand::Plan(plan).into())
 }
 

@@ -4,9 +4,8 @@ use plumbline_engine::View;
 use plumbline_engine::view::LabelState;
 use plumbline_widgets::format;
 
-use super::{Guidance, say};
-use crate::window::actions::Action;
-use crate::window::labels_actions::{LabelsAction, ScoresAction};
+use super::sentence::{Guidance, say};
+use crate::operator::{Action, LabelsAction, ScoresAction};
 
 pub(super) fn images(view: &View) -> Guidance {
     let labels = &view.labels;

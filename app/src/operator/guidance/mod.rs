@@ -4,38 +4,20 @@ mod detect;
 mod gap;
 mod models;
 mod robot;
+mod sentence;
+mod standing;
 mod touch;
 
+pub use gap::is_of_choice;
+pub use sentence::Guidance;
 pub use touch::{done_of, minutes, wanted, what_moves};
 
 use plumbline_engine::View;
 use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
 use plumbline_widgets::format;
 
-use super::actions::Action;
-use super::faults;
-use super::robot_actions::RobotAction;
-use super::steps::Screen;
-
-/// The bottom line.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Guidance {
-    /// What is happening and what to do next.
-    pub sentence: String,
-    /// Whether it needs attention.
-    pub warning: bool,
-    /// The one button.
-    pub next: Option<NextButton>,
-}
-
-/// The one button of a screen.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NextButton {
-    /// Named by what it does.
-    pub label: String,
-    /// What it does.
-    pub action: Action,
-}
+use super::{Action, RobotAction, Screen, faults};
+use sentence::say;
 
 /// Fewest pairs that are worth solving without asking for more.
 pub const ENOUGH_PAIRS: usize = 10;
@@ -68,7 +50,7 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
 }
 
 /// A part of the program has failed, and what starts it again.
-pub(super) fn failed_inside(view: &View, screen: Screen) -> Option<Guidance> {
+pub fn failed_inside(view: &View, screen: Screen) -> Option<Guidance> {
     let fault = faults::most_urgent(view, screen)?;
     let guidance = say(&*fault.meaning).warn();
     // Where it cannot be started again the sentence says what to do instead.
@@ -82,28 +64,6 @@ fn stopped(view: &View, screen: Screen) -> Option<Guidance> {
     let connected = view.robot.connection.is_connected();
     (moves && connected && view.robot.stopped)
         .then(|| say("Stopped: nothing moves until you press Release STOP, at the top right.").warn())
-}
-
-fn say(sentence: impl Into<String>) -> Guidance {
-    Guidance { sentence: capitalized(&sentence.into()), warning: false, next: None }
-}
-
-/// Reasons of errors begin small, because they often follow a colon.
-pub fn capitalized(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-impl Guidance {
-    fn then(mut self, label: impl Into<String>, action: Action) -> Self {
-        self.next = Some(NextButton { label: label.into(), action });
-        self
-    }
-
-    fn warn(mut self) -> Self {
-        self.warning = true;
-        self
-    }
 }
 
 /// What is wrong or not yet there with the source; `None` when it delivers.

@@ -1,15 +1,13 @@
 //! What to do next with correction models: one button, named by what it does.
 
 use plumbline_engine::View;
-use plumbline_engine::correction::Method;
 use plumbline_engine::view::StepState;
 use plumbline_widgets::format;
 
-use super::{Guidance, say};
-use crate::panels::{Standing, standing};
-use crate::window::actions::Action;
-use crate::window::models_actions::ModelsAction;
-use crate::window::steps::Screen;
+use super::sentence::{Guidance, say};
+use super::standing::{Standing, standing};
+use crate::operator::snapshot::models::Method;
+use crate::operator::{Action, ModelsAction, Screen};
 
 pub(super) fn models(view: &View) -> Guidance {
     let models = &view.models;

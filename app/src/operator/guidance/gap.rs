@@ -1,15 +1,13 @@
 //! What to do next with the gap: one button, named by what it does.
 
 use plumbline_engine::View;
-use plumbline_engine::gap::Verdict;
-use plumbline_engine::view::ShownFinding;
+use plumbline_engine::view::{GapView, ShownFinding};
 use plumbline_widgets::format;
 
-use super::{Guidance, say};
-use crate::panels::{gap_add_label, gap_is_of_choice, gap_touch_label};
-use crate::window::actions::Action;
-use crate::window::gap_actions::GapAction;
-use crate::window::steps::Screen;
+use super::sentence::{Guidance, say};
+use crate::operator::snapshot::gap::Verdict;
+use crate::operator::words::gap::{add_label, touch_label};
+use crate::operator::{Action, GapAction, Screen};
 
 /// Below this the experiment goes before adding.
 const SURE: f64 = 0.8;
@@ -34,7 +32,7 @@ pub(super) fn gap(view: &View) -> Guidance {
         return say(why.clone()).warn().then("Find what is missing", Action::Gap(GapAction::Find));
     }
     match &gap.shown {
-        Some(shown) if gap_is_of_choice(gap) => found(view, shown),
+        Some(shown) if is_of_choice(gap) => found(view, shown),
         _ => {
             let sessions = match gap.chosen.len() {
                 1 => "the chosen session".to_owned(),
@@ -55,14 +53,13 @@ fn found(view: &View, shown: &ShownFinding) -> Guidance {
     let addable = view.gap.addable();
     let experiment = GapAction::NextExperiment.refusal(view).is_none();
     let unsure = finding.effects.iter().any(|effect| effect.probability < SURE);
-    let touch =
-        |guidance: Guidance| guidance.then(gap_touch_label(view), Action::Gap(GapAction::NextExperiment));
+    let touch = |guidance: Guidance| guidance.then(touch_label(view), Action::Gap(GapAction::NextExperiment));
     match finding.verdict {
         Verdict::NoGap => guidance,
         Verdict::NotInLibrary if experiment => touch(guidance.warn()),
         Verdict::NotInLibrary => guidance.warn(),
         Verdict::Class if unsure && experiment && !addable.is_empty() => touch(guidance),
-        _ if !addable.is_empty() => guidance.then(gap_add_label(view, &addable), Action::Gap(GapAction::Add)),
+        _ if !addable.is_empty() => guidance.then(add_label(view, &addable), Action::Gap(GapAction::Add)),
         _ if shown.added.iter().any(|added| *added) => added(view, shown, experiment),
         _ if experiment => touch(guidance),
         _ => guidance,
@@ -76,7 +73,12 @@ fn added(view: &View, shown: &ShownFinding, experiment: bool) -> Guidance {
     });
     let guidance = say(format!("The model in use is {}.{closed}", view.gap.model.name));
     if experiment {
-        return guidance.then(gap_touch_label(view), Action::Gap(GapAction::NextExperiment));
+        return guidance.then(touch_label(view), Action::Gap(GapAction::NextExperiment));
     }
     guidance.then("Find what is left", Action::Gap(GapAction::Find))
+}
+
+/// Whether the shown finding is about the sessions that are chosen now.
+pub fn is_of_choice(gap: &GapView) -> bool {
+    gap.shown.as_ref().is_some_and(|shown| shown.folders[..] == gap.chosen[..])
 }

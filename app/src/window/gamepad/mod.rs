@@ -17,6 +17,7 @@ use egui::Context;
 
 use self::pads::{PadEvent, Pads, Sticks};
 use super::backend::Stopper;
+use crate::operator::GamepadState;
 
 /// A stick nearer to its middle than this is at rest.
 const DEAD: f32 = 0.15;
@@ -24,20 +25,6 @@ const DEAD: f32 = 0.15;
 const LOOK_EVERY: Duration = Duration::from_millis(50);
 /// What a gamepad said longer ago than this counts no more: its thread may hang.
 const FRESH: Duration = Duration::from_millis(300);
-
-/// Which buttons stop, for people.
-pub const STOP_BUTTONS: &str = "the right one of the four round buttons (B, circle), or Start";
-
-/// What a gamepad says right now.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct GamepadState {
-    /// Its name.
-    pub name: String,
-    /// Whether the left shoulder button, which enables it, is held.
-    pub enabled: bool,
-    /// Forward, left, up, turn to the left; each −1 to 1.
-    pub push: [f64; 4],
-}
 
 /// The gamepads of this machine.
 #[derive(Default)]

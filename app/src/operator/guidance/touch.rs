@@ -5,10 +5,10 @@ use plumbline_engine::view::{PlanView, TouchCounts, TouchOutcome, TouchPhase, To
 use plumbline_model::touch_plan::Purpose;
 use plumbline_widgets::format;
 
-use super::{Guidance, robot, say};
-use crate::window::actions::Action;
-use crate::window::steps::Screen;
-use crate::window::touch_actions::{Preset, TouchAction, is_under_way, needs_window};
+use super::robot;
+use super::sentence::{Guidance, say};
+use crate::operator::words::capitalized;
+use crate::operator::{Action, Preset, Screen, TouchAction, is_under_way, needs_window};
 
 pub(super) fn touch(view: &View) -> Guidance {
     let touch = &view.touch;
@@ -108,8 +108,7 @@ pub fn start_label(plan: &PlanView) -> String {
 fn paused(touch: &TouchView, why: Option<&str>) -> Guidance {
     let done = done_of(touch.counts);
     let next = done + 1;
-    let why =
-        why.map_or_else(String::new, |why| format!(" {}.", super::capitalized(why.trim_end_matches('.'))));
+    let why = why.map_or_else(String::new, |why| format!(" {}.", capitalized(why.trim_end_matches('.'))));
     let guidance =
         say(format!("Paused after {done} of {}; all touches are on disk.{why}", wanted(touch.counts)))
             .then(format!("Go on with touch {next}"), Action::Touch(TouchAction::Resume));

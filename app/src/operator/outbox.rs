@@ -4,7 +4,7 @@
 use plumbline_engine::{Command, ExportFormat, Exported, JogRates, ProbePoint, Products};
 use plumbline_widgets::texture::Picture;
 
-use super::actions::Action;
+use super::Action;
 
 /// Collected while a frame is drawn.
 #[derive(Default)]

@@ -4,11 +4,9 @@ use plumbline_engine::View;
 use plumbline_engine::view::{Connection, MotionState, RobotView, StepState};
 use plumbline_widgets::format;
 
-use super::{Guidance, say};
-use crate::panels::{move_sentence, moved_name};
-use crate::window::actions::Action;
-use crate::window::robot_actions::{MountAction, RobotAction};
-use crate::window::steps::Screen;
+use super::sentence::{Guidance, say};
+use crate::operator::words::robot::{move_sentence, moved_name};
+use crate::operator::{Action, MountAction, RobotAction, Screen};
 
 /// What keeps the robot from being moved; `None` when it is connected and stands.
 pub(super) fn trouble(robot: &RobotView) -> Option<Guidance> {

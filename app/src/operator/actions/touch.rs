@@ -6,11 +6,13 @@ use plumbline_engine::view::{ContactSource, TouchPhase};
 use plumbline_engine::{Command, TouchCommand, View};
 use plumbline_model::session::Touchscreen;
 use plumbline_model::touch_plan::{PlanOptions, TouchArea};
+use serde::Serialize;
 
-use super::touch_window::window_problem;
+use crate::operator::touch_monitor::window_problem;
 
 /// Of touching the screen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum TouchAction {
     /// Plans touches. Moves nothing.
     Plan(Preset),
@@ -41,7 +43,8 @@ pub enum TouchAction {
 }
 
 /// Plans that are good to start with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Preset {
     /// Where the screen lies.
     Corners,

@@ -4,9 +4,11 @@ use std::borrow::Cow;
 
 use plumbline_engine::view::DetectorState;
 use plumbline_engine::{Command, DetectCommand, DetectorChoice, View};
+use serde::Serialize;
 
 /// Of detection, live.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum DetectAction {
     /// Shows boxes, or hides them and detects nothing.
     ToggleBoxes,

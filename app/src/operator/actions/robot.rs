@@ -4,9 +4,11 @@ use std::borrow::Cow;
 
 use plumbline_engine::view::{Connection, MotionState, StepState};
 use plumbline_engine::{Command, MountCommand, RobotCommand, SourceCommand, SourceSpec, TwinCommand, View};
+use serde::Serialize;
 
 /// Of the robot and its twin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum RobotAction {
     /// Chooses what to connect to.
     Connect,
@@ -47,7 +49,8 @@ pub enum RobotAction {
 }
 
 /// Of calibrating how the eyes sit in the head.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum MountAction {
     /// Plans head poses.
     Plan,

@@ -1,11 +1,11 @@
 //! The gap in words: verdicts, units, names of effects.
 
-use plumbline_engine::effects::measurements::Unit;
-use plumbline_engine::gap::Verdict;
-use plumbline_engine::gap::finding::{
-    CoordinateComparison, Finding, Knowledge, NamedEffect, Shown, ShownUnit,
-};
+use plumbline_engine::View;
 use plumbline_widgets::format::{self, Quantity};
+
+use crate::operator::snapshot::gap::{
+    CoordinateComparison, Experiment, Finding, Knowledge, NamedEffect, Shown, ShownUnit, Unit, Verdict,
+};
 
 /// Quantity of a natural coordinate; residuals in SI.
 pub fn quantity(of: &CoordinateComparison) -> Quantity {
@@ -119,6 +119,34 @@ pub fn trust(finding: &Finding) -> Vec<String> {
         ));
     }
     said
+}
+
+/// "Add joint zero of the right elbow to the model".
+pub fn add_label(view: &View, effects: &[usize]) -> String {
+    let Some(shown) = &view.gap.shown else { return String::new() };
+    match effects {
+        [one] => match shown.finding.effects.get(*one) {
+            Some(effect) => format!("Add {} to the model", short(effect)),
+            None => String::new(),
+        },
+        several => format!("Add {} effects to the model", several.len()),
+    }
+}
+
+/// "Touch 40 targets: repeat with a 250 g weight".
+pub fn touch_label(view: &View) -> String {
+    let next = view.gap.finding().and_then(|finding| finding.next.as_ref());
+    let Some(next) = next else { return "Plan the next experiment".to_owned() };
+    let how = match next.kind {
+        Experiment::OtherSide => " from the other side",
+        Experiment::Weight => " with a weight",
+        Experiment::RaisedScreen => " on a raised screen",
+        Experiment::OtherPosture => " with another posture of the elbow",
+        Experiment::Slower => " more slowly",
+        Experiment::Repeats => " again",
+        _ => "",
+    };
+    format!("Touch {}{how}", format::count(next.count, "target"))
 }
 
 #[cfg(test)]

@@ -4,9 +4,11 @@ use std::borrow::Cow;
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 use plumbline_engine::{Command, LabelsCommand, ScoresCommand, View};
+use serde::Serialize;
 
 /// Of the lab's own data sets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum LabelsAction {
     /// Chooses the folder of a data set.
     Open,
@@ -223,7 +225,8 @@ fn next_unlabeled(view: &View) -> Option<String> {
 }
 
 /// Of judging detectors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum ScoresAction {
     /// Chooses ONNX files.
     AddModels,

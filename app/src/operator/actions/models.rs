@@ -2,13 +2,15 @@
 
 use std::borrow::Cow;
 
-use plumbline_engine::correction::Method;
 use plumbline_engine::{Command, GraspTable, ModelsCommand, View};
+use serde::Serialize;
 
-use super::touch_actions::{Preset, TouchAction};
+use super::touch::{Preset, TouchAction};
+use crate::operator::snapshot::models::Method;
 
 /// Of correction models.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum ModelsAction {
     /// Looks anew which sessions there are.
     ListSessions,

@@ -1,20 +1,32 @@
 //! Everything that can be asked for by name: by a button, a shortcut or the command palette.
 
+mod detect;
+mod gap;
+mod labels;
+mod models;
+mod robot;
+mod touch;
+
+pub use detect::DetectAction;
+pub use gap::{GapAction, plan as gap_plan};
+pub use labels::{LabelsAction, ScoresAction};
+pub use models::ModelsAction;
+pub use robot::{MountAction, RobotAction, default_scenario};
+pub use touch::{Preset, TouchAction, is_under_way, needs_window, screen_of, usual_area};
+
 use std::borrow::Cow;
 
 use plumbline_engine::view::SourceStatus;
 use plumbline_engine::{ExportFormat, Exported, View, WatchedThread};
+use serde::Serialize;
+use serde_json::Value;
 
-use super::detect_actions::DetectAction;
-use super::gap_actions::GapAction;
-use super::labels_actions::{LabelsAction, ScoresAction};
-use super::models_actions::ModelsAction;
-use super::robot_actions::{MountAction, RobotAction};
-use super::steps::Screen;
-use super::touch_actions::TouchAction;
+use super::screens::Screen;
+use crate::operator::snapshot::models::Method;
 
 /// One thing that the operator can do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Action {
     /// Stops everything that runs.
     Stop,
@@ -183,6 +195,18 @@ const ALL: &[Action] = &[
 ];
 
 impl Action {
+    /// What scripts call it, by the parts that it is serialized of: `touch-plan-corners`.
+    pub fn name(self) -> String {
+        let parts = serde_json::to_value(self).map(|value| parts(&value)).unwrap_or_default();
+        parts.join("-")
+    }
+
+    /// All that have a name in scripts: what has a place in the palette, and the three models.
+    pub fn named() -> impl Iterator<Item = Self> {
+        let models = Method::ALL.into_iter().flat_map(|m| [ModelsAction::Accept(m), ModelsAction::Show(m)]);
+        all().chain(models.map(Self::Models))
+    }
+
     /// What it is called everywhere.
     pub fn label(self) -> String {
         match self {
@@ -287,6 +311,18 @@ impl Action {
     }
 }
 
+/// Names and values, the outer ones first.
+fn parts(value: &Value) -> Vec<String> {
+    match value {
+        Value::String(text) => vec![text.clone()],
+        Value::Array(values) => values.iter().flat_map(parts).collect(),
+        Value::Object(fields) => {
+            fields.iter().flat_map(|(name, value)| [vec![name.clone()], parts(value)].concat()).collect()
+        }
+        other => vec![other.to_string()],
+    }
+}
+
 /// What people call a file format.
 pub fn format_name(format: ExportFormat) -> &'static str {
     match format {
@@ -301,6 +337,19 @@ pub fn format_name(format: ExportFormat) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_action_has_a_name_of_its_own() {
+        let mut names: Vec<String> = Action::named().map(Action::name).collect();
+        for name in ["solve", "go-judge", "touch-plan-corners", "models-accept-m3", "export-in-use-kalibr"] {
+            assert!(names.iter().any(|known| known == name), "{name}");
+        }
+        let count = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), count);
+        assert!(names.iter().all(|name| !name.is_empty() && !name.contains(':')), "{names:?}");
+    }
 
     #[test]
     fn without_anything_open_the_reasons_are_said() {

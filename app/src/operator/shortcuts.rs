@@ -4,10 +4,7 @@ use egui::{Event, Key, KeyboardShortcut, Modifiers};
 
 use plumbline_engine::View;
 
-use super::actions::{self, Action};
-use super::detect_actions::DetectAction;
-use super::labels_actions::LabelsAction;
-use super::steps::Screen;
+use super::{Action, DetectAction, LabelsAction, Screen, actions};
 
 impl Action {
     /// Keys that do the same.

@@ -1,0 +1,65 @@
+//! Where the work on models stands.
+
+use plumbline_engine::view::ModelsView;
+
+use crate::operator::snapshot::models::{CorrectionModel, Method};
+
+/// Where the work on models stands, for the bottom line.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Standing {
+    /// Nothing to learn from.
+    NothingTouched,
+    /// The chosen session cannot be used: why.
+    Unusable(String),
+    /// Sessions are there, none is chosen.
+    NotChosen,
+    /// So many touches wait.
+    Recorded(usize),
+    /// Models are being trained.
+    Training,
+    /// The best proposal, and its mean error on unseen touches, m.
+    Proposed(Method, Option<f64>),
+    /// In use.
+    InUse(Method),
+}
+
+/// Where the work on models stands.
+pub fn standing(models: &ModelsView) -> Standing {
+    if models.training {
+        return Standing::Training;
+    }
+    if let Some(proposed) = best_proposal(models).filter(|_| !is_decided(models)) {
+        return proposed;
+    }
+    if let Some(model) = &models.in_use {
+        return Standing::InUse(model.method());
+    }
+    match &models.data {
+        Some(Ok(data)) => Standing::Recorded(data.len()),
+        Some(Err(why)) => Standing::Unusable(why.clone()),
+        None if models.session.is_some() => Standing::NotChosen,
+        None if models.sessions.iter().any(|session| session.problem.is_none()) => Standing::NotChosen,
+        None => Standing::NothingTouched,
+    }
+}
+
+/// Whether one of the models that were proposed together is in use: the others stay proposed, to be
+/// looked at, but nothing has to be decided any more.
+fn is_decided(models: &ModelsView) -> bool {
+    let (Some(comparison), Some(in_use)) = (&models.comparison, &models.in_use) else { return false };
+    let judged = |model: &CorrectionModel| {
+        let own = model.provenance().cross_validation.as_ref();
+        own.is_some() && comparison.of(model.method()) == own
+    };
+    judged(in_use) && models.proposals.iter().all(|model| judged(model) && model.method() != in_use.method())
+}
+
+/// Of several the one with the least error on unseen touches; an imported one may have none.
+fn best_proposal(models: &ModelsView) -> Option<Standing> {
+    let error_m = |model: &CorrectionModel| {
+        model.provenance().cross_validation.as_ref().map(|held_out| held_out.errors.mean_2d_m)
+    };
+    let or_last = |model: &CorrectionModel| error_m(model).unwrap_or(f64::INFINITY);
+    let best = models.proposals.iter().min_by(|a, b| or_last(a).total_cmp(&or_last(b)))?;
+    Some(Standing::Proposed(best.method(), error_m(best)))
+}

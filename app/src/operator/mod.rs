@@ -1,0 +1,27 @@
+//! What the operator can ask for, is told and may look at: the ground that panels and window stand
+//! on. It draws nothing, and knows neither of them.
+
+pub mod actions;
+mod faults;
+mod gamepad;
+pub mod guidance;
+mod outbox;
+mod screens;
+pub mod shortcuts;
+pub mod snapshot;
+mod touch_monitor;
+pub mod words;
+
+pub use actions::{
+    Action, DetectAction, GapAction, LabelsAction, ModelsAction, MountAction, Preset, RobotAction,
+    ScoresAction, TouchAction, default_scenario, format_name, gap_plan, is_under_way, needs_window,
+    screen_of, usual_area,
+};
+pub use gamepad::{GamepadState, STOP_BUTTONS};
+pub use guidance::{
+    Verdict, done_of, hint_text, is_of_choice, minutes, other_board, verdict, wanted, what_moves,
+};
+pub use outbox::Outbox;
+pub use screens::{Pane, Screen};
+pub use shortcuts::shortcut_text;
+pub use touch_monitor::{Monitor, window_problem};

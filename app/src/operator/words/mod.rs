@@ -1,0 +1,51 @@
+//! What several panels, the bottom line and the window say in the same words.
+
+pub mod gap;
+pub mod robot;
+
+use std::path::Path;
+
+use plumbline_engine::SourceSpec;
+
+/// Reasons of errors begin small, because they often follow a colon.
+pub fn capitalized(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// What a source is called: the last parts of the paths.
+pub fn source_name(spec: &SourceSpec) -> String {
+    let last = |path: &Path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    match spec {
+        SourceSpec::Folder(folder) => last(folder),
+        SourceSpec::Folders { left, right } => match (left.parent(), right.parent()) {
+            // The usual layout: one folder with `left` and `right` in it.
+            (Some(a), Some(b)) if a == b => last(a),
+            _ => format!("{} and {}", last(left), last(right)),
+        },
+        SourceSpec::Videos { left, right } => format!("{} and {}", last(left), last(right)),
+        SourceSpec::Twin => "the twin's eyes".to_owned(),
+        SourceSpec::Cameras { left_index, right_index } => format!("cameras {left_index} and {right_index}"),
+    }
+}
+
+/// "14:02", or the day before it when that is not today.
+pub fn clock(at: jiff::Timestamp) -> String {
+    let zone = jiff::tz::TimeZone::system();
+    let (at, now) = (at.to_zoned(zone.clone()), jiff::Timestamp::now().to_zoned(zone));
+    let format = if at.date() == now.date() { "%H:%M" } else { "%-d %b %Y, %H:%M" };
+    at.strftime(format).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_folders_of_one_parent_are_called_by_the_parent() {
+        let spec = SourceSpec::Folders { left: "data/board/left".into(), right: "data/board/right".into() };
+        assert_eq!(source_name(&spec), "board");
+        let spec = SourceSpec::Folders { left: "a/left".into(), right: "b/right".into() };
+        assert_eq!(source_name(&spec), "left and right");
+    }
+}
