@@ -8,7 +8,7 @@ use plumbline_engine::gap::Finding;
 use plumbline_engine::gap::finding::{
     Comparison, CoordinateComparison, NamedEffect, NextExperiment, Shown, ShownUnit, Unexplained,
 };
-use plumbline_engine::offline::{self, GapArgs, GapReport};
+use plumbline_offline::{self as offline, GapArgs, GapReport};
 use plumbline_widgets::{format, parameter};
 
 use super::output::Output;

@@ -11,19 +11,19 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, select};
 
 use super::Shared;
+use super::journal::{Entry, Journal};
 use super::pipeline::{PROBE_EVERY, Pipeline};
-use crate::bell::Bell;
-use crate::command::{Command, JobId, RobotCommand, SourceCommand, WatchCommand};
-use crate::context::Action;
-use crate::data_folder::DataFolder;
-use crate::jobs::{JobHandle, on_job_workers, panic_message};
-use crate::journal::{Entry, Journal};
-use crate::notice::NoticeLevel;
-use crate::settings::EngineSettings;
-use crate::source::Control;
-use crate::state::State;
-use crate::view::KeptView;
-use crate::watched::WatchedThread;
+use super::settings::EngineSettings;
+use crate::command::Command;
+use crate::ground::LongWork;
+use crate::ground::bell::Bell;
+use crate::ground::data_folder::{DataFolder, KeptView};
+use crate::ground::jobs::{JobHandle, JobId, on_job_workers, panic_message};
+use crate::ground::notice::NoticeLevel;
+use crate::ground::watched::{WatchCommand, WatchedThread};
+use crate::robot::command::RobotCommand;
+use crate::source::command::{Control, SourceCommand};
+use crate::state::{Action, State};
 use crate::work::WorkResult;
 
 /// Views are published at most this often.

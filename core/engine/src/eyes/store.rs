@@ -9,8 +9,8 @@ use plumbline_model::formats::native;
 use plumbline_model::{FormatError, StereoCalibration};
 use serde::{Deserialize, Serialize};
 
-use crate::text::sentence;
-use crate::view::EarlierCalibration;
+use super::view::EarlierCalibration;
+use crate::ground::text::sentence;
 
 /// Accepted calibrations in a folder.
 #[derive(Clone, Debug)]

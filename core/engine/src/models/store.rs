@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::files;
 use super::screen::Corners;
-use crate::text::sentence;
+use crate::ground::text::sentence;
 
 /// Version of the list.
 const FORMAT: u32 = 1;

@@ -9,8 +9,11 @@ use plumbline_vision::mount::{
     HeadView, MountCalibration, MountError, MountOptions, Target, calibrate_mount,
 };
 
-use crate::jobs::JobError;
-use crate::text::sentence;
+use crate::ground;
+use crate::ground::LongWork;
+use crate::ground::jobs::JobError;
+use crate::ground::text::sentence;
+use crate::robot::RobotControl;
 
 /// Work of this workflow.
 #[derive(Clone, Debug)]
@@ -60,9 +63,13 @@ pub enum MountResult {
     Forgotten,
 }
 
-impl MountWork {
-    /// What it does, for people.
-    pub fn title(&self) -> String {
+/// What the handlers of this room may reach besides their own workflow.
+pub type Context<'a> = ground::Context<'a, MountWork, RobotControl>;
+
+impl LongWork for MountWork {
+    type Result = MountResult;
+
+    fn title(&self) -> String {
         match self {
             Self::Solve { views, .. } => format!("Solve the mount from {} views", views.len()),
             Self::Save { .. } => "Use this mount".to_owned(),
@@ -71,13 +78,11 @@ impl MountWork {
         }
     }
 
-    /// Whether it is over so soon that it needs no line when it is done.
-    pub fn is_quiet(&self) -> bool {
+    fn is_quiet(&self) -> bool {
         matches!(self, Self::Restore { .. })
     }
 
-    /// Does it, on the thread of the caller.
-    pub fn run(self, context: &dyn JobContext) -> Result<MountResult, JobError> {
+    fn run(self, context: &dyn JobContext) -> Result<MountResult, JobError> {
         match self {
             Self::Solve { rig, eyes, views, target } => {
                 let solved =

@@ -10,7 +10,7 @@ use plumbline_model::{Pixel, Point, Robot};
 
 use super::plan::TIP;
 use super::record::TouchRecord;
-use crate::text::sentence;
+use crate::ground::text::sentence;
 
 /// A measured place of the screen and the run that it was found from.
 #[derive(Clone, Debug)]

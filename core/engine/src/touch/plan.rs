@@ -16,12 +16,12 @@ use plumbline_model::touch_plan::{PlanOptions, PlannedTouch, TouchPlan};
 use plumbline_model::{Point, Robot};
 use serde::{Deserialize, Serialize};
 
-use super::path::{Planner, ScreenPlace, TouchPace};
-use crate::command::Correction;
-use crate::jobs::JobError;
+use super::command::Correction;
+use super::view::PlanView;
+use crate::ground::jobs::JobError;
+use crate::ground::text::sentence;
+use crate::motion::{Planner, ScreenPlace, TouchPace};
 use crate::rig_models;
-use crate::text::sentence;
-use crate::view::PlanView;
 
 /// The tip that touches.
 pub const TIP: &str = "right_index_tip";

@@ -8,15 +8,15 @@ use plumbline_model::Pixel;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::{Screen, Touchscreen};
 
-use super::path::{Planner, ScreenPlace, TouchPace};
 use super::plan::{Aim, RunPlan};
 use super::record::{Ended, Fate, Progress, TouchRecord};
 use super::store::Stored;
-use super::work::{RouteRequest, TouchWork};
-use crate::command::{JobId, TwinCommand};
-use crate::context::{Action, Context};
+use super::work::{Context, RouteRequest, TouchWork};
+use crate::ground::jobs::JobId;
+use crate::motion::{Planner, ScreenPlace, TouchPace};
+use crate::robot::view::{Connection, RobotView};
 use crate::robot::{RobotControl, TouchNews, TouchOrder, TouchRun, TouchStage};
-use crate::view::{Connection, RobotView};
+use crate::twin::command::TwinCommand;
 
 /// After so many touches without a contact, one after the other, something is wrong.
 pub const MISSES: usize = 5;
@@ -328,7 +328,7 @@ impl Run {
         match order {
             Ok(order) if wanted => {
                 self.touch = Some(UnderWay { order: order.order, number, stage: None, at_end: AtEnd::Keep });
-                context.actions.push(Action::Robot(RobotControl::Touch(order)));
+                context.control(RobotControl::Touch(order));
             }
             Err(reason) if wanted => {
                 let text = format!("Touch {number} was not begun: {reason} Go on to try again, or skip it.");
@@ -444,7 +444,7 @@ impl Run {
     pub fn break_off(&mut self, why: String, context: &mut Context<'_>) {
         if let Some(touch) = &mut self.touch {
             touch.at_end = AtEnd::Retry;
-            context.actions.push(Action::Robot(RobotControl::AbandonTouch));
+            context.control(RobotControl::AbandonTouch);
         }
         if self.phase == Phase::Working {
             self.phase = Phase::Paused(Some(why));
@@ -458,7 +458,7 @@ impl Run {
     pub fn skip(&mut self, context: &mut Context<'_>) -> Result<(), String> {
         if let Some(touch) = &mut self.touch {
             touch.at_end = AtEnd::Skip;
-            context.actions.push(Action::Robot(RobotControl::AbandonTouch));
+            context.control(RobotControl::AbandonTouch);
             return Ok(());
         }
         let next = self.next().filter(|_| self.phase != Phase::Finished);
@@ -483,7 +483,7 @@ impl Run {
             _ if self.progress.finished => {}
             Some(touch) => {
                 touch.at_end = AtEnd::Finish;
-                context.actions.push(Action::Robot(RobotControl::AbandonTouch));
+                context.control(RobotControl::AbandonTouch);
             }
             None => self.finish(now, context),
         }
@@ -507,7 +507,7 @@ impl Run {
         if matches!(robot.connection, Connection::Connected { twin: true, .. }) {
             let [screen_height_m, payload_kg] = self.progress.prepared;
             let command = TwinCommand::PrepareTouch { screen_height_m, payload_kg };
-            context.actions.push(Action::Robot(RobotControl::Twin(command)));
+            context.control(RobotControl::Twin(command));
         }
     }
 

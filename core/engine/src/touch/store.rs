@@ -15,8 +15,8 @@ use serde::de::DeserializeOwned;
 
 use super::plan::{self, RunPlan, TIP};
 use super::record::{self, Progress, Standing, TouchRecord};
-use crate::text::sentence;
-use crate::view::UnfinishedRun;
+use super::view::UnfinishedRun;
+use crate::ground::text::sentence;
 
 /// The plan, in a session's folder.
 pub const PLAN: &str = "plan.json";
@@ -90,7 +90,7 @@ pub fn manifest(
     started: Timestamp,
 ) -> Manifest {
     let mut extra = toml::Table::new();
-    extra.insert("software".to_owned(), crate::software().into());
+    extra.insert("software".to_owned(), crate::ground::software().into());
     let purpose = match plan.options.purpose {
         Purpose::Train => "train",
         Purpose::PlaceScreen => "place-screen",

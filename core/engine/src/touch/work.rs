@@ -9,14 +9,16 @@ use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::touch_plan::TouchArea;
 use plumbline_model::touchscreen::ScreenPlacement;
 
-use super::path::{Planner, ScreenPlace, TouchPace};
 use super::placement::{self, Proposal};
 use super::plan::{self, Aim, PlanRequest, RunPlan, TIP};
 use super::record::{Progress, TouchRecord};
 use super::store::{self, Runs, Stored};
-use crate::jobs::JobError;
-use crate::robot::TouchOrder;
-use crate::text::sentence;
+use crate::ground;
+use crate::ground::LongWork;
+use crate::ground::jobs::JobError;
+use crate::ground::text::sentence;
+use crate::motion::{Planner, ScreenPlace, TouchPace};
+use crate::robot::{RobotControl, TouchOrder};
 
 /// The place of the screen in use, in the world's folder.
 pub const PLACEMENT_FILE: &str = "screen.toml";
@@ -160,9 +162,13 @@ pub enum TouchResult {
     Forgotten,
 }
 
-impl TouchWork {
-    /// What it does, for people.
-    pub fn title(&self) -> String {
+/// What the handlers of this room may reach besides their own workflow.
+pub type Context<'a> = ground::Context<'a, TouchWork, RobotControl>;
+
+impl LongWork for TouchWork {
+    type Result = TouchResult;
+
+    fn title(&self) -> String {
         match self {
             Self::Restore { .. } => "Read the place of the screen".to_owned(),
             Self::Plan(_) => "Plan touches".to_owned(),
@@ -176,8 +182,7 @@ impl TouchWork {
         }
     }
 
-    /// Whether it is over so soon that it needs no line when it is done.
-    pub fn is_quiet(&self) -> bool {
+    fn is_quiet(&self) -> bool {
         matches!(
             self,
             Self::Restore { .. }
@@ -190,8 +195,7 @@ impl TouchWork {
         )
     }
 
-    /// Does it, on the thread of the caller.
-    pub fn run(self, context: &dyn JobContext) -> Result<TouchResult, JobError> {
+    fn run(self, context: &dyn JobContext) -> Result<TouchResult, JobError> {
         match self {
             Self::Restore { folder, rig } => Ok(restore(&folder, &rig)),
             Self::Plan(request) => match plan::make(&request, context) {

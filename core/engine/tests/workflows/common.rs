@@ -6,8 +6,10 @@ use std::time::{Duration, Instant};
 
 use image::{DynamicImage, RgbImage};
 use nalgebra::Point3;
+use plumbline_engine::eyes::CornersStage;
 use plumbline_engine::eyes::place::pose_at;
-use plumbline_engine::stages::{CornersStage, ProbeStage, RectifyStage, Timed};
+use plumbline_engine::ground::stage::{Stage, Timed};
+use plumbline_engine::live::{ProbeStage, RectifyStage};
 use plumbline_engine::state::State;
 use plumbline_engine::view::SourceView;
 use plumbline_engine::{Action, Command, Skipped, View};

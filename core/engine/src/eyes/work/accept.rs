@@ -5,9 +5,10 @@ use std::sync::Arc;
 use plumbline_model::StereoCalibration;
 
 use crate::eyes::assess::{Assessment, STATED_AT_M};
+use crate::eyes::map::TableMap;
 use crate::eyes::store::Store;
-use crate::jobs::JobError;
-use crate::view::{AcceptedCalibration, EarlierCalibration, TableMap};
+use crate::eyes::view::{AcceptedCalibration, EarlierCalibration};
+use crate::ground::jobs::JobError;
 
 /// Keep a calibration and make it the one in use.
 #[derive(Clone, Debug)]

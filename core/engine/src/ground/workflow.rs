@@ -1,0 +1,48 @@
+//! What every workflow is: commands in, work out, results back in.
+
+use super::context::Context;
+use super::jobs::JobId;
+use super::work::LongWork;
+
+/// A workflow: it owns no thread and does nothing long itself. What it shows is its own business;
+/// the state asks it for that by name.
+pub trait Workflow {
+    /// What the operator can ask of it.
+    type Command;
+    /// What it does beside the window.
+    type Work: LongWork;
+    /// What it tells a thread.
+    type Control;
+    /// What it can see of the rest.
+    type Around;
+
+    /// Reads what was accepted before; called once, at the start.
+    fn restore(&mut self, _around: &Self::Around, _context: &mut Context<'_, Self::Work, Self::Control>) {}
+
+    /// Applies a command of the operator.
+    fn apply(
+        &mut self,
+        command: Self::Command,
+        around: &Self::Around,
+        context: &mut Context<'_, Self::Work, Self::Control>,
+    );
+
+    /// Work has ended with a result.
+    fn work_done(
+        &mut self,
+        id: JobId,
+        result: <Self::Work as LongWork>::Result,
+        around: &Self::Around,
+        context: &mut Context<'_, Self::Work, Self::Control>,
+    );
+
+    /// Work has ended without a result, perhaps that of another workflow: nothing was changed.
+    /// `why` is `None` when it was cancelled.
+    fn work_ended(
+        &mut self,
+        id: JobId,
+        why: Option<&str>,
+        around: &Self::Around,
+        context: &mut Context<'_, Self::Work, Self::Control>,
+    );
+}
