@@ -173,8 +173,15 @@ fn add(given: &Given, finding: &Finding, file: &Path) -> Result<Vec<String>, Off
     } else {
         // A search that began with effects finds what is missing beside them.
         let of = (finding, given.sessions.as_slice());
-        rig_models::with(&given.model, &given.rig, of, &places, given.model.is_nominal())
-            .map_err(OfflineError::NotAdded)?
+        rig_models::with(
+            &given.model,
+            &given.rig,
+            of,
+            &places,
+            given.model.is_nominal(),
+            jiff::Timestamp::now(),
+        )
+        .map_err(OfflineError::NotAdded)?
     };
     model.write(file, &given.rig)?;
     Ok(effects.into_iter().map(|(_, effect)| name(&effect.id, &effect.site)).collect())

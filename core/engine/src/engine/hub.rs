@@ -15,12 +15,12 @@ use super::journal::{Entry, Journal};
 use super::pipeline::{PROBE_EVERY, Pipeline};
 use super::settings::EngineSettings;
 use crate::command::Command;
-use crate::ground::LongWork;
 use crate::ground::bell::Bell;
 use crate::ground::data_folder::{DataFolder, KeptView};
 use crate::ground::jobs::{JobHandle, JobId, on_job_workers, panic_message};
 use crate::ground::notice::NoticeLevel;
 use crate::ground::watched::{WatchCommand, WatchedThread};
+use crate::ground::{LongWork, Time};
 use crate::robot::command::RobotCommand;
 use crate::source::command::{Control, SourceCommand};
 use crate::state::{Action, State};
@@ -152,8 +152,9 @@ impl<'a> Hub<'a> {
     }
 
     fn apply(&mut self, command: Command) {
+        let time = Time::now();
         let entry = Entry {
-            at_secs: self.started.elapsed().as_secs_f64(),
+            at_secs: time.instant.saturating_duration_since(self.started).as_secs_f64(),
             newest_seq: self.state.newest_seq(),
             command: command.clone(),
         };
@@ -163,7 +164,7 @@ impl<'a> Hub<'a> {
         self.changed = true;
         match command {
             Command::Watch(WatchCommand::StartAgain(thread)) => self.start_again(thread),
-            command => self.state.apply(command),
+            command => self.state.apply_at(command, time),
         }
     }
 

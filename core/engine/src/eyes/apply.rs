@@ -171,6 +171,7 @@ impl EyesWorkflow {
             uncertainty: proposal.uncertainty.clone(),
             depth_per_px_m: proposal.depth_per_px_m,
             store: self.store.clone(),
+            accepted: context.time.day,
         };
         self.busy.accepting = Some(context.start(EyesWork::Accept(work)));
     }

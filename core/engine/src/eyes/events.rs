@@ -112,7 +112,7 @@ impl EyesWorkflow {
             return;
         }
         let (folder, started) = self.session.get_or_insert_with(|| {
-            let started = jiff::Timestamp::now();
+            let started = context.time.day;
             (self.sessions.join(format!("{}_eyes", started.strftime("%Y-%m-%dT%H-%M-%S"))), started)
         });
         let (folder, started) = (folder.clone(), *started);

@@ -1,10 +1,11 @@
 //! What is known while the eyes are being calibrated, and what the window shows of it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_model::default_board;
+use plumbline_model::robot::default_rig;
 use plumbline_model::{
     CalibrationOptions, Chessboard, StereoCalibration, StereoCameras, StereoFrame, Workspace,
 };
@@ -23,7 +24,7 @@ use super::work::{Context, EyesResult, EyesWork, Restore};
 use super::{coverage, ghost};
 use crate::ground::jobs::JobId;
 use crate::ground::step::StepState;
-use crate::ground::{Nothing, Workflow};
+use crate::ground::{Moment, Nothing, Workflow};
 use crate::source::view::SourceView;
 
 /// What the workflow can see of the rest.
@@ -293,6 +294,16 @@ impl Workflow for EyesWorkflow {
     type Work = EyesWork;
     type Control = Nothing;
     type Around = EyesAround;
+    type View = EyesView;
+
+    fn new(folder: &Path) -> Self {
+        let (store, rig) = (Store::new(folder.join("calibrations")), default_rig());
+        Self::new(store, folder.join("sessions"), rig.workspace(&rig.home()))
+    }
+
+    fn view(&mut self, _around: &EyesAround, _moment: &Moment) -> Arc<EyesView> {
+        Arc::new(Self::view(self))
+    }
 
     fn restore(&mut self, _around: &EyesAround, context: &mut Context<'_>) {
         let (store, workspace) = (self.store.clone(), self.workspace);

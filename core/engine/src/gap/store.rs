@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::sessions::TableStamp;
 use super::view::FindingEntry;
+use crate::ground::shelf::Shelf;
 use crate::ground::text::sentence;
 
 /// Version of the file.
@@ -18,7 +19,7 @@ const FORMAT: u32 = 1;
 /// Findings in a folder.
 #[derive(Clone, Debug)]
 pub struct Store {
-    folder: PathBuf,
+    shelf: Shelf,
 }
 
 /// A finding with where it comes from.
@@ -89,17 +90,14 @@ impl Named {
 impl Store {
     /// In this folder, which is made when something is found.
     pub fn new(folder: PathBuf) -> Self {
-        Self { folder }
+        Self { shelf: Shelf::new(folder, "json") }
     }
 
     /// All findings of a robot, newest first, and what cannot be read, a sentence each.
     pub fn read(&self, rig: &str) -> (Vec<Named>, Vec<String>) {
-        let Ok(listing) = std::fs::read_dir(&self.folder) else { return (vec![], vec![]) };
-        let files = listing.flatten().map(|entry| entry.path());
-        let json = files.filter(|file| file.extension().is_some_and(|extension| extension == "json"));
         let (mut found, mut problems) = (vec![], vec![]);
-        for file in json {
-            match read(&file) {
+        for name in self.shelf.names().unwrap_or_default() {
+            match read(&self.shelf.file(&name)) {
                 Ok(named) if named.kept.finding.rig == rig => found.push(named),
                 Ok(_) => {}
                 Err(problem) => problems.push(problem),
@@ -114,9 +112,9 @@ impl Store {
     /// # Errors
     /// A sentence.
     pub fn keep(&self, kept: KeptFinding) -> Result<Named, String> {
-        std::fs::create_dir_all(&self.folder).map_err(|error| cannot(&self.folder, &error))?;
-        let id = self.free_name(kept.made);
-        let file = self.file(&id);
+        self.shelf.make_folder().map_err(|error| cannot(self.shelf.folder(), &error))?;
+        let id = self.shelf.free_name(kept.made, "");
+        let file = self.shelf.file(&id);
         let text = serde_json::to_string(&kept).map_err(|error| cannot(&file, &error))?;
         files::write(&file, text).map_err(|error| sentence(&error.to_string()))?;
         Ok(Named { id, kept })
@@ -127,24 +125,10 @@ impl Store {
     /// # Errors
     /// A sentence.
     pub fn delete(&self, id: &str) -> Result<(), String> {
-        let file = self.file(id);
-        if file.parent() != Some(&self.folder) {
-            return Err(cannot(&file, &"its name leads out of the folder"));
-        }
+        let Some(file) = self.shelf.file_inside(id) else {
+            return Err(cannot(&self.shelf.file(id), &"its name leads out of the folder"));
+        };
         std::fs::remove_file(&file).map_err(|error| cannot(&file, &error))
-    }
-
-    fn file(&self, id: &str) -> PathBuf {
-        self.folder.join(format!("{id}.json"))
-    }
-
-    fn free_name(&self, made: Timestamp) -> String {
-        let name = made.strftime("%Y-%m-%dT%H-%M-%SZ").to_string();
-        let taken = |name: &String| self.file(name).exists();
-        std::iter::once(name.clone())
-            .chain((2..).map(|n| format!("{name}_{n:03}")))
-            .find(|name| !taken(name))
-            .unwrap_or(name)
     }
 }
 

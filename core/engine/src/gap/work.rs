@@ -74,6 +74,8 @@ pub enum GapWork {
         rig: Arc<Rig>,
         /// Where the world's files are.
         folder: PathBuf,
+        /// When it was asked for.
+        at: jiff::Timestamp,
     },
     /// Puts a model in use.
     Use {
@@ -190,11 +192,11 @@ impl LongWork for GapWork {
                 store.delete(&id).map_err(JobError::Failed)?;
                 Ok(GapResult::Deleted(id))
             }
-            Self::Add { finding, effects, replaces, model, rig, folder } => {
+            Self::Add { finding, effects, replaces, model, rig, folder, at } => {
                 let sessions = sessions_of(&finding).map_err(JobError::Failed)?;
                 let of = (&finding.kept.finding, sessions.as_slice());
                 let next =
-                    rig_models::with(&model, &rig, of, &effects, replaces).map_err(JobError::Failed)?;
+                    rig_models::with(&model, &rig, of, &effects, replaces, at).map_err(JobError::Failed)?;
                 rig_models::save(&folder, &next, &rig).map_err(JobError::Failed)?;
                 Ok(GapResult::InUse(Arc::new(next)))
             }

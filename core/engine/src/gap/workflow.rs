@@ -13,9 +13,10 @@ use super::model;
 use super::store::{KeptSession, Named, Store};
 use super::view::{FindingEntry, GapModelView, GapSession, ShownFinding};
 use super::work::{Context, GapResult, GapWork, Restored};
+use crate::gap::view::GapView;
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
-use crate::ground::{Nothing, Workflow};
+use crate::ground::{Moment, Nothing, Workflow};
 
 /// What the workflow can see of the rest.
 pub struct GapAround {
@@ -102,15 +103,17 @@ impl GapWorkflow {
             }
             GapCommand::Add { effects } => self.add(effects, around, context),
             GapCommand::Undo => {
+                let at = context.time.day;
                 self.change("Go back to the model before", around, context, |model| {
-                    model.undo(jiff::Timestamp::now()).map_err(|error| error.to_string())
+                    model.undo(at).map_err(|error| error.to_string())
                 });
             }
             GapCommand::UseNominal => {
+                let at = context.time.day;
                 self.change("Take all effects out of the model", around, context, |model| {
                     for effect in model.effects().to_vec() {
                         // An effect that was added twice goes with the first of its parts.
-                        let _ = model.remove(&effect.id, &effect.site, jiff::Timestamp::now());
+                        let _ = model.remove(&effect.id, &effect.site, at);
                     }
                     Ok(())
                 });
@@ -189,7 +192,7 @@ impl GapWorkflow {
         let Some(model) = self.model_for_change(context) else { return };
         let replaces = finding.kept.model_effects.is_empty();
         let (rig, folder) = (around.rig.clone(), self.folder.clone());
-        let work = GapWork::Add { finding, effects, replaces, model, rig, folder };
+        let work = GapWork::Add { finding, effects, replaces, model, rig, folder, at: context.time.day };
         self.changing = Some(context.start(work));
     }
 
@@ -234,7 +237,7 @@ impl GapWorkflow {
         let history = self.model.as_ref().map(|model| model::report_history(model)).unwrap_or_default();
         let corners = around.rig.touchscreen.corners().map(|corner| [corner.coords.x, corner.coords.y]);
         let page = ReportContext {
-            date: jiff::Zoned::now().strftime("%-d %B %Y").to_string(),
+            date: context.time.day.to_zoned(jiff::tz::TimeZone::system()).strftime("%-d %B %Y").to_string(),
             model: finding.kept.model.clone(),
             history,
             screen_m: Some(corners),
@@ -332,6 +335,15 @@ impl Workflow for GapWorkflow {
     type Work = GapWork;
     type Control = Nothing;
     type Around = GapAround;
+    type View = GapView;
+
+    fn new(folder: &Path) -> Self {
+        Self::new(folder)
+    }
+
+    fn view(&mut self, around: &GapAround, _moment: &Moment) -> Arc<GapView> {
+        Arc::new(Self::view(self, around))
+    }
 
     fn restore(&mut self, around: &GapAround, context: &mut Context<'_>) {
         context.start(GapWork::Restore { folder: self.folder.clone(), rig: around.rig.clone() });

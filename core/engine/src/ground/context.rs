@@ -3,6 +3,7 @@
 use super::jobs::JobId;
 use super::jobs::list::JobList;
 use super::notice::{NoticeLevel, Notices};
+use super::time::Time;
 use super::work::{LongWork, Nothing};
 
 /// What a workflow asks of the outer world: `W` is its work, `C` what it tells a thread.
@@ -21,14 +22,21 @@ pub enum Asked<W, C = Nothing> {
 pub struct Context<'a, W, C = Nothing> {
     /// Messages for the operator.
     pub notices: &'a mut Notices,
+    /// When it happens. Workflows read no clock.
+    pub time: Time,
     jobs: &'a mut JobList,
     asked: &'a mut Vec<Asked<W, C>>,
 }
 
 impl<'a, W: LongWork, C> Context<'a, W, C> {
     /// What is asked for is added to `asked`.
-    pub fn new(notices: &'a mut Notices, jobs: &'a mut JobList, asked: &'a mut Vec<Asked<W, C>>) -> Self {
-        Self { notices, jobs, asked }
+    pub fn new(
+        notices: &'a mut Notices,
+        jobs: &'a mut JobList,
+        time: Time,
+        asked: &'a mut Vec<Asked<W, C>>,
+    ) -> Self {
+        Self { notices, time, jobs, asked }
     }
 
     /// Starts work beside the window.

@@ -9,19 +9,22 @@ pub mod jobs;
 pub mod kept;
 pub mod notice;
 pub mod sessions;
+pub mod shelf;
 pub mod slot;
 pub mod stage;
 pub mod statistics;
 pub mod step;
 pub mod text;
+pub mod time;
 pub mod watched;
 pub mod work;
 pub mod workflow;
 pub mod world;
 
 pub use context::{Asked, Context};
+pub use time::{Clock, Time};
 pub use work::{LongWork, Nothing};
-pub use workflow::Workflow;
+pub use workflow::{Moment, Workflow};
 pub use world::{PerWorld, World};
 
 /// Program and version, as written into results.

@@ -7,6 +7,8 @@ use jiff::Timestamp;
 use plumbline_model::files::told;
 use serde::{Deserialize, Serialize};
 
+use super::time::{Clock, Time};
+
 /// How much a message matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -56,6 +58,7 @@ pub enum NoticeCommand {
 pub struct Notices {
     newest: VecDeque<Notice>,
     count: u64,
+    clock: Clock,
     /// What the window shows, until something changes.
     view: Option<Arc<[Notice]>>,
 }
@@ -71,7 +74,7 @@ impl Notices {
         let text = told(&text.into());
         self.view = None;
         if let Some(last) = self.newest.back_mut().filter(|last| last.level == level && last.text == text) {
-            last.at = Timestamp::now();
+            last.at = self.clock.time().day;
             last.times += 1;
             return;
         }
@@ -84,7 +87,13 @@ impl Notices {
             self.newest.pop_front();
         }
         self.count += 1;
-        self.newest.push_back(Notice { number: self.count, level, text, at: Timestamp::now(), times: 1 });
+        let at = self.clock.time().day;
+        self.newest.push_back(Notice { number: self.count, level, text, at, times: 1 });
+    }
+
+    /// The clock that tells when something was said stands still; `None`: it goes again.
+    pub fn hold_time(&mut self, time: Option<Time>) {
+        self.clock.hold(time);
     }
 
     /// Empties the history; numbers go on counting.

@@ -1,11 +1,24 @@
 //! What every workflow is: commands in, work out, results back in.
 
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
 use super::context::Context;
 use super::jobs::JobId;
+use super::stage::Skipped;
 use super::work::LongWork;
 
-/// A workflow: it owns no thread and does nothing long itself. What it shows is its own business;
-/// the state asks it for that by name.
+/// When a view is made, and what was skipped until then.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment {
+    /// Now.
+    pub now: Instant,
+    /// Pairs skipped in front of each stage.
+    pub skipped: Skipped,
+}
+
+/// A workflow: it owns no thread and does nothing long itself.
 pub trait Workflow {
     /// What the operator can ask of it.
     type Command;
@@ -15,9 +28,17 @@ pub trait Workflow {
     type Control;
     /// What it can see of the rest.
     type Around;
+    /// What the window shows of it.
+    type View;
+
+    /// Nothing done yet. What is accepted is kept in `folder`, which nobody else writes to.
+    fn new(folder: &Path) -> Self;
 
     /// Reads what was accepted before; called once, at the start.
     fn restore(&mut self, _around: &Self::Around, _context: &mut Context<'_, Self::Work, Self::Control>) {}
+
+    /// What the window shows.
+    fn view(&mut self, around: &Self::Around, moment: &Moment) -> Arc<Self::View>;
 
     /// Applies a command of the operator.
     fn apply(

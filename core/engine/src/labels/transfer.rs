@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::time::Duration;
 
 use image::RgbImage;
+use jiff::Timestamp;
 use plumbline_model::files::{self, FileError, Replacement, Size};
 use plumbline_model::{ClassNames, Eye, JobContext, StereoFrame};
 use plumbline_vision::yolo_set::{
@@ -22,9 +23,8 @@ use crate::ground::text::sentence;
 ///
 /// # Errors
 /// A sentence; then neither image is in the data set.
-pub fn capture(frame: &StereoFrame, folder: &Path) -> Result<Vec<Entry>, JobError> {
-    let captured_at = SystemTime::now() - frame.stamp.captured_at.elapsed();
-    let since_1970 = captured_at.duration_since(SystemTime::UNIX_EPOCH).map_err(|_| {
+pub fn capture(frame: &StereoFrame, captured: Timestamp, folder: &Path) -> Result<Vec<Entry>, JobError> {
+    let since_1970 = Duration::try_from(captured.as_duration()).map_err(|_| {
         JobError::failed("The clock of this computer stands before 1970. Set it, then capture again.")
     })?;
     let stamp = format!("{}.{:06}", since_1970.as_secs(), since_1970.subsec_micros());

@@ -62,6 +62,8 @@ pub enum LabelsWork {
     Capture {
         /// The pair.
         frame: StereoFrame,
+        /// When it was taken.
+        captured: jiff::Timestamp,
         /// Folder of the data set.
         folder: PathBuf,
     },
@@ -187,7 +189,9 @@ impl LongWork for LabelsWork {
             Self::Load { name, file } => Ok(LabelsResult::Loaded(name, read_image(&file).map(Arc::new))),
             Self::Thumbnails { files } => thumbnails(files, context),
             Self::Save { files } => save(&files),
-            Self::Capture { frame, folder } => transfer::capture(&frame, &folder).map(LabelsResult::Captured),
+            Self::Capture { frame, captured, folder } => {
+                transfer::capture(&frame, captured, &folder).map(LabelsResult::Captured)
+            }
             Self::Propose { open, choice, provider, ready, name, image, names, confidence } => {
                 let detector = match ready {
                     Some(ready) => ready,

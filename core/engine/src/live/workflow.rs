@@ -1,6 +1,7 @@
 //! What is computed live, for whom, and what came of it last.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -19,7 +20,7 @@ use crate::ground::stage::{Skipped, Timed};
 use crate::ground::statistics::StageClock;
 use crate::ground::text::sentence;
 use crate::ground::watched::WatchedThread;
-use crate::ground::{Nothing, Workflow};
+use crate::ground::{Moment, Nothing, Workflow};
 
 /// This room has no work, and tells no thread anything.
 type Context<'a> = crate::ground::Context<'a, Nothing>;
@@ -416,6 +417,15 @@ impl Workflow for LiveWorkflow {
     type Work = Nothing;
     type Control = Nothing;
     type Around = ();
+    type View = LiveView;
+
+    fn new(_folder: &Path) -> Self {
+        Self::default()
+    }
+
+    fn view(&mut self, _around: &(), moment: &Moment) -> Arc<LiveView> {
+        Arc::new(self.view(moment.skipped, moment.now))
+    }
 
     fn apply(&mut self, command: LiveCommand, _around: &(), context: &mut Context<'_>) {
         self.apply(command, context);

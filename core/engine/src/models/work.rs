@@ -66,6 +66,8 @@ pub enum ModelsWork {
         history: History,
         /// The model; `None`: none.
         model: Option<(Arc<CorrectionModel>, Corners)>,
+        /// When it was accepted.
+        accepted: jiff::Timestamp,
     },
     /// Goes back to what was in use before.
     Undo {
@@ -196,9 +198,9 @@ impl LongWork for ModelsWork {
                 let trained = learn(&session, &rig, &methods, &options, &losses, context)?;
                 Ok(ModelsResult::Trained(Box::new(trained)))
             }
-            Self::Accept { store, history, model } => {
+            Self::Accept { store, history, model, accepted } => {
                 let kept = model.as_ref().map(|(model, screen_m)| (model.as_ref(), *screen_m));
-                let history = store.accept(&history, kept).map_err(JobError::Failed)?;
+                let history = store.accept(&history, kept, accepted).map_err(JobError::Failed)?;
                 Ok(ModelsResult::InUse { history, model: model.map(|(model, _)| model), map: None })
             }
             Self::Undo { store, history, rig } => {

@@ -18,7 +18,8 @@ use super::view::{ModelMap, TouchSession};
 use super::work::{Context, ModelsResult, ModelsWork, Restored, screen_of};
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
-use crate::ground::{Nothing, Workflow};
+use crate::ground::{Moment, Nothing, Workflow};
+use crate::models::view::ModelsView;
 use crate::robot::view::RobotView;
 
 /// What the workflow can see of the rest.
@@ -212,7 +213,8 @@ impl ModelsWorkflow {
     /// Makes a model, or none, the one in use.
     fn change(&mut self, model: Option<(Arc<CorrectionModel>, Corners)>, context: &mut Context<'_>) {
         if let Some(history) = self.history_for_change(context) {
-            let work = ModelsWork::Accept { store: self.store.clone(), history, model };
+            let work =
+                ModelsWork::Accept { store: self.store.clone(), history, model, accepted: context.time.day };
             self.changing = Some(context.start(work));
         }
     }
@@ -342,6 +344,15 @@ impl Workflow for ModelsWorkflow {
     type Work = ModelsWork;
     type Control = Nothing;
     type Around = ModelsAround;
+    type View = ModelsView;
+
+    fn new(folder: &Path) -> Self {
+        Self::new(folder)
+    }
+
+    fn view(&mut self, around: &ModelsAround, _moment: &Moment) -> Arc<ModelsView> {
+        Arc::new(Self::view(self, around))
+    }
 
     fn restore(&mut self, around: &ModelsAround, context: &mut Context<'_>) {
         context.start(ModelsWork::Restore { folder: self.folder.clone(), rig: around.rig.clone() });

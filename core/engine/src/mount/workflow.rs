@@ -1,6 +1,6 @@
 //! What was seen, what was solved, what is in use.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -14,10 +14,12 @@ use super::command::MountCommand;
 use super::tour::{Tour, Wish};
 use super::work::{Context, MountResult, MountWork};
 use crate::eyes::Look;
-use crate::ground::Workflow;
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
+use crate::ground::shelf::InUse;
 use crate::ground::text::sentence;
+use crate::ground::{Moment, Workflow};
+use crate::mount::view::MountView;
 use crate::robot::RobotControl;
 use crate::robot::view::RobotView;
 
@@ -43,7 +45,7 @@ pub struct MountAround {
 /// The whole workflow, of one world.
 #[derive(Clone, Debug)]
 pub struct MountWorkflow {
-    file: PathBuf,
+    kept: InUse,
     pub(super) views: Vec<HeadView>,
     pub(super) board: Option<Chessboard>,
     pub(super) planned: Vec<(f64, f64)>,
@@ -70,7 +72,7 @@ impl MountWorkflow {
     /// Nothing seen. The mount in use is kept in a file of `folder`.
     pub fn new(folder: &Path) -> Self {
         Self {
-            file: folder.join("mount.toml"),
+            kept: InUse::new(folder.join("mount.toml")),
             views: Vec::new(),
             board: None,
             planned: Vec::new(),
@@ -103,7 +105,7 @@ impl MountWorkflow {
                     return context.refuse("No head poses are planned yet. Plan them first.");
                 }
                 self.tour = Some(Tour::new(&self.planned));
-                self.step(around, Instant::now(), context);
+                self.step(around, context);
             }
             MountCommand::Capture => self.wait_for_image(Waiting::Capture, around, context),
             MountCommand::Delete { view } => self.views.retain(|known| known.name != view),
@@ -114,13 +116,13 @@ impl MountWorkflow {
             MountCommand::Solve => self.solve(around, context),
             MountCommand::Accept => match self.proposal.clone() {
                 Some(mount) => {
-                    context.start(MountWork::Save { file: self.file.clone(), mount });
+                    context.start(MountWork::Save { kept: self.kept.clone(), mount });
                 }
                 None => context.refuse("Nothing waits to be accepted. Solve first."),
             },
             MountCommand::Discard => self.proposal = None,
             MountCommand::UseNominal => {
-                context.start(MountWork::Forget { file: self.file.clone() });
+                context.start(MountWork::Forget { kept: self.kept.clone() });
             }
         }
     }
@@ -128,7 +130,7 @@ impl MountWorkflow {
     fn wait_for_image(&mut self, what: Waiting, around: &MountAround, context: &mut Context<'_>) {
         match ready(around) {
             Ok(_) if !around.has_eyes => context.refuse("No eyes are open. Choose a source of images first."),
-            Ok(_) => self.waiting = Some((what, Instant::now())),
+            Ok(_) => self.waiting = Some((what, context.time.instant)),
             Err(reason) => context.refuse(reason),
         }
     }
@@ -187,13 +189,13 @@ impl MountWorkflow {
                 Err(reason) => context.refuse(reason),
             }
         }
-        self.step(around, Instant::now(), context);
+        self.step(around, context);
     }
 
     /// The robot has something new.
-    pub fn step(&mut self, around: &MountAround, now: Instant, context: &mut Context<'_>) {
+    pub fn step(&mut self, around: &MountAround, context: &mut Context<'_>) {
         let Some(tour) = &mut self.tour else { return };
-        match tour.step(&around.robot, &around.rig, now) {
+        match tour.step(&around.robot, &around.rig, context.time.instant) {
             Wish::Nothing => {}
             Wish::Turn(pan_rad, tilt_rad) => {
                 context.control(RobotControl::TurnHead { pan_rad, tilt_rad });
@@ -248,9 +250,18 @@ impl Workflow for MountWorkflow {
     type Work = MountWork;
     type Control = RobotControl;
     type Around = MountAround;
+    type View = MountView;
+
+    fn new(folder: &Path) -> Self {
+        Self::new(folder)
+    }
+
+    fn view(&mut self, around: &MountAround, _moment: &Moment) -> Arc<MountView> {
+        Arc::new(Self::view(self, around))
+    }
 
     fn restore(&mut self, around: &MountAround, context: &mut Context<'_>) {
-        context.start(MountWork::Restore { file: self.file.clone(), rig: around.rig.clone() });
+        context.start(MountWork::Restore { kept: self.kept.clone(), rig: around.rig.clone() });
     }
 
     fn apply(&mut self, command: MountCommand, around: &MountAround, context: &mut Context<'_>) {

@@ -13,6 +13,8 @@ use plumbline_gap::finding::{NamedEffect, Shown, ShownUnit};
 use plumbline_model::Session;
 use plumbline_model::robot::Rig;
 
+use crate::ground::jobs::JobError;
+use crate::ground::shelf::InUse;
 use crate::ground::text::sentence;
 
 #[cfg(test)]
@@ -33,11 +35,8 @@ pub fn file(folder: &Path) -> PathBuf {
 /// # Errors
 /// A sentence, when there is a file that cannot be used.
 pub fn load(folder: &Path, rig: &Rig) -> Result<RigModel, String> {
-    let file = file(folder);
-    if !plumbline_model::files::present(&file).map_err(|error| sentence(&error.to_string()))? {
-        return Ok(RigModel::nominal(rig));
-    }
-    RigModel::read(&file, rig).map_err(|error| sentence(&error.to_string()))
+    let read = InUse::new(file(folder)).read(|file| RigModel::read(file, rig).map_err(JobError::told));
+    Ok(read.map_err(|error| error.to_string())?.unwrap_or_else(|| RigModel::nominal(rig)))
 }
 
 /// Puts a model in use.
@@ -45,10 +44,10 @@ pub fn load(folder: &Path, rig: &Rig) -> Result<RigModel, String> {
 /// # Errors
 /// A sentence; then what was in use stays so.
 pub fn save(folder: &Path, model: &RigModel, rig: &Rig) -> Result<(), String> {
-    std::fs::create_dir_all(folder).map_err(|error| {
-        format!("{} cannot be made ({error}). Check that the disk can be written.", folder.display())
-    })?;
-    model.write(&file(folder), rig).map_err(|error| sentence(&error.to_string()))
+    let no_folder =
+        |error| format!("{} cannot be made ({error}). Check that the disk can be written.", folder.display());
+    let write = |file: &Path| model.write(file, rig).map_err(|error| sentence(&error.to_string()));
+    InUse::new(file(folder)).put(no_folder, write)
 }
 
 /// Accepts effects of a finding, by their places in it, and puts the model in use. `sessions` are
@@ -63,7 +62,7 @@ pub fn accept(
     effects: &[usize],
     replaces: bool,
 ) -> Result<RigModel, String> {
-    let model = with(&load(folder, rig)?, rig, finding, effects, replaces)?;
+    let model = with(&load(folder, rig)?, rig, finding, effects, replaces, Timestamp::now())?;
     save(folder, &model, rig)?;
     Ok(model)
 }
@@ -88,7 +87,7 @@ pub fn history(model: &RigModel) -> impl Iterator<Item = (&Step, &StepGap)> {
 
 /// A model with effects of a finding, by their places in it, and with where the finding places its
 /// sessions' frames. `replaces`: the search began with the nominal robot, so that what it found takes
-/// the place of all that is in the model.
+/// the place of all that is in the model. `at`: when it is done.
 ///
 /// # Errors
 /// A sentence: why they cannot be added.
@@ -98,6 +97,7 @@ pub fn with(
     (finding, sessions): (&Finding, &[Session]),
     effects: &[usize],
     replaces: bool,
+    at: Timestamp,
 ) -> Result<RigModel, String> {
     if finding.sessions.len() != sessions.len() || finding.placements.len() != sessions.len() {
         return Err("The finding is not of these sessions. Search the gap again.".to_owned());
@@ -125,7 +125,7 @@ pub fn with(
         screens,
         externals,
         replaces,
-        at: Timestamp::now(),
+        at,
         sentence: finding.sentence.clone(),
         sessions: finding.sessions.clone(),
         version: finding.version.clone(),

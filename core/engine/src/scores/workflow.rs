@@ -1,7 +1,9 @@
 //! Which detectors are judged on what, and what came out.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+use plumbline_vision::detect::shipped_detector;
 
 use super::command::{ConfusionCell, ScoresCommand, SetPart};
 use super::evaluation::Evaluation;
@@ -9,7 +11,8 @@ use super::view::{OpenedCell, ScoredModelFile};
 use super::work::{Context, ScoresResult, ScoresWork};
 use crate::detect::command::Provider;
 use crate::ground::jobs::JobId;
-use crate::ground::{Nothing, Workflow};
+use crate::ground::{Moment, Nothing, Workflow};
+use crate::scores::view::ScoresView;
 
 /// The whole workflow.
 #[derive(Clone, Debug)]
@@ -129,6 +132,15 @@ impl Workflow for ScoresWorkflow {
     type Work = ScoresWork;
     type Control = Nothing;
     type Around = Provider;
+    type View = ScoresView;
+
+    fn new(_folder: &Path) -> Self {
+        Self::new(shipped_detector().map(|shipped| shipped.file))
+    }
+
+    fn view(&mut self, _provider: &Provider, _moment: &Moment) -> Arc<ScoresView> {
+        Arc::new(Self::view(self))
+    }
 
     fn apply(&mut self, command: ScoresCommand, provider: &Provider, context: &mut Context<'_>) {
         self.apply(command, *provider, context);

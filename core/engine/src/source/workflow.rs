@@ -1,5 +1,6 @@
 //! What the engine knows of the source.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use plumbline_hardware::CameraDevice;
@@ -7,9 +8,9 @@ use plumbline_hardware::CameraDevice;
 use super::command::{Control, SourceCommand};
 use super::view::SourceView;
 use super::work::{Context, SourceResult, SourceWork};
-use crate::ground::Workflow;
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
+use crate::ground::{Moment, Workflow};
 
 /// Rates at which a recording can be played.
 const PAIRS_PER_SECOND: std::ops::RangeInclusive<f64> = 0.01..=1000.0;
@@ -64,6 +65,15 @@ impl Workflow for SourceWorkflow {
     type Work = SourceWork;
     type Control = Control;
     type Around = ();
+    type View = SourceView;
+
+    fn new(_folder: &Path) -> Self {
+        Self::default()
+    }
+
+    fn view(&mut self, _around: &(), _moment: &Moment) -> Arc<SourceView> {
+        self.view.clone()
+    }
 
     fn apply(&mut self, command: SourceCommand, _around: &(), context: &mut Context<'_>) {
         self.apply(command, context);

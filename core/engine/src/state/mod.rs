@@ -19,20 +19,18 @@ pub use actions::Action;
 use rooms::{Keeps, Neighbors, Rooms};
 pub use stages::Serves;
 
-use crate::command::HeadPose;
-use crate::detect::{DetectAround, DetectInput, DetectOutput, OpenDetector};
+use crate::command::{Command, HeadPose};
+use crate::detect::{DetectInput, DetectOutput, DetectWorkflow, OpenDetector};
 use crate::eyes::{CornersInput, EyesWorkflow, Look};
-use crate::gap::GapWorkflow;
 use crate::ground::data_folder::KeptView;
 use crate::ground::jobs::list::JobList;
 use crate::ground::jobs::{JobId, JobState, JobView, Outcome};
 use crate::ground::notice::{NoticeLevel, Notices};
-use crate::ground::stage::{Skipped, StagePanic, Timed};
+use crate::ground::stage::{StagePanic, Timed};
 use crate::ground::watched::{ThreadFault, WatchedThread};
-use crate::ground::{Asked, Context, Workflow, World};
+use crate::ground::{Asked, Clock, Context, Moment, Time, Workflow, World};
 use crate::labels::work::LabelsWork;
 use crate::live::{ProbeInput, ProbeOutput, RectifyInput, RectifyOutput};
-use crate::models::ModelsWorkflow;
 use crate::mount::MountWorkflow;
 use crate::robot::view::{Connection, RobotView};
 use crate::robot::{News, RobotControl, TouchNews};
@@ -40,7 +38,6 @@ use crate::source::view::SourceView;
 use crate::source::{Control, Note};
 use crate::touch::TouchWorkflow;
 use crate::twin::view::TwinView;
-use crate::view::View;
 use crate::work::{Work, WorkResult};
 
 /// Everything the engine knows.
@@ -61,6 +58,7 @@ pub struct State {
     started_by: BTreeMap<JobId, World>,
     jobs: JobList,
     notices: Notices,
+    clock: Clock,
     actions: Vec<Action>,
     /// Which source, counted, the newest pair is of.
     shown_of: u64,
@@ -88,6 +86,7 @@ impl State {
             started_by: BTreeMap::new(),
             jobs: JobList::default(),
             notices: Notices::default(),
+            clock: Clock::default(),
             actions: Vec::new(),
             shown_of: 0,
             revision: 0,
@@ -113,8 +112,8 @@ impl State {
     {
         let around = Neighbors::<W>::around(self, world);
         let mut asked = Vec::new();
-        let Self { rooms, jobs, notices, .. } = self;
-        act(rooms.room(world), &around, &mut Context::new(notices, jobs, &mut asked));
+        let Self { rooms, jobs, notices, clock, .. } = self;
+        act(rooms.room(world), &around, &mut Context::new(notices, jobs, clock.time(), &mut asked));
         for asked in asked {
             self.actions.push(match asked {
                 Asked::Start(id, work) => {
@@ -128,18 +127,33 @@ impl State {
         Neighbors::<W>::after(self, world);
     }
 
+    /// Takes it to be this time, until told otherwise; `None`: the time of the system. What happens at
+    /// the same times, in the same order, gives the same again.
+    pub fn hold_time(&mut self, time: Option<Time>) {
+        self.clock.hold(time);
+        self.notices.hold_time(time);
+    }
+
+    /// Applies a command of the operator that was given at this time.
+    pub fn apply_at(&mut self, command: Command, time: Time) {
+        self.hold_time(Some(time));
+        self.apply(command);
+        self.hold_time(None);
+    }
+
+    /// What the window shows of a workflow.
+    fn view_of<W: Workflow>(&mut self, world: World, moment: &Moment) -> Arc<W::View>
+    where
+        Self: Neighbors<W>,
+        Rooms: Keeps<W>,
+    {
+        let around = Neighbors::<W>::around(self, world);
+        Workflow::view(Keeps::<W>::room(&mut self.rooms, world), &around, moment)
+    }
+
     /// Opens detectors in another way (tests, fake detectors).
     pub fn set_detector_opener(&mut self, open: OpenDetector) {
         self.rooms.detect.set_opener(open);
-    }
-
-    fn around_detection(&self) -> DetectAround<'_> {
-        DetectAround {
-            newest: self.rooms.live.newest(),
-            opened: self.shown_of,
-            photographs: self.rooms.source.view().photographs,
-            setup: self.rooms.live.setup(),
-        }
     }
 
     /// What the operator drew and is not on disk yet, to be written before the program ends.
@@ -260,12 +274,8 @@ impl State {
             _ => self.arm_of,
         };
         self.use_screen();
-        self.with::<MountWorkflow>(self.shown, |mount, around, context| {
-            mount.step(around, Instant::now(), context)
-        });
-        self.with::<TouchWorkflow>(self.arm_of, |touch, around, context| {
-            touch.step(around, Instant::now(), context)
-        });
+        self.with::<MountWorkflow>(self.shown, |mount, around, context| mount.step(around, context));
+        self.with::<TouchWorkflow>(self.arm_of, |touch, around, context| touch.step(around, context));
     }
 
     /// The robot's thread tells how a touch is doing.
@@ -303,7 +313,7 @@ impl State {
 
     /// What the detector is to do with the newest pair, if anything.
     pub fn detect_input(&self) -> Option<DetectInput> {
-        self.rooms.detect.input(self.around_detection())
+        self.rooms.detect.input(Neighbors::<DetectWorkflow>::around(self, World::default()))
     }
 
     /// A stage met a defect of this program and goes on with the next pair.
@@ -391,43 +401,5 @@ impl State {
     /// Number of the newest pair.
     pub fn newest_seq(&self) -> Option<u64> {
         self.rooms.live.newest().map(|frame| frame.stamp.seq)
-    }
-
-    /// What the window shows.
-    pub fn view(&mut self, skipped: Skipped, lost_commands: u64, now: Instant) -> View {
-        self.revision += 1;
-        let (shown, arm_of) = (self.shown, self.arm_of);
-        let mount_around = Neighbors::<MountWorkflow>::around(self, shown);
-        let touch_around = Neighbors::<TouchWorkflow>::around(self, arm_of);
-        let models_around = Neighbors::<ModelsWorkflow>::around(self, arm_of);
-        let gap_around = Neighbors::<GapWorkflow>::around(self, arm_of);
-        let rooms = &mut self.rooms;
-        let around_detection = DetectAround {
-            newest: rooms.live.newest(),
-            opened: self.shown_of,
-            photographs: rooms.source.view().photographs,
-            setup: rooms.live.setup(),
-        };
-        let detect = rooms.detect.view(skipped.detect, &around_detection, now);
-        View {
-            revision: self.revision,
-            source: rooms.source.view().clone(),
-            live: Arc::new(rooms.live.view(skipped, now)),
-            detect: Arc::new(detect),
-            eyes: Arc::new(rooms.eyes.of(shown).view()),
-            robot: self.robot.clone(),
-            twin: self.twin.clone(),
-            mount: Arc::new(rooms.mount.of(shown).view(&mount_around)),
-            touch: Arc::new(rooms.touch.of(arm_of).view(&touch_around)),
-            models: Arc::new(rooms.models.of(arm_of).view(&models_around)),
-            gap: Arc::new(rooms.gap.of(arm_of).view(&gap_around)),
-            labels: Arc::new(rooms.labels.view(rooms.detect.chosen().0)),
-            scores: Arc::new(rooms.scores.view()),
-            jobs: self.jobs.view(),
-            notices: self.notices.view(),
-            threads: self.faults.values().cloned().collect(),
-            kept: self.kept.clone(),
-            lost_commands,
-        }
     }
 }

@@ -1,18 +1,20 @@
 //! What each workflow can see of the rest, and who gets which command and which result.
 
 use std::path::Path;
+use std::time::Instant;
 
 use plumbline_vision::detect::Provider;
 
 use super::State;
 use super::actions::Action;
-use super::rooms::{Neighbors, all_rooms};
+use super::rooms::{Neighbors, Rooms, all_rooms};
 use crate::command::{Command, JobCommand, NoticeCommand};
-use crate::detect::DetectWorkflow;
+use crate::detect::{DetectAround, DetectWorkflow};
 use crate::eyes::{EyesAround, EyesWorkflow};
 use crate::gap::{GapAround, GapWorkflow};
 use crate::ground::jobs::JobId;
-use crate::ground::{Workflow, World};
+use crate::ground::stage::Skipped;
+use crate::ground::{Moment, Workflow, World};
 use crate::labels::{LabelsAround, LabelsWorkflow};
 use crate::live::LiveWorkflow;
 use crate::models::{ModelsAround, ModelsWorkflow};
@@ -20,6 +22,7 @@ use crate::mount::{MountAround, MountWorkflow};
 use crate::scores::ScoresWorkflow;
 use crate::source::SourceWorkflow;
 use crate::touch::{TouchAround, TouchWorkflow};
+use crate::view::View;
 use crate::work::WorkResult;
 
 macro_rules! dispatched {
@@ -72,6 +75,25 @@ macro_rules! dispatched {
                 }
             }
 
+            /// What the window shows.
+            pub fn view(&mut self, skipped: Skipped, lost_commands: u64, now: Instant) -> View {
+                self.revision += 1;
+                let moment = Moment { now, skipped };
+                View {
+                    revision: self.revision,
+                    $($one: self.view_of::<$Single>(World::default(), &moment),)+
+                    $($each: self.view_of::<$Worldly>(self.$whose, &moment),)+
+                    $($silent: self.view_of::<$Silent>(World::default(), &moment),)+
+                    robot: self.robot.clone(),
+                    twin: self.twin.clone(),
+                    jobs: self.jobs.view(),
+                    notices: self.notices.view(),
+                    threads: self.faults.values().cloned().collect(),
+                    kept: self.kept.clone(),
+                    lost_commands,
+                }
+            }
+
             /// Whoever asked for the work gets what came of it.
             pub(super) fn work_done(&mut self, id: JobId, result: WorkResult) {
                 let world = self.world_of(id);
@@ -106,7 +128,15 @@ impl Neighbors<SourceWorkflow> for State {
 }
 
 impl Neighbors<DetectWorkflow> for State {
-    fn around(&self, _world: World) {}
+    fn around(&self, _world: World) -> DetectAround {
+        let Rooms { live, source, .. } = &self.rooms;
+        DetectAround {
+            newest: live.newest().cloned(),
+            opened: self.shown_of,
+            photographs: source.view().photographs,
+            setup: live.setup(),
+        }
+    }
 }
 
 impl Neighbors<LiveWorkflow> for State {
@@ -115,7 +145,7 @@ impl Neighbors<LiveWorkflow> for State {
     fn after(&mut self, _world: World) {
         self.use_workspace();
         let wanted = self.rooms.live.wants_detections();
-        self.with::<DetectWorkflow>(World::default(), |detect, (), context| detect.want(wanted, context));
+        self.with::<DetectWorkflow>(World::default(), |detect, _, context| detect.want(wanted, context));
     }
 }
 

@@ -2,11 +2,8 @@
 
 use std::path::Path;
 
-use plumbline_vision::detect::shipped_detector;
-
 use crate::detect::DetectWorkflow;
 use crate::eyes::EyesWorkflow;
-use crate::eyes::store::Store;
 use crate::gap::GapWorkflow;
 use crate::ground::{PerWorld, Workflow, World};
 use crate::labels::LabelsWorkflow;
@@ -71,6 +68,17 @@ macro_rules! kept {
             $(pub $silent: $Silent,)+
         }
 
+        impl Rooms {
+            /// Nothing done yet.
+            pub fn new(data_dir: &Path) -> Self {
+                Self {
+                    $($one: Workflow::new(data_dir),)+
+                    $($each: PerWorld::new(|world| Workflow::new(&world.folder(data_dir))),)+
+                    $($silent: Workflow::new(data_dir),)+
+                }
+            }
+        }
+
         $(impl Keeps<$Silent> for Rooms {
             fn room(&mut self, _: World) -> &mut $Silent {
                 &mut self.$silent
@@ -92,27 +100,3 @@ macro_rules! kept {
 }
 
 all_rooms!(kept);
-
-impl Rooms {
-    /// Nothing done yet.
-    pub fn new(data_dir: &Path) -> Self {
-        let live = LiveWorkflow::default();
-        let eyes = |world: World| {
-            let folder = world.folder(data_dir);
-            let store = Store::new(folder.join("calibrations"));
-            EyesWorkflow::new(store, folder.join("sessions"), live.workspace())
-        };
-        Self {
-            labels: LabelsWorkflow::new(data_dir),
-            detect: DetectWorkflow::new(data_dir),
-            scores: ScoresWorkflow::new(shipped_detector().map(|shipped| shipped.file)),
-            source: SourceWorkflow::default(),
-            eyes: PerWorld::new(eyes),
-            mount: PerWorld::new(|world| MountWorkflow::new(&world.folder(data_dir))),
-            touch: PerWorld::new(|world| TouchWorkflow::new(&world.folder(data_dir))),
-            models: PerWorld::new(|world| ModelsWorkflow::new(&world.folder(data_dir))),
-            gap: PerWorld::new(|world| GapWorkflow::new(&world.folder(data_dir))),
-            live,
-        }
-    }
-}

@@ -19,7 +19,7 @@ use super::{TouchAround, TouchWorkflow};
 use crate::ground::jobs::JobId;
 use crate::ground::jobs::list::JobList;
 use crate::ground::notice::{NoticeLevel, Notices};
-use crate::ground::{Asked, LongWork, Workflow};
+use crate::ground::{Asked, LongWork, Time, Workflow};
 use crate::robot::view::{Connection, RobotView};
 use crate::robot::{RobotControl, TouchMeasurement, TouchNews, TouchOrder, TouchRun, TouchStage};
 
@@ -108,7 +108,8 @@ impl Desk {
 
     fn with(&mut self, act: impl FnOnce(&mut TouchWorkflow, &TouchAround, &mut Context<'_>)) {
         let around = self.around();
-        let mut context = Context::new(&mut self.notices, &mut self.jobs, &mut self.asked);
+        let time = Time { instant: self.clock, ..Time::now() };
+        let mut context = Context::new(&mut self.notices, &mut self.jobs, time, &mut self.asked);
         act(&mut self.workflow, &around, &mut context);
         self.work();
     }
@@ -165,8 +166,7 @@ impl Desk {
     }
 
     pub fn step(&mut self) {
-        let now = self.clock;
-        self.with(|workflow, around, context| workflow.step(around, now, context));
+        self.with(|workflow, around, context| workflow.step(around, context));
     }
 
     pub fn view(&self) -> TouchView {

@@ -16,12 +16,10 @@ use super::store::{self, Runs, Stored};
 use crate::ground;
 use crate::ground::LongWork;
 use crate::ground::jobs::JobError;
+use crate::ground::shelf::InUse;
 use crate::ground::text::sentence;
 use crate::motion::{Planner, ScreenPlace, TouchPace};
 use crate::robot::{RobotControl, TouchOrder};
-
-/// The place of the screen in use, in the world's folder.
-pub const PLACEMENT_FILE: &str = "screen.toml";
 
 /// Work of this workflow.
 #[derive(Clone, Debug)]
@@ -43,6 +41,8 @@ pub enum TouchWork {
         rig: Arc<Rig>,
         /// What will be done.
         plan: Arc<RunPlan>,
+        /// When it was asked for.
+        started: Timestamp,
     },
     /// Reads a run that was begun earlier.
     Open {
@@ -77,15 +77,15 @@ pub enum TouchWork {
     },
     /// Makes a measured place of the screen the one in use.
     Accept {
-        /// The file that keeps it.
-        file: PathBuf,
+        /// Where it is kept.
+        kept: InUse,
         /// The place.
         placement: Arc<ScreenPlacement>,
     },
     /// Removes the file, so that the nominal place is used again.
     Forget {
         /// Which.
-        file: PathBuf,
+        kept: InUse,
     },
 }
 
@@ -203,7 +203,9 @@ impl LongWork for TouchWork {
                 Err(JobError::Cancelled(_)) => Ok(TouchResult::NotPlanned),
                 Err(error) => Err(error),
             },
-            Self::Begin { sessions, rig, plan } => begin(&sessions, &rig, &plan).map_err(JobError::Failed),
+            Self::Begin { sessions, rig, plan, started } => {
+                begin(&sessions, &rig, &plan, started).map_err(JobError::Failed)
+            }
             Self::Open { session, rig } => {
                 let stored = open(&session, &rig).map_err(JobError::Failed)?;
                 Ok(TouchResult::Opened { session, stored: Box::new(stored) })
@@ -218,45 +220,40 @@ impl LongWork for TouchWork {
                 let proposal = |placement| Proposal { placement: Arc::new(placement), session };
                 Ok(TouchResult::Placed(placed.map(proposal)))
             }
-            Self::Accept { file, placement } => {
-                let words = |error: &dyn std::fmt::Display| JobError::Failed(sentence(&error.to_string()));
-                if let Some(folder) = file.parent() {
-                    std::fs::create_dir_all(folder).map_err(|error| words(&error))?;
-                }
-                placement.write(&file).map_err(|error| words(&error))?;
+            Self::Accept { kept, placement } => {
+                kept.put(JobError::told, |file| placement.write(file).map_err(JobError::told))?;
                 Ok(TouchResult::Saved(placement))
             }
-            Self::Forget { file } => match std::fs::remove_file(&file) {
-                Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(JobError::Failed(format!(
-                    "{} cannot be removed: {error}. Remove it by hand.",
-                    file.display()
-                ))),
-                _ => Ok(TouchResult::Forgotten),
-            },
+            Self::Forget { kept } => {
+                kept.forget().map_err(|error| JobError::not_removed(kept.file(), &error))?;
+                Ok(TouchResult::Forgotten)
+            }
         }
     }
 }
 
+/// The place of the screen in use, in the world's folder.
+pub fn placement_in(folder: &std::path::Path) -> InUse {
+    InUse::new(folder.join("screen.toml"))
+}
+
 fn restore(folder: &std::path::Path, rig: &Rig) -> TouchResult {
-    let file = folder.join(PLACEMENT_FILE);
-    let nominal = |error: &dyn std::fmt::Display| {
-        format!("{} Until then the nominal place is used.", sentence(&error.to_string()))
-    };
-    let placement = match plumbline_model::files::present(&file) {
-        Ok(false) => None,
-        Ok(true) => {
-            Some(ScreenPlacement::read(&file, &rig.name).map(Arc::new).map_err(|error| nominal(&error)))
-        }
-        Err(error) => Some(Err(nominal(&error))),
-    };
+    let kept =
+        placement_in(folder).read(|file| ScreenPlacement::read(file, &rig.name).map_err(JobError::told));
+    let nominal = |error| format!("{error} Until then the nominal place is used.");
+    let placement = kept.map(|placement| placement.map(Arc::new)).map_err(nominal).transpose();
     // A rig without this finger cannot touch anyway; planning says so.
     let reach = TouchArea::reached_by(rig, TIP).ok().flatten();
     TouchResult::Restored { placement, runs: store::list(&folder.join("sessions")), reach }
 }
 
-fn begin(sessions: &std::path::Path, rig: &Rig, plan: &Arc<RunPlan>) -> Result<TouchResult, String> {
+fn begin(
+    sessions: &std::path::Path,
+    rig: &Rig,
+    plan: &Arc<RunPlan>,
+    started: Timestamp,
+) -> Result<TouchResult, String> {
     let chain = rig.chain(TIP).map_err(|error| sentence(&error.to_string()))?;
-    let started = Timestamp::now();
     let joints = chain.names().to_vec();
     let manifest = store::manifest(&rig.name, &rig.touchscreen, &joints, plan, started);
     let progress = Progress::new(plan.options.purpose, started, plan.reachable());

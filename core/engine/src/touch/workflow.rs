@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
 
 use plumbline_correction::{CorrectionModel, Method};
 use plumbline_hardware::joints::Touch;
@@ -19,13 +18,14 @@ use super::run::{Now, Phase, Run};
 use super::seen::Seen;
 use super::store::{self, Runs, TrainedRun};
 use super::view::{ContactSource, ContactView};
-use super::work::{Context, PLACEMENT_FILE, TouchResult, TouchWork};
-use crate::ground::Workflow;
+use super::work::{Context, TouchResult, TouchWork, placement_in};
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
+use crate::ground::{Moment, Workflow};
 use crate::motion::ScreenPlace;
 use crate::robot::view::{Connection, RobotView};
 use crate::robot::{RobotControl, TouchNews};
+use crate::touch::view::TouchView;
 
 /// What the workflow can see of the rest.
 pub struct TouchAround {
@@ -249,7 +249,8 @@ impl TouchWorkflow {
         }
         let rig = Arc::new(Rig { touchscreen: of_screen, ..(*around.rig).clone() });
         let sessions = self.folder.join("sessions");
-        self.starting = Some(context.start(TouchWork::Begin { sessions, rig, plan }));
+        self.starting =
+            Some(context.start(TouchWork::Begin { sessions, rig, plan, started: context.time.day }));
         Ok(())
     }
 
@@ -288,14 +289,14 @@ impl TouchWorkflow {
         self.no_run_under_way()?;
         let proposal = self.proposal.as_ref();
         let proposal = proposal.ok_or("No measured place of the screen waits. Touch its corners first.")?;
-        let file = self.folder.join(PLACEMENT_FILE);
-        context.start(TouchWork::Accept { file, placement: proposal.placement.clone() });
+        let kept = placement_in(&self.folder);
+        context.start(TouchWork::Accept { kept, placement: proposal.placement.clone() });
         Ok(())
     }
 
     fn use_nominal(&mut self, context: &mut Context<'_>) -> Result<(), String> {
         self.no_run_under_way()?;
-        context.start(TouchWork::Forget { file: self.folder.join(PLACEMENT_FILE) });
+        context.start(TouchWork::Forget { kept: placement_in(&self.folder) });
         Ok(())
     }
 
@@ -310,7 +311,7 @@ impl TouchWorkflow {
         if with == ContactWith::Mouse && source(&around.robot) == ContactSource::Twin {
             return;
         }
-        let now = Instant::now();
+        let now = context.time.instant;
         let touch = Touch { u_px, v_px, at: now.checked_sub(age).unwrap_or(now), is_down: down };
         context.control(RobotControl::Contact(touch));
     }
@@ -348,7 +349,7 @@ impl TouchWorkflow {
     }
 
     /// The robot has something new, or time has passed.
-    pub fn step(&mut self, around: &TouchAround, _now: Instant, context: &mut Context<'_>) {
+    pub fn step(&mut self, around: &TouchAround, context: &mut Context<'_>) {
         let screen = self.placed_screen(&around.rig);
         let now = self.now(around, &screen);
         let Some(run) = &mut self.run else { return };
@@ -600,6 +601,15 @@ impl Workflow for TouchWorkflow {
     type Work = TouchWork;
     type Control = RobotControl;
     type Around = TouchAround;
+    type View = TouchView;
+
+    fn new(folder: &Path) -> Self {
+        Self::new(folder)
+    }
+
+    fn view(&mut self, around: &TouchAround, _moment: &Moment) -> Arc<TouchView> {
+        Arc::new(Self::view(self, around))
+    }
 
     fn restore(&mut self, around: &TouchAround, context: &mut Context<'_>) {
         context.start(TouchWork::Restore { folder: self.folder.clone(), rig: around.rig.clone() });

@@ -13,16 +13,17 @@ use super::detector::{LoadedDetector, OpenDetector, SHOWN_FROM};
 use super::store::Store;
 use super::view::{DetectionSettings, DetectionsView};
 use super::work::{Context, DetectResult, DetectWork};
+use crate::detect::view::DetectView;
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
 use crate::ground::statistics::StageClock;
-use crate::ground::{Nothing, Workflow};
+use crate::ground::{Moment, Nothing, Workflow};
 use crate::live::LiveSetup;
 
 /// What detection can see of the rest.
-pub struct DetectAround<'a> {
+pub struct DetectAround {
     /// Newest pair.
-    pub newest: Option<&'a StereoFrame>,
+    pub newest: Option<StereoFrame>,
     /// Of which source, counted.
     pub opened: u64,
     /// Whether pairs are photographs that have nothing to do with each other.
@@ -309,21 +310,42 @@ impl Workflow for DetectWorkflow {
     type Command = DetectCommand;
     type Work = DetectWork;
     type Control = Nothing;
-    type Around = ();
+    type Around = DetectAround;
+    type View = DetectView;
 
-    fn restore(&mut self, _around: &(), context: &mut Context<'_>) {
+    fn new(folder: &Path) -> Self {
+        Self::new(folder)
+    }
+
+    fn view(&mut self, around: &DetectAround, moment: &Moment) -> Arc<DetectView> {
+        Arc::new(self.view(moment.skipped.detect, around, moment.now))
+    }
+
+    fn restore(&mut self, _around: &DetectAround, context: &mut Context<'_>) {
         context.start(DetectWork::Restore(self.store.clone()));
     }
 
-    fn apply(&mut self, command: DetectCommand, _around: &(), context: &mut Context<'_>) {
+    fn apply(&mut self, command: DetectCommand, _around: &DetectAround, context: &mut Context<'_>) {
         self.apply(command, context);
     }
 
-    fn work_done(&mut self, id: JobId, result: DetectResult, _around: &(), context: &mut Context<'_>) {
+    fn work_done(
+        &mut self,
+        id: JobId,
+        result: DetectResult,
+        _around: &DetectAround,
+        context: &mut Context<'_>,
+    ) {
         self.work_done(id, result, context);
     }
 
-    fn work_ended(&mut self, id: JobId, why: Option<&str>, _around: &(), context: &mut Context<'_>) {
+    fn work_ended(
+        &mut self,
+        id: JobId,
+        why: Option<&str>,
+        _around: &DetectAround,
+        context: &mut Context<'_>,
+    ) {
         self.work_ended(id, why, context);
     }
 }

@@ -19,10 +19,10 @@ const BEHIND: Duration = Duration::from_millis(1500);
 
 impl DetectWorkflow {
     /// What the stage is to do with the newest pair, if anything.
-    pub fn input(&self, around: DetectAround<'_>) -> Option<DetectInput> {
+    pub fn input(&self, around: DetectAround) -> Option<DetectInput> {
         let in_use = self.detector.as_ref().filter(|_| self.wanted)?;
         Some(DetectInput {
-            frame: around.newest?.clone(),
+            frame: around.newest?,
             opened: around.opened,
             detector: in_use.detector.clone(),
             settings: self.settings.clone(),
@@ -63,7 +63,7 @@ impl DetectWorkflow {
     }
 
     /// What the window shows.
-    pub fn view(&mut self, skipped: u64, around: &DetectAround<'_>, now: Instant) -> DetectView {
+    pub fn view(&mut self, skipped: u64, around: &DetectAround, now: Instant) -> DetectView {
         self.clock.set_skipped(skipped);
         DetectView {
             wanted: self.wanted,
@@ -107,8 +107,8 @@ impl DetectWorkflow {
 }
 
 /// Why a result must not be taken for the present.
-fn stale(found: &Accepted, around: &DetectAround<'_>) -> Option<String> {
-    let newest = around.newest?;
+fn stale(found: &Accepted, around: &DetectAround) -> Option<String> {
+    let newest = around.newest.as_ref()?;
     let (of, now) = (found.view.stamp, newest.stamp);
     if of.seq != now.seq && around.photographs {
         return Some("Boxes of the pair before; this one is being looked at.".to_owned());

@@ -4,12 +4,16 @@ pub mod list;
 mod view;
 
 use std::panic::AssertUnwindSafe;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, TryRecvError};
+use plumbline_model::files::FileError;
 use plumbline_model::{Cancelled, JobContext, duration};
+
+use super::text::sentence;
 
 pub use view::{JobCommand, JobId, JobState, JobView};
 
@@ -41,6 +45,22 @@ impl JobError {
     /// From any error that speaks for itself.
     pub fn failed(error: impl std::fmt::Display) -> Self {
         Self::Failed(error.to_string())
+    }
+
+    /// From an error whose words can stand inside of a sentence.
+    pub fn told(error: impl std::fmt::Display) -> Self {
+        Self::Failed(sentence(&error.to_string()))
+    }
+
+    /// A file cannot be removed.
+    pub fn not_removed(file: &Path, error: &std::io::Error) -> Self {
+        Self::Failed(format!("{} cannot be removed: {error}. Remove it by hand.", file.display()))
+    }
+}
+
+impl From<FileError> for JobError {
+    fn from(error: FileError) -> Self {
+        Self::told(error)
     }
 }
 

@@ -24,8 +24,8 @@ impl LabelsWorkflow {
             return context.refuse("The pair before is being written. Capture again in a moment.");
         }
         self.captured_seq = Some(seq);
-        let folder = set.folder.clone();
-        self.capturing = Some(context.start(LabelsWork::Capture { frame, folder }));
+        let (folder, captured) = (set.folder.clone(), context.time.day_at(frame.stamp.captured_at));
+        self.capturing = Some(context.start(LabelsWork::Capture { frame, captured, folder }));
     }
 
     pub(super) fn propose(&mut self, around: &LabelsAround, context: &mut Context<'_>) {

@@ -21,7 +21,8 @@ use super::work::{Context, LabelsResult, LabelsWork};
 use crate::detect::command::{DetectorChoice, Provider};
 use crate::detect::{LoadedDetector, OpenDetector};
 use crate::ground::jobs::JobId;
-use crate::ground::{Nothing, Workflow};
+use crate::ground::{Moment, Nothing, Workflow};
+use crate::labels::view::LabelsView;
 use set::Saving;
 pub use set::Set;
 
@@ -314,6 +315,15 @@ impl Workflow for LabelsWorkflow {
     type Work = LabelsWork;
     type Control = Nothing;
     type Around = LabelsAround;
+    type View = LabelsView;
+
+    fn new(folder: &Path) -> Self {
+        Self::new(folder)
+    }
+
+    fn view(&mut self, around: &LabelsAround, _moment: &Moment) -> Arc<LabelsView> {
+        Arc::new(Self::view(self, &around.detector))
+    }
 
     fn restore(&mut self, _around: &LabelsAround, context: &mut Context<'_>) {
         context.start(LabelsWork::Restore { memory: self.memory.clone() });

@@ -5,7 +5,7 @@ use plumbline_model::{Cancelled, ScreenPlacement, place_screen};
 
 use super::*;
 use crate::ground::step::StepState;
-use crate::ground::{Asked, LongWork, Workflow};
+use crate::ground::{Asked, LongWork, Time, Workflow};
 use crate::models::screen::corners;
 use crate::models::{ModelsAround, ModelsWorkflow};
 use crate::robot::view::RobotView;
@@ -208,10 +208,10 @@ fn restore(workflow: &mut ModelsWorkflow, robot: &RobotView) {
     let rig = Arc::new(nico());
     let (mut notices, mut jobs, mut asked) = Default::default();
     let around = ModelsAround { rig, robot: Arc::new(robot.clone()), newest_session: None };
-    let mut context = crate::models::work::Context::new(&mut notices, &mut jobs, &mut asked);
+    let mut context = crate::models::work::Context::new(&mut notices, &mut jobs, Time::now(), &mut asked);
     workflow.restore(&around, &mut context);
     let Some(Asked::Start(id, work)) = asked.pop() else { panic!("it reads what is there") };
     let result = work.run(&Unattended).expect("read");
-    let mut context = crate::models::work::Context::new(&mut notices, &mut jobs, &mut asked);
+    let mut context = crate::models::work::Context::new(&mut notices, &mut jobs, Time::now(), &mut asked);
     workflow.work_done(id, result, &around, &mut context);
 }
