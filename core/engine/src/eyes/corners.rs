@@ -48,8 +48,9 @@ impl Stage for CornersStage {
         let CornersInput { frame, board } = input;
         let (left_gray, right_gray) = rayon::join(|| gray(&frame.left), || gray(&frame.right));
         let [left, right] = glimpse_in_both([&left_gray, &right_gray], &board);
-        let other_board = (left.is_none() && right.is_none() && self.is_time_for_another())
-            .then(|| board_seen(chessboard::recognize(&left_gray), &board));
+        let other_board =
+            (left.is_none() && right.is_none() && self.is_time_for_another(frame.stamp.captured_at))
+                .then(|| board_seen(chessboard::recognize(&left_gray), &board));
         let edge_width_px = of_both(&board, [&left_gray, &right_gray], [left.as_ref(), right.as_ref()]);
         let gray = [Arc::new(left_gray), Arc::new(right_gray)];
         Look { frame, board, left, right, gray, edge_width_px, other_board }
@@ -57,9 +58,10 @@ impl Stage for CornersStage {
 }
 
 impl CornersStage {
-    fn is_time_for_another(&mut self) -> bool {
-        let now = Instant::now();
-        let due = self.looked_for_another.is_none_or(|last| now.duration_since(last) >= LOOK_FOR_ANOTHER);
+    fn is_time_for_another(&mut self, now: Instant) -> bool {
+        let due = self
+            .looked_for_another
+            .is_none_or(|last| now.saturating_duration_since(last) >= LOOK_FOR_ANOTHER);
         if due {
             self.looked_for_another = Some(now);
         }
