@@ -7,6 +7,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::no_way::{Barred, NoWay};
 use nalgebra::Vector3;
 use plumbline_hardware::joints::FloorGuard;
 use plumbline_model::robot::collision::{Allowance, Body, CollisionModel, PathCheck, PostureCheck};
@@ -194,17 +195,12 @@ impl Planner {
     ///
     /// # Errors
     /// When the tip is no tip of an arm, or cannot point at the screen.
-    pub fn new(rig: &Arc<Rig>, tip: &str, place: ScreenPlace) -> Result<Self, String> {
+    pub fn new(rig: &Arc<Rig>, tip: &str, place: ScreenPlace) -> Result<Self, NoWay> {
         let arm = rig.arms.iter().find(|arm| arm.tips.iter().any(|known| known.link == tip));
-        let arm = arm.ok_or_else(|| {
-            format!("{tip} is no tip of an arm of this robot. Choose the tip of an index finger.")
-        })?;
-        let pose = rig.pose("touch-ready").ok_or(
-            "The rig has no pose \"touch-ready\", from which the screen is touched. Add it to the rig file.",
-        )?;
-        let words = |error: &dyn std::fmt::Display| crate::ground::text::sentence(&error.to_string());
-        let solver = Solver::of_rig(rig, tip).map_err(|error| words(&error))?;
-        let chain = rig.chain(tip).map_err(|error| words(&error))?;
+        let arm = arm.ok_or_else(|| NoWay::NoTip { tip: tip.to_owned() })?;
+        let pose = rig.pose("touch-ready").ok_or(NoWay::NoReadyPose)?;
+        let solver = Solver::of_rig(rig, tip)?;
+        let chain = rig.chain(tip)?;
         let model = Arc::new(CollisionModel::of_rig(rig));
         let floor = Arc::new(FloorGuard::new(rig));
         let joints = [arm.joints.clone(), arm.hand.clone()].concat();
@@ -260,10 +256,10 @@ impl Planner {
         sent: Point<Robot>,
         side: Side,
         from: &Posture,
-    ) -> Result<TouchPath, String> {
+    ) -> Result<TouchPath, NoWay> {
         let numbers = [target.u_px, target.v_px, sent.coords.x, sent.coords.y, sent.coords.z];
         if !(numbers.iter().all(|number| number.is_finite()) && from.is_finite()) {
-            return Err("The target or the present posture is not a number. Plan anew.".to_owned());
+            return Err(NoWay::NotANumber);
         }
         let (contact, heading_rad) = self.contact(sent, target, from)?;
         let upright = self.inclination(&contact);
@@ -301,16 +297,15 @@ impl Planner {
         sent: Point<Robot>,
         target: Pixel<Screen>,
         from: &Posture,
-    ) -> Result<(Posture, f64), String> {
+    ) -> Result<(Posture, f64), NoWay> {
         let over = Point::new(sent.coords.x, sent.coords.y, self.rig.table.height_m + HEADING_ABOVE_M);
         let held = self.posture(from, &self.upright(over, target)?);
         let heading_rad = self.heading_rad(&held);
         let at = Target::PositionYaw { point: sent, yaw_rad: heading_rad };
         let options = Options { other_starts: 0, ..Options::upright() };
-        let answer = self.solver.solve_from(&at, &held, &options);
-        let answer = answer.map_err(|error| crate::ground::text::sentence(&error.to_string()))?;
+        let answer = self.solver.solve_from(&at, &held, &options)?;
         if !answer.is_reached() {
-            return Err(format!("{} is out of reach. Choose a smaller area.", place(target)));
+            return Err(NoWay::OutOfReach { target });
         }
         Ok((self.posture(from, answer.best()), heading_rad))
     }
@@ -322,26 +317,17 @@ impl Planner {
 
     /// The arm with its tip at a point, the finger as upright as it can be, always from the same
     /// start.
-    fn upright(&self, point: Point<Robot>, target: Pixel<Screen>) -> Result<Solution, String> {
+    fn upright(&self, point: Point<Robot>, target: Pixel<Screen>) -> Result<Solution, NoWay> {
         let start = self.middle.of(self.solver.joints());
-        let answer = self.solver.solve(&Target::Position(point), &start, &Options::upright());
-        let answer = answer.map_err(|error| crate::ground::text::sentence(&error.to_string()))?;
+        let answer = self.solver.solve(&Target::Position(point), &start, &Options::upright())?;
         let best = *answer.best();
         if !answer.is_reached() {
-            return Err(format!(
-                "{} is out of reach by {:.0} mm. Choose a smaller area.",
-                place(target),
-                best.position_error_m * 1e3
-            ));
+            return Err(NoWay::OutOfReachBy { target, by_m: best.position_error_m });
         }
         let tip = self.chain.robot_from_tip(&best.joints);
         let upright = (tip.isometry.rotation * Vector3::z()).z;
         if upright < LEAST_UPRIGHT {
-            return Err(format!(
-                "Over {} the finger cannot point down: it is inclined by {:.0}°. Choose a smaller area.",
-                place(target),
-                upright.clamp(-1.0, 1.0).acos().to_degrees()
-            ));
+            return Err(NoWay::Inclined { target, inclined_rad: upright.clamp(-1.0, 1.0).acos() });
         }
         Ok(best)
     }
@@ -361,9 +347,9 @@ impl Planner {
     }
 
     /// The way down from as high as it is free, and a free way to there.
-    fn highest_free(&self, target: Pixel<Screen>, from: &Posture, down: Lowering) -> Result<FreeWay, String> {
+    fn highest_free(&self, target: Pixel<Screen>, from: &Posture, down: Lowering) -> Result<FreeWay, NoWay> {
         let Lowering { postures, dispensable } = down;
-        let mut refusal = None;
+        let mut refused = Err(NoWay::NotANumber);
         let mut tried = None;
         for skip in [0, dispensable / 2, dispensable] {
             if tried.replace(skip) == Some(skip) {
@@ -377,10 +363,10 @@ impl Planner {
                 Ok((approach, turns_rad)) => {
                     return Ok(FreeWay { lowering: lowering.to_vec(), approach, turns_rad });
                 }
-                Err(reason) => refusal = Some(reason),
+                Err(why) => refused = Err(why),
             }
         }
-        Err(refusal.unwrap_or_default())
+        refused
     }
 
     /// The angles (rad) that the chain's joints are commanded with the tip at a point that is sent, and
@@ -394,7 +380,7 @@ impl Planner {
         sent: Point<Robot>,
         side: Side,
         from: &Posture,
-    ) -> Result<(Vec<f64>, Vec<f64>), String> {
+    ) -> Result<(Vec<f64>, Vec<f64>), NoWay> {
         let (contact, heading_rad) = self.contact(sent, target, from)?;
         let at = |step: usize| on_the_way(sent, side, heading_rad, step as f64 * STEP_M);
         let above = self.follow(&contact, LAST_STEPS, at);
@@ -412,7 +398,7 @@ impl Planner {
         side: Side,
         contact: &Posture,
         heading_rad: f64,
-    ) -> Result<Lowering, String> {
+    ) -> Result<Lowering, NoWay> {
         let glass_m = self.rig.touchscreen.point_at(target).coords.z;
         let upper_m = sent.coords.z.max(glass_m) - sent.coords.z;
         let (top_m, least_m) = (upper_m + self.above_m, upper_m + ABOVE_MEASURED_M);
@@ -422,11 +408,7 @@ impl Planner {
         let up = self.follow(contact, steps(top_m), |step| at(top_m.min(step as f64 * STEP_M)));
         let least = steps(least_m);
         if up.len() < least {
-            return Err(format!(
-                "Above {} the arm gets only {:.0} mm high. Choose a smaller area.",
-                place(target),
-                up.len() as f64 * STEP_M * 1e3
-            ));
+            return Err(NoWay::TooLow { target, high_m: up.len() as f64 * STEP_M });
         }
         let down = self.follow(contact, steps(bottom_m), |step| at(-bottom_m.min(step as f64 * STEP_M)));
         let allowed_m = self.rig.gate.floor_m + FLOOR_MARGIN_M;
@@ -435,11 +417,8 @@ impl Planner {
         let down: Vec<Posture> = down.iter().take_while(above_floor).cloned().collect();
         let below_m = down.last().map_or(0.0, |lowest| sent.coords.z - self.tip(lowest).coords.z);
         if below_m < LEAST_BELOW_M {
-            return Err(format!(
-                "At {} the arm may not go low enough: it ends {:.0} mm above its floor. Raise the screen, or lower floor_m in the rig file.",
-                place(target),
-                (sent.coords.z - self.rig.gate.floor_m) * 1e3
-            ));
+            let above_floor_m = sent.coords.z - self.rig.gate.floor_m;
+            return Err(NoWay::TooHigh { target, above_floor_m });
         }
         let dispensable = up.len() - least;
         let postures = up.into_iter().rev().chain([contact.clone()]).chain(down).collect();
@@ -464,18 +443,11 @@ impl Planner {
     }
 
     /// Nothing but the finger touches, and nothing but the screen.
-    fn check_lowering(&self, target: Pixel<Screen>, lowering: &[Posture]) -> Result<(), String> {
+    fn check_lowering(&self, target: Pixel<Screen>, lowering: &[Posture]) -> Result<(), NoWay> {
         for posture in lowering.iter().rev().step_by(3).chain([&lowering[0]]) {
-            let found = self.model.check_posture(posture, &self.allowances);
-            if let PostureCheck::Collides { contact, .. } =
-                found.map_err(|error| crate::ground::text::sentence(&error.to_string()))?
-            {
-                return Err(format!(
-                    "At {} the {} would meet the {}. Choose a smaller area.",
-                    place(target),
-                    contact.a_name,
-                    contact.b_name
-                ));
+            let found = self.model.check_posture(posture, &self.allowances)?;
+            if let PostureCheck::Collides { contact, .. } = found {
+                return Err(NoWay::Meets { target, a: contact.a_name, b: contact.b_name });
             }
         }
         Ok(())
@@ -487,8 +459,8 @@ impl Planner {
         target: Pixel<Screen>,
         from: &Posture,
         above: &Posture,
-    ) -> Result<(Vec<Posture>, Vec<f64>), String> {
-        let mut refusal = None;
+    ) -> Result<(Vec<Posture>, Vec<f64>), NoWay> {
+        let mut barred = None;
         for way in self.ways(from, above) {
             let mut legs = vec![];
             let mut before = from;
@@ -497,7 +469,7 @@ impl Planner {
                 match self.leg(before, next) {
                     Ok(()) => before = next,
                     Err(reason) => {
-                        refusal.get_or_insert(reason);
+                        barred.get_or_insert(reason);
                         legs.clear();
                         break;
                     }
@@ -507,8 +479,7 @@ impl Planner {
                 return Ok((way, legs));
             }
         }
-        let reason = refusal.unwrap_or_else(|| "no way was found".to_owned());
-        Err(format!("There is no free way to {}: {reason}. Go to \"Ready to touch\" first.", place(target)))
+        Err(NoWay::NotFree { target, leg: barred.unwrap_or(Barred::NoWay) })
     }
 
     /// Ways to try, the shortest first.
@@ -541,7 +512,7 @@ impl Planner {
         ways
     }
 
-    fn leg(&self, from: &Posture, to: &Posture) -> Result<(), String> {
+    fn leg(&self, from: &Posture, to: &Posture) -> Result<(), Barred> {
         let glass_m = self.rig.touchscreen.corners().iter().map(|corner| corner.coords.z).fold(0.0, f64::max);
         let lower_end_m = self.tip(from).coords.z.min(self.tip(to).coords.z);
         // Where the arm does not get as high as it should wait, it keeps what it can.
@@ -550,16 +521,16 @@ impl Planner {
         for sample in 1..SAMPLES {
             let height_m = self.tip(&from.toward(to, sample as f64 / SAMPLES as f64)).coords.z;
             if height_m < least_m {
-                return Err("the fingertip would come too near to the glass".to_owned());
+                return Err(Barred::NearGlass);
             }
         }
         match self.model.check_path(from, to, &[]) {
             Ok(PathCheck::Clear { .. }) => Ok(()),
             Ok(PathCheck::Collides { contact, .. }) => {
-                Err(format!("the {} would meet the {}", contact.a_name, contact.b_name))
+                Err(Barred::Meets { a: contact.a_name, b: contact.b_name })
             }
-            Ok(PathCheck::BeyondLimit { name, why, .. }) => Err(format!("{name} would turn too far ({why})")),
-            Err(error) => Err(error.to_string()),
+            Ok(PathCheck::BeyondLimit { name, why, .. }) => Err(Barred::TooFar { joint: name, why }),
+            Err(error) => Err(error.into()),
         }
     }
 
@@ -605,8 +576,4 @@ fn on_the_way(sent: Point<Robot>, side: Side, heading_rad: f64, height_m: f64) -
 
 fn raised(point: Point<Robot>, by_m: f64) -> Point<Robot> {
     Point::from(point.coords + Vector3::z() * by_m)
-}
-
-fn place(target: Pixel<Screen>) -> String {
-    format!("pixel ({:.0}, {:.0})", target.u_px, target.v_px)
 }

@@ -47,12 +47,17 @@ impl From<Correction> for String {
 }
 
 impl TryFrom<String> for Correction {
-    type Error = String;
+    type Error = UnknownCorrection;
 
-    fn try_from(name: String) -> Result<Self, String> {
-        Self::of_name(&name).ok_or_else(|| format!("\"{name}\" corrects nothing: m1, m2, m3 or effects do"))
+    fn try_from(name: String) -> Result<Self, UnknownCorrection> {
+        Self::of_name(&name).ok_or(UnknownCorrection(name))
     }
 }
+
+/// A name of nothing that corrects.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("\"{0}\" corrects nothing: m1, m2, m3 or effects do")]
+pub struct UnknownCorrection(pub String);
 
 /// Touching the screen, in the order of work.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

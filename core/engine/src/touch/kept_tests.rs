@@ -57,7 +57,7 @@ fn a_kill_takes_no_touch_that_was_reported() {
 fn a_full_disk_is_told_and_takes_nothing() {
     const TEST: &str = "touch::kept_tests::a_full_disk_is_told_and_takes_nothing";
     if let Some(folder) = crate::ground::kept::writing() {
-        let told = store::write(&folder, &[], &progress(51)).expect_err("the disk is full");
+        let told = store::write(&folder, &[], &progress(51)).expect_err("the disk is full").to_string();
         assert!(told.contains("cannot be written") && told.contains("what was there before is unchanged"));
         return;
     }

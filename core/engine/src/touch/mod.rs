@@ -12,6 +12,7 @@ mod path_tests;
 mod placement;
 mod plan;
 mod record;
+mod refusal;
 mod run;
 mod seen;
 mod shown;

@@ -10,10 +10,11 @@ use plumbline_model::session::{Screen, Touchscreen};
 
 use super::plan::{Aim, RunPlan};
 use super::record::{Ended, Fate, Progress, TouchRecord};
+use super::refusal::{Refusal, Trouble};
 use super::store::Stored;
 use super::work::{Context, RouteRequest, TouchWork};
 use crate::ground::jobs::JobId;
-use crate::motion::{Planner, ScreenPlace, TouchPace};
+use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
 use crate::robot::view::{Connection, RobotView};
 use crate::robot::{RobotControl, TouchNews, TouchOrder, TouchRun, TouchStage};
 use crate::twin::command::TwinCommand;
@@ -83,7 +84,7 @@ pub struct Now<'a> {
     /// The robot now.
     pub robot: &'a RobotView,
     /// Why nothing can be touched, and what to do; a sentence.
-    pub trouble: Option<String>,
+    pub trouble: Option<Trouble>,
 }
 
 /// A run, under way or shown.
@@ -236,8 +237,8 @@ impl Run {
             return;
         }
         let Some(aim) = self.next().cloned() else { return self.finish(now, context) };
-        if let Some(trouble) = &now.trouble {
-            self.phase = Phase::Paused(Some(trouble.clone()));
+        if let Some(trouble) = now.trouble {
+            self.phase = Phase::Paused(Some(trouble.to_string()));
             return;
         }
         if aim.preparation() != self.progress.prepared {
@@ -311,7 +312,7 @@ impl Run {
         &mut self,
         number: usize,
         planner: Option<Arc<Planner>>,
-        order: Result<Box<TouchOrder>, String>,
+        order: Result<Box<TouchOrder>, NoWay>,
         now: &Now<'_>,
         context: &mut Context<'_>,
     ) {
@@ -455,15 +456,14 @@ impl Run {
     ///
     /// # Errors
     /// A sentence, when there is none.
-    pub fn skip(&mut self, context: &mut Context<'_>) -> Result<(), String> {
+    pub fn skip(&mut self, context: &mut Context<'_>) -> Result<(), Refusal> {
         if let Some(touch) = &mut self.touch {
             touch.at_end = AtEnd::Skip;
             context.control(RobotControl::AbandonTouch);
             return Ok(());
         }
         let next = self.next().filter(|_| self.phase != Phase::Finished);
-        let number =
-            next.map(|aim| aim.touch.number).ok_or("All touches are done, so there is none to skip.")?;
+        let number = next.map(|aim| aim.touch.number).ok_or(Refusal::NothingToSkip)?;
         self.end(number, Ended::Skipped);
         if let Phase::Preparing(_) = self.phase {
             self.phase = Phase::Working;
@@ -515,9 +515,9 @@ impl Run {
     ///
     /// # Errors
     /// A sentence, when these are no numbers.
-    pub fn prepared(&mut self, preparation: [f64; 2]) -> Result<(), String> {
+    pub fn prepared(&mut self, preparation: [f64; 2]) -> Result<(), Refusal> {
         if preparation.iter().any(|value| !(value.is_finite() && *value >= 0.0)) {
-            return Err("Height and weight must be numbers from zero on.".to_owned());
+            return Err(Refusal::NotNumbers);
         }
         self.progress.prepared = preparation;
         self.changed();

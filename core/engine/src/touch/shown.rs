@@ -186,7 +186,7 @@ impl TouchWorkflow {
         if let Some((plan, _)) = &self.planned {
             return match (plan.reachable(), self.trouble(around)) {
                 (0, _) => "The arm reaches none of these targets. Choose another area.".to_owned(),
-                (_, Some(trouble)) => trouble,
+                (_, Some(trouble)) => trouble.to_string(),
                 (count, None) => format!("Touch {count} targets. The arm moves."),
             };
         }

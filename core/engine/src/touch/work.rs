@@ -12,13 +12,13 @@ use plumbline_model::touchscreen::ScreenPlacement;
 use super::placement::{self, Proposal};
 use super::plan::{self, Aim, PlanRequest, RunPlan, TIP};
 use super::record::{Progress, TouchRecord};
+use super::refusal::{RunError, Unplaced};
 use super::store::{self, Runs, Stored};
 use crate::ground;
 use crate::ground::LongWork;
 use crate::ground::jobs::JobError;
 use crate::ground::shelf::InUse;
-use crate::ground::text::sentence;
-use crate::motion::{Planner, ScreenPlace, TouchPace};
+use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
 use crate::robot::{RobotControl, TouchOrder};
 
 /// Work of this workflow.
@@ -152,10 +152,10 @@ pub enum TouchResult {
         /// For the next target.
         planner: Option<Arc<Planner>>,
         /// The order.
-        order: Result<Box<TouchOrder>, String>,
+        order: Result<Box<TouchOrder>, NoWay>,
     },
     /// A measured place of the screen, or why the touches do not tell.
-    Placed(Result<Proposal, String>),
+    Placed(Result<Proposal, Arc<Unplaced>>),
     /// It is in use from now on.
     Saved(Arc<ScreenPlacement>),
     /// The nominal place is in use.
@@ -204,21 +204,21 @@ impl LongWork for TouchWork {
                 Err(error) => Err(error),
             },
             Self::Begin { sessions, rig, plan, started } => {
-                begin(&sessions, &rig, &plan, started).map_err(JobError::Failed)
+                begin(&sessions, &rig, &plan, started).map_err(JobError::failed)
             }
             Self::Open { session, rig } => {
-                let stored = open(&session, &rig).map_err(JobError::Failed)?;
+                let stored = open(&session, &rig).map_err(JobError::failed)?;
                 Ok(TouchResult::Opened { session, stored: Box::new(stored) })
             }
             Self::Write { session, joints, progress, revision } => {
-                let problem = store::write(&session, &joints, &progress).err();
+                let problem = store::write(&session, &joints, &progress).err().map(|error| error.to_string());
                 Ok(TouchResult::Written { revision, problem })
             }
             Self::Route(request) => Ok(route(request)),
             Self::Place { session, rig, joints, touches } => {
                 let placed = placement::place(&rig, &joints, &touches);
                 let proposal = |placement| Proposal { placement: Arc::new(placement), session };
-                Ok(TouchResult::Placed(placed.map(proposal)))
+                Ok(TouchResult::Placed(placed.map(proposal).map_err(Arc::new)))
             }
             Self::Accept { kept, placement } => {
                 kept.put(JobError::told, |file| placement.write(file).map_err(JobError::told))?;
@@ -252,8 +252,8 @@ fn begin(
     rig: &Rig,
     plan: &Arc<RunPlan>,
     started: Timestamp,
-) -> Result<TouchResult, String> {
-    let chain = rig.chain(TIP).map_err(|error| sentence(&error.to_string()))?;
+) -> Result<TouchResult, RunError> {
+    let chain = rig.chain(TIP)?;
     let joints = chain.names().to_vec();
     let manifest = store::manifest(&rig.name, &rig.touchscreen, &joints, plan, started);
     let progress = Progress::new(plan.options.purpose, started, plan.reachable());
@@ -262,13 +262,11 @@ fn begin(
     Ok(TouchResult::Begun { session, stored: Box::new(stored) })
 }
 
-fn open(session: &std::path::Path, rig: &Rig) -> Result<Stored, String> {
+fn open(session: &std::path::Path, rig: &Rig) -> Result<Stored, RunError> {
     let stored = store::read(session)?;
-    let chain = rig.chain(TIP).map_err(|error| sentence(&error.to_string()))?;
+    let chain = rig.chain(TIP)?;
     if stored.joints != chain.names() {
-        return Err("The run was made with another arm than this robot's, so it cannot go on with it. \
-                    What it has touched can still be learned from in step Models."
-            .to_owned());
+        return Err(RunError::OtherArm);
     }
     Ok(stored)
 }

@@ -14,6 +14,7 @@ use plumbline_model::{Pixel, duration};
 use super::command::{ContactWith, Correction, ScreenContact, ScreenWindow, TouchCommand};
 use super::placement::Proposal;
 use super::plan::{Corrector, PlanRequest, RunPlan};
+use super::refusal::{Refusal, Trouble, Unplaced};
 use super::run::{Now, Phase, Run};
 use super::seen::Seen;
 use super::store::{self, Runs, TrainedRun};
@@ -142,19 +143,19 @@ impl TouchWorkflow {
         command: TouchCommand,
         around: &TouchAround,
         context: &mut Context<'_>,
-    ) -> Result<(), String> {
+    ) -> Result<(), Refusal> {
         let screen = self.placed_screen(&around.rig);
         let now = self.now(around, &screen);
         let prepares = matches!(command, TouchCommand::Resume | TouchCommand::Prepared { .. });
-        let run = self.run.as_mut().ok_or("No run is open. Plan touches, or open an unfinished run.")?;
+        let run = self.run.as_mut().ok_or(Refusal::NoRun)?;
         match command {
             TouchCommand::Pause if run.phase == Phase::Working => run.pause = true,
             TouchCommand::Pause => {}
             TouchCommand::Resume => {
                 // Writing to disk needs no arm.
                 let needs_arm = !run.progress.finished && !matches!(run.phase, Phase::Stuck(_));
-                if let (Some(trouble), true) = (&now.trouble, needs_arm) {
-                    return Err(trouble.clone());
+                if let (Some(trouble), true) = (now.trouble, needs_arm) {
+                    return Err(trouble.into());
                 }
                 if run.phase != Phase::Working || run.pause {
                     run.resume();
@@ -168,11 +169,11 @@ impl TouchWorkflow {
             TouchCommand::Redo { number } => redo(run, number)?,
             TouchCommand::Reject { number } if run.progress.reject(number) => run.changed(),
             TouchCommand::Reject { number } => {
-                return Err(format!("Target {number} has no touch that counts, so there is none to reject."));
+                return Err(Refusal::NothingToReject(number));
             }
             TouchCommand::Restore { number } if run.progress.restore(number) => run.changed(),
             TouchCommand::Restore { number } => {
-                return Err(format!("Target {number} has no rejected touch that could count again."));
+                return Err(Refusal::NothingToRestore(number));
             }
             _ => {}
         }
@@ -188,7 +189,7 @@ impl TouchWorkflow {
         options: PlanOptions,
         around: &TouchAround,
         context: &mut Context<'_>,
-    ) -> Result<(), String> {
+    ) -> Result<(), Refusal> {
         self.no_run_under_way()?;
         let corrector = match self.correct_with {
             None => Corrector::None,
@@ -225,7 +226,7 @@ impl TouchWorkflow {
         correction: Option<Correction>,
         around: &TouchAround,
         context: &mut Context<'_>,
-    ) -> Result<(), String> {
+    ) -> Result<(), Refusal> {
         self.no_run_under_way()?;
         if let Some(Correction::Model(method)) = correction {
             model_of(around, method)?;
@@ -235,17 +236,17 @@ impl TouchWorkflow {
         Ok(())
     }
 
-    fn start(&mut self, around: &TouchAround, context: &mut Context<'_>) -> Result<(), String> {
+    fn start(&mut self, around: &TouchAround, context: &mut Context<'_>) -> Result<(), Refusal> {
         self.no_run_under_way()?;
         if self.planning.is_some() {
-            return Err("The plan is still being made. Wait until it is there.".to_owned());
+            return Err(Refusal::StillPlanning);
         }
-        let (plan, of_screen) = self.planned.clone().ok_or("Nothing is planned yet. Plan touches first.")?;
+        let (plan, of_screen) = self.planned.clone().ok_or(Refusal::NothingPlanned)?;
         if plan.reachable() == 0 {
-            return Err("The arm reaches none of the targets. Choose another area and plan again.".to_owned());
+            return Err(Refusal::NothingInReach);
         }
         if let Some(trouble) = self.trouble(around) {
-            return Err(trouble);
+            return Err(trouble.into());
         }
         let rig = Arc::new(Rig { touchscreen: of_screen, ..(*around.rig).clone() });
         let sessions = self.folder.join("sessions");
@@ -259,16 +260,16 @@ impl TouchWorkflow {
         session: PathBuf,
         around: &TouchAround,
         context: &mut Context<'_>,
-    ) -> Result<(), String> {
+    ) -> Result<(), Refusal> {
         self.no_run_under_way()?;
         let rig = around.rig.clone();
         self.starting = Some(context.start(TouchWork::Open { session, rig }));
         Ok(())
     }
 
-    fn close(&mut self, context: &mut Context<'_>) -> Result<(), String> {
+    fn close(&mut self, context: &mut Context<'_>) -> Result<(), Refusal> {
         if self.run.as_ref().is_some_and(|run| !run.is_on_disk()) {
-            return Err("The last change is not on disk yet. Close when it is written.".to_owned());
+            return Err(Refusal::NotOnDisk);
         }
         if let Some(id) = self.planning.take() {
             context.cancel(id);
@@ -285,16 +286,16 @@ impl TouchWorkflow {
         Ok(())
     }
 
-    fn accept_placement(&mut self, context: &mut Context<'_>) -> Result<(), String> {
+    fn accept_placement(&mut self, context: &mut Context<'_>) -> Result<(), Refusal> {
         self.no_run_under_way()?;
         let proposal = self.proposal.as_ref();
-        let proposal = proposal.ok_or("No measured place of the screen waits. Touch its corners first.")?;
+        let proposal = proposal.ok_or(Refusal::NoPlacement)?;
         let kept = placement_in(&self.folder);
         context.start(TouchWork::Accept { kept, placement: proposal.placement.clone() });
         Ok(())
     }
 
-    fn use_nominal(&mut self, context: &mut Context<'_>) -> Result<(), String> {
+    fn use_nominal(&mut self, context: &mut Context<'_>) -> Result<(), Refusal> {
         self.no_run_under_way()?;
         context.start(TouchWork::Forget { kept: placement_in(&self.folder) });
         Ok(())
@@ -458,7 +459,7 @@ impl TouchWorkflow {
         }
     }
 
-    fn placed(&mut self, placed: Result<Proposal, String>, context: &mut Context<'_>) {
+    fn placed(&mut self, placed: Result<Proposal, Arc<Unplaced>>, context: &mut Context<'_>) {
         let run = self.run.as_mut();
         let wanted = run.as_ref().is_some_and(|run| run.plan.options.purpose == Purpose::PlaceScreen);
         match placed {
@@ -551,9 +552,9 @@ impl TouchWorkflow {
         self.run.as_ref().filter(|run| run.is_active())
     }
 
-    fn no_run_under_way(&self) -> Result<(), String> {
+    fn no_run_under_way(&self) -> Result<(), Refusal> {
         if self.starting.is_some() || self.active_run().is_some() {
-            return Err("A run is under way. Finish or close it first.".to_owned());
+            return Err(Refusal::RunUnderWay);
         }
         Ok(())
     }
@@ -579,20 +580,19 @@ impl TouchWorkflow {
     }
 
     /// Why nothing can be touched now, and what to do.
-    pub(super) fn trouble(&self, around: &TouchAround) -> Option<String> {
+    pub(super) fn trouble(&self, around: &TouchAround) -> Option<Trouble> {
         let robot = &around.robot;
-        let text = if !robot.connection.is_connected() {
-            "No robot is connected. Connect to the robot or the twin, then go on."
+        if !robot.connection.is_connected() {
+            Some(Trouble::NotConnected)
         } else if robot.stopped {
-            "STOP is latched. Release it, look that the arm is free, then go on."
+            Some(Trouble::Stopped)
         } else if robot.measured.is_none() {
-            "The joints have not been read yet. Wait a moment, then go on."
+            Some(Trouble::NotRead)
         } else if source(robot) == ContactSource::Window && self.window.is_none() {
-            "The touch window is closed, so no contact can be felt. Open it full screen on the touch monitor, then go on."
+            Some(Trouble::WindowClosed)
         } else {
-            return None;
-        };
-        Some(text.to_owned())
+            None
+        }
     }
 }
 
@@ -634,13 +634,13 @@ impl Workflow for TouchWorkflow {
     }
 }
 
-fn redo(run: &mut Run, number: usize) -> Result<(), String> {
-    let aim = run.plan.aim(number).ok_or_else(|| format!("The plan has no target {number}."))?;
+fn redo(run: &mut Run, number: usize) -> Result<(), Refusal> {
+    let aim = run.plan.aim(number).ok_or(Refusal::NoTarget(number))?;
     if let Some(reason) = &aim.refusal {
-        return Err(format!("Target {number} cannot be touched: {reason}"));
+        return Err(Refusal::CannotBeTouched { number, reason: reason.clone() });
     }
     if run.touch.as_ref().is_some_and(|touch| touch.number == number) {
-        return Err(format!("Target {number} is being touched just now."));
+        return Err(Refusal::BeingTouched(number));
     }
     run.progress.redo(number);
     run.changed();
@@ -650,13 +650,9 @@ fn redo(run: &mut Run, number: usize) -> Result<(), String> {
     Ok(())
 }
 
-fn model_of(around: &TouchAround, method: Method) -> Result<Arc<CorrectionModel>, String> {
+fn model_of(around: &TouchAround, method: Method) -> Result<Arc<CorrectionModel>, Refusal> {
     let model = around.models.iter().find(|model| model.method() == method).cloned();
-    model.ok_or_else(|| {
-        format!("There is no model {} to correct targets with. Train it in step Models first, or correct with none.",
-            method.name()
-        )
-    })
+    model.ok_or(Refusal::NoModel(method))
 }
 
 /// Where contacts come from.
