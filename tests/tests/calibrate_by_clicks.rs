@@ -3,8 +3,8 @@
 //! the true geometry is known.
 
 use egui_kittest::kittest::Queryable as _;
-use plumbline_engine::offline::{SampleArgs, write_sample};
 use plumbline_model::Unattended;
+use plumbline_offline::{SampleArgs, write_sample};
 use plumbline_tests::{Window, click, type_over, until, view, window};
 
 /// Fewer than ten are doubted.

@@ -4,8 +4,8 @@
 
 use std::path::PathBuf;
 
-use plumbline_engine::offline::{DetectEvalArgs, ModelReport, detect_eval};
 use plumbline_model::{Unattended, measured_data};
+use plumbline_offline::{DetectEvalArgs, ModelReport, detect_eval};
 use plumbline_twin::training_set::{self, SetError, SetOptions};
 use plumbline_vision::detect::{DetectorOptions, shipped_detector};
 use plumbline_vision::detect_score::EvaluateOptions;

@@ -1,8 +1,8 @@
 //! `plumbline bench`: accuracy and speed on measured data, beside what is wanted and what peers reach.
 
 use clap::Args;
-use plumbline_engine::offline::{self, BenchReport, Figure};
 use plumbline_model::measured_data;
+use plumbline_offline::{self as offline, BenchReport, Figure};
 
 use super::bench_window;
 use super::output::{Output, say};

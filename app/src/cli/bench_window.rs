@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use plumbline_engine::offline::Figure;
+use plumbline_offline::Figure;
 use serde::Deserialize;
 
 /// Calibrates, so that rectification, disparity and depth run, then looks at them.

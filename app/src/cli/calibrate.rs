@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use plumbline_engine::offline::{
-    self, CalibrateArgs, CalibrateReport, CheckArgs, CheckReport, PairErrors, Rejected,
+use plumbline_offline::{
+    self as offline, CalibrateArgs, CalibrateReport, CheckArgs, CheckReport, PairErrors, Rejected,
 };
 use plumbline_widgets::format;
 

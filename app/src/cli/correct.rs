@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use plumbline_engine::offline::{self, CorrectArgs, CorrectReport, CorrectedPoint};
+use plumbline_offline::{self as offline, CorrectArgs, CorrectReport, CorrectedPoint};
 use plumbline_widgets::format;
 
 use super::output::Output;

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use plumbline_engine::offline::detector::{ClassFilter, DetectSettings, DetectorOptions, Provider};
-use plumbline_engine::offline::{self, DetectArgs, DetectReport};
+use plumbline_offline::detector::{ClassFilter, DetectSettings, DetectorOptions, Provider};
+use plumbline_offline::{self as offline, DetectArgs, DetectReport};
 
 use super::calibrate::say_notes;
 use super::output::Output;

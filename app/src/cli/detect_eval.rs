@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use plumbline_engine::offline::detector::DetectorOptions;
-use plumbline_engine::offline::scores::{ConfusionOptions, EvaluateOptions, Interval};
-use plumbline_engine::offline::{self, ClassReport, DetectEvalArgs, DetectEvalReport, ModelReport};
+use plumbline_offline::detector::DetectorOptions;
+use plumbline_offline::scores::{ConfusionOptions, EvaluateOptions, Interval};
+use plumbline_offline::{self as offline, ClassReport, DetectEvalArgs, DetectEvalReport, ModelReport};
 
 use super::common::listed;
 use super::output::{Output, say};

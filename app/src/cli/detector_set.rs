@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use plumbline_engine::offline::{self, DetectorSetArgs, SetWorld};
+use plumbline_offline::{self as offline, DetectorSetArgs, SetWorld};
 
 use super::output::Output;
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
-use plumbline_engine::offline::{self, DisparityArgs, DisparityReport};
+use plumbline_offline::{self as offline, DisparityArgs, DisparityReport};
 use plumbline_widgets::format;
 
 use super::calibrate::say_notes;

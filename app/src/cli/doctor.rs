@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use plumbline_engine::doctor::{self, Check};
+use plumbline_offline::doctor::{self, Check};
 use serde::Serialize;
 
 use super::output::Output;

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use plumbline_engine::offline::{self, GapArgs, GapReport};
+use plumbline_offline::{self as offline, GapArgs, GapReport};
 use plumbline_widgets::{format, parameter};
 
 use super::output::Output;

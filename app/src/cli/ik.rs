@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use plumbline_engine::offline::{self, IkArgs, IkReport, IkSolution};
+use plumbline_offline::{self as offline, IkArgs, IkReport, IkSolution};
 use plumbline_widgets::format;
 
 use super::output::Output;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use plumbline_engine::offline::{self, LocateArgs, LocateReport, LocatedPoint};
+use plumbline_offline::{self as offline, LocateArgs, LocateReport, LocatedPoint};
 use plumbline_widgets::format;
 
 use super::calibrate::say_notes;

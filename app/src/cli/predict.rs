@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use plumbline_engine::offline::{self, PredictArgs, PredictReport, PredictedRow};
+use plumbline_offline::{self as offline, PredictArgs, PredictReport, PredictedRow};
 use plumbline_widgets::format;
 
 use super::output::Output;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use plumbline_engine::offline::{self, SampleArgs};
+use plumbline_offline::{self as offline, SampleArgs};
 
 use super::output::Output;
 

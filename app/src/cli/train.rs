@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use plumbline_engine::offline::{self, TrainArgs, TrainReport};
+use plumbline_offline::{self as offline, TrainArgs, TrainReport};
 use plumbline_widgets::format;
 
 use super::output::Output;

@@ -1,39 +1,32 @@
 //! The application minus the window: state, commands, live pipeline, jobs.
+//!
+//! `ground` is what all stand on; then come the rooms, one folder per workflow, each with its
+//! commands, its view, its state and its work; `command`, `view`, `work` and `state` are the sums of
+//! the rooms; `engine` runs them on threads. Arrows go down only.
 
-mod bell;
-pub mod command;
-mod context;
-pub mod data_folder;
+pub mod ground;
+
 pub mod detect;
-mod detector_scores;
-pub mod doctor;
-pub mod engine;
 pub mod eyes;
-mod gaps;
-mod job_list;
-pub mod jobs;
-pub mod journal;
-#[cfg(all(test, target_os = "linux"))]
-mod kept;
-pub mod label_sets;
-mod live;
-mod models;
+pub mod gap;
+pub mod labels;
+pub mod live;
+pub mod models;
+mod motion;
 mod mount;
-pub mod notice;
-pub mod offline;
 pub mod rig_models;
 pub mod robot;
-pub mod settings;
-pub mod slot;
+mod scores;
 mod source;
-pub mod stages;
-pub mod state;
-pub mod statistics;
-mod text;
 mod touch;
+mod twin;
+
+pub mod command;
+pub mod state;
 pub mod view;
-pub mod watched;
 pub mod work;
+
+pub mod engine;
 
 pub use command::{
     AimChoice, BoxEdit, Command, ConfusionCell, ContactWith, Correction, Destination, DetectCommand,
@@ -42,22 +35,17 @@ pub use command::{
     MountCommand, NoticeCommand, ProbePoint, Products, Provider, RobotCommand, ScoresCommand, ScreenContact,
     ScreenWindow, SetPart, SourceCommand, TablesCommand, TouchCommand, TwinCommand, WatchCommand,
 };
-pub use context::Action;
-pub use engine::{Engine, Wake};
-pub use live::Skipped;
-pub use notice::{Notice, NoticeLevel};
+pub use engine::settings::{self, EngineSettings};
+pub use engine::{Engine, Wake, journal};
+pub use ground::notice::{Notice, NoticeLevel};
+pub use ground::stage::Skipped;
+pub use ground::watched::WatchedThread;
+pub use ground::{data_folder, jobs, notice, slot, software, statistics, watched};
 pub use plumbline_correction as correction;
 pub use plumbline_effects as effects;
-pub use plumbline_gap as gap;
 pub use plumbline_hardware::{CameraDevice, SourceSpec};
 pub use plumbline_report as report;
 pub use plumbline_vision::disparity::{DisparityMap, Origin as DisparityOrigin};
-pub use settings::EngineSettings;
 pub use source::Control;
+pub use state::Action;
 pub use view::View;
-pub use watched::WatchedThread;
-
-/// Program and version, as written into results.
-pub fn software() -> String {
-    concat!("plumbline ", env!("CARGO_PKG_VERSION")).to_owned()
-}

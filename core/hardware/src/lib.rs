@@ -39,5 +39,5 @@ pub use natural_order::natural_order;
 pub use replay::{Replay, ReplayRate};
 pub use retrying::{Lost, RetryPolicy, Retrying, SourceStatus};
 pub use source::{Counters, FiniteSource, Next, Report, SourceDescription, SourceKind, StereoSource};
-pub use spec::{SourceOptions, SourceSpec, open, open_retrying};
+pub use spec::{Opener, SourceOptions, SourceSpec, open, open_retrying};
 pub use video::VideoSource;

@@ -76,6 +76,9 @@ pub fn open(spec: &SourceSpec, options: &SourceOptions) -> Result<Box<dyn Stereo
     })
 }
 
+/// How sources are opened; a twin opens its eyes, and tests everything, in their own way.
+pub type Opener = Box<dyn FnMut(&SourceSpec, &SourceOptions) -> Result<Retrying, SourceError> + Send>;
+
 /// Opens a source that comes back by itself after it was lost. A camera that was plugged in
 /// again is found at its USB port even if its number changed.
 pub fn open_retrying(spec: &SourceSpec, options: &SourceOptions) -> Result<Retrying, SourceError> {

@@ -20,6 +20,11 @@ pub struct Chessboard {
     pub square_m: f64,
 }
 
+/// The board that the laboratory of NICO uses: 9×6 squares of 30 mm.
+pub fn default_board() -> Chessboard {
+    Chessboard { inner_columns: 8, inner_rows: 5, square_m: 0.03 }
+}
+
 /// A board that cannot be used for calibration.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BoardError {

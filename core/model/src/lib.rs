@@ -34,7 +34,7 @@ pub use calibration::{
     ParameterCovariance, RejectedPair, StereoCalibration,
 };
 pub use camera::{Camera, CameraModel, Fisheye, ModelKind, Pinhole, ProjectError};
-pub use chessboard::{BoardError, Chessboard, InnerCorners};
+pub use chessboard::{BoardError, Chessboard, InnerCorners, default_board};
 pub use detection::{ClassIndex, ClassNames, Detection, PixelBox};
 pub use formats::FormatError;
 pub use frame::{

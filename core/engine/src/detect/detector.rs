@@ -7,8 +7,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use image::RgbImage;
 use plumbline_model::detection::Detection;
 
-use crate::command::{DetectorChoice, Provider};
-use crate::view::{DetectionTiming, DetectorFacts};
+use super::command::{DetectorChoice, Provider};
+use super::view::{DetectionTiming, DetectorFacts};
 
 /// Least confidence that is asked of a detector. Thresholds lie above it, so that moving one needs
 /// no new run of the network.
@@ -87,12 +87,5 @@ impl OpenDetector {
 impl fmt::Debug for OpenDetector {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("OpenDetector")
-    }
-}
-
-impl Default for OpenDetector {
-    /// With ONNX Runtime.
-    fn default() -> Self {
-        Self::new(super::file::open)
     }
 }

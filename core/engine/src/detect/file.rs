@@ -6,10 +6,10 @@ use plumbline_vision::detect::{
     ClassFilter, DetectSettings, Detector, DetectorInfo, DetectorOptions, Provider, shipped_detector,
 };
 
-use super::detector::{Detects, SHOWN_FROM};
-use crate::command::DetectorChoice;
-use crate::text::sentence;
-use crate::view::{DetectionTiming, DetectorFacts};
+use super::command::DetectorChoice;
+use super::detector::{Detects, OpenDetector, SHOWN_FROM};
+use super::view::{DetectionTiming, DetectorFacts};
+use crate::ground::text::sentence;
 
 /// Boxes of one image that are kept at most.
 const MOST: usize = 300;
@@ -18,8 +18,15 @@ const MOST: usize = 300;
 const NONE_SHIPPED: &str =
     "no detector comes with this version; choose an ONNX file, any export of a YOLO detector will do";
 
+impl Default for OpenDetector {
+    /// With ONNX Runtime.
+    fn default() -> Self {
+        Self::new(open)
+    }
+}
+
 /// Opens a detector.
-pub fn open(choice: &DetectorChoice, provider: Provider) -> Result<Box<dyn Detects>, String> {
+fn open(choice: &DetectorChoice, provider: Provider) -> Result<Box<dyn Detects>, String> {
     let options = DetectorOptions {
         provider,
         threads: Some(threads()),

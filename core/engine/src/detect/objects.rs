@@ -8,10 +8,10 @@ use plumbline_model::frame::LeftCamera;
 use plumbline_model::{AimedPair, Eye, Pixel, Pose, Raw, Rectified, Robot, StereoCalibration, StereoFrame};
 use plumbline_vision::detect_places::{ObjectPlace, Place, PlaceFinder, PlaceOptions, RangeFrom, Seen};
 
-use crate::jobs::panic_message;
-use crate::stages::{LiveSetup, other_size};
-use crate::text::sentence;
-use crate::view::{ObjectPlaceView, ObjectView, SeenBox};
+use super::view::{ObjectPlaceView, ObjectView, SeenBox};
+use crate::ground::jobs::panic_message;
+use crate::ground::text::sentence;
+use crate::live::{LiveSetup, other_size};
 
 /// Points along each edge of a box that are taken over to the rectified image: straight edges are
 /// bent by the lens.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use plumbline_model::files;
 
-use crate::view::DetectionSettings;
+use super::view::DetectionSettings;
 
 /// A file of settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,7 +49,7 @@ impl Store {
             std::fs::create_dir_all(folder).map_err(|error| self.cannot(&error))?;
         }
         let text = serde_json::to_string_pretty(settings).map_err(|error| self.cannot(&error))?;
-        files::write(&self.file, text).map_err(|error| crate::text::sentence(&error.to_string()))
+        files::write(&self.file, text).map_err(|error| crate::ground::text::sentence(&error.to_string()))
     }
 
     fn unusable(&self, reason: &dyn std::fmt::Display) -> String {

@@ -4,12 +4,14 @@ use std::sync::Arc;
 
 use plumbline_model::JobContext;
 
+use super::command::{DetectorChoice, Provider};
 use super::detector::{LoadedDetector, OpenDetector};
 use super::store::Store;
-use crate::command::{DetectorChoice, Provider};
-use crate::jobs::JobError;
-use crate::text::sentence;
-use crate::view::DetectionSettings;
+use super::view::DetectionSettings;
+use crate::ground;
+use crate::ground::LongWork;
+use crate::ground::jobs::JobError;
+use crate::ground::text::sentence;
 
 /// Something to do for detection.
 #[derive(Clone, Debug)]
@@ -40,9 +42,13 @@ pub enum DetectResult {
     Opened(Arc<LoadedDetector>),
 }
 
-impl DetectWork {
-    /// What it does, for people.
-    pub fn title(&self) -> String {
+/// What the handlers of this room may reach besides their own workflow.
+pub type Context<'a> = ground::Context<'a, DetectWork>;
+
+impl LongWork for DetectWork {
+    type Result = DetectResult;
+
+    fn title(&self) -> String {
         match self {
             Self::Restore(_) => "Read the settings of detection".to_owned(),
             Self::Keep(..) => "Keep the settings of detection".to_owned(),
@@ -50,17 +56,12 @@ impl DetectWork {
         }
     }
 
-    /// Whether it is over so soon that it needs no line when it is done.
-    pub fn is_quiet(&self) -> bool {
+    fn is_quiet(&self) -> bool {
         // What comes of a detector is said where its boxes are.
         true
     }
 
-    /// Does it.
-    ///
-    /// # Errors
-    /// What is wrong and what to do.
-    pub fn run(self, context: &dyn JobContext) -> Result<DetectResult, JobError> {
+    fn run(self, context: &dyn JobContext) -> Result<DetectResult, JobError> {
         match self {
             Self::Restore(store) => Ok(match store.read() {
                 Ok(settings) => DetectResult::Restored(settings, None),

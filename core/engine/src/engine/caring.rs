@@ -4,13 +4,13 @@
 use std::time::Instant;
 
 use super::hub::Hub;
-use crate::command::{RobotCommand, SourceCommand};
-use crate::journal::Journal;
-use crate::notice::NoticeLevel;
+use super::journal::Journal;
+use crate::ground::notice::NoticeLevel;
+use crate::ground::watched::{Pulse, ThreadFault, Trouble, WatchedThread};
 use crate::robot::RobotControl;
-use crate::source::Control;
-use crate::view::{SourceView, ThreadFault};
-use crate::watched::{Pulse, Trouble, WatchedThread};
+use crate::robot::command::RobotCommand;
+use crate::source::command::{Control, SourceCommand};
+use crate::source::view::SourceView;
 
 impl Hub<'_> {
     /// Tells the state which threads have failed, are silent, or are back.

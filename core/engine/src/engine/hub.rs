@@ -11,19 +11,19 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, select};
 
 use super::Shared;
+use super::journal::{Entry, Journal};
 use super::pipeline::{PROBE_EVERY, Pipeline};
-use crate::bell::Bell;
-use crate::command::{Command, JobId, RobotCommand, SourceCommand, WatchCommand};
-use crate::context::Action;
-use crate::data_folder::DataFolder;
-use crate::jobs::{JobHandle, on_job_workers, panic_message};
-use crate::journal::{Entry, Journal};
-use crate::notice::NoticeLevel;
-use crate::settings::EngineSettings;
-use crate::source::Control;
-use crate::state::State;
-use crate::view::KeptView;
-use crate::watched::WatchedThread;
+use super::settings::EngineSettings;
+use crate::command::Command;
+use crate::ground::bell::Bell;
+use crate::ground::data_folder::{DataFolder, KeptView};
+use crate::ground::jobs::{JobHandle, JobId, on_job_workers, panic_message};
+use crate::ground::notice::NoticeLevel;
+use crate::ground::watched::{WatchCommand, WatchedThread};
+use crate::ground::{LongWork, Time};
+use crate::robot::command::RobotCommand;
+use crate::source::command::{Control, SourceCommand};
+use crate::state::{Action, State};
 use crate::work::WorkResult;
 
 /// Views are published at most this often.
@@ -152,8 +152,9 @@ impl<'a> Hub<'a> {
     }
 
     fn apply(&mut self, command: Command) {
+        let time = Time::now();
         let entry = Entry {
-            at_secs: self.started.elapsed().as_secs_f64(),
+            at_secs: time.instant.saturating_duration_since(self.started).as_secs_f64(),
             newest_seq: self.state.newest_seq(),
             command: command.clone(),
         };
@@ -163,7 +164,7 @@ impl<'a> Hub<'a> {
         self.changed = true;
         match command {
             Command::Watch(WatchCommand::StartAgain(thread)) => self.start_again(thread),
-            command => self.state.apply(command),
+            command => self.state.apply_at(command, time),
         }
     }
 

@@ -5,26 +5,22 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Sender};
-use plumbline_model::robot::Rig;
-use plumbline_model::{Chessboard, StereoFrame};
+use plumbline_model::StereoFrame;
+use plumbline_model::robot::{Rig, default_rig};
 
 use super::Shared;
-use crate::bell::Bell;
-use crate::command::ProbePoint;
-use crate::eyes::Look;
-use crate::live::{Skipped, default_rig};
-use crate::robot::{
-    News, RobotControl, RobotThread, RobotWires, Switches, TouchNews, TwinDesk, TwinEyesPlug, Worker,
-};
-use crate::slot::{Putter, Taker, newest_value_slot};
+use crate::detect::DetectStage;
+use crate::eyes::CornersStage;
+use crate::ground::bell::Bell;
+use crate::ground::slot::{Putter, Taker, newest_value_slot};
+use crate::ground::stage::{Skipped, Stage, StageThread, start_stage};
+use crate::ground::watched::{Pulse, Trial, Watched, WatchedThread};
+use crate::live::{ProbeStage, RectifyStage};
+use crate::robot::{News, RobotControl, RobotThread, RobotWires, Switches, TouchNews, Worker};
+use crate::source::view::SourceView;
 use crate::source::{Control, Note, Player, SourceThread, Wires};
-use crate::stages::{
-    CornersInput, CornersStage, DetectInput, DetectOutput, DetectStage, ProbeInput, ProbeOutput, ProbeStage,
-    RectifyInput, RectifyOutput, RectifyStage, StageThread, run_stage,
-};
-use crate::state::State;
-use crate::view::{DetectionSettings, SourceView};
-use crate::watched::{Pulse, Trial, Watched, WatchedThread};
+use crate::state::{Serves, State};
+use crate::twin::{TwinDesk, TwinEyesPlug};
 
 /// A point that stays is measured anew at most this often; a new one at once.
 pub(super) const PROBE_EVERY: Duration = Duration::from_millis(100);
@@ -47,25 +43,19 @@ pub(super) struct Pipeline {
     robot: RobotThread,
     news: Taker<News>,
     touches: Receiver<TouchNews>,
-    rectify: StageThread<RectifyInput, RectifyOutput>,
-    corners: StageThread<CornersInput, Look>,
-    probe: StageThread<ProbeInput, ProbeOutput>,
-    detect: StageThread<DetectInput, DetectOutput>,
-    fed: Fed,
+    rectify: Line<RectifyStage>,
+    corners: Line<CornersStage>,
+    probe: Line<ProbeStage>,
+    detect: Line<DetectStage>,
+    probed: Probed,
 }
 
-/// What each stage was given last: seq, and what else decides its result.
+/// When a point was measured last.
 #[derive(Default)]
-struct Fed {
-    rectify: Option<(u64, u64, bool)>,
-    corners: Option<(u64, Chessboard)>,
-    probe: Option<(u64, u64, ProbePoint)>,
-    /// Pair, source, detector, setup; settings are told apart by themselves.
-    detect: Option<(u64, u64, u64, Option<u64>)>,
-    detect_settings: Option<Arc<DetectionSettings>>,
-    probed_at: Option<Instant>,
+struct Probed {
+    at: Option<Instant>,
     /// A newer pair waits for its time.
-    probe_waits: bool,
+    waits: bool,
 }
 
 /// What every thread of the pipeline is started with.
@@ -101,40 +91,45 @@ impl Start<'_> {
         Ok((RobotThread::start(worker, wires, self.pulse(WatchedThread::Robot))?, news, touches))
     }
 
-    fn rectify(&self) -> std::io::Result<StageThread<RectifyInput, RectifyOutput>> {
-        let make = || {
-            let mut stage = RectifyStage::default();
-            move |input| stage.process(input)
-        };
-        let stamp = |input: &RectifyInput| input.frame.stamp;
-        run_stage(self.pulse(WatchedThread::Rectify), self.bell.clone(), stamp, make)
+    fn stage<S: Stage>(&self) -> std::io::Result<Line<S>> {
+        let thread = start_stage::<S>(self.pulse(S::THREAD), self.bell.clone())?;
+        Ok(Line { thread, given: None })
+    }
+}
+
+/// A stage on its thread, and what it was given last.
+struct Line<S: Stage> {
+    thread: StageThread<S::Input, S::Output>,
+    given: Option<S::Key>,
+}
+
+impl<S: Stage> Line<S> {
+    /// Gives the state what has come; whether there was anything.
+    fn collect(&self, state: &mut State, now: Instant) -> bool
+    where
+        State: Serves<S>,
+    {
+        match self.thread.take() {
+            None => return false,
+            Some(Ok(output)) => Serves::<S>::output(state, output, now),
+            Some(Err(panic)) => state.stage_panicked(&panic),
+        }
+        true
     }
 
-    fn corners(&self) -> std::io::Result<StageThread<CornersInput, Look>> {
-        let make = || {
-            let mut stage = CornersStage::default();
-            move |input| stage.process(input)
-        };
-        let stamp = |input: &CornersInput| input.frame.stamp;
-        run_stage(self.pulse(WatchedThread::Corners), self.bell.clone(), stamp, make)
-    }
-
-    fn probe(&self) -> std::io::Result<StageThread<ProbeInput, ProbeOutput>> {
-        let make = || {
-            let mut stage = ProbeStage::default();
-            move |input| stage.process(input)
-        };
-        let stamp = |input: &ProbeInput| input.frame.stamp;
-        run_stage(self.pulse(WatchedThread::Probe), self.bell.clone(), stamp, make)
-    }
-
-    fn detect(&self) -> std::io::Result<StageThread<DetectInput, DetectOutput>> {
-        let make = || {
-            let mut stage = DetectStage::default();
-            move |input| stage.process(input)
-        };
-        let stamp = |input: &DetectInput| input.frame.stamp;
-        run_stage(self.pulse(WatchedThread::Detect), self.bell.clone(), stamp, make)
+    /// Gives the stage what it was not given yet: a new pair, or the same one anew when what is
+    /// wanted of it changed.
+    fn feed(&mut self, state: &State)
+    where
+        State: Serves<S>,
+    {
+        if let Some(input) = Serves::<S>::input(state) {
+            let key = Some(S::key(&input));
+            if self.given != key {
+                self.given = key;
+                self.thread.put(input);
+            }
+        }
     }
 }
 
@@ -150,11 +145,11 @@ impl Pipeline {
         let (source, views) = start.source(player, frames_in.clone(), notes_in.clone())?;
         let (robot, news, touches) = start.robot(worker, notes_in.clone())?;
         Ok(Self {
-            rectify: start.rectify()?,
-            corners: start.corners()?,
-            probe: start.probe()?,
-            detect: start.detect()?,
-            fed: Fed::default(),
+            rectify: start.stage()?,
+            corners: start.stage()?,
+            probe: start.stage()?,
+            detect: start.stage()?,
+            probed: Probed::default(),
             bell: bell.clone(),
             trial: shared.trial.clone(),
             switches: shared.switches.clone(),
@@ -177,10 +172,10 @@ impl Pipeline {
         [
             self.robot.watched(),
             self.source.watched(),
-            self.rectify.watched(),
-            self.corners.watched(),
-            self.probe.watched(),
-            self.detect.watched(),
+            self.rectify.thread.watched(),
+            self.corners.thread.watched(),
+            self.probe.thread.watched(),
+            self.detect.thread.watched(),
         ]
     }
 
@@ -215,10 +210,10 @@ impl Pipeline {
                 (self.source, self.views) =
                     start.source(player, self.frames_in.clone(), self.notes_in.clone())?;
             }
-            WatchedThread::Rectify => (self.rectify, self.fed.rectify) = (start.rectify()?, None),
-            WatchedThread::Corners => (self.corners, self.fed.corners) = (start.corners()?, None),
-            WatchedThread::Probe => (self.probe, self.fed.probe) = (start.probe()?, None),
-            WatchedThread::Detect => (self.detect, self.fed.detect) = (start.detect()?, None),
+            WatchedThread::Rectify => self.rectify = start.stage()?,
+            WatchedThread::Corners => self.corners = start.stage()?,
+            WatchedThread::Probe => self.probe = start.stage()?,
+            WatchedThread::Detect => self.detect = start.stage()?,
             WatchedThread::Engine | WatchedThread::Journal => {}
         }
         Ok(())
@@ -258,88 +253,49 @@ impl Pipeline {
             state.frame(opened, frame, now);
             any = true;
         }
-        if let Some(output) = self.rectify.take() {
-            any = true;
-            match output {
-                Ok(output) => state.rectified(output, now),
-                Err(panic) => state.stage_panicked(&panic),
-            }
-        }
-        if let Some(output) = self.corners.take() {
-            any = true;
-            match output {
-                Ok(output) => state.looked(output, now),
-                Err(panic) => state.stage_panicked(&panic),
-            }
-        }
-        if let Some(output) = self.detect.take() {
-            any = true;
-            match output {
-                Ok(output) => state.detected(output, now),
-                Err(panic) => state.stage_panicked(&panic),
-            }
-        }
-        if let Some(output) = self.probe.take() {
-            any = true;
-            match output {
-                Ok(output) => state.probed(output, now),
-                Err(panic) => state.stage_panicked(&panic),
-            }
-        }
+        any |= self.rectify.collect(state, now);
+        any |= self.corners.collect(state, now);
+        any |= self.detect.collect(state, now);
+        any |= self.probe.collect(state, now);
         any
     }
 
     /// Gives each stage what it was not given yet: a new pair, or the same one anew when what
     /// is wanted of it changed.
     pub(super) fn feed(&mut self, state: &State) {
-        if let Some(input) = state.rectify_input() {
-            let key = (input.frame.stamp.seq, input.setup.generation, input.disparity);
-            if self.fed.rectify.replace(key) != Some(key) {
-                self.rectify.put(input);
-            }
-        }
-        if let Some(input) = state.corners_input() {
-            let key = (input.frame.stamp.seq, input.board);
-            if self.fed.corners.replace(key) != Some(key) {
-                self.corners.put(input);
-            }
-        }
-        if let Some(input) = state.detect_input() {
-            let generation = input.setup.as_ref().ok().map(|setup| setup.generation);
-            let key = (input.frame.stamp.seq, input.opened, input.detector.id, generation);
-            let settings = Some(input.settings.clone());
-            if self.fed.detect.replace(key) != Some(key) || self.fed.detect_settings != settings {
-                self.fed.detect_settings = settings;
-                self.detect.put(input);
-            }
-        }
-        if let Some(input) = state.probe_input() {
-            let key = (input.frame.stamp.seq, input.setup.generation, input.point);
-            let fed = &mut self.fed;
-            let same_point =
-                fed.probe.is_some_and(|(_, generation, point)| (generation, point) == (key.1, key.2));
-            let lately = fed.probed_at.is_some_and(|at| at.elapsed() < PROBE_EVERY);
-            let is_new = fed.probe != Some(key);
-            fed.probe_waits = is_new && same_point && lately;
-            if is_new && !fed.probe_waits {
-                (fed.probe, fed.probed_at) = (Some(key), Some(Instant::now()));
-                self.probe.put(input);
-            }
+        self.rectify.feed(state);
+        self.corners.feed(state);
+        self.detect.feed(state);
+        self.feed_probe(state);
+    }
+
+    /// A point that stays is measured now and then only.
+    fn feed_probe(&mut self, state: &State) {
+        let Some(input) = state.probe_input() else { return };
+        let key = ProbeStage::key(&input);
+        let given = &self.probe.given;
+        let same_point = given.is_some_and(|(_, generation, point)| (generation, point) == (key.1, key.2));
+        let lately = self.probed.at.is_some_and(|at| at.elapsed() < PROBE_EVERY);
+        let is_new = *given != Some(key);
+        self.probed.waits = is_new && same_point && lately;
+        if is_new && !self.probed.waits {
+            (self.probe.given, self.probed.at) = (Some(key), Some(Instant::now()));
+            self.probe.thread.put(input);
         }
     }
 
     /// Whether a newer pair waits for its time to be measured.
     pub(super) fn probe_waits(&self) -> bool {
-        self.fed.probe_waits
+        self.probed.waits
     }
 
     pub(super) fn skipped(&self) -> Skipped {
         Skipped {
             source: self.frames_in.skipped(),
-            rectify: self.rectify.skipped(),
-            corners: self.corners.skipped(),
-            probe: self.probe.skipped(),
-            detect: self.detect.skipped(),
+            rectify: self.rectify.thread.skipped(),
+            corners: self.corners.thread.skipped(),
+            probe: self.probe.thread.skipped(),
+            detect: self.detect.thread.skipped(),
         }
     }
 }

@@ -5,14 +5,19 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::Engine;
-use crate::command::{
-    Command, EyesCommand, LiveCommand, Products, RobotCommand, SourceCommand, WatchCommand,
-};
-use crate::settings::EngineSettings;
-use crate::view::{Connection, MotionState, SourceStatus, View};
-use crate::watched::{Strike, Trial, WatchedThread};
 use plumbline_hardware::SourceSpec;
+
+use super::Engine;
+use super::settings::EngineSettings;
+use crate::command::Command;
+use crate::eyes::command::EyesCommand;
+use crate::ground::watched::{Strike, Trial, WatchCommand, WatchedThread};
+use crate::live::command::{LiveCommand, Products};
+use crate::robot::command::RobotCommand;
+use crate::robot::view::{Connection, MotionState};
+use crate::source::command::SourceCommand;
+use crate::source::view::SourceStatus;
+use crate::view::View;
 
 /// On a busy machine too something has come of it by then.
 const PATIENCE: Duration = Duration::from_secs(60);

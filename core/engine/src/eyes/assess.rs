@@ -6,7 +6,7 @@ use plumbline_model::{
 };
 
 use super::geometry::{depth_per_px_m, point_sigma_m, project_both};
-use crate::view::TableMap;
+use super::map::TableMap;
 
 /// Distance for which the depth of one pixel is stated, meters.
 pub const STATED_AT_M: f64 = 0.45;

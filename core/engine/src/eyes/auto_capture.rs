@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use plumbline_model::{Corners, Eye};
 
 use super::coverage::Novelty;
-use crate::view::CaptureHint;
+use super::view::CaptureHint;
 
 /// A corner may move this much between two looks, in pixels of an image 640 wide.
 const STILL_PX: f64 = 0.8;

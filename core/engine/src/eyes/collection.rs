@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use plumbline_model::{Chessboard, PairObservation};
 
-use crate::view::CollectedPair;
+use super::view::CollectedPair;
 
 /// Changes that can be taken back.
 const UNDO_DEPTH: usize = 200;
@@ -295,7 +295,7 @@ mod tests {
     }
 
     fn three() -> Collection {
-        let mut collection = Collection::new(super::super::default_board());
+        let mut collection = Collection::new(plumbline_model::default_board());
         for name in ["a", "b", "c"] {
             collection.add(pair(name), SIZES).expect("fits");
         }

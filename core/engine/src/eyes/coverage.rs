@@ -3,7 +3,7 @@
 use plumbline_model::{Chessboard, Corners};
 
 use super::place::diagonal_m;
-use crate::view::{BoardPlace, CollectedPair, Coverage, CoverageGrid};
+use super::view::{BoardPlace, CollectedPair, Coverage, CoverageGrid};
 
 /// Cells across and down an image.
 const CELLS: (usize, usize) = (8, 6);

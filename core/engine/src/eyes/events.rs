@@ -3,46 +3,26 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use image::GrayImage;
-use plumbline_model::{Chessboard, Corners, StereoFrame};
+use plumbline_model::StereoFrame;
 
 use super::assess::{Assessment, STATED_AT_M};
 use super::collection::Collection;
 use super::coverage::Novelty;
-use super::state::EyesState;
-use super::work::{Captured, Collected, EyesResult, EyesWork, Keep, Opened, Restored, Solved};
+use super::look::Look;
+use super::view::{CaptureHint, CollectedPair, Origin, Proposal};
+use super::work::{Captured, Collected, Context, EyesResult, EyesWork, Keep, Opened, Restored, Solved};
+use super::workflow::{EyesAround, EyesWorkflow};
 use super::{auto_capture, coverage};
-use crate::command::JobId;
-use crate::context::Context;
-use crate::notice::NoticeLevel;
-use crate::view::{BoardSeen, CaptureHint, CollectedPair, Origin, Proposal};
+use crate::ground::jobs::JobId;
+use crate::ground::notice::NoticeLevel;
 
 /// That a pair was captured is shown for this long.
 const SHOW_CAPTURED: Duration = Duration::from_millis(1200);
 
-/// What the overlay saw in one pair.
-#[derive(Clone, Debug)]
-pub struct Look {
-    /// The pair.
-    pub frame: StereoFrame,
-    /// The board that was looked for.
-    pub board: Chessboard,
-    /// Corners in the left eye.
-    pub left: Option<Corners>,
-    /// Corners in the right eye.
-    pub right: Option<Corners>,
-    /// Gray levels of both images.
-    pub gray: [Arc<GrayImage>; 2],
-    /// Median width of the board's edges, the wider of both eyes, pixels.
-    pub edge_width_px: Option<f64>,
-    /// Which board is seen instead, looked for now and then.
-    pub other_board: Option<BoardSeen>,
-}
-
-impl EyesState {
+impl EyesWorkflow {
     /// Takes a look at what the overlay saw: says what capturing waits for, and captures if
     /// that is switched on.
-    pub fn look(&mut self, look: Look, context: &mut Context<'_>) {
+    pub fn look(&mut self, look: Look, around: &EyesAround, context: &mut Context<'_>) {
         if look.board != *self.board() {
             return;
         }
@@ -55,7 +35,7 @@ impl EyesState {
             self.board_seen.clone_from(&look.other_board);
         }
         self.last_look = Some(look.clone());
-        let hint = self.judge(&look, size_px, context);
+        let hint = self.judge(&look, size_px, around);
         if hint == CaptureHint::Ready && self.auto_capture && self.busy.capturing.is_none() {
             self.capture_look(look, context);
             return;
@@ -69,7 +49,7 @@ impl EyesState {
         }
     }
 
-    fn judge(&mut self, look: &Look, size_px: (u32, u32), context: &Context<'_>) -> CaptureHint {
+    fn judge(&mut self, look: &Look, size_px: (u32, u32), around: &EyesAround) -> CaptureHint {
         let known = look.frame.name.as_ref().is_some_and(|name| self.collection.contains(name));
         let both = look.left.as_ref().zip(look.right.as_ref());
         let novelty = both.filter(|_| !known).map(|(left, right)| {
@@ -87,7 +67,7 @@ impl EyesState {
             right: look.right.as_ref(),
             edge_width_px: look.edge_width_px,
             novelty,
-            photograph: context.source.photographs,
+            photograph: around.source.photographs,
         })
     }
 
@@ -132,7 +112,7 @@ impl EyesState {
             return;
         }
         let (folder, started) = self.session.get_or_insert_with(|| {
-            let started = jiff::Timestamp::now();
+            let started = context.time.day;
             (self.sessions.join(format!("{}_eyes", started.strftime("%Y-%m-%dT%H-%M-%S"))), started)
         });
         let (folder, started) = (folder.clone(), *started);

@@ -6,7 +6,7 @@ use plumbline_model::{Chessboard, Corners, Eye, Pixel, Point, Pose, Raw, StereoC
 
 use super::coverage::{self, Novelty};
 use super::place::{diagonal_m, place_of, pose_at};
-use crate::view::{BoardPlace, Coverage, GhostBoard};
+use super::view::{BoardPlace, Coverage, GhostBoard};
 
 /// Directions tried across and down the left image.
 const DIRECTIONS: (usize, usize) = (9, 7);
@@ -166,7 +166,7 @@ fn project(cameras: &StereoCameras, eye: Eye, point_in_left: Point<LeftCamera>) 
 mod tests {
     use super::*;
     use crate::eyes::place::nominal_cameras;
-    use crate::view::CollectedPair;
+    use crate::eyes::view::CollectedPair;
     use plumbline_model::ModelKind;
 
     fn board() -> Chessboard {

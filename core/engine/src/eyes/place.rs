@@ -12,7 +12,7 @@ use plumbline_model::{
     Camera, CameraModel, Chessboard, Corners, Fisheye, ModelKind, Pinhole, Point, Pose, StereoCameras,
 };
 
-use crate::view::BoardPlace;
+use super::view::BoardPlace;
 
 /// Fewer corners than this say too little.
 const LEAST_CORNERS: usize = 6;

@@ -1,7 +1,7 @@
 //! Accepted calibrations on disk. Each stays in a file of its own for ever; a small file says
 //! which one is in use. Every write goes to a temporary name first.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use jiff::Timestamp;
 use plumbline_model::files::{self, FileError, Size};
@@ -9,13 +9,14 @@ use plumbline_model::formats::native;
 use plumbline_model::{FormatError, StereoCalibration};
 use serde::{Deserialize, Serialize};
 
-use crate::text::sentence;
-use crate::view::EarlierCalibration;
+use super::view::EarlierCalibration;
+use crate::ground::shelf::Shelf;
+use crate::ground::text::sentence;
 
 /// Accepted calibrations in a folder.
 #[derive(Clone, Debug)]
 pub struct Store {
-    folder: PathBuf,
+    shelf: Shelf,
 }
 
 /// Why something accepted cannot be kept or found.
@@ -55,47 +56,35 @@ pub struct Entry {
 }
 
 const IN_USE: &str = "in-use.txt";
-const CALIBRATION: &str = "yaml";
 const ENTRY: &str = "toml";
 
 impl Store {
     /// In this folder, which is made when something is accepted.
     pub fn new(folder: PathBuf) -> Self {
-        Self { folder }
+        Self { shelf: Shelf::new(folder, "yaml") }
     }
 
     /// Keeps a calibration and makes it the one in use.
-    pub fn accept(&self, calibration: &StereoCalibration) -> Result<Entry, StoreError> {
-        std::fs::create_dir_all(&self.folder).map_err(self.io())?;
-        let accepted = Timestamp::now();
-        let id = self.free_id(accepted);
+    pub fn accept(&self, calibration: &StereoCalibration, accepted: Timestamp) -> Result<Entry, StoreError> {
+        self.shelf.make_folder().map_err(self.io())?;
+        let id = self.shelf.free_name(accepted, "");
         let entry = Entry { id: id.clone(), accepted, description: describe(calibration) };
-        native::write(calibration, &self.file(&id, CALIBRATION))?;
+        native::write(calibration, &self.shelf.file(&id))?;
         let text = toml::to_string(&entry).unwrap_or_default();
-        self.write_atomically(&self.file(&id, ENTRY), &text)?;
-        self.write_atomically(&self.folder.join(IN_USE), &id)?;
+        files::write(&self.entry_file(&id), &text)?;
+        files::write(&self.shelf.folder().join(IN_USE), &id)?;
         Ok(entry)
     }
 
     /// All that were accepted, newest first.
     pub fn list(&self) -> Result<Vec<EarlierCalibration>, StoreError> {
-        let listing = match std::fs::read_dir(&self.folder) {
-            Ok(listing) => listing,
-            // Nothing was ever accepted.
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-            Err(error) => return Err(self.io()(error)),
-        };
-        let in_use = match files::read_text(&self.folder.join(IN_USE), Size::SHORT) {
+        let ids = self.shelf.names().map_err(self.io())?;
+        let in_use = match files::read_text(&self.shelf.folder().join(IN_USE), Size::SHORT) {
             Err(error) if !error.is_absent() => return Err(error.into()),
             read => read.unwrap_or_default(),
         };
-        let mut found: Vec<EarlierCalibration> = listing
-            .flatten()
-            .map(|entry| entry.path())
-            .filter(|path| {
-                !files::is_hidden(path) && path.extension().is_some_and(|extension| extension == CALIBRATION)
-            })
-            .filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned()))
+        let mut found: Vec<EarlierCalibration> = ids
+            .into_iter()
             .map(|id| {
                 let entry = self.entry(&id);
                 let in_use = id == in_use.trim();
@@ -109,34 +98,22 @@ impl Store {
 
     /// Reads one.
     pub fn load(&self, id: &str) -> Result<(StereoCalibration, Timestamp), StoreError> {
-        let file = self.file(id, CALIBRATION);
-        // An id from a journal may be anything; it must not lead out of the folder.
-        if file.parent() != Some(&self.folder) || !file.is_file() {
-            return Err(StoreError::NoSuchCalibration(id.to_owned()));
-        }
+        let file = self.shelf.file_inside(id).filter(|file| file.is_file());
+        let file = file.ok_or_else(|| StoreError::NoSuchCalibration(id.to_owned()))?;
         Ok((native::read(&file)?, self.entry(id).accepted))
     }
 
-    fn file(&self, id: &str, extension: &str) -> PathBuf {
-        self.folder.join(format!("{id}.{extension}"))
-    }
-
-    fn free_id(&self, accepted: Timestamp) -> String {
-        let time = accepted.strftime("%Y-%m-%dT%H-%M-%SZ").to_string();
-        let taken = |id: &String| self.file(id, CALIBRATION).exists();
-        std::iter::once(time.clone())
-            .chain((2..).map(|n| format!("{time}_{n:03}")))
-            .find(|id| !taken(id))
-            .unwrap_or(time)
+    fn entry_file(&self, id: &str) -> PathBuf {
+        self.shelf.file(id).with_extension(ENTRY)
     }
 
     /// What is written beside a calibration; from its file if that was lost.
     fn entry(&self, id: &str) -> Entry {
-        let text = files::read_text(&self.file(id, ENTRY), Size::SHORT).unwrap_or_default();
+        let text = files::read_text(&self.entry_file(id), Size::SHORT).unwrap_or_default();
         match toml::from_str::<Entry>(&text) {
             Ok(entry) => Entry { id: id.to_owned(), ..entry },
             Err(_) => {
-                let changed = std::fs::metadata(self.file(id, CALIBRATION)).and_then(|data| data.modified());
+                let changed = std::fs::metadata(self.shelf.file(id)).and_then(|data| data.modified());
                 let accepted =
                     changed.ok().and_then(|time| Timestamp::try_from(time).ok()).unwrap_or_default();
                 Entry { id: id.to_owned(), accepted, description: id.to_owned() }
@@ -144,12 +121,8 @@ impl Store {
         }
     }
 
-    fn write_atomically(&self, path: &Path, text: &str) -> Result<(), StoreError> {
-        Ok(files::write(path, text)?)
-    }
-
     fn io(&self) -> impl FnOnce(std::io::Error) -> StoreError {
-        let path = self.folder.clone();
+        let path = self.shelf.folder().to_owned();
         move |error| StoreError::Io { path, error }
     }
 }
@@ -180,8 +153,9 @@ mod tests {
         let folder = tempfile::tempdir().expect("temporary folder");
         let store = Store::new(folder.path().join("calibrations"));
         assert_eq!(store.list().expect("an empty list"), []);
-        let ids: Vec<String> =
-            [640, 800, 1280].map(|width_px| store.accept(&calibration(width_px)).expect("kept").id).to_vec();
+        let ids: Vec<String> = [640, 800, 1280]
+            .map(|width_px| store.accept(&calibration(width_px), Timestamp::now()).expect("kept").id)
+            .to_vec();
         let list = store.list().expect("a list");
         let newest_first: Vec<&String> = ids.iter().rev().collect();
         assert_eq!(list.iter().map(|entry| &entry.id).collect::<Vec<_>>(), newest_first);
@@ -194,10 +168,10 @@ mod tests {
     fn a_calibration_that_cannot_be_written_leaves_everything_as_it_was() {
         let folder = tempfile::tempdir().expect("temporary folder");
         let store = Store::new(folder.path().to_path_buf());
-        let id = store.accept(&calibration(640)).expect("kept").id;
+        let id = store.accept(&calibration(640), Timestamp::now()).expect("kept").id;
         let mut broken = calibration(640);
         broken.cameras.left = plumbline_model::Camera { width_px: 0, ..broken.cameras.left };
-        assert!(store.accept(&broken).is_err(), "it would not read back");
+        assert!(store.accept(&broken, Timestamp::now()).is_err(), "it would not read back");
         let list = store.list().expect("a list");
         assert_eq!(list.len(), 1);
         assert!(list[0].in_use && list[0].id == id);
@@ -207,7 +181,7 @@ mod tests {
     fn an_id_does_not_lead_out_of_the_folder() {
         let folder = tempfile::tempdir().expect("temporary folder");
         let inside = folder.path().join("inside");
-        Store::new(inside.clone()).accept(&calibration(640)).expect("kept");
+        Store::new(inside.clone()).accept(&calibration(640), Timestamp::now()).expect("kept");
         native::write(&calibration(640), &folder.path().join("outside.yaml")).expect("writable");
         assert!(matches!(Store::new(inside).load("../outside"), Err(StoreError::NoSuchCalibration(_))));
     }

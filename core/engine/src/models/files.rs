@@ -8,13 +8,13 @@ use plumbline_model::files::{self, Size};
 use plumbline_model::robot::Rig;
 
 use super::screen::same_size;
-use crate::text::sentence;
+use crate::ground::text::sentence;
 
 /// Bytes that tell JSON from ONNX.
 const HEAD: u64 = 256;
 
 /// Reads a model of any kind, whatever its file is called.
-pub(crate) fn read_any(file: &Path) -> Result<CorrectionModel, FileError> {
+pub fn read_any(file: &Path) -> Result<CorrectionModel, FileError> {
     let mut head = Vec::new();
     let opened = files::open(file, Size::MODEL)?;
     opened.take(HEAD).read_to_end(&mut head).map_err(files::FileError::unreadable(file))?;

@@ -14,9 +14,9 @@ use plumbline_model::robot::Rig;
 use super::losses::Losses;
 use super::map::model_map;
 use super::sessions::touch_data;
-use crate::jobs::{JobError, Part};
-use crate::text::sentence;
-use crate::view::ModelMap;
+use super::view::ModelMap;
+use crate::ground::jobs::{JobError, Part};
+use crate::ground::text::sentence;
 
 /// Name and version of this program, for what comes from it.
 const SOFTWARE: &str = concat!("plumbline ", env!("CARGO_PKG_VERSION"));
@@ -35,7 +35,7 @@ pub struct Trained {
 }
 
 /// How to train.
-pub(crate) fn options(session: &Path, rig: &Rig, seed: u64, published_recipe: bool) -> TrainOptions {
+pub fn options(session: &Path, rig: &Rig, seed: u64, published_recipe: bool) -> TrainOptions {
     let name = session.file_name().unwrap_or(session.as_os_str());
     TrainOptions {
         seed,

@@ -6,7 +6,7 @@ use plumbline_correction::{CorrectionModel, TrainedTouch};
 use plumbline_model::session::{Screen, Touchscreen};
 use plumbline_model::{Pixel, Point, Robot};
 
-use crate::view::{Field, MapTouch, ModelMap};
+use super::view::{Field, MapTouch, ModelMap};
 
 /// Values of a field along x and along y.
 const FIELD: (usize, usize) = (25, 40);

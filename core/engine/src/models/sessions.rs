@@ -7,9 +7,9 @@ use plumbline_model::Session;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::{Manifest, names};
 
-use crate::offline::session::rig_of;
-use crate::text::sentence;
-use crate::view::TouchSession;
+use super::view::TouchSession;
+use crate::ground::sessions::rig_of;
+use crate::ground::text::sentence;
 
 /// Sessions with touches in a folder, newest first. One that cannot be read is listed with the
 /// reason.

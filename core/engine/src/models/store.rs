@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 
 use super::files;
 use super::screen::Corners;
-use crate::text::sentence;
+use crate::ground::shelf::{InUse, Shelf};
+use crate::ground::text::sentence;
 
 /// Version of the list.
 const FORMAT: u32 = 1;
@@ -21,6 +22,7 @@ const FORMAT: u32 = 1;
 #[derive(Clone, Debug)]
 pub struct Store {
     folder: PathBuf,
+    shelf: Shelf,
 }
 
 /// What was in use, oldest first; the last one is in use.
@@ -71,7 +73,7 @@ impl History {
 impl Store {
     /// In this folder, which is made when something is accepted.
     pub fn new(folder: PathBuf) -> Self {
-        Self { folder }
+        Self { shelf: Shelf::new(folder.join("history"), "json"), folder }
     }
 
     /// What was accepted before, and the model in use.
@@ -111,17 +113,21 @@ impl Store {
         &self,
         history: &History,
         model: Option<(&CorrectionModel, Corners)>,
+        accepted: Timestamp,
     ) -> Result<History, String> {
-        let folder = self.history();
-        std::fs::create_dir_all(&folder).map_err(|error| cannot(&folder, &error.to_string()))?;
-        let accepted = Timestamp::now();
+        self.shelf.make_folder().map_err(|error| cannot(self.shelf.folder(), &error.to_string()))?;
         let mut next = history.clone();
         if next.entries.is_empty() {
             next.entries.push(Entry { model: None, accepted });
         }
         let kept = model.map(|(model, screen_m)| {
-            let file = self.free_name(accepted, model.method());
-            files::write(model, &self.file(&file)).map(|()| Kept { file, method: model.method(), screen_m })
+            let ending = format!("_{}", model.method().name().to_lowercase());
+            let file = self.shelf.free_name(accepted, &ending);
+            files::write(model, &self.shelf.file(&file)).map(|()| Kept {
+                file,
+                method: model.method(),
+                screen_m,
+            })
         });
         next.entries.push(Entry { model: kept.transpose()?, accepted });
         self.write(&next)?;
@@ -141,11 +147,9 @@ impl Store {
     }
 
     fn load(&self, kept: &Kept) -> Result<Arc<CorrectionModel>, String> {
-        let file = self.file(&kept.file);
-        // A name from a file may be anything; it must not lead out of the folder.
-        if file.parent() != Some(&self.history()) {
-            return Err(cannot(&file, "its name leads out of the folder"));
-        }
+        let Some(file) = self.shelf.file_inside(&kept.file) else {
+            return Err(cannot(&self.shelf.file(&kept.file), "its name leads out of the folder"));
+        };
         files::read_own(&file).map(Arc::new)
     }
 
@@ -161,15 +165,11 @@ impl Store {
     fn copy(&self, in_use: Option<&Kept>) -> Result<(), String> {
         let copy = self.folder.join("in-use.json");
         let Some(kept) = in_use else {
-            return match std::fs::remove_file(&copy) {
-                Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                    Err(cannot(&copy, &error.to_string()))
-                }
-                _ => Ok(()),
-            };
+            return InUse::new(copy.clone()).forget().map_err(|error| cannot(&copy, &error.to_string()));
         };
-        let text = whole_files::read_text(&self.file(&kept.file), Size::MODEL);
-        let text = text.map_err(|error| cannot(&self.file(&kept.file), &error.to_string()))?;
+        let file = self.shelf.file(&kept.file);
+        let text = whole_files::read_text(&file, Size::MODEL);
+        let text = text.map_err(|error| cannot(&file, &error.to_string()))?;
         if whole_files::read_text(&copy, Size::MODEL).is_ok_and(|present| present == text) {
             return Ok(());
         }
@@ -178,23 +178,6 @@ impl Store {
 
     fn list(&self) -> PathBuf {
         self.folder.join("history.json")
-    }
-
-    fn history(&self) -> PathBuf {
-        self.folder.join("history")
-    }
-
-    fn file(&self, name: &str) -> PathBuf {
-        self.history().join(format!("{name}.json"))
-    }
-
-    fn free_name(&self, accepted: Timestamp, method: Method) -> String {
-        let name = format!("{}_{}", accepted.strftime("%Y-%m-%dT%H-%M-%SZ"), method.name().to_lowercase());
-        let taken = |name: &String| self.file(name).exists();
-        std::iter::once(name.clone())
-            .chain((2..).map(|n| format!("{name}_{n:03}")))
-            .find(|name| !taken(name))
-            .unwrap_or(name)
     }
 }
 

@@ -1,134 +1,137 @@
-//! What the window shows of models.
+//! Correction models: what they are trained on, how good they are, where they may be trusted.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use plumbline_correction::Method;
+use plumbline_correction::tables::{HeightTable, YawTable};
+use plumbline_correction::{Comparison, CorrectionModel, LossPoint, Method, TouchData};
+use plumbline_model::robot::Rig;
 
-use super::screen::{corners, moved_m};
-use super::sessions::is_for_training;
-use super::state::{ModelsWorkflow, Surroundings};
-use crate::view::{EarlierModel, ModelMap, ModelsView, StepState};
+use crate::ground::step::StepState;
 
-impl ModelsWorkflow {
-    /// What the window shows.
-    pub fn view(&self, around: &Surroundings<'_>) -> ModelsView {
-        ModelsView {
-            step: self.step_state(around),
-            next: self.next(around),
-            sessions: Arc::from(self.sessions.as_slice()),
-            session: self.session.clone(),
-            data: self.data.clone(),
-            training: self.training.is_some(),
-            losses: self.loss_points(),
-            proposals: self.proposals.values().map(|proposal| proposal.model.clone()).collect(),
-            comparison: self.comparison.clone(),
-            shown: self.shown_method(),
-            map: self.map(),
-            in_use: self.in_use().cloned(),
-            earlier: self.earlier(),
-            tables: Arc::new(self.tables.view(around.rig, around.robot.measured.as_ref())),
-            rig: Some(around.rig.clone()),
-        }
-    }
+/// Training and using correction models.
+#[derive(Clone, Debug, Default)]
+pub struct ModelsView {
+    /// For the rail.
+    pub step: StepState,
+    /// What to do next, a sentence.
+    pub next: String,
+    /// Sessions with touches, newest first.
+    pub sessions: Arc<[TouchSession]>,
+    /// The one that is learned from.
+    pub session: Option<PathBuf>,
+    /// What it has; an error is why nothing can be learned from it.
+    pub data: Option<Result<Arc<TouchData>, String>>,
+    /// Whether training runs.
+    pub training: bool,
+    /// Loss of every network, as it is (or was) trained, oldest first.
+    pub losses: Arc<[LossPoint]>,
+    /// Proposals.
+    pub proposals: Vec<Arc<CorrectionModel>>,
+    /// All methods on the same held-out touches; `None` before training.
+    pub comparison: Option<Arc<Comparison>>,
+    /// Which method's maps are shown.
+    pub shown: Option<Method>,
+    /// Maps of the model that is shown: the proposal, else the one in use.
+    pub map: Option<Arc<ModelMap>>,
+    /// The one in use; `None`: targets are sent as they are.
+    pub in_use: Option<Arc<CorrectionModel>>,
+    /// What was in use before, newest first; undo goes there.
+    pub earlier: Arc<[EarlierModel]>,
+    /// The tables of grasp height and yaw.
+    pub tables: Arc<TablesView>,
+    /// The rig that all of it belongs to.
+    pub rig: Option<Arc<Rig>>,
+}
 
-    fn shown_method(&self) -> Option<Method> {
-        let in_use = self.in_use.as_ref().map(|in_use| in_use.model.method());
-        self.shown.or(in_use).or_else(|| self.proposals.keys().next_back().copied())
-    }
+/// A session with touches.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TouchSession {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// When it was begun; `None` when it cannot be read.
+    pub started: Option<jiff::Timestamp>,
+    /// Touches in it.
+    pub touches: usize,
+    /// Why it cannot be used.
+    pub problem: Option<String>,
+}
 
-    /// The map of the model that is shown: the proposal, else the one in use.
-    fn map(&self) -> Option<Arc<ModelMap>> {
-        let shown = self.shown_method()?;
-        let in_use = self.in_use.as_ref().filter(|in_use| in_use.model.method() == shown);
-        let proposal = self.proposals.get(&shown).map(|proposal| &proposal.map);
-        proposal.or(in_use.map(|in_use| &in_use.map)).cloned()
-    }
+/// A model that was in use.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EarlierModel {
+    /// Which kind; `None`: no model.
+    pub method: Option<Method>,
+    /// When it was accepted.
+    pub accepted: jiff::Timestamp,
+}
 
-    /// What was in use before, newest first.
-    fn earlier(&self) -> Arc<[EarlierModel]> {
-        let entries = self.history.as_ref().map_or(&[][..], |history| &history.entries);
-        let before = entries.iter().rev().skip(1);
-        before
-            .map(|entry| EarlierModel {
-                method: entry.model.as_ref().map(|kept| kept.method),
-                accepted: entry.accepted,
-            })
-            .collect()
-    }
+/// A model over the table, robot frame. Errors are what remains at touches that the model was
+/// not trained on (held out), before and after.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ModelMap {
+    /// Which kind.
+    pub method: Option<Method>,
+    /// Whether it is a proposal.
+    pub proposed: bool,
+    /// One per touch: place on the screen (x, y), error without a model, error with it held out;
+    /// m. Empty when the model was imported without its touches.
+    pub touches: Vec<MapTouch>,
+    /// The border of the data: lines around its parts and around the holes in them, the largest part
+    /// first, each its corners on the table (x, y), m. A place inside an odd number of lines is inside.
+    /// Empty when the model was imported without its touches.
+    pub border_m: Vec<Vec<[f64; 2]>>,
+    /// The touchscreen, on the table, m.
+    pub screen_m: Vec<[f64; 2]>,
+    /// Standard deviation in the plane over the table around the screen.
+    pub sd: Field,
+    /// Length of the correction in the plane.
+    pub shift: Field,
+    /// Mean length of the correction inside and outside the border, m.
+    pub mean_shift_m: (Option<f64>, Option<f64>),
+}
 
-    fn step_state(&self, around: &Surroundings<'_>) -> StepState {
-        if self.training.is_some() {
-            return StepState::Running;
-        }
-        match (&self.in_use, self.stale(around)) {
-            (None, _) => StepState::NotDone,
-            (Some(_), Some(why)) => StepState::Stale { why },
-            (Some(_), None) => StepState::Done,
-        }
-    }
+/// A touch on the map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapTouch {
+    /// Place on the table (x, y), m.
+    pub at_m: [f64; 2],
+    /// Without a model: where the model-free target would have gone minus what was needed, m.
+    pub before_m: [f64; 3],
+    /// With the model, this touch held out, m.
+    pub after_m: [f64; 3],
+}
 
-    /// Why the model in use does not fit to the screen any more.
-    fn stale(&self, around: &Surroundings<'_>) -> Option<String> {
-        let kept = self.history.as_ref()?.in_use()?;
-        let moved_m = moved_m(&kept.screen_m, &corners(&around.rig.touchscreen))?;
-        Some(format!(
-            "The touchscreen was placed anew, {:.1} mm from where it lay when {} was made. Train again; if the screen itself was moved, touch it first.",
-            moved_m * 1e3,
-            kept.method.name()
-        ))
-    }
+/// Values over a rectangle of the table, row by row from small x, in each row from small y.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Field {
+    /// Range of x, m.
+    pub x_m: [f64; 2],
+    /// Range of y, m.
+    pub y_m: [f64; 2],
+    /// Values per row (along y).
+    pub columns: usize,
+    /// Values, m.
+    pub values_m: Vec<Option<f64>>,
+}
 
-    fn next(&self, around: &Surroundings<'_>) -> String {
-        if self.training.is_some() {
-            return "Models are being trained. Cancelling leaves everything as it was.".to_owned();
-        }
-        if let Some(why) = self.stale(around) {
-            return why;
-        }
-        if let Some(method) = self.best_proposal() {
-            let others = if self.proposals.len() > 1 { "Compare the models" } else { "Look at the map" };
-            let best = if self.proposals.len() > 1 {
-                format!(" {} errs least on held-out touches.", method.name())
-            } else {
-                String::new()
-            };
-            if self.in_use.is_none() {
-                return format!("{others} and accept one.{best}");
-            }
-        }
-        match &self.data {
-            _ if self.in_use.is_some() => self.next_with_model(around),
-            None if self.session.is_some() => "The touches are being read.".to_owned(),
-            None => "Touch the screen first, step 3, or choose a session with touches.".to_owned(),
-            Some(Err(reason)) => reason.clone(),
-            Some(Ok(data)) => format!("Train models on the {} touches of this session.", data.len()),
-        }
-    }
-
-    fn next_with_model(&self, around: &Surroundings<'_>) -> String {
-        let name = self.in_use.as_ref().map_or("The model", |in_use| in_use.model.method().name());
-        let newer = around
-            .newest_session
-            .filter(|newest| self.session.as_deref() != Some(*newest) && is_for_training(newest));
-        match newer.and_then(|newest| newest.file_name()) {
-            Some(newest) => format!(
-                "{name} is in use. The screen was touched since: choose {} to train on it.",
-                newest.to_string_lossy()
-            ),
-            None => format!("{name} is in use. Check it by touching new targets with it: step 3, Touch."),
-        }
-    }
-
-    /// The proposal with the smallest error on held-out touches; of imported ones any.
-    fn best_proposal(&self) -> Option<Method> {
-        let error_m = |method: &Method| {
-            let held_out = self.proposals.get(method)?.model.provenance().cross_validation.as_ref()?;
-            Some(held_out.errors.mean_2d_m)
-        };
-        let methods = self.proposals.keys().copied();
-        methods.min_by(|a, b| {
-            let or_worst = |method: &Method| error_m(method).unwrap_or(f64::INFINITY);
-            or_worst(a).total_cmp(&or_worst(b))
-        })
-    }
+/// The tables of grasp height and yaw.
+#[derive(Clone, Debug, Default)]
+pub struct TablesView {
+    /// Height over (x, y); `None`: none was read or made yet.
+    pub height: Option<Arc<HeightTable>>,
+    /// Leave-one-out error of each of its points, m; empty while it is being computed or cannot be.
+    pub height_errors_m: Vec<f64>,
+    /// Interpolated over the table.
+    pub height_field: Field,
+    /// Yaw over (x, y, z).
+    pub yaw: Option<Arc<YawTable>>,
+    /// Leave-one-out error of each of its points, rad; empty while it is being computed or cannot be.
+    pub yaw_errors_rad: Vec<f64>,
+    /// Whether a change can be taken back.
+    pub can_undo: bool,
+    /// What the operator should know, a sentence each: a table that cannot be used yet, and why.
+    pub remarks: Vec<String>,
+    /// Where the palm is now, robot frame, m, and its yaw, rad; `None` when not connected.
+    pub palm: Option<([f64; 3], f64)>,
 }

@@ -16,8 +16,10 @@ use super::sessions::{self, touch_data};
 use super::store::{History, Store};
 use super::tables::Tables;
 use super::tables::work::{TableFigures, TablesResult, TablesWork};
-use crate::jobs::JobError;
-use crate::view::{ModelMap, TouchSession};
+use super::view::{ModelMap, TouchSession};
+use crate::ground;
+use crate::ground::LongWork;
+use crate::ground::jobs::JobError;
 
 /// Work of this workflow.
 #[derive(Clone, Debug)]
@@ -64,6 +66,8 @@ pub enum ModelsWork {
         history: History,
         /// The model; `None`: none.
         model: Option<(Arc<CorrectionModel>, Corners)>,
+        /// When it was accepted.
+        accepted: jiff::Timestamp,
     },
     /// Goes back to what was in use before.
     Undo {
@@ -149,9 +153,13 @@ pub struct Restored {
     pub problems: Vec<String>,
 }
 
-impl ModelsWork {
-    /// What it does, for people.
-    pub fn title(&self) -> String {
+/// What the handlers of this room may reach besides their own workflow.
+pub type Context<'a> = ground::Context<'a, ModelsWork>;
+
+impl LongWork for ModelsWork {
+    type Result = ModelsResult;
+
+    fn title(&self) -> String {
         match self {
             Self::Restore { .. } => "Read the models in use".to_owned(),
             Self::List { .. } => "Look for sessions with touches".to_owned(),
@@ -166,8 +174,7 @@ impl ModelsWork {
         }
     }
 
-    /// Whether it is over so soon that it needs no line when it is done.
-    pub fn is_quiet(&self) -> bool {
+    fn is_quiet(&self) -> bool {
         match self {
             Self::Restore { .. } | Self::List { .. } | Self::Read { .. } => true,
             Self::Tables(work) => work.is_quiet(),
@@ -175,8 +182,7 @@ impl ModelsWork {
         }
     }
 
-    /// Does it, on the thread of the caller.
-    pub fn run(self, context: &dyn JobContext) -> Result<ModelsResult, JobError> {
+    fn run(self, context: &dyn JobContext) -> Result<ModelsResult, JobError> {
         context.checkpoint()?;
         match self {
             Self::Restore { folder, rig } => Ok(ModelsResult::Restored(Box::new(restore(&folder, &rig)))),
@@ -192,9 +198,9 @@ impl ModelsWork {
                 let trained = learn(&session, &rig, &methods, &options, &losses, context)?;
                 Ok(ModelsResult::Trained(Box::new(trained)))
             }
-            Self::Accept { store, history, model } => {
+            Self::Accept { store, history, model, accepted } => {
                 let kept = model.as_ref().map(|(model, screen_m)| (model.as_ref(), *screen_m));
-                let history = store.accept(&history, kept).map_err(JobError::Failed)?;
+                let history = store.accept(&history, kept, accepted).map_err(JobError::Failed)?;
                 Ok(ModelsResult::InUse { history, model: model.map(|(model, _)| model), map: None })
             }
             Self::Undo { store, history, rig } => {
@@ -209,7 +215,7 @@ impl ModelsWork {
             }
             Self::Export { model, onnx, file } => {
                 plumbline_model::files::export(&file)
-                    .map_err(|error| JobError::failed(crate::text::sentence(&error.to_string())))?;
+                    .map_err(|error| JobError::failed(crate::ground::text::sentence(&error.to_string())))?;
                 let written =
                     if onnx { files::write_onnx(&model, &file) } else { files::write(&model, &file) };
                 written.map_err(JobError::Failed)?;

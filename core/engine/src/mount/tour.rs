@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use plumbline_model::robot::Rig;
 
-use crate::view::{MotionState, RobotView};
+use crate::robot::view::{MotionState, RobotView};
 
 /// After the head has come to rest, images are waited for that were taken this much later: the
 /// camera's own delay, and what still swings.
@@ -117,7 +117,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::view::Connection;
+    use crate::robot::view::Connection;
 
     fn robot(rig: &Rig, pan_rad: f64, tilt_rad: f64, motion: MotionState) -> RobotView {
         let posture = rig.home().with(&[rig.eyes.pan, rig.eyes.tilt], &[pan_rad, tilt_rad]);

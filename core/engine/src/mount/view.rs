@@ -1,103 +1,66 @@
-//! What the window shows of the workflow.
+//! Calibrating how the eyes sit in the head.
 
 use std::sync::Arc;
 
-use plumbline_vision::mount::{HeadView, MountCalibration, MountChange};
+use plumbline_model::frame::{Head, LeftCamera, Pose};
 
-use super::state::{LEAST_VIEWS, MountState, Surroundings};
-use crate::view::{HeadViewSummary, MountSummary, MountView, StepState};
+use crate::ground::step::StepState;
 
-impl MountState {
-    /// What the window shows.
-    pub fn view(&self, around: &Surroundings<'_>) -> MountView {
-        MountView {
-            step: self.step_state(around),
-            views: self.views.iter().map(|view| self.summary(view, around)).collect(),
-            planned: Arc::from(self.planned.as_slice()),
-            next: self.next(around),
-            proposal: self.proposal.as_deref().map(summary),
-            in_use: self.in_use.as_deref().map(summary),
-        }
-    }
-
-    fn step_state(&self, around: &Surroundings<'_>) -> StepState {
-        if self.tour.is_some() || self.solving.is_some() || self.waiting.is_some() {
-            return StepState::Running;
-        }
-        match (&self.in_use, &around.calibration) {
-            (None, _) => StepState::NotDone,
-            (Some(mount), Some(eyes)) if !mount.made_with(&eyes.cameras) => StepState::Stale {
-                why: "The eyes were calibrated anew since the mount was solved. Solve it again.".to_owned(),
-            },
-            (Some(_), _) => StepState::Done,
-        }
-    }
-
-    fn next(&self, around: &Surroundings<'_>) -> String {
-        if let Some(tour) = &self.tour {
-            return format!(
-                "The head turns and looks: {} poses left. Only the head moves.",
-                tour.remaining()
-            );
-        }
-        if self.waiting.is_some() {
-            return "The board is looked for in the next image.".to_owned();
-        }
-        if self.solving.is_some() {
-            return "The mount is being solved.".to_owned();
-        }
-        if self.proposal.is_some() {
-            return "Compare the solution with the mount in use, then accept or discard it.".to_owned();
-        }
-        if around.calibration.is_none() {
-            return "Calibrate the eyes first: step 1.".to_owned();
-        }
-        if around.robot.measured.is_none() {
-            return "Connect to the robot or the twin: the head's angles have to be known.".to_owned();
-        }
-        if self.views.len() >= LEAST_VIEWS && self.planned.is_empty() {
-            return format!("{} views are there. Solve the mount.", self.views.len());
-        }
-        if self.planned.is_empty() {
-            return "Lay the board flat on the table where both eyes see all of it, then plan the head poses."
-                .to_owned();
-        }
-        format!("Turn the head to {} poses. Only the head moves.", self.planned.len())
-    }
-
-    fn summary(&self, view: &HeadView, around: &Surroundings<'_>) -> HeadViewSummary {
-        let count = |corners: &Option<plumbline_model::Corners>| {
-            corners.as_ref().map_or(0, |corners| corners.iter().flatten().count())
-        };
-        let fit = self.proposal.as_ref().or(self.in_use.as_ref());
-        let fit = fit.and_then(|mount| mount.per_view.iter().find(|fit| fit.name == view.name));
-        let rms_px = fit.and_then(|fit| match (fit.left_px, fit.right_px) {
-            (Some(left), Some(right)) => Some((0.5 * (left * left + right * right)).sqrt()),
-            (one, other) => one.or(other),
-        });
-        HeadViewSummary {
-            name: view.name.clone(),
-            pan_rad: view.posture[around.rig.eyes.pan],
-            tilt_rad: view.posture[around.rig.eyes.tilt],
-            corners: (count(&view.left), count(&view.right)),
-            rms_px,
-        }
-    }
+/// Calibrating how the eyes sit in the head.
+#[derive(Clone, Debug, Default)]
+pub struct MountView {
+    /// For the rail.
+    pub step: StepState,
+    /// Views collected so far.
+    pub views: Arc<[HeadViewSummary]>,
+    /// Planned head poses (pan, tilt; rad) that are still to be seen.
+    pub planned: Arc<[(f64, f64)]>,
+    /// What to do next, a sentence.
+    pub next: String,
+    /// A solution that waits to be accepted.
+    pub proposal: Option<MountSummary>,
+    /// The one in use; `None`: nominal.
+    pub in_use: Option<MountSummary>,
 }
 
-fn summary(mount: &MountCalibration) -> MountSummary {
-    let MountChange { moved_m, turned_rad } = mount.change;
-    MountSummary {
-        head_from_left: mount.head_from_left,
-        moved_m: moved_m.into(),
-        turned_rad: turned_rad.into(),
-        moved_sd_m: mount.moved_sigma_m().into(),
-        turned_sd_rad: mount.turned_sigma_rad().into(),
-        rms_px: mount.rms_px,
-        views: mount.per_view.len(),
-        rejected: mount.rejected.iter().map(|view| (view.name.clone(), view.reason.clone())).collect(),
-        not_seen: mount.not_seen.clone(),
-        remarks: mount.remarks.clone(),
-        at: mount.evidence.created,
-    }
+/// A collected view.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeadViewSummary {
+    /// Its name.
+    pub name: String,
+    /// Head angles, rad.
+    pub pan_rad: f64,
+    /// Positive looks up, rad.
+    pub tilt_rad: f64,
+    /// Corners seen by the left and the right eye.
+    pub corners: (usize, usize),
+    /// Residual in the proposal, px.
+    pub rms_px: Option<f64>,
+}
+
+/// A solved mount.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MountSummary {
+    /// Place of the left eye in the head.
+    pub head_from_left: Pose<Head, LeftCamera>,
+    /// Its difference to the nominal place, axes of the head, m.
+    pub moved_m: [f64; 3],
+    /// Its difference in direction to the nominal one (rotation vector, axes of the head), rad.
+    pub turned_rad: [f64; 3],
+    /// Standard deviations of `moved_m`.
+    pub moved_sd_m: [f64; 3],
+    /// Standard deviations of `turned_rad`.
+    pub turned_sd_rad: [f64; 3],
+    /// Residual, px.
+    pub rms_px: f64,
+    /// Views used.
+    pub views: usize,
+    /// Views left out: name and reason.
+    pub rejected: Vec<(String, String)>,
+    /// Which directions could not be seen and what would show them; empty when all could.
+    pub not_seen: Vec<String>,
+    /// What else the views say: slack, what the uncertainty does not include; a sentence each.
+    pub remarks: Vec<String>,
+    /// When it was solved.
+    pub at: jiff::Timestamp,
 }

@@ -1,6 +1,5 @@
 //! What takes time: solving, and reading and writing the file of the mount in use.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use plumbline_model::robot::Rig;
@@ -9,8 +8,12 @@ use plumbline_vision::mount::{
     HeadView, MountCalibration, MountError, MountOptions, Target, calibrate_mount,
 };
 
-use crate::jobs::JobError;
-use crate::text::sentence;
+use crate::ground;
+use crate::ground::LongWork;
+use crate::ground::jobs::JobError;
+use crate::ground::shelf::InUse;
+use crate::ground::text::sentence;
+use crate::robot::RobotControl;
 
 /// Work of this workflow.
 #[derive(Clone, Debug)]
@@ -29,21 +32,21 @@ pub enum MountWork {
     /// Writes the accepted mount.
     Save {
         /// Where to.
-        file: PathBuf,
+        kept: InUse,
         /// What.
         mount: Arc<MountCalibration>,
     },
     /// Reads the mount that was accepted last.
     Restore {
         /// Where from.
-        file: PathBuf,
+        kept: InUse,
         /// The robot that it must be of.
         rig: Arc<Rig>,
     },
     /// Removes the file, so that the nominal mount is used again.
     Forget {
         /// Which.
-        file: PathBuf,
+        kept: InUse,
     },
 }
 
@@ -60,9 +63,13 @@ pub enum MountResult {
     Forgotten,
 }
 
-impl MountWork {
-    /// What it does, for people.
-    pub fn title(&self) -> String {
+/// What the handlers of this room may reach besides their own workflow.
+pub type Context<'a> = ground::Context<'a, MountWork, RobotControl>;
+
+impl LongWork for MountWork {
+    type Result = MountResult;
+
+    fn title(&self) -> String {
         match self {
             Self::Solve { views, .. } => format!("Solve the mount from {} views", views.len()),
             Self::Save { .. } => "Use this mount".to_owned(),
@@ -71,13 +78,11 @@ impl MountWork {
         }
     }
 
-    /// Whether it is over so soon that it needs no line when it is done.
-    pub fn is_quiet(&self) -> bool {
+    fn is_quiet(&self) -> bool {
         matches!(self, Self::Restore { .. })
     }
 
-    /// Does it, on the thread of the caller.
-    pub fn run(self, context: &dyn JobContext) -> Result<MountResult, JobError> {
+    fn run(self, context: &dyn JobContext) -> Result<MountResult, JobError> {
         match self {
             Self::Solve { rig, eyes, views, target } => {
                 let solved =
@@ -88,29 +93,18 @@ impl MountWork {
                     Err(error) => Err(JobError::failed(sentence(&error.to_string()))),
                 }
             }
-            Self::Save { file, mount } => {
-                if let Some(folder) = file.parent() {
-                    std::fs::create_dir_all(folder).map_err(JobError::failed)?;
-                }
-                mount.write(&file).map_err(|error| JobError::failed(sentence(&error.to_string())))?;
+            Self::Save { kept, mount } => {
+                kept.put(JobError::failed, |file| mount.write(file).map_err(JobError::told))?;
                 Ok(MountResult::Saved(mount))
             }
-            Self::Restore { file, rig } => {
-                let there = plumbline_model::files::present(&file);
-                if !there.map_err(|error| JobError::failed(sentence(&error.to_string())))? {
-                    return Ok(MountResult::Restored(None));
-                }
-                let mount = MountCalibration::read(&file, &rig)
-                    .map_err(|error| JobError::failed(sentence(&error.to_string())))?;
-                Ok(MountResult::Restored(Some(Arc::new(mount))))
+            Self::Restore { kept, rig } => {
+                let mount = kept.read(|file| MountCalibration::read(file, &rig).map_err(JobError::told))?;
+                Ok(MountResult::Restored(mount.map(Arc::new)))
             }
-            Self::Forget { file } => match std::fs::remove_file(&file) {
-                Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(JobError::failed(format!(
-                    "{} cannot be removed: {error}. Remove it by hand.",
-                    file.display()
-                ))),
-                _ => Ok(MountResult::Forgotten),
-            },
+            Self::Forget { kept } => {
+                kept.forget().map_err(|error| JobError::not_removed(kept.file(), &error))?;
+                Ok(MountResult::Forgotten)
+            }
         }
     }
 }

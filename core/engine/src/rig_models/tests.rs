@@ -1,42 +1,13 @@
 //! The model in use on disk, and what a finding adds to it.
 
-use plumbline_effects::rig_model::{Addition, ModelEffect};
 use plumbline_gap::finding::{ClassMember, Comparison, FORMAT, FoundParameter, Unexplained, Verdict};
 use plumbline_model::session::{Manifest, RigReference, TouchTable};
 
+use super::made_up::model_with;
 use super::*;
 
 fn nico() -> Rig {
     Rig::built_in("nico").expect("comes with the program")
-}
-
-/// A model with effects of the right arm: kind, site, values.
-pub(crate) fn model_with(rig: &Rig, effects: &[(&str, &str, &[f64])]) -> RigModel {
-    let effects = effects.iter().map(|(id, site, values)| ModelEffect {
-        id: (*id).to_owned(),
-        site: (*site).to_owned(),
-        title: String::new(),
-        tip: Some("right_index_tip".to_owned()),
-        shape: None,
-        values: values.to_vec(),
-        covariance: vec![],
-        probability: None,
-        parameters: vec![],
-    });
-    let addition = Addition {
-        effects: effects.collect(),
-        screens: vec![],
-        externals: vec![],
-        replaces: false,
-        at: Timestamp::UNIX_EPOCH,
-        sentence: String::new(),
-        sessions: vec![],
-        version: String::new(),
-        gap: None,
-    };
-    let mut model = RigModel::nominal(rig);
-    model.add(rig, addition).expect("they fit");
-    model
 }
 
 fn session(rig: &Rig) -> Session {

@@ -13,8 +13,8 @@ use plumbline_model::robot::{JointIndex, Posture, Rig};
 use super::Switches;
 use super::arm::{Arm, Census};
 use super::path::Paths;
-use crate::text::sentence;
-use crate::view::PortView;
+use super::view::PortView;
+use crate::ground::text::sentence;
 
 /// An open arm.
 pub type Connected = Box<dyn Arm>;

@@ -4,9 +4,9 @@ use plumbline_model::Point;
 use plumbline_model::robot::ik::{Options, Target};
 use plumbline_model::robot::{JointIndex, Posture, Reach, ReachOptions, Refusal, Rig};
 
-use crate::command::Destination;
-use crate::text::sentence;
-use crate::view::PoseView;
+use super::command::Destination;
+use super::view::PoseView;
+use crate::ground::text::sentence;
 
 /// Where a move goes.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Resolved {
 }
 
 /// What a destination is resolved with.
-pub struct Surroundings<'a> {
+pub struct Circumstances<'a> {
     /// The robot.
     pub rig: &'a Rig,
     /// The chosen tip; `None` when it cannot be moved.
@@ -32,8 +32,8 @@ pub struct Surroundings<'a> {
 }
 
 /// The posture that a destination means, or a sentence that says why there is none.
-pub fn resolve(destination: &Destination, around: &Surroundings<'_>) -> Result<Resolved, String> {
-    let Surroundings { rig, present, .. } = around;
+pub fn resolve(destination: &Destination, around: &Circumstances<'_>) -> Result<Resolved, String> {
+    let Circumstances { rig, present, .. } = around;
     let resolved = match destination {
         Destination::Joint { joint, angle_rad } => {
             let servo = rig.servo_of(*joint).ok_or("This joint has no servo, so it cannot be moved.")?;
@@ -73,7 +73,7 @@ pub fn resolve(destination: &Destination, around: &Surroundings<'_>) -> Result<R
     Ok(resolved)
 }
 
-fn tip(around: &Surroundings<'_>, point_m: [f64; 3], to: &Target, ik: Options) -> Result<Resolved, String> {
+fn tip(around: &Circumstances<'_>, point_m: [f64; 3], to: &Target, ik: Options) -> Result<Resolved, String> {
     let reach = around.reach.ok_or("Choose a tip that the arm can move.")?;
     let options = ReachOptions { ik, ..ReachOptions::default() };
     let plan = reach.plan(around.present, to, &options).map_err(|error| sentence(&error.to_string()))?;
@@ -88,7 +88,7 @@ fn tip(around: &Surroundings<'_>, point_m: [f64; 3], to: &Target, ik: Options) -
     }
 }
 
-fn look_at(around: &Surroundings<'_>, point_m: [f64; 3]) -> Result<Resolved, String> {
+fn look_at(around: &Circumstances<'_>, point_m: [f64; 3]) -> Result<Resolved, String> {
     let eyes = &around.rig.eyes;
     let (pan_rad, tilt_rad) = around.rig.look_at(point(point_m)?, around.present);
     let joints = vec![eyes.pan, eyes.tilt];
@@ -142,7 +142,7 @@ mod tests {
         let rig = Rig::built_in("nico").expect("the rig that comes with the program");
         let present = rig.home();
         let reach = Reach::new(&rig, "right_palm_center").expect("a tip");
-        resolve(destination, &Surroundings { rig: &rig, reach: Some(&reach), present: &present, poses: &[] })
+        resolve(destination, &Circumstances { rig: &rig, reach: Some(&reach), present: &present, poses: &[] })
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use plumbline_hardware::joints::JointReading;
 
-use crate::view::JointSample;
+use super::view::JointSample;
 
 /// One sample per servo this often, s.
 const EVERY_S: f64 = 1.0;

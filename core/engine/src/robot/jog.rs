@@ -7,7 +7,7 @@
 use nalgebra::{DMatrix, DVector};
 use plumbline_model::robot::Chain;
 
-use crate::command::JogRates;
+use super::command::JogRates;
 
 /// Below this singular value (m/rad) directions are damped.
 const DAMPING: f64 = 0.02;

@@ -7,8 +7,8 @@ use plumbline_hardware::joints::{Guard, Refusal};
 use plumbline_model::robot::collision::{Allowance, CollisionModel, PathCheck as Found};
 use plumbline_model::robot::{Posture, Rig};
 
-use crate::text::sentence;
-use crate::view::PathCheck;
+use super::view::PathCheck;
+use crate::ground::text::sentence;
 
 /// Encoders read to a tick, and a loaded joint hangs: a start this far beyond a limit is no
 /// reason to refuse what leads back.

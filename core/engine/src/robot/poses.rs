@@ -7,7 +7,7 @@ use plumbline_model::files::{self, Size, shortened};
 use plumbline_model::robot::{JointIndex, Rig};
 use serde::{Deserialize, Serialize};
 
-use crate::view::PoseView;
+use super::view::PoseView;
 
 /// Poses that a message names.
 const MOST_POSES_TOLD: usize = 3;
@@ -370,10 +370,10 @@ mod tests {
         const TEST: &str = "robot::poses::tests::a_kill_takes_no_pose_that_was_saved";
         let rig = rig();
         let elbow = rig.description.find_joint("r_elbow_y").expect("a joint of NICO");
-        if let Some(folder) = crate::kept::writing() {
+        if let Some(folder) = crate::ground::kept::writing() {
             let (mut library, problem) = PoseLibrary::read(&folder, &rig);
             assert_eq!(problem, None);
-            for _ in crate::kept::until_killed() {
+            for _ in crate::ground::kept::until_killed() {
                 let title = format!("pose {}", library.own.len());
                 library.save(&title, vec![(elbow, 1.0)], &rig).expect("saved");
             }
@@ -382,7 +382,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let mut saved = 0;
         for nth in 0..20 {
-            crate::kept::kill(TEST, folder.path(), nth);
+            crate::ground::kept::kill(TEST, folder.path(), nth);
             let (library, problem) = PoseLibrary::read(folder.path(), &rig);
             assert_eq!(problem, None, "kill {nth}");
             let now = titles(&library, &rig);
@@ -398,7 +398,7 @@ mod tests {
     fn a_full_disk_takes_no_pose_that_was_saved() {
         const TEST: &str = "robot::poses::tests::a_full_disk_takes_no_pose_that_was_saved";
         let rig = rig();
-        if let Some(folder) = crate::kept::writing() {
+        if let Some(folder) = crate::ground::kept::writing() {
             let (mut library, _) = PoseLibrary::read(&folder, &rig);
             let refused = library.save("one too many", vec![], &rig).expect_err("the disk is full");
             assert!(refused.contains("what was there before is unchanged"), "{refused}");
@@ -414,7 +414,10 @@ mod tests {
         }
         let before = std::fs::read(&library.file).expect("there");
         for room in [0, 1024] {
-            assert!(crate::kept::run_on_full_disk(TEST, folder.path(), room).success(), "room for {room}");
+            assert!(
+                crate::ground::kept::run_on_full_disk(TEST, folder.path(), room).success(),
+                "room for {room}"
+            );
             assert_eq!(std::fs::read(&library.file).expect("there"), before);
             assert_eq!(std::fs::read_dir(folder.path().join("poses")).expect("there").count(), 1);
         }

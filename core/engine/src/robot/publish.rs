@@ -6,9 +6,10 @@ use std::time::{Duration, Instant};
 use plumbline_hardware::joints::{HoldReason, JointReading, JointState, Motion};
 use plumbline_model::robot::{Posture, Servo};
 
+use super::view::{BusView, JointView, MotionState, RobotView, TipPlace};
 use super::worker::{News, Worker};
-use crate::text::sentence;
-use crate::view::{BusView, JointView, MotionState, RobotView, TipPlace, TwinView};
+use crate::ground::text::sentence;
+use crate::twin::view::TwinView;
 
 impl Worker {
     /// What is new since the last call, if anything. What the operator did or has to know comes at

@@ -10,9 +10,12 @@ use plumbline_model::Stamp;
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 use super::arm::{Arm, Census};
-use super::{RobotControl, Switches, TwinDesk, TwinEyesPlug, Worker};
-use crate::command::{Destination, JogRates, RobotCommand, TwinCommand};
-use crate::view::Connection;
+use super::command::{Destination, JogRates, RobotCommand};
+use super::control::RobotControl;
+use super::view::Connection;
+use super::{Switches, Worker};
+use crate::twin::command::TwinCommand;
+use crate::twin::{TwinDesk, TwinEyesPlug};
 
 /// What reached the arm.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,13 +4,13 @@ use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError};
 
-use super::RobotControl;
+use super::control::RobotControl;
 use super::touch_order::TouchNews;
 use super::worker::{News, Worker};
-use crate::bell::Bell;
-use crate::notice::NoticeLevel;
-use crate::slot::Putter;
-use crate::watched::{self, Pulse, Watched};
+use crate::ground::bell::Bell;
+use crate::ground::notice::NoticeLevel;
+use crate::ground::slot::Putter;
+use crate::ground::watched::{self, Pulse, Watched};
 
 /// Commands that may wait while something is being connected.
 const WAITING: usize = 256;

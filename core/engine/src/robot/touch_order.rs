@@ -6,7 +6,7 @@ use plumbline_model::robot::{Chain, Posture};
 use plumbline_model::session::{Screen, Touchscreen};
 use plumbline_model::{Pixel, Point, Robot};
 
-use crate::touch::path::{TouchPace, TouchPath};
+use crate::motion::{TouchPace, TouchPath};
 
 /// One touch: go above, wait until the arm stands, lower until something is felt, log, go up.
 /// Only the joints of one arm move.

@@ -12,20 +12,22 @@ use plumbline_hardware::joints::{
 use plumbline_model::frame::{Point, Robot};
 use plumbline_model::robot::{Chain, JointIndex, Posture, Reach, Rig};
 
+use super::Switches;
 use super::arm::Arm;
+use super::command::{Destination, JOG_DEADLINE_MS, JogRates, RobotCommand};
 use super::connect::{self, Connected};
-use super::destination::{Resolved, Surroundings, resolve};
+use super::control::RobotControl;
+use super::destination::{Circumstances, Resolved, resolve};
 use super::history::Histories;
 use super::jog::joint_rates;
 use super::path::{Paths, duration};
 use super::poses::PoseLibrary;
 use super::touching::Touching;
-use super::twin_desk::TwinDesk;
-use super::{RobotControl, Switches};
-use crate::command::{Destination, JOG_DEADLINE_MS, JogRates, RobotCommand};
-use crate::notice::NoticeLevel;
-use crate::text::sentence;
-use crate::view::{Connection, PortView, Preview, RobotView, TwinView};
+use super::view::{Connection, PortView, Preview, RobotView};
+use crate::ground::notice::NoticeLevel;
+use crate::ground::text::sentence;
+use crate::twin::TwinDesk;
+use crate::twin::view::TwinView;
 
 /// The trail of the tip goes back this far.
 const TRAIL: Duration = Duration::from_secs(30);
@@ -367,7 +369,7 @@ impl Worker {
             .ok_or("The joints have not been read yet. Connect, and wait for the first reading.")?;
         let poses = self.poses.all(&self.rig);
         let around =
-            Surroundings { rig: &self.rig, reach: self.reach.as_ref(), present: &present, poses: &poses };
+            Circumstances { rig: &self.rig, reach: self.reach.as_ref(), present: &present, poses: &poses };
         let resolved = resolve(destination, &around)?;
         self.knows(&resolved.joints)?;
         self.preview_of(resolved);

@@ -5,11 +5,12 @@ use std::time::Duration;
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TrySendError};
 use plumbline_model::StereoFrame;
 
-use super::player::{Control, Note, Player, Polled};
-use crate::bell::Bell;
-use crate::slot::Putter;
-use crate::view::{SourceStatus, SourceView};
-use crate::watched::{self, Pulse, Watched};
+use super::command::Control;
+use super::player::{Note, Player, Polled};
+use super::view::{SourceStatus, SourceView};
+use crate::ground::bell::Bell;
+use crate::ground::slot::Putter;
+use crate::ground::watched::{self, Pulse, Watched};
 
 /// Commands that may wait while a camera is being opened.
 const WAITING: usize = 64;

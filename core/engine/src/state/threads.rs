@@ -6,12 +6,13 @@ use plumbline_hardware::SourceSpec;
 use plumbline_model::robot::Rig;
 
 use super::State;
-use crate::notice::NoticeLevel;
+use crate::ground::data_folder::KeptView;
+use crate::ground::notice::NoticeLevel;
+use crate::ground::watched::{ThreadFault, WatchedThread};
 use crate::robot::News;
-use crate::view::{
-    KeptView, SourceStatus, SourceView, ThreadFault, robot_without_its_thread, twin_without_its_thread,
-};
-use crate::watched::WatchedThread;
+use crate::robot::view::robot_without_its_thread;
+use crate::source::view::{SourceStatus, SourceView};
+use crate::twin::view::twin_without_its_thread;
 
 impl State {
     /// How a thread is: `None` when it does its work. Whether that is new.
@@ -55,14 +56,16 @@ impl State {
                 self.before_silence = before;
             }
             WatchedThread::Source => {
-                self.source_before_silence = fault.is_silent().then(|| self.source.view().clone());
+                self.source_before_silence = fault.is_silent().then(|| self.rooms.source.view().clone());
                 let status = SourceStatus::Lost { reason, since: fault.since, attempts: 0 };
-                self.source.update(SourceView { status, ..SourceView::clone(self.source.view()) });
+                self.rooms
+                    .source
+                    .update(SourceView { status, ..SourceView::clone(self.rooms.source.view()) });
             }
             WatchedThread::Rectify | WatchedThread::Corners | WatchedThread::Probe => {
-                self.live.stage_is_down(fault.thread, Some(reason));
+                self.rooms.live.stage_is_down(fault.thread, Some(reason));
             }
-            WatchedThread::Detect => self.detect.stage_is_down(Some(reason)),
+            WatchedThread::Detect => self.rooms.detect.stage_is_down(Some(reason)),
             WatchedThread::Engine | WatchedThread::Journal => {}
         }
     }
@@ -71,9 +74,9 @@ impl State {
     fn is_back(&mut self, thread: WatchedThread, was_silent: bool) {
         match thread {
             WatchedThread::Rectify | WatchedThread::Corners | WatchedThread::Probe => {
-                self.live.stage_is_down(thread, None);
+                self.rooms.live.stage_is_down(thread, None);
             }
-            WatchedThread::Detect => self.detect.stage_is_down(None),
+            WatchedThread::Detect => self.rooms.detect.stage_is_down(None),
             WatchedThread::Robot => {
                 if let Some((robot, twin)) = self.before_silence.take() {
                     self.robot_changed(News { robot, twin, twins_started: self.twins_started });
@@ -81,7 +84,7 @@ impl State {
             }
             WatchedThread::Source => {
                 if let Some(view) = self.source_before_silence.take() {
-                    self.source.update(SourceView::clone(&view));
+                    self.rooms.source.update(SourceView::clone(&view));
                 }
             }
             WatchedThread::Engine | WatchedThread::Journal => {}
@@ -95,8 +98,8 @@ impl State {
     /// A stage met a defect on one pair: what it showed before is not true of the next.
     pub(super) fn stage_gave_nothing(&mut self, thread: WatchedThread, why: &str) {
         match thread {
-            WatchedThread::Detect => self.detect.gave_nothing(why),
-            _ => self.live.gave_nothing(thread, why),
+            WatchedThread::Detect => self.rooms.detect.gave_nothing(why),
+            _ => self.rooms.live.gave_nothing(thread, why),
         }
     }
 
@@ -124,7 +127,7 @@ impl State {
 
     /// The robot with eyes and screen where they were measured to lie.
     pub fn rig_in_use(&self) -> Arc<Rig> {
-        self.live.rig().clone()
+        self.rooms.live.rig().clone()
     }
 
     /// Counts twins.
@@ -134,11 +137,11 @@ impl State {
 
     /// Counts sources.
     pub fn sources_opened(&self) -> u64 {
-        self.source.view().opened
+        self.rooms.source.view().opened
     }
 
     /// What was opened last.
     pub fn source_spec(&self) -> Option<SourceSpec> {
-        self.source.view().spec.clone()
+        self.rooms.source.view().spec.clone()
     }
 }

@@ -7,7 +7,7 @@ use plumbline_model::Pixel;
 use plumbline_model::session::{Screen, Touchscreen};
 
 use super::record::TouchRecord;
-use crate::view::TouchFigures;
+use super::view::TouchFigures;
 
 /// Touched minus target in the glass, m along u and v.
 pub fn error_m(touched: Pixel<Screen>, target: Pixel<Screen>, screen: &Touchscreen) -> [f64; 2] {

@@ -31,11 +31,11 @@ fn touches(session: &Path) -> (usize, usize) {
 #[test]
 fn a_kill_takes_no_touch_that_was_reported() {
     const TEST: &str = "touch::kept_tests::a_kill_takes_no_touch_that_was_reported";
-    if let Some(folder) = crate::kept::writing() {
+    if let Some(folder) = crate::ground::kept::writing() {
         let (there, _) = touches(&folder);
         // As when a run goes on: what follows from the progress is written anew.
         store::write(&folder, &[], &progress(there)).expect("written");
-        for number in crate::kept::until_killed() {
+        for number in crate::ground::kept::until_killed() {
             store::write(&folder, &[], &progress(there + number + 1)).expect("written");
         }
         return;
@@ -44,7 +44,7 @@ fn a_kill_takes_no_touch_that_was_reported() {
     store::write(folder.path(), &[], &progress(1)).expect("written");
     let mut known = 1;
     for nth in 0..20 {
-        crate::kept::kill(TEST, folder.path(), nth);
+        crate::ground::kept::kill(TEST, folder.path(), nth);
         let (recorded, in_table) = touches(folder.path());
         // The table follows from the progress, which is written first.
         assert!(recorded >= known && (recorded - 1..=recorded).contains(&in_table), "kill {nth}");
@@ -56,8 +56,8 @@ fn a_kill_takes_no_touch_that_was_reported() {
 #[test]
 fn a_full_disk_is_told_and_takes_nothing() {
     const TEST: &str = "touch::kept_tests::a_full_disk_is_told_and_takes_nothing";
-    if let Some(folder) = crate::kept::writing() {
-        let told = store::write(&folder, &[], &progress(51)).expect_err("the disk is full");
+    if let Some(folder) = crate::ground::kept::writing() {
+        let told = store::write(&folder, &[], &progress(51)).expect_err("the disk is full").to_string();
         assert!(told.contains("cannot be written") && told.contains("what was there before is unchanged"));
         return;
     }
@@ -65,7 +65,10 @@ fn a_full_disk_is_told_and_takes_nothing() {
     store::write(folder.path(), &[], &progress(50)).expect("written");
     let entries = std::fs::read_dir(folder.path()).expect("there").count();
     for room in [0, 1024] {
-        assert!(crate::kept::run_on_full_disk(TEST, folder.path(), room).success(), "room for {room}");
+        assert!(
+            crate::ground::kept::run_on_full_disk(TEST, folder.path(), room).success(),
+            "room for {room}"
+        );
         assert_eq!(touches(folder.path()), (50, 50));
         assert_eq!(std::fs::read_dir(folder.path()).expect("there").count(), entries);
     }

@@ -8,11 +8,12 @@ use plumbline_model::robot::Posture;
 use plumbline_model::touch_plan::{PlanOptions, Side, TouchArea};
 use plumbline_model::{Point, Robot, Unattended};
 
-use super::path::{Planner, ScreenPlace, TouchPath};
+use super::command::Correction;
 use super::plan::{self, Corrector, PlanRequest, TIP};
 use super::testing::rig;
-use crate::command::Correction;
-use crate::rig_models::{self, tests::model_with};
+use crate::motion::{Planner, ScreenPlace, TouchPath};
+use crate::rig_models;
+use crate::rig_models::made_up::model_with;
 
 /// Rounding of inverse kinematics, m.
 const ROUNDING_M: f64 = 2e-4;

@@ -10,7 +10,7 @@ use plumbline_model::{Pixel, Point, Robot};
 
 use super::plan::TIP;
 use super::record::TouchRecord;
-use crate::text::sentence;
+use super::refusal::Unplaced;
 
 /// A measured place of the screen and the run that it was found from.
 #[derive(Clone, Debug)]
@@ -25,11 +25,11 @@ pub struct Proposal {
 ///
 /// # Errors
 /// A sentence: why the touches do not tell.
-pub fn place(rig: &Rig, joints: &[String], touches: &[TouchRecord]) -> Result<ScreenPlacement, String> {
-    let chain = rig.chain(TIP).map_err(|error| sentence(&error.to_string()))?;
+pub fn place(rig: &Rig, joints: &[String], touches: &[TouchRecord]) -> Result<ScreenPlacement, Unplaced> {
+    let chain = rig.chain(TIP)?;
     let order: Option<Vec<usize>> =
         chain.names().iter().map(|name| joints.iter().position(|joint| joint == name)).collect();
-    let order = order.ok_or("The run was made with another arm than this robot's.")?;
+    let order = order.ok_or(Unplaced::OtherArm)?;
     let fingertip = |touch: &TouchRecord| -> Option<(Pixel<Screen>, Point<Robot>)> {
         let of = |angles: &[Option<f64>]| -> Option<Vec<f64>> {
             order.iter().map(|place| angles.get(*place).copied().flatten()).collect()
@@ -46,6 +46,5 @@ pub fn place(rig: &Rig, joints: &[String], touches: &[TouchRecord]) -> Result<Sc
     let on_image = |touch: &&TouchRecord| rig.touchscreen.contains(touch.touched);
     let usable = touches.iter().filter(as_it_lies).filter(on_image);
     let fingertips: Vec<_> = usable.filter_map(fingertip).collect();
-    let placed = place_screen(&rig.touchscreen, &fingertips);
-    placed.map(|placement| placement.of_rig(&rig.name)).map_err(|error| sentence(&error.to_string()))
+    Ok(place_screen(&rig.touchscreen, &fingertips)?.of_rig(&rig.name))
 }

@@ -16,12 +16,12 @@ use plumbline_model::touch_plan::{PlanOptions, PlannedTouch, TouchPlan};
 use plumbline_model::{Point, Robot};
 use serde::{Deserialize, Serialize};
 
-use super::path::{Planner, ScreenPlace, TouchPace};
-use crate::command::Correction;
-use crate::jobs::JobError;
+use super::command::Correction;
+use super::view::PlanView;
+use crate::ground::jobs::JobError;
+use crate::ground::text::sentence;
+use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
 use crate::rig_models;
-use crate::text::sentence;
-use crate::view::PlanView;
 
 /// The tip that touches.
 pub const TIP: &str = "right_index_tip";
@@ -160,14 +160,16 @@ pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, 
             Some((of_m, planner)) if *of_m == height_m => &*planner,
             slot => {
                 let on_block = Arc::new(raised(rig, height_m));
-                let made = Planner::new(&on_block, TIP, *place).map_err(|reason| words(&reason))?;
+                let made = Planner::new(&on_block, TIP, *place).map_err(JobError::failed)?;
                 &slot.insert((height_m, made)).1
             }
         };
         let from = stands.take().unwrap_or_else(|| planner.ready(&rig.home()));
         let mut aim = senders.aim(rig, planner, touch, &from);
         let path = match aim.refusal.take() {
-            None => planner.plan(aim.touch.target, aim.sent(), aim.touch.side, &from),
+            None => planner
+                .plan(aim.touch.target, aim.sent(), aim.touch.side, &from)
+                .map_err(|why| why.to_string()),
             Some(reason) => Err(reason),
         };
         stands = Some(match path {
@@ -252,7 +254,7 @@ impl<'a> Senders<'a> {
                 let commanded = |sent| {
                     let (angles_rad, signs) = planner.commanded(touch.target, sent, touch.side, from)?;
                     // A joint that nearly stands must not turn round from one point to the next.
-                    Ok::<_, String>((angles_rad, direction.get_or_insert(signs).clone()))
+                    Ok::<_, NoWay>((angles_rad, direction.get_or_insert(signs).clone()))
                 };
                 match arm.sent_for(screen, touch.target, touch.screen_height_m, touch.payload_kg, commanded) {
                     Ok(Some(point)) => sent = point,
@@ -263,7 +265,7 @@ impl<'a> Senders<'a> {
                             touch.target.u_px, touch.target.v_px
                         ));
                     }
-                    Err(reason) => refusal = Some(reason),
+                    Err(why) => refusal = Some(why.to_string()),
                 }
             }
         }

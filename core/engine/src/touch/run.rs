@@ -8,15 +8,16 @@ use plumbline_model::Pixel;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::{Screen, Touchscreen};
 
-use super::path::{Planner, ScreenPlace, TouchPace};
 use super::plan::{Aim, RunPlan};
 use super::record::{Ended, Fate, Progress, TouchRecord};
+use super::refusal::{Refusal, Trouble};
 use super::store::Stored;
-use super::work::{RouteRequest, TouchWork};
-use crate::command::{JobId, TwinCommand};
-use crate::context::{Action, Context};
+use super::work::{Context, RouteRequest, TouchWork};
+use crate::ground::jobs::JobId;
+use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
+use crate::robot::view::{Connection, RobotView};
 use crate::robot::{RobotControl, TouchNews, TouchOrder, TouchRun, TouchStage};
-use crate::view::{Connection, RobotView};
+use crate::twin::command::TwinCommand;
 
 /// After so many touches without a contact, one after the other, something is wrong.
 pub const MISSES: usize = 5;
@@ -83,7 +84,7 @@ pub struct Now<'a> {
     /// The robot now.
     pub robot: &'a RobotView,
     /// Why nothing can be touched, and what to do; a sentence.
-    pub trouble: Option<String>,
+    pub trouble: Option<Trouble>,
 }
 
 /// A run, under way or shown.
@@ -236,8 +237,8 @@ impl Run {
             return;
         }
         let Some(aim) = self.next().cloned() else { return self.finish(now, context) };
-        if let Some(trouble) = &now.trouble {
-            self.phase = Phase::Paused(Some(trouble.clone()));
+        if let Some(trouble) = now.trouble {
+            self.phase = Phase::Paused(Some(trouble.to_string()));
             return;
         }
         if aim.preparation() != self.progress.prepared {
@@ -311,7 +312,7 @@ impl Run {
         &mut self,
         number: usize,
         planner: Option<Arc<Planner>>,
-        order: Result<Box<TouchOrder>, String>,
+        order: Result<Box<TouchOrder>, NoWay>,
         now: &Now<'_>,
         context: &mut Context<'_>,
     ) {
@@ -328,7 +329,7 @@ impl Run {
         match order {
             Ok(order) if wanted => {
                 self.touch = Some(UnderWay { order: order.order, number, stage: None, at_end: AtEnd::Keep });
-                context.actions.push(Action::Robot(RobotControl::Touch(order)));
+                context.control(RobotControl::Touch(order));
             }
             Err(reason) if wanted => {
                 let text = format!("Touch {number} was not begun: {reason} Go on to try again, or skip it.");
@@ -444,7 +445,7 @@ impl Run {
     pub fn break_off(&mut self, why: String, context: &mut Context<'_>) {
         if let Some(touch) = &mut self.touch {
             touch.at_end = AtEnd::Retry;
-            context.actions.push(Action::Robot(RobotControl::AbandonTouch));
+            context.control(RobotControl::AbandonTouch);
         }
         if self.phase == Phase::Working {
             self.phase = Phase::Paused(Some(why));
@@ -455,15 +456,14 @@ impl Run {
     ///
     /// # Errors
     /// A sentence, when there is none.
-    pub fn skip(&mut self, context: &mut Context<'_>) -> Result<(), String> {
+    pub fn skip(&mut self, context: &mut Context<'_>) -> Result<(), Refusal> {
         if let Some(touch) = &mut self.touch {
             touch.at_end = AtEnd::Skip;
-            context.actions.push(Action::Robot(RobotControl::AbandonTouch));
+            context.control(RobotControl::AbandonTouch);
             return Ok(());
         }
         let next = self.next().filter(|_| self.phase != Phase::Finished);
-        let number =
-            next.map(|aim| aim.touch.number).ok_or("All touches are done, so there is none to skip.")?;
+        let number = next.map(|aim| aim.touch.number).ok_or(Refusal::NothingToSkip)?;
         self.end(number, Ended::Skipped);
         if let Phase::Preparing(_) = self.phase {
             self.phase = Phase::Working;
@@ -483,7 +483,7 @@ impl Run {
             _ if self.progress.finished => {}
             Some(touch) => {
                 touch.at_end = AtEnd::Finish;
-                context.actions.push(Action::Robot(RobotControl::AbandonTouch));
+                context.control(RobotControl::AbandonTouch);
             }
             None => self.finish(now, context),
         }
@@ -507,7 +507,7 @@ impl Run {
         if matches!(robot.connection, Connection::Connected { twin: true, .. }) {
             let [screen_height_m, payload_kg] = self.progress.prepared;
             let command = TwinCommand::PrepareTouch { screen_height_m, payload_kg };
-            context.actions.push(Action::Robot(RobotControl::Twin(command)));
+            context.control(RobotControl::Twin(command));
         }
     }
 
@@ -515,9 +515,9 @@ impl Run {
     ///
     /// # Errors
     /// A sentence, when these are no numbers.
-    pub fn prepared(&mut self, preparation: [f64; 2]) -> Result<(), String> {
+    pub fn prepared(&mut self, preparation: [f64; 2]) -> Result<(), Refusal> {
         if preparation.iter().any(|value| !(value.is_finite() && *value >= 0.0)) {
-            return Err("Height and weight must be numbers from zero on.".to_owned());
+            return Err(Refusal::NotNumbers);
         }
         self.progress.prepared = preparation;
         self.changed();

@@ -15,8 +15,9 @@ use serde::de::DeserializeOwned;
 
 use super::plan::{self, RunPlan, TIP};
 use super::record::{self, Progress, Standing, TouchRecord};
-use crate::text::sentence;
-use crate::view::UnfinishedRun;
+use super::refusal::RunError;
+use super::view::UnfinishedRun;
+use crate::ground::shelf::InUse;
 
 /// The plan, in a session's folder.
 pub const PLAN: &str = "plan.json";
@@ -64,15 +65,15 @@ pub fn begin(
     manifest: &Manifest,
     plan: &RunPlan,
     progress: &Progress,
-) -> Result<PathBuf, String> {
+) -> Result<PathBuf, RunError> {
     let kind = match plan.options.purpose {
         Purpose::Train => "touch",
         Purpose::PlaceScreen => "corners",
         Purpose::Check => "check",
     };
     let name = format!("{}_{kind}", manifest.started.strftime("%Y-%m-%dT%H-%M-%S"));
-    let session = free_folder(sessions, &name).map_err(|error| unwritable(&sessions.join(&name), &error))?;
-    manifest.write(&session.join(names::MANIFEST)).map_err(|error| sentence(&error.to_string()))?;
+    let session = free_folder(sessions, &name).map_err(RunError::unwritable(&sessions.join(&name)))?;
+    manifest.write(&session.join(names::MANIFEST))?;
     write_json(&session.join(PLAN), plan)?;
     // Last: a folder without it was never begun.
     write_json(&session.join(PROGRESS), progress)?;
@@ -90,7 +91,7 @@ pub fn manifest(
     started: Timestamp,
 ) -> Manifest {
     let mut extra = toml::Table::new();
-    extra.insert("software".to_owned(), crate::software().into());
+    extra.insert("software".to_owned(), crate::ground::software().into());
     let purpose = match plan.options.purpose {
         Purpose::Train => "train",
         Purpose::PlaceScreen => "place-screen",
@@ -112,7 +113,7 @@ pub fn manifest(
 }
 
 /// Writes what happened; everything is on disk when it returns.
-pub fn write(session: &Path, joints: &[String], progress: &Progress) -> Result<(), String> {
+pub fn write(session: &Path, joints: &[String], progress: &Progress) -> Result<(), RunError> {
     write_json(&session.join(PROGRESS), progress)?;
     let of = |counts: bool| {
         progress.records.iter().filter(move |record| (record.standing == Standing::Counts) == counts)
@@ -122,12 +123,9 @@ pub fn write(session: &Path, joints: &[String], progress: &Progress) -> Result<(
     make_durable(session)
 }
 
-fn write_table(file: &Path, joints: &[String], records: &[&TouchRecord]) -> Result<(), String> {
+fn write_table(file: &Path, joints: &[String], records: &[&TouchRecord]) -> Result<(), RunError> {
     if records.is_empty() {
-        return match std::fs::remove_file(file) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(unwritable(file, &error)),
-            _ => Ok(()),
-        };
+        return InUse::new(file.to_owned()).forget().map_err(RunError::unwritable(file));
     }
     let rows: Vec<_> = records.iter().map(|record| record.row()).collect();
     let of_joint = |i: usize| {
@@ -153,33 +151,27 @@ fn write_table(file: &Path, joints: &[String], records: &[&TouchRecord]) -> Resu
         extra.push((format!("dir_{joint}"), direction));
     }
     let table = TouchTable::from_rows_with(joints.to_vec(), &rows, &extra);
-    table.write(file).map_err(|error| sentence(&error.to_string()))
+    Ok(table.write(file)?)
 }
 
 /// Reads a run.
 ///
 /// # Errors
 /// A sentence: which file, what is wrong with it, and what can still be done.
-pub fn read(session: &Path) -> Result<Stored, String> {
-    let still = "The run cannot go on, but what it has touched can still be learned from in step Models.";
-    let manifest = Manifest::read(&session.join(names::MANIFEST));
-    let manifest = manifest.map_err(|error| format!("{} {still}", sentence(&error.to_string())))?;
-    let plan: RunPlan = read_json(&session.join(PLAN)).map_err(|reason| format!("{reason} {still}"))?;
-    let progress: Progress =
-        read_json(&session.join(PROGRESS)).map_err(|reason| format!("{reason} {still}"))?;
+pub fn read(session: &Path) -> Result<Stored, RunError> {
+    let manifest = Manifest::read(&session.join(names::MANIFEST)).map_err(RunError::unread)?;
+    let plan: RunPlan = read_json(&session.join(PLAN)).map_err(RunError::unread)?;
+    let progress: Progress = read_json(&session.join(PROGRESS)).map_err(RunError::unread)?;
     if plan.format != plan::FORMAT || progress.format != record::FORMAT {
-        return Err(format!("{} was written by another version of this program. {still}", session.display()));
+        return Err(RunError::OtherVersion(session.to_owned()));
     }
     let numbered = plan.touches.iter().enumerate().all(|(i, aim)| aim.touch.number == i + 1);
     let known = progress.records.iter().all(|record| plan.aim(record.number).is_some());
     if !(numbered && known) {
-        return Err(format!("Plan and touches of {} do not belong together. {still}", session.display()));
+        return Err(RunError::Mixed(session.to_owned()));
     }
     let (Some(screen), Some(chain)) = (manifest.touchscreen, manifest.chain) else {
-        return Err(format!(
-            "{} does not say which screen was touched with which arm. {still}",
-            session.join(names::MANIFEST).display()
-        ));
+        return Err(RunError::NoScreen(session.to_owned()));
     };
     Ok(Stored { plan, progress, screen, joints: chain.joints })
 }
@@ -238,29 +230,22 @@ fn free_folder(sessions: &Path, name: &str) -> std::io::Result<PathBuf> {
     Err(std::io::ErrorKind::AlreadyExists.into())
 }
 
-fn write_json(file: &Path, value: &impl Serialize) -> Result<(), String> {
-    let text = serde_json::to_string(value).map_err(|error| {
-        format!("{} cannot be put into words ({error}). Please report it.", file.display())
-    })?;
-    files::write(file, text).map_err(|error| sentence(&error.to_string()))
+fn write_json(file: &Path, value: &impl Serialize) -> Result<(), RunError> {
+    let text = serde_json::to_string(value)
+        .map_err(|error| RunError::Unspeakable { file: file.to_owned(), error })?;
+    Ok(files::write(file, text)?)
 }
 
-fn read_json<T: DeserializeOwned>(file: &Path) -> Result<T, String> {
-    let text = files::read_text(file, Size::MODEL).map_err(|error| sentence(&error.to_string()))?;
-    serde_json::from_str(&text).map_err(|error| format!("{} is damaged ({error}).", file.display()))
+fn read_json<T: DeserializeOwned>(file: &Path) -> Result<T, RunError> {
+    let text = files::read_text(file, Size::MODEL)?;
+    serde_json::from_str(&text).map_err(|error| RunError::Damaged { file: file.to_owned(), error })
 }
 
 /// New names in a folder survive a loss of power only when the folder was written, too.
-fn make_durable(folder: &Path) -> Result<(), String> {
+fn make_durable(folder: &Path) -> Result<(), RunError> {
     #[cfg(unix)]
-    std::fs::File::open(folder)
-        .and_then(|file| file.sync_all())
-        .map_err(|error| unwritable(folder, &error))?;
+    std::fs::File::open(folder).and_then(|file| file.sync_all()).map_err(RunError::unwritable(folder))?;
     #[cfg(not(unix))]
     let _ = folder;
     Ok(())
-}
-
-fn unwritable(path: &Path, error: &std::io::Error) -> String {
-    format!("{} cannot be written ({error}). Make room or give the right to write there.", path.display())
 }

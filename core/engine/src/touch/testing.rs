@@ -11,15 +11,17 @@ use plumbline_model::session::Screen;
 use plumbline_model::touch_plan::{Pattern, PlanOptions, Side, TouchArea};
 use plumbline_model::{Pixel, Unattended};
 
+use super::command::TouchCommand;
 use super::record::{Standing, TouchRecord};
-use super::{Surroundings, TouchWorkflow};
-use crate::command::{JobId, TouchCommand};
-use crate::context::{Action, Context};
-use crate::job_list::JobList;
-use crate::notice::{NoticeLevel, Notices};
+use super::view::{TouchPhase, TouchView};
+use super::work::{Context, TouchWork};
+use super::{TouchAround, TouchWorkflow};
+use crate::ground::jobs::JobId;
+use crate::ground::jobs::list::JobList;
+use crate::ground::notice::{NoticeLevel, Notices};
+use crate::ground::{Asked, LongWork, Time, Workflow};
+use crate::robot::view::{Connection, RobotView};
 use crate::robot::{RobotControl, TouchMeasurement, TouchNews, TouchOrder, TouchRun, TouchStage};
-use crate::view::{Connection, RobotView, SourceView, TouchPhase, TouchView};
-use crate::work::{Work, WorkResult};
 
 /// The rig that comes with the program.
 pub fn rig() -> Arc<Rig> {
@@ -64,12 +66,12 @@ pub struct Desk {
     /// Where the real fingertip lands beside the place that was sent, px.
     pub bias_px: (f64, f64),
     jobs: JobList,
-    actions: Vec<Action>,
+    asked: Vec<Asked<TouchWork, RobotControl>>,
     began: Instant,
     clock: Instant,
     /// Work that is not done by itself, by its title.
     pub held: Option<&'static str>,
-    waiting: VecDeque<(JobId, Work)>,
+    waiting: VecDeque<(JobId, TouchWork)>,
 }
 
 impl Desk {
@@ -92,54 +94,50 @@ impl Desk {
             controls: VecDeque::new(),
             bias_px: (8.0, -5.0),
             jobs: JobList::default(),
-            actions: vec![],
+            asked: vec![],
             began,
             clock: began,
             held: None,
             waiting: VecDeque::new(),
         };
         desk.with(|workflow, around, context| {
-            let work = workflow.restore(around.rig);
-            context.start(work);
+            Workflow::restore(workflow, around, context);
         });
         desk
     }
 
-    fn with(&mut self, act: impl FnOnce(&mut TouchWorkflow, &Surroundings<'_>, &mut Context<'_>)) {
-        let source = SourceView::default();
-        let mut context = Context {
-            notices: &mut self.notices,
-            newest: None,
-            source: &source,
-            jobs: &mut self.jobs,
-            actions: &mut self.actions,
-        };
-        let around = Surroundings { rig: &self.rig, robot: &self.robot, models: &self.models };
+    fn with(&mut self, act: impl FnOnce(&mut TouchWorkflow, &TouchAround, &mut Context<'_>)) {
+        let around = self.around();
+        let time = Time { instant: self.clock, ..Time::now() };
+        let mut context = Context::new(&mut self.notices, &mut self.jobs, time, &mut self.asked);
         act(&mut self.workflow, &around, &mut context);
         self.work();
     }
 
+    fn around(&self) -> TouchAround {
+        let robot = Arc::new(self.robot.clone());
+        TouchAround { rig: self.rig.clone(), robot, models: self.models.clone() }
+    }
+
     /// Does the work that was asked for, and what follows from it.
     fn work(&mut self) {
-        let actions = std::mem::take(&mut self.actions);
-        for action in actions {
-            match action {
-                Action::Start(id, work) if self.held.is_some_and(|title| work.title().contains(title)) => {
+        for asked in std::mem::take(&mut self.asked) {
+            match asked {
+                Asked::Start(id, work) if self.held.is_some_and(|title| work.title().contains(title)) => {
                     self.waiting.push_back((id, work));
                 }
-                Action::Start(id, work) => self.finish_work(id, work),
-                Action::Robot(control) => self.controls.push_back(control),
-                Action::Source(_) | Action::Cancel(_) => {}
+                Asked::Start(id, work) => self.finish_work(id, work),
+                Asked::Control(control) => self.controls.push_back(control),
+                Asked::Cancel(_) => {}
             }
         }
     }
 
-    fn finish_work(&mut self, id: JobId, work: Work) {
+    fn finish_work(&mut self, id: JobId, work: TouchWork) {
         match work.run(&Unattended) {
-            Ok(WorkResult::Touch(result)) => {
-                self.with(|workflow, around, context| workflow.work_done(id, *result, around, context));
+            Ok(result) => {
+                self.with(|workflow, around, context| workflow.work_done(id, result, around, context));
             }
-            Ok(_) => panic!("work of another workflow"),
             Err(error) => {
                 self.notices.add(NoticeLevel::Error, error.to_string());
                 self.workflow.work_ended(id);
@@ -168,12 +166,11 @@ impl Desk {
     }
 
     pub fn step(&mut self) {
-        let now = self.clock;
-        self.with(|workflow, around, context| workflow.step(around, now, context));
+        self.with(|workflow, around, context| workflow.step(around, context));
     }
 
     pub fn view(&self) -> TouchView {
-        self.workflow.view(&Surroundings { rig: &self.rig, robot: &self.robot, models: &self.models })
+        self.workflow.view(&self.around())
     }
 
     /// The newest message.

@@ -9,11 +9,13 @@ use plumbline_model::session::names;
 use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose};
 use plumbline_model::{Pixel, Session, Unattended};
 
+use super::command::{ContactWith, ScreenContact, ScreenWindow, TouchCommand};
 use super::store::{PLAN, PROGRESS, REJECTED};
 use super::testing::{Desk, area, grid, only_session, rig};
-use crate::command::{ContactWith, ScreenContact, ScreenWindow, TouchCommand};
+use super::view::{ContactSource, TouchOutcome, TouchPhase};
+use crate::ground::step::StepState;
+use crate::robot::view::Connection;
 use crate::robot::{RobotControl, TouchRun, TouchStage};
-use crate::view::{Connection, ContactSource, StepState, TouchOutcome, TouchPhase};
 
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a folder for the test")
@@ -526,12 +528,12 @@ impl plumbline_model::JobContext for StopsAt {
 fn planning_stops_when_asked_to() {
     let request = super::plan::PlanRequest {
         rig: rig(),
-        place: super::path::ScreenPlace::Nominal,
+        place: crate::motion::ScreenPlace::Nominal,
         options: grid(2, 2),
         corrector: super::plan::Corrector::None,
     };
     let cancelled = super::plan::make(&request, &StopsAt(3.into()));
-    assert!(matches!(cancelled, Err(crate::jobs::JobError::Cancelled(_))));
+    assert!(matches!(cancelled, Err(crate::ground::jobs::JobError::Cancelled(_))));
     let folder = folder();
     let mut desk = Desk::new(folder.path());
     desk.held = Some("Plan touches");

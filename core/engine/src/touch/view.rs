@@ -1,294 +1,230 @@
-//! What the window shows of the workflow.
+//! Touching the screen: what is planned, what was touched, where the screen lies.
 
+use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
-use plumbline_model::touch_plan::Purpose;
+use plumbline_effects::observability::PlanScore;
+use plumbline_model::robot::Posture;
+use plumbline_model::session::{Screen, Touchscreen};
+use plumbline_model::touch_plan::{PlanOptions, Purpose, Side, TouchArea};
+use plumbline_model::touchscreen::ScreenPlacement;
+use plumbline_model::{Pixel, Point, Robot};
 
-use super::figures::{error_m, figures};
-use super::plan::{Aim, RunPlan};
-use super::record::Fate;
-use super::run::{Phase, Run, Task};
-use super::state::{Surroundings, TouchWorkflow, source};
-use crate::robot::TouchStage;
-use crate::view::{
-    ContactSource, PlanView, StepState, TouchCounts, TouchFigures, TouchOutcome, TouchPhase, TouchState,
-    TouchView,
-};
+use super::command::{Correction, ScreenWindow};
+use crate::ground::step::StepState;
 
-/// Lists that are made only when something has changed.
+/// Touching the screen.
 #[derive(Clone, Debug, Default)]
-pub struct Shown {
-    plan: Option<Arc<PlanView>>,
-    touches: Arc<[TouchState]>,
-    counts: TouchCounts,
-    figures: Option<TouchFigures>,
-    /// Which plan `plan` was made from.
-    of: Option<Arc<RunPlan>>,
+pub struct TouchView {
+    /// For the rail.
+    pub step: StepState,
+    /// What the run is doing.
+    pub phase: TouchPhase,
+    /// What to do next, a sentence.
+    pub next: String,
+    /// What was planned; `None` before.
+    pub plan: Option<Arc<PlanView>>,
+    /// The touches of the plan in its order, with what became of them.
+    pub touches: Arc<[TouchState]>,
+    /// Counts of `touches`.
+    pub counts: TouchCounts,
+    /// Time left at the pace so far.
+    pub remaining: Option<Duration>,
+    /// Figures of what was touched so far; `None` before the second touch.
+    pub figures: Option<TouchFigures>,
+    /// Folder of the session that is written or shown.
+    pub session: Option<PathBuf>,
+    /// Runs that were begun and not finished, newest first.
+    pub unfinished: Arc<[UnfinishedRun]>,
+    /// The screen as it is taken to lie now.
+    pub screen: Option<Touchscreen>,
+    /// The largest rectangle of the screen that the finger reaches, nothing in its way; `None`:
+    /// not known yet, or none.
+    pub reach: Option<TouchArea>,
+    /// Its measured place in use; `None`: nominal, from the rig file.
+    pub placement: Option<Arc<ScreenPlacement>>,
+    /// A measured place that waits to be accepted.
+    pub placement_proposal: Option<Arc<ScreenPlacement>>,
+    /// With what targets are corrected before they are sent.
+    pub correct_with: Option<Correction>,
+    /// Where contacts come from.
+    pub source: ContactSource,
+    /// The touch window; `None` while it is closed.
+    pub window: Option<ScreenWindow>,
+    /// The newest contact, for showing it.
+    pub last_contact: Option<ContactView>,
 }
 
-impl Shown {
-    /// As the workflow stands now.
-    pub fn of(workflow: &TouchWorkflow) -> Self {
-        let run = workflow.run.as_ref();
-        let planned = workflow.planned.as_ref().map(|(plan, _)| plan);
-        let Some(plan) = run.map(|run| &run.plan).or(planned) else { return Self::default() };
-        let earlier = &workflow.shown;
-        let same = earlier.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, plan));
-        let view = earlier.plan.clone().filter(|_| same).unwrap_or_else(|| Arc::new(plan.view()));
-        let touches: Arc<[TouchState]> = plan.touches.iter().map(|aim| touch_state(aim, run)).collect();
-        Self {
-            plan: Some(view),
-            counts: counts(&touches),
-            figures: run.and_then(|run| figures(run.progress.counted(), &run.screen)),
-            touches,
-            of: Some(plan.clone()),
-        }
-    }
+/// Where contacts come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ContactSource {
+    /// From nowhere: no robot is connected.
+    #[default]
+    None,
+    /// The touch window on the touch monitor.
+    Window,
+    /// The glass of the twin.
+    Twin,
 }
 
-fn touch_state(aim: &Aim, run: Option<&Run>) -> TouchState {
-    let number = aim.touch.number;
-    let record = run.and_then(|run| {
-        let newest = run.progress.records.iter().rev().find(|record| record.number == number);
-        run.progress.counted_of(number).or(newest)
-    });
-    TouchState {
-        number,
-        target: aim.touch.target,
-        target_place: aim.place(),
-        sent: aim.sent(),
-        inside: aim.inside,
-        set: aim.touch.set.clone(),
-        group: aim.touch.group.clone(),
-        side: aim.touch.side,
-        outcome: outcome(aim, run),
-        error_m: run.and_then(|run| Some(error_m(record?.touched, aim.touch.target, &run.screen))),
-        touched: record.map(|record| record.touched),
-    }
+/// What the run is doing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum TouchPhase {
+    /// Nothing is planned.
+    #[default]
+    Idle,
+    /// Plans, and looks what can be reached.
+    Planning,
+    /// Planned, nothing touched yet.
+    Planned,
+    /// The operator has to do something before it goes on (raise the screen, add the weight,
+    /// release STOP, put the screen back): a sentence.
+    Waiting {
+        /// What.
+        what: String,
+        /// For [`crate::command::TouchCommand::Prepared`], when that is what is waited for.
+        prepare: Option<(f64, f64)>,
+    },
+    /// Touches; the number of the planned touch and what the arm does just now.
+    Running {
+        /// From 1.
+        number: usize,
+        /// "settling above target 35", for people.
+        doing: String,
+    },
+    /// Holds between two touches.
+    Paused {
+        /// Why, if not because it was asked to.
+        why: Option<String>,
+    },
+    /// All touches that can be done are done.
+    Finished,
 }
 
-fn outcome(aim: &Aim, run: Option<&Run>) -> TouchOutcome {
-    if let Some(reason) = &aim.refusal {
-        return TouchOutcome::Unreachable(reason.clone());
-    }
-    let Some(run) = run else { return TouchOutcome::Waiting };
-    let number = aim.touch.number;
-    let moving = run.touch.as_ref().is_some_and(|touch| touch.number == number);
-    match run.fate(aim) {
-        _ if moving => TouchOutcome::UnderWay,
-        Fate::Waiting => TouchOutcome::Waiting,
-        // Touched means on disk.
-        Fate::Touched if run.unwritten == Some(number) => TouchOutcome::UnderWay,
-        Fate::Touched => TouchOutcome::Touched,
-        Fate::Missed(why) => TouchOutcome::Missed(why),
-        Fate::Skipped => TouchOutcome::Skipped,
-        Fate::Rejected => TouchOutcome::Rejected,
-    }
+/// A plan and what is known of it before it runs.
+#[derive(Clone, Debug)]
+pub struct PlanView {
+    /// What was asked.
+    pub options: PlanOptions,
+    /// Touches that can be reached.
+    pub reachable: usize,
+    /// Why others cannot, with how many, commonest first.
+    pub refusals: Vec<(String, usize)>,
+    /// How long it takes, estimated.
+    pub duration: Duration,
+    /// What the plan will be able to tell apart; `None` when it could not be scored.
+    pub score: Option<PlanScore>,
+    /// Postures at the contacts that can be reached, for drawing; in the order of the plan.
+    pub postures: Arc<[Option<Posture>]>,
 }
 
-fn counts(touches: &[TouchState]) -> TouchCounts {
-    let mut counts = TouchCounts { planned: touches.len(), ..TouchCounts::default() };
-    for touch in touches {
-        match touch.outcome {
-            TouchOutcome::Touched => counts.touched += 1,
-            TouchOutcome::Missed(_) => counts.missed += 1,
-            TouchOutcome::Skipped => counts.skipped += 1,
-            TouchOutcome::Rejected => counts.rejected += 1,
-            TouchOutcome::Unreachable(_) => counts.unreachable += 1,
-            TouchOutcome::Waiting | TouchOutcome::UnderWay => {}
-        }
-    }
-    counts
+/// A planned touch and what became of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TouchState {
+    /// From 1.
+    pub number: usize,
+    /// Pixel to be touched.
+    pub target: Pixel<Screen>,
+    /// Place of that pixel on the glass.
+    pub target_place: Point<Robot>,
+    /// The point that is sent: the place of the pixel, or what the model makes of it.
+    pub sent: Point<Robot>,
+    /// Whether the model that is used knows this part of the screen; true without a model.
+    pub inside: bool,
+    /// Label for blocking.
+    pub set: String,
+    /// Label of repeats.
+    pub group: String,
+    /// From where it is approached.
+    pub side: Side,
+    /// What became of it.
+    pub outcome: TouchOutcome,
+    /// Touched minus target, m along u and v; `None` without a touch.
+    pub error_m: Option<[f64; 2]>,
+    /// Pixel that was touched.
+    pub touched: Option<Pixel<Screen>>,
 }
 
-impl TouchWorkflow {
-    /// What the window shows.
-    pub fn view(&self, around: &Surroundings<'_>) -> TouchView {
-        let Shown { plan, touches, counts, figures, .. } = self.shown.clone();
-        TouchView {
-            step: self.step_state(around),
-            phase: self.phase(),
-            next: self.next(around),
-            plan,
-            touches,
-            counts,
-            remaining: self.active_run().and_then(Run::remaining),
-            figures,
-            session: self.run.as_ref().map(|run| run.session.clone()),
-            unfinished: self.runs.unfinished.as_slice().into(),
-            screen: Some(self.screen().unwrap_or(&around.rig.touchscreen).clone()),
-            reach: self.reach,
-            placement: self.placement.clone(),
-            placement_proposal: self.proposal.as_ref().map(|proposal| proposal.placement.clone()),
-            correct_with: self.correct_with,
-            source: source(around.robot),
-            window: self.window.clone(),
-            last_contact: self.last_contact,
-        }
-    }
-
-    fn phase(&self) -> TouchPhase {
-        if self.planning.is_some() {
-            return TouchPhase::Planning;
-        }
-        let Some(run) = &self.run else {
-            return if self.planned.is_some() { TouchPhase::Planned } else { TouchPhase::Idle };
-        };
-        match &run.phase {
-            Phase::Working => running(run),
-            // The arm still moves.
-            Phase::Paused(_) if run.touch.is_some() => running(run),
-            Phase::Paused(why) => TouchPhase::Paused { why: why.clone() },
-            Phase::Stuck(reason) => TouchPhase::Waiting { what: reason.clone(), prepare: None },
-            Phase::Preparing(wanted) => TouchPhase::Waiting {
-                what: preparation(run.progress.prepared, *wanted),
-                prepare: Some((wanted[0], wanted[1])),
-            },
-            Phase::Finished => TouchPhase::Finished,
-        }
-    }
-
-    fn step_state(&self, around: &Surroundings<'_>) -> StepState {
-        if self.planning.is_some() || self.starting.is_some() || self.active_run().is_some() {
-            return StepState::Running;
-        }
-        let Some(trained) = &self.runs.trained else { return StepState::NotDone };
-        let from_itself = self.placement.as_ref().is_some_and(|p| trained.gave_placement == Some(p.at));
-        if from_itself || trained.screen == self.placed_screen(around.rig) {
-            StepState::Done
-        } else {
-            StepState::Stale {
-                why: "The screen was placed anew since the touches were made. If it was moved, touch again."
-                    .to_owned(),
-            }
-        }
-    }
-
-    /// What to do next, with a warning when the touch window does not fit.
-    fn next(&self, around: &Surroundings<'_>) -> String {
-        let next = self.next_step(around);
-        match self.window_warning(around) {
-            Some(warning) => format!("{warning} {next}"),
-            None => next,
-        }
-    }
-
-    fn window_warning(&self, around: &Surroundings<'_>) -> Option<String> {
-        let window = self.window.as_ref()?;
-        if source(around.robot) == ContactSource::Twin {
-            return None;
-        }
-        let screen = self.screen().unwrap_or(&around.rig.touchscreen);
-        let (have, want) = ((window.width_px, window.height_px), (screen.width_px, screen.height_px));
-        (have != want).then(|| {
-            format!(
-                "The touch window has {}×{} pixels, the touchscreen of the rig {}×{}: open it full screen on the touch monitor, or correct the rig file.",
-                have.0, have.1, want.0, want.1
-            )
-        })
-    }
-
-    fn next_step(&self, around: &Surroundings<'_>) -> String {
-        if self.planning.is_some() {
-            return "The plan is being made. Nothing moves.".to_owned();
-        }
-        if self.starting.is_some() {
-            return "The run is being opened.".to_owned();
-        }
-        if let Some(run) = &self.run {
-            return self.next_of_run(run, around);
-        }
-        if let Some((plan, _)) = &self.planned {
-            return match (plan.reachable(), self.trouble(around)) {
-                (0, _) => "The arm reaches none of these targets. Choose another area.".to_owned(),
-                (_, Some(trouble)) => trouble,
-                (count, None) => format!("Touch {count} targets. The arm moves."),
-            };
-        }
-        if self.proposal.is_some() {
-            return "Compare the measured place of the screen with the one in use, then accept or discard it."
-                .to_owned();
-        }
-        if let Some(unfinished) = self.runs.unfinished.first() {
-            let (touched, planned) = (unfinished.touched, unfinished.planned);
-            return format!("Open the unfinished run ({touched} of {planned} touched), or plan a new one.");
-        }
-        if self.placement.is_none() {
-            return "Measure where the screen lies first: plan to touch its corners.".to_owned();
-        }
-        "Choose area and pattern, then plan the touches.".to_owned()
-    }
-
-    fn next_of_run(&self, run: &Run, around: &Surroundings<'_>) -> String {
-        match &run.phase {
-            Phase::Working => match running(run) {
-                TouchPhase::Running { doing, .. } => format!("The arm works: {doing}."),
-                _ => "The arm works.".to_owned(),
-            },
-            Phase::Paused(Some(why)) => why.clone(),
-            Phase::Paused(None) if run.screen != self.placed_screen(around.rig) => format!(
-                "{} touches are left. The screen was placed anew since the run was begun: go on only if it was not moved, else finish this run and plan a new one.",
-                run.left()
-            ),
-            Phase::Paused(None) => format!("{} touches are left. Go on; the arm moves.", run.left()),
-            Phase::Stuck(reason) => reason.clone(),
-            Phase::Preparing(wanted) => preparation(run.progress.prepared, *wanted),
-            Phase::Finished if self.placing.is_some() => {
-                "The place of the screen is being measured from the touches.".to_owned()
-            }
-            Phase::Finished if self.proposal.is_some() => {
-                "Compare the measured place of the screen with the one in use, then accept or discard it."
-                    .to_owned()
-            }
-            Phase::Finished => match run.plan.options.purpose {
-                Purpose::Train => "Train models from these touches: step Models.".to_owned(),
-                Purpose::PlaceScreen => "Plan the touches that models are trained on.".to_owned(),
-                Purpose::Check => "Read off how far touches land from their targets.".to_owned(),
-            },
-        }
-    }
+/// What became of a planned touch.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum TouchOutcome {
+    /// Not done yet.
+    #[default]
+    Waiting,
+    /// Cannot be reached: why.
+    Unreachable(String),
+    /// Under way.
+    UnderWay,
+    /// Touched, and on disk.
+    Touched,
+    /// No contact: why.
+    Missed(String),
+    /// Left out by the operator.
+    Skipped,
+    /// Touched, but does not count.
+    Rejected,
 }
 
-fn running(run: &Run) -> TouchPhase {
-    let (number, doing) = match (&run.touch, run.task()) {
-        (Some(touch), _) => {
-            let number = touch.number;
-            (
-                number,
-                match touch.stage {
-                    None | Some(TouchStage::Approaching) => format!("moving above target {number}"),
-                    Some(TouchStage::Settling) => format!("settling above target {number}"),
-                    Some(TouchStage::Lowering) => format!("lowering to target {number}"),
-                    Some(TouchStage::Dwelling) => format!("resting on target {number}"),
-                    Some(TouchStage::Retreating) => format!("going up from target {number}"),
-                },
-            )
-        }
-        (None, Some(Task::Route(number))) => (number, format!("looking for the way to target {number}")),
-        (None, _) => {
-            let number = run.unwritten.or_else(|| run.next().map(|aim| aim.touch.number)).unwrap_or(1);
-            (number, format!("writing touch {number} to disk"))
-        }
-    };
-    let holds = run.pause || run.phase != Phase::Working;
-    let doing = if holds { format!("{doing}, then it pauses") } else { doing };
-    TouchPhase::Running { number, doing }
+/// Numbers of touches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TouchCounts {
+    /// In the plan.
+    pub planned: usize,
+    /// Touched and counted.
+    pub touched: usize,
+    /// Without a contact.
+    pub missed: usize,
+    /// Left out.
+    pub skipped: usize,
+    /// Touched and not counted.
+    pub rejected: usize,
+    /// Out of reach.
+    pub unreachable: usize,
 }
 
-/// What has to be done by hand; a sentence.
-fn preparation([height_m, mass_kg]: [f64; 2], [to_m, to_kg]: [f64; 2]) -> String {
-    let mut parts = vec![];
-    if to_m != height_m {
-        parts.push(match to_m {
-            0.0 => "put the screen back on the table".to_owned(),
-            _ => format!("put the screen on a block of {:.0} mm", to_m * 1e3),
-        });
-    }
-    if to_kg != mass_kg {
-        parts.push(match to_kg {
-            0.0 => "take the weight off the hand".to_owned(),
-            _ => format!("fix a weight of {:.0} g at the palm", to_kg * 1e3),
-        });
-    }
-    crate::text::sentence(&format!("{}, then say that it is done; the arm goes on", parts.join(" and ")))
+/// Figures of what was touched.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TouchFigures {
+    /// Touches that count.
+    pub count: usize,
+    /// Mean distance touched − target in the glass, m.
+    pub mean_m: f64,
+    /// 95 % interval of the mean, m.
+    pub mean_interval_m: [f64; 2],
+    /// Largest, m.
+    pub largest_m: f64,
+    /// Mean of touched − target along u and v, m.
+    pub bias_m: [f64; 2],
+    /// Spread of repeats in the glass (rms about the mean of their group), m: the noise floor;
+    /// `None` without repeats.
+    pub noise_m: Option<f64>,
+    /// Repeats behind it.
+    pub repeats: usize,
+}
+
+/// A run that was begun and not finished.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnfinishedRun {
+    /// Session folder.
+    pub session: PathBuf,
+    /// When it was begun.
+    pub started: jiff::Timestamp,
+    /// For what.
+    pub purpose: Purpose,
+    /// Touched so far.
+    pub touched: usize,
+    /// Planned.
+    pub planned: usize,
+}
+
+/// A contact, for showing it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactView {
+    /// Where.
+    pub pixel: Pixel<Screen>,
+    /// Counts contacts.
+    pub number: u64,
+    /// Whether it still lasts.
+    pub is_down: bool,
 }

@@ -9,17 +9,17 @@ use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::touch_plan::TouchArea;
 use plumbline_model::touchscreen::ScreenPlacement;
 
-use super::path::{Planner, ScreenPlace, TouchPace};
 use super::placement::{self, Proposal};
 use super::plan::{self, Aim, PlanRequest, RunPlan, TIP};
 use super::record::{Progress, TouchRecord};
+use super::refusal::{RunError, Unplaced};
 use super::store::{self, Runs, Stored};
-use crate::jobs::JobError;
-use crate::robot::TouchOrder;
-use crate::text::sentence;
-
-/// The place of the screen in use, in the world's folder.
-pub const PLACEMENT_FILE: &str = "screen.toml";
+use crate::ground;
+use crate::ground::LongWork;
+use crate::ground::jobs::JobError;
+use crate::ground::shelf::InUse;
+use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
+use crate::robot::{RobotControl, TouchOrder};
 
 /// Work of this workflow.
 #[derive(Clone, Debug)]
@@ -41,6 +41,8 @@ pub enum TouchWork {
         rig: Arc<Rig>,
         /// What will be done.
         plan: Arc<RunPlan>,
+        /// When it was asked for.
+        started: Timestamp,
     },
     /// Reads a run that was begun earlier.
     Open {
@@ -75,15 +77,15 @@ pub enum TouchWork {
     },
     /// Makes a measured place of the screen the one in use.
     Accept {
-        /// The file that keeps it.
-        file: PathBuf,
+        /// Where it is kept.
+        kept: InUse,
         /// The place.
         placement: Arc<ScreenPlacement>,
     },
     /// Removes the file, so that the nominal place is used again.
     Forget {
         /// Which.
-        file: PathBuf,
+        kept: InUse,
     },
 }
 
@@ -150,19 +152,23 @@ pub enum TouchResult {
         /// For the next target.
         planner: Option<Arc<Planner>>,
         /// The order.
-        order: Result<Box<TouchOrder>, String>,
+        order: Result<Box<TouchOrder>, NoWay>,
     },
     /// A measured place of the screen, or why the touches do not tell.
-    Placed(Result<Proposal, String>),
+    Placed(Result<Proposal, Arc<Unplaced>>),
     /// It is in use from now on.
     Saved(Arc<ScreenPlacement>),
     /// The nominal place is in use.
     Forgotten,
 }
 
-impl TouchWork {
-    /// What it does, for people.
-    pub fn title(&self) -> String {
+/// What the handlers of this room may reach besides their own workflow.
+pub type Context<'a> = ground::Context<'a, TouchWork, RobotControl>;
+
+impl LongWork for TouchWork {
+    type Result = TouchResult;
+
+    fn title(&self) -> String {
         match self {
             Self::Restore { .. } => "Read the place of the screen".to_owned(),
             Self::Plan(_) => "Plan touches".to_owned(),
@@ -176,8 +182,7 @@ impl TouchWork {
         }
     }
 
-    /// Whether it is over so soon that it needs no line when it is done.
-    pub fn is_quiet(&self) -> bool {
+    fn is_quiet(&self) -> bool {
         matches!(
             self,
             Self::Restore { .. }
@@ -190,8 +195,7 @@ impl TouchWork {
         )
     }
 
-    /// Does it, on the thread of the caller.
-    pub fn run(self, context: &dyn JobContext) -> Result<TouchResult, JobError> {
+    fn run(self, context: &dyn JobContext) -> Result<TouchResult, JobError> {
         match self {
             Self::Restore { folder, rig } => Ok(restore(&folder, &rig)),
             Self::Plan(request) => match plan::make(&request, context) {
@@ -199,60 +203,57 @@ impl TouchWork {
                 Err(JobError::Cancelled(_)) => Ok(TouchResult::NotPlanned),
                 Err(error) => Err(error),
             },
-            Self::Begin { sessions, rig, plan } => begin(&sessions, &rig, &plan).map_err(JobError::Failed),
+            Self::Begin { sessions, rig, plan, started } => {
+                begin(&sessions, &rig, &plan, started).map_err(JobError::failed)
+            }
             Self::Open { session, rig } => {
-                let stored = open(&session, &rig).map_err(JobError::Failed)?;
+                let stored = open(&session, &rig).map_err(JobError::failed)?;
                 Ok(TouchResult::Opened { session, stored: Box::new(stored) })
             }
             Self::Write { session, joints, progress, revision } => {
-                let problem = store::write(&session, &joints, &progress).err();
+                let problem = store::write(&session, &joints, &progress).err().map(|error| error.to_string());
                 Ok(TouchResult::Written { revision, problem })
             }
             Self::Route(request) => Ok(route(request)),
             Self::Place { session, rig, joints, touches } => {
                 let placed = placement::place(&rig, &joints, &touches);
                 let proposal = |placement| Proposal { placement: Arc::new(placement), session };
-                Ok(TouchResult::Placed(placed.map(proposal)))
+                Ok(TouchResult::Placed(placed.map(proposal).map_err(Arc::new)))
             }
-            Self::Accept { file, placement } => {
-                let words = |error: &dyn std::fmt::Display| JobError::Failed(sentence(&error.to_string()));
-                if let Some(folder) = file.parent() {
-                    std::fs::create_dir_all(folder).map_err(|error| words(&error))?;
-                }
-                placement.write(&file).map_err(|error| words(&error))?;
+            Self::Accept { kept, placement } => {
+                kept.put(JobError::told, |file| placement.write(file).map_err(JobError::told))?;
                 Ok(TouchResult::Saved(placement))
             }
-            Self::Forget { file } => match std::fs::remove_file(&file) {
-                Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(JobError::Failed(format!(
-                    "{} cannot be removed: {error}. Remove it by hand.",
-                    file.display()
-                ))),
-                _ => Ok(TouchResult::Forgotten),
-            },
+            Self::Forget { kept } => {
+                kept.forget().map_err(|error| JobError::not_removed(kept.file(), &error))?;
+                Ok(TouchResult::Forgotten)
+            }
         }
     }
 }
 
+/// The place of the screen in use, in the world's folder.
+pub fn placement_in(folder: &std::path::Path) -> InUse {
+    InUse::new(folder.join("screen.toml"))
+}
+
 fn restore(folder: &std::path::Path, rig: &Rig) -> TouchResult {
-    let file = folder.join(PLACEMENT_FILE);
-    let nominal = |error: &dyn std::fmt::Display| {
-        format!("{} Until then the nominal place is used.", sentence(&error.to_string()))
-    };
-    let placement = match plumbline_model::files::present(&file) {
-        Ok(false) => None,
-        Ok(true) => {
-            Some(ScreenPlacement::read(&file, &rig.name).map(Arc::new).map_err(|error| nominal(&error)))
-        }
-        Err(error) => Some(Err(nominal(&error))),
-    };
+    let kept =
+        placement_in(folder).read(|file| ScreenPlacement::read(file, &rig.name).map_err(JobError::told));
+    let nominal = |error| format!("{error} Until then the nominal place is used.");
+    let placement = kept.map(|placement| placement.map(Arc::new)).map_err(nominal).transpose();
     // A rig without this finger cannot touch anyway; planning says so.
     let reach = TouchArea::reached_by(rig, TIP).ok().flatten();
     TouchResult::Restored { placement, runs: store::list(&folder.join("sessions")), reach }
 }
 
-fn begin(sessions: &std::path::Path, rig: &Rig, plan: &Arc<RunPlan>) -> Result<TouchResult, String> {
-    let chain = rig.chain(TIP).map_err(|error| sentence(&error.to_string()))?;
-    let started = Timestamp::now();
+fn begin(
+    sessions: &std::path::Path,
+    rig: &Rig,
+    plan: &Arc<RunPlan>,
+    started: Timestamp,
+) -> Result<TouchResult, RunError> {
+    let chain = rig.chain(TIP)?;
     let joints = chain.names().to_vec();
     let manifest = store::manifest(&rig.name, &rig.touchscreen, &joints, plan, started);
     let progress = Progress::new(plan.options.purpose, started, plan.reachable());
@@ -261,13 +262,11 @@ fn begin(sessions: &std::path::Path, rig: &Rig, plan: &Arc<RunPlan>) -> Result<T
     Ok(TouchResult::Begun { session, stored: Box::new(stored) })
 }
 
-fn open(session: &std::path::Path, rig: &Rig) -> Result<Stored, String> {
+fn open(session: &std::path::Path, rig: &Rig) -> Result<Stored, RunError> {
     let stored = store::read(session)?;
-    let chain = rig.chain(TIP).map_err(|error| sentence(&error.to_string()))?;
+    let chain = rig.chain(TIP)?;
     if stored.joints != chain.names() {
-        return Err("The run was made with another arm than this robot's, so it cannot go on with it. \
-                    What it has touched can still be learned from in step Models."
-            .to_owned());
+        return Err(RunError::OtherArm);
     }
     Ok(stored)
 }

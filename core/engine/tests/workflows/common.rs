@@ -6,8 +6,11 @@ use std::time::{Duration, Instant};
 
 use image::{DynamicImage, RgbImage};
 use nalgebra::Point3;
+use plumbline_engine::eyes::CornersStage;
 use plumbline_engine::eyes::place::pose_at;
-use plumbline_engine::stages::{CornersStage, ProbeStage, RectifyStage, Timed};
+use plumbline_engine::ground::Time;
+use plumbline_engine::ground::stage::{Stage, Timed};
+use plumbline_engine::live::{ProbeStage, RectifyStage};
 use plumbline_engine::state::State;
 use plumbline_engine::view::SourceView;
 use plumbline_engine::{Action, Command, Skipped, View};
@@ -129,6 +132,8 @@ pub struct Desk {
     pub to_source: Vec<plumbline_engine::Control>,
     /// Work is left alone until [`Desk::work`] is called.
     pub hold_work: bool,
+    /// What time it is; `None`: that of the system.
+    pub time: Option<Time>,
 }
 
 impl Desk {
@@ -142,6 +147,7 @@ impl Desk {
             seq: 0,
             to_source: Vec::new(),
             hold_work: false,
+            time: None,
         };
         desk.state.source_changed(SourceView {
             description: "synthetic pairs".to_owned(),
@@ -154,34 +160,42 @@ impl Desk {
 
     /// Applies a command and what follows from it.
     pub fn apply(&mut self, command: impl Into<Command>) {
+        self.state.hold_time(self.time);
         self.state.apply(command.into());
         self.react();
+    }
+
+    fn now(&self) -> Instant {
+        self.time.map_or_else(Instant::now, |time| time.instant)
     }
 
     /// Shows a pair.
     pub fn show(&mut self, pair: &StereoFrame) {
         let mut pair = pair.clone();
-        pair.stamp = Stamp { seq: self.seq, captured_at: Instant::now() };
+        let now = self.now();
+        pair.stamp = Stamp { seq: self.seq, captured_at: now };
         self.seq += 1;
-        self.state.frame(0, pair, Instant::now());
+        self.state.hold_time(self.time);
+        self.state.frame(0, pair, now);
         self.react();
     }
 
     fn react(&mut self) {
+        let now = self.now();
         if let Some(input) = self.state.corners_input() {
             let stamp = input.frame.stamp;
             let result = self.corners.process(input);
-            self.state.looked(Timed { stamp, busy: Duration::ZERO, result }, Instant::now());
+            self.state.looked(Timed { stamp, busy: Duration::ZERO, result }, now);
         }
         if let Some(input) = self.state.rectify_input() {
             let stamp = input.frame.stamp;
             let result = self.rectify.process(input);
-            self.state.rectified(Timed { stamp, busy: Duration::ZERO, result }, Instant::now());
+            self.state.rectified(Timed { stamp, busy: Duration::ZERO, result }, now);
         }
         if let Some(input) = self.state.probe_input() {
             let stamp = input.frame.stamp;
             let result = self.probe.process(input);
-            self.state.probed(Timed { stamp, busy: Duration::ZERO, result }, Instant::now());
+            self.state.probed(Timed { stamp, busy: Duration::ZERO, result }, now);
         }
         if !self.hold_work {
             self.work();
@@ -211,7 +225,7 @@ impl Desk {
 
     /// What the window would show.
     pub fn view(&mut self) -> View {
-        self.state.view(Skipped::default(), 0, Instant::now())
+        self.state.view(Skipped::default(), 0, self.now())
     }
 
     /// The newest message.

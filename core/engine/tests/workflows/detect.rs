@@ -6,8 +6,9 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use image::{Rgb, RgbImage};
+use plumbline_engine::detect::DetectStage;
 use plumbline_engine::detect::{Detects, OpenDetector};
-use plumbline_engine::stages::{DetectStage, Timed};
+use plumbline_engine::ground::stage::{Stage, Timed};
 use plumbline_engine::state::State;
 use plumbline_engine::view::{DetectionTiming, DetectorFacts, DetectorState, SourceView};
 use plumbline_engine::{

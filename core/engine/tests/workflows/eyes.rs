@@ -1,6 +1,7 @@
 //! Calibrating the eyes from the first pair to the accepted result, on synthetic pairs.
 
 use crate::common::{Desk, WALL_M, board, board_pairs, eyes, resized, swapped, wall_pair};
+use plumbline_engine::ground::stage::Stage;
 use plumbline_engine::jobs::Outcome;
 use plumbline_engine::view::{CaptureHint, JobState, Origin, StepState};
 use plumbline_engine::{
@@ -326,12 +327,14 @@ fn nothing_unwanted_is_computed_and_nothing_old_is_shown() {
     desk.apply(LiveCommand::Want(Products::default()));
     desk.apply(LiveCommand::Want(Products { rectified: true, ..Products::default() }));
     desk.hold_work = true;
-    let late = plumbline_engine::stages::RectifyStage::default().process(before);
+    let late = plumbline_engine::live::RectifyStage::default().process(before);
     let shown = desk.view().live.rectified.as_ref().expect("of the new aim").left.clone();
     let stamp = plumbline_model::Stamp { seq: 0, captured_at: std::time::Instant::now() };
     let busy = std::time::Duration::ZERO;
-    desk.state
-        .rectified(plumbline_engine::stages::Timed { stamp, busy, result: late }, std::time::Instant::now());
+    desk.state.rectified(
+        plumbline_engine::ground::stage::Timed { stamp, busy, result: late },
+        std::time::Instant::now(),
+    );
     let still = desk.view().live.rectified.as_ref().expect("shown").left.clone();
     assert!(std::sync::Arc::ptr_eq(&shown, &still));
 }

@@ -7,5 +7,4 @@ mod detect;
 mod eyes;
 mod journal;
 mod measured;
-mod offline;
 mod threads;

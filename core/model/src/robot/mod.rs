@@ -38,3 +38,4 @@ pub use rig::{
     Arm, Board, Bus, CoupledLimit, Direction as ServoDirection, EyeMount, Gate, NamedPose, Rig, RigPart,
     Servo, TableTop, TipName, WorkPatch,
 };
+pub use rig_file::default_rig;

@@ -191,6 +191,11 @@ struct GatePart {
     floor_m: f64,
 }
 
+/// The rig that is used unless another one is chosen.
+pub fn default_rig() -> Arc<Rig> {
+    Arc::new(Rig::built_in("nico").expect("the rig that comes with the program is tested"))
+}
+
 impl Rig {
     /// Names of the rigs that come with the program.
     pub fn built_in_names() -> impl Iterator<Item = &'static str> {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use plumbline_correction::Method;
-use plumbline_engine::offline::{
+use plumbline_offline::{
     CalibrateArgs, CheckArgs, CorrectArgs, DetectEvalArgs, DisparityArgs, GapArgs, IkArgs, LocateArgs,
     PredictArgs, Split, TrainArgs, calibrate_stereo, check, correct, detect_eval, disparity, gap, ik, locate,
     predict, scores, train,

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use image::GrayImage;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
-use plumbline_engine::offline::{CalibrateArgs, calibrate_stereo};
+use plumbline_offline::{CalibrateArgs, calibrate_stereo};
 use plumbline_model::formats::CalibrationFormat;
 use plumbline_model::frame::Board;
 use plumbline_model::robot::Rig;

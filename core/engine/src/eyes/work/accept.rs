@@ -5,9 +5,10 @@ use std::sync::Arc;
 use plumbline_model::StereoCalibration;
 
 use crate::eyes::assess::{Assessment, STATED_AT_M};
+use crate::eyes::map::TableMap;
 use crate::eyes::store::Store;
-use crate::jobs::JobError;
-use crate::view::{AcceptedCalibration, EarlierCalibration, TableMap};
+use crate::eyes::view::{AcceptedCalibration, EarlierCalibration};
+use crate::ground::jobs::JobError;
 
 /// Keep a calibration and make it the one in use.
 #[derive(Clone, Debug)]
@@ -20,6 +21,8 @@ pub struct Accept {
     pub depth_per_px_m: Option<f64>,
     /// Where accepted ones are kept.
     pub store: Store,
+    /// When it was accepted.
+    pub accepted: jiff::Timestamp,
 }
 
 /// A calibration that is kept.
@@ -34,7 +37,7 @@ pub struct Accepted {
 impl Accept {
     /// Writes it; only when that succeeded does it become the one in use.
     pub fn run(self) -> Result<Accepted, JobError> {
-        let entry = self.store.accept(&self.calibration).map_err(JobError::failed)?;
+        let entry = self.store.accept(&self.calibration, self.accepted).map_err(JobError::failed)?;
         let earlier = self.store.list().map_err(JobError::failed)?;
         let in_use = AcceptedCalibration {
             id: entry.id,

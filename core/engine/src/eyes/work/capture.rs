@@ -6,8 +6,8 @@ use image::{GrayImage, RgbImage};
 use plumbline_model::{Chessboard, Corners, Eye, InnerCorners, StereoFrame};
 use plumbline_vision::chessboard::{self, NotSeen};
 
-use crate::jobs::JobError;
-use crate::view::{BoardSeen, CollectedPair};
+use crate::eyes::view::{BoardSeen, CollectedPair};
+use crate::ground::jobs::JobError;
 
 /// Find the board in one pair.
 #[derive(Clone, Debug)]
@@ -142,7 +142,7 @@ mod tests {
 
     #[test]
     fn another_board_is_named_in_squares() {
-        let board = crate::eyes::default_board();
+        let board = plumbline_model::default_board();
         let seen = board_seen(Some(InnerCorners { columns: 9, rows: 6 }), &board);
         assert!(seen.text.contains("10×7 squares (9×6 inner corners), not 9×6"), "{}", seen.text);
         let same = board_seen(Some(InnerCorners { columns: 8, rows: 5 }), &board);
@@ -152,7 +152,7 @@ mod tests {
     #[test]
     fn the_eye_that_does_not_see_the_board_is_named() {
         let blank = || GrayImage::from_pixel(160, 120, image::Luma([128]));
-        let error = find_in_both("pair".into(), [blank(), blank()], &crate::eyes::default_board())
+        let error = find_in_both("pair".into(), [blank(), blank()], &plumbline_model::default_board())
             .expect_err("blank");
         assert_eq!(error.eye, Eye::Left);
         assert!(error.to_string().starts_with("In the left image no chessboard is visible"), "{error}");

@@ -8,9 +8,9 @@ use plumbline_model::files;
 use plumbline_model::formats::{CalibrationFormat, mrcal};
 use plumbline_vision::calibration_file;
 
-use crate::command::ExportFormat;
-use crate::jobs::JobError;
-use crate::text::sentence;
+use crate::eyes::command::ExportFormat;
+use crate::ground::jobs::JobError;
+use crate::ground::text::sentence;
 
 /// Write a calibration to a file.
 #[derive(Clone, Debug)]

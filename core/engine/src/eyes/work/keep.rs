@@ -6,7 +6,7 @@ use image::RgbImage;
 use plumbline_model::session::{Manifest, RigReference, names};
 use plumbline_model::{Eye, StereoFrame, files};
 
-use crate::jobs::JobError;
+use crate::ground::jobs::JobError;
 
 /// Keep one pair.
 #[derive(Clone, Debug)]
@@ -106,10 +106,10 @@ mod tests {
     fn a_kill_leaves_whole_pairs() {
         const TEST: &str = "eyes::work::keep::tests::a_kill_leaves_whole_pairs";
         let count = |session: &Path| Session::read(session).map_or(0, |read| read.stereo.pairs.len());
-        if let Some(folder) = crate::kept::writing() {
+        if let Some(folder) = crate::ground::kept::writing() {
             let session = folder.join("session");
             let there = count(&session);
-            for number in crate::kept::until_killed() {
+            for number in crate::ground::kept::until_killed() {
                 keep(&session, there + number).expect("kept");
             }
             return;
@@ -120,7 +120,7 @@ mod tests {
         keep(&session, 0).expect("kept");
         let mut pairs = 1;
         for nth in 0..15 {
-            crate::kept::kill(TEST, folder.path(), nth);
+            crate::ground::kept::kill(TEST, folder.path(), nth);
             let read = Session::read(&session).expect("a session");
             assert!(read.stereo.unpaired.len() <= 1 && read.stereo.pairs.len() >= pairs, "kill {nth}");
             pairs = read.stereo.pairs.len();
@@ -137,7 +137,7 @@ mod tests {
     #[test]
     fn a_full_disk_is_told_and_leaves_no_half_image() {
         const TEST: &str = "eyes::work::keep::tests::a_full_disk_is_told_and_leaves_no_half_image";
-        if let Some(folder) = crate::kept::writing() {
+        if let Some(folder) = crate::ground::kept::writing() {
             match keep(&folder.join("session"), 1) {
                 Err(JobError::Failed(why)) => assert!(why.contains("is in memory only"), "{why}"),
                 other => panic!("kept on a full disk: {other:?}"),
@@ -148,7 +148,10 @@ mod tests {
         let session = folder.path().join("session");
         keep(&session, 0).expect("kept");
         for room in [0, 1024] {
-            assert!(crate::kept::run_on_full_disk(TEST, folder.path(), room).success(), "room for {room}");
+            assert!(
+                crate::ground::kept::run_on_full_disk(TEST, folder.path(), room).success(),
+                "room for {room}"
+            );
             let read = Session::read(&session).expect("a session");
             assert_eq!((read.stereo.pairs.len(), read.stereo.unpaired.len()), (1, 0));
             assert_eq!(std::fs::read_dir(session.join("stereo/left")).expect("there").count(), 1);

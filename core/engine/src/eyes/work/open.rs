@@ -7,11 +7,11 @@ use plumbline_model::formats::{LengthUnit, ReadOptions};
 use plumbline_model::{JobContext, StereoCalibration, Workspace};
 use plumbline_vision::calibration_file;
 
-use crate::command::FileLength;
 use crate::eyes::assess::{Assessment, assess};
+use crate::eyes::command::FileLength;
 use crate::eyes::store::Store;
-use crate::jobs::JobError;
-use crate::view::Origin;
+use crate::eyes::view::Origin;
+use crate::ground::jobs::JobError;
 
 /// What is read.
 #[derive(Clone, Debug)]

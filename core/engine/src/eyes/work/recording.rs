@@ -13,8 +13,8 @@ use crate::eyes::auto_capture::{AutoCapture, Look};
 use crate::eyes::coverage::{self, Novelty};
 use crate::eyes::place::{place_of, rough_pose};
 use crate::eyes::sharpness::of_both;
-use crate::jobs::JobError;
-use crate::view::{CaptureHint, CollectedPair};
+use crate::eyes::view::{CaptureHint, CollectedPair};
+use crate::ground::jobs::JobError;
 
 /// Find the board in all pairs of a recording.
 #[derive(Clone, Debug)]
@@ -63,7 +63,8 @@ impl CollectRecording {
                 ));
             }
         };
-        let folder = folder.map_err(|error| JobError::failed(crate::text::sentence(&error.to_string())))?;
+        let folder =
+            folder.map_err(|error| JobError::failed(crate::ground::text::sentence(&error.to_string())))?;
         let wanted: Vec<&PairFiles> =
             folder.pairs().iter().filter(|pair| !self.known.contains(&pair.name)).collect();
         Ok(collect_folder(&folder, &wanted, &self.board, context)?)
@@ -72,7 +73,7 @@ impl CollectRecording {
     /// Of a video those pairs in which the board is still, sharp and somewhere new.
     fn search_video(&self, context: &dyn JobContext) -> Result<Collected, JobError> {
         let failed = |error: plumbline_hardware::SourceError| {
-            JobError::failed(crate::text::sentence(&error.to_string()))
+            JobError::failed(crate::ground::text::sentence(&error.to_string()))
         };
         let options = SourceOptions { replay: Replay::ONCE, ..SourceOptions::default() };
         let mut source = plumbline_hardware::open(&self.source, &options).map_err(failed)?;
@@ -129,7 +130,7 @@ pub fn collect_folder(
 type Found = Result<(CollectedPair, [(u32, u32); 2]), (String, String)>;
 
 fn find_in_files(folder: &PairFolder, files: &PairFiles, board: &Chessboard) -> Found {
-    let named = |reason: String| (files.name.clone(), crate::text::sentence(&reason));
+    let named = |reason: String| (files.name.clone(), crate::ground::text::sentence(&reason));
     let images = folder.load(files).map_err(|problem| named(problem.to_string()))?;
     let sizes_px = [size(&images.left), size(&images.right)];
     let images = [gray(&images.left), gray(&images.right)];

@@ -5,8 +5,8 @@ use plumbline_model::{JobContext, Workspace};
 use super::accept::in_use;
 use crate::eyes::assess::assess;
 use crate::eyes::store::Store;
-use crate::jobs::JobError;
-use crate::view::{AcceptedCalibration, EarlierCalibration};
+use crate::eyes::view::{AcceptedCalibration, EarlierCalibration};
+use crate::ground::jobs::JobError;
 
 /// Read what was accepted before.
 #[derive(Clone, Debug)]

@@ -8,7 +8,7 @@ use plumbline_model::{
 use plumbline_vision::calibrate::{self, SolveError};
 
 use crate::eyes::assess::{Assessment, assess};
-use crate::jobs::{JobError, Part};
+use crate::ground::jobs::{JobError, Part};
 
 /// Solve the collected pairs.
 #[derive(Clone, Debug)]
@@ -67,7 +67,7 @@ impl Solve {
         );
         let mut calibration = solved.map_err(|error| match error {
             SolveError::Cancelled(cancelled) => JobError::Cancelled(cancelled),
-            other => JobError::failed(crate::text::sentence(&other.to_string())),
+            other => JobError::failed(crate::ground::text::sentence(&other.to_string())),
         })?;
         if let Some(evidence) = &mut calibration.evidence {
             evidence.minutes_since_on = self.minutes_since_on;

@@ -9,12 +9,12 @@ use plumbline_model::robot::{Posture, Rig};
 
 use super::Tables;
 use super::work::{TableFigures, TablesResult, TablesWork};
-use crate::command::{GraspTable, JobId, TablesCommand};
-use crate::context::Context;
-use crate::models::work::ModelsWork;
-use crate::notice::NoticeLevel;
-use crate::text::sentence;
-use crate::view::TablesView;
+use crate::ground::jobs::JobId;
+use crate::ground::notice::NoticeLevel;
+use crate::ground::text::sentence;
+use crate::models::command::{GraspTable, TablesCommand};
+use crate::models::view::TablesView;
+use crate::models::work::{Context, ModelsWork};
 
 /// Changes that can be taken back.
 const HISTORY: usize = 100;

@@ -8,10 +8,11 @@ use plumbline_model::JobContext;
 use plumbline_model::robot::Rig;
 
 use super::{ReadTable, Tables};
-use crate::command::GraspTable;
-use crate::jobs::JobError;
-use crate::text::sentence;
-use crate::view::Field;
+use crate::ground::LongWork;
+use crate::ground::jobs::JobError;
+use crate::ground::text::sentence;
+use crate::models::command::GraspTable;
+use crate::models::view::Field;
 
 /// Values of the field along x and along y.
 const FIELD: (usize, usize) = (25, 40);
@@ -74,9 +75,10 @@ pub struct TableFigures {
     pub remarks: Vec<String>,
 }
 
-impl TablesWork {
-    /// What it does, for people.
-    pub fn title(&self) -> String {
+impl LongWork for TablesWork {
+    type Result = TablesResult;
+
+    fn title(&self) -> String {
         match self {
             Self::Keep { .. } => "Keep the tables".to_owned(),
             Self::Import { .. } => "Read a table".to_owned(),
@@ -84,13 +86,11 @@ impl TablesWork {
         }
     }
 
-    /// Whether it needs no line when it is done.
-    pub fn is_quiet(&self) -> bool {
+    fn is_quiet(&self) -> bool {
         matches!(self, Self::Keep { .. } | Self::Import { .. })
     }
 
-    /// Does it.
-    pub fn run(self, context: &dyn JobContext) -> Result<TablesResult, JobError> {
+    fn run(self, context: &dyn JobContext) -> Result<TablesResult, JobError> {
         let words = |error: TableError| JobError::failed(sentence(&error.to_string()));
         context.checkpoint()?;
         match self {

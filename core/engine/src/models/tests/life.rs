@@ -4,9 +4,11 @@ use plumbline_correction::{Touch, TouchData};
 use plumbline_model::{Cancelled, ScreenPlacement, place_screen};
 
 use super::*;
+use crate::ground::step::StepState;
+use crate::ground::{Asked, LongWork, Time, Workflow};
 use crate::models::screen::corners;
-use crate::models::{ModelsWorkflow, Surroundings};
-use crate::view::{RobotView, StepState};
+use crate::models::{ModelsAround, ModelsWorkflow};
+use crate::robot::view::RobotView;
 
 #[test]
 fn a_session_becomes_models_maps_and_one_in_use() {
@@ -49,7 +51,7 @@ fn the_map_shows_what_the_model_gains_and_where_it_ends() {
     let map = view.map.clone().expect("a map");
     assert!(map.proposed && map.method == Some(Method::M3));
     assert_eq!(map.touches.len(), 63);
-    let mean = |of: fn(&crate::view::MapTouch) -> [f64; 3]| {
+    let mean = |of: fn(&crate::models::view::MapTouch) -> [f64; 3]| {
         map.touches.iter().map(|touch| of(touch)[0].hypot(of(touch)[1])).sum::<f64>() / 63.0
     };
     let (before_m, after_m) = (mean(|touch| touch.before_m), mean(|touch| touch.after_m));
@@ -180,7 +182,11 @@ fn a_screen_that_was_placed_anew_makes_the_model_stale() {
     let mut workflow = ModelsWorkflow::new(lab.folder.path());
     let robot = RobotView::default();
     let view_on = |workflow: &ModelsWorkflow, rig: Rig| {
-        workflow.view(&Surroundings { rig: &Arc::new(rig), robot: &robot, newest_session: None })
+        workflow.view(&ModelsAround {
+            rig: Arc::new(rig),
+            robot: Arc::new(robot.clone()),
+            newest_session: None,
+        })
     };
     restore(&mut workflow, &robot);
     assert_eq!(view_on(&workflow, nico()).step, StepState::Done);
@@ -200,15 +206,12 @@ fn placed(nominal: &Touchscreen) -> ScreenPlacement {
 /// Hands a workflow what is on disk, without the rest of the state.
 fn restore(workflow: &mut ModelsWorkflow, robot: &RobotView) {
     let rig = Arc::new(nico());
-    let result = workflow.restore(&rig).run(&Unattended).expect("read");
-    let (mut notices, mut jobs, mut actions) = Default::default();
-    let mut context = crate::context::Context {
-        notices: &mut notices,
-        newest: None,
-        source: &Default::default(),
-        jobs: &mut jobs,
-        actions: &mut actions,
-    };
-    let around = Surroundings { rig: &rig, robot, newest_session: None };
-    workflow.work_done(crate::command::JobId(1), result, &around, &mut context);
+    let (mut notices, mut jobs, mut asked) = Default::default();
+    let around = ModelsAround { rig, robot: Arc::new(robot.clone()), newest_session: None };
+    let mut context = crate::models::work::Context::new(&mut notices, &mut jobs, Time::now(), &mut asked);
+    workflow.restore(&around, &mut context);
+    let Some(Asked::Start(id, work)) = asked.pop() else { panic!("it reads what is there") };
+    let result = work.run(&Unattended).expect("read");
+    let mut context = crate::models::work::Context::new(&mut notices, &mut jobs, Time::now(), &mut asked);
+    workflow.work_done(id, result, &around, &mut context);
 }

@@ -1,7 +1,7 @@
 //! What cannot be learned from, read or used, and the words that say so.
 
 use super::*;
-use crate::view::StepState;
+use crate::ground::step::StepState;
 
 /// The session with something changed in one of its files.
 fn spoiled(lab: &Lab, file: &str, change: impl FnOnce(String) -> String) -> PathBuf {

@@ -3,12 +3,12 @@
 use plumbline_correction::tables::{HeightTable, YawPoint, YawTable};
 
 use super::*;
-use crate::command::{GraspTable, TablesCommand};
+use crate::models::command::{GraspTable, TablesCommand};
 use crate::models::tables::Tables;
 
 const HEIGHT: GraspTable = GraspTable::Height;
 
-fn tell(lab: &mut Lab, command: TablesCommand) -> Arc<crate::view::TablesView> {
+fn tell(lab: &mut Lab, command: TablesCommand) -> Arc<crate::models::view::TablesView> {
     lab.tell(ModelsCommand::Tables(command)).tables.clone()
 }
 

@@ -6,7 +6,7 @@ use plumbline_hardware::joints::{Touch, TouchSource};
 
 /// The newest contact of the touch window. Clones are the same window.
 #[derive(Clone, Debug, Default)]
-pub(super) struct WindowContacts(Arc<Mutex<Option<Touch>>>);
+pub struct WindowContacts(Arc<Mutex<Option<Touch>>>);
 
 impl WindowContacts {
     /// A contact began, or ended.

@@ -11,11 +11,10 @@ use plumbline_model::robot::servo::TICK_RAD;
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 use plumbline_model::{Pixel, Point};
 
-use super::joints_of;
+use super::hand::Hand;
 use super::lowering::Descent;
+use crate::ground::text::sentence;
 use crate::robot::touch_order::{TouchMeasurement, TouchOrder, TouchRun, TouchStage};
-use crate::robot::worker::Worker;
-use crate::text::sentence;
 
 /// Above the target the encoders have to stand still for this long.
 const STILL: Duration = Duration::from_millis(150);
@@ -39,7 +38,7 @@ const THERE_RAD: f64 = 5e-4;
 const CYCLES: u64 = 4;
 
 /// What a look at a touch leads to; `Err`: it was interrupted, and why.
-pub(super) enum Step {
+pub enum Step {
     /// Nothing new.
     Same,
     /// A new stage.
@@ -73,7 +72,7 @@ struct Down {
 }
 
 /// A touch that is under way.
-pub(super) struct Run {
+pub struct Run {
     order: TouchOrder,
     stage: Stage,
     /// All joints that may move.
@@ -123,16 +122,16 @@ impl Run {
     }
 
     /// Looks at the arm and the screen, and goes on.
-    pub fn step(&mut self, worker: &mut Worker, now: Instant) -> Stepped {
-        let state = self.checked_state(worker)?;
+    pub fn step(&mut self, hand: &mut dyn Hand, now: Instant) -> Stepped {
+        let state = self.checked_state(hand)?;
         match &mut self.stage {
-            Stage::Approaching { .. } => self.approach(worker, &state, now),
-            Stage::Settling { .. } => self.settle(worker, &state, now),
+            Stage::Approaching { .. } => self.approach(hand, &state, now),
+            Stage::Settling { .. } => self.settle(hand, &state, now),
             Stage::Lowering(down) => {
                 let down = *down;
-                self.lower(worker, &state, down, now)
+                self.lower(hand, &state, down, now)
             }
-            Stage::Dwelling { .. } => self.dwell(worker, &state, now),
+            Stage::Dwelling { .. } => self.dwell(hand, &state, now),
             Stage::Retreating { moving, end } => match *moving {
                 Some(id) if !has_arrived(&state, id)? => Ok(Step::Same),
                 _ => Ok(Step::End(end.clone())),
@@ -141,28 +140,28 @@ impl Run {
     }
 
     /// The operator does not want it any more.
-    pub fn abandon(&mut self, worker: &Worker) -> Stepped {
+    pub fn abandon(&mut self, hand: &dyn Hand) -> Stepped {
         let end = TouchRun::Missed("The touch was left out.".to_owned());
         match &self.stage {
             Stage::Approaching { moving, .. } => {
                 if moving.is_some() {
-                    worker.arm()?.hold().map_err(|refusal| sentence(&refusal.to_string()))?;
+                    hand.arm()?.hold().map_err(|refusal| sentence(&refusal.to_string()))?;
                 }
                 Ok(Step::End(end))
             }
             Stage::Settling { .. } => Ok(Step::End(end)),
-            Stage::Lowering(_) | Stage::Dwelling { .. } => self.retreat(worker, end),
+            Stage::Lowering(_) | Stage::Dwelling { .. } => self.retreat(hand, end),
             Stage::Retreating { .. } => Ok(Step::Same),
         }
     }
 
     /// The newest state, unless it says that the touch cannot go on.
-    fn checked_state(&self, worker: &Worker) -> Result<Arc<JointState>, String> {
-        let state = worker.state().ok_or("The arm does not answer. Look at its cable and power.")?;
+    fn checked_state(&self, hand: &dyn Hand) -> Result<Arc<JointState>, String> {
+        let state = hand.state().ok_or("The arm does not answer. Look at its cable and power.")?;
         if let Some(reason) = &state.gone {
             return Err(sentence(reason));
         }
-        if worker.switches.stop.is_pressed() || state.stopped {
+        if hand.is_stopped() || state.stopped {
             return Err("STOP was pressed. Release it first.".to_owned());
         }
         if let Some((number, refusal)) = &state.refusal
@@ -172,7 +171,7 @@ impl Run {
         }
         let limp = |joint: &&JointIndex| state.of(**joint).is_some_and(|r| r.torque_on == Some(false));
         if let Some(joint) = self.chain.iter().find(limp) {
-            let name = worker.rig.servo_of(*joint).map_or("a joint", |servo| servo.title.as_str());
+            let name = hand.rig().servo_of(*joint).map_or("a joint", |servo| servo.title.as_str());
             return Err(format!("{name} has no torque. Switch its torque on."));
         }
         let down = match &self.stage {
@@ -188,7 +187,7 @@ impl Run {
         Ok(state)
     }
 
-    fn approach(&mut self, worker: &mut Worker, state: &JointState, now: Instant) -> Stepped {
+    fn approach(&mut self, hand: &mut dyn Hand, state: &JointState, now: Instant) -> Stepped {
         let Stage::Approaching { next, moving } = &mut self.stage else { return Ok(Step::Same) };
         if let Some(id) = *moving {
             if !has_arrived(state, id)? {
@@ -197,7 +196,7 @@ impl Run {
             (*next, *moving) = (*next + 1, None);
         }
         while let Some(posture) = self.order.approach.get(*next) {
-            if let Some(id) = go(worker, state, posture, &self.joints, self.order.speed_rad_s)? {
+            if let Some(id) = go(hand, state, posture, &self.joints, self.order.speed_rad_s)? {
                 *moving = Some(id);
                 return Ok(Step::Same);
             }
@@ -208,9 +207,9 @@ impl Run {
         Ok(Step::Next)
     }
 
-    fn settle(&mut self, worker: &mut Worker, state: &JointState, now: Instant) -> Stepped {
+    fn settle(&mut self, hand: &mut dyn Hand, state: &JointState, now: Instant) -> Stepped {
         let angles_rad = self.angles_rad(state);
-        let ticks_rad: Vec<f64> = self.chain.iter().map(|joint| tick_rad(&worker.rig, *joint)).collect();
+        let ticks_rad: Vec<f64> = self.chain.iter().map(|joint| tick_rad(hand.rig(), *joint)).collect();
         let Stage::Settling { since, still } = &mut self.stage else { return Ok(Step::Same) };
         let (since, waited) = (*since, now.saturating_duration_since(*since));
         let moved = still.angles_rad.iter().zip(&angles_rad).zip(&ticks_rad).any(|((before, now), tick)| {
@@ -227,7 +226,7 @@ impl Run {
             return Ok(Step::Same);
         }
         if waited >= SETTLE {
-            worker.warn(format!(
+            hand.warn(format!(
                 "Touch {}: the arm did not stand still within {} s above the target; it is lowered all the same. Look whether a servo trembles.",
                 self.order.number,
                 SETTLE.as_secs()
@@ -241,28 +240,28 @@ impl Run {
                     .to_owned(),
             )));
         }
-        worker.allow_touch(&self.order);
+        hand.allow_touch(&self.order);
         let down = Down { since: now, cycle: state.stamp.seq };
         self.stage = Stage::Lowering(down);
-        self.lower(worker, state, down, now).map(|_| Step::Next)
+        self.lower(hand, state, down, now).map(|_| Step::Next)
     }
 
-    fn lower(&mut self, worker: &mut Worker, state: &JointState, down: Down, now: Instant) -> Stepped {
+    fn lower(&mut self, hand: &mut dyn Hand, state: &JointState, down: Down, now: Instant) -> Stepped {
         if let Some(contact) = self.newest()?.filter(|contact| contact.at >= down.since) {
-            return self.felt(worker, state, down, contact, now);
+            return self.felt(hand, state, down, contact, now);
         }
-        let limit = LOAD_SHARE * worker.rig.gate.load;
+        let limit = LOAD_SHARE * hand.rig().gate.load;
         let heavy = state.joints.iter().filter(|reading| self.joints.contains(&reading.joint));
         if let Some((joint, load)) = heavy
             .filter_map(|reading| Some((reading.joint, reading.load?.abs())))
             .find(|(_, load)| *load > limit)
         {
-            let name = worker.rig.servo_of(joint).map_or("a joint", |servo| servo.title.as_str());
+            let name = hand.rig().servo_of(joint).map_or("a joint", |servo| servo.title.as_str());
             let end = TouchRun::Missed(format!(
                 "{name} pushed against something with {:.0} % of its strength before the screen felt a touch. Look whether the screen works and what is in the way.",
                 load * 100.0
             ));
-            return self.retreat(worker, end);
+            return self.retreat(hand, end);
         }
         let lasted = now.saturating_duration_since(down.since);
         let whole = Duration::try_from_secs_f64(self.descent.length_m() / self.order.lower_speed_m_s)
@@ -272,17 +271,17 @@ impl Run {
                 "The lowest place was reached and the screen felt nothing. Measure where the screen lies, or look whether it works."
                     .to_owned(),
             );
-            return self.retreat(worker, end);
+            return self.retreat(hand, end);
         }
         let posture = self.descent.at(lasted.as_secs_f64() * self.order.lower_speed_m_s);
-        self.follow(worker, &posture, VALID)?;
+        self.follow(hand, &posture, VALID)?;
         Ok(Step::Same)
     }
 
     /// The screen felt something while the finger was lowered.
     fn felt(
         &mut self,
-        worker: &mut Worker,
+        hand: &mut dyn Hand,
         state: &JointState,
         down: Down,
         contact: Touch,
@@ -294,18 +293,18 @@ impl Run {
             let end = TouchRun::Missed(format!(
                 "Something touched the screen {far_px:.0} px from the target, which cannot be the finger. Keep the screen free, or measure where it lies."
             ));
-            return self.retreat(worker, end);
+            return self.retreat(hand, end);
         }
         // The goals stay as they are, so that the arm neither pushes on nor sinks.
         let goals =
             state.commanded.as_ref().ok_or("The goals of the joints are not known. Connect again.")?;
-        self.follow(worker, goals, self.order.dwell + Duration::from_secs(1))?;
+        self.follow(hand, goals, self.order.dwell + Duration::from_secs(1))?;
         let of = |value: fn(&plumbline_hardware::joints::JointReading) -> Option<f64>| -> Vec<Option<f64>> {
             self.chain.iter().map(|joint| state.of(*joint).and_then(value)).collect()
         };
         let moved = contact.at.saturating_duration_since(down.since);
         let way_m = moved.as_secs_f64() * self.order.lower_speed_m_s;
-        let connected = worker.connected_at.map(|since| contact.at.saturating_duration_since(since));
+        let connected = hand.connected_at().map(|since| contact.at.saturating_duration_since(since));
         let nothing = vec![None; self.chain.len()];
         let measured = TouchMeasurement {
             pixel: Pixel::new(contact.u_px, contact.v_px),
@@ -324,12 +323,12 @@ impl Run {
         Ok(Step::Next)
     }
 
-    fn dwell(&mut self, worker: &mut Worker, state: &JointState, now: Instant) -> Stepped {
+    fn dwell(&mut self, hand: &mut dyn Hand, state: &JointState, now: Instant) -> Stepped {
         let later_rad = self.angles_rad(state);
         let Stage::Dwelling { measured, since, read, .. } = &mut self.stage else { return Ok(Step::Same) };
         let lasted = now.saturating_duration_since(*since);
         if !*read && lasted >= READ {
-            let (commanded, encoders) = worker.arm()?.at(measured.at);
+            let (commanded, encoders) = hand.arm()?.at(measured.at);
             // A servo that answers late is waited for.
             *read = (commanded.is_some() && encoders.is_some()) || lasted >= READ_AT_LAST;
             if *read {
@@ -338,7 +337,7 @@ impl Run {
                 let nothing = || vec![None; self.chain.len()];
                 measured.commanded_rad = commanded.as_ref().map_or_else(nothing, angles);
                 measured.encoder_rad = encoders.as_ref().map_or_else(nothing, angles);
-                let tip = |posture| Some(worker.rig.chain(&self.order.tip).ok()?.robot_from_tip_in(posture));
+                let tip = |posture| Some(hand.rig().chain(&self.order.tip).ok()?.robot_from_tip_in(posture));
                 measured.commanded_tip = commanded
                     .as_ref()
                     .and_then(tip)
@@ -350,20 +349,20 @@ impl Run {
         }
         measured.later_encoder_rad = later_rad;
         let end = TouchRun::Touched(measured.clone());
-        self.retreat(worker, end)
+        self.retreat(hand, end)
     }
 
-    fn retreat(&mut self, worker: &Worker, end: TouchRun) -> Stepped {
-        let state = self.checked_state(worker)?;
-        let moving = go(worker, &state, &self.order.lower[0], &self.chain, self.order.speed_rad_s)?;
+    fn retreat(&mut self, hand: &dyn Hand, end: TouchRun) -> Stepped {
+        let state = self.checked_state(hand)?;
+        let moving = go(hand, &state, &self.order.lower[0], &self.chain, self.order.speed_rad_s)?;
         self.stage = Stage::Retreating { moving, end };
         Ok(Step::Next)
     }
 
-    fn follow(&self, worker: &Worker, posture: &Posture, valid_for: Duration) -> Result<(), String> {
+    fn follow(&self, hand: &dyn Hand, posture: &Posture, valid_for: Duration) -> Result<(), String> {
         let joints = self.chain.iter().map(|joint| (*joint, posture[*joint])).collect();
         let setpoint = Setpoint { kind: SetpointKind::Position, joints, valid_for };
-        worker.arm()?.follow(setpoint).map_err(|refusal| sentence(&refusal.to_string()))
+        hand.arm()?.follow(setpoint).map_err(|refusal| sentence(&refusal.to_string()))
     }
 
     fn newest(&mut self) -> Result<Option<Touch>, String> {
@@ -378,7 +377,7 @@ impl Run {
 
 /// Begins the move of some joints to a posture; `None` when they are there.
 fn go(
-    worker: &Worker,
+    hand: &dyn Hand,
     state: &JointState,
     posture: &Posture,
     joints: &[JointIndex],
@@ -393,9 +392,9 @@ fn go(
         return Ok(None);
     }
     let end = present.with(joints, &posture.of(joints));
-    worker.paths.check(present, &end)?;
-    let pace = Pace::PeakSpeed(speed_rad_s.min(worker.rig.gate.speed_rad_s));
-    let id = worker.arm()?.begin(Move { goals, pace });
+    hand.paths().check(present, &end)?;
+    let pace = Pace::PeakSpeed(speed_rad_s.min(hand.rig().gate.speed_rad_s));
+    let id = hand.arm()?.begin(Move { goals, pace });
     id.map(Some).map_err(|refusal| sentence(&refusal.to_string()))
 }
 
@@ -414,4 +413,10 @@ fn has_arrived(state: &JointState, id: MoveId) -> Result<bool, String> {
 fn tick_rad(rig: &Rig, joint: JointIndex) -> f64 {
     let ratio = rig.servo_of(joint).map_or(1.0, |servo| servo.ratio.abs());
     TICK_RAD / ratio
+}
+
+/// Joints of the arm of a tip, its hand included.
+fn joints_of(rig: &Rig, tip: &str) -> Option<Vec<plumbline_model::robot::JointIndex>> {
+    let arm = rig.arms.iter().find(|arm| arm.tips.iter().any(|known| known.link == tip))?;
+    Some([arm.joints.clone(), arm.hand.clone()].concat())
 }

@@ -11,10 +11,11 @@ use plumbline_model::robot::{Chain, JointIndex, Posture, Rig};
 use plumbline_model::touch_plan::Side;
 use plumbline_model::{Pixel, Point, Robot, Stamp};
 
+use crate::motion::{Planner, ScreenPlace, TouchPace};
 use crate::robot::arm::{Arm, Census};
-use crate::robot::{Switches, TouchOrder, TouchRun, TouchStage, TwinDesk, TwinEyesPlug, Worker};
-use crate::touch::path::{Planner, ScreenPlace, TouchPace};
-use crate::view::Connection;
+use crate::robot::view::Connection;
+use crate::robot::{Switches, TouchOrder, TouchRun, TouchStage, Worker};
+use crate::twin::{TwinDesk, TwinEyesPlug};
 
 pub const TARGET: [f64; 2] = [960.0, 700.0];
 /// The made-up encoders read this much beside the goals, rad.

@@ -104,7 +104,7 @@ fn a_joint_without_torque_ends_every_stage() {
 #[test]
 fn disconnecting_ends_it() {
     let mut bench = bench_in(TouchStage::Lowering);
-    bench.worker.control(crate::command::RobotCommand::Disconnect.into());
+    bench.worker.control(crate::robot::command::RobotCommand::Disconnect.into());
     let text = interrupted(bench.collect().expect("it is over"));
     assert!(text.contains("disconnected"), "{text}");
     assert_eq!(bench.arm().asked.last(), Some(&Asked::Hold));

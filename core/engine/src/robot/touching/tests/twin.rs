@@ -8,13 +8,15 @@ use plumbline_model::Pixel;
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::touch_plan::Side;
 
-use crate::bell::Bell;
-use crate::command::RobotCommand;
+use crate::ground::bell::Bell;
+use crate::ground::slot::{Taker, newest_value_slot};
+use crate::ground::watched::{Pulse, Trial, WatchedThread};
+use crate::motion::{Planner, ScreenPlace, TouchPace};
+use crate::robot::command::RobotCommand;
+use crate::robot::control::RobotControl;
 use crate::robot::touch_order::{TouchNews, TouchOrder, TouchRun};
-use crate::robot::{News, RobotControl, RobotThread, RobotWires, Switches, TwinDesk, TwinEyesPlug, Worker};
-use crate::slot::{Taker, newest_value_slot};
-use crate::touch::path::{Planner, ScreenPlace, TouchPace};
-use crate::watched::{Pulse, Trial, WatchedThread};
+use crate::robot::{News, RobotThread, RobotWires, Switches, Worker};
+use crate::twin::{TwinDesk, TwinEyesPlug};
 
 /// Beside other tests the physics of the twin is slower than its clock.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -23,7 +25,7 @@ struct Bench {
     thread: RobotThread,
     news: Taker<News>,
     touches: crossbeam_channel::Receiver<TouchNews>,
-    notes: crossbeam_channel::Receiver<(crate::notice::NoticeLevel, String)>,
+    notes: crossbeam_channel::Receiver<(crate::ground::notice::NoticeLevel, String)>,
     switches: Switches,
     rig: Arc<Rig>,
     measured: Option<Posture>,

@@ -1,0 +1,20 @@
+//! Detection, live: which detector, read in the background; what is shown of what it finds; how
+//! reliably it finds it.
+//!
+//! [`DetectWorkflow`] is driven by commands, by finished work and by the stage of the live pipeline;
+//! it owns no thread.
+
+pub mod command;
+mod detector;
+mod file;
+mod objects;
+mod stage;
+mod store;
+pub mod view;
+pub mod work;
+mod workflow;
+
+pub use detector::{Detects, LoadedDetector, OpenDetector, SHOWN_FROM};
+pub use objects::{FoundObjects, Objects};
+pub use stage::{DetectFailure, DetectInput, DetectOutput, DetectStage};
+pub use workflow::{DetectAround, DetectWorkflow};

@@ -1,0 +1,242 @@
+//! What the operator asks for while calibrating the eyes, one method each.
+
+use std::collections::BTreeSet;
+
+use plumbline_hardware::SourceSpec;
+use plumbline_model::Chessboard;
+
+use super::collection::CollectError;
+use super::command::{ExportFormat, Exported, EyesCommand};
+use super::view::CollectedPair;
+use super::work::{
+    Accept, Capture, CollectRecording, Context, Export, EyesWork, Open, OpenWhat, Recognize, Solve,
+};
+use super::workflow::{EyesAround, EyesWorkflow};
+use crate::ground::notice::NoticeLevel;
+
+impl EyesWorkflow {
+    /// Applies a command.
+    pub fn apply(&mut self, command: EyesCommand, around: &EyesAround, context: &mut Context<'_>) {
+        match command {
+            EyesCommand::ChooseBoard { columns, rows, square_m } => {
+                self.choose_board(columns, rows, square_m, context);
+            }
+            EyesCommand::RecognizeBoard => self.recognize_board(around, context),
+            EyesCommand::ChooseOptions(options) => self.options = options,
+            EyesCommand::MinutesSinceOn(minutes) => self.set_minutes(minutes, context),
+            EyesCommand::Capture => self.capture(around, context),
+            EyesCommand::AutoCapture(on) => self.set_auto_capture(on, around, context),
+            EyesCommand::CollectRecording => self.collect_recording(around, context),
+            EyesCommand::DeleteLast => self.edit(context, |pairs| pairs.delete_last().map(drop)),
+            EyesCommand::Delete { pair } => self.edit(context, |pairs| pairs.delete(&pair)),
+            EyesCommand::DeleteAll => self.edit(context, |pairs| pairs.delete_all().map(drop)),
+            EyesCommand::Undo => self.edit(context, |pairs| pairs.undo()),
+            EyesCommand::DropPair { pair } => self.edit(context, |pairs| pairs.drop_pair(&pair)),
+            EyesCommand::RestorePair { pair } => self.edit(context, |pairs| pairs.restore_pair(&pair)),
+            EyesCommand::Solve => self.solve(around, context),
+            EyesCommand::Accept => self.accept(context),
+            EyesCommand::Discard => (self.proposal, self.solved_from) = (None, None),
+            EyesCommand::Import { files, length } => self.open(OpenWhat::Files { files, length }, context),
+            EyesCommand::ProposeEarlier { id } => self.open(OpenWhat::Earlier { id }, context),
+            EyesCommand::CollectEvidence => self.collect_evidence(context),
+            EyesCommand::Export { what, format, file } => self.export(what, format, file, context),
+        }
+        self.refresh();
+    }
+
+    fn choose_board(&mut self, columns: u32, rows: u32, square_m: f64, context: &mut Context<'_>) {
+        match Chessboard::from_squares(columns, rows, square_m) {
+            Ok(board) => {
+                let before = self.collection.pairs().len();
+                self.collection.set_board(board);
+                self.board_chosen = true;
+                self.board_seen = None;
+                if self.collection.pairs().len() < before {
+                    let text =
+                        format!("{before} pairs of the other board were put aside; undo brings them back.");
+                    context.notices.add(NoticeLevel::Info, text);
+                }
+            }
+            Err(error) => context.refuse(crate::ground::text::sentence(&error.to_string())),
+        }
+    }
+
+    fn set_minutes(&mut self, minutes: Option<f64>, context: &mut Context<'_>) {
+        match minutes {
+            Some(value) if !(0.0..=LONGEST_ON_MINUTES).contains(&value) => {
+                context.refuse(format!("Give the minutes since the cameras were switched on as a number from 0 to {LONGEST_ON_MINUTES}, or leave it empty."));
+            }
+            minutes => self.minutes_since_on = minutes,
+        }
+    }
+
+    fn recognize_board(&mut self, around: &EyesAround, context: &mut Context<'_>) {
+        match &around.newest {
+            Some(frame) => {
+                let work = Recognize { frame: frame.clone(), board: *self.board() };
+                context.start(EyesWork::Recognize(work));
+            }
+            None => context.refuse(NO_IMAGE),
+        }
+    }
+
+    fn capture(&mut self, around: &EyesAround, context: &mut Context<'_>) {
+        let Some(frame) = &around.newest else { return context.refuse(NO_IMAGE) };
+        if self.busy.capturing.is_some() {
+            return;
+        }
+        if let Some(name) = frame.name.as_ref().filter(|name| self.collection.contains(name)) {
+            return context.refuse(CollectError::Twice(name.clone()));
+        }
+        let name = frame.name.clone().unwrap_or_else(|| self.collection.next_name());
+        let work = Capture { frame: frame.clone(), name, board: *self.board() };
+        self.busy.capturing = Some(context.start(EyesWork::Capture(work)));
+    }
+
+    fn set_auto_capture(&mut self, on: bool, around: &EyesAround, context: &mut Context<'_>) {
+        self.auto_capture = on;
+        // A picture that stands still is looked at only once: it may be worth capturing now.
+        if let Some(look) = self.last_look.take().filter(|_| on) {
+            self.look(look, around, context);
+        }
+    }
+
+    fn collect_recording(&mut self, around: &EyesAround, context: &mut Context<'_>) {
+        if self.busy.collecting.is_some() {
+            return context.refuse("The recording is being searched already. Wait for it or cancel it.");
+        }
+        let source = match &around.source.spec {
+            Some(SourceSpec::Cameras { .. }) => {
+                return context.refuse(
+                    "Cameras are no recording. Capture single pairs, or switch on capturing by itself.",
+                );
+            }
+            Some(SourceSpec::Twin) => {
+                return context.refuse(
+                    "The twin's eyes are no recording. Switch on capturing by itself and let the board be shown at all places.",
+                );
+            }
+            Some(recording) => recording.clone(),
+            None => {
+                return context.refuse("No recording is open. Open a folder of pairs or two videos first.");
+            }
+        };
+        let known: BTreeSet<String> = self.collection.pairs().iter().map(|pair| pair.name.clone()).collect();
+        let rough_cameras = self.rough_cameras(self.size_px().unwrap_or((640, 480)));
+        let work = CollectRecording { source, board: *self.board(), known, rough_cameras };
+        self.busy.collecting = Some(context.start(EyesWork::CollectRecording(work)));
+    }
+
+    fn edit(
+        &mut self,
+        context: &mut Context<'_>,
+        edit: impl FnOnce(&mut super::collection::Collection) -> Result<(), CollectError>,
+    ) {
+        if let Err(error) = edit(&mut self.collection) {
+            context.refuse(error);
+        }
+    }
+
+    fn solve(&mut self, around: &EyesAround, context: &mut Context<'_>) {
+        if self.busy.solving.is_some() {
+            return context.refuse("A solution is under way already. Wait for it or cancel it.");
+        }
+        let Some(sizes_px) = self.collection.sizes_px() else { return context.refuse(CollectError::Empty) };
+        let work = Solve {
+            board: *self.board(),
+            observations: self.collection.observations(),
+            sizes_px,
+            dropped: self.collection.dropped().iter().cloned().collect(),
+            options: self.options.clone(),
+            minutes_since_on: self.minutes_since_on,
+            source: around.source.description.clone(),
+            in_use: self.in_use().cloned(),
+            workspace: self.workspace,
+            revision: self.collection.revision(),
+        };
+        self.busy.solving = Some(context.start(EyesWork::Solve(work)));
+    }
+
+    fn accept(&mut self, context: &mut Context<'_>) {
+        if self.busy.accepting.is_some() {
+            return;
+        }
+        let Some(proposal) = &self.proposal else {
+            return context.refuse(
+                "There is nothing to accept. Solve the collected pairs or read a calibration first.",
+            );
+        };
+        let work = Accept {
+            calibration: proposal.calibration.clone(),
+            uncertainty: proposal.uncertainty.clone(),
+            depth_per_px_m: proposal.depth_per_px_m,
+            store: self.store.clone(),
+            accepted: context.time.day,
+        };
+        self.busy.accepting = Some(context.start(EyesWork::Accept(work)));
+    }
+
+    fn open(&mut self, what: OpenWhat, context: &mut Context<'_>) {
+        if self.busy.opening.is_some() {
+            return context.refuse("Another calibration is being read. Wait for it.");
+        }
+        let (store, in_use) = (self.store.clone(), self.in_use().cloned());
+        let work = Open { what, store, in_use, workspace: self.workspace };
+        self.busy.opening = Some(context.start(EyesWork::Open(work)));
+    }
+
+    /// Takes the pairs of the proposal, or else of the calibration in use, to solve them again.
+    fn collect_evidence(&mut self, context: &mut Context<'_>) {
+        let calibration = self.proposal.as_ref().map(|p| &p.calibration).or(self.in_use()).cloned();
+        let Some(calibration) = calibration else {
+            return context.refuse("There is no calibration to take pairs from. Read one first.");
+        };
+        let Some(evidence) = &calibration.evidence else {
+            return context.refuse(
+                "This calibration carries no pairs, because it was read from another program's file.",
+            );
+        };
+        let sizes_px = [calibration.cameras.left.size_px(), calibration.cameras.right.size_px()];
+        let pairs = evidence.observations.iter().map(|observation| {
+            let pair = CollectedPair {
+                name: observation.name.clone(),
+                left: observation.left.clone(),
+                right: observation.right.clone(),
+                left_image: None,
+                right_image: None,
+                place: None,
+            };
+            CollectedPair { place: self.place(&pair, sizes_px[0]), ..pair }
+        });
+        let pairs: Vec<CollectedPair> = pairs.collect();
+        let dropped = evidence.dropped_pairs.iter().cloned().collect();
+        self.collection.replace(evidence.board, pairs, sizes_px, dropped);
+        self.options = evidence.options.clone();
+        self.minutes_since_on = evidence.minutes_since_on;
+        self.board_chosen = true;
+    }
+
+    fn export(
+        &mut self,
+        what: Exported,
+        format: ExportFormat,
+        file: std::path::PathBuf,
+        context: &mut Context<'_>,
+    ) {
+        let calibration = match what {
+            Exported::InUse => self.in_use().cloned(),
+            Exported::Proposal => self.proposal.as_ref().map(|proposal| proposal.calibration.clone()),
+        };
+        match calibration {
+            Some(calibration) => {
+                let work = Export { calibration, format, file };
+                context.start(EyesWork::Export(work));
+            }
+            None => context.refuse("There is no calibration to write. Solve and accept one first."),
+        }
+    }
+}
+
+/// A year: nobody knows better how long cameras were on.
+const LONGEST_ON_MINUTES: f64 = 527_040.0;
+const NO_IMAGE: &str = "There is no image yet. Open a folder of pairs, two videos or the cameras first.";

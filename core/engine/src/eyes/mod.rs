@@ -1,0 +1,27 @@
+//! Calibrating the eyes: choose a board, collect pairs, solve, judge, compare, accept.
+//!
+//! [`EyesWorkflow`] is driven by commands, by what the live overlay sees and by the results of
+//! work; it owns no thread and reads no clock, so that tests drive it with synthetic pairs.
+
+mod apply;
+pub mod assess;
+pub mod auto_capture;
+pub mod collection;
+pub mod command;
+mod corners;
+pub mod coverage;
+mod events;
+pub mod geometry;
+pub mod ghost;
+mod look;
+pub mod map;
+pub mod place;
+pub mod sharpness;
+pub mod store;
+pub mod view;
+pub mod work;
+mod workflow;
+
+pub use corners::{CornersInput, CornersStage};
+pub use look::Look;
+pub use workflow::{EyesAround, EyesWorkflow};

@@ -1,0 +1,136 @@
+//! The long parts of calibrating the eyes.
+
+mod accept;
+mod capture;
+mod export;
+mod keep;
+mod open;
+mod recording;
+mod restore;
+mod solve;
+
+use plumbline_model::JobContext;
+
+use super::view::BoardSeen;
+use crate::ground;
+use crate::ground::LongWork;
+use crate::ground::jobs::JobError;
+
+pub use accept::{Accept, Accepted};
+pub use capture::{Capture, Captured, Recognize, board_seen, find_in_both, glimpse_in_both, gray};
+pub use export::Export;
+pub use keep::Keep;
+pub use open::{Open, OpenWhat, Opened};
+pub use recording::{CollectRecording, Collected, collect_folder};
+pub use restore::{Restore, Restored};
+pub use solve::{Solve, Solved};
+
+/// Something to do beside the window.
+#[derive(Clone, Debug)]
+pub enum EyesWork {
+    /// Find the board in the newest pair.
+    Capture(Capture),
+    /// Say which board the newest pair shows.
+    Recognize(Recognize),
+    /// Keep a captured pair on disk.
+    Keep(Keep),
+    /// Find the board in all pairs of a recording.
+    CollectRecording(CollectRecording),
+    /// Solve the collected pairs.
+    Solve(Solve),
+    /// Read a calibration as a proposal.
+    Open(Open),
+    /// Keep a calibration and make it the one in use.
+    Accept(Accept),
+    /// Write a calibration to a file.
+    Export(Export),
+    /// Read what was accepted before.
+    Restore(Restore),
+}
+
+/// What came out.
+#[derive(Clone, Debug)]
+pub enum EyesResult {
+    /// A pair in which both eyes see the board.
+    Captured(Captured),
+    /// The board that is seen.
+    Recognized(BoardSeen),
+    /// A captured pair was written to this session.
+    Kept(std::path::PathBuf),
+    /// Pairs of a recording.
+    Collected(Collected),
+    /// A calibration solved from pairs.
+    Solved(Solved),
+    /// A calibration read from a file.
+    Opened(Opened),
+    /// A calibration that is kept.
+    Accepted(Accepted),
+    /// Files that were written.
+    Exported(Vec<std::path::PathBuf>),
+    /// What was accepted before.
+    Restored(Restored),
+}
+
+/// What the handlers of this room may reach besides their own workflow.
+pub type Context<'a> = ground::Context<'a, EyesWork>;
+
+impl LongWork for EyesWork {
+    type Result = EyesResult;
+
+    fn title(&self) -> String {
+        match self {
+            Self::Capture(_) => "Capture pair".to_owned(),
+            Self::Recognize(_) => "Look which board is seen".to_owned(),
+            Self::Keep(_) => "Keep the captured pair".to_owned(),
+            Self::CollectRecording(_) => "Collect the pairs of the recording".to_owned(),
+            Self::Solve(solve) => format!("Solve {} pairs", solve.pair_count()),
+            Self::Open(open) => open.title(),
+            Self::Accept(_) => "Accept calibration".to_owned(),
+            Self::Export(export) => format!("Write {}", export.file.display()),
+            Self::Restore(_) => "Read the calibration in use".to_owned(),
+        }
+    }
+
+    fn is_quiet(&self) -> bool {
+        match self {
+            Self::Capture(_) | Self::Recognize(_) | Self::Keep(_) | Self::Restore(_) | Self::Accept(_) => {
+                true
+            }
+            Self::CollectRecording(_) | Self::Solve(_) | Self::Open(_) | Self::Export(_) => false,
+        }
+    }
+
+    fn run(self, context: &dyn JobContext) -> Result<EyesResult, JobError> {
+        Ok(match self {
+            Self::Capture(work) => EyesResult::Captured(work.run()?),
+            Self::Recognize(work) => EyesResult::Recognized(work.run()),
+            Self::Keep(work) => EyesResult::Kept(work.run()?),
+            Self::CollectRecording(work) => EyesResult::Collected(work.run(context)?),
+            Self::Solve(work) => EyesResult::Solved(work.run(context)?),
+            Self::Open(work) => EyesResult::Opened(work.run(context)?),
+            Self::Accept(work) => EyesResult::Accepted(work.run()?),
+            Self::Export(work) => EyesResult::Exported(work.run()?),
+            Self::Restore(work) => EyesResult::Restored(work.run(context)?),
+        })
+    }
+}
+
+impl EyesResult {
+    /// The result in a sentence.
+    pub fn summary(&self) -> String {
+        match self {
+            Self::Captured(captured) => format!("Captured {}.", captured.pair.name),
+            Self::Recognized(seen) => seen.text.clone(),
+            Self::Kept(folder) => format!("Captured pairs are kept in {}.", folder.display()),
+            Self::Collected(collected) => collected.summary(),
+            Self::Solved(solved) => solved.summary(),
+            Self::Opened(opened) => format!("Read {}.", opened.what()),
+            Self::Accepted(_) => "The calibration is in use.".to_owned(),
+            Self::Exported(files) => {
+                let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
+                format!("Wrote {}.", names.join(" and "))
+            }
+            Self::Restored(_) => "Read the calibration in use.".to_owned(),
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! The gap between model and measurement: which sessions are compared, the search as a job, what it
+//! found, adding effects to the model in use, and comparing findings.
+//!
+//! [`GapWorkflow`] is driven by commands and by finished work; it owns no thread.
+
+pub mod command;
+mod model;
+mod search;
+mod sessions;
+mod shown;
+mod store;
+#[cfg(test)]
+mod tests;
+pub mod view;
+pub mod work;
+mod workflow;
+
+pub use model::{name as model_name, report_history as history};
+pub use plumbline_gap::{Finding, Verdict, finding, plan_for};
+pub use search::same_rig;
+pub use workflow::{GapAround, GapWorkflow};

@@ -1,0 +1,65 @@
+//! The model in use for people: its name, its effects, its steps.
+
+use plumbline_effects::RigModel;
+use plumbline_effects::rig_model::{Step, StepKind};
+use plumbline_report::HistoryEntry;
+
+use super::view::{AddedEffect, GapModelView, ModelStep};
+use crate::rig_models;
+
+/// "nominal", "nominal + 2 effects".
+pub fn name(model: &RigModel) -> String {
+    match model.effects().len() {
+        0 => "nominal".to_owned(),
+        1 => "nominal + 1 effect".to_owned(),
+        n => format!("nominal + {n} effects"),
+    }
+}
+
+/// Every effect with its values, so that it can be told whether a model is still the same.
+pub fn parts(model: &RigModel) -> Vec<String> {
+    model.effects().iter().map(|effect| format!("{} {:?}", effect.name(), effect.values)).collect()
+}
+
+/// The gaps of the models so far, as a report shows them.
+pub fn report_history(model: &RigModel) -> Vec<HistoryEntry> {
+    let mut history: Vec<HistoryEntry> = vec![];
+    for (step, gap) in rig_models::history(model) {
+        if history.is_empty() {
+            history.push(HistoryEntry { name: "nominal".to_owned(), gap: gap.before });
+        }
+        history.push(HistoryEntry { name: format!("{} added", step.effects.join(", ")), gap: gap.after });
+    }
+    history
+}
+
+/// What the window shows of a model.
+pub fn view(model: &RigModel) -> GapModelView {
+    let effects = model.effects().iter().map(|effect| AddedEffect {
+        name: effect.name(),
+        title: if effect.title.is_empty() { effect.name() } else { effect.title.clone() },
+        parameters: effect.parameters.iter().map(|p| (p.name.clone(), p.value, [p.low, p.high])).collect(),
+    });
+    GapModelView {
+        name: name(model),
+        effects: effects.collect(),
+        history: model.history.iter().map(step).collect(),
+        can_undo: model.can_undo(),
+    }
+}
+
+fn step(step: &Step) -> ModelStep {
+    let what = match step.kind {
+        StepKind::Added => "added",
+        StepKind::Removed => "taken out",
+        StepKind::Undone => "taken back",
+    };
+    ModelStep {
+        at: step.at,
+        title: format!("{} {what}", step.effects.join(", ")),
+        undone: step.undone || step.kind == StepKind::Undone,
+        errors: step.gap.as_ref().map(|gap| [gap.before, gap.after, gap.floor]),
+        in_pixels: step.gap.as_ref().is_some_and(|gap| gap.unit == "px"),
+        sessions: step.sessions.clone(),
+    }
+}

@@ -1,0 +1,76 @@
+//! Sessions that can be compared with the model, and whether they changed.
+
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use plumbline_model::Session;
+use plumbline_model::session::{Manifest, names};
+use serde::{Deserialize, Serialize};
+
+use super::view::GapSession;
+use crate::ground::sessions::title_of;
+use crate::ground::text::sentence;
+
+/// Tables that can be compared.
+const TABLES: [&str; 3] = [names::TOUCHES, names::POSES, names::LOCALIZATIONS];
+
+/// Sessions with something to compare in a folder, newest first.
+///
+/// # Errors
+/// A sentence, when the folder cannot be read.
+pub fn list(folder: &Path) -> Result<Vec<GapSession>, String> {
+    let listing = match std::fs::read_dir(folder) {
+        Ok(listing) => listing,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => {
+            return Err(format!(
+                "{} cannot be read ({error}). Check that you may read it.",
+                folder.display()
+            ));
+        }
+    };
+    let folders = listing.flatten().map(|entry| entry.path());
+    let measured = folders.filter(|path| TABLES.iter().any(|table| path.join(table).is_file()));
+    let mut sessions: Vec<GapSession> = measured.map(listed).collect();
+    sessions.sort_by(|a, b| (b.started, &b.folder).cmp(&(a.started, &a.folder)));
+    Ok(sessions)
+}
+
+/// A session as it stands in the list.
+pub fn listed(folder: PathBuf) -> GapSession {
+    let started = Manifest::read(&folder.join(names::MANIFEST)).ok().map(|manifest| manifest.started);
+    let name = title_of(&folder);
+    let listed = GapSession { folder, name, started, touches: 0, poses: 0, localizations: 0, problem: None };
+    match Session::read(&listed.folder) {
+        Ok(session) => {
+            let touches = session.touches.as_ref().map_or(0, |table| table.row_count());
+            let poses = session.poses.as_ref().map_or(0, |table| table.row_count());
+            let localizations = session.localizations.as_ref().map_or(0, |table| table.row_count());
+            let problem = (touches + poses + localizations == 0).then(|| "Nothing was measured.".to_owned());
+            GapSession { touches, poses, localizations, problem, ..listed }
+        }
+        Err(error) => GapSession { problem: Some(sentence(&error.to_string())), ..listed },
+    }
+}
+
+/// What tells whether a session's tables changed: length and time of each.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TableStamp {
+    /// Name of the table.
+    table: String,
+    /// Bytes.
+    length: u64,
+    /// Seconds since 1970 of its last change.
+    changed: u64,
+}
+
+/// The tables of a session as they are now.
+pub fn stamps(folder: &Path) -> Vec<TableStamp> {
+    let of = |table: &&str| {
+        let about = std::fs::metadata(folder.join(table)).ok()?;
+        let changed = about.modified().ok()?.duration_since(SystemTime::UNIX_EPOCH).ok()?;
+        Some(TableStamp { table: (*table).to_owned(), length: about.len(), changed: changed.as_secs() })
+    };
+    TABLES.iter().filter_map(of).collect()
+}

@@ -1,0 +1,167 @@
+//! The workflow driven by commands, its work done on the spot.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use plumbline_model::Unattended;
+use plumbline_report::sample;
+
+use super::command::GapCommand;
+use super::store::{KeptFinding, KeptSession, Store};
+use super::view::GapView;
+use crate::Skipped;
+use crate::command::Command;
+use crate::ground::step::StepState;
+use crate::models::tests::{made_up_session, nico};
+use crate::state::{Action, State};
+
+/// The engine's state on a folder of its own, with one session of touches.
+struct Lab {
+    folder: tempfile::TempDir,
+    state: State,
+}
+
+impl Lab {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        made_up_session(&nico()).write(&Self::session_in(folder.path())).expect("written");
+        Self::on(folder)
+    }
+
+    fn session_in(folder: &std::path::Path) -> PathBuf {
+        folder.join("sessions/2026-05-01T10-00-00_touch")
+    }
+
+    fn on(folder: tempfile::TempDir) -> Self {
+        let state = State::new(folder.path());
+        let mut lab = Self { folder, state };
+        lab.work();
+        lab
+    }
+
+    /// A finding that names two effects, made of the session as it is now.
+    fn with_finding(self) -> Self {
+        let session = Self::session_in(self.folder.path());
+        let tables = super::sessions::stamps(&session);
+        let mut finding = sample::named();
+        finding.rig = nico().name;
+        finding.sessions = vec!["2026-05-01T10-00-00_touch".to_owned()];
+        finding.placements.truncate(1);
+        let kept = KeptSession { folder: session, tables };
+        let kept = KeptFinding::new(finding, vec![kept], ("nominal".to_owned(), vec![]));
+        Store::new(self.folder.path().join("gap")).keep(kept).expect("kept");
+        Self::on(self.folder)
+    }
+
+    fn tell(&mut self, command: GapCommand) -> Arc<GapView> {
+        self.state.apply(Command::Gap(command));
+        self.work();
+        self.view()
+    }
+
+    fn work(&mut self) {
+        loop {
+            let actions = self.state.take_actions();
+            let mut any = false;
+            for action in actions {
+                if let Action::Start(id, work) = action {
+                    any = true;
+                    let outcome = match work.run(&Unattended) {
+                        Ok(result) => crate::ground::jobs::Outcome::Done(result),
+                        Err(crate::ground::jobs::JobError::Cancelled(_)) => {
+                            crate::ground::jobs::Outcome::Cancelled
+                        }
+                        Err(crate::ground::jobs::JobError::Failed(why)) => {
+                            crate::ground::jobs::Outcome::Failed(why)
+                        }
+                    };
+                    self.state.work_ended(id, outcome, std::time::Duration::ZERO);
+                }
+            }
+            if !any {
+                return;
+            }
+        }
+    }
+
+    fn view(&mut self) -> Arc<GapView> {
+        self.state.view(Skipped::default(), 0, std::time::Instant::now()).gap
+    }
+
+    fn last_notice(&mut self) -> String {
+        let view = self.state.view(Skipped::default(), 0, std::time::Instant::now());
+        view.notices.last().map(|notice| notice.text.clone()).unwrap_or_default()
+    }
+}
+
+#[test]
+fn the_newest_session_is_chosen_and_the_model_is_nominal() {
+    let mut lab = Lab::new();
+    let view = lab.view();
+    assert_eq!(view.chosen[..], [Lab::session_in(lab.folder.path())]);
+    assert_eq!(view.sessions[0].touches, 63);
+    assert_eq!((view.step.clone(), view.model.name.as_str()), (StepState::NotDone, "nominal"));
+}
+
+#[test]
+fn what_was_found_is_there_after_a_restart_and_is_added_and_taken_back() {
+    let mut lab = Lab::new().with_finding();
+    let view = lab.view();
+    assert_eq!((view.findings.len(), view.step.clone()), (1, StepState::Done));
+    assert_eq!(view.addable(), [0, 1]);
+    let view = lab.tell(GapCommand::Add { effects: vec![0] });
+    assert_eq!(view.model.name, "nominal + 1 effect", "{}", lab.last_notice());
+    assert_eq!(view.addable(), [1], "what is in the model is not added twice");
+    let mut lab = Lab::on(lab.folder);
+    assert_eq!(lab.view().model.effects.len(), 1, "the model is in use after a restart");
+    let view = lab.tell(GapCommand::Undo);
+    assert!(view.model.effects.is_empty() && !view.model.can_undo);
+    assert!(!view.model.history.is_empty(), "that it was there is not forgotten");
+}
+
+#[test]
+fn a_finding_is_stale_when_its_session_changed() {
+    let mut lab = Lab::new().with_finding();
+    let touches = Lab::session_in(lab.folder.path()).join("touches.csv");
+    let text = std::fs::read_to_string(&touches).expect("read");
+    let shorter = text.lines().take(30).collect::<Vec<_>>().join("\n");
+    std::fs::write(&touches, shorter + "\n").expect("written");
+    let view = lab.tell(GapCommand::ListSessions);
+    assert!(matches!(view.step, StepState::Stale { .. }));
+    assert!(view.addable().is_empty());
+    lab.tell(GapCommand::Add { effects: vec![0] });
+    assert!(lab.last_notice().contains("changed or is gone"), "{}", lab.last_notice());
+    assert!(lab.view().model.effects.is_empty());
+}
+
+#[test]
+fn what_cannot_be_done_is_refused_in_words() {
+    let mut lab = Lab::new();
+    lab.tell(GapCommand::Add { effects: vec![0] });
+    assert!(lab.last_notice().contains("Find what is missing first"));
+    lab.tell(GapCommand::Undo);
+    assert!(!lab.last_notice().is_empty());
+    lab.tell(GapCommand::Choose { sessions: vec![] });
+    lab.tell(GapCommand::Find { seed: 1 });
+    assert!(lab.last_notice().contains("Choose at least one session"));
+    let gone = lab.folder.path().join("gone");
+    let view = lab.tell(GapCommand::Choose { sessions: vec![gone] });
+    assert!(view.sessions.iter().any(|session| session.problem.is_some()));
+    let view = lab.tell(GapCommand::Find { seed: 1 });
+    assert!(view.failed.is_some() && view.searching.is_none());
+}
+
+#[test]
+fn a_report_is_written_and_a_finding_is_deleted() {
+    let mut lab = Lab::new().with_finding();
+    for (name, pdf) in [("gap.html", false), ("gap.pdf", true)] {
+        let file = lab.folder.path().join(name);
+        lab.tell(GapCommand::Report { file: file.clone(), pdf });
+        let page = std::fs::read(&file).expect("a page");
+        assert_eq!(page.starts_with(b"%PDF"), pdf);
+    }
+    let id = lab.view().findings[0].id.clone();
+    let view = lab.tell(GapCommand::Delete { id });
+    assert!(view.findings.is_empty() && view.shown.is_none());
+    assert_eq!(Lab::on(lab.folder).view().findings.len(), 0);
+}

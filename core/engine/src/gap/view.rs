@@ -1,0 +1,155 @@
+//! The gap between model and measurement: what was compared, what was found, what is in the model.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use jiff::Timestamp;
+use plumbline_gap::{Finding, Verdict};
+use plumbline_model::robot::Rig;
+
+use super::command::GapModel;
+use crate::ground::jobs::JobId;
+use crate::ground::step::StepState;
+
+/// Looking for the gap.
+#[derive(Clone, Debug, Default)]
+pub struct GapView {
+    /// For the rail.
+    pub step: StepState,
+    /// Sessions of this world that measured something, newest first.
+    pub sessions: Arc<[GapSession]>,
+    /// Folders of those that are looked at together.
+    pub chosen: Arc<[PathBuf]>,
+    /// With which model they are compared.
+    pub with: GapModel,
+    /// The search that is under way.
+    pub searching: Option<JobId>,
+    /// Why the last search gave nothing, until the next one; a sentence.
+    pub failed: Option<String>,
+    /// What was found, newest first.
+    pub findings: Arc<[FindingEntry]>,
+    /// The finding that is shown.
+    pub shown: Option<Arc<ShownFinding>>,
+    /// Another one beside it.
+    pub beside: Option<Arc<ShownFinding>>,
+    /// Why the shown finding should not be trusted any more.
+    pub stale: Option<String>,
+    /// What is in the model in use.
+    pub model: GapModelView,
+    /// The rig that all of it belongs to.
+    pub rig: Option<Arc<Rig>>,
+}
+
+/// A session that can be compared with the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GapSession {
+    /// Its folder.
+    pub folder: PathBuf,
+    /// Its name for people.
+    pub name: String,
+    /// When it was begun.
+    pub started: Option<Timestamp>,
+    /// Rows of its tables.
+    pub touches: usize,
+    /// Poses measured from outside.
+    pub poses: usize,
+    /// Places that the eyes estimated or saw.
+    pub localizations: usize,
+    /// Why it cannot be used.
+    pub problem: Option<String>,
+}
+
+/// A finding in the list.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FindingEntry {
+    /// Name of its file.
+    pub id: String,
+    /// When it was made.
+    pub made: Timestamp,
+    /// The model that was compared: "nominal", "nominal + 2 effects".
+    pub model: String,
+    /// Names of the sessions.
+    pub sessions: Vec<String>,
+    /// The answer in a word.
+    pub verdict: Verdict,
+    /// What was named, for people.
+    pub named: Vec<String>,
+    /// Mean held-out errors: before, after, floor; in m or px.
+    pub errors: [f64; 3],
+    /// Whether that is in pixels.
+    pub in_pixels: bool,
+}
+
+/// A finding with what was made of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShownFinding {
+    /// As it stands in the list.
+    pub entry: FindingEntry,
+    /// The finding.
+    pub finding: Finding,
+    /// Folders of its sessions.
+    pub folders: Vec<PathBuf>,
+    /// Per effect, whether the model in use has it.
+    pub added: Vec<bool>,
+}
+
+/// What is in the model in use.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GapModelView {
+    /// "nominal", "nominal + 2 effects".
+    pub name: String,
+    /// Its effects.
+    pub effects: Vec<AddedEffect>,
+    /// The models so far, oldest first; the last one is in use.
+    pub history: Vec<ModelStep>,
+    /// Whether there is something to go back to.
+    pub can_undo: bool,
+}
+
+/// An effect in the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AddedEffect {
+    /// Its name, `id@site`.
+    pub name: String,
+    /// What it is and where, for people.
+    pub title: String,
+    /// Parameters with their 95 % intervals, as the command line names them.
+    pub parameters: Vec<(String, f64, [f64; 2])>,
+}
+
+/// A model that was in use, with what was known of its gap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelStep {
+    /// When it was made.
+    pub at: Timestamp,
+    /// What was done, for people: "joint zero of the elbow added".
+    pub title: String,
+    /// Whether it was taken back since.
+    pub undone: bool,
+    /// Mean held-out errors where they are known: before, after, floor; m or px.
+    pub errors: Option<[f64; 3]>,
+    /// Whether these are in pixels.
+    pub in_pixels: bool,
+    /// Names of the sessions that it rests on.
+    pub sessions: Vec<String>,
+}
+
+impl GapView {
+    /// The finding that is shown.
+    pub fn finding(&self) -> Option<&Finding> {
+        self.shown.as_ref().map(|shown| &shown.finding)
+    }
+
+    /// Effects of the shown finding that can be added and are not in the model yet, by place.
+    pub fn addable(&self) -> Vec<usize> {
+        let Some(shown) = &self.shown else { return vec![] };
+        if shown.finding.verdict == Verdict::NotInLibrary || self.stale.is_some() {
+            return vec![];
+        }
+        let effects = shown.finding.effects.iter().zip(&shown.added).enumerate();
+        effects
+            .filter(|(_, (effect, added))| effect.not_addable.is_none() && !**added)
+            .map(|(i, _)| i)
+            .collect()
+    }
+}

@@ -1,0 +1,295 @@
+//! What takes time: looking for sessions, the search, reading and writing findings and models.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use plumbline_effects::RigModel;
+use plumbline_gap::Options;
+use plumbline_model::robot::Rig;
+use plumbline_model::{JobContext, Session, files};
+use plumbline_report::ReportContext;
+
+use super::model;
+use super::search::{SearchError, measured, search};
+use super::sessions::{self, stamps};
+use super::store::{KeptFinding, KeptSession, Named, Store};
+use super::view::GapSession;
+use crate::ground::LongWork;
+use crate::ground::jobs::JobError;
+use crate::ground::sessions::title_of;
+use crate::ground::text::sentence;
+use crate::{ground, rig_models};
+
+/// Work of this workflow.
+#[derive(Clone, Debug)]
+pub enum GapWork {
+    /// Reads what was found and accepted before.
+    Restore {
+        /// Where the world's files are.
+        folder: PathBuf,
+        /// The robot that they must be of.
+        rig: Arc<Rig>,
+    },
+    /// Looks which sessions there are, and whether those of the findings changed.
+    List {
+        /// Folder of the sessions.
+        folder: PathBuf,
+        /// Sessions elsewhere that were chosen.
+        others: Vec<PathBuf>,
+        /// Sessions of findings.
+        watched: Vec<KeptSession>,
+    },
+    /// Looks for the gap.
+    Find {
+        /// Folders of the sessions.
+        sessions: Vec<PathBuf>,
+        /// The robot that they must be of.
+        rig: Arc<Rig>,
+        /// The model to compare with.
+        model: Arc<RigModel>,
+        /// Seed and limits.
+        options: Options,
+        /// Where findings are kept.
+        store: Store,
+    },
+    /// Deletes a finding.
+    Delete {
+        /// Where findings are kept.
+        store: Store,
+        /// Which.
+        id: String,
+    },
+    /// Adds effects of a finding to the model in use.
+    Add {
+        /// The finding.
+        finding: Arc<Named>,
+        /// Which effects, by place.
+        effects: Vec<usize>,
+        /// Whether the finding was made with the robot's description alone, so that it replaces what
+        /// is in the model.
+        replaces: bool,
+        /// The model in use.
+        model: Arc<RigModel>,
+        /// The robot.
+        rig: Arc<Rig>,
+        /// Where the world's files are.
+        folder: PathBuf,
+        /// When it was asked for.
+        at: jiff::Timestamp,
+    },
+    /// Puts a model in use.
+    Use {
+        /// Where the world's files are.
+        folder: PathBuf,
+        /// The robot.
+        rig: Arc<Rig>,
+        /// The model.
+        model: Arc<RigModel>,
+        /// What this does, for people.
+        title: String,
+    },
+    /// Writes a page about a finding.
+    Report {
+        /// The finding.
+        finding: Arc<Named>,
+        /// What stands beside it.
+        context: Box<ReportContext>,
+        /// Where to.
+        file: PathBuf,
+        /// As PDF rather than as HTML.
+        pdf: bool,
+    },
+}
+
+/// What came out.
+#[derive(Clone, Debug)]
+pub enum GapResult {
+    /// What was there before.
+    Restored(Box<Restored>),
+    /// Sessions, newest first, and which watched ones have changed.
+    Listed {
+        /// Sessions.
+        sessions: Vec<GapSession>,
+        /// Folders of sessions that are not any more as they were compared.
+        changed: Vec<PathBuf>,
+    },
+    /// A finding.
+    Found(Arc<Named>),
+    /// A finding is gone.
+    Deleted(String),
+    /// A model is in use.
+    InUse(Arc<RigModel>),
+    /// Written there.
+    Written(PathBuf),
+}
+
+/// What was there before.
+#[derive(Clone, Debug)]
+pub struct Restored {
+    /// Sessions, newest first.
+    pub sessions: Vec<GapSession>,
+    /// Findings, newest first.
+    pub findings: Vec<Arc<Named>>,
+    /// Folders of sessions that are not any more as they were compared.
+    pub changed: Vec<PathBuf>,
+    /// The model in use; `None` when that cannot be told.
+    pub model: Option<Arc<RigModel>>,
+    /// What could not be read, a sentence each.
+    pub problems: Vec<String>,
+}
+
+/// What the handlers of this room may reach besides their own workflow.
+pub type Context<'a> = ground::Context<'a, GapWork>;
+
+impl LongWork for GapWork {
+    type Result = GapResult;
+
+    fn title(&self) -> String {
+        match self {
+            Self::Restore { .. } => "Read what was found before".to_owned(),
+            Self::List { .. } => "Look for sessions".to_owned(),
+            Self::Find { sessions, .. } => match sessions.as_slice() {
+                [one] => format!("Find what is missing: {}", title_of(one)),
+                several => format!("Find what is missing: {} sessions", several.len()),
+            },
+            Self::Delete { .. } => "Delete a finding".to_owned(),
+            Self::Add { effects, .. } if effects.len() == 1 => "Add an effect to the model".to_owned(),
+            Self::Add { effects, .. } => format!("Add {} effects to the model", effects.len()),
+            Self::Use { title, .. } => title.clone(),
+            Self::Report { file, .. } => format!("Write {}", title_of(file)),
+        }
+    }
+
+    fn is_quiet(&self) -> bool {
+        matches!(self, Self::Restore { .. } | Self::List { .. } | Self::Delete { .. })
+    }
+
+    fn run(self, context: &dyn JobContext) -> Result<GapResult, JobError> {
+        context.checkpoint()?;
+        match self {
+            Self::Restore { folder, rig } => Ok(GapResult::Restored(Box::new(restore(&folder, &rig)))),
+            Self::List { folder, others, watched } => {
+                let mut sessions = sessions::list(&folder).map_err(JobError::Failed)?;
+                let elsewhere =
+                    others.into_iter().filter(|other| !sessions.iter().any(|s| s.folder == *other));
+                let elsewhere: Vec<GapSession> = elsewhere.map(sessions::listed).collect();
+                sessions.extend(elsewhere);
+                Ok(GapResult::Listed { sessions, changed: changed(&watched) })
+            }
+            Self::Find { sessions, rig, model, options, store } => {
+                let kept: Vec<KeptSession> = sessions
+                    .iter()
+                    .map(|folder| KeptSession { folder: folder.clone(), tables: stamps(folder) })
+                    .collect();
+                context.report(0.0, "reading the sessions");
+                let measurements = measured(&sessions, &rig).map_err(failed)?;
+                let finding = search(&measurements, &model, &options, context).map_err(failed)?;
+                let about = (model::name(&model), model::parts(&model));
+                let named = store.keep(KeptFinding::new(finding, kept, about)).map_err(JobError::Failed)?;
+                Ok(GapResult::Found(Arc::new(named)))
+            }
+            Self::Delete { store, id } => {
+                store.delete(&id).map_err(JobError::Failed)?;
+                Ok(GapResult::Deleted(id))
+            }
+            Self::Add { finding, effects, replaces, model, rig, folder, at } => {
+                let sessions = sessions_of(&finding).map_err(JobError::Failed)?;
+                let of = (&finding.kept.finding, sessions.as_slice());
+                let next =
+                    rig_models::with(&model, &rig, of, &effects, replaces, at).map_err(JobError::Failed)?;
+                rig_models::save(&folder, &next, &rig).map_err(JobError::Failed)?;
+                Ok(GapResult::InUse(Arc::new(next)))
+            }
+            Self::Use { folder, rig, model, .. } => {
+                rig_models::save(&folder, &model, &rig).map_err(JobError::Failed)?;
+                Ok(GapResult::InUse(model))
+            }
+            Self::Report { finding, context, file, pdf } => {
+                write_report(&finding, &context, &file, pdf)?;
+                Ok(GapResult::Written(file))
+            }
+        }
+    }
+}
+
+/// What was not done, in a sentence; what was cancelled stays so.
+fn failed(error: SearchError) -> JobError {
+    match error {
+        SearchError::Gap(plumbline_gap::GapError::Cancelled(cancelled)) => cancelled.into(),
+        other => JobError::Failed(sentence(&other.to_string())),
+    }
+}
+
+/// The sessions of a finding, as they are on disk.
+fn sessions_of(finding: &Named) -> Result<Vec<Session>, String> {
+    let read =
+        |session: &KeptSession| Session::read(&session.folder).map_err(|error| sentence(&error.to_string()));
+    finding.kept.sessions.iter().map(read).collect()
+}
+
+fn write_report(
+    finding: &Named,
+    context: &ReportContext,
+    file: &std::path::Path,
+    pdf: bool,
+) -> Result<(), JobError> {
+    let page = if pdf {
+        plumbline_report::pdf(&finding.kept.finding, context)
+            .map_err(|error| JobError::Failed(sentence(&error.to_string())))?
+    } else {
+        plumbline_report::html(&finding.kept.finding, context).into_bytes()
+    };
+    let sessions = finding.kept.sessions.iter().map(|session| session.folder.as_path());
+    files::output(file, &sessions.collect::<Vec<_>>())
+        .and_then(|()| files::write(file, page))
+        .map_err(|error| JobError::Failed(sentence(&error.to_string())))
+}
+
+/// Everything that can be read is; what cannot is told.
+fn restore(folder: &std::path::Path, rig: &Rig) -> Restored {
+    let mut problems = Vec::new();
+    let sessions = sessions::list(&folder.join("sessions")).unwrap_or_else(|problem| {
+        problems.push(problem);
+        Vec::new()
+    });
+    let (findings, unread) = Store::new(folder.join("gap")).read(&rig.name);
+    problems.extend(unread);
+    let model = match rig_models::load(folder, rig) {
+        Ok(model) => Some(Arc::new(model)),
+        Err(problem) => {
+            problems.push(problem);
+            None
+        }
+    };
+    let watched: Vec<KeptSession> = findings.iter().flat_map(|named| named.kept.sessions.clone()).collect();
+    Restored {
+        sessions,
+        findings: findings.into_iter().map(Arc::new).collect(),
+        changed: changed(&watched),
+        model,
+        problems,
+    }
+}
+
+/// Folders of sessions whose tables are not any more as they were.
+fn changed(watched: &[KeptSession]) -> Vec<PathBuf> {
+    watched
+        .iter()
+        .filter(|session| stamps(&session.folder) != session.tables)
+        .map(|session| session.folder.clone())
+        .collect()
+}
+
+impl GapResult {
+    /// The result in a sentence.
+    pub fn summary(&self) -> String {
+        match self {
+            Self::Restored(_) => "What was found before was read.".to_owned(),
+            Self::Listed { sessions, .. } => format!("{} sessions.", sessions.len()),
+            Self::Found(named) => named.kept.finding.sentence.clone(),
+            Self::Deleted(_) => "The finding was deleted.".to_owned(),
+            Self::InUse(model) => format!("The model in use is {}.", model::name(model)),
+            Self::Written(file) => format!("The report was written to {}.", file.display()),
+        }
+    }
+}

@@ -1,0 +1,363 @@
+//! What is compared, what was found, which model is in use.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use plumbline_effects::RigModel;
+use plumbline_gap::{Options, Verdict};
+use plumbline_model::robot::Rig;
+use plumbline_report::ReportContext;
+
+use super::command::{GapCommand, GapModel};
+use super::model;
+use super::store::{KeptSession, Named, Store};
+use super::view::{FindingEntry, GapModelView, GapSession, ShownFinding};
+use super::work::{Context, GapResult, GapWork, Restored};
+use crate::gap::view::GapView;
+use crate::ground::jobs::JobId;
+use crate::ground::notice::NoticeLevel;
+use crate::ground::{Moment, Nothing, Workflow};
+
+/// What the workflow can see of the rest.
+pub struct GapAround {
+    /// The robot as its description has it.
+    pub rig: Arc<Rig>,
+    /// The session that was touched last; offered first.
+    pub newest_session: Option<PathBuf>,
+}
+
+/// The whole workflow, of one world.
+#[derive(Clone, Debug)]
+pub struct GapWorkflow {
+    folder: PathBuf,
+    store: Store,
+    pub(super) sessions: Vec<GapSession>,
+    pub(super) chosen: Vec<PathBuf>,
+    pub(super) with: GapModel,
+    pub(super) searching: Option<JobId>,
+    pub(super) failed: Option<String>,
+    pub(super) findings: Vec<Arc<Named>>,
+    pub(super) changed: Vec<PathBuf>,
+    pub(super) shown: Option<String>,
+    pub(super) beside: Option<String>,
+    /// `None`: not read yet, or the file cannot be used, so nothing is written over it.
+    pub(super) model: Option<Arc<RigModel>>,
+    changing: Option<JobId>,
+    pub(super) seen: Seen,
+}
+
+/// What is shown, made only when it changes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seen {
+    pub entries: Arc<[FindingEntry]>,
+    pub shown: Option<Arc<ShownFinding>>,
+    pub beside: Option<Arc<ShownFinding>>,
+    pub model: GapModelView,
+}
+
+impl GapWorkflow {
+    /// Nothing found. Sessions are looked for in `folder/sessions`, findings are kept in `folder/gap`.
+    pub fn new(folder: &Path) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            store: Store::new(folder.join("gap")),
+            sessions: Vec::new(),
+            chosen: Vec::new(),
+            with: GapModel::default(),
+            searching: None,
+            failed: None,
+            findings: Vec::new(),
+            changed: Vec::new(),
+            shown: None,
+            beside: None,
+            model: None,
+            changing: None,
+            seen: Seen::default(),
+        }
+    }
+
+    /// Applies a command of the operator.
+    pub fn apply(&mut self, command: GapCommand, around: &GapAround, context: &mut Context<'_>) {
+        match command {
+            GapCommand::ListSessions => self.list(context),
+            GapCommand::Choose { sessions } => {
+                self.chosen = sessions;
+                self.failed = None;
+                if self.chosen.iter().any(|chosen| !self.sessions.iter().any(|s| s.folder == *chosen)) {
+                    self.list(context);
+                }
+            }
+            GapCommand::CompareWith(with) => self.with = with,
+            GapCommand::Find { seed } => self.find(seed, around, context),
+            GapCommand::Show { id } => {
+                if self.named(&id).is_some() {
+                    self.beside.take_if(|beside| *beside == id);
+                    self.shown = Some(id);
+                }
+            }
+            GapCommand::Beside { id } => {
+                self.beside = id.filter(|id| self.named(id).is_some() && self.shown.as_ref() != Some(id));
+            }
+            GapCommand::Delete { id } => {
+                context.start(GapWork::Delete { store: self.store.clone(), id });
+            }
+            GapCommand::Add { effects } => self.add(effects, around, context),
+            GapCommand::Undo => {
+                let at = context.time.day;
+                self.change("Go back to the model before", around, context, |model| {
+                    model.undo(at).map_err(|error| error.to_string())
+                });
+            }
+            GapCommand::UseNominal => {
+                let at = context.time.day;
+                self.change("Take all effects out of the model", around, context, |model| {
+                    for effect in model.effects().to_vec() {
+                        // An effect that was added twice goes with the first of its parts.
+                        let _ = model.remove(&effect.id, &effect.site, at);
+                    }
+                    Ok(())
+                });
+            }
+            GapCommand::Report { file, pdf } => self.report(file, pdf, around, context),
+        }
+        self.look();
+    }
+
+    fn list(&self, context: &mut Context<'_>) {
+        let watched: Vec<KeptSession> =
+            self.findings.iter().flat_map(|named| named.kept.sessions.clone()).collect();
+        let folder = self.folder.join("sessions");
+        context.start(GapWork::List { folder, others: self.chosen.clone(), watched });
+    }
+
+    pub(super) fn named(&self, id: &str) -> Option<&Arc<Named>> {
+        self.findings.iter().find(|named| named.id == id)
+    }
+
+    pub(super) fn shown_named(&self) -> Option<&Arc<Named>> {
+        self.named(self.shown.as_ref()?)
+    }
+
+    fn find(&mut self, seed: u64, around: &GapAround, context: &mut Context<'_>) {
+        if self.searching.is_some() {
+            return context.refuse("The gap is being looked for already. Wait for it, or cancel that first.");
+        }
+        if self.chosen.is_empty() {
+            return context.refuse("Choose at least one session first, or touch the screen: step 3, Touch.");
+        }
+        let model = match self.with {
+            GapModel::Nominal => Arc::new(RigModel::nominal(&around.rig)),
+            GapModel::InUse => match &self.model {
+                Some(model) => model.clone(),
+                None => {
+                    return context.refuse(
+                        "The model in use cannot be read. See the log, or compare with the robot's description alone.",
+                    );
+                }
+            },
+        };
+        self.failed = None;
+        let work = GapWork::Find {
+            sessions: self.chosen.clone(),
+            rig: around.rig.clone(),
+            model,
+            options: Options { seed, ..Options::default() },
+            store: self.store.clone(),
+        };
+        self.searching = Some(context.start(work));
+    }
+
+    fn add(&mut self, effects: Vec<usize>, around: &GapAround, context: &mut Context<'_>) {
+        let Some(finding) = self.shown_named().cloned() else {
+            return context.refuse("Find what is missing first, then add it.");
+        };
+        if let Some(why) = self.stale() {
+            return context.refuse(why);
+        }
+        let named = &finding.kept.finding;
+        if named.verdict == Verdict::NotInLibrary {
+            return context
+                .refuse("What is missing is not in the library, so there is nothing to add by name.");
+        }
+        for &i in &effects {
+            match named.effects.get(i).map(|effect| &effect.not_addable) {
+                Some(None) => {}
+                Some(Some(why)) => return context.refuse(why),
+                None => return context.refuse("The finding has no such effect."),
+            }
+        }
+        if effects.is_empty() {
+            return context.refuse("Choose what to add first.");
+        }
+        let Some(model) = self.model_for_change(context) else { return };
+        let replaces = finding.kept.model_effects.is_empty();
+        let (rig, folder) = (around.rig.clone(), self.folder.clone());
+        let work = GapWork::Add { finding, effects, replaces, model, rig, folder, at: context.time.day };
+        self.changing = Some(context.start(work));
+    }
+
+    fn change(
+        &mut self,
+        title: &str,
+        around: &GapAround,
+        context: &mut Context<'_>,
+        change: impl FnOnce(&mut RigModel) -> Result<(), String>,
+    ) {
+        let Some(model) = self.model_for_change(context) else { return };
+        let mut next = (*model).clone();
+        if let Err(why) = change(&mut next) {
+            return context.refuse(crate::ground::text::sentence(&why));
+        }
+        let work = GapWork::Use {
+            folder: self.folder.clone(),
+            rig: around.rig.clone(),
+            model: Arc::new(next),
+            title: title.to_owned(),
+        };
+        self.changing = Some(context.start(work));
+    }
+
+    fn model_for_change(&self, context: &mut Context<'_>) -> Option<Arc<RigModel>> {
+        if self.changing.is_some() {
+            context.refuse("The model in use is being changed already. Try again in a moment.");
+            return None;
+        }
+        if self.model.is_none() {
+            context.refuse(
+                "The model in use could not be read, so nothing is written over it. See the log, then start the program again.",
+            );
+        }
+        self.model.clone()
+    }
+
+    fn report(&self, file: PathBuf, pdf: bool, around: &GapAround, context: &mut Context<'_>) {
+        let Some(finding) = self.shown_named().cloned() else {
+            return context.refuse("Find what is missing first, then write about it.");
+        };
+        let history = self.model.as_ref().map(|model| model::report_history(model)).unwrap_or_default();
+        let corners = around.rig.touchscreen.corners().map(|corner| [corner.coords.x, corner.coords.y]);
+        let page = ReportContext {
+            date: context.time.day.to_zoned(jiff::tz::TimeZone::system()).strftime("%-d %B %Y").to_string(),
+            model: finding.kept.model.clone(),
+            history,
+            screen_m: Some(corners),
+        };
+        context.start(GapWork::Report { finding, context: Box::new(page), file, pdf });
+    }
+
+    /// A run of touches is finished: it is compared next, and is in the list.
+    pub fn touched(&mut self, session: &Path, context: &mut Context<'_>) {
+        self.chosen = vec![session.to_owned()];
+        self.list(context);
+    }
+
+    /// Why the shown finding does not tell about now any more.
+    pub(super) fn stale(&self) -> Option<String> {
+        let kept = &self.shown_named()?.kept;
+        if let Some(changed) = kept.sessions.iter().find(|session| self.changed.contains(&session.folder)) {
+            return Some(format!(
+                "{} changed or is gone since this was found. Find what is missing again.",
+                crate::ground::sessions::title_of(&changed.folder)
+            ));
+        }
+        None
+    }
+
+    /// Work has ended with a result.
+    pub fn work_done(&mut self, id: JobId, result: GapResult, around: &GapAround, context: &mut Context<'_>) {
+        self.searching.take_if(|searching| *searching == id);
+        self.changing.take_if(|changing| *changing == id);
+        match result {
+            GapResult::Restored(restored) => self.restored(*restored, around, context),
+            GapResult::Listed { sessions, changed } => {
+                (self.sessions, self.changed) = (sessions, changed);
+                self.choose_first(around);
+            }
+            GapResult::Found(named) => {
+                let before = self.shown.replace(named.id.clone());
+                self.beside = before.filter(|before| self.is_comparable(before, &named));
+                self.findings.insert(0, named);
+            }
+            GapResult::Deleted(id) => {
+                self.findings.retain(|named| named.id != id);
+                self.beside.take_if(|beside| *beside == id);
+                if self.shown.take_if(|shown| *shown == id).is_some() {
+                    self.shown = self.findings.first().map(|named| named.id.clone());
+                }
+            }
+            GapResult::InUse(model) => self.model = Some(model),
+            GapResult::Written(_) => {}
+        }
+        self.look();
+    }
+
+    /// The same sessions with another model are worth seeing side by side.
+    fn is_comparable(&self, id: &str, with: &Named) -> bool {
+        self.named(id).is_some_and(|named| {
+            named.kept.finding.sessions == with.kept.finding.sessions
+                && named.kept.model_effects != with.kept.model_effects
+        })
+    }
+
+    fn restored(&mut self, restored: Restored, around: &GapAround, context: &mut Context<'_>) {
+        for problem in &restored.problems {
+            context.notices.add(NoticeLevel::Warning, &**problem);
+        }
+        self.sessions = restored.sessions;
+        self.shown = restored.findings.first().map(|named| named.id.clone());
+        self.findings = restored.findings;
+        self.changed = restored.changed;
+        self.model = restored.model;
+        self.choose_first(around);
+    }
+
+    /// Something is chosen, so that there is something to compare.
+    fn choose_first(&mut self, around: &GapAround) {
+        if !self.chosen.is_empty() {
+            return;
+        }
+        let usable = self.sessions.iter().filter(|session| session.problem.is_none());
+        let first = usable.map(|session| session.folder.as_path()).next();
+        self.chosen = around.newest_session.as_deref().or(first).map(Path::to_owned).into_iter().collect();
+    }
+
+    /// Work has ended without a result: everything is as it was.
+    pub fn work_ended(&mut self, id: JobId, why: Option<&str>) {
+        if self.searching.take_if(|searching| *searching == id).is_some() {
+            self.failed = why.map(str::to_owned);
+        }
+        self.changing.take_if(|changing| *changing == id);
+    }
+}
+
+impl Workflow for GapWorkflow {
+    type Command = GapCommand;
+    type Work = GapWork;
+    type Control = Nothing;
+    type Around = GapAround;
+    type View = GapView;
+
+    fn new(folder: &Path) -> Self {
+        Self::new(folder)
+    }
+
+    fn view(&mut self, around: &GapAround, _moment: &Moment) -> Arc<GapView> {
+        Arc::new(Self::view(self, around))
+    }
+
+    fn restore(&mut self, around: &GapAround, context: &mut Context<'_>) {
+        context.start(GapWork::Restore { folder: self.folder.clone(), rig: around.rig.clone() });
+    }
+
+    fn apply(&mut self, command: GapCommand, around: &GapAround, context: &mut Context<'_>) {
+        self.apply(command, around, context);
+    }
+
+    fn work_done(&mut self, id: JobId, result: GapResult, around: &GapAround, context: &mut Context<'_>) {
+        self.work_done(id, result, around, context);
+    }
+
+    fn work_ended(&mut self, id: JobId, why: Option<&str>, _around: &GapAround, _context: &mut Context<'_>) {
+        self.work_ended(id, why);
+    }
+}

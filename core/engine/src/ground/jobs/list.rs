@@ -1,0 +1,124 @@
+//! The jobs that the window shows: what is running, and how the others ended.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use super::{JobId, JobState, JobView};
+
+/// Ended jobs that are kept.
+const KEPT: usize = 8;
+
+#[derive(Clone, Debug)]
+struct Record {
+    view: JobView,
+    /// Not worth a line once it is done.
+    quiet: bool,
+}
+
+/// Jobs in the order in which they were started.
+#[derive(Clone, Debug, Default)]
+pub struct JobList {
+    records: Vec<Record>,
+    count: u64,
+}
+
+impl JobList {
+    /// Adds a job that starts now.
+    pub fn add(&mut self, title: String, quiet: bool) -> JobId {
+        self.count += 1;
+        let id = JobId(self.count);
+        let state = JobState::Running {
+            fraction: 0.0,
+            doing: "starting".to_owned(),
+            remaining: None,
+            cancelling: false,
+        };
+        self.records.push(Record { view: JobView { id, title, state, elapsed: Duration::ZERO }, quiet });
+        id
+    }
+
+    /// Takes over how far a job is.
+    pub fn progress(&mut self, view: JobView) {
+        if let Some(record) = self.records.iter_mut().find(|record| record.view.id == view.id) {
+            record.view = view;
+        }
+    }
+
+    /// Takes over how a job ended.
+    pub fn ended(&mut self, id: JobId, state: JobState, elapsed: Duration) {
+        if let Some(record) = self.records.iter_mut().find(|record| record.view.id == id) {
+            record.view.state = state;
+            record.view.elapsed = elapsed;
+            if record.quiet {
+                self.dismiss(id);
+            }
+        }
+        let ended = self.records.iter().filter(|record| !record.view.state.is_running()).count();
+        for _ in KEPT..ended {
+            if let Some(oldest) = self.records.iter().position(|record| !record.view.state.is_running()) {
+                self.records.remove(oldest);
+            }
+        }
+    }
+
+    /// Takes an ended job out of the list.
+    pub fn dismiss(&mut self, id: JobId) {
+        self.records.retain(|record| record.view.id != id || record.view.state.is_running());
+    }
+
+    /// Whether the end of a job is worth a message.
+    pub fn is_worth_telling(&self, id: JobId) -> bool {
+        self.records.iter().any(|record| record.view.id == id && !record.quiet)
+    }
+
+    /// Title of a job.
+    pub fn title(&self, id: JobId) -> Option<&str> {
+        self.records.iter().find(|record| record.view.id == id).map(|record| record.view.title.as_str())
+    }
+
+    /// Whether a job is in the list and has not ended.
+    pub fn is_running(&self, id: JobId) -> bool {
+        self.records.iter().any(|record| record.view.id == id && record.view.state.is_running())
+    }
+
+    /// What the window shows. Quiet jobs are shown only while they run.
+    pub fn view(&self) -> Arc<[JobView]> {
+        self.records.iter().map(|record| record.view.clone()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn done() -> JobState {
+        JobState::Done { summary: "done".into() }
+    }
+
+    #[test]
+    fn ended_jobs_stay_until_dismissed_and_running_ones_cannot_be_dismissed() {
+        let mut list = JobList::default();
+        let (a, b) = (list.add("a".into(), false), list.add("b".into(), false));
+        list.ended(a, done(), Duration::from_secs(1));
+        list.dismiss(b);
+        assert_eq!(list.view().len(), 2);
+        assert!(list.is_running(b) && !list.is_running(a));
+        list.dismiss(a);
+        assert_eq!(list.view().len(), 1);
+    }
+
+    #[test]
+    fn quiet_jobs_leave_no_line_and_the_others_are_bounded() {
+        let mut list = JobList::default();
+        let quiet = list.add("quiet".into(), true);
+        assert_eq!(list.view().len(), 1);
+        list.ended(quiet, done(), Duration::ZERO);
+        assert!(list.view().is_empty());
+        for i in 0..KEPT + 4 {
+            let id = list.add(i.to_string(), false);
+            list.ended(id, JobState::Cancelled, Duration::ZERO);
+        }
+        let titles: Vec<String> = list.view().iter().map(|job| job.title.clone()).collect();
+        assert_eq!((titles.len(), titles[0].as_str()), (KEPT, "4"));
+    }
+}

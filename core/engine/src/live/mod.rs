@@ -1,0 +1,13 @@
+//! What is computed live, for whom, and what came of it last.
+
+pub mod command;
+mod probe;
+mod rectify;
+mod setup;
+pub mod view;
+mod workflow;
+
+pub use probe::{ProbeInput, ProbeOutput, ProbeStage};
+pub use rectify::{RectifyInput, RectifyOutput, RectifyStage};
+pub use setup::{LiveSetup, aimed, other_size};
+pub use workflow::LiveWorkflow;

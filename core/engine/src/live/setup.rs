@@ -1,0 +1,78 @@
+//! What rectification and measuring rest on: a calibration, aimed at the workspace.
+
+use std::sync::Arc;
+
+use plumbline_model::aim::DEFAULT_SIZE_PX;
+use plumbline_model::camera::ModelKind;
+use plumbline_model::{
+    AimError, AimedPair, LeftCamera, Pose, Robot, StereoCalibration, StereoCameras, Workspace,
+};
+
+use super::command::AimChoice;
+
+/// What rectification and measuring rest on. Results of an older one are not shown any more.
+#[derive(Clone, Debug)]
+pub struct LiveSetup {
+    /// Counts up with every change.
+    pub generation: u64,
+    /// The calibration in use.
+    pub calibration: Arc<StereoCalibration>,
+    /// How the virtual pair looks at the workspace.
+    pub pair: AimedPair,
+    /// Largest disparity that is searched, pixels.
+    pub max_disparity_px: u32,
+    /// Where the left eye is.
+    pub robot_from_left: Pose<Robot, LeftCamera>,
+}
+
+/// Why images and calibration do not fit together.
+pub fn other_size(images: (u32, u32), calibrated: (u32, u32)) -> String {
+    format!(
+        "The images are {}×{} px, the calibration in use is for {}×{} px. Set the cameras to that size, or calibrate with these images.",
+        images.0, images.1, calibrated.0, calibrated.1
+    )
+}
+
+/// The virtual pair for a choice.
+pub fn aimed(aim: AimChoice, cameras: &StereoCameras, workspace: &Workspace) -> Result<AimedPair, AimError> {
+    match aim {
+        AimChoice::Table => match AimedPair::suited(cameras, workspace) {
+            // A finer lens than NICO's gets a larger view.
+            Err(AimError::Coarse { needed_width_px, needed_height_px, .. }) => {
+                AimedPair::at_workspace(cameras, workspace, (needed_width_px, needed_height_px))
+            }
+            aimed => aimed,
+        },
+        AimChoice::Manual { pitch_rad, horizontal_field_of_view_rad } => {
+            let size_px = match cameras.left.model.kind() {
+                ModelKind::Fisheye => DEFAULT_SIZE_PX,
+                ModelKind::Pinhole => cameras.left.size_px(),
+            };
+            AimedPair::turned_down(cameras, pitch_rad, horizontal_field_of_view_rad, size_px)
+        }
+    }
+}
+
+/// The disparity of the nearest thing that can be on the table.
+pub fn max_disparity_px(pair: &AimedPair, workspace: &Workspace) -> u32 {
+    let nearest = workspace
+        .corners_in_left(workspace.headroom_m)
+        .into_iter()
+        .filter_map(|corner| pair.project(corner).ok())
+        .map(|(left, right)| left.u_px - right.u_px)
+        .reduce(f64::max);
+    let (least, most) = SEARCH_LIMITS_PX;
+    match (pair.cameras.left.model.kind(), nearest) {
+        (ModelKind::Fisheye, Some(nearest_px)) => ((nearest_px * SEARCH_MARGIN) as u32).clamp(least, most),
+        _ => SEARCH_USUAL_PX,
+    }
+}
+
+/// Disparities beyond the nearest corner of the workspace that are searched too.
+const SEARCH_MARGIN: f64 = 1.15;
+
+/// Least and most that is searched, pixels.
+const SEARCH_LIMITS_PX: (u32, u32) = (32, 256);
+
+/// Searched where the workspace does not say how near things come.
+const SEARCH_USUAL_PX: u32 = 128;

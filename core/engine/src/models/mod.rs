@@ -1,0 +1,23 @@
+//! Correction models: training, comparing, accepting, undoing, files; and the tables of grasp height
+//! and yaw.
+//!
+//! [`ModelsWorkflow`] is driven by commands and by finished work; it owns no thread.
+
+pub mod command;
+pub mod files;
+mod learn;
+mod losses;
+mod map;
+mod screen;
+mod sessions;
+mod shown;
+mod store;
+pub mod tables;
+#[cfg(test)]
+pub(crate) mod tests;
+pub mod view;
+pub mod work;
+mod workflow;
+
+pub use learn::options;
+pub use workflow::{ModelsAround, ModelsWorkflow};

@@ -1,0 +1,7 @@
+//! Ways of the hand that were looked at before anything moves: above a place, down, and back.
+
+mod no_way;
+mod path;
+
+pub use no_way::NoWay;
+pub use path::{Planner, ScreenPlace, TouchPace, TouchPath, touch_allowances};

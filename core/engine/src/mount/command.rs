@@ -1,0 +1,30 @@
+//! Commands of calibrating how the eyes sit in the head.
+
+use serde::{Deserialize, Serialize};
+
+/// Calibrating how the eyes sit in the head, in the order of work.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MountCommand {
+    /// Plans head poses from which the board, where it lies now, is well seen.
+    Plan,
+    /// Turns the head to all planned poses and takes a view at each. Moves the head only.
+    Tour,
+    /// Takes a view where the head stands.
+    Capture,
+    /// Removes a view.
+    Delete {
+        /// Its name.
+        view: String,
+    },
+    /// Removes all views.
+    DeleteAll,
+    /// Solves; gives a proposal.
+    Solve,
+    /// Makes the proposal the mount in use.
+    Accept,
+    /// Forgets the proposal.
+    Discard,
+    /// Goes back to the nominal mount.
+    UseNominal,
+}

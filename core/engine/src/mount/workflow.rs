@@ -1,0 +1,309 @@
+//! What was seen, what was solved, what is in use.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::{Chessboard, PairObservation, StereoCalibration};
+use plumbline_vision::mount::{
+    HeadView, MountCalibration, PlannedTarget, Target, place_of_board, plan_head_views,
+};
+
+use super::command::MountCommand;
+use super::tour::{Tour, Wish};
+use super::work::{Context, MountResult, MountWork};
+use crate::eyes::Look;
+use crate::ground::jobs::JobId;
+use crate::ground::notice::NoticeLevel;
+use crate::ground::shelf::InUse;
+use crate::ground::text::sentence;
+use crate::ground::{Moment, Workflow};
+use crate::mount::view::MountView;
+use crate::robot::RobotControl;
+use crate::robot::view::RobotView;
+
+/// Head poses that are planned.
+const POSES: usize = 14;
+/// At least so many views are asked for.
+pub(super) const LEAST_VIEWS: usize = 6;
+
+/// What the workflow can see of the rest.
+pub struct MountAround {
+    /// The robot as its description has it.
+    pub rig: Arc<Rig>,
+    /// The robot now.
+    pub robot: Arc<RobotView>,
+    /// The calibration of the eyes; `None` before one was accepted.
+    pub calibration: Option<Arc<StereoCalibration>>,
+    /// The board in use.
+    pub board: Chessboard,
+    /// Whether eyes are open.
+    pub has_eyes: bool,
+}
+
+/// The whole workflow, of one world.
+#[derive(Clone, Debug)]
+pub struct MountWorkflow {
+    kept: InUse,
+    pub(super) views: Vec<HeadView>,
+    pub(super) board: Option<Chessboard>,
+    pub(super) planned: Vec<(f64, f64)>,
+    pub(super) tour: Option<Tour>,
+    pub(super) proposal: Option<Arc<MountCalibration>>,
+    pub(super) in_use: Option<Arc<MountCalibration>>,
+    pub(super) solving: Option<JobId>,
+    last_look: Option<Look>,
+    counted: usize,
+    /// What the operator asked for and needs an image that was taken after that.
+    pub(super) waiting: Option<(Waiting, Instant)>,
+}
+
+/// What is done with the next image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Waiting {
+    /// Planning head poses.
+    Plan,
+    /// A view.
+    Capture,
+}
+
+impl MountWorkflow {
+    /// Nothing seen. The mount in use is kept in a file of `folder`.
+    pub fn new(folder: &Path) -> Self {
+        Self {
+            kept: InUse::new(folder.join("mount.toml")),
+            views: Vec::new(),
+            board: None,
+            planned: Vec::new(),
+            tour: None,
+            proposal: None,
+            in_use: None,
+            solving: None,
+            last_look: None,
+            counted: 0,
+            waiting: None,
+        }
+    }
+
+    /// The mount in use; `None`: nominal.
+    pub fn in_use(&self) -> Option<&Arc<MountCalibration>> {
+        self.in_use.as_ref()
+    }
+
+    /// Whether the board has to be looked for.
+    pub fn wants_corners(&self) -> bool {
+        self.tour.is_some() || self.waiting.is_some()
+    }
+
+    /// Applies a command of the operator.
+    pub fn apply(&mut self, command: MountCommand, around: &MountAround, context: &mut Context<'_>) {
+        match command {
+            MountCommand::Plan => self.wait_for_image(Waiting::Plan, around, context),
+            MountCommand::Tour => {
+                if self.planned.is_empty() {
+                    return context.refuse("No head poses are planned yet. Plan them first.");
+                }
+                self.tour = Some(Tour::new(&self.planned));
+                self.step(around, context);
+            }
+            MountCommand::Capture => self.wait_for_image(Waiting::Capture, around, context),
+            MountCommand::Delete { view } => self.views.retain(|known| known.name != view),
+            MountCommand::DeleteAll => {
+                self.views.clear();
+                (self.tour, self.proposal) = (None, None);
+            }
+            MountCommand::Solve => self.solve(around, context),
+            MountCommand::Accept => match self.proposal.clone() {
+                Some(mount) => {
+                    context.start(MountWork::Save { kept: self.kept.clone(), mount });
+                }
+                None => context.refuse("Nothing waits to be accepted. Solve first."),
+            },
+            MountCommand::Discard => self.proposal = None,
+            MountCommand::UseNominal => {
+                context.start(MountWork::Forget { kept: self.kept.clone() });
+            }
+        }
+    }
+
+    fn wait_for_image(&mut self, what: Waiting, around: &MountAround, context: &mut Context<'_>) {
+        match ready(around) {
+            Ok(_) if !around.has_eyes => context.refuse("No eyes are open. Choose a source of images first."),
+            Ok(_) => self.waiting = Some((what, context.time.instant)),
+            Err(reason) => context.refuse(reason),
+        }
+    }
+
+    fn plan(&self, around: &MountAround) -> Result<Vec<(f64, f64)>, String> {
+        let (calibration, posture) = ready(around)?;
+        let cameras = calibration.cameras;
+        let view = self.last_look.as_ref().and_then(|look| head_view(look, "now".to_owned(), &posture));
+        let view = view
+            .ok_or("Neither eye sees the board. Lay it flat on the table where both eyes see all of it.")?;
+        let words = |error: plumbline_vision::mount::MountError| sentence(&error.to_string());
+        let robot_from_board = place_of_board(&around.rig, &cameras, &view, &around.board).map_err(words)?;
+        let target = PlannedTarget::board(&around.board, &robot_from_board);
+        plan_head_views(&around.rig, &cameras, &posture, &target, POSES).map_err(words)
+    }
+
+    fn solve(&mut self, around: &MountAround, context: &mut Context<'_>) {
+        if self.solving.is_some() {
+            return context.refuse("The mount is being solved already.");
+        }
+        let eyes = match ready(around) {
+            Ok((eyes, _)) => eyes,
+            Err(reason) => return context.refuse(reason),
+        };
+        let board = self.board.unwrap_or(around.board);
+        let work = MountWork::Solve {
+            rig: around.rig.clone(),
+            eyes,
+            views: self.views.clone(),
+            target: Target::UnknownBoard(board),
+        };
+        self.solving = Some(context.start(work));
+    }
+
+    /// The chessboard search has looked at an image.
+    pub fn look(&mut self, look: Look, around: &MountAround, context: &mut Context<'_>) {
+        let captured_at = look.frame.stamp.captured_at;
+        if self.tour.as_ref().is_some_and(|tour| tour.accepts(captured_at)) {
+            if let Err(reason) = self.take(&look, around) {
+                context.notices.add(NoticeLevel::Info, format!("One head pose was passed over: {reason}"));
+            }
+            if let Some(tour) = &mut self.tour {
+                tour.advance();
+            }
+        }
+        let waiting = self.waiting.take_if(|(_, since)| captured_at > *since);
+        if let Some((Waiting::Capture, _)) = waiting
+            && let Err(reason) = self.take(&look, around)
+        {
+            context.refuse(reason);
+        }
+        self.last_look = Some(look);
+        if let Some((Waiting::Plan, _)) = waiting {
+            match self.plan(around) {
+                Ok(planned) => self.planned = planned,
+                Err(reason) => context.refuse(reason),
+            }
+        }
+        self.step(around, context);
+    }
+
+    /// The robot has something new.
+    pub fn step(&mut self, around: &MountAround, context: &mut Context<'_>) {
+        let Some(tour) = &mut self.tour else { return };
+        match tour.step(&around.robot, &around.rig, context.time.instant) {
+            Wish::Nothing => {}
+            Wish::Turn(pan_rad, tilt_rad) => {
+                context.control(RobotControl::TurnHead { pan_rad, tilt_rad });
+            }
+            Wish::Finished => {
+                (self.tour, self.planned) = (None, Vec::new());
+                let text = format!("The head was in all planned poses: {} views.", self.views.len());
+                context.notices.add(NoticeLevel::Success, text);
+            }
+            Wish::GiveUp(reason) => {
+                self.tour = None;
+                context.refuse(reason);
+            }
+        }
+    }
+
+    fn take(&mut self, look: &Look, around: &MountAround) -> Result<(), String> {
+        let (_, posture) = ready(around)?;
+        if self.board.is_some_and(|board| board != look.board) && !self.views.is_empty() {
+            return Err("Another board was used for the views so far. Remove them first.".to_owned());
+        }
+        let name = format!("view {:02}", self.counted + 1);
+        let view = head_view(look, name, &posture).ok_or("Neither eye sees the board.")?;
+        self.board = Some(look.board);
+        self.counted += 1;
+        self.views.push(view);
+        Ok(())
+    }
+
+    /// Work has ended with a result.
+    pub fn work_done(&mut self, id: JobId, result: MountResult) {
+        self.work_ended(id);
+        match result {
+            MountResult::Solved(mount) => self.proposal = Some(mount),
+            MountResult::Saved(mount) => {
+                self.proposal = self.proposal.take().filter(|proposal| !Arc::ptr_eq(proposal, &mount));
+                self.in_use = Some(mount);
+            }
+            MountResult::Restored(mount) => self.in_use = mount,
+            MountResult::Forgotten => self.in_use = None,
+        }
+    }
+
+    /// Work has ended without a result.
+    pub fn work_ended(&mut self, id: JobId) {
+        self.solving = self.solving.filter(|solving| *solving != id);
+    }
+}
+
+impl Workflow for MountWorkflow {
+    type Command = MountCommand;
+    type Work = MountWork;
+    type Control = RobotControl;
+    type Around = MountAround;
+    type View = MountView;
+
+    fn new(folder: &Path) -> Self {
+        Self::new(folder)
+    }
+
+    fn view(&mut self, around: &MountAround, _moment: &Moment) -> Arc<MountView> {
+        Arc::new(Self::view(self, around))
+    }
+
+    fn restore(&mut self, around: &MountAround, context: &mut Context<'_>) {
+        context.start(MountWork::Restore { kept: self.kept.clone(), rig: around.rig.clone() });
+    }
+
+    fn apply(&mut self, command: MountCommand, around: &MountAround, context: &mut Context<'_>) {
+        self.apply(command, around, context);
+    }
+
+    fn work_done(
+        &mut self,
+        id: JobId,
+        result: MountResult,
+        _around: &MountAround,
+        _context: &mut Context<'_>,
+    ) {
+        self.work_done(id, result);
+    }
+
+    fn work_ended(
+        &mut self,
+        id: JobId,
+        _why: Option<&str>,
+        _around: &MountAround,
+        _context: &mut Context<'_>,
+    ) {
+        self.work_ended(id);
+    }
+}
+
+/// The eyes' calibration and the present posture, or why there is none.
+fn ready(around: &MountAround) -> Result<(Arc<StereoCalibration>, Posture), String> {
+    let calibration =
+        around.calibration.clone().ok_or("The eyes are not calibrated yet. Do step 1, Eyes, first.")?;
+    let head = around.robot.rig.as_ref().map(|rig| [rig.eyes.pan, rig.eyes.tilt]);
+    let posture = head.and_then(|head| around.robot.known(&head).cloned());
+    let posture =
+        posture.ok_or("The head's angles are not known. Connect to the robot or the twin first.")?;
+    Ok((calibration, posture))
+}
+
+fn head_view(look: &Look, name: String, posture: &Posture) -> Option<HeadView> {
+    if look.left.is_none() && look.right.is_none() {
+        return None;
+    }
+    let sighting = PairObservation { name, left: look.left.clone(), right: look.right.clone() };
+    Some(HeadView::new(sighting, posture.clone()))
+}

@@ -1,0 +1,170 @@
+//! The model in use of a world: the robot's description and the effects that were accepted. It lives
+//! in one file; what predicts, touches or solves reads it from there.
+
+use std::path::{Path, PathBuf};
+
+use jiff::Timestamp;
+use plumbline_effects::RigModel;
+use plumbline_effects::rig_model::{
+    Addition, ModelEffect, PlacedExternal, PlacedScreen, ReportedParameter, Step, StepGap,
+};
+use plumbline_gap::Finding;
+use plumbline_gap::finding::{NamedEffect, Shown, ShownUnit};
+use plumbline_model::Session;
+use plumbline_model::robot::Rig;
+
+use crate::ground::jobs::JobError;
+use crate::ground::shelf::InUse;
+use crate::ground::text::sentence;
+
+#[cfg(test)]
+pub(crate) mod made_up;
+#[cfg(test)]
+mod tests;
+
+/// The file, in the folder of a world.
+pub const FILE: &str = "rig-model.toml";
+
+/// Where the model in use is kept in the folder of a world.
+pub fn file(folder: &Path) -> PathBuf {
+    folder.join(FILE)
+}
+
+/// The model in use; nominal where nothing was accepted yet.
+///
+/// # Errors
+/// A sentence, when there is a file that cannot be used.
+pub fn load(folder: &Path, rig: &Rig) -> Result<RigModel, String> {
+    let read = InUse::new(file(folder)).read(|file| RigModel::read(file, rig).map_err(JobError::told));
+    Ok(read.map_err(|error| error.to_string())?.unwrap_or_else(|| RigModel::nominal(rig)))
+}
+
+/// Puts a model in use.
+///
+/// # Errors
+/// A sentence; then what was in use stays so.
+pub fn save(folder: &Path, model: &RigModel, rig: &Rig) -> Result<(), String> {
+    let no_folder =
+        |error| format!("{} cannot be made ({error}). Check that the disk can be written.", folder.display());
+    let write = |file: &Path| model.write(file, rig).map_err(|error| sentence(&error.to_string()));
+    InUse::new(file(folder)).put(no_folder, write)
+}
+
+/// Accepts effects of a finding, by their places in it, and puts the model in use. `sessions` are
+/// those of the finding, in its order.
+///
+/// # Errors
+/// A sentence; then what was in use stays so.
+pub fn accept(
+    folder: &Path,
+    rig: &Rig,
+    finding: (&Finding, &[Session]),
+    effects: &[usize],
+    replaces: bool,
+) -> Result<RigModel, String> {
+    let model = with(&load(folder, rig)?, rig, finding, effects, replaces, Timestamp::now())?;
+    save(folder, &model, rig)?;
+    Ok(model)
+}
+
+/// Takes the last step back.
+///
+/// # Errors
+/// A sentence; then what was in use stays so.
+pub fn undo(folder: &Path, rig: &Rig) -> Result<RigModel, String> {
+    let mut model = load(folder, rig)?;
+    model.undo(Timestamp::now()).map_err(|error| sentence(&error.to_string()))?;
+    save(folder, &model, rig)?;
+    Ok(model)
+}
+
+/// Models after each step with their gaps: the mean error on rows that were not used. Steps that were
+/// taken back, and that took back, are left out.
+pub fn history(model: &RigModel) -> impl Iterator<Item = (&Step, &StepGap)> {
+    let in_force = model.history.iter().filter(|step| step.can_be_undone());
+    in_force.filter_map(|step| Some((step, step.gap.as_ref()?)))
+}
+
+/// A model with effects of a finding, by their places in it, and with where the finding places its
+/// sessions' frames. `replaces`: the search began with the nominal robot, so that what it found takes
+/// the place of all that is in the model. `at`: when it is done.
+///
+/// # Errors
+/// A sentence: why they cannot be added.
+pub fn with(
+    model: &RigModel,
+    rig: &Rig,
+    (finding, sessions): (&Finding, &[Session]),
+    effects: &[usize],
+    replaces: bool,
+    at: Timestamp,
+) -> Result<RigModel, String> {
+    if finding.sessions.len() != sessions.len() || finding.placements.len() != sessions.len() {
+        return Err("The finding is not of these sessions. Search the gap again.".to_owned());
+    }
+    let mut chosen = vec![];
+    for &i in effects {
+        let effect =
+            finding.effects.get(i).ok_or("The finding has no such effect. Choose one of its list.")?;
+        if let Some(why) = &effect.not_addable {
+            return Err(format!("{} cannot be added: {why}.", effect.title));
+        }
+        chosen.push(effect);
+    }
+    let tip = sessions.iter().find_map(|session| session.manifest.chain.as_ref()).map(|chain| &chain.tip);
+    let (mut screens, mut externals) = (vec![], vec![]);
+    for ((name, session), placement) in finding.sessions.iter().zip(sessions).zip(&finding.placements) {
+        let screen = session.manifest.touchscreen.as_ref().filter(|_| session.touches.is_some());
+        screens.extend(screen.map(|screen| PlacedScreen::moved(name, screen, placement)));
+        if session.poses.is_some() {
+            externals.push(PlacedExternal { session: name.clone(), external_from_robot: *placement });
+        }
+    }
+    let addition = Addition {
+        effects: chosen.into_iter().map(|effect| model_effect(effect, tip)).collect(),
+        screens,
+        externals,
+        replaces,
+        at,
+        sentence: finding.sentence.clone(),
+        sessions: finding.sessions.clone(),
+        version: finding.version.clone(),
+        gap: gap(&finding.shown),
+    };
+    let mut next = model.clone();
+    next.add(rig, addition).map_err(|error| sentence(&error.to_string()))?;
+    Ok(next)
+}
+
+fn gap(shown: &Shown) -> Option<StepGap> {
+    (shown.rows > 0).then(|| StepGap {
+        unit: if shown.unit == ShownUnit::Pixel { "px" } else { "m" }.to_owned(),
+        rows: shown.rows,
+        before: shown.before,
+        after: shown.after,
+        floor: shown.floor,
+        closure: shown.closure,
+        closure_range: shown.closure_range,
+    })
+}
+
+fn model_effect(effect: &NamedEffect, tip: Option<&String>) -> ModelEffect {
+    let reported = effect.parameters.iter().map(|found| ReportedParameter {
+        name: found.name.clone(),
+        value: found.value,
+        low: found.low,
+        high: found.high,
+        text: found.text.clone(),
+    });
+    ModelEffect {
+        id: effect.id.clone(),
+        site: effect.site.clone(),
+        title: effect.title.clone(),
+        tip: tip.cloned(),
+        shape: effect.shape,
+        values: effect.values.clone(),
+        covariance: effect.covariance.clone(),
+        probability: Some(effect.probability),
+        parameters: reported.collect(),
+    }
+}

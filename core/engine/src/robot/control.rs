@@ -1,0 +1,50 @@
+//! What is handed to the robot's thread.
+
+use plumbline_hardware::joints::Touch;
+use plumbline_model::frame::{Head, LeftCamera, Pose};
+use plumbline_model::session::Touchscreen;
+
+use super::command::RobotCommand;
+use super::touch_order::TouchOrder;
+use crate::twin::command::TwinCommand;
+
+/// What is handed to the robot's thread.
+#[derive(Clone, Debug)]
+pub enum RobotControl {
+    /// The operator wants something of the robot.
+    Robot(RobotCommand),
+    /// The operator wants something of the twin.
+    Twin(TwinCommand),
+    /// The eyes sit elsewhere in the head: looking at a point needs to know.
+    PlaceEyes {
+        /// Place of the left eye.
+        head_from_left: Pose<Head, LeftCamera>,
+    },
+    /// The touchscreen lies elsewhere.
+    PlaceScreen(Touchscreen),
+    /// Touch the screen once.
+    Touch(Box<TouchOrder>),
+    /// End the touch that is under way: up again, if the arm may move.
+    AbandonTouch,
+    /// The touch window felt a contact.
+    Contact(Touch),
+    /// A workflow turns the head.
+    TurnHead {
+        /// Positive to the left, rad.
+        pan_rad: f64,
+        /// Positive up, rad.
+        tilt_rad: f64,
+    },
+}
+
+impl From<RobotCommand> for RobotControl {
+    fn from(command: RobotCommand) -> Self {
+        Self::Robot(command)
+    }
+}
+
+impl From<TwinCommand> for RobotControl {
+    fn from(command: TwinCommand) -> Self {
+        Self::Twin(command)
+    }
+}

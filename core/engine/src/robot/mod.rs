@@ -1,0 +1,39 @@
+//! The robot's side of the engine: a thread that connects, previews, jogs and moves.
+
+pub mod arm;
+pub mod command;
+mod connect;
+pub mod control;
+mod destination;
+mod history;
+mod jog;
+mod path;
+mod poses;
+mod publish;
+#[cfg(test)]
+mod tests;
+mod thread;
+mod touch_once;
+pub mod touch_order;
+mod touching;
+pub mod view;
+mod worker;
+
+use plumbline_hardware::joints::{Heartbeat, StopSwitch};
+
+pub use control::RobotControl;
+pub use poses::PoseLibrary;
+pub use thread::{RobotThread, Wires as RobotWires};
+pub use touch_order::{TouchMeasurement, TouchNews, TouchOrder, TouchRun, TouchStage};
+pub use worker::{News, Worker};
+
+pub use crate::twin::scenarios;
+
+/// What goes past every queue: the latched STOP and the window's sign of life.
+#[derive(Clone, Debug, Default)]
+pub struct Switches {
+    /// Read in every cycle of the joint bus; pressed at once, released only by a command.
+    pub stop: StopSwitch,
+    /// Without it the arm holds.
+    pub heartbeat: Heartbeat,
+}

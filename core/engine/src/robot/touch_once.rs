@@ -1,0 +1,173 @@
+//! The worker touches the screen once: what it asks of itself before, and what it does when the touch
+//! goes on, ends or is interrupted.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use plumbline_hardware::joints::{FloorGuard, JointState, Touch, TouchSource};
+use plumbline_model::robot::Rig;
+
+use super::arm::Arm;
+use super::path::Paths;
+use super::touch_order::{TouchNews, TouchOrder, TouchRun, TouchStage};
+use super::touching::{Hand, Run, Step};
+use super::view::Connection;
+use super::worker::Worker;
+use crate::ground::notice::NoticeLevel;
+use crate::ground::text::sentence;
+use crate::motion::touch_allowances;
+
+impl Worker {
+    /// How touches are doing, since the last call.
+    pub fn take_touch_news(&mut self) -> Vec<TouchNews> {
+        std::mem::take(&mut self.touching.news)
+    }
+
+    /// Whether a finger is on its way to the glass or on it: it has to be looked after often.
+    pub fn is_lowering(&self) -> bool {
+        let stage = self.touching.run.as_ref().map(Run::stage);
+        matches!(stage, Some(TouchStage::Lowering | TouchStage::Dwelling))
+    }
+
+    pub(super) fn begin_touch(&mut self, order: TouchOrder, now: Instant) {
+        let of_twin = matches!(self.connection, Connection::Connected { twin: true, .. });
+        let glass = self.desk.touchscreen().filter(|_| of_twin);
+        if glass.is_some() && self.touching.run.is_none() {
+            self.desk.free_screen(&self.rig);
+        }
+        let source: Box<dyn TouchSource> = match glass {
+            Some(glass) => Box::new(glass),
+            None => Box::new(self.touching.window.clone()),
+        };
+        self.begin_touch_with(order, source, now);
+    }
+
+    pub(super) fn begin_touch_with(&mut self, order: TouchOrder, source: Box<dyn TouchSource>, now: Instant) {
+        if let Err(reason) = self.may_touch(&order) {
+            return self.touching.tell(&order, TouchRun::Interrupted(reason));
+        }
+        let refusals = self.state().and_then(|state| state.refusal.as_ref().map(|(number, _)| *number));
+        match Run::new(&self.rig, order.clone(), source, refusals.unwrap_or_default(), now) {
+            Ok(run) => {
+                (self.preview, self.refusal) = (None, None);
+                self.touching.tell(&order, TouchRun::Doing(run.stage()));
+                self.touching.run = Some(run);
+                self.step_touch(now);
+            }
+            Err(reason) => self.touching.tell(&order, TouchRun::Interrupted(reason)),
+        }
+    }
+
+    fn may_touch(&self, order: &TouchOrder) -> Result<(), String> {
+        if self.touching.run.is_some() {
+            return Err(self.touching.busy());
+        }
+        self.arm()?;
+        if self.switches.stop.is_pressed() {
+            return Err("STOP is pressed. Release it, then go on.".to_owned());
+        }
+        if self.jog.is_some() || self.running.is_some() {
+            return Err("Something else moves the arm. Wait until it stands, then go on.".to_owned());
+        }
+        if self.present().is_none() {
+            return Err("The joints have not been read yet. Wait a moment, then go on.".to_owned());
+        }
+        let fits = |posture: &plumbline_model::robot::Posture| {
+            posture.len() == self.rig.description.movable_count() && posture.is_finite()
+        };
+        let whole = order.lower.len() >= 2
+            && order.lower.len() == order.lower_tip.len()
+            && order.approach.iter().chain(&order.lower).all(fits);
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        let paced = positive(order.lower_speed_m_s) && positive(order.speed_rad_s);
+        if !(whole && paced && positive(order.plausible_px)) {
+            return Err("The planned touch has no way that could be gone. Plan anew.".to_owned());
+        }
+        Ok(())
+    }
+
+    /// Up again, if the finger is down; the touch then counts as missed.
+    pub(super) fn abandon_touch(&mut self) {
+        let Some(mut run) = self.touching.run.take() else { return };
+        let step = run.abandon(self);
+        self.went(run, step);
+    }
+
+    pub(super) fn felt_by_window(&mut self, contact: Touch) {
+        self.touching.window.felt(contact);
+    }
+
+    pub(super) fn step_touch(&mut self, now: Instant) {
+        let Some(mut run) = self.touching.run.take() else { return };
+        let step = run.step(self, now);
+        self.went(run, step);
+    }
+
+    /// Ends a touch from outside: it cannot go on.
+    pub(super) fn interrupt_touch(&mut self, reason: &str) {
+        if let Some(run) = self.touching.run.take() {
+            self.went(run, Err(sentence(reason)));
+        }
+    }
+
+    fn went(&mut self, run: Run, step: Result<Step, String>) {
+        match step {
+            Ok(Step::Same) => self.touching.run = Some(run),
+            Ok(Step::Next) => {
+                self.touching.tell(run.order(), TouchRun::Doing(run.stage()));
+                self.touching.run = Some(run);
+            }
+            Ok(Step::End(end)) => {
+                self.paths.allow(vec![]);
+                self.touching.tell(run.order(), end);
+            }
+            Err(reason) => {
+                // Goals below the glass become where the finger is: the next move starts outside.
+                let _ = self.arm().map(|arm| arm.hold());
+                self.paths.allow(vec![]);
+                let text = format!(
+                    "Touch {} was interrupted ({}). {reason} The arm stands where it is; when its way is free, resume.",
+                    run.order().number,
+                    run.stage().name()
+                );
+                self.touching.tell(run.order(), TouchRun::Interrupted(text));
+            }
+        }
+    }
+}
+
+impl Hand for Worker {
+    fn rig(&self) -> &Arc<Rig> {
+        &self.rig
+    }
+
+    fn arm(&self) -> Result<&dyn Arm, String> {
+        Self::arm(self)
+    }
+
+    fn state(&self) -> Option<Arc<JointState>> {
+        self.arm.as_ref().and_then(|arm| arm.state())
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.switches.stop.is_pressed()
+    }
+
+    fn connected_at(&self) -> Option<Instant> {
+        self.connected_at
+    }
+
+    fn paths(&self) -> &Paths {
+        &self.paths
+    }
+
+    fn allow_touch(&self, order: &TouchOrder) {
+        let Ok(chain) = self.rig.chain(&order.tip) else { return };
+        let floor = FloorGuard::new(&self.rig);
+        self.paths.allow(touch_allowances(&self.paths.model(), &floor, &chain, &order.lower[0]));
+    }
+
+    fn warn(&mut self, text: String) {
+        self.note(NoticeLevel::Warning, text);
+    }
+}

@@ -1,0 +1,405 @@
+//! Everything the engine knows, driven by commands and events; owns no thread.
+
+mod actions;
+mod neighbors;
+mod rooms;
+mod stages;
+mod threads;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use plumbline_hardware::SourceSpec;
+use plumbline_model::StereoFrame;
+use plumbline_model::robot::{Rig, default_rig};
+
+pub use actions::Action;
+use rooms::{Keeps, Neighbors, Rooms};
+pub use stages::Serves;
+
+use crate::command::{Command, HeadPose};
+use crate::detect::{DetectInput, DetectOutput, DetectWorkflow, OpenDetector};
+use crate::eyes::{CornersInput, EyesWorkflow, Look};
+use crate::ground::data_folder::KeptView;
+use crate::ground::jobs::list::JobList;
+use crate::ground::jobs::{JobId, JobState, JobView, Outcome};
+use crate::ground::notice::{NoticeLevel, Notices};
+use crate::ground::stage::{StagePanic, Timed};
+use crate::ground::watched::{ThreadFault, WatchedThread};
+use crate::ground::{Asked, Clock, Context, Moment, Time, Workflow, World};
+use crate::labels::work::LabelsWork;
+use crate::live::{ProbeInput, ProbeOutput, RectifyInput, RectifyOutput};
+use crate::mount::MountWorkflow;
+use crate::robot::view::{Connection, RobotView};
+use crate::robot::{News, RobotControl, TouchNews};
+use crate::source::view::SourceView;
+use crate::source::{Control, Note};
+use crate::touch::TouchWorkflow;
+use crate::twin::view::TwinView;
+use crate::work::{Work, WorkResult};
+
+/// Everything the engine knows.
+#[derive(Clone, Debug)]
+pub struct State {
+    rooms: Rooms,
+    robot: Arc<RobotView>,
+    twin: Arc<TwinView>,
+    twins_started: u64,
+    rig: Arc<Rig>,
+    /// Whose eyes the source shows.
+    shown: World,
+    /// Whose arm: that of the connected robot, else that of the world whose eyes are shown.
+    arm_of: World,
+    /// The finished session of touches that models were told of last, with its revision.
+    learned_from: BTreeMap<World, (PathBuf, u64)>,
+    /// Work belongs to the world it was started for, whatever is shown when it ends.
+    started_by: BTreeMap<JobId, World>,
+    jobs: JobList,
+    notices: Notices,
+    clock: Clock,
+    actions: Vec<Action>,
+    /// Which source, counted, the newest pair is of.
+    shown_of: u64,
+    revision: u64,
+    faults: BTreeMap<WatchedThread, ThreadFault>,
+    /// What was known of robot and twin before their thread fell silent.
+    before_silence: Option<(Arc<RobotView>, Arc<TwinView>)>,
+    /// The same of the source.
+    source_before_silence: Option<Arc<SourceView>>,
+    kept: Arc<KeptView>,
+}
+
+impl State {
+    /// Nothing opened; what was accepted before is read as the first job.
+    pub fn new(data_dir: &Path) -> Self {
+        let mut state = Self {
+            rooms: Rooms::new(data_dir),
+            robot: Arc::default(),
+            twin: Arc::default(),
+            twins_started: 0,
+            rig: default_rig(),
+            shown: World::default(),
+            arm_of: World::default(),
+            learned_from: BTreeMap::new(),
+            started_by: BTreeMap::new(),
+            jobs: JobList::default(),
+            notices: Notices::default(),
+            clock: Clock::default(),
+            actions: Vec::new(),
+            shown_of: 0,
+            revision: 0,
+            faults: BTreeMap::new(),
+            before_silence: None,
+            source_before_silence: None,
+            kept: Arc::default(),
+        };
+        state.restore();
+        state
+    }
+
+    /// Lets a workflow act, hands on what it asks for, and tells its neighbors.
+    fn with<W: Workflow>(
+        &mut self,
+        world: World,
+        act: impl FnOnce(&mut W, &W::Around, &mut Context<'_, W::Work, W::Control>),
+    ) where
+        Self: Neighbors<W>,
+        Rooms: Keeps<W>,
+        Work: From<W::Work>,
+        Action: From<W::Control>,
+    {
+        let around = Neighbors::<W>::around(self, world);
+        let mut asked = Vec::new();
+        let Self { rooms, jobs, notices, clock, .. } = self;
+        act(rooms.room(world), &around, &mut Context::new(notices, jobs, clock.time(), &mut asked));
+        for asked in asked {
+            self.actions.push(match asked {
+                Asked::Start(id, work) => {
+                    self.started_by.insert(id, world);
+                    Action::Start(id, work.into())
+                }
+                Asked::Cancel(id) => Action::Cancel(id),
+                Asked::Control(control) => control.into(),
+            });
+        }
+        Neighbors::<W>::after(self, world);
+    }
+
+    /// Takes it to be this time, until told otherwise; `None`: the time of the system. What happens at
+    /// the same times, in the same order, gives the same again.
+    pub fn hold_time(&mut self, time: Option<Time>) {
+        self.clock.hold(time);
+        self.notices.hold_time(time);
+    }
+
+    /// Applies a command of the operator that was given at this time.
+    pub fn apply_at(&mut self, command: Command, time: Time) {
+        self.hold_time(Some(time));
+        self.apply(command);
+        self.hold_time(None);
+    }
+
+    /// What the window shows of a workflow.
+    fn view_of<W: Workflow>(&mut self, world: World, moment: &Moment) -> Arc<W::View>
+    where
+        Self: Neighbors<W>,
+        Rooms: Keeps<W>,
+    {
+        let around = Neighbors::<W>::around(self, world);
+        Workflow::view(Keeps::<W>::room(&mut self.rooms, world), &around, moment)
+    }
+
+    /// Opens detectors in another way (tests, fake detectors).
+    pub fn set_detector_opener(&mut self, open: OpenDetector) {
+        self.rooms.detect.set_opener(open);
+    }
+
+    /// What the operator drew and is not on disk yet, to be written before the program ends.
+    pub fn last_write(&self) -> Option<LabelsWork> {
+        self.rooms.labels.last_write()
+    }
+
+    /// The eyes that the source shows.
+    fn shown_eyes(&self) -> &EyesWorkflow {
+        self.rooms.eyes.of(self.shown)
+    }
+
+    /// The live view rests on the calibration of the eyes that are shown.
+    fn use_calibration(&mut self) {
+        let Rooms { live, eyes, .. } = &mut self.rooms;
+        live.set_calibration(eyes.of(self.shown).in_use());
+    }
+
+    /// Where the eyes are over the table, for the maps of the next assessment.
+    fn use_workspace(&mut self) {
+        let workspace = self.rooms.live.workspace();
+        self.rooms.eyes.iter_mut().for_each(|eyes| eyes.set_workspace(workspace));
+    }
+
+    /// The robot of a world, its touchscreen where it was measured to lie.
+    fn rig_of(&self, world: World) -> Arc<Rig> {
+        match self.rooms.touch.of(world).screen() {
+            None => self.rig.clone(),
+            Some(screen) => {
+                let mut rig = (*self.rig).clone();
+                rig.touchscreen = screen.clone();
+                Arc::new(rig)
+            }
+        }
+    }
+
+    /// The screen lies where it was measured, for everything that draws or touches it.
+    fn use_screen(&mut self) {
+        let shown = self.rooms.touch.of(self.arm_of).screen();
+        let screen = shown.unwrap_or(&self.rig.touchscreen).clone();
+        if self.rooms.live.rig().touchscreen == screen {
+            return;
+        }
+        let mut rig = Rig::clone(self.rooms.live.rig());
+        rig.touchscreen = screen.clone();
+        self.rooms.live.set_rig(Arc::new(rig));
+        self.use_workspace();
+        self.actions.push(Action::Robot(RobotControl::PlaceScreen(screen)));
+    }
+
+    /// The eyes sit where the mount in use says, for everything that looks or turns the head.
+    fn use_mount(&mut self) {
+        let in_use = self.rooms.mount.of(self.shown).in_use();
+        let head_from_left = in_use.map_or(self.rig.eyes.head_from_left, |mount| mount.head_from_left);
+        if self.rooms.live.rig().eyes.head_from_left == head_from_left {
+            return;
+        }
+        let mut rig = Rig::clone(self.rooms.live.rig());
+        rig.eyes.head_from_left = head_from_left;
+        self.rooms.live.set_rig(Arc::new(rig));
+        self.use_workspace();
+        self.actions.push(Action::Robot(RobotControl::PlaceEyes { head_from_left }));
+    }
+
+    /// A pair has come from the source.
+    ///
+    /// `opened` counts the sources opened; a pair of an earlier source comes too late.
+    pub fn frame(&mut self, opened: u64, frame: StereoFrame, now: Instant) {
+        if opened < self.rooms.source.view().opened {
+            return;
+        }
+        self.shown_of = opened;
+        self.rooms.eyes.of_mut(self.shown).set_image_size(frame.left.dimensions());
+        self.rooms.live.frame(frame, now);
+    }
+
+    /// The source says how it is doing.
+    pub fn source_changed(&mut self, view: SourceView) {
+        if view.opened != self.rooms.source.view().opened && view.opened != self.shown_of {
+            self.rooms.live.clear();
+            self.rooms.detect.clear();
+        }
+        self.shown = World::of(view.spec.as_ref());
+        self.use_mount();
+        let own_eyes = matches!(view.spec, Some(SourceSpec::Twin | SourceSpec::Cameras { .. }));
+        self.rooms.live.use_nominal_lenses(own_eyes);
+        self.rooms.source.update(view);
+        self.source_before_silence = None;
+        self.use_calibration();
+    }
+
+    /// The source has a message for the operator.
+    pub fn source_note(&mut self, (level, text): Note) {
+        self.notices.add(level, text);
+    }
+
+    /// The robot or the twin has something new.
+    pub fn robot_changed(&mut self, news: News) {
+        let eyes_of_this_robot =
+            matches!(self.rooms.source.view().spec, Some(SourceSpec::Twin | SourceSpec::Cameras { .. }));
+        let head = |rig: &Rig| news.robot.known(&[rig.eyes.pan, rig.eyes.tilt]).cloned();
+        // Where it is not known the view stays aimed as it was; the servos' lamp says which is silent.
+        if let Some(rig) = &news.robot.rig
+            && let (Some(posture), true) = (head(rig), eyes_of_this_robot)
+        {
+            let head = HeadPose { head_z_rad: posture[rig.eyes.pan], head_y_rad: posture[rig.eyes.tilt] };
+            self.rooms.live.set_head(head);
+            self.use_workspace();
+        }
+        if news.twins_started > self.twins_started {
+            self.twins_started = news.twins_started;
+            self.actions.push(Action::Source(Control::Open(SourceSpec::Twin)));
+        }
+        (self.robot, self.twin) = (news.robot, news.twin);
+        self.before_silence = None;
+        self.arm_of = match &self.robot.connection {
+            Connection::Connected { twin, .. } => World::of_robot(*twin),
+            _ => self.arm_of,
+        };
+        self.use_screen();
+        self.with::<MountWorkflow>(self.shown, |mount, around, context| mount.step(around, context));
+        self.with::<TouchWorkflow>(self.arm_of, |touch, around, context| touch.step(around, context));
+    }
+
+    /// The robot's thread tells how a touch is doing.
+    pub fn touch_news(&mut self, news: TouchNews) {
+        self.with::<TouchWorkflow>(self.arm_of, |touch, around, context| touch.news(news, around, context));
+    }
+
+    /// Rectification has something.
+    pub fn rectified(&mut self, output: Timed<RectifyOutput>, now: Instant) {
+        self.rooms.live.rectified(output, now);
+    }
+
+    /// Measuring has something.
+    pub fn probed(&mut self, output: Timed<ProbeOutput>, now: Instant) {
+        self.rooms.live.probed(output, now);
+    }
+
+    /// The chessboard search has something.
+    pub fn looked(&mut self, output: Timed<Look>, now: Instant) {
+        self.rooms.live.corners(&output, now);
+        let look = output.result;
+        if self.rooms.mount.of(self.shown).wants_corners() || self.rooms.live.wants_corners() {
+            let look = look.clone();
+            self.with::<MountWorkflow>(self.shown, |mount, around, context| {
+                mount.look(look, around, context)
+            });
+        }
+        self.with::<EyesWorkflow>(self.shown, |eyes, around, context| eyes.look(look, around, context));
+    }
+
+    /// The detector has something.
+    pub fn detected(&mut self, output: Timed<DetectOutput>, now: Instant) {
+        self.rooms.detect.detected(output, self.shown_of, now);
+    }
+
+    /// What the detector is to do with the newest pair, if anything.
+    pub fn detect_input(&self) -> Option<DetectInput> {
+        self.rooms.detect.input(Neighbors::<DetectWorkflow>::around(self, World::default()))
+    }
+
+    /// A stage met a defect of this program and goes on with the next pair.
+    pub fn stage_panicked(&mut self, panic: &StagePanic) {
+        let StagePanic { stage, message } = panic;
+        let text = format!(
+            "Live {}: this program made a mistake ({message}). It goes on; please report it with the journal.",
+            stage.name()
+        );
+        self.stage_gave_nothing(*stage, &text);
+        self.notices.add(NoticeLevel::Error, text);
+    }
+
+    /// What rectification is to do with the newest pair, if anything.
+    pub fn rectify_input(&self) -> Option<RectifyInput> {
+        self.rooms.live.rectify_input()
+    }
+
+    /// What measuring is to do with the newest pair, if anything.
+    pub fn probe_input(&self) -> Option<ProbeInput> {
+        self.rooms.live.probe_input()
+    }
+
+    /// What the chessboard search is to do with the newest pair, if anything.
+    pub fn corners_input(&self) -> Option<CornersInput> {
+        let mount_wants = self.rooms.mount.of(self.shown).wants_corners();
+        let wanted = self.rooms.live.wants_corners() || self.shown_eyes().auto_capture() || mount_wants;
+        let frame = self.rooms.live.newest().filter(|_| wanted)?.clone();
+        Some(CornersInput { frame, board: *self.shown_eyes().board() })
+    }
+
+    /// A job says how far it is.
+    pub fn work_progress(&mut self, view: JobView) {
+        self.jobs.progress(view);
+    }
+
+    /// A job has ended.
+    pub fn work_ended(&mut self, id: JobId, outcome: Outcome<WorkResult>, elapsed: Duration) {
+        let title = self.jobs.title(id).unwrap_or_default().to_owned();
+        let state = match outcome {
+            Outcome::Done(result) => {
+                let summary = result.summary();
+                if self.jobs.is_worth_telling(id) {
+                    self.notices.add(NoticeLevel::Success, &*summary);
+                }
+                self.work_done(id, result);
+                JobState::Done { summary }
+            }
+            Outcome::Cancelled => {
+                self.notices.add(NoticeLevel::Info, format!("{title}: cancelled, nothing was changed."));
+                self.work_gave_nothing(id, None);
+                JobState::Cancelled
+            }
+            Outcome::Failed(reason) => {
+                self.notices.add(NoticeLevel::Error, &*reason);
+                self.work_gave_nothing(id, Some(&reason));
+                JobState::Failed { reason }
+            }
+            Outcome::Panicked(message) => {
+                let text = format!(
+                    "{title}: this program made a mistake ({message}). Nothing was changed. Please report it with the journal."
+                );
+                self.work_gave_nothing(id, Some(&text));
+                self.notices.add(NoticeLevel::Error, text);
+                JobState::Panicked { message }
+            }
+        };
+        self.jobs.ended(id, state, elapsed);
+    }
+
+    fn world_of(&mut self, id: JobId) -> World {
+        self.started_by.remove(&id).unwrap_or(self.shown)
+    }
+
+    /// Adds a message.
+    pub fn notify(&mut self, level: NoticeLevel, text: impl Into<String>) {
+        self.notices.add(level, text);
+    }
+
+    /// What the outer world is asked to do, since the last call.
+    pub fn take_actions(&mut self) -> Vec<Action> {
+        std::mem::take(&mut self.actions)
+    }
+
+    /// Number of the newest pair.
+    pub fn newest_seq(&self) -> Option<u64> {
+        self.rooms.live.newest().map(|frame| frame.stamp.seq)
+    }
+}

@@ -1,0 +1,244 @@
+//! What each workflow can see of the rest, and who gets which command and which result.
+
+use std::path::Path;
+use std::time::Instant;
+
+use plumbline_vision::detect::Provider;
+
+use super::State;
+use super::actions::Action;
+use super::rooms::{Neighbors, Rooms, all_rooms};
+use crate::command::{Command, JobCommand, NoticeCommand};
+use crate::detect::{DetectAround, DetectWorkflow};
+use crate::eyes::{EyesAround, EyesWorkflow};
+use crate::gap::{GapAround, GapWorkflow};
+use crate::ground::jobs::JobId;
+use crate::ground::stage::Skipped;
+use crate::ground::{Moment, Workflow, World};
+use crate::labels::{LabelsAround, LabelsWorkflow};
+use crate::live::LiveWorkflow;
+use crate::models::{ModelsAround, ModelsWorkflow};
+use crate::mount::{MountAround, MountWorkflow};
+use crate::scores::ScoresWorkflow;
+use crate::source::SourceWorkflow;
+use crate::touch::{TouchAround, TouchWorkflow};
+use crate::view::View;
+use crate::work::WorkResult;
+
+macro_rules! dispatched {
+    (
+        once { $($one:ident: $Single:ident, $single:ident;)+ }
+        per_world { $($each:ident: $Worldly:ident, $worldly:ident, $whose:ident;)+ }
+        without_work { $($silent:ident: $Silent:ident, $quiet:ident;)+ }
+    ) => {
+        impl State {
+            /// Everybody reads what was accepted before.
+            pub(super) fn restore(&mut self) {
+                $(self.with::<$Single>(World::default(), |room, around, context| {
+                    Workflow::restore(room, around, context);
+                });)+
+                for world in World::ALL {
+                    $(self.with::<$Worldly>(world, |room, around, context| {
+                        Workflow::restore(room, around, context);
+                    });)+
+                }
+            }
+
+            /// Applies a command of the operator.
+            pub fn apply(&mut self, command: Command) {
+                match command {
+                    $(Command::$single(command) => {
+                        self.with::<$Single>(World::default(), |room, around, context| {
+                            Workflow::apply(room, command, around, context);
+                        });
+                    })+
+                    $(Command::$worldly(command) => {
+                        self.with::<$Worldly>(self.$whose, |room, around, context| {
+                            Workflow::apply(room, command, around, context);
+                        });
+                    })+
+                    $(Command::$quiet(command) => {
+                        self.with::<$Silent>(World::default(), |room, around, context| {
+                            Workflow::apply(room, command, around, context);
+                        });
+                    })+
+                    Command::Robot(command) => self.actions.push(Action::Robot(command.into())),
+                    Command::Twin(command) => self.actions.push(Action::Robot(command.into())),
+                    Command::Job(JobCommand::Cancel(id)) if self.jobs.is_running(id) => {
+                        self.actions.push(Action::Cancel(id));
+                    }
+                    Command::Job(JobCommand::Cancel(id) | JobCommand::Dismiss(id)) => self.jobs.dismiss(id),
+                    // Whoever owns the threads has done it.
+                    Command::Watch(_) => {}
+                    Command::Notice(NoticeCommand::Add { level, text }) => self.notices.add(level, text),
+                    Command::Notice(NoticeCommand::Clear) => self.notices.clear(),
+                }
+            }
+
+            /// What the window shows.
+            pub fn view(&mut self, skipped: Skipped, lost_commands: u64, now: Instant) -> View {
+                self.revision += 1;
+                let moment = Moment { now, skipped };
+                View {
+                    revision: self.revision,
+                    $($one: self.view_of::<$Single>(World::default(), &moment),)+
+                    $($each: self.view_of::<$Worldly>(self.$whose, &moment),)+
+                    $($silent: self.view_of::<$Silent>(World::default(), &moment),)+
+                    robot: self.robot.clone(),
+                    twin: self.twin.clone(),
+                    jobs: self.jobs.view(),
+                    notices: self.notices.view(),
+                    threads: self.faults.values().cloned().collect(),
+                    kept: self.kept.clone(),
+                    lost_commands,
+                }
+            }
+
+            /// Whoever asked for the work gets what came of it.
+            pub(super) fn work_done(&mut self, id: JobId, result: WorkResult) {
+                let world = self.world_of(id);
+                match result {
+                    $(WorkResult::$single(result) => self.with::<$Single>(world, |room, around, context| {
+                        Workflow::work_done(room, id, *result, around, context);
+                    }),)+
+                    $(WorkResult::$worldly(result) => self.with::<$Worldly>(world, |room, around, context| {
+                        Workflow::work_done(room, id, *result, around, context);
+                    }),)+
+                }
+            }
+
+            /// Nothing came of the work, whoever asked for it.
+            pub(super) fn work_gave_nothing(&mut self, id: JobId, why: Option<&str>) {
+                let world = self.world_of(id);
+                $(self.with::<$Single>(world, |room, around, context| {
+                    Workflow::work_ended(room, id, why, around, context);
+                });)+
+                $(self.with::<$Worldly>(world, |room, around, context| {
+                    Workflow::work_ended(room, id, why, around, context);
+                });)+
+            }
+        }
+    };
+}
+
+all_rooms!(dispatched);
+
+impl Neighbors<SourceWorkflow> for State {
+    fn around(&self, _world: World) {}
+}
+
+impl Neighbors<DetectWorkflow> for State {
+    fn around(&self, _world: World) -> DetectAround {
+        let Rooms { live, source, .. } = &self.rooms;
+        DetectAround {
+            newest: live.newest().cloned(),
+            opened: self.shown_of,
+            photographs: source.view().photographs,
+            setup: live.setup(),
+        }
+    }
+}
+
+impl Neighbors<LiveWorkflow> for State {
+    fn around(&self, _world: World) {}
+
+    fn after(&mut self, _world: World) {
+        self.use_workspace();
+        let wanted = self.rooms.live.wants_detections();
+        self.with::<DetectWorkflow>(World::default(), |detect, _, context| detect.want(wanted, context));
+    }
+}
+
+/// Data sets belong to no world: images of both may be labeled together.
+impl Neighbors<LabelsWorkflow> for State {
+    fn around(&self, _world: World) -> LabelsAround {
+        let detect = &self.rooms.detect;
+        let (detector, provider) = detect.chosen();
+        LabelsAround {
+            open: detect.opener().clone(),
+            detector: detector.clone(),
+            provider,
+            confidence: detect.settings().confidence,
+            newest: self.rooms.live.newest().cloned(),
+            opened: self.rooms.source.view().opened,
+        }
+    }
+}
+
+impl Neighbors<ScoresWorkflow> for State {
+    fn around(&self, _world: World) -> Provider {
+        self.rooms.detect.chosen().1
+    }
+}
+
+impl Neighbors<EyesWorkflow> for State {
+    fn around(&self, _world: World) -> EyesAround {
+        EyesAround { newest: self.rooms.live.newest().cloned(), source: self.rooms.source.view().clone() }
+    }
+
+    fn after(&mut self, _world: World) {
+        self.use_calibration();
+    }
+}
+
+impl Neighbors<MountWorkflow> for State {
+    fn around(&self, world: World) -> MountAround {
+        let eyes = self.rooms.eyes.of(world);
+        MountAround {
+            rig: self.rig.clone(),
+            robot: self.robot.clone(),
+            calibration: eyes.in_use().cloned(),
+            board: *eyes.board(),
+            has_eyes: self.rooms.source.view().spec.is_some(),
+        }
+    }
+
+    fn after(&mut self, _world: World) {
+        self.use_mount();
+    }
+}
+
+impl Neighbors<TouchWorkflow> for State {
+    fn around(&self, world: World) -> TouchAround {
+        TouchAround {
+            rig: self.rig.clone(),
+            robot: self.robot.clone(),
+            models: self.rooms.models.of(world).usable(),
+        }
+    }
+
+    fn after(&mut self, world: World) {
+        self.use_screen();
+        let finished = self.rooms.touch.of(world).finished_session();
+        let Some(finished) = finished.map(|(session, revision)| (session.to_owned(), revision)) else {
+            return;
+        };
+        if self.learned_from.get(&world) == Some(&finished) {
+            return;
+        }
+        self.with::<ModelsWorkflow>(world, |models, around, context| {
+            models.touched(&finished.0, around, context);
+        });
+        self.with::<GapWorkflow>(world, |gap, _, context| gap.touched(&finished.0, context));
+        self.learned_from.insert(world, finished);
+    }
+}
+
+impl Neighbors<ModelsWorkflow> for State {
+    fn around(&self, world: World) -> ModelsAround {
+        ModelsAround {
+            rig: self.rig_of(world),
+            robot: self.robot.clone(),
+            newest_session: self.rooms.touch.of(world).session().map(Path::to_owned),
+        }
+    }
+}
+
+impl Neighbors<GapWorkflow> for State {
+    fn around(&self, world: World) -> GapAround {
+        GapAround {
+            rig: self.rig_of(world),
+            newest_session: self.rooms.touch.of(world).session().map(Path::to_owned),
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! Touching the screen: plan, run, pause, go on after a restart, and measure where the screen lies.
+//!
+//! [`TouchWorkflow`] is driven by commands, by what the robot reports and by finished work; it owns
+//! no thread and reads no clock.
+
+pub mod command;
+mod figures;
+#[cfg(all(test, target_os = "linux"))]
+mod kept_tests;
+#[cfg(test)]
+mod path_tests;
+mod placement;
+mod plan;
+mod record;
+mod refusal;
+mod run;
+mod seen;
+mod shown;
+mod store;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
+pub mod view;
+pub mod work;
+mod workflow;
+
+pub use workflow::{TouchAround, TouchWorkflow};

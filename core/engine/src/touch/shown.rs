@@ -1,0 +1,282 @@
+//! What the window shows of the workflow.
+
+use std::sync::Arc;
+
+use plumbline_model::touch_plan::Purpose;
+
+use super::figures::{error_m, figures};
+use super::plan::Aim;
+use super::record::Fate;
+use super::run::{Phase, Run, Task};
+use super::seen::Seen;
+use super::view::{ContactSource, TouchCounts, TouchOutcome, TouchPhase, TouchState, TouchView};
+use super::workflow::{TouchAround, TouchWorkflow, source};
+use crate::ground::step::StepState;
+use crate::robot::TouchStage;
+
+fn touch_state(aim: &Aim, run: Option<&Run>) -> TouchState {
+    let number = aim.touch.number;
+    let record = run.and_then(|run| {
+        let newest = run.progress.records.iter().rev().find(|record| record.number == number);
+        run.progress.counted_of(number).or(newest)
+    });
+    TouchState {
+        number,
+        target: aim.touch.target,
+        target_place: aim.place(),
+        sent: aim.sent(),
+        inside: aim.inside,
+        set: aim.touch.set.clone(),
+        group: aim.touch.group.clone(),
+        side: aim.touch.side,
+        outcome: outcome(aim, run),
+        error_m: run.and_then(|run| Some(error_m(record?.touched, aim.touch.target, &run.screen))),
+        touched: record.map(|record| record.touched),
+    }
+}
+
+fn outcome(aim: &Aim, run: Option<&Run>) -> TouchOutcome {
+    if let Some(reason) = &aim.refusal {
+        return TouchOutcome::Unreachable(reason.clone());
+    }
+    let Some(run) = run else { return TouchOutcome::Waiting };
+    let number = aim.touch.number;
+    let moving = run.touch.as_ref().is_some_and(|touch| touch.number == number);
+    match run.fate(aim) {
+        _ if moving => TouchOutcome::UnderWay,
+        Fate::Waiting => TouchOutcome::Waiting,
+        // Touched means on disk.
+        Fate::Touched if run.unwritten == Some(number) => TouchOutcome::UnderWay,
+        Fate::Touched => TouchOutcome::Touched,
+        Fate::Missed(why) => TouchOutcome::Missed(why),
+        Fate::Skipped => TouchOutcome::Skipped,
+        Fate::Rejected => TouchOutcome::Rejected,
+    }
+}
+
+fn counts(touches: &[TouchState]) -> TouchCounts {
+    let mut counts = TouchCounts { planned: touches.len(), ..TouchCounts::default() };
+    for touch in touches {
+        match touch.outcome {
+            TouchOutcome::Touched => counts.touched += 1,
+            TouchOutcome::Missed(_) => counts.missed += 1,
+            TouchOutcome::Skipped => counts.skipped += 1,
+            TouchOutcome::Rejected => counts.rejected += 1,
+            TouchOutcome::Unreachable(_) => counts.unreachable += 1,
+            TouchOutcome::Waiting | TouchOutcome::UnderWay => {}
+        }
+    }
+    counts
+}
+
+impl TouchWorkflow {
+    /// Lists as they stand now; what has not changed is kept.
+    pub(super) fn seen_now(&self) -> Seen {
+        let run = self.run.as_ref();
+        let planned = self.planned.as_ref().map(|(plan, _)| plan);
+        let Some(plan) = run.map(|run| &run.plan).or(planned) else { return Seen::default() };
+        let same = self.seen.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, plan));
+        let view = self.seen.plan.clone().filter(|_| same).unwrap_or_else(|| Arc::new(plan.view()));
+        let touches: Arc<[TouchState]> = plan.touches.iter().map(|aim| touch_state(aim, run)).collect();
+        Seen {
+            plan: Some(view),
+            counts: counts(&touches),
+            figures: run.and_then(|run| figures(run.progress.counted(), &run.screen)),
+            touches,
+            of: Some(plan.clone()),
+        }
+    }
+
+    /// What the window shows.
+    pub fn view(&self, around: &TouchAround) -> TouchView {
+        let Seen { plan, touches, counts, figures, .. } = self.seen.clone();
+        TouchView {
+            step: self.step_state(around),
+            phase: self.phase(),
+            next: self.next(around),
+            plan,
+            touches,
+            counts,
+            remaining: self.active_run().and_then(Run::remaining),
+            figures,
+            session: self.run.as_ref().map(|run| run.session.clone()),
+            unfinished: self.runs.unfinished.as_slice().into(),
+            screen: Some(self.screen().unwrap_or(&around.rig.touchscreen).clone()),
+            reach: self.reach,
+            placement: self.placement.clone(),
+            placement_proposal: self.proposal.as_ref().map(|proposal| proposal.placement.clone()),
+            correct_with: self.correct_with,
+            source: source(&around.robot),
+            window: self.window.clone(),
+            last_contact: self.last_contact,
+        }
+    }
+
+    fn phase(&self) -> TouchPhase {
+        if self.planning.is_some() {
+            return TouchPhase::Planning;
+        }
+        let Some(run) = &self.run else {
+            return if self.planned.is_some() { TouchPhase::Planned } else { TouchPhase::Idle };
+        };
+        match &run.phase {
+            Phase::Working => running(run),
+            // The arm still moves.
+            Phase::Paused(_) if run.touch.is_some() => running(run),
+            Phase::Paused(why) => TouchPhase::Paused { why: why.clone() },
+            Phase::Stuck(reason) => TouchPhase::Waiting { what: reason.clone(), prepare: None },
+            Phase::Preparing(wanted) => TouchPhase::Waiting {
+                what: preparation(run.progress.prepared, *wanted),
+                prepare: Some((wanted[0], wanted[1])),
+            },
+            Phase::Finished => TouchPhase::Finished,
+        }
+    }
+
+    fn step_state(&self, around: &TouchAround) -> StepState {
+        if self.planning.is_some() || self.starting.is_some() || self.active_run().is_some() {
+            return StepState::Running;
+        }
+        let Some(trained) = &self.runs.trained else { return StepState::NotDone };
+        let from_itself = self.placement.as_ref().is_some_and(|p| trained.gave_placement == Some(p.at));
+        if from_itself || trained.screen == self.placed_screen(&around.rig) {
+            StepState::Done
+        } else {
+            StepState::Stale {
+                why: "The screen was placed anew since the touches were made. If it was moved, touch again."
+                    .to_owned(),
+            }
+        }
+    }
+
+    /// What to do next, with a warning when the touch window does not fit.
+    fn next(&self, around: &TouchAround) -> String {
+        let next = self.next_step(around);
+        match self.window_warning(around) {
+            Some(warning) => format!("{warning} {next}"),
+            None => next,
+        }
+    }
+
+    fn window_warning(&self, around: &TouchAround) -> Option<String> {
+        let window = self.window.as_ref()?;
+        if source(&around.robot) == ContactSource::Twin {
+            return None;
+        }
+        let screen = self.screen().unwrap_or(&around.rig.touchscreen);
+        let (have, want) = ((window.width_px, window.height_px), (screen.width_px, screen.height_px));
+        (have != want).then(|| {
+            format!(
+                "The touch window has {}×{} pixels, the touchscreen of the rig {}×{}: open it full screen on the touch monitor, or correct the rig file.",
+                have.0, have.1, want.0, want.1
+            )
+        })
+    }
+
+    fn next_step(&self, around: &TouchAround) -> String {
+        if self.planning.is_some() {
+            return "The plan is being made. Nothing moves.".to_owned();
+        }
+        if self.starting.is_some() {
+            return "The run is being opened.".to_owned();
+        }
+        if let Some(run) = &self.run {
+            return self.next_of_run(run, around);
+        }
+        if let Some((plan, _)) = &self.planned {
+            return match (plan.reachable(), self.trouble(around)) {
+                (0, _) => "The arm reaches none of these targets. Choose another area.".to_owned(),
+                (_, Some(trouble)) => trouble.to_string(),
+                (count, None) => format!("Touch {count} targets. The arm moves."),
+            };
+        }
+        if self.proposal.is_some() {
+            return "Compare the measured place of the screen with the one in use, then accept or discard it."
+                .to_owned();
+        }
+        if let Some(unfinished) = self.runs.unfinished.first() {
+            let (touched, planned) = (unfinished.touched, unfinished.planned);
+            return format!("Open the unfinished run ({touched} of {planned} touched), or plan a new one.");
+        }
+        if self.placement.is_none() {
+            return "Measure where the screen lies first: plan to touch its corners.".to_owned();
+        }
+        "Choose area and pattern, then plan the touches.".to_owned()
+    }
+
+    fn next_of_run(&self, run: &Run, around: &TouchAround) -> String {
+        match &run.phase {
+            Phase::Working => match running(run) {
+                TouchPhase::Running { doing, .. } => format!("The arm works: {doing}."),
+                _ => "The arm works.".to_owned(),
+            },
+            Phase::Paused(Some(why)) => why.clone(),
+            Phase::Paused(None) if run.screen != self.placed_screen(&around.rig) => format!(
+                "{} touches are left. The screen was placed anew since the run was begun: go on only if it was not moved, else finish this run and plan a new one.",
+                run.left()
+            ),
+            Phase::Paused(None) => format!("{} touches are left. Go on; the arm moves.", run.left()),
+            Phase::Stuck(reason) => reason.clone(),
+            Phase::Preparing(wanted) => preparation(run.progress.prepared, *wanted),
+            Phase::Finished if self.placing.is_some() => {
+                "The place of the screen is being measured from the touches.".to_owned()
+            }
+            Phase::Finished if self.proposal.is_some() => {
+                "Compare the measured place of the screen with the one in use, then accept or discard it."
+                    .to_owned()
+            }
+            Phase::Finished => match run.plan.options.purpose {
+                Purpose::Train => "Train models from these touches: step Models.".to_owned(),
+                Purpose::PlaceScreen => "Plan the touches that models are trained on.".to_owned(),
+                Purpose::Check => "Read off how far touches land from their targets.".to_owned(),
+            },
+        }
+    }
+}
+
+fn running(run: &Run) -> TouchPhase {
+    let (number, doing) = match (&run.touch, run.task()) {
+        (Some(touch), _) => {
+            let number = touch.number;
+            (
+                number,
+                match touch.stage {
+                    None | Some(TouchStage::Approaching) => format!("moving above target {number}"),
+                    Some(TouchStage::Settling) => format!("settling above target {number}"),
+                    Some(TouchStage::Lowering) => format!("lowering to target {number}"),
+                    Some(TouchStage::Dwelling) => format!("resting on target {number}"),
+                    Some(TouchStage::Retreating) => format!("going up from target {number}"),
+                },
+            )
+        }
+        (None, Some(Task::Route(number))) => (number, format!("looking for the way to target {number}")),
+        (None, _) => {
+            let number = run.unwritten.or_else(|| run.next().map(|aim| aim.touch.number)).unwrap_or(1);
+            (number, format!("writing touch {number} to disk"))
+        }
+    };
+    let holds = run.pause || run.phase != Phase::Working;
+    let doing = if holds { format!("{doing}, then it pauses") } else { doing };
+    TouchPhase::Running { number, doing }
+}
+
+/// What has to be done by hand; a sentence.
+fn preparation([height_m, mass_kg]: [f64; 2], [to_m, to_kg]: [f64; 2]) -> String {
+    let mut parts = vec![];
+    if to_m != height_m {
+        parts.push(match to_m {
+            0.0 => "put the screen back on the table".to_owned(),
+            _ => format!("put the screen on a block of {:.0} mm", to_m * 1e3),
+        });
+    }
+    if to_kg != mass_kg {
+        parts.push(match to_kg {
+            0.0 => "take the weight off the hand".to_owned(),
+            _ => format!("fix a weight of {:.0} g at the palm", to_kg * 1e3),
+        });
+    }
+    crate::ground::text::sentence(&format!(
+        "{}, then say that it is done; the arm goes on",
+        parts.join(" and ")
+    ))
+}

@@ -1,0 +1,351 @@
+//! The operator's side of the twin: starting it, placing things, its clock, its faults.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use plumbline_model::Point;
+use plumbline_model::frame::{Board, Pose, Robot};
+use plumbline_model::robot::Rig;
+use plumbline_twin::{Fault, Scenario, Toy, Twin, TwinSettings, TwinTouchscreen, board_presets};
+
+use super::command::TwinCommand;
+use super::eyes::TwinEyesPlug;
+use super::view::{FaultView, ToyView, TwinView};
+use crate::ground::notice::NoticeLevel;
+use crate::ground::text::sentence;
+
+/// While the board is shown at all places it stays at each for this long: long enough to be
+/// found still, sharp and new.
+const AT_EACH_PLACE: Duration = Duration::from_millis(1600);
+/// So much around the touchscreen is kept free of toys while it is touched: a hand is broad, m.
+const BESIDE_SCREEN_M: f64 = 0.06;
+const NOT_RUNNING: &str = "The twin is not running. Connect to it first.";
+const PHYSICS_FAILED: &str = "The twin's physics have failed inside, so the twin has ended. Nothing real is hurt: connect to the twin again, and report it with the log.";
+/// The same twin every time.
+const SEED: u64 = 1;
+
+/// The twin and what the operator does with it.
+pub struct TwinDesk {
+    eyes: TwinEyesPlug,
+    twin: Option<Twin>,
+    scenario: String,
+    failed: Option<String>,
+    board_places: Vec<Pose<Robot, Board>>,
+    tour: Option<(usize, Instant)>,
+    notes: Vec<(NoticeLevel, String)>,
+}
+
+impl TwinDesk {
+    /// None runs.
+    pub fn new(eyes: TwinEyesPlug) -> Self {
+        Self {
+            eyes,
+            twin: None,
+            scenario: String::new(),
+            failed: None,
+            board_places: Vec::new(),
+            tour: None,
+            notes: Vec::new(),
+        }
+    }
+
+    /// Whether a twin runs.
+    pub fn is_running(&self) -> bool {
+        self.twin.is_some()
+    }
+
+    /// Where its servos are reached.
+    pub fn port(&self) -> Option<PathBuf> {
+        self.twin.as_ref().map(Twin::port)
+    }
+
+    /// Its touchscreen.
+    pub fn touchscreen(&self) -> Option<TwinTouchscreen> {
+        self.twin.as_ref().map(Twin::touchscreen)
+    }
+
+    /// Messages since the last call.
+    pub fn take_notes(&mut self) -> Vec<(NoticeLevel, String)> {
+        std::mem::take(&mut self.notes)
+    }
+
+    /// Starts a twin in place of a running one; gives the port of its servos.
+    pub fn start(&mut self, scenario: &str, rig: &Arc<Rig>) -> Result<PathBuf, String> {
+        self.eyes.set(None);
+        (self.twin, self.tour) = (None, None);
+        scenario.clone_into(&mut self.scenario);
+        let started = self.try_start(scenario, rig);
+        self.failed = started.as_ref().err().cloned();
+        started
+    }
+
+    fn try_start(&mut self, scenario: &str, rig: &Arc<Rig>) -> Result<PathBuf, String> {
+        let words = |error: plumbline_twin::TwinError| sentence(&error.to_string());
+        let scenario = Scenario::built_in(scenario).map_err(words)?;
+        let settings = TwinSettings { rig: rig.clone(), scenario, seed: SEED, pace: 1.0 };
+        let twin = Twin::start(settings).map_err(words)?;
+        self.board_places = board_presets(rig);
+        self.eyes.set(Some(twin.scene()));
+        let port = twin.port();
+        self.twin = Some(twin);
+        Ok(port)
+    }
+
+    /// Does what the operator asked.
+    pub fn control(&mut self, command: TwinCommand, rig: &Rig) -> Result<(), String> {
+        let twin = self.twin.as_ref().ok_or(NOT_RUNNING)?;
+        let toy = |name: &str| Toy::from_name(name).ok_or_else(|| format!("There is no toy called {name}."));
+        let send = |command| {
+            twin.send(command);
+            Ok(())
+        };
+        use plumbline_twin::TwinCommand as To;
+        match command {
+            TwinCommand::PlaceToy { toy: name, x_m, y_m } => {
+                let on = |range: [f64; 2], value: f64| value >= range[0] && value <= range[1];
+                if !(on(rig.table.x_range_m, x_m) && on(rig.table.y_range_m, y_m)) {
+                    return Err("That place is not on the table.".to_owned());
+                }
+                send(To::PlaceObject { toy: toy(&name)?, x_m, y_m })
+            }
+            TwinCommand::RemoveToy { toy: name } => send(To::RemoveObject { toy: toy(&name)? }),
+            TwinCommand::HoldBoard { place } => {
+                let robot_from_board = self.board_places.get(place).copied();
+                let robot_from_board = robot_from_board
+                    .ok_or_else(|| format!("The board has {} places.", self.board_places.len()))?;
+                self.tour = None;
+                send(To::PlaceBoard { robot_from_board })
+            }
+            TwinCommand::LayBoard { x_m, y_m, yaw_rad } => {
+                self.tour = None;
+                let robot_from_board = lying(rig, x_m, y_m, yaw_rad)?;
+                self.make_room(&robot_from_board);
+                let twin = self.twin.as_ref().ok_or(NOT_RUNNING)?;
+                twin.send(To::PlaceBoard { robot_from_board });
+                Ok(())
+            }
+            TwinCommand::TourBoard(on) => {
+                self.tour = on.then(|| (0, Instant::now()));
+                Ok(())
+            }
+            TwinCommand::HideBoard => {
+                self.tour = None;
+                send(To::HideBoard)
+            }
+            TwinCommand::PrepareTouch { screen_height_m, payload_kg } => {
+                self.tour = None;
+                self.free_screen(rig);
+                let twin = self.twin.as_ref().ok_or(NOT_RUNNING)?;
+                twin.send(To::HideBoard);
+                twin.send(To::PrepareTouch { screen_height_m, payload_kg });
+                Ok(())
+            }
+            TwinCommand::AdvanceWarmUp { minutes } => {
+                if !(minutes > 0.0 && minutes <= 600.0) {
+                    return Err("The clock can be advanced by up to 600 minutes.".to_owned());
+                }
+                send(To::AdvanceWarmUp { minutes })
+            }
+            TwinCommand::CoolEyes => send(To::CoolEyes),
+            TwinCommand::Fault { name, on } => {
+                let fault =
+                    Fault::from_name(&name).ok_or_else(|| format!("There is no fault called {name}."))?;
+                send(To::Fault { fault, on })
+            }
+            TwinCommand::Reset => {
+                self.tour = None;
+                send(To::Reset)
+            }
+        }
+    }
+
+    /// Puts toys away that stand where the board is to lie: they would hide its corners.
+    fn make_room(&mut self, robot_from_board: &Pose<Robot, Board>) {
+        let Some(twin) = &self.twin else { return };
+        let board = plumbline_model::default_board();
+        let size = |corners: u32| f64::from(corners - 1) * board.square_m;
+        let (width_m, height_m) = (size(board.inner_columns), size(board.inner_rows));
+        let mut away = vec![];
+        for (toy, place) in &twin.state().toys {
+            let Some(place) = place else { continue };
+            let on_board = robot_from_board.isometry.inverse() * nalgebra::Point3::from(*place);
+            // The eyes look from the side, so what stands near hides something too.
+            let reach_m = 2.0 * board.square_m + 2.0 * toy.radius_m();
+            let inside = |value: f64, size_m: f64| value > -reach_m && value < size_m + reach_m;
+            if inside(on_board.x, width_m) && inside(on_board.y, height_m) {
+                twin.send(plumbline_twin::TwinCommand::RemoveObject { toy: *toy });
+                away.push(toy.name());
+            }
+        }
+        if !away.is_empty() {
+            let text = format!("Put away to make room for the board: {}.", away.join(", "));
+            self.notes.push((NoticeLevel::Info, text));
+        }
+    }
+
+    /// Puts toys away that lie on the touchscreen or near it: a finger would land on them.
+    pub fn free_screen(&mut self, rig: &Rig) {
+        let Some(twin) = &self.twin else { return };
+        let screen = &rig.touchscreen;
+        let mut away = vec![];
+        for (toy, place) in &twin.state().toys {
+            let Some(place) = place else { continue };
+            let pixel = screen.pixel_at(Point::from(nalgebra::Point3::from(*place)));
+            let near = |at_px: f64, count: u32, size_m: f64| {
+                let at_m = at_px * size_m / f64::from(count);
+                at_m > -BESIDE_SCREEN_M && at_m < size_m + BESIDE_SCREEN_M
+            };
+            if near(pixel.u_px, screen.width_px, screen.width_m)
+                && near(pixel.v_px, screen.height_px, screen.height_m)
+            {
+                twin.send(plumbline_twin::TwinCommand::RemoveObject { toy: *toy });
+                away.push(toy.name());
+            }
+        }
+        if !away.is_empty() {
+            let text = format!("Put away, so that the screen can be touched: {}.", away.join(", "));
+            self.notes.push((NoticeLevel::Info, text));
+        }
+    }
+
+    /// Goes on with what takes time.
+    pub fn tick(&mut self, now: Instant, _rig: &Rig) {
+        if self.twin.as_ref().is_some_and(Twin::has_failed) {
+            return self.let_go_of_the_failed();
+        }
+        let (Some(twin), Some((next, at))) = (&self.twin, &mut self.tour) else { return };
+        if now < *at {
+            return;
+        }
+        match self.board_places.get(*next) {
+            Some(place) => {
+                twin.send(plumbline_twin::TwinCommand::PlaceBoard { robot_from_board: *place });
+                (*next, *at) = (*next + 1, now + AT_EACH_PLACE);
+            }
+            None => {
+                twin.send(plumbline_twin::TwinCommand::HideBoard);
+                self.tour = None;
+                let text = format!("The board was shown at all {} places.", self.board_places.len());
+                self.notes.push((NoticeLevel::Info, text));
+            }
+        }
+    }
+
+    /// Its servos would answer for ever with the angles they had: without it their bus is gone, and
+    /// that is said too.
+    fn let_go_of_the_failed(&mut self) {
+        self.eyes.set(None);
+        (self.twin, self.tour) = (None, None);
+        self.notes.push((NoticeLevel::Error, PHYSICS_FAILED.to_owned()));
+        self.failed = Some(PHYSICS_FAILED.to_owned());
+    }
+
+    /// What the window shows.
+    pub fn view(&self) -> TwinView {
+        let scenarios = Scenario::built_in_names()
+            .filter_map(|name| Scenario::built_in(name).ok())
+            .map(|scenario| (scenario.name.clone(), scenario.about.clone()))
+            .collect();
+        let view = TwinView {
+            running: self.twin.is_some(),
+            failed: self.failed.clone(),
+            scenarios,
+            scenario: self.scenario.clone(),
+            board_places: self.board_places.len(),
+            ..TwinView::default()
+        };
+        let Some(twin) = &self.twin else { return view };
+        let state = twin.state();
+        let toy = |toy: Toy| ToyView {
+            name: toy.name().to_owned(),
+            place: state.toys.iter().find(|(placed, _)| *placed == toy).and_then(|(_, place)| *place).map(
+                // Rolling by less than this is not worth drawing the window again.
+                |place| Point::new(rounded(place.x), rounded(place.y), rounded(place.z)),
+            ),
+            radius_m: toy.radius_m(),
+            rgb: color(toy),
+        };
+        let fault = |fault: Fault| FaultView {
+            name: fault.name().to_owned(),
+            about: fault.about().to_owned(),
+            on: state.faults.contains(&fault),
+        };
+        TwinView {
+            // Whole seconds: the window need not be drawn again for less.
+            time_s: state.time_s.floor(),
+            eyes_on_s: state.eyes_on_s.floor(),
+            real_time_factor: (state.real_time_factor * 20.0).round() / 20.0,
+            toys: Toy::ALL.into_iter().map(toy).collect(),
+            board: state.board,
+            screen_height_m: state.screen_height_m,
+            payload_kg: state.payload_kg,
+            faults: Fault::ALL.iter().copied().map(fault).collect(),
+            ..view
+        }
+    }
+}
+
+/// As it is drawn on the map and in the 3D scene.
+fn color(toy: Toy) -> [u8; 3] {
+    match toy {
+        Toy::Tomato => [205, 48, 38],
+        Toy::Banana => [236, 200, 52],
+        Toy::Duck => [245, 214, 70],
+        Toy::Mushroom => [150, 104, 68],
+        Toy::Onion => [232, 228, 214],
+        Toy::Orange => [240, 138, 36],
+    }
+}
+
+fn rounded(meters: f64) -> f64 {
+    (meters * 1e3).round() / 1e3
+}
+
+/// The board flat on the table, its center at a place.
+fn lying(rig: &Rig, x_m: f64, y_m: f64, yaw_rad: f64) -> Result<Pose<Robot, Board>, String> {
+    if ![x_m, y_m, yaw_rad].iter().all(|value| value.is_finite()) {
+        return Err("The place of the board must be numbers.".to_owned());
+    }
+    let board = plumbline_model::default_board();
+    let turn = nalgebra::UnitQuaternion::from_scaled_axis(nalgebra::Vector3::z() * yaw_rad)
+        // z goes into the board, which is down; its columns then run to the robot's right.
+        * nalgebra::UnitQuaternion::from_scaled_axis(nalgebra::Vector3::x() * std::f64::consts::PI);
+    let half = nalgebra::Vector3::new(
+        0.5 * f64::from(board.inner_columns - 1) * board.square_m,
+        0.5 * f64::from(board.inner_rows - 1) * board.square_m,
+        0.0,
+    );
+    let center = nalgebra::Vector3::new(x_m, y_m, rig.table.height_m + BOARD_THICKNESS_M);
+    let origin = center - turn * half;
+    Ok(Pose::new(nalgebra::Isometry3::from_parts(origin.into(), turn)))
+}
+
+/// The printed side lies this high above the table, m; the touchscreen's glass is lower.
+const BOARD_THICKNESS_M: f64 = 0.006;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn physics_that_fail_end_the_twin_and_are_said() {
+        let rig = Arc::new(Rig::built_in("nico").expect("the rig that comes with the program"));
+        let mut desk = TwinDesk::new(TwinEyesPlug::default());
+        desk.start("perfect", &rig).expect("a twin");
+        desk.tick(Instant::now(), &rig);
+        assert!(desk.is_running() && desk.take_notes().is_empty());
+        desk.twin.as_ref().expect("it runs").fail_on_trial();
+        let begun = Instant::now();
+        while desk.is_running() {
+            assert!(begun.elapsed() < Duration::from_secs(30), "it is never noticed");
+            desk.tick(Instant::now(), &rig);
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        assert!(desk.view().failed.is_some_and(|why| why.contains("physics have failed inside")));
+        assert_eq!(desk.take_notes().len(), 1);
+        assert!(desk.control(TwinCommand::Reset, &rig).expect_err("it ended").contains("not running"));
+        desk.start("perfect", &rig).expect("another twin");
+        assert!(desk.is_running() && desk.view().failed.is_none());
+    }
+}

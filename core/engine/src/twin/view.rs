@@ -1,0 +1,65 @@
+//! The twin, as far as the operator may see and move it: what was placed where, its clock, the
+//! faults that were switched on. What the scenario hides is not here.
+
+use plumbline_model::frame::{Board, Point, Pose, Robot};
+
+/// The twin.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TwinView {
+    /// Whether it runs.
+    pub running: bool,
+    /// Why it does not although it was asked to, and what to do.
+    pub failed: Option<String>,
+    /// Scenarios to choose from: name, and a sentence for people.
+    pub scenarios: Vec<(String, String)>,
+    /// The one in use.
+    pub scenario: String,
+    /// Simulated time since start, s.
+    pub time_s: f64,
+    /// Simulated seconds per second; below its pace when the machine is too slow.
+    pub real_time_factor: f64,
+    /// Time since the eyes were switched on, s.
+    pub eyes_on_s: f64,
+    /// Toys: name, and where it stands now (`None`: put away).
+    pub toys: Vec<ToyView>,
+    /// The chessboard, if it is out.
+    pub board: Option<Pose<Robot, Board>>,
+    /// Number of places that the board can be held at for calibrating the eyes.
+    pub board_places: usize,
+    /// Height of the block under the touchscreen, m.
+    pub screen_height_m: f64,
+    /// Weight in the right palm, kg.
+    pub payload_kg: f64,
+    /// Faults of the servo bus: name, sentence, whether it is on.
+    pub faults: Vec<FaultView>,
+}
+
+/// A toy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ToyView {
+    /// Its name.
+    pub name: String,
+    /// Where its center is.
+    pub place: Option<Point<Robot>>,
+    /// Radius of a ball of its size, m.
+    pub radius_m: f64,
+    /// Color as red, green, blue.
+    pub rgb: [u8; 3],
+}
+
+/// A fault that can be switched on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FaultView {
+    /// Short name, for commands.
+    pub name: String,
+    /// What happens, for people.
+    pub about: String,
+    /// Whether it is on.
+    pub on: bool,
+}
+
+/// The twin lives in the robot's thread and goes with it.
+pub(crate) fn twin_without_its_thread(before: &TwinView, reason: &str) -> TwinView {
+    let failed = before.running.then(|| reason.to_owned());
+    TwinView { running: false, failed: failed.or_else(|| before.failed.clone()), ..before.clone() }
+}

@@ -1,0 +1,183 @@
+//! Work on recorded pairs without a window.
+#![allow(missing_docs, clippy::print_stdout)]
+
+#[path = "../../engine/tests/workflows/common.rs"]
+#[allow(dead_code, reason = "what the tests of the engine share, of which these need a part")]
+mod common;
+
+use std::path::{Path, PathBuf};
+
+use plumbline_model::camera::ModelKind;
+use plumbline_model::{InnerCorners, Unattended};
+use plumbline_offline::{
+    CalibrateArgs, CheckArgs, DisparityArgs, LocateArgs, OfflineError, calibrate_stereo, check, disparity,
+    locate,
+};
+use serde_json::Value;
+
+use common::{WALL_M, board, board_pairs, eyes, wall_pair, write_pairs};
+
+fn args(folder: &Path, exclude: &[&str]) -> CalibrateArgs {
+    CalibrateArgs {
+        left: folder.join("left"),
+        right: folder.join("right"),
+        board: InnerCorners { columns: board().inner_columns, rows: board().inner_rows },
+        square_m: board().square_m,
+        model: ModelKind::Fisheye,
+        exclude: exclude.iter().map(PathBuf::from).collect(),
+        out: Some(folder.join("eyes.yaml")),
+    }
+}
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    write_pairs(folder.path(), board_pairs());
+    folder
+}
+
+fn keys(value: &Value, keys: &[&str]) {
+    for key in keys {
+        assert!(value.get(key).is_some(), "no key {key} in {value}");
+    }
+}
+
+#[test]
+fn calibrate_check_locate_disparity() {
+    let folder = folder();
+    std::fs::write(folder.path().join("left/notes.txt"), "not an image").expect("written");
+    let held_out = ["03.png", "07.png"];
+    let report = calibrate_stereo(&args(folder.path(), &held_out), &Unattended).expect("solved");
+    assert_eq!((report.pairs_found, report.pairs_used), (10, 10));
+    assert_eq!(report.pairs_excluded, held_out);
+    assert!((report.baseline_mm - eyes().baseline_m() * 1000.0).abs() < 0.3, "{}", report.baseline_mm);
+    assert!((report.square_mm_mean - board().square_m * 1000.0).abs() < 0.5, "{}", report.square_mm_mean);
+    let json = serde_json::to_value(&report).expect("serializable");
+    keys(
+        &json,
+        &[
+            "pairs_found",
+            "pairs_used",
+            "pairs_rejected",
+            "rms_left_px",
+            "rms_right_px",
+            "rms_stereo_px",
+            "cross_validated_px",
+            "baseline_mm",
+            "per_pair",
+        ],
+    );
+    keys(&json["per_pair"][0], &["name", "left_px", "right_px"]);
+
+    let others = report.per_pair.iter().map(|pair| PathBuf::from(&pair.name)).collect();
+    let calibrated = args(folder.path(), &[]);
+    let cameras = vec![folder.path().join("eyes.yaml")];
+    let checked = check(
+        &CheckArgs {
+            cameras: cameras.clone(),
+            left: calibrated.left,
+            right: calibrated.right,
+            board: calibrated.board,
+            square_m: calibrated.square_m,
+            exclude: others,
+        },
+        &Unattended,
+    )
+    .expect("checked");
+    assert_eq!(checked.pairs, held_out.len());
+    assert!(checked.reprojection_px < 2.0 * report.rms_stereo_px, "{checked:?}");
+    let json = serde_json::to_value(&checked).expect("serializable");
+    keys(&json, &["pairs", "reprojection_px", "epipolar_px", "square_mm_mean", "square_mm_sd"]);
+
+    write_pairs(&folder.path().join("wall"), &[wall_pair()]);
+    let [left, right] = ["left", "right"].map(|eye| folder.path().join("wall").join(eye).join("wall.png"));
+    let points = folder.path().join("points.csv");
+    std::fs::write(&points, "u_px,v_px\n165,125\n140,110\n-5,3\n").expect("written");
+    let located = locate(
+        &LocateArgs { cameras: cameras.clone(), left: left.clone(), right: right.clone(), points },
+        &Unattended,
+    )
+    .expect("located");
+    let json = serde_json::to_value(&located).expect("serializable");
+    keys(
+        &json["points"][0],
+        &["u_px", "v_px", "x_m", "y_m", "z_m", "sigma_m", "match_u_px", "match_v_px", "reason"],
+    );
+    for point in &located.points[..2] {
+        let z_m = point.z_m.expect("found");
+        assert!((z_m - WALL_M).abs() < 0.01, "{point:?}");
+        assert_eq!(point.reason, None);
+    }
+    assert_eq!(json["points"][2]["x_m"], Value::Null);
+    assert!(located.points[2].reason.as_ref().expect("a reason").contains("outside"));
+
+    let out = folder.path().join("wall.pfm");
+    let mapped = disparity(
+        &DisparityArgs { left, right, cameras, max_disparity_px: 64, out: Some(out.clone()) },
+        &Unattended,
+    )
+    .expect("matched");
+    assert!(mapped.valid_fraction > 0.5, "{mapped:?}");
+    keys(&serde_json::to_value(&mapped).expect("serializable"), &["valid_fraction", "milliseconds"]);
+    let pixels = u64::from(mapped.width_px) * u64::from(mapped.height_px);
+    assert!(std::fs::metadata(out).expect("written").len() > 4 * pixels);
+}
+
+#[test]
+fn bad_input_is_told_with_what_to_do() {
+    let folder = folder();
+    let good = args(folder.path(), &[]);
+    let fails =
+        |args: &CalibrateArgs| calibrate_stereo(args, &Unattended).err().map(|error| error.to_string());
+
+    let empty = folder.path().join("empty");
+    std::fs::create_dir(&empty).expect("made");
+    for (args, said) in [
+        (CalibrateArgs { left: empty, ..good.clone() }, "holds no"),
+        (CalibrateArgs { left: good.right.clone(), right: good.left.clone(), ..good.clone() }, "swapped"),
+        (CalibrateArgs { board: InnerCorners { columns: 9, rows: 7 }, ..good.clone() }, "6x4 inner corners"),
+        (CalibrateArgs { square_m: f64::NAN, ..good.clone() }, "for example 30"),
+        (CalibrateArgs { exclude: vec!["99.png".into()], ..good.clone() }, "99.png"),
+        (
+            CalibrateArgs {
+                exclude: (3..12).map(|i| format!("{i:02}.png").into()).collect(),
+                ..good.clone()
+            },
+            "collect more",
+        ),
+        (
+            CalibrateArgs { out: Some("/no/such/folder/eyes.yaml".into()), ..good.clone() },
+            "cannot be written",
+        ),
+    ] {
+        let message = fails(&args).unwrap_or_else(|| panic!("{said}: it passed"));
+        assert!(message.contains(said), "{said}: {message}");
+    }
+}
+
+#[test]
+fn damaged_images_cost_only_their_own_pair() {
+    let folder = folder();
+    let left = folder.path().join("left");
+    std::fs::write(left.join("02.png"), "this is text").expect("written");
+    let whole = std::fs::read(left.join("05.png")).expect("there");
+    std::fs::write(left.join("05.png"), &whole[..whole.len() / 3]).expect("written");
+    std::fs::remove_file(folder.path().join("right/09.png")).expect("removed");
+    let report = calibrate_stereo(&args(folder.path(), &[]), &Unattended).expect("solved from the others");
+    assert_eq!(report.pairs_used, 9);
+    let rejected: Vec<&str> = report.pairs_rejected.iter().map(|pair| pair.name.as_str()).collect();
+    assert_eq!(rejected, ["02.png", "05.png"]);
+    assert!(report.notes.iter().any(|note| note.contains("09.png")), "{:?}", report.notes);
+}
+
+#[test]
+fn a_calibration_of_other_images_is_refused() {
+    let folder = folder();
+    calibrate_stereo(&args(folder.path(), &[]), &Unattended).expect("solved");
+    let wall = crate::common::resized(&wall_pair(), (640, 480));
+    write_pairs(&folder.path().join("wall"), &[wall]);
+    let [left, right] = ["left", "right"].map(|eye| folder.path().join("wall").join(eye).join("wall.png"));
+    let cameras = vec![folder.path().join("eyes.yaml")];
+    let error =
+        disparity(&DisparityArgs { left, right, cameras, max_disparity_px: 64, out: None }, &Unattended);
+    assert!(matches!(error, Err(OfflineError::OtherSize { .. })), "{error:?}");
+}
