@@ -9,7 +9,6 @@ use plumbline_model::session::{Chain, Manifest, RigReference, StereoImages, Touc
 use rand::rngs::StdRng;
 use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
-use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, Hidden};
 use crate::bench::{Bench, RIG, TIP};

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use plumbline_correction::Method;
+use plumbline_model::{InnerCorners, ModelKind, Unattended};
 use plumbline_offline::{
     CalibrateArgs, CheckArgs, CorrectArgs, DetectEvalArgs, DisparityArgs, GapArgs, IkArgs, LocateArgs,
     PredictArgs, Split, TrainArgs, calibrate_stereo, check, correct, detect_eval, disparity, gap, ik, locate,
     predict, scores, train,
 };
-use plumbline_model::{InnerCorners, ModelKind, Unattended};
 use plumbline_vision::detect::DetectorOptions;
 
 use super::{Reader, one};

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use image::GrayImage;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
-use plumbline_offline::{CalibrateArgs, calibrate_stereo};
 use plumbline_model::formats::CalibrationFormat;
 use plumbline_model::frame::Board;
 use plumbline_model::robot::Rig;
@@ -12,6 +11,7 @@ use plumbline_model::{
     Camera, CameraModel, Chessboard, Eye, Fisheye, InnerCorners, ModelKind, Pinhole, Pixel, Point, Pose,
     Robot, StereoCalibration, StereoCameras, Unattended,
 };
+use plumbline_offline::{CalibrateArgs, calibrate_stereo};
 use plumbline_vision::calibration_file;
 use plumbline_vision::mount::{
     HeadView, MountOptions, PlannedTarget, Target, calibrate_mount, plan_head_views,
