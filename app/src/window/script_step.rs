@@ -146,7 +146,7 @@ mod tests {
         assert_eq!(step("probe:320,240.5"), Ok(ScriptStep::Probe([320.0, 240.5])));
         assert_eq!(step("wait:1.5"), Ok(ScriptStep::Wait(Duration::from_millis(1500))));
         assert_eq!(step(" quit"), Ok(ScriptStep::Quit));
-        assert_eq!(step("picture:/tmp/a b.png"), Ok(ScriptStep::Picture("/tmp/a b.png".into())));
+        assert_eq!(step("picture:pictures/a b.png"), Ok(ScriptStep::Picture("pictures/a b.png".into())));
         assert_eq!(step("picture:7"), Ok(ScriptStep::Picture("7".into())));
         assert_eq!(step("errors:after"), Ok(ScriptStep::Errors(Errors::After)));
         assert_eq!(step("show:gap-names"), Ok(ScriptStep::Show(Pane::GapNames)));
