@@ -17,6 +17,7 @@ mod models;
 mod mount;
 mod objects;
 mod pairs;
+mod parts;
 mod picture;
 mod probe;
 mod rectified;

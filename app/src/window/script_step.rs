@@ -76,7 +76,7 @@ const HELP: &str = r#"Does things without an operator, one after the other, each
 
 Of the window: wait:SECONDS, picture:FILE, quit, measure, show:PANE (gap-names, model-map, label-checks, …), errors:before (after, both), probe:U,V, pair:N, object:CLASS, joint:NAME, preview-joint:"NAME",DEGREES, draw-box:CLASS,[X0,Y0,X1,Y1], choose-box:N.
 
-Of the engine, as the journal has it, WORKFLOW:COMMAND: source:{"pairs-per-second":30}, robot:{"preview":{"pose":{"name":"touch-ready"}}}, gap:{"choose":{"sessions":["FOLDER"]}}, and so on.
+Of the engine, as the journal has it, WORKFLOW:COMMAND: source:{"pairs-per-second":30}, robot:{"preview":{"pose":{"name":"touch-ready"}}}, gap:{"choose":{"sessions":["FOLDER"]}}, and so on; or a whole line of a journal.
 
 Everything that a button or the list of commands does, by its name: "#;
 
@@ -85,6 +85,10 @@ impl FromStr for ScriptStep {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let text = text.trim();
+        if text.starts_with('{') {
+            let command = serde_json::from_str(text).map(Self::Send);
+            return command.map_err(|why| format!("{text} is no command as the journal has it: {why}"));
+        }
         let unknown = |name: &str| format!("\"{name}\" is not a step; plumbline --help lists them");
         let Some((name, value)) = text.split_once(':').filter(|(_, value)| !value.is_empty()) else {
             let action = || Action::named().find(|action| action.name() == text).map(Self::Act);
@@ -146,7 +150,7 @@ mod tests {
         assert_eq!(step("probe:320,240.5"), Ok(ScriptStep::Probe([320.0, 240.5])));
         assert_eq!(step("wait:1.5"), Ok(ScriptStep::Wait(Duration::from_millis(1500))));
         assert_eq!(step(" quit"), Ok(ScriptStep::Quit));
-        assert_eq!(step("picture:pictures/a b.png"), Ok(ScriptStep::Picture("pictures/a b.png".into())));
+        assert_eq!(step("picture:a folder/b.png"), Ok(ScriptStep::Picture("a folder/b.png".into())));
         assert_eq!(step("picture:7"), Ok(ScriptStep::Picture("7".into())));
         assert_eq!(step("errors:after"), Ok(ScriptStep::Errors(Errors::After)));
         assert_eq!(step("show:gap-names"), Ok(ScriptStep::Show(Pane::GapNames)));
@@ -188,6 +192,8 @@ mod tests {
         let two = GapCommand::Choose { sessions: vec!["a".into(), "b".into()] };
         assert_eq!(step(r#"gap:{"choose":{"sessions":["a","b"]}}"#), sent(two));
         assert_eq!(step("touch:start"), sent(TouchCommand::Start));
+        let line = r#"{"at_secs":2.5,"newest_seq":7,"workflow":"touch","command":"start"}"#;
+        assert_eq!(step(line), sent(TouchCommand::Start), "a line of a journal");
         let with = TouchCommand::CorrectWith(Some(Method::M3.into()));
         assert_eq!(step(r#"touch:{"correct-with":"m3"}"#), sent(with));
         let toy = TwinCommand::PlaceToy { toy: "tomato".to_owned(), x_m: 0.3, y_m: -0.1 };
@@ -198,9 +204,14 @@ mod tests {
         let missed = ConfusionCell { truth: Some(6), found: None };
         let open = ScoresCommand::OpenCell { model: 0, cell: missed };
         assert_eq!(step(r#"scores:{"open-cell":{"model":0,"cell":{"truth":6,"found":null}}}"#), sent(open));
-        for bad in
-            ["robot:speed", r#"robot:{"speed":"fast"}"#, r#"robot:{"speed":NaN}"#, "touch:dance", "gap:7"]
-        {
+        for bad in [
+            "{}",
+            "robot:speed",
+            r#"robot:{"speed":"fast"}"#,
+            r#"robot:{"speed":NaN}"#,
+            "touch:dance",
+            "gap:7",
+        ] {
             let why = step(bad).expect_err(bad);
             assert!(why.contains(bad), "{why}");
         }

@@ -124,6 +124,20 @@ pub enum Action {
     Quit,
 }
 
+macro_rules! into_action {
+    ($($workflow:ident: $type:ty),*) => {
+        $(impl From<$type> for Action {
+            fn from(action: $type) -> Self {
+                Self::$workflow(action)
+            }
+        })*
+    };
+}
+into_action!(
+    Robot: RobotAction, Mount: MountAction, Touch: TouchAction, Models: ModelsAction, Gap: GapAction,
+    Labels: LabelsAction, Scores: ScoresAction, Detect: DetectAction
+);
+
 /// All actions with a place in the palette, in its order.
 pub fn all() -> impl Iterator<Item = Action> {
     let robot = RobotAction::ALL.into_iter().map(Action::Robot);

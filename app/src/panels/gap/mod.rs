@@ -12,9 +12,9 @@ pub use inspector::show as show_inspector;
 
 use std::sync::Arc;
 
-use egui::{Button, Label, Response, RichText, Sense, Ui, vec2};
+use egui::{Label, RichText, Sense, Ui, vec2};
 use plumbline_engine::View;
-use plumbline_engine::view::{JobState, ShownFinding};
+use plumbline_engine::view::ShownFinding;
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::glyph::{self, Glyph};
 use plumbline_widgets::theme::{self, Role};
@@ -23,6 +23,7 @@ use plumbline_widgets::{Memo, Seen};
 use super::arrows::Errors;
 use super::{PanelContext, padded};
 use crate::operator::{Action, GapAction, Pane};
+use crate::panels::parts::progress;
 
 /// How the gap is looked at: kept from frame to frame, never saved.
 #[derive(Debug, Default)]
@@ -64,23 +65,13 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
     }
 }
 
-/// How far the search is and what it does just now.
-fn searching(view: &View) -> Option<(f64, String)> {
-    let id = view.gap.searching?;
-    let job = view.jobs.iter().find(|job| job.id == id)?;
-    match &job.state {
-        JobState::Running { fraction, doing, .. } => Some((*fraction, doing.clone())),
-        _ => None,
-    }
-}
-
 /// The finding, or what stands in its place: not looked for yet, under way, failed.
 fn finding(ui: &mut Ui, cx: &mut PanelContext<'_>, what: &str) -> Option<Arc<ShownFinding>> {
     let gap = &cx.view.gap;
     if let Some(shown) = &gap.shown {
         return Some(shown.clone());
     }
-    if let Some((fraction, doing)) = searching(cx.view) {
+    if let Some((fraction, doing)) = progress(cx.view, cx.view.gap.searching) {
         let percent = plumbline_widgets::format::percent(fraction);
         EmptyState::loading(&format!("Looking for the gap: {doing} ({percent}).")).show(ui);
         return None;
@@ -103,7 +94,7 @@ fn finding(ui: &mut Ui, cx: &mut PanelContext<'_>, what: &str) -> Option<Arc<Sho
 
 /// That what is shown is old, or that a new search is under way.
 fn state(ui: &mut Ui, view: &View) {
-    if let Some((fraction, doing)) = searching(view) {
+    if let Some((fraction, doing)) = progress(view, view.gap.searching) {
         ui.horizontal(|ui| {
             ui.spinner();
             let percent = plumbline_widgets::format::percent(fraction);
@@ -128,15 +119,4 @@ fn line(ui: &mut Ui, sign: Glyph, role: Role, text: &str) {
         let color = if role == Role::Warning { role.color(tokens) } else { tokens.text };
         ui.add(Label::new(RichText::new(text).color(color)).wrap());
     });
-}
-
-/// A button of one of the actions, with its reason where it cannot be pressed.
-fn action_button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: GapAction, text: &str) -> Response {
-    let why = action.refusal(cx.view);
-    let button = ui.add_enabled(why.is_none(), Button::new(text)).on_hover_text(action.label());
-    let button = button.on_disabled_hover_text(why.unwrap_or_default());
-    if button.clicked() {
-        cx.outbox.act(Action::Gap(action));
-    }
-    button
 }

@@ -12,11 +12,12 @@ use plumbline_widgets::parameter;
 use plumbline_widgets::probability::{self, ShareRow, probability_bar, share_rows};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{action_button, finding, line, padded, state};
+use super::{finding, line, padded, state};
 use crate::operator::GapAction;
 use crate::operator::snapshot::gap::{Candidate, Finding, NamedEffect, Verdict};
 use crate::operator::words::gap as words;
 use crate::panels::PanelContext;
+use crate::panels::parts::action_button;
 
 /// How the candidates are sorted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -11,11 +11,12 @@ use plumbline_widgets::scatter::{Scatter, ScatterSeries};
 use plumbline_widgets::seen::Seen;
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{action_button, finding, padded};
+use super::{finding, padded};
 use crate::operator::GapAction;
 use crate::operator::snapshot::gap::{Finding, Residual, Shown, Verdict};
 use crate::operator::words::gap as words;
 use crate::panels::PanelContext;
+use crate::panels::parts::action_button;
 
 /// Which part of the residual is drawn against a covariate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -9,11 +9,12 @@ use plumbline_widgets::glyph::{self, Glyph};
 use plumbline_widgets::intervals::{IntervalRow, Intervals, Level};
 use plumbline_widgets::theme::{self, Role, space};
 
+use super::facts;
 use super::verdict::Facts;
-use super::{action_button, facts};
 use crate::operator::snapshot::models::{CorrectionModel, Method};
 use crate::operator::words::clock;
 use crate::operator::{Action, ModelsAction};
+use crate::panels::parts::action_button;
 use crate::panels::{PanelContext, padded};
 
 /// The line of the spread of repeats. What it is an rms of stands beside means, so it says so.

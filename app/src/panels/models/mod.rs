@@ -12,14 +12,14 @@ pub use inspector::show as show_inspector;
 
 use std::sync::Arc;
 
-use egui::{Button, Response, Ui};
+use egui::Ui;
 use plumbline_engine::view::ModelMap;
 use plumbline_widgets::{Memo, Seen};
 
 use super::PanelContext;
 use super::arrows::Errors;
+use crate::operator::Pane;
 use crate::operator::snapshot::models::Method;
-use crate::operator::{Action, ModelsAction, Pane};
 
 /// How models are looked at: kept from frame to frame, never saved.
 #[derive(Debug)]
@@ -72,17 +72,6 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
 fn facts(cx: &mut PanelContext<'_>) -> Arc<verdict::Facts> {
     let models = &cx.view.models;
     cx.state.models.standing.get(verdict::Basis::of(models), || verdict::Facts::of(models))
-}
-
-/// A button of one of the actions, with its reason where it cannot be pressed.
-fn action_button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: ModelsAction, text: &str) -> Response {
-    let why = action.refusal(cx.view);
-    let button = ui.add_enabled(why.is_none(), Button::new(text)).on_hover_text(action.label());
-    let button = button.on_disabled_hover_text(why.unwrap_or_default());
-    if button.clicked() {
-        cx.outbox.act(Action::Models(action));
-    }
-    button
 }
 
 /// What the network of a method looks like as published, or what it is instead.

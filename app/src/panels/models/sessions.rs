@@ -9,11 +9,11 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::action_button;
 use crate::operator::ModelsAction;
 use crate::operator::snapshot::models::{Repeats, TouchData};
 use crate::operator::words::clock;
 use crate::panels::PanelContext;
+use crate::panels::parts::action_button;
 
 /// Sessions that are seen without scrolling.
 const ROWS: usize = 4;

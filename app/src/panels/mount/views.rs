@@ -8,6 +8,7 @@ use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
 use crate::operator::{Action, MountAction};
+use crate::panels::parts::action_button;
 use crate::panels::{PanelContext, padded};
 
 const ROW: f32 = 24.0;
@@ -17,9 +18,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let mount = &view.mount;
     padded(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
-            button(ui, cx, MountAction::Plan, "Plan");
-            button(ui, cx, MountAction::Capture, "Take a view");
-            button(ui, cx, MountAction::DeleteAll, "Delete all");
+            action_button(ui, cx, MountAction::Plan, "Plan");
+            action_button(ui, cx, MountAction::Capture, "Take a view");
+            action_button(ui, cx, MountAction::DeleteAll, "Delete all");
         });
         ui.add_space(space::XS);
         if mount.views.is_empty() && mount.planned.is_empty() {
@@ -43,14 +44,6 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             }
         });
     });
-}
-
-fn button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: MountAction, text: &str) {
-    let why = action.refusal(cx.view);
-    let button = ui.add_enabled(why.is_none(), Button::new(text)).on_hover_text(action.label());
-    if button.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
-        cx.outbox.act(Action::Mount(action));
-    }
 }
 
 fn summary(mount: &MountView) -> String {

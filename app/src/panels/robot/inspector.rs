@@ -11,6 +11,7 @@ use plumbline_widgets::theme::{self, Role, group_heading, space};
 use super::RobotPanels;
 use crate::operator::words::robot::{seconds, tip_title, whole_degrees};
 use crate::operator::{Action, Outbox, RobotAction};
+use crate::panels::parts::warning;
 
 /// Shares of the usual speed that can be chosen.
 const SPEEDS: [(u32, &str); 4] = [(25, "25 %"), (50, "50 %"), (100, "100 %"), (150, "150 %")];
@@ -80,7 +81,7 @@ fn shown_move(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
         }
         Err(why) => {
             key_value_grid(ui, "preview", &rows);
-            super::warning(ui, why);
+            warning(ui, why);
         }
     }
     ui.add_space(space::XS);
@@ -96,7 +97,7 @@ fn chosen_joint(ui: &mut Ui, robot: &RobotView, joint: &JointView, outbox: &mut 
     ui.add_space(space::S);
     key_value_grid(ui, "joint", &joint_rows(joint));
     if let Some(problem) = &joint.problem {
-        super::warning(ui, problem);
+        warning(ui, problem);
     }
     ui.add_space(space::S);
     let limp = joint.torque_on == Some(false);

@@ -16,7 +16,7 @@ pub use scene::show as show_scene;
 
 use std::time::Duration;
 
-use egui::{RichText, Ui};
+use egui::Ui;
 use nalgebra::Point3;
 use plumbline_engine::view::{Connection, RobotView};
 use plumbline_engine::{Destination, RobotCommand};
@@ -25,10 +25,11 @@ use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
 use plumbline_widgets::jog_pad::JogSpeed;
 use plumbline_widgets::scene3d::SceneCamera;
-use plumbline_widgets::theme::{self, Role, space};
+use plumbline_widgets::theme::space;
 
 use super::PanelContext;
 use crate::operator::{Action, GamepadState, RobotAction};
+use crate::panels::parts::warning;
 
 /// From this age on, a reading of the joints is called old.
 const OLD: Duration = Duration::from_millis(1000);
@@ -141,11 +142,6 @@ fn refusal_line(ui: &mut Ui, cx: &mut PanelContext<'_>, here: Asked) {
         }
     });
     ui.add_space(space::XS);
-}
-
-fn warning(ui: &mut Ui, text: &str) {
-    let text = crate::operator::words::capitalized(text);
-    ui.label(RichText::new(text).color(Role::Warning.color(theme::tokens(ui))));
 }
 
 /// Why a move cannot even be shown; `None` when it can. While STOP is latched it can: nothing

@@ -7,8 +7,9 @@ use plumbline_widgets::format;
 use plumbline_widgets::progress::progress_bar;
 use plumbline_widgets::theme::{self, space};
 
-use super::{PanelContext, action_button, evaluating};
+use super::PanelContext;
 use crate::operator::{Action, ScoresAction};
+use crate::panels::parts::{action_button, progress};
 
 /// Room for the button, or for how far the evaluation is.
 const START_HEIGHT: f32 = 44.0;
@@ -82,7 +83,7 @@ fn set(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 }
 
 fn start(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    if let Some((fraction, doing)) = evaluating(cx.view) {
+    if let Some((fraction, doing)) = progress(cx.view, cx.view.scores.evaluating) {
         let width = ui.available_width();
         progress_bar(ui, "Evaluation", fraction, egui::vec2(width, 6.0));
         ui.horizontal(|ui| {

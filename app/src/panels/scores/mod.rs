@@ -11,14 +11,14 @@ pub use inspector::show as show_inspector;
 
 use std::path::Path;
 
-use egui::{Button, Response, Ui};
-use plumbline_engine::View;
-use plumbline_engine::view::{JobState, ModelScores, Score, ScoreTable};
+use egui::Ui;
+use plumbline_engine::view::{ModelScores, Score, ScoreTable};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::image_view::ViewState;
 
 use super::{PanelContext, padded};
 use crate::operator::{Action, Pane, ScoresAction};
+use crate::panels::parts::progress;
 
 /// How scores are looked at: kept from frame to frame, never saved.
 #[derive(Debug, Default)]
@@ -48,7 +48,7 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
 /// The table, or what stands in its place.
 fn judged(ui: &mut Ui, cx: &mut PanelContext<'_>, what: &str) -> Option<std::sync::Arc<ScoreTable>> {
     let scores = &cx.view.scores;
-    if let Some((fraction, doing)) = evaluating(cx.view) {
+    if let Some((fraction, doing)) = progress(cx.view, cx.view.scores.evaluating) {
         let percent = plumbline_widgets::format::percent(fraction);
         EmptyState::loading(&format!("Judging: {doing} ({percent}).")).show(ui);
         return None;
@@ -64,15 +64,6 @@ fn judged(ui: &mut Ui, cx: &mut PanelContext<'_>, what: &str) -> Option<std::syn
         EmptyState::empty(Message::new("Nothing was judged yet", what)).show(ui);
     }
     scores.table.clone()
-}
-
-/// How far the evaluation is and what it does just now.
-fn evaluating(view: &View) -> Option<(f64, String)> {
-    let id = view.scores.evaluating?;
-    match &view.jobs.iter().find(|job| job.id == id)?.state {
-        JobState::Running { fraction, doing, .. } => Some((*fraction, doing.clone())),
-        _ => None,
-    }
 }
 
 /// Scores of the chosen model, where it could be judged.
@@ -100,15 +91,4 @@ fn interval(ends: Option<[f64; 2]>) -> String {
 
 fn map50_95(score: Option<&Score>) -> (Option<f64>, Option<[f64; 2]>) {
     (score.map(|score| score.map50_95), score.and_then(|score| score.map50_95_interval))
-}
-
-/// A button of one of the actions, with its reason where it cannot be pressed.
-fn action_button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: ScoresAction, text: &str) -> Response {
-    let why = action.refusal(cx.view);
-    let button = ui.add_enabled(why.is_none(), Button::new(text)).on_hover_text(action.label());
-    let button = button.on_disabled_hover_text(why.unwrap_or_default());
-    if button.clicked() {
-        cx.outbox.act(Action::Scores(action));
-    }
-    button
 }

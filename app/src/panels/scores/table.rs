@@ -5,8 +5,9 @@ use plumbline_engine::view::{ModelScores, ScoreRow, ScoreTable};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{PanelContext, action_button, figure, interval, judged, map50_95};
+use super::{PanelContext, figure, interval, judged, map50_95};
 use crate::operator::ScoresAction;
+use crate::panels::parts::action_button;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let what = "Choose detectors and a labeled data set, then Evaluate. The table has a row per detector.";

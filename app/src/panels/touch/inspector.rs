@@ -7,10 +7,11 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
-use super::{error_length_m, next_touch, touch_number, warning, words};
+use super::{error_length_m, next_touch, touch_number, words};
 use crate::operator::snapshot::models::Method;
 use crate::operator::{Action, Monitor, Outbox, TouchAction, is_under_way, screen_of, window_problem};
 use crate::panels::PanelState;
+use crate::panels::parts::warning;
 
 /// What is known of the touch that is chosen, and how touches are made.
 pub fn show(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {

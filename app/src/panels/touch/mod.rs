@@ -16,13 +16,11 @@ pub use place::show as show_place;
 pub use plan::show as show_plan;
 pub use run::show as show_run;
 
-use egui::{RichText, Ui};
 use plumbline_engine::view::{TouchOutcome, TouchPhase, TouchState, TouchView};
 use plumbline_model::robot::Posture;
-use plumbline_widgets::theme::{self, Role};
 
 use super::PanelContext;
-use crate::operator::{Action, Monitor, Screen, TouchAction};
+use crate::operator::{Monitor, Screen};
 use draft::Draft;
 
 /// How touching is looked at: kept from frame to frame, never saved.
@@ -74,21 +72,4 @@ fn touch_number(touch: &TouchView, number: usize) -> Option<&TouchState> {
 /// Distance between target and touch in the glass, m.
 fn error_length_m(touch: &TouchState) -> Option<f64> {
     touch.error_m.map(|[u, v]| u.hypot(v))
-}
-
-fn warning(ui: &mut Ui, text: &str) {
-    let text = crate::operator::words::capitalized(text);
-    ui.label(RichText::new(text).color(Role::Warning.color(theme::tokens(ui))));
-}
-
-/// A button for something that has a name; greyed out with the reason on hover.
-fn action_button(ui: &mut Ui, cx: &mut PanelContext<'_>, text: &str, action: TouchAction) -> bool {
-    let action = Action::Touch(action);
-    let refusal = action.refusal(cx.view);
-    let button = ui.add_enabled(refusal.is_none(), egui::Button::new(text)).on_hover_text(action.label());
-    let clicked = button.on_disabled_hover_text(refusal.unwrap_or_default()).clicked();
-    if clicked {
-        cx.outbox.act(action);
-    }
-    clicked
 }

@@ -8,6 +8,7 @@ use plumbline_widgets::theme::{self, space};
 use super::words;
 use crate::operator::{screen_of, usual_area};
 use crate::panels::PanelContext;
+use crate::panels::parts::warning;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, options: &PlanOptions) {
     let mut edited = options.clone();
@@ -189,7 +190,7 @@ fn list(ui: &mut Ui, label: &str, unit: &str, typed: &mut Option<String>, values
             *values = read;
             *typed = None;
         }
-        (None, false) => super::warning(ui, "numbers with commas"),
+        (None, false) => warning(ui, "numbers with commas"),
         (_, true) => {}
     }
 }

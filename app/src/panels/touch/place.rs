@@ -8,8 +8,9 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::big_figure;
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{action_button, warning, words};
+use super::words;
 use crate::operator::{Action, Preset, TouchAction};
+use crate::panels::parts::{action_button, warning};
 use crate::panels::{PanelContext, padded};
 
 /// Axes of the robot frame: what moving along and turning about them means for the screen.
@@ -110,7 +111,7 @@ fn buttons(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         (TouchAction::NominalScreen, "Use nominal"),
     ] {
         if action.refusal(cx.view).is_none() {
-            action_button(ui, cx, text, action);
+            action_button(ui, cx, action, text);
         }
     }
 }

@@ -9,6 +9,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::{draft, options, score};
 use crate::operator::{Action, Preset, TouchAction, is_under_way, minutes, screen_of, what_moves};
+use crate::panels::parts::warning;
 use crate::panels::{PanelContext, padded};
 
 /// Presets: name, and what it is good for.
@@ -127,7 +128,7 @@ fn figures(ui: &mut Ui, plan: &PlanView, planned: usize) {
 
 fn reach(ui: &mut Ui, plan: &PlanView) {
     for (why, count) in &plan.refusals {
-        super::warning(ui, &format!("{count} left out: {why}"));
+        warning(ui, &format!("{count} left out: {why}"));
     }
     if plan.reachable > 0 {
         ui.label(theme::weak(ui, what_moves(plan)));

@@ -9,8 +9,9 @@ use plumbline_widgets::key_value::big_figure;
 use plumbline_widgets::progress::progress_bar;
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{action_button, error_length_m, warning, words};
+use super::{error_length_m, words};
 use crate::operator::{Action, Screen, TouchAction, done_of, is_under_way, wanted};
+use crate::panels::parts::{action_button, warning};
 use crate::panels::{PanelContext, padded};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
@@ -48,11 +49,11 @@ fn head(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             ui.add_space(space::XS);
             ui.horizontal(|ui| {
                 if prepare.is_some() {
-                    action_button(ui, cx, "Done, go on", TouchAction::Prepared);
+                    action_button(ui, cx, TouchAction::Prepared, "Done, go on");
                 } else {
-                    action_button(ui, cx, "Try again", TouchAction::Resume);
+                    action_button(ui, cx, TouchAction::Resume, "Try again");
                 }
-                action_button(ui, cx, "Skip", TouchAction::Skip);
+                action_button(ui, cx, TouchAction::Skip, "Skip");
                 finish_button(ui, cx);
             });
         }
@@ -60,8 +61,8 @@ fn head(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             progress(ui, touch);
             ui.label(format!("Touch {number}: {doing}"));
             ui.horizontal(|ui| {
-                action_button(ui, cx, "Pause", TouchAction::Pause);
-                action_button(ui, cx, "Skip", TouchAction::Skip);
+                action_button(ui, cx, TouchAction::Pause, "Pause");
+                action_button(ui, cx, TouchAction::Skip, "Skip");
                 finish_button(ui, cx);
             });
         }
@@ -75,8 +76,8 @@ fn head(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             }
             ui.horizontal(|ui| {
                 let label = format!("Go on with touch {}", done_of(touch.counts) + 1);
-                action_button(ui, cx, &label, TouchAction::Resume);
-                action_button(ui, cx, "Skip", TouchAction::Skip);
+                action_button(ui, cx, TouchAction::Resume, &label);
+                action_button(ui, cx, TouchAction::Skip, "Skip");
                 finish_button(ui, cx);
             });
         }
@@ -103,13 +104,13 @@ fn finished(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         ui.add_space(space::XS);
         super::place::figures(ui, &placement, "proposed");
         ui.horizontal(|ui| {
-            action_button(ui, cx, "Use this place", TouchAction::AcceptScreen);
-            action_button(ui, cx, "Discard proposal", TouchAction::DiscardScreen);
+            action_button(ui, cx, TouchAction::AcceptScreen, "Use this place");
+            action_button(ui, cx, TouchAction::DiscardScreen, "Discard proposal");
         });
         return;
     }
     ui.horizontal(|ui| {
-        action_button(ui, cx, "Close the run", TouchAction::Close);
+        action_button(ui, cx, TouchAction::Close, "Close the run");
         if ui.button("Go to Models").clicked() {
             cx.outbox.act(Action::Go(Screen::Models));
         }

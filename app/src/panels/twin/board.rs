@@ -5,9 +5,9 @@ use plumbline_engine::TwinCommand;
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
-use super::action_button;
 use crate::operator::RobotAction;
 use crate::panels::PanelContext;
+use crate::panels::parts::action_button;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let view = cx.view;

@@ -4,7 +4,7 @@
 mod board;
 mod table;
 
-use egui::{Button, ComboBox, ScrollArea, Ui};
+use egui::{ComboBox, ScrollArea, Ui};
 use plumbline_engine::view::{Connection, TwinView};
 use plumbline_engine::{RobotCommand, TwinCommand};
 use plumbline_model::duration;
@@ -137,13 +137,4 @@ fn faults(ui: &mut Ui, cx: &mut PanelContext<'_>, twin: &TwinView) {
             }
         }
     });
-}
-
-/// A button of one of the twin's actions, with its reason where it cannot be pressed.
-fn action_button(ui: &mut Ui, cx: &mut PanelContext<'_>, action: RobotAction, text: &str) {
-    let why = action.refusal(cx.view);
-    let button = ui.add_enabled(why.is_none(), Button::new(text)).on_hover_text(action.label());
-    if button.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
-        cx.outbox.act(Action::Robot(action));
-    }
 }

@@ -19,8 +19,8 @@ use plumbline_widgets::format::Quantity;
 use plumbline_widgets::table_map::{Outline, Place, ScalarField, TableMap, TableScene};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::action_button;
 use crate::operator::{ModelsAction, screen_of};
+use crate::panels::parts::action_button;
 use crate::panels::{PanelContext, padded};
 use panel::{Moved, SeenTable, quantity};
 use rows::{PointRow, layers_m, rows};

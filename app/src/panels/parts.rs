@@ -1,0 +1,42 @@
+//! What several panels are put together of.
+
+use egui::{Button, Response, RichText, Ui};
+use plumbline_engine::view::JobState;
+use plumbline_engine::{JobId, View};
+use plumbline_widgets::theme::{self, Role};
+
+use super::PanelContext;
+use crate::operator::Action;
+use crate::operator::words::capitalized;
+
+/// A button of an action, with its reason where it cannot be pressed.
+pub fn action_button(
+    ui: &mut Ui,
+    cx: &mut PanelContext<'_>,
+    action: impl Into<Action>,
+    text: &str,
+) -> Response {
+    let action = action.into();
+    let why = action.refusal(cx.view);
+    let button = ui.add_enabled(why.is_none(), Button::new(text)).on_hover_text(action.label());
+    let button = button.on_disabled_hover_text(why.unwrap_or_default());
+    if button.clicked() {
+        cx.outbox.act(action);
+    }
+    button
+}
+
+/// A sentence that warns.
+pub fn warning(ui: &mut Ui, text: &str) {
+    let color = Role::Warning.color(theme::tokens(ui));
+    ui.label(RichText::new(capitalized(text)).color(color));
+}
+
+/// How far a job is and what it does just now; `None` where none runs.
+pub fn progress(view: &View, job: Option<JobId>) -> Option<(f64, String)> {
+    let job = view.jobs.iter().find(|known| Some(known.id) == job)?;
+    match &job.state {
+        JobState::Running { fraction, doing, .. } => Some((*fraction, doing.clone())),
+        _ => None,
+    }
+}
