@@ -169,7 +169,7 @@ impl LongWork for GapWork {
         match self {
             Self::Restore { folder, rig } => Ok(GapResult::Restored(Box::new(restore(&folder, &rig)))),
             Self::List { folder, others, watched } => {
-                let mut sessions = sessions::list(&folder).map_err(JobError::Failed)?;
+                let mut sessions = sessions::list(&folder).map_err(JobError::failed)?;
                 let elsewhere =
                     others.into_iter().filter(|other| !sessions.iter().any(|s| s.folder == *other));
                 let elsewhere: Vec<GapSession> = elsewhere.map(sessions::listed).collect();
@@ -249,7 +249,7 @@ fn write_report(
 fn restore(folder: &std::path::Path, rig: &Rig) -> Restored {
     let mut problems = Vec::new();
     let sessions = sessions::list(&folder.join("sessions")).unwrap_or_else(|problem| {
-        problems.push(problem);
+        problems.push(problem.to_string());
         Vec::new()
     });
     let (findings, unread) = Store::new(folder.join("gap")).read(&rig.name);
