@@ -181,7 +181,7 @@ fn add(given: &Given, finding: &Finding, file: &Path) -> Result<Vec<String>, Off
             given.model.is_nominal(),
             jiff::Timestamp::now(),
         )
-        .map_err(OfflineError::NotAdded)?
+        .map_err(|error| OfflineError::NotAdded(error.to_string()))?
     };
     model.write(file, &given.rig)?;
     Ok(effects.into_iter().map(|(_, effect)| name(&effect.id, &effect.site)).collect())

@@ -11,7 +11,7 @@ use plumbline_vision::detect_places::{ObjectPlace, Place, PlaceFinder, PlaceOpti
 use super::view::{ObjectPlaceView, ObjectView, SeenBox};
 use crate::ground::jobs::panic_message;
 use crate::ground::text::sentence;
-use crate::live::{LiveSetup, other_size};
+use crate::live::{LiveSetup, fitting};
 
 /// Points along each edge of a box that are taken over to the rectified image: straight edges are
 /// bent by the lens.
@@ -48,7 +48,10 @@ impl Objects {
         names: &ClassNames,
         boxes: [&[Detection]; 2],
     ) -> Result<FoundObjects, String> {
-        let setup = setup.map_err(String::clone).and_then(|setup| fits(frame, setup).map(|()| setup));
+        let setup = setup.map_err(String::clone).and_then(|setup| {
+            let fits = fitting(frame, &setup.pair.cameras);
+            fits.map(|()| setup).map_err(|error| error.to_string())
+        });
         let work = AssertUnwindSafe(|| self.look(frame, setup.as_ref().ok().copied(), names, boxes));
         let mut objects = std::panic::catch_unwind(work).map_err(|panic| {
             // What it kept may be half changed.
@@ -109,17 +112,6 @@ impl Objects {
         };
         self.places.iter().map(&mut view).collect()
     }
-}
-
-fn fits(frame: &StereoFrame, setup: &LiveSetup) -> Result<(), String> {
-    let cameras = &setup.pair.cameras;
-    for (eye, image) in [(Eye::Left, &frame.left), (Eye::Right, &frame.right)] {
-        let calibrated = cameras.camera(eye).size_px();
-        if image.dimensions() != calibrated {
-            return Err(other_size(image.dimensions(), calibrated));
-        }
-    }
-    Ok(())
 }
 
 fn object_view(

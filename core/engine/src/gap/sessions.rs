@@ -8,7 +8,7 @@ use plumbline_model::session::{Manifest, names};
 use serde::{Deserialize, Serialize};
 
 use super::view::GapSession;
-use crate::ground::sessions::title_of;
+use crate::ground::sessions::{Unread, folders, title_of};
 use crate::ground::text::sentence;
 
 /// Tables that can be compared.
@@ -18,18 +18,8 @@ const TABLES: [&str; 3] = [names::TOUCHES, names::POSES, names::LOCALIZATIONS];
 ///
 /// # Errors
 /// A sentence, when the folder cannot be read.
-pub fn list(folder: &Path) -> Result<Vec<GapSession>, String> {
-    let listing = match std::fs::read_dir(folder) {
-        Ok(listing) => listing,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(error) => {
-            return Err(format!(
-                "{} cannot be read ({error}). Check that you may read it.",
-                folder.display()
-            ));
-        }
-    };
-    let folders = listing.flatten().map(|entry| entry.path());
+pub fn list(folder: &Path) -> Result<Vec<GapSession>, Unread> {
+    let folders = folders(folder)?.into_iter();
     let measured = folders.filter(|path| TABLES.iter().any(|table| path.join(table).is_file()));
     let mut sessions: Vec<GapSession> = measured.map(listed).collect();
     sessions.sort_by(|a, b| (b.started, &b.folder).cmp(&(a.started, &a.folder)));

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use jiff::Timestamp;
 use plumbline_gap::Finding;
 use plumbline_gap::finding::ShownUnit;
-use plumbline_model::files::{self, Size};
+use plumbline_model::files::{self, FileError, Size};
 use serde::{Deserialize, Serialize};
 
 use super::sessions::TableStamp;
@@ -15,6 +15,42 @@ use crate::ground::text::sentence;
 
 /// Version of the file.
 const FORMAT: u32 = 1;
+
+/// Why a finding cannot be kept, read or deleted.
+#[derive(Debug, thiserror::Error)]
+pub enum FindingError {
+    /// It is no finding, or cannot be read.
+    #[error("The finding {} cannot be read ({reason}). Look for the gap again, or delete it.", .file.display())]
+    Unreadable {
+        /// Which.
+        file: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The system says no.
+    #[error("{} cannot be written ({reason}). Check that the disk has free space and can be written.", .file.display())]
+    Unwritable {
+        /// Which.
+        file: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// The file itself.
+    #[error("{}", sentence(&.0.to_string()))]
+    File(#[from] FileError),
+}
+
+impl FindingError {
+    fn unreadable<E: std::fmt::Display>(file: &Path) -> impl FnOnce(E) -> Self {
+        let file = file.to_owned();
+        move |error| Self::Unreadable { file, reason: error.to_string() }
+    }
+
+    fn unwritable<E: std::fmt::Display>(file: &Path) -> impl FnOnce(E) -> Self {
+        let file = file.to_owned();
+        move |error| Self::Unwritable { file, reason: error.to_string() }
+    }
+}
 
 /// Findings in a folder.
 #[derive(Clone, Debug)]
@@ -100,7 +136,7 @@ impl Store {
             match read(&self.shelf.file(&name)) {
                 Ok(named) if named.kept.finding.rig == rig => found.push(named),
                 Ok(_) => {}
-                Err(problem) => problems.push(problem),
+                Err(problem) => problems.push(problem.to_string()),
             }
         }
         found.sort_by(|a, b| (b.kept.made, &b.id).cmp(&(a.kept.made, &a.id)));
@@ -111,12 +147,12 @@ impl Store {
     ///
     /// # Errors
     /// A sentence.
-    pub fn keep(&self, kept: KeptFinding) -> Result<Named, String> {
-        self.shelf.make_folder().map_err(|error| cannot(self.shelf.folder(), &error))?;
+    pub fn keep(&self, kept: KeptFinding) -> Result<Named, FindingError> {
+        self.shelf.make_folder().map_err(FindingError::unwritable(self.shelf.folder()))?;
         let id = self.shelf.free_name(kept.made, "");
         let file = self.shelf.file(&id);
-        let text = serde_json::to_string(&kept).map_err(|error| cannot(&file, &error))?;
-        files::write(&file, text).map_err(|error| sentence(&error.to_string()))?;
+        let text = serde_json::to_string(&kept).map_err(FindingError::unwritable(&file))?;
+        files::write(&file, text)?;
         Ok(Named { id, kept })
     }
 
@@ -124,32 +160,21 @@ impl Store {
     ///
     /// # Errors
     /// A sentence.
-    pub fn delete(&self, id: &str) -> Result<(), String> {
+    pub fn delete(&self, id: &str) -> Result<(), FindingError> {
         let Some(file) = self.shelf.file_inside(id) else {
-            return Err(cannot(&self.shelf.file(id), &"its name leads out of the folder"));
+            return Err(FindingError::unwritable(&self.shelf.file(id))("its name leads out of the folder"));
         };
-        std::fs::remove_file(&file).map_err(|error| cannot(&file, &error))
+        std::fs::remove_file(&file).map_err(FindingError::unwritable(&file))
     }
 }
 
-fn read(file: &Path) -> Result<Named, String> {
-    let text = files::read_text(file, Size::MODEL).map_err(|error| unusable(file, &error))?;
-    let kept: KeptFinding = serde_json::from_str(&text).map_err(|error| unusable(file, &error))?;
+fn read(file: &Path) -> Result<Named, FindingError> {
+    let text = files::read_text(file, Size::MODEL).map_err(FindingError::unreadable(file))?;
+    let kept: KeptFinding = serde_json::from_str(&text).map_err(FindingError::unreadable(file))?;
     if kept.format != FORMAT {
         let reason = format!("format {}, this program reads {FORMAT}", kept.format);
-        return Err(unusable(file, &reason));
+        return Err(FindingError::unreadable(file)(reason));
     }
     let id = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     Ok(Named { id, kept })
-}
-
-fn unusable(file: &Path, reason: &dyn std::fmt::Display) -> String {
-    format!("The finding {} cannot be read ({reason}). Look for the gap again, or delete it.", file.display())
-}
-
-fn cannot(file: &Path, reason: &dyn std::fmt::Display) -> String {
-    format!(
-        "{} cannot be written ({reason}). Check that the disk has free space and can be written.",
-        file.display()
-    )
 }

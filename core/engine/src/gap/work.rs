@@ -169,7 +169,7 @@ impl LongWork for GapWork {
         match self {
             Self::Restore { folder, rig } => Ok(GapResult::Restored(Box::new(restore(&folder, &rig)))),
             Self::List { folder, others, watched } => {
-                let mut sessions = sessions::list(&folder).map_err(JobError::Failed)?;
+                let mut sessions = sessions::list(&folder).map_err(JobError::failed)?;
                 let elsewhere =
                     others.into_iter().filter(|other| !sessions.iter().any(|s| s.folder == *other));
                 let elsewhere: Vec<GapSession> = elsewhere.map(sessions::listed).collect();
@@ -185,23 +185,23 @@ impl LongWork for GapWork {
                 let measurements = measured(&sessions, &rig).map_err(failed)?;
                 let finding = search(&measurements, &model, &options, context).map_err(failed)?;
                 let about = (model::name(&model), model::parts(&model));
-                let named = store.keep(KeptFinding::new(finding, kept, about)).map_err(JobError::Failed)?;
+                let named = store.keep(KeptFinding::new(finding, kept, about)).map_err(JobError::failed)?;
                 Ok(GapResult::Found(Arc::new(named)))
             }
             Self::Delete { store, id } => {
-                store.delete(&id).map_err(JobError::Failed)?;
+                store.delete(&id).map_err(JobError::failed)?;
                 Ok(GapResult::Deleted(id))
             }
             Self::Add { finding, effects, replaces, model, rig, folder, at } => {
-                let sessions = sessions_of(&finding).map_err(JobError::Failed)?;
+                let sessions = sessions_of(&finding)?;
                 let of = (&finding.kept.finding, sessions.as_slice());
                 let next =
-                    rig_models::with(&model, &rig, of, &effects, replaces, at).map_err(JobError::Failed)?;
-                rig_models::save(&folder, &next, &rig).map_err(JobError::Failed)?;
+                    rig_models::with(&model, &rig, of, &effects, replaces, at).map_err(JobError::failed)?;
+                rig_models::save(&folder, &next, &rig).map_err(JobError::failed)?;
                 Ok(GapResult::InUse(Arc::new(next)))
             }
             Self::Use { folder, rig, model, .. } => {
-                rig_models::save(&folder, &model, &rig).map_err(JobError::Failed)?;
+                rig_models::save(&folder, &model, &rig).map_err(JobError::failed)?;
                 Ok(GapResult::InUse(model))
             }
             Self::Report { finding, context, file, pdf } => {
@@ -221,9 +221,8 @@ fn failed(error: SearchError) -> JobError {
 }
 
 /// The sessions of a finding, as they are on disk.
-fn sessions_of(finding: &Named) -> Result<Vec<Session>, String> {
-    let read =
-        |session: &KeptSession| Session::read(&session.folder).map_err(|error| sentence(&error.to_string()));
+fn sessions_of(finding: &Named) -> Result<Vec<Session>, JobError> {
+    let read = |session: &KeptSession| Session::read(&session.folder).map_err(JobError::told);
     finding.kept.sessions.iter().map(read).collect()
 }
 
@@ -249,7 +248,7 @@ fn write_report(
 fn restore(folder: &std::path::Path, rig: &Rig) -> Restored {
     let mut problems = Vec::new();
     let sessions = sessions::list(&folder.join("sessions")).unwrap_or_else(|problem| {
-        problems.push(problem);
+        problems.push(problem.to_string());
         Vec::new()
     });
     let (findings, unread) = Store::new(folder.join("gap")).read(&rig.name);
@@ -257,7 +256,7 @@ fn restore(folder: &std::path::Path, rig: &Rig) -> Restored {
     let model = match rig_models::load(folder, rig) {
         Ok(model) => Some(Arc::new(model)),
         Err(problem) => {
-            problems.push(problem);
+            problems.push(problem.to_string());
             None
         }
     };

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use plumbline_effects::RigModel;
+use plumbline_effects::{RigModel, RigModelError};
 use plumbline_gap::{Options, Verdict};
 use plumbline_model::robot::Rig;
 use plumbline_report::ReportContext;
@@ -104,9 +104,7 @@ impl GapWorkflow {
             GapCommand::Add { effects } => self.add(effects, around, context),
             GapCommand::Undo => {
                 let at = context.time.day;
-                self.change("Go back to the model before", around, context, |model| {
-                    model.undo(at).map_err(|error| error.to_string())
-                });
+                self.change("Go back to the model before", around, context, |model| model.undo(at));
             }
             GapCommand::UseNominal => {
                 let at = context.time.day;
@@ -201,12 +199,12 @@ impl GapWorkflow {
         title: &str,
         around: &GapAround,
         context: &mut Context<'_>,
-        change: impl FnOnce(&mut RigModel) -> Result<(), String>,
+        change: impl FnOnce(&mut RigModel) -> Result<(), RigModelError>,
     ) {
         let Some(model) = self.model_for_change(context) else { return };
         let mut next = (*model).clone();
         if let Err(why) = change(&mut next) {
-            return context.refuse(crate::ground::text::sentence(&why));
+            return context.refuse(crate::ground::text::sentence(&why.to_string()));
         }
         let work = GapWork::Use {
             folder: self.folder.clone(),

@@ -1,10 +1,30 @@
 //! Folders of recorded sessions: what they are called, and of which robot they are.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use plumbline_model::Session;
 use plumbline_model::robot::{Rig, RigError};
 use plumbline_model::session::RigReference;
+
+/// A folder of sessions cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[error("{} cannot be read ({error}). Check that you may read it.", .folder.display())]
+pub struct Unread {
+    folder: PathBuf,
+    error: std::io::Error,
+}
+
+/// What lies in a folder of sessions; nothing where nothing was ever recorded.
+///
+/// # Errors
+/// When there is a folder that cannot be read.
+pub fn folders(folder: &Path) -> Result<Vec<PathBuf>, Unread> {
+    match std::fs::read_dir(folder) {
+        Ok(listing) => Ok(listing.flatten().map(|entry| entry.path()).collect()),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(Vec::new()),
+        Err(error) => Err(Unread { folder: folder.to_owned(), error }),
+    }
+}
 
 /// The rig that a session names; a rig file lies in the session's folder. It may be that of a robot
 /// that was only measured ([`Rig::read_measured`]).

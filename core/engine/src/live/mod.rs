@@ -1,6 +1,7 @@
 //! What is computed live, for whom, and what came of it last.
 
 pub mod command;
+mod no_reading;
 mod probe;
 mod rectify;
 mod setup;
@@ -9,5 +10,5 @@ mod workflow;
 
 pub use probe::{ProbeInput, ProbeOutput, ProbeStage};
 pub use rectify::{RectifyInput, RectifyOutput, RectifyStage};
-pub use setup::{LiveSetup, aimed, other_size};
+pub use setup::{LiveSetup, OtherSize, aimed, fitting};
 pub use workflow::LiveWorkflow;

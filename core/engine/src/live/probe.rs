@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use plumbline_model::{Eye, Pixel, Stamp, StereoCalibration, StereoFrame};
-use plumbline_vision::locate::Locator;
+use plumbline_vision::locate::{Locator, NoBaseline};
 
 use super::command::ProbePoint;
-use super::setup::{LiveSetup, other_size};
+use super::no_reading::NoReading;
+use super::setup::{LiveSetup, fitting};
 use super::view::ProbeReading;
 use crate::eyes::work::gray;
 use crate::ground::stage::Stage;
@@ -59,36 +60,30 @@ impl Stage for ProbeStage {
         ProbeOutput {
             point: input.point,
             generation: input.setup.generation,
-            reading: self.measure(&input).map_err(|reason| sentence(&reason)),
+            reading: self.measure(&input).map_err(|reason| sentence(&reason.to_string())),
         }
     }
 }
 
 impl ProbeStage {
-    fn measure(&mut self, input: &ProbeInput) -> Result<ProbeReading, String> {
+    fn measure(&mut self, input: &ProbeInput) -> Result<ProbeReading, NoReading> {
         let setup = &input.setup;
         let left_raw = match input.point {
             ProbePoint::Raw { eye: Eye::Left, u_px, v_px } => Pixel::new(u_px, v_px),
             ProbePoint::Raw { eye: Eye::Right, .. } => {
-                return Err("points are chosen in the left image; the right one shows where they are found"
-                    .to_owned());
+                return Err(NoReading::RightEye);
             }
             ProbePoint::Rectified { u_px, v_px } => setup
                 .pair
                 .raw_from_rectified(Eye::Left, Pixel::new(u_px, v_px))
-                .map_err(|_| "the left eye does not see this place of the view".to_owned())?,
+                .map_err(|_| NoReading::Unseen)?,
         };
-        for (eye, image) in [(Eye::Left, &input.frame.left), (Eye::Right, &input.frame.right)] {
-            let calibrated = setup.pair.cameras.camera(eye).size_px();
-            if image.dimensions() != calibrated {
-                return Err(other_size(image.dimensions(), calibrated));
-            }
-        }
+        fitting(&input.frame, &setup.pair.cameras)?;
         let locator = self.locator(&setup.calibration)?;
         let mut located = locator.locate(&gray(&input.frame.left), &gray(&input.frame.right), &[left_raw]);
         let located = match located.pop() {
-            Some(located) => located.map_err(|reason| reason.to_string())?,
-            None => return Err("nothing was measured".to_owned()),
+            Some(located) => located?,
+            None => return Err(NoReading::Nothing),
         };
         let in_views = setup.pair.project(located.point).ok();
         let left_rectified =
@@ -104,11 +99,11 @@ impl ProbeStage {
         })
     }
 
-    fn locator(&mut self, calibration: &Arc<StereoCalibration>) -> Result<&Locator, String> {
+    fn locator(&mut self, calibration: &Arc<StereoCalibration>) -> Result<&Locator, NoBaseline> {
         let known = self.locator.take().filter(|(of, _)| Arc::ptr_eq(of, calibration));
         let kept = match known {
             Some(kept) => kept,
-            None => (calibration.clone(), Locator::new(calibration).map_err(|error| error.to_string())?),
+            None => (calibration.clone(), Locator::new(calibration)?),
         };
         Ok(&self.locator.insert(kept).1)
     }

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use image::GrayImage;
 use plumbline_model::{Stamp, StereoFrame};
-use plumbline_vision::disparity::{Matcher, Settings};
-use plumbline_vision::rectify::Rectifier;
+use plumbline_vision::disparity::{DisparityError, Matcher, Settings};
+use plumbline_vision::rectify::{Rectifier, RectifyError};
 
+use super::no_reading::NoView;
 use super::setup::LiveSetup;
 use super::view::{DisparityView, RectifiedView};
 use crate::ground::stage::Stage;
@@ -55,35 +56,37 @@ impl Stage for RectifyStage {
     }
 
     fn process(&mut self, input: RectifyInput) -> RectifyOutput {
-        let products = self.compute(&input).map_err(|reason| sentence(&reason));
+        let products = self.compute(&input).map_err(|reason| sentence(&reason.to_string()));
         RectifyOutput { generation: input.setup.generation, products }
     }
 }
 
 impl RectifyStage {
-    fn compute(&mut self, input: &RectifyInput) -> Result<(RectifiedView, Option<DisparityView>), String> {
+    fn compute(&mut self, input: &RectifyInput) -> Result<(RectifiedView, Option<DisparityView>), NoView> {
         let stamp = input.frame.stamp;
         let rectifier = self.rectifier(&input.setup)?;
-        let views = rectifier
-            .rectify_rgb(&input.frame.left, &input.frame.right)
-            .map_err(|error| error.to_string())?;
+        let views = rectifier.rectify_rgb(&input.frame.left, &input.frame.right)?;
         let rectified = RectifiedView { stamp, left: Arc::new(views.left), right: Arc::new(views.right) };
         let disparity = if input.disparity { Some(self.disparity(input, &rectified)?) } else { None };
         Ok((rectified, disparity))
     }
 
-    fn disparity(&mut self, input: &RectifyInput, views: &RectifiedView) -> Result<DisparityView, String> {
+    fn disparity(
+        &mut self,
+        input: &RectifyInput,
+        views: &RectifiedView,
+    ) -> Result<DisparityView, DisparityError> {
         let setup = &input.setup;
         let settings = Settings::live(setup.max_disparity_px);
         let matcher = match self.matcher.take().filter(|matcher| *matcher.settings() == settings) {
             Some(matcher) => matcher,
-            None => Matcher::new(settings).map_err(|error| error.to_string())?,
+            None => Matcher::new(settings)?,
         };
         let matcher = self.matcher.insert(matcher);
         let gray = |image| -> GrayImage { image::imageops::grayscale(image) };
         let (left, right) = rayon::join(|| gray(&*views.left), || gray(&*views.right));
         let masks = self.rectifier.as_ref().map(|(_, rectifier)| rectifier.masks());
-        let map = matcher.compute(&left, &right, masks).map_err(|error| error.to_string())?;
+        let map = matcher.compute(&left, &right, masks)?;
         Ok(DisparityView {
             stamp: views.stamp,
             size_px: (map.width_px(), map.height_px()),
@@ -97,11 +100,11 @@ impl RectifyStage {
         })
     }
 
-    fn rectifier(&mut self, setup: &LiveSetup) -> Result<&Rectifier, String> {
+    fn rectifier(&mut self, setup: &LiveSetup) -> Result<&Rectifier, RectifyError> {
         let known = self.rectifier.take().filter(|(generation, _)| *generation == setup.generation);
         let kept = match known {
             Some(kept) => kept,
-            None => (setup.generation, Rectifier::new(&setup.pair).map_err(|error| error.to_string())?),
+            None => (setup.generation, Rectifier::new(&setup.pair)?),
         };
         Ok(&self.rectifier.insert(kept).1)
     }

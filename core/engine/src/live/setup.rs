@@ -5,7 +5,8 @@ use std::sync::Arc;
 use plumbline_model::aim::DEFAULT_SIZE_PX;
 use plumbline_model::camera::ModelKind;
 use plumbline_model::{
-    AimError, AimedPair, LeftCamera, Pose, Robot, StereoCalibration, StereoCameras, Workspace,
+    AimError, AimedPair, Eye, LeftCamera, Pose, Robot, StereoCalibration, StereoCameras, StereoFrame,
+    Workspace,
 };
 
 use super::command::AimChoice;
@@ -25,12 +26,34 @@ pub struct LiveSetup {
     pub robot_from_left: Pose<Robot, LeftCamera>,
 }
 
-/// Why images and calibration do not fit together.
-pub fn other_size(images: (u32, u32), calibrated: (u32, u32)) -> String {
-    format!(
-        "The images are {}×{} px, the calibration in use is for {}×{} px. Set the cameras to that size, or calibrate with these images.",
-        images.0, images.1, calibrated.0, calibrated.1
-    )
+/// Images and calibration do not fit together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "The images are {}×{} px, the calibration in use is for {}×{} px. Set the cameras to that size, or calibrate with these images.",
+    .images.0,
+    .images.1,
+    .calibrated.0,
+    .calibrated.1
+)]
+pub struct OtherSize {
+    /// Size of the images.
+    pub images: (u32, u32),
+    /// Size that was calibrated.
+    pub calibrated: (u32, u32),
+}
+
+/// Whether a pair fits the calibration.
+///
+/// # Errors
+/// When an image has another size than was calibrated.
+pub fn fitting(frame: &StereoFrame, cameras: &StereoCameras) -> Result<(), OtherSize> {
+    for (eye, image) in [(Eye::Left, &frame.left), (Eye::Right, &frame.right)] {
+        let (images, calibrated) = (image.dimensions(), cameras.camera(eye).size_px());
+        if images != calibrated {
+            return Err(OtherSize { images, calibrated });
+        }
+    }
+    Ok(())
 }
 
 /// The virtual pair for a choice.

@@ -12,7 +12,7 @@ use plumbline_model::{AimError, AimedPair, StereoCalibration, StereoFrame, Works
 use super::command::{AimChoice, HeadPose, LiveCommand, ProbePoint, Products};
 use super::probe::{ProbeInput, ProbeOutput};
 use super::rectify::{RectifyInput, RectifyOutput};
-use super::setup::{LiveSetup, aimed, max_disparity_px, other_size};
+use super::setup::{LiveSetup, OtherSize, aimed, fitting, max_disparity_px};
 use super::view::{AimView, CornersView, DisparityView, LiveView, ProbeView, RectifiedView, Statistics};
 use crate::eyes::Look;
 use crate::ground::jobs::JobId;
@@ -250,13 +250,9 @@ impl LiveWorkflow {
     }
 
     /// Why the newest pair does not fit the calibration.
-    fn misfit(&self) -> Option<String> {
+    fn misfit(&self) -> Option<OtherSize> {
         let (frame, setup) = (self.raw.as_ref()?, self.setup.as_ref().ok()?);
-        let cameras = &setup.pair.cameras;
-        [(&frame.left, cameras.left.size_px()), (&frame.right, cameras.right.size_px())]
-            .into_iter()
-            .find(|(image, calibrated)| image.dimensions() != *calibrated)
-            .map(|(image, calibrated)| other_size(image.dimensions(), calibrated))
+        fitting(frame, &setup.pair.cameras).err()
     }
 
     /// Rectification has something. What belongs to an older setup is not shown.
@@ -349,8 +345,10 @@ impl LiveWorkflow {
         };
         let no_setup = self.setup.as_ref().err().cloned();
         let down = self.down.get(&WatchedThread::Rectify).cloned();
-        let no_rectified_because =
-            no_setup.or_else(|| self.misfit()).or(down).or_else(|| self.failed.clone());
+        let no_rectified_because = no_setup
+            .or_else(|| self.misfit().map(|misfit| misfit.to_string()))
+            .or(down)
+            .or_else(|| self.failed.clone());
         LiveView {
             wanted: self.wanted,
             raw: self.raw.clone(),

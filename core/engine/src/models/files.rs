@@ -7,8 +7,8 @@ use plumbline_correction::{CorrectionModel, FileError};
 use plumbline_model::files::{self, Size};
 use plumbline_model::robot::Rig;
 
+use super::error::ModelError;
 use super::screen::same_size;
-use crate::ground::text::sentence;
 
 /// Bytes that tell JSON from ONNX.
 const HEAD: u64 = 256;
@@ -29,14 +29,12 @@ pub fn read_any(file: &Path) -> Result<CorrectionModel, FileError> {
 }
 
 /// Reads a model of this robot and its touchscreen, or says why it cannot be used, a sentence.
-pub fn read(file: &Path, rig: &Rig) -> Result<CorrectionModel, String> {
-    let model = read_any(file).map_err(|error| sentence(&error.to_string()))?;
+pub fn read(file: &Path, rig: &Rig) -> Result<CorrectionModel, ModelError> {
+    let model = read_any(file)?;
     if let Some(options) = &model.provenance().options {
         if !options.rig.is_empty() && options.rig != rig.name {
-            return Err(format!(
-                "The model was trained for the robot \"{}\", this one is \"{}\". Train on touches of this robot.",
-                options.rig, rig.name
-            ));
+            let (trained, present) = (options.rig.clone(), rig.name.clone());
+            return Err(ModelError::OtherRobot { trained, present });
         }
         if let Some(screen) = &options.screen {
             same_size(screen, &(&rig.touchscreen).into(), "The model")?;
@@ -46,16 +44,16 @@ pub fn read(file: &Path, rig: &Rig) -> Result<CorrectionModel, String> {
 }
 
 /// Reads a model that [`write`] wrote.
-pub fn read_own(file: &Path) -> Result<CorrectionModel, String> {
-    CorrectionModel::read(file).map_err(|error| sentence(&error.to_string()))
+pub fn read_own(file: &Path) -> Result<CorrectionModel, ModelError> {
+    Ok(CorrectionModel::read(file)?)
 }
 
 /// Writes a model as JSON.
-pub fn write(model: &CorrectionModel, file: &Path) -> Result<(), String> {
-    model.write(file).map_err(|error| sentence(&error.to_string()))
+pub fn write(model: &CorrectionModel, file: &Path) -> Result<(), ModelError> {
+    Ok(model.write(file)?)
 }
 
 /// Writes a model as ONNX.
-pub fn write_onnx(model: &CorrectionModel, file: &Path) -> Result<(), String> {
-    model.write_onnx(file).map_err(|error| sentence(&error.to_string()))
+pub fn write_onnx(model: &CorrectionModel, file: &Path) -> Result<(), ModelError> {
+    Ok(model.write_onnx(file)?)
 }

@@ -58,7 +58,7 @@ pub fn learn(
     context: &dyn JobContext,
 ) -> Result<Trained, JobError> {
     context.report(0.0, "reading the touches");
-    let data = touch_data(session, rig).map_err(JobError::Failed)?;
+    let data = touch_data(session, rig).map_err(JobError::failed)?;
     let enough = |method: &Method| *method == Method::M1 || data.len() >= FEWEST_FOR_A_NETWORK;
     let judged: Vec<Method> =
         Method::ALL.into_iter().filter(|method| methods.contains(method) || enough(method)).collect();

@@ -4,6 +4,7 @@
 //! [`ModelsWorkflow`] is driven by commands and by finished work; it owns no thread.
 
 pub mod command;
+mod error;
 pub mod files;
 mod learn;
 mod losses;
@@ -19,5 +20,6 @@ pub mod view;
 pub mod work;
 mod workflow;
 
+pub use error::ModelError;
 pub use learn::options;
 pub use workflow::{ModelsAround, ModelsWorkflow};

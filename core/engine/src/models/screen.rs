@@ -3,6 +3,8 @@
 use plumbline_correction::ScreenSize;
 use plumbline_model::session::Touchscreen;
 
+use super::error::ModelError;
+
 /// Sizes that differ by less are the same, m.
 const SAME_SIZE_M: f64 = 1e-3;
 /// A screen whose corners moved less than this lies where it lay, m.
@@ -17,22 +19,14 @@ pub fn corners(screen: &Touchscreen) -> Corners {
 }
 
 /// Refuses a screen of another size; `whose` begins the sentence.
-pub fn same_size(learned: &ScreenSize, present: &ScreenSize, whose: &str) -> Result<(), String> {
+pub fn same_size(learned: &ScreenSize, present: &ScreenSize, whose: &'static str) -> Result<(), ModelError> {
     let pixels = (learned.width_px, learned.height_px) == (present.width_px, present.height_px);
     let meters = (learned.width_m - present.width_m).abs() <= SAME_SIZE_M
         && (learned.height_m - present.height_m).abs() <= SAME_SIZE_M;
     if pixels && meters {
         return Ok(());
     }
-    let size = |screen: &ScreenSize| {
-        let (width_mm, height_mm) = (screen.width_m * 1e3, screen.height_m * 1e3);
-        format!("{}×{} px, {width_mm:.0}×{height_mm:.0} mm", screen.width_px, screen.height_px)
-    };
-    Err(format!(
-        "{whose} belongs to a touchscreen of {}; this robot's has {}. Touch this screen and train again.",
-        size(learned),
-        size(present)
-    ))
+    Err(ModelError::OtherScreen { whose, learned: learned.clone(), present: present.clone() })
 }
 
 /// How far the farthest corner moved, m; `None` when the screen lies where it lay.

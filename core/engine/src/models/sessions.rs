@@ -7,25 +7,15 @@ use plumbline_model::Session;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::{Manifest, names};
 
+use super::error::ModelError;
 use super::view::TouchSession;
-use crate::ground::sessions::rig_of;
+use crate::ground::sessions::{Unread, folders, rig_of};
 use crate::ground::text::sentence;
 
 /// Sessions with touches in a folder, newest first. One that cannot be read is listed with the
 /// reason.
-pub fn list(folder: &Path) -> Result<Vec<TouchSession>, String> {
-    let listing = match std::fs::read_dir(folder) {
-        Ok(listing) => listing,
-        // Nothing was ever touched.
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(error) => {
-            return Err(format!(
-                "{} cannot be read ({error}). Check that you may read it.",
-                folder.display()
-            ));
-        }
-    };
-    let folders = listing.flatten().map(|entry| entry.path());
+pub fn list(folder: &Path) -> Result<Vec<TouchSession>, Unread> {
+    let folders = folders(folder)?.into_iter();
     let with_touches = folders.filter(|path| path.join(names::TOUCHES).is_file());
     let mut sessions: Vec<TouchSession> = with_touches.map(listed).collect();
     sessions.sort_by(|a, b| (b.started, &b.folder).cmp(&(a.started, &a.folder)));
@@ -55,19 +45,15 @@ pub fn listed(folder: PathBuf) -> TouchSession {
 }
 
 /// What can be learned from a session of this robot, or why nothing can, a sentence.
-pub fn touch_data(folder: &Path, rig: &Rig) -> Result<TouchData, String> {
-    let words = |error: &dyn std::fmt::Display| sentence(&error.to_string());
-    let session = Session::read(folder).map_err(|error| words(&error))?;
-    let own = rig_of(&session, folder).map_err(|error| words(&error))?;
+pub fn touch_data(folder: &Path, rig: &Rig) -> Result<TouchData, ModelError> {
+    let session = Session::read(folder)?;
+    let own = rig_of(&session, folder)?;
     if own.name != rig.name {
-        return Err(format!(
-            "The session was recorded with the robot \"{}\", this one is \"{}\". Choose a session of this robot.",
-            own.name, rig.name
-        ));
+        return Err(ModelError::OtherRobotsSession { recorded: own.name, present: rig.name.clone() });
     }
-    let chain = session.manifest.chain.as_ref().ok_or("The session does not say which tip touched.")?;
-    let chain = rig.chain(&chain.tip).map_err(|error| words(&error))?;
-    let data = TouchData::of_session(&session, &chain).map_err(|error| words(&error))?;
+    let chain = session.manifest.chain.as_ref().ok_or(ModelError::NoTip)?;
+    let chain = rig.chain(&chain.tip)?;
+    let data = TouchData::of_session(&session, &chain)?;
     super::screen::same_size(&(&data.screen).into(), &(&rig.touchscreen).into(), "The session")?;
     Ok(data)
 }

@@ -2,7 +2,7 @@
 //! order they were in use, so that taking back goes to exactly the one before, also after a restart.
 //! `in-use.json` is a copy of the one in use, for other programs.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use jiff::Timestamp;
@@ -10,10 +10,10 @@ use plumbline_correction::{CorrectionModel, Method};
 use plumbline_model::files::{self as whole_files, Size};
 use serde::{Deserialize, Serialize};
 
+use super::error::ModelError;
 use super::files;
 use super::screen::Corners;
 use crate::ground::shelf::{InUse, Shelf};
-use crate::ground::text::sentence;
 
 /// Version of the list.
 const FORMAT: u32 = 1;
@@ -80,14 +80,9 @@ impl Store {
     ///
     /// # Errors
     /// A sentence, when there is something that cannot be read or is another robot's.
-    pub fn read(&self, rig: &str) -> Result<(History, Option<Arc<CorrectionModel>>), String> {
+    pub fn read(&self, rig: &str) -> Result<(History, Option<Arc<CorrectionModel>>), ModelError> {
         let list = self.list();
-        let unusable = |reason: String| {
-            format!(
-                "{} cannot be used ({reason}). No model is in use; move the file away, train or import one and accept it.",
-                list.display()
-            )
-        };
+        let unusable = |reason: String| ModelError::Unusable { list: list.clone(), reason };
         if !whole_files::present(&list).map_err(|error| unusable(error.to_string()))? {
             return Ok((History::new(rig), None));
         }
@@ -114,8 +109,8 @@ impl Store {
         history: &History,
         model: Option<(&CorrectionModel, Corners)>,
         accepted: Timestamp,
-    ) -> Result<History, String> {
-        self.shelf.make_folder().map_err(|error| cannot(self.shelf.folder(), &error.to_string()))?;
+    ) -> Result<History, ModelError> {
+        self.shelf.make_folder().map_err(ModelError::cannot(self.shelf.folder()))?;
         let mut next = history.clone();
         if next.entries.is_empty() {
             next.entries.push(Entry { model: None, accepted });
@@ -138,7 +133,7 @@ impl Store {
     ///
     /// # Errors
     /// A sentence; then what was in use stays so.
-    pub fn undo(&self, history: &History) -> Result<(History, Option<Arc<CorrectionModel>>), String> {
+    pub fn undo(&self, history: &History) -> Result<(History, Option<Arc<CorrectionModel>>), ModelError> {
         let mut before = history.clone();
         before.entries.pop();
         let model = before.in_use().map(|kept| self.load(kept)).transpose()?;
@@ -146,49 +141,37 @@ impl Store {
         Ok((before, model))
     }
 
-    fn load(&self, kept: &Kept) -> Result<Arc<CorrectionModel>, String> {
+    fn load(&self, kept: &Kept) -> Result<Arc<CorrectionModel>, ModelError> {
         let Some(file) = self.shelf.file_inside(&kept.file) else {
-            return Err(cannot(&self.shelf.file(&kept.file), "its name leads out of the folder"));
+            let file = self.shelf.file(&kept.file);
+            return Err(ModelError::cannot(&file)("its name leads out of the folder"));
         };
         files::read_own(&file).map(Arc::new)
     }
 
-    fn write(&self, history: &History) -> Result<(), String> {
+    fn write(&self, history: &History) -> Result<(), ModelError> {
         let list = self.list();
-        let text =
-            serde_json::to_string_pretty(history).map_err(|error| cannot(&list, &error.to_string()))?;
-        replace(&list, &text)?;
+        let text = serde_json::to_string_pretty(history).map_err(ModelError::cannot(&list))?;
+        whole_files::write(&list, &text)?;
         self.copy(history.in_use())
     }
 
     /// `in-use.json` for other programs.
-    fn copy(&self, in_use: Option<&Kept>) -> Result<(), String> {
+    fn copy(&self, in_use: Option<&Kept>) -> Result<(), ModelError> {
         let copy = self.folder.join("in-use.json");
         let Some(kept) = in_use else {
-            return InUse::new(copy.clone()).forget().map_err(|error| cannot(&copy, &error.to_string()));
+            return InUse::new(copy.clone()).forget().map_err(ModelError::cannot(&copy));
         };
         let file = self.shelf.file(&kept.file);
         let text = whole_files::read_text(&file, Size::MODEL);
-        let text = text.map_err(|error| cannot(&file, &error.to_string()))?;
+        let text = text.map_err(ModelError::cannot(&file))?;
         if whole_files::read_text(&copy, Size::MODEL).is_ok_and(|present| present == text) {
             return Ok(());
         }
-        replace(&copy, &text)
+        Ok(whole_files::write(&copy, &text)?)
     }
 
     fn list(&self) -> PathBuf {
         self.folder.join("history.json")
     }
-}
-
-fn replace(file: &Path, text: &str) -> Result<(), String> {
-    whole_files::write(file, text)
-        .map_err(|error| format!("{} The model in use stays.", sentence(&error.to_string())))
-}
-
-fn cannot(file: &Path, reason: &str) -> String {
-    format!(
-        "{} cannot be used ({reason}). Check that the disk has free space and can be written; the model in use stays.",
-        file.display()
-    )
 }

@@ -187,10 +187,10 @@ impl LongWork for ModelsWork {
         match self {
             Self::Restore { folder, rig } => Ok(ModelsResult::Restored(Box::new(restore(&folder, &rig)))),
             Self::List { folder } => {
-                Ok(ModelsResult::Listed(sessions::list(&folder).map_err(JobError::Failed)?))
+                Ok(ModelsResult::Listed(sessions::list(&folder).map_err(JobError::failed)?))
             }
             Self::Read { session, rig } => {
-                let data = touch_data(&session, &rig).map(Arc::new);
+                let data = touch_data(&session, &rig).map(Arc::new).map_err(|error| error.to_string());
                 Ok(ModelsResult::Read { session, data })
             }
             Self::Train { session, rig, methods, seed, published_recipe, losses } => {
@@ -200,16 +200,16 @@ impl LongWork for ModelsWork {
             }
             Self::Accept { store, history, model, accepted } => {
                 let kept = model.as_ref().map(|(model, screen_m)| (model.as_ref(), *screen_m));
-                let history = store.accept(&history, kept, accepted).map_err(JobError::Failed)?;
+                let history = store.accept(&history, kept, accepted).map_err(JobError::failed)?;
                 Ok(ModelsResult::InUse { history, model: model.map(|(model, _)| model), map: None })
             }
             Self::Undo { store, history, rig } => {
-                let (history, model) = store.undo(&history).map_err(JobError::Failed)?;
+                let (history, model) = store.undo(&history).map_err(JobError::failed)?;
                 let map = model.as_ref().map(|model| Arc::new(model_map(model, &rig.touchscreen, false)));
                 Ok(ModelsResult::InUse { history, model, map })
             }
             Self::Import { file, rig } => {
-                let model = files::read(&file, &rig).map_err(JobError::Failed)?;
+                let model = files::read(&file, &rig).map_err(JobError::failed)?;
                 let map = Arc::new(model_map(&model, &rig.touchscreen, true));
                 Ok(ModelsResult::Imported { model: Arc::new(model), map })
             }
@@ -218,7 +218,7 @@ impl LongWork for ModelsWork {
                     .map_err(|error| JobError::failed(crate::ground::text::sentence(&error.to_string())))?;
                 let written =
                     if onnx { files::write_onnx(&model, &file) } else { files::write(&model, &file) };
-                written.map_err(JobError::Failed)?;
+                written.map_err(JobError::failed)?;
                 Ok(ModelsResult::Exported(file))
             }
             Self::Tables(work) => work.run(context).map(ModelsResult::Tables),
@@ -265,12 +265,12 @@ fn restore(folder: &Path, rig: &Rig) -> Restored {
     let (history, model) = match store.read(&rig.name) {
         Ok((history, model)) => (Some(history), model),
         Err(problem) => {
-            problems.push(problem);
+            problems.push(problem.to_string());
             (None, None)
         }
     };
     let sessions = sessions::list(&folder.join("sessions")).unwrap_or_else(|problem| {
-        problems.push(problem);
+        problems.push(problem.to_string());
         Vec::new()
     });
     let (tables, table_problems) = super::tables::work::restore(&folder.join("tables"));

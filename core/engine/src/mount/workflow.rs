@@ -7,7 +7,7 @@ use std::time::Instant;
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::{Chessboard, PairObservation, StereoCalibration};
 use plumbline_vision::mount::{
-    HeadView, MountCalibration, PlannedTarget, Target, place_of_board, plan_head_views,
+    HeadView, MountCalibration, MountError, PlannedTarget, Target, place_of_board, plan_head_views,
 };
 
 use super::command::MountCommand;
@@ -22,6 +22,29 @@ use crate::ground::{Moment, Workflow};
 use crate::mount::view::MountView;
 use crate::robot::RobotControl;
 use crate::robot::view::RobotView;
+
+/// Why something is not done, and what to do.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Refusal {
+    /// Step 1 comes first.
+    #[error("The eyes are not calibrated yet. Do step 1, Eyes, first.")]
+    NotCalibrated,
+    /// Nobody knows where the head looks.
+    #[error("The head's angles are not known. Connect to the robot or the twin first.")]
+    HeadUnknown,
+    /// Nothing to take.
+    #[error("Neither eye sees the board.")]
+    NoBoard,
+    /// Nothing to plan for.
+    #[error("Neither eye sees the board. Lay it flat on the table where both eyes see all of it.")]
+    NoBoardToPlan,
+    /// Views of two boards do not go together.
+    #[error("Another board was used for the views so far. Remove them first.")]
+    OtherBoard,
+    /// The computation itself.
+    #[error("{}", sentence(&.0.to_string()))]
+    Mount(#[from] MountError),
+}
 
 /// Head poses that are planned.
 const POSES: usize = 14;
@@ -135,16 +158,14 @@ impl MountWorkflow {
         }
     }
 
-    fn plan(&self, around: &MountAround) -> Result<Vec<(f64, f64)>, String> {
+    fn plan(&self, around: &MountAround) -> Result<Vec<(f64, f64)>, Refusal> {
         let (calibration, posture) = ready(around)?;
         let cameras = calibration.cameras;
         let view = self.last_look.as_ref().and_then(|look| head_view(look, "now".to_owned(), &posture));
-        let view = view
-            .ok_or("Neither eye sees the board. Lay it flat on the table where both eyes see all of it.")?;
-        let words = |error: plumbline_vision::mount::MountError| sentence(&error.to_string());
-        let robot_from_board = place_of_board(&around.rig, &cameras, &view, &around.board).map_err(words)?;
+        let view = view.ok_or(Refusal::NoBoardToPlan)?;
+        let robot_from_board = place_of_board(&around.rig, &cameras, &view, &around.board)?;
         let target = PlannedTarget::board(&around.board, &robot_from_board);
-        plan_head_views(&around.rig, &cameras, &posture, &target, POSES).map_err(words)
+        Ok(plan_head_views(&around.rig, &cameras, &posture, &target, POSES)?)
     }
 
     fn solve(&mut self, around: &MountAround, context: &mut Context<'_>) {
@@ -212,13 +233,13 @@ impl MountWorkflow {
         }
     }
 
-    fn take(&mut self, look: &Look, around: &MountAround) -> Result<(), String> {
+    fn take(&mut self, look: &Look, around: &MountAround) -> Result<(), Refusal> {
         let (_, posture) = ready(around)?;
         if self.board.is_some_and(|board| board != look.board) && !self.views.is_empty() {
-            return Err("Another board was used for the views so far. Remove them first.".to_owned());
+            return Err(Refusal::OtherBoard);
         }
         let name = format!("view {:02}", self.counted + 1);
-        let view = head_view(look, name, &posture).ok_or("Neither eye sees the board.")?;
+        let view = head_view(look, name, &posture).ok_or(Refusal::NoBoard)?;
         self.board = Some(look.board);
         self.counted += 1;
         self.views.push(view);
@@ -290,13 +311,11 @@ impl Workflow for MountWorkflow {
 }
 
 /// The eyes' calibration and the present posture, or why there is none.
-fn ready(around: &MountAround) -> Result<(Arc<StereoCalibration>, Posture), String> {
-    let calibration =
-        around.calibration.clone().ok_or("The eyes are not calibrated yet. Do step 1, Eyes, first.")?;
+fn ready(around: &MountAround) -> Result<(Arc<StereoCalibration>, Posture), Refusal> {
+    let calibration = around.calibration.clone().ok_or(Refusal::NotCalibrated)?;
     let head = around.robot.rig.as_ref().map(|rig| [rig.eyes.pan, rig.eyes.tilt]);
     let posture = head.and_then(|head| around.robot.known(&head).cloned());
-    let posture =
-        posture.ok_or("The head's angles are not known. Connect to the robot or the twin first.")?;
+    let posture = posture.ok_or(Refusal::HeadUnknown)?;
     Ok((calibration, posture))
 }
 

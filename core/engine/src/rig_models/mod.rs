@@ -13,14 +13,15 @@ use plumbline_gap::finding::{NamedEffect, Shown, ShownUnit};
 use plumbline_model::Session;
 use plumbline_model::robot::Rig;
 
-use crate::ground::jobs::JobError;
 use crate::ground::shelf::InUse;
-use crate::ground::text::sentence;
 
+mod error;
 #[cfg(test)]
 pub(crate) mod made_up;
 #[cfg(test)]
 mod tests;
+
+pub use error::ModelInUseError;
 
 /// The file, in the folder of a world.
 pub const FILE: &str = "rig-model.toml";
@@ -34,20 +35,18 @@ pub fn file(folder: &Path) -> PathBuf {
 ///
 /// # Errors
 /// A sentence, when there is a file that cannot be used.
-pub fn load(folder: &Path, rig: &Rig) -> Result<RigModel, String> {
-    let read = InUse::new(file(folder)).read(|file| RigModel::read(file, rig).map_err(JobError::told));
-    Ok(read.map_err(|error| error.to_string())?.unwrap_or_else(|| RigModel::nominal(rig)))
+pub fn load(folder: &Path, rig: &Rig) -> Result<RigModel, ModelInUseError> {
+    let read = InUse::new(file(folder)).read(|file| RigModel::read(file, rig).map_err(ModelInUseError::from));
+    Ok(read?.unwrap_or_else(|| RigModel::nominal(rig)))
 }
 
 /// Puts a model in use.
 ///
 /// # Errors
 /// A sentence; then what was in use stays so.
-pub fn save(folder: &Path, model: &RigModel, rig: &Rig) -> Result<(), String> {
-    let no_folder =
-        |error| format!("{} cannot be made ({error}). Check that the disk can be written.", folder.display());
-    let write = |file: &Path| model.write(file, rig).map_err(|error| sentence(&error.to_string()));
-    InUse::new(file(folder)).put(no_folder, write)
+pub fn save(folder: &Path, model: &RigModel, rig: &Rig) -> Result<(), ModelInUseError> {
+    let no_folder = |error| ModelInUseError::NoFolder { folder: folder.to_owned(), error };
+    InUse::new(file(folder)).put(no_folder, |file| Ok(model.write(file, rig)?))
 }
 
 /// Accepts effects of a finding, by their places in it, and puts the model in use. `sessions` are
@@ -61,7 +60,7 @@ pub fn accept(
     finding: (&Finding, &[Session]),
     effects: &[usize],
     replaces: bool,
-) -> Result<RigModel, String> {
+) -> Result<RigModel, ModelInUseError> {
     let model = with(&load(folder, rig)?, rig, finding, effects, replaces, Timestamp::now())?;
     save(folder, &model, rig)?;
     Ok(model)
@@ -71,9 +70,9 @@ pub fn accept(
 ///
 /// # Errors
 /// A sentence; then what was in use stays so.
-pub fn undo(folder: &Path, rig: &Rig) -> Result<RigModel, String> {
+pub fn undo(folder: &Path, rig: &Rig) -> Result<RigModel, ModelInUseError> {
     let mut model = load(folder, rig)?;
-    model.undo(Timestamp::now()).map_err(|error| sentence(&error.to_string()))?;
+    model.undo(Timestamp::now())?;
     save(folder, &model, rig)?;
     Ok(model)
 }
@@ -98,16 +97,16 @@ pub fn with(
     effects: &[usize],
     replaces: bool,
     at: Timestamp,
-) -> Result<RigModel, String> {
+) -> Result<RigModel, ModelInUseError> {
     if finding.sessions.len() != sessions.len() || finding.placements.len() != sessions.len() {
-        return Err("The finding is not of these sessions. Search the gap again.".to_owned());
+        return Err(ModelInUseError::OtherSessions);
     }
     let mut chosen = vec![];
     for &i in effects {
-        let effect =
-            finding.effects.get(i).ok_or("The finding has no such effect. Choose one of its list.")?;
+        let effect = finding.effects.get(i).ok_or(ModelInUseError::NoSuchEffect)?;
         if let Some(why) = &effect.not_addable {
-            return Err(format!("{} cannot be added: {why}.", effect.title));
+            let (title, why) = (effect.title.clone(), why.clone());
+            return Err(ModelInUseError::NotAddable { title, why });
         }
         chosen.push(effect);
     }
@@ -132,7 +131,7 @@ pub fn with(
         gap: gap(&finding.shown),
     };
     let mut next = model.clone();
-    next.add(rig, addition).map_err(|error| sentence(&error.to_string()))?;
+    next.add(rig, addition)?;
     Ok(next)
 }
 

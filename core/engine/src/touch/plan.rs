@@ -10,7 +10,7 @@ use plumbline_correction::CorrectionModel;
 use plumbline_effects::observability::{Noise, PlanScore, PlannedContact, score};
 use plumbline_effects::rig_model::DeviatedArm;
 use plumbline_model::JobContext;
-use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::robot::{DescriptionError, Posture, Rig};
 use plumbline_model::session::Touchscreen;
 use plumbline_model::touch_plan::{PlanOptions, PlannedTouch, TouchPlan};
 use plumbline_model::{Point, Robot};
@@ -21,7 +21,7 @@ use super::view::PlanView;
 use crate::ground::jobs::JobError;
 use crate::ground::text::sentence;
 use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
-use crate::rig_models;
+use crate::rig_models::{self, ModelInUseError};
 
 /// The tip that touches.
 pub const TIP: &str = "right_index_tip";
@@ -208,6 +208,22 @@ pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, 
     })
 }
 
+/// Why targets cannot be corrected as was asked.
+#[derive(Debug, thiserror::Error)]
+enum NotCorrected {
+    /// The model in use cannot be read.
+    #[error(transparent)]
+    Model(#[from] ModelInUseError),
+    /// There is nothing to correct with.
+    #[error(
+        "No effect was added to the model yet. Search the gap and add what it names, or correct with something else."
+    )]
+    Nominal,
+    /// The model does not speak of this arm.
+    #[error("{}", sentence(&.0.to_string()))]
+    Arm(#[from] DescriptionError),
+}
+
 /// What decides where the tip is sent.
 enum Senders<'a> {
     /// To the pixel itself.
@@ -220,18 +236,16 @@ enum Senders<'a> {
 }
 
 impl<'a> Senders<'a> {
-    fn of(corrector: &'a Corrector, rig: &Rig) -> Result<Self, String> {
+    fn of(corrector: &'a Corrector, rig: &Rig) -> Result<Self, NotCorrected> {
         Ok(match corrector {
             Corrector::None => Self::Plain,
             Corrector::Model(model) => Self::Model(model),
             Corrector::Effects(folder) => {
                 let model = rig_models::load(folder, rig)?;
                 if model.is_nominal() {
-                    let why = "No effect was added to the model yet. Search the gap and add what it names, or \
-                               correct with something else.";
-                    return Err(why.to_owned());
+                    return Err(NotCorrected::Nominal);
                 }
-                let arm = Box::new(model.arm(rig, TIP).map_err(|error| sentence(&error.to_string()))?);
+                let arm = Box::new(model.arm(rig, TIP)?);
                 let screen = model.screen(&rig.touchscreen).unwrap_or(&rig.touchscreen).clone();
                 Self::Effects { arm, screen }
             }

@@ -350,9 +350,14 @@ impl Workflow for DetectWorkflow {
     }
 }
 
-fn share(confidence: f32) -> Result<f32, String> {
+/// A threshold that is none.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("The confidence must be between {SHOWN_FROM} and 1; {0} is not.")]
+struct NoShare(f32);
+
+fn share(confidence: f32) -> Result<f32, NoShare> {
     if (SHOWN_FROM..=1.0).contains(&confidence) {
         return Ok(confidence);
     }
-    Err(format!("The confidence must be between {SHOWN_FROM} and 1; {confidence} is not."))
+    Err(NoShare(confidence))
 }

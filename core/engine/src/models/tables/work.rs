@@ -10,8 +10,10 @@ use plumbline_model::robot::Rig;
 use super::{ReadTable, Tables};
 use crate::ground::LongWork;
 use crate::ground::jobs::JobError;
+use crate::ground::shelf::InUse;
 use crate::ground::text::sentence;
 use crate::models::command::GraspTable;
+use crate::models::error::ModelError;
 use crate::models::view::Field;
 
 /// Values of the field along x and along y.
@@ -141,27 +143,21 @@ fn files(folder: &Path) -> (PathBuf, PathBuf) {
 }
 
 /// Writes the tables; one that has too few points to be used has no file.
-fn keep(folder: &Path, tables: &Tables) -> Result<(), String> {
-    std::fs::create_dir_all(folder).map_err(|error| {
-        format!(
-            "{} cannot be made ({error}). Check the free space and the permissions; the tables are not kept yet.",
-            folder.display()
-        )
-    })?;
+fn keep(folder: &Path, tables: &Tables) -> Result<(), ModelError> {
+    std::fs::create_dir_all(folder)
+        .map_err(|error| ModelError::NoFolder { folder: folder.to_owned(), error })?;
     let (height, yaw) = files(folder);
     keep_one(tables.height.as_deref(), &height)?;
     keep_one(tables.yaw.as_deref(), &yaw)
 }
 
-fn keep_one<N: Node>(table: Option<&Table<N>>, file: &Path) -> Result<(), String> {
+fn keep_one<N: Node>(table: Option<&Table<N>>, file: &Path) -> Result<(), ModelError> {
     match table.filter(|table| table.points.len() >= FEWEST) {
-        Some(table) => table.write(file).map_err(|error| sentence(&error.to_string())),
-        None => match std::fs::remove_file(file) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                Err(format!("{} cannot be removed: {error}. Remove it by hand.", file.display()))
-            }
-            _ => Ok(()),
-        },
+        Some(table) => Ok(table.write(file)?),
+        None => {
+            let kept = InUse::new(file.to_owned());
+            kept.forget().map_err(|error| ModelError::NotRemoved { file: file.to_owned(), error })
+        }
     }
 }
 
