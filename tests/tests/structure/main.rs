@@ -1,7 +1,6 @@
 //! What ARCHITECTURE.md says about the workspace is true.
 
 mod files;
-mod floors;
 mod markdown;
 mod modules;
 mod rooms;
@@ -14,7 +13,7 @@ use files::{read, repository, tracked_text_files};
 use markdown::Table;
 use workspace::{Lock, Package, packages};
 
-fn architecture() -> String {
+pub(crate) fn architecture() -> String {
     read(&repository().join("ARCHITECTURE.md"))
 }
 
@@ -59,41 +58,6 @@ fn packages_use_only_what_the_table_allows_and_the_table_allows_only_what_is_use
             assert!(unused.is_empty(), "ARCHITECTURE.md allows {name} to use {unused:?}, which it does not");
         }
     }
-}
-
-#[test]
-fn modules_of_the_engine_use_only_what_the_table_allows_and_none_uses_itself() {
-    let text = architecture();
-    let table = Table::with_header(&text, &["module of the engine", "what it is", "may use"]);
-    let uses = floors::uses(&repository().join("core/engine/src"));
-    let told: BTreeSet<&str> = table.rows.iter().map(|row| row[0].as_str()).collect();
-    assert_eq!(
-        told,
-        uses.keys().map(String::as_str).collect(),
-        "left: ARCHITECTURE.md, right: core/engine/src"
-    );
-    let sums = ["command", "view", "work", "state", "engine"];
-    for (module, used) in &uses {
-        let may = &table.row(module)[2];
-        for used in used {
-            let allowed = match sums.contains(&module.as_str()) {
-                // They know all rooms, and the sums that are named.
-                true => {
-                    !sums.contains(&used.as_str())
-                        || may == "everything"
-                        || may.split(", ").any(|m| m == used)
-                }
-                false => may.split(", ").any(|may| may == used),
-            };
-            assert!(allowed, "{module} uses {used}, which ARCHITECTURE.md does not allow");
-        }
-        if !sums.contains(&module.as_str()) {
-            let unused = may.split(", ").find(|may| *may != "–" && !used.contains(*may));
-            assert_eq!(unused, None, "ARCHITECTURE.md allows {module} to use it, but it does not");
-        }
-    }
-    assert!(uses["touch"].contains("robot"), "this test must be able to see who uses whom");
-    assert_eq!(floors::circle(&uses), None, "it uses itself by way of others");
 }
 
 #[test]

@@ -2,7 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::files::repository;
+use crate::architecture;
+use crate::files::{repository, tracked_text_files};
+use crate::markdown::Table;
 use crate::modules::{Modules, Names, circles};
 use crate::workspace::packages;
 
@@ -38,6 +40,71 @@ fn no_rooms_of_a_package_use_each_other_in_a_circle() {
     }
     assert!(seen > 100, "this test must be able to see who uses whom; it saw {seen} arrows");
     assert!(found.is_empty(), "circles:\n{found}");
+}
+
+/// Who uses whom among the modules right below `src`, as found there.
+fn rooms_of(package: &str) -> BTreeMap<String, BTreeSet<String>> {
+    Modules::read(&repository().join(package).join("src")).uses(room)
+}
+
+#[test]
+fn modules_of_the_engine_use_only_what_the_table_allows() {
+    let text = architecture();
+    let table = Table::with_header(&text, &["module of the engine", "what it is", "may use"]);
+    let uses = rooms_of("core/engine");
+    let told: BTreeSet<&str> = table.rows.iter().map(|row| row[0].as_str()).collect();
+    let found: BTreeSet<&str> = uses.keys().map(String::as_str).collect();
+    assert_eq!(told, found, "left: ARCHITECTURE.md, right: core/engine/src");
+    let sums = ["command", "view", "work", "state", "engine"];
+    for (module, used) in &uses {
+        let may = &table.row(module)[2];
+        let names: BTreeSet<&str> = may.split(", ").filter(|name| *name != "–").collect();
+        let is_sum = sums.contains(&module.as_str());
+        for used in used {
+            // Sums know all rooms, and the sums that are named.
+            let allowed = names.contains(used.as_str())
+                || (is_sum && (may == "everything" || !sums.contains(&used.as_str())));
+            assert!(allowed, "{module} uses {used}, which ARCHITECTURE.md does not allow");
+        }
+        let unused = names.iter().find(|may| !is_sum && !used.contains(**may));
+        assert_eq!(unused, None, "ARCHITECTURE.md allows {module} to use it, but it does not");
+    }
+    assert!(uses["touch"].contains("robot"), "this test must be able to see who uses whom");
+}
+
+#[test]
+fn floors_of_the_window_know_only_those_below() {
+    let text = architecture();
+    let table = Table::with_header(&text, &["floor of `app/src`", "what stands there", "knows"]);
+    let uses = rooms_of("app");
+    let told: BTreeSet<String> = table.rows.iter().map(|row| row[0].replace('`', "")).collect();
+    assert_eq!(told, uses.keys().cloned().collect(), "left: ARCHITECTURE.md, right: app/src");
+    for row in &table.rows {
+        let (floor, may) = (row[0].replace('`', ""), row[2].replace('`', ""));
+        let may: BTreeSet<&str> = may.split(", ").collect();
+        let past = uses[&floor].iter().find(|used| !may.contains(used.as_str()));
+        assert_eq!(past, None, "{floor} knows a floor that ARCHITECTURE.md does not allow");
+    }
+    assert!(uses["window"].contains("panels"), "this test must be able to see who uses whom");
+}
+
+#[test]
+fn what_other_packages_define_comes_through_one_door() {
+    // Put together here, so that this file does not contain them itself.
+    let others =
+        ["correction", "effects", "gap", "report"].map(|package| format!("plumbline_engine::{package}::"));
+    let (mut door, mut past) = (0, Vec::new());
+    for (name, text) in tracked_text_files().into_iter().filter(|(name, _)| name.starts_with("app/src/")) {
+        if !others.iter().any(|other| text.contains(other.as_str())) {
+            continue;
+        }
+        match name.ends_with("operator/snapshot.rs") {
+            true => door += 1,
+            false => past.push(name),
+        }
+    }
+    assert_eq!(door, 1, "this test must be able to see the door");
+    assert!(past.is_empty(), "these go past operator/snapshot.rs: {past:?}");
 }
 
 fn package(files: &[(&str, &str)]) -> Modules {
