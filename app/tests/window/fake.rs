@@ -111,6 +111,11 @@ impl Fake {
     }
 }
 
+/// Where pictures for people go.
+pub fn picture_folder() -> std::path::PathBuf {
+    std::env::var_os("PLUMBLINE_WINDOW_PICTURES").expect("set PLUMBLINE_WINDOW_PICTURES to a folder").into()
+}
+
 /// Clicks what has this label; the first one if there are several.
 pub fn click(harness: &mut Harness<'_, PlumblineWindow>, label: &str) {
     let found = harness.get_all_by_label(label).next();

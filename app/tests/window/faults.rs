@@ -148,12 +148,11 @@ fn what_the_journal_lacks_and_where_data_go_is_said() {
     }
 }
 
-/// With `PLUMBLINE_WINDOW_PICTURES=<folder>` drawn into PNGs there.
+/// Every state drawn into a PNG of `PLUMBLINE_WINDOW_PICTURES=<folder>`, with `--ignored pictures`.
 #[test]
+#[ignore = "draws pictures for people to look at"]
 fn pictures_of_faults() {
-    let Some(folder) = std::env::var_os("PLUMBLINE_WINDOW_PICTURES").map(std::path::PathBuf::from) else {
-        return;
-    };
+    let folder = crate::fake::picture_folder();
     for theme in [plumbline::ThemeChoice::Dark, plumbline::ThemeChoice::Light] {
         let kept = |lost: u64| {
             Arc::new(KeptView {

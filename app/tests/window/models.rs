@@ -425,12 +425,11 @@ fn without_tables_and_without_an_arm_the_ways_to_fill_them_are_said() {
     assert_eq!(edits(&fake), [wanted]);
 }
 
-/// With `PLUMBLINE_WINDOW_PICTURES=<folder>` every state is also drawn into a PNG there.
+/// Every state drawn into a PNG of `PLUMBLINE_WINDOW_PICTURES=<folder>`, with `--ignored pictures`.
 #[test]
+#[ignore = "draws pictures for people to look at"]
 fn pictures_of_the_models() {
-    let Some(folder) = std::env::var_os("PLUMBLINE_WINDOW_PICTURES").map(std::path::PathBuf::from) else {
-        return;
-    };
+    let folder = crate::fake::picture_folder();
     let stale = StepState::Stale { why: "the screen was moved after these touches".to_owned() };
     let states = [
         ("empty", ModelsView::default(), None),

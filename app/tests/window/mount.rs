@@ -111,12 +111,11 @@ fn figures_come_with_their_uncertainty_and_left_out_views_with_the_reason() {
     }
 }
 
-/// With `PLUMBLINE_WINDOW_PICTURES=<folder>` drawn into PNGs there.
+/// Every state drawn into a PNG of `PLUMBLINE_WINDOW_PICTURES=<folder>`, with `--ignored pictures`.
 #[test]
+#[ignore = "draws pictures for people to look at"]
 fn pictures_of_the_mount() {
-    let Some(folder) = std::env::var_os("PLUMBLINE_WINDOW_PICTURES").map(std::path::PathBuf::from) else {
-        return;
-    };
+    let folder = crate::fake::picture_folder();
     let both = MountView { in_use: Some(solved_mount()), ..mount() };
     for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
         for (name, view) in [("empty", MountView::default()), ("solved", both.clone())] {

@@ -155,14 +155,11 @@ fn boxes_are_drawn_in_both_themes() {
     }
 }
 
-/// Pictures of all states, to be looked at: `PLUMBLINE_WINDOW_PICTURES=folder`.
-#[allow(clippy::print_stdout, reason = "says why it was skipped")]
+/// Every state drawn into a PNG of `PLUMBLINE_WINDOW_PICTURES=<folder>`, with `--ignored pictures`.
 #[test]
+#[ignore = "draws pictures for people to look at"]
 fn pictures_of_objects() {
-    let Some(folder) = std::env::var_os("PLUMBLINE_WINDOW_PICTURES").map(std::path::PathBuf::from) else {
-        println!("skipped: set PLUMBLINE_WINDOW_PICTURES to a folder");
-        return;
-    };
+    let folder = crate::fake::picture_folder();
     let exchanged =
         ClassNames::new(["Banana", "Duck", "RightHand", "Mushroom", "Onion", "Orange", "LeftHand", "Tomato"]);
     let differing = DetectorFacts {

@@ -313,12 +313,11 @@ fn every_state_of_the_robot_is_drawn_on_purpose() {
     }
 }
 
-/// With `PLUMBLINE_WINDOW_PICTURES=<folder>` every state is also drawn into a PNG there.
+/// Every state drawn into a PNG of `PLUMBLINE_WINDOW_PICTURES=<folder>`, with `--ignored pictures`.
 #[test]
+#[ignore = "draws pictures for people to look at"]
 fn pictures_of_every_state() {
-    let Some(folder) = std::env::var_os("PLUMBLINE_WINDOW_PICTURES").map(std::path::PathBuf::from) else {
-        return;
-    };
+    let folder = crate::fake::picture_folder();
     for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
         for (name, view, _) in states() {
             let fake = Fake::over(view);

@@ -294,12 +294,11 @@ fn a_real_touchscreen_needs_the_touch_window_first() {
     assert_eq!(sent(&fake), []);
 }
 
-/// With `PLUMBLINE_WINDOW_PICTURES=<folder>` drawn into PNGs there.
+/// Every state drawn into a PNG of `PLUMBLINE_WINDOW_PICTURES=<folder>`, with `--ignored pictures`.
 #[test]
+#[ignore = "draws pictures for people to look at"]
 fn pictures_of_touching() {
-    let Some(folder) = std::env::var_os("PLUMBLINE_WINDOW_PICTURES").map(std::path::PathBuf::from) else {
-        return;
-    };
+    let folder = crate::fake::picture_folder();
     let what = "Raise the screen by 30 mm: put the block under it, then go on.".to_owned();
     let waiting = after(12, TouchPhase::Waiting { what, prepare: Some((0.03, 0.0)) });
     let placed = TouchView {

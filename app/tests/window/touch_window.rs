@@ -78,12 +78,11 @@ fn the_mouse_tries_it_out() {
     assert_eq!(felt[0].with, ContactWith::Mouse);
 }
 
-/// With `PLUMBLINE_WINDOW_PICTURES=<folder>` drawn into PNGs there.
+/// Every state drawn into a PNG of `PLUMBLINE_WINDOW_PICTURES=<folder>`, with `--ignored pictures`.
 #[test]
+#[ignore = "draws pictures for people to look at"]
 fn pictures_of_the_touch_window() {
-    let Some(folder) = std::env::var_os("PLUMBLINE_WINDOW_PICTURES").map(std::path::PathBuf::from) else {
-        return;
-    };
+    let folder = crate::fake::picture_folder();
     for (name, touch, full) in
         [("running", running(), true), ("tried-out", running(), false), ("idle", idle(), true)]
     {

@@ -95,12 +95,11 @@ fn a_twin_that_failed_says_why_and_can_be_started_again() {
     assert_eq!(fake.take_sent(), [Command::from(RobotCommand::ConnectTwin { scenario: "lab".to_owned() })]);
 }
 
-/// With `PLUMBLINE_WINDOW_PICTURES=<folder>` drawn into PNGs there.
+/// Every state drawn into a PNG of `PLUMBLINE_WINDOW_PICTURES=<folder>`, with `--ignored pictures`.
 #[test]
+#[ignore = "draws pictures for people to look at"]
 fn pictures_of_live_with_the_twin() {
-    let Some(folder) = std::env::var_os("PLUMBLINE_WINDOW_PICTURES").map(std::path::PathBuf::from) else {
-        return;
-    };
+    let folder = crate::fake::picture_folder();
     for theme in [ThemeChoice::Dark, ThemeChoice::Light] {
         for screen in [Screen::Live, Screen::Collect] {
             let view =
