@@ -1,7 +1,6 @@
 //! Keys that do the same as buttons.
 
 use egui::{Event, Key, KeyboardShortcut, Modifiers};
-
 use plumbline_engine::View;
 
 use super::{Action, DetectAction, LabelsAction, Screen, actions};

@@ -3,34 +3,13 @@
 use egui::{DragValue, Ui};
 use plumbline_engine::EyesCommand;
 use plumbline_engine::view::EyesView;
-use plumbline_model::{Chessboard, ModelKind};
+use plumbline_model::ModelKind;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::PanelContext;
+use super::board_draft::BoardDraft;
 use crate::operator::{Action, other_board};
-
-/// The board as it is being typed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BoardDraft {
-    /// The board that the engine had when the typing began.
-    from: Chessboard,
-    columns: u32,
-    rows: u32,
-    square_mm: f64,
-}
-
-impl BoardDraft {
-    fn of(board: &Chessboard) -> Self {
-        let (columns, rows) = board.squares();
-        Self { from: *board, columns, rows, square_mm: board.square_m * 1000.0 }
-    }
-
-    fn board(&self) -> Result<Chessboard, String> {
-        Chessboard::from_squares(self.columns, self.rows, self.square_mm / 1000.0)
-            .map_err(|error| error.to_string())
-    }
-}
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     super::padded(ui, |ui| {

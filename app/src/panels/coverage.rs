@@ -6,14 +6,11 @@ use egui::Ui;
 use image::GrayImage;
 use plumbline_engine::view::CollectedPair;
 use plumbline_model::Eye;
+use plumbline_widgets::Seen;
 use plumbline_widgets::coverage::{Coverage, coverage_view};
 use plumbline_widgets::empty::{EmptyState, Message};
-use plumbline_widgets::{Memo, Seen};
 
 use super::PanelContext;
-
-/// Counted once per change of the collection, not per frame.
-pub type CountedCoverage = Memo<Seen<[Arc<CollectedPair>]>, Option<Coverage>>;
 
 /// So many images tell what the lens shows.
 const LOOKED_AT: usize = 12;

@@ -3,9 +3,8 @@
 use egui::{Popup, Ui};
 use plumbline_engine::view::ThreadFault;
 use plumbline_engine::{View, WatchedThread};
-use plumbline_widgets::format;
 use plumbline_widgets::lamp::{Health, Lamp};
-use plumbline_widgets::theme;
+use plumbline_widgets::{format, theme};
 
 use crate::operator::{Action, Outbox};
 

@@ -9,13 +9,13 @@ use plumbline_widgets::glyph::Glyph;
 use plumbline_widgets::probability::{ShareRow, share_rows};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{line, padded, state};
+use super::parts::{line, state};
 use crate::operator::snapshot::gap::What;
 use crate::operator::words::clock;
 use crate::operator::words::gap as words;
 use crate::operator::{GapAction, is_of_choice};
-use crate::panels::PanelContext;
 use crate::panels::parts::action_button;
+use crate::panels::{PanelContext, padded};
 
 /// Sessions that are seen without scrolling.
 const ROWS: usize = 5;

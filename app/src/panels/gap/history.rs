@@ -8,12 +8,11 @@ use plumbline_widgets::intervals::{IntervalRow, Intervals, Level};
 use plumbline_widgets::parameter;
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::padded;
 use crate::operator::GapAction;
 use crate::operator::words::clock;
 use crate::operator::words::gap as words;
-use crate::panels::PanelContext;
 use crate::panels::parts::action_button;
+use crate::panels::{PanelContext, padded};
 
 const ROW_HEIGHT: f32 = 26.0;
 

@@ -2,9 +2,8 @@
 
 use egui::Ui;
 use plumbline_engine::View;
-use plumbline_widgets::format;
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
-use plumbline_widgets::theme;
+use plumbline_widgets::{format, theme};
 
 use crate::operator::Outbox;
 use crate::operator::words::clock;

@@ -1,50 +1,23 @@
 //! The gap between model and measurement, in the order compare, find, name, add, show.
 
 mod compare;
+mod drawn;
 mod history;
 mod inspector;
 mod map;
 mod names;
 mod next;
+mod parts;
+mod points;
 mod shown;
+pub mod state;
 
 pub use inspector::show as show_inspector;
 
-use std::sync::Arc;
+use egui::Ui;
 
-use egui::{Label, RichText, Sense, Ui, vec2};
-use plumbline_engine::View;
-use plumbline_engine::view::ShownFinding;
-use plumbline_widgets::empty::{EmptyState, Message};
-use plumbline_widgets::glyph::{self, Glyph};
-use plumbline_widgets::theme::{self, Role};
-use plumbline_widgets::{Memo, Seen};
-
-use super::arrows::Errors;
-use super::{PanelContext, padded};
-use crate::operator::{Action, GapAction, Pane};
-use crate::panels::parts::progress;
-
-/// How the gap is looked at: kept from frame to frame, never saved.
-#[derive(Debug, Default)]
-pub struct GapPanels {
-    /// Which errors the map shows.
-    pub errors: Errors,
-    /// The covariate that residuals are drawn against; `None`: the one that tells most.
-    pub covariate: Option<usize>,
-    /// Which part of the residual is drawn.
-    pub along: shown::Along,
-    /// How the candidates are sorted.
-    pub sort: names::Sort,
-    /// Effects of the shown finding that shall not be added, by place.
-    pub left_out: Vec<usize>,
-    /// The finding that `left_out` and `covariate` belong to.
-    of: String,
-    /// Whether the search ran in the last frame.
-    pub searching_seen: bool,
-    map: Memo<Seen<ShownFinding>, map::Drawn>,
-    scatter: Memo<(Seen<ShownFinding>, usize, shown::Along), shown::Points>,
-}
+use super::PanelContext;
+use crate::operator::Pane;
 
 /// Draws one of the panes of this step.
 pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
@@ -63,60 +36,4 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
         Pane::GapHistory => history::show(ui, cx),
         _ => compare::show(ui, cx),
     }
-}
-
-/// The finding, or what stands in its place: not looked for yet, under way, failed.
-fn finding(ui: &mut Ui, cx: &mut PanelContext<'_>, what: &str) -> Option<Arc<ShownFinding>> {
-    let gap = &cx.view.gap;
-    if let Some(shown) = &gap.shown {
-        return Some(shown.clone());
-    }
-    if let Some((fraction, doing)) = progress(cx.view, cx.view.gap.searching) {
-        let percent = plumbline_widgets::format::percent(fraction);
-        EmptyState::loading(&format!("Looking for the gap: {doing} ({percent}).")).show(ui);
-        return None;
-    }
-    if let Some(why) = &gap.failed {
-        let message = Message::new("The gap could not be looked for", why);
-        if EmptyState::failed(message.button("Try again")).show(ui) {
-            cx.outbox.act(Action::Gap(GapAction::Find));
-        }
-        return None;
-    }
-    let message = Message::new("Nothing was looked for yet", what);
-    let ready = GapAction::Find.refusal(cx.view).is_none();
-    let message = if ready { message.button("Find what is missing") } else { message };
-    if EmptyState::empty(message).show(ui) {
-        cx.outbox.act(Action::Gap(GapAction::Find));
-    }
-    None
-}
-
-/// That what is shown is old, or that a new search is under way.
-fn state(ui: &mut Ui, view: &View) {
-    if let Some((fraction, doing)) = progress(view, view.gap.searching) {
-        ui.horizontal(|ui| {
-            ui.spinner();
-            let percent = plumbline_widgets::format::percent(fraction);
-            ui.label(theme::weak(
-                ui,
-                format!("Looking again: {doing} ({percent}). Below is the finding before."),
-            ));
-        });
-    } else if let Some(why) = &view.gap.failed {
-        line(ui, Glyph::Cross, Role::Warning, why);
-    } else if let Some(why) = &view.gap.stale {
-        line(ui, Glyph::Clock, Role::Warning, why);
-    }
-}
-
-/// A sentence with its sign.
-fn line(ui: &mut Ui, sign: Glyph, role: Role, text: &str) {
-    let tokens = theme::tokens(ui);
-    ui.horizontal_top(|ui| {
-        let (rect, _) = ui.allocate_exact_size(vec2(18.0, 20.0), Sense::hover());
-        glyph::paint(ui.painter(), rect.center(), 14.0, sign, role.color(tokens));
-        let color = if role == Role::Warning { role.color(tokens) } else { tokens.text };
-        ui.add(Label::new(RichText::new(text).color(color)).wrap());
-    });
 }

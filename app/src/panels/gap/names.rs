@@ -6,30 +6,18 @@ use plumbline_engine::GapCommand;
 use plumbline_engine::view::ShownFinding;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::empty::{EmptyState, Message};
-use plumbline_widgets::format;
 use plumbline_widgets::glyph::Glyph;
-use plumbline_widgets::parameter;
 use plumbline_widgets::probability::{self, ShareRow, probability_bar, share_rows};
 use plumbline_widgets::theme::{self, Role, space};
+use plumbline_widgets::{format, parameter};
 
-use super::{finding, line, padded, state};
+use super::parts::{finding, line, state};
+use super::state::Sort;
 use crate::operator::GapAction;
 use crate::operator::snapshot::gap::{Candidate, Finding, NamedEffect, Verdict};
 use crate::operator::words::gap as words;
-use crate::panels::PanelContext;
 use crate::panels::parts::action_button;
-
-/// How the candidates are sorted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sort {
-    /// The most probable first.
-    #[default]
-    Probability,
-    /// What the residual points at most first.
-    Score,
-    /// By name.
-    Name,
-}
+use crate::panels::{PanelContext, padded};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let what = "Choose sessions, then look for what the model does not have: a joint's zero, play, something that gives way. Nothing moves.";

@@ -6,13 +6,13 @@ use plumbline_widgets::format;
 use plumbline_widgets::probability::{ShareRow, probability_bar, share_rows};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{finding, padded};
+use super::parts::finding;
 use crate::operator::snapshot::gap::Verdict;
 use crate::operator::words::capitalized;
 use crate::operator::words::gap::touch_label;
 use crate::operator::{GapAction, gap_plan};
-use crate::panels::PanelContext;
 use crate::panels::parts::action_button;
+use crate::panels::{PanelContext, padded};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let what = "A finding says which experiment would tell most.";

@@ -7,35 +7,17 @@ use plumbline_engine::view::ShownFinding;
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::intervals::{IntervalRow, Intervals, Level};
-use plumbline_widgets::scatter::{Scatter, ScatterSeries};
+use plumbline_widgets::scatter::Scatter;
 use plumbline_widgets::seen::Seen;
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{finding, padded};
+use super::parts::finding;
+use super::points::{Along, points};
 use crate::operator::GapAction;
-use crate::operator::snapshot::gap::{Finding, Residual, Shown, Verdict};
+use crate::operator::snapshot::gap::{Finding, Shown, Verdict};
 use crate::operator::words::gap as words;
-use crate::panels::PanelContext;
 use crate::panels::parts::action_button;
-
-/// Which part of the residual is drawn against a covariate.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Along {
-    /// Forward, away from the robot.
-    #[default]
-    X,
-    /// To the left.
-    Y,
-    /// Up.
-    Z,
-}
-
-/// Points of the chart, made once.
-#[derive(Debug)]
-pub struct Points {
-    series: [ScatterSeries; 2],
-    name: String,
-}
+use crate::panels::{PanelContext, padded};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let what = "The gap is then judged on rows that were not used, before and after.";
@@ -167,31 +149,4 @@ fn order(finding: &Finding) -> Vec<usize> {
     let telling = finding.shown.telling.iter().copied();
     let others = (0..finding.shown.covariates.len()).filter(|i| !finding.shown.telling.contains(i));
     telling.chain(others).collect()
-}
-
-/// Angles are drawn in degrees, everything else as it is.
-fn points(finding: &Finding, covariate: usize, axis: usize) -> Points {
-    let (name, unit) = &finding.shown.covariates[covariate];
-    let (factor, unit) = match unit.as_str() {
-        "rad" => (1f64.to_degrees(), "°"),
-        "m" => (1e3, "mm"),
-        "kg" => (1e3, "g"),
-        other => (1.0, other),
-    };
-    let kept = || finding.comparison.residuals.iter().filter(|row| !row.outlier);
-    let series = |name, role, of: &dyn Fn(&Residual) -> [f64; 3]| {
-        let point = |row| {
-            let row: &Residual = row;
-            let across = row.covariates.get(covariate).copied().flatten()?;
-            Some([across * factor, of(row)[axis]])
-        };
-        ScatterSeries { name, points: kept().filter_map(point).collect(), role }
-    };
-    Points {
-        series: [
-            series("before", Role::Difference, &|row| row.before_m),
-            series("after", Role::HeldOut, &|row| row.after_m),
-        ],
-        name: if unit.is_empty() { name.clone() } else { format!("{name}, {unit}") },
-    }
 }

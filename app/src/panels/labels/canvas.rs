@@ -6,8 +6,9 @@ use plumbline_widgets::box_canvas::BoxCanvas;
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::theme::{self, space};
 
-use super::{PanelContext, action_button, color, drawn};
+use super::parts::{action_button, color, drawn};
 use crate::operator::{Action, LabelsAction};
+use crate::panels::PanelContext;
 
 /// Height of the row of classes.
 const CLASSES_HEIGHT: f32 = 30.0;

@@ -7,8 +7,9 @@ use plumbline_widgets::buttons::accent_button;
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
-use super::{PanelContext, action_button};
+use super::parts::action_button;
 use crate::operator::{Action, LabelsAction};
+use crate::panels::PanelContext;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {

@@ -6,7 +6,8 @@ use plumbline_widgets::glyph;
 use plumbline_widgets::texture::Sampling;
 use plumbline_widgets::theme::{self, Role};
 
-use super::{PanelContext, sign};
+use super::parts::sign;
+use crate::panels::PanelContext;
 
 const GAP: f32 = 6.0;
 

@@ -6,7 +6,7 @@ use plumbline_engine::view::{LabelState, ShownLabels};
 use plumbline_model::{ClassNames, PixelBox};
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
-use super::{color, drawn};
+use super::parts::{color, drawn};
 use crate::operator::{Action, LabelsAction, Outbox};
 use crate::panels::PanelState;
 

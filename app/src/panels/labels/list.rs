@@ -3,40 +3,16 @@
 use egui::{ScrollArea, Sense, Ui, vec2};
 use plumbline_engine::LabelsCommand;
 use plumbline_engine::view::{LabelImage, LabelState};
-use plumbline_widgets::buttons::accent_button;
-use plumbline_widgets::buttons::choice;
-use plumbline_widgets::format;
-use plumbline_widgets::glyph;
+use plumbline_widgets::buttons::{accent_button, choice};
 use plumbline_widgets::theme::{self, Role, space};
+use plumbline_widgets::{format, glyph};
 
-use super::{PanelContext, action_button, sign};
+use super::parts::{action_button, sign};
+use super::state::Filter;
 use crate::operator::{Action, LabelsAction};
+use crate::panels::PanelContext;
 
 const ROW: f32 = 26.0;
-
-/// Which images are listed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Filter {
-    /// All.
-    #[default]
-    All,
-    /// Those without labels.
-    Open,
-    /// Those to be looked at again, or with problems.
-    Check,
-}
-
-impl Filter {
-    fn takes(self, image: &LabelImage) -> bool {
-        match self {
-            Self::All => true,
-            Self::Open => image.state == LabelState::Unlabeled,
-            Self::Check => {
-                image.state == LabelState::ToCheck || image.problems > 0 || image.unusable.is_some()
-            }
-        }
-    }
-}
 
 /// Opening and making data sets.
 pub fn without_set(ui: &mut Ui, cx: &mut PanelContext<'_>) {

@@ -9,7 +9,7 @@ use plumbline_widgets::glyph::{self, Glyph};
 use plumbline_widgets::intervals::{IntervalRow, Intervals, Level};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::facts;
+use super::parts::facts;
 use super::verdict::Facts;
 use crate::operator::snapshot::models::{CorrectionModel, Method};
 use crate::operator::words::clock;

@@ -9,7 +9,7 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, space};
 
-use super::about;
+use super::parts::about;
 use crate::operator::Outbox;
 use crate::operator::snapshot::models::{CorrectionModel, Errors, Recipe};
 use crate::operator::words::clock;

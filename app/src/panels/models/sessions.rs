@@ -47,7 +47,7 @@ pub(super) fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.add_space(space::XS);
     match &cx.view.models.data {
         Some(Ok(data)) => {
-            let facts = super::facts(cx);
+            let facts = super::parts::facts(cx);
             has(ui, data, facts.noise.as_ref());
         }
         Some(Err(why)) => {

@@ -9,7 +9,8 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::loss_curves::{LossCurve, LossCurves, loss_legend, loss_range};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{about, sessions};
+use super::parts::about;
+use super::sessions;
 use crate::operator::snapshot::models::{LossPoint, Method};
 use crate::operator::{Action, ModelsAction, Screen};
 use crate::panels::{PanelContext, padded};

@@ -3,11 +3,10 @@
 use egui::{Slider, Ui};
 use plumbline_engine::view::{ClassRates, DetectView, DetectorFacts};
 use plumbline_engine::{Command, DetectCommand};
-use plumbline_widgets::class_color;
-use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, group_heading, space};
+use plumbline_widgets::{class_color, format};
 
-use super::ObjectsPanels;
+use super::state::ObjectsPanels;
 use crate::operator::Outbox;
 
 /// Sliders for the thresholds.

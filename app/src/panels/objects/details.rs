@@ -7,8 +7,8 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::ObjectsPanels;
 use super::drawing::DOUBT;
+use super::state::ObjectsPanels;
 
 /// Draws it; a hint while nothing is looked at.
 pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {

@@ -8,7 +8,7 @@ use plumbline_widgets::class_color;
 use plumbline_widgets::overlay::{Emphasis, LabeledBox, Mark, Overlay};
 use plumbline_widgets::theme::Role;
 
-use super::{ObjectsPanels, objects};
+use super::state::{ObjectsPanels, objects};
 
 /// Strength of the color on pixels that voted: what lies below must stay visible.
 const VOTED: f32 = 0.45;

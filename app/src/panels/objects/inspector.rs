@@ -6,7 +6,8 @@ use plumbline_engine::view::{DetectView, DetectionTiming};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, group_heading, space};
 
-use super::{ObjectsPanels, classes, details, detector, list, objects};
+use super::state::{ObjectsPanels, objects};
+use super::{classes, details, detector, list};
 use crate::operator::{Action, DetectAction, Outbox};
 
 /// Draws all of it.

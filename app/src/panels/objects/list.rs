@@ -8,7 +8,7 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::theme::{self, space};
 
 use super::drawing::{DOUBT, color};
-use super::{ObjectsPanels, objects};
+use super::state::{ObjectsPanels, objects};
 
 const ROW_HEIGHT: f32 = 38.0;
 const SWATCH: f32 = 10.0;

@@ -10,7 +10,7 @@ use plumbline_widgets::scene3d::{
     Dot, Grid, Label3d, Line, PickId, Scene, Shape, Solid, Tint, eye_frustum, screen_slab, table_slab, triad,
 };
 
-use super::RobotPanels;
+use super::state::RobotPanels;
 
 /// Encoders flicker by a tick; a picture drawn anew for that costs time and shows nothing. Rad.
 const STILL_RAD: f64 = 0.0015;

@@ -8,7 +8,7 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
-use super::RobotPanels;
+use super::state::RobotPanels;
 use crate::operator::words::robot::{seconds, tip_title, whole_degrees};
 use crate::operator::{Action, Outbox, RobotAction};
 use crate::panels::parts::warning;

@@ -7,13 +7,14 @@ use plumbline_engine::{JogRates, RobotCommand};
 use plumbline_widgets::jog_pad::{JogPad, JogSpeed};
 use plumbline_widgets::theme;
 
-use super::{Asked, cannot_move, refusal_line};
+use super::parts::{cannot_move, refusal_line};
+use super::state::Asked;
 use crate::operator::words::robot::tip_title;
 use crate::operator::{GamepadState, STOP_BUTTONS};
 use crate::panels::{PanelContext, padded};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    if super::without_joints(ui, cx, Some("Moves the tip of an arm while a key is held.")) {
+    if super::parts::without_joints(ui, cx, Some("Moves the tip of an arm while a key is held.")) {
         return;
     }
     padded(ui, |ui| {

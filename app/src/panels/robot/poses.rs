@@ -7,14 +7,15 @@ use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
-use super::{Asked, cannot_show, refusal_line};
+use super::parts::{cannot_show, refusal_line};
+use super::state::Asked;
 use crate::operator::{Action, RobotAction};
 use crate::panels::{PanelContext, padded};
 
 const ROW: f32 = 30.0;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    if super::without_joints(ui, cx, Some("Poses to go to, and to keep, stand here.")) {
+    if super::parts::without_joints(ui, cx, Some("Poses to go to, and to keep, stand here.")) {
         return;
     }
     padded(ui, |ui| {

@@ -9,7 +9,8 @@ use plumbline_widgets::scene3d::Scene3d;
 use plumbline_widgets::theme::{self, space};
 
 use super::bodies::{Thing, scene, thing};
-use super::{Asked, cannot_show, refusal_line, stale_sentence};
+use super::parts::{cannot_show, refusal_line, stale_sentence};
+use super::state::Asked;
 use crate::operator::{Action, RobotAction};
 use crate::panels::PanelContext;
 
@@ -25,12 +26,12 @@ const ABOVE_M: f64 = 0.08;
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let ghost = crate::panels::touch_ghost(cx);
     let drawn = scene(cx.view, &cx.state.robot, ghost, ui.available_width() >= NAMES_FROM);
-    if drawn.is_empty() && super::without_joints(ui, cx, None) {
+    if drawn.is_empty() && super::parts::without_joints(ui, cx, None) {
         return;
     }
     let robot = &cx.view.robot;
     if robot.refusal.is_some() && cx.state.robot.asked == Asked::Scene {
-        super::super::padded(ui, |ui| refusal_line(ui, cx, Asked::Scene));
+        crate::panels::padded(ui, |ui| refusal_line(ui, cx, Asked::Scene));
     }
     let stale = stale_sentence(robot);
     let size = vec2(ui.available_width(), (ui.available_height() - STRIP).max(60.0));

@@ -5,14 +5,13 @@ use plumbline_engine::ScoresCommand;
 use plumbline_engine::view::{CellPicture, OpenedCell};
 use plumbline_model::ClassNames;
 use plumbline_widgets::box_canvas::{BoxCanvas, CanvasBox, CanvasState, box_frame};
-use plumbline_widgets::class_color;
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::image_view::ImageTransform;
 use plumbline_widgets::texture::{Picture, Sampling};
-use plumbline_widgets::theme;
+use plumbline_widgets::{class_color, theme};
 
-use super::PanelContext;
 use crate::operator::{Action, ScoresAction};
+use crate::panels::PanelContext;
 
 const WIDE: f32 = 176.0;
 

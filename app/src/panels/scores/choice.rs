@@ -7,8 +7,8 @@ use plumbline_widgets::format;
 use plumbline_widgets::progress::progress_bar;
 use plumbline_widgets::theme::{self, space};
 
-use super::PanelContext;
 use crate::operator::{Action, ScoresAction};
+use crate::panels::PanelContext;
 use crate::panels::parts::{action_button, progress};
 
 /// Room for the button, or for how far the evaluation is.
@@ -65,7 +65,7 @@ fn set(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             ui.label(theme::weak(ui, "None yet. Choose a folder with a data.yaml, or drop it here."));
         }
         Some(path) => {
-            let name = super::set_name(path);
+            let name = super::parts::set_name(path);
             ui.add(Label::new(name).truncate()).on_hover_text(path.display().to_string());
         }
     }

@@ -5,7 +5,8 @@ use plumbline_engine::view::{Score, ScoreTable};
 use plumbline_widgets::theme::{self, space};
 use plumbline_widgets::{class_color, class_swatch};
 
-use super::{PanelContext, chosen, figure, judged};
+use super::parts::{chosen, figure, judged};
+use crate::panels::PanelContext;
 
 const ROW: f32 = 26.0;
 const NAME: f32 = 96.0;

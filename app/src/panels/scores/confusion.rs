@@ -5,7 +5,8 @@ use plumbline_engine::view::{ModelScores, ScoreTable};
 use plumbline_engine::{ConfusionCell, ScoresCommand};
 use plumbline_widgets::theme;
 
-use super::{PanelContext, chosen, judged};
+use super::parts::{chosen, judged};
+use crate::panels::PanelContext;
 
 /// Room for the names at the left, and above.
 const NAMES: [f32; 2] = [92.0, 74.0];

@@ -6,8 +6,8 @@ use plumbline_widgets::format;
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, Role, group_heading};
 
+use super::parts::{figure, interval};
 use super::table::said_of;
-use super::{figure, interval};
 use crate::operator::Outbox;
 use crate::panels::PanelState;
 

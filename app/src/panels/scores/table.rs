@@ -5,8 +5,9 @@ use plumbline_engine::view::{ModelScores, ScoreRow, ScoreTable};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{PanelContext, figure, interval, judged, map50_95};
+use super::parts::{figure, interval, judged, map50_95};
 use crate::operator::ScoresAction;
+use crate::panels::PanelContext;
 use crate::panels::parts::action_button;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
@@ -77,7 +78,7 @@ fn with_interval(ui: &mut Ui, value: Option<f64>, ends: Option<[f64; 2]>) {
 /// On what, and what was not as it should be.
 fn notes(ui: &mut Ui, table: &ScoreTable) {
     let boxes: usize = table.instances.iter().sum();
-    let set = super::set_name(&table.set);
+    let set = super::parts::set_name(&table.set);
     ui.label(theme::small(
         ui,
         format!("{} with {boxes} boxes of {set}.", format::count(table.images, "image")),

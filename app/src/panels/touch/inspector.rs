@@ -7,7 +7,8 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
-use super::{error_length_m, next_touch, touch_number, words};
+use super::parts::{error_length_m, next_touch, touch_number};
+use super::words;
 use crate::operator::snapshot::models::Method;
 use crate::operator::{Action, Monitor, Outbox, TouchAction, is_under_way, screen_of, window_problem};
 use crate::panels::PanelState;

@@ -11,7 +11,8 @@ use plumbline_widgets::table_map::{Outline, Place, TableMap, TableMark, TableSce
 use plumbline_widgets::theme::{self, Role, space};
 use plumbline_widgets::touch_pattern::{PatternArea, TouchMark, TouchMarkState, TouchPattern, error_scale};
 
-use super::{draft, error_length_m, next_touch, words};
+use super::parts::{error_length_m, next_touch};
+use super::{draft, words};
 use crate::operator::{is_under_way, screen_of};
 use crate::panels::{PanelContext, padded};
 

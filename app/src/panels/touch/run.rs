@@ -9,7 +9,8 @@ use plumbline_widgets::key_value::big_figure;
 use plumbline_widgets::progress::progress_bar;
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{error_length_m, words};
+use super::parts::error_length_m;
+use super::words;
 use crate::operator::{Action, Screen, TouchAction, done_of, is_under_way, wanted};
 use crate::panels::parts::{action_button, warning};
 use crate::panels::{PanelContext, padded};

@@ -4,7 +4,7 @@ use plumbline_engine::view::{TouchOutcome, TouchState};
 use plumbline_model::touch_plan::{Purpose, Side};
 use plumbline_widgets::format;
 
-use super::error_length_m;
+use super::parts::error_length_m;
 
 /// "12.3 mm off", "out of reach: …".
 pub fn outcome(touch: &TouchState) -> String {

@@ -2,6 +2,7 @@
 //! what its scenario hides is here.
 
 mod board;
+pub mod state;
 mod table;
 
 use egui::{ComboBox, ScrollArea, Ui};
@@ -14,15 +15,6 @@ use plumbline_widgets::theme::{self, Role, group_heading, space};
 
 use super::{PanelContext, padded};
 use crate::operator::{Action, RobotAction, default_scenario};
-
-/// How the twin is looked at: kept from frame to frame, never saved.
-#[derive(Clone, Debug, Default)]
-pub struct TwinPanels {
-    /// The toy that a click on the table puts down, by its place in the list.
-    pub chosen_toy: Option<usize>,
-    /// Place at which the board is held next, counted from 1 as on screen.
-    pub board_place: usize,
-}
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let view = cx.view;

@@ -22,7 +22,7 @@ struct Asked {
 
 impl PlumblineWindow {
     /// Draws the touch window while it is open, and tells the engine of it.
-    pub(in crate::window) fn show_touch_window(&mut self, ctx: &egui::Context) {
+    pub(crate) fn show_touch_window(&mut self, ctx: &egui::Context) {
         if !self.panels.touch.window_open {
             if self.touch_window.told.take().is_some() {
                 self.backend.send(TouchCommand::Window(None).into());
@@ -67,7 +67,7 @@ impl PlumblineWindow {
     }
 
     /// Looks for monitors while they can be chosen.
-    pub(in crate::window) fn find_monitors(&mut self, frame: &eframe::Frame, now_s: f64) {
+    pub(crate) fn find_monitors(&mut self, frame: &eframe::Frame, now_s: f64) {
         let touch = &mut self.panels.touch;
         if self.settings.screen != Screen::Touch || touch.window_open || now_s < self.monitors_found_s + 2.0 {
             return;

@@ -1,13 +1,12 @@
 //! The chosen point in numbers.
 
 use egui::{DragValue, Grid, Ui};
-use plumbline_engine::{GraspTable, TablesCommand};
+use plumbline_engine::{GraspTable, ModelsCommand, TablesCommand};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::theme::{self, space};
 
 use super::panel::quantity;
 use super::rows::PointRow;
-use super::send;
 use crate::panels::PanelContext;
 
 pub(super) fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, rows: &[PointRow]) {
@@ -40,7 +39,12 @@ pub(super) fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, rows: &[PointRow]) {
     let changed = (draft.at_m, draft.value) != (row.at_m, row.value);
     cx.state.models.tables.draft = (changed && !done).then_some(draft);
     if changed && done {
-        send(cx, TablesCommand::Change { table, point: row.index, at_m: draft.at_m, value: draft.value });
+        cx.outbox.send(ModelsCommand::Tables(TablesCommand::Change {
+            table,
+            point: row.index,
+            at_m: draft.at_m,
+            value: draft.value,
+        }));
     }
 }
 

@@ -59,10 +59,6 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     });
 }
 
-fn send(cx: &mut PanelContext<'_>, command: TablesCommand) {
-    cx.outbox.send(ModelsCommand::Tables(command));
-}
-
 /// Which table, how it is colored, its files.
 fn header(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.horizontal_wrapped(|ui| {
@@ -187,7 +183,7 @@ fn map(ui: &mut Ui, cx: &mut PanelContext<'_>, tables: &TablesView, rows: &[Poin
         panel.draft = None;
         let at_m = [at_m[0], at_m[1], row.at_m[2]];
         let change = TablesCommand::Change { table: panel.table, point, at_m, value: row.value };
-        send(cx, change);
+        cx.outbox.send(ModelsCommand::Tables(change));
         return;
     }
     if let Some([x_m, y_m]) = shown.clicked_m {
@@ -196,7 +192,7 @@ fn map(ui: &mut Ui, cx: &mut PanelContext<'_>, tables: &TablesView, rows: &[Poin
             let value = points::value_at(rows, field.as_ref(), [x_m, y_m], table);
             panel.adding = false;
             panel.chosen = Some(rows.len());
-            send(cx, TablesCommand::Add { table, at_m: [x_m, y_m, z_m], value });
+            cx.outbox.send(ModelsCommand::Tables(TablesCommand::Add { table, at_m: [x_m, y_m, z_m], value }));
         } else {
             panel.chosen = None;
             panel.draft = None;
@@ -245,19 +241,19 @@ fn edit_buttons(ui: &mut Ui, cx: &mut PanelContext<'_>, tables: &TablesView, row
             .on_disabled_hover_text("no robot is connected: where the palm is is not known");
         if here.clicked() {
             cx.state.models.tables.chosen = Some(rows.len());
-            send(cx, TablesCommand::AddHere { table });
+            cx.outbox.send(ModelsCommand::Tables(TablesCommand::AddHere { table }));
         }
         let remove = ui.add_enabled(chosen.is_some(), Button::new("Remove the point"));
         if remove.on_disabled_hover_text("choose a point first").clicked()
             && let Some(point) = chosen
         {
             cx.state.models.tables.chosen = None;
-            send(cx, TablesCommand::Remove { table, point });
+            cx.outbox.send(ModelsCommand::Tables(TablesCommand::Remove { table, point }));
         }
         let undo = ui.add_enabled(tables.can_undo, Button::new("Undo"));
         if undo.on_disabled_hover_text("nothing was changed").clicked() {
             cx.state.models.tables.chosen = None;
-            send(cx, TablesCommand::Undo);
+            cx.outbox.send(ModelsCommand::Tables(TablesCommand::Undo));
         }
     });
 }

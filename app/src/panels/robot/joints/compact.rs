@@ -5,9 +5,9 @@ use plumbline_engine::view::JointView;
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::theme;
 
-use super::{preview_angle, propose};
+use super::proposing::{preview_angle, propose};
 use crate::panels::PanelContext;
-use crate::panels::robot::cannot_show;
+use crate::panels::robot::parts::cannot_show;
 
 const TITLE: f32 = 112.0;
 const FIGURES: f32 = 104.0;

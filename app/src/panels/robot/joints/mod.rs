@@ -2,30 +2,30 @@
 //! Proposing an angle shows a move; the bottom line runs it.
 
 mod compact;
+mod proposing;
 
 use egui::{RichText, ScrollArea, Ui};
+use plumbline_engine::RobotCommand;
 use plumbline_engine::view::{JointView, RobotView};
-use plumbline_engine::{Destination, RobotCommand};
-use plumbline_model::robot::{JointIndex, Posture, Rig};
+use plumbline_model::robot::{JointIndex, Rig};
 use plumbline_widgets::format;
 use plumbline_widgets::joint_row::{
     Freshness, JointHistory, JointRow, JointState, ReducedRange, joint_header,
 };
 use plumbline_widgets::theme::{self, Role, space};
 
-use super::{Asked, OLD, cannot_show, refusal_line, stale_line};
+use self::proposing::{OTHER_MOVES_RAD, preview_angle, propose};
+use super::parts::{OLD, refusal_line, stale_line};
+use super::state::Asked;
 use crate::panels::{PanelContext, padded};
 
 /// Below this width the rows leave out what the inspector says too.
 const NARROW: f32 = 560.0;
 /// History shown in an open row, s.
 const HISTORY_S: f64 = 120.0;
-/// A joint that would move by more than this belongs to the shown move, rad. More than encoders
-/// flicker and joints sag.
-const OTHER_MOVES_RAD: f64 = 0.01;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    if super::without_joints(
+    if super::parts::without_joints(
         ui,
         cx,
         Some("One line per joint stands here: where it is, where it would go, load and temperature."),
@@ -128,16 +128,6 @@ fn problems_line(ui: &mut Ui, robot: &RobotView) {
     ui.add(egui::Label::new(text).truncate());
 }
 
-/// Shows the move; nothing moves by that.
-fn propose(cx: &mut PanelContext<'_>, joint: &JointView, angle_rad: f64) {
-    if cannot_show(&cx.view.robot).is_some() {
-        return;
-    }
-    cx.state.robot.chosen_joint = Some(joint.joint);
-    let to = destination(&cx.view.robot, joint.joint, angle_rad);
-    cx.preview(Asked::Joints, to);
-}
-
 fn state(robot: &RobotView, joint: &JointView) -> JointState {
     let proposed = preview_angle(robot, joint)
         .filter(|there| joint.angle_rad.is_none_or(|here| (there - here).abs() > OTHER_MOVES_RAD));
@@ -176,24 +166,4 @@ fn history(joint: &JointView) -> JointHistory {
         history.temperature_c.push(sample.at_s, sample.temperature_c);
     }
     history
-}
-
-fn preview_angle(robot: &RobotView, joint: &JointView) -> Option<f64> {
-    robot.preview.as_ref()?.end.angles_rad().get(joint.joint.0).copied()
-}
-
-/// Where the move goes: this joint, together with what is shown already.
-fn destination(robot: &RobotView, joint: JointIndex, angle_rad: f64) -> Destination {
-    let shown = robot.preview.as_ref().map(|preview| &preview.end);
-    match shown.filter(|end| joint.0 < end.len() && others_move(robot, joint, end)) {
-        Some(end) => Destination::Posture(end.with(&[joint], &[angle_rad])),
-        None => Destination::Joint { joint, angle_rad },
-    }
-}
-
-fn others_move(robot: &RobotView, joint: JointIndex, end: &Posture) -> bool {
-    robot.joints.iter().filter(|other| other.joint != joint).any(|other| {
-        let there = end.angles_rad().get(other.joint.0);
-        there.zip(other.angle_rad).is_some_and(|(there, here)| (there - here).abs() > OTHER_MOVES_RAD)
-    })
 }

@@ -1,0 +1,37 @@
+//! What the panes of this folder share.
+
+use plumbline_engine::view::{TouchOutcome, TouchPhase, TouchState, TouchView};
+use plumbline_model::robot::Posture;
+
+use crate::operator::Screen;
+use crate::panels::PanelContext;
+
+/// The posture at the contact of the chosen touch, or of the next one, to be drawn as a ghost;
+/// `None` while the arm moves by itself.
+pub fn ghost<'a>(cx: &'a PanelContext<'_>) -> Option<&'a Posture> {
+    let touch = &cx.view.touch;
+    let moves = matches!(touch.phase, TouchPhase::Running { .. } | TouchPhase::Planning);
+    if cx.screen != Screen::Touch || moves {
+        return None;
+    }
+    let number = cx.state.touch.chosen.or_else(|| next_touch(touch))?;
+    touch.plan.as_ref()?.postures.get(number.checked_sub(1)?)?.as_ref()
+}
+
+/// The touch that is under way, else the next one, by number.
+pub fn next_touch(touch: &TouchView) -> Option<usize> {
+    if let TouchPhase::Running { number, .. } = touch.phase {
+        return Some(number);
+    }
+    touch.touches.iter().find(|one| one.outcome == TouchOutcome::Waiting).map(|one| one.number)
+}
+
+/// A planned touch by its number.
+pub fn touch_number(touch: &TouchView, number: usize) -> Option<&TouchState> {
+    touch.touches.iter().find(|one| one.number == number)
+}
+
+/// Distance between target and touch in the glass, m.
+pub fn error_length_m(touch: &TouchState) -> Option<f64> {
+    touch.error_m.map(|[u, v]| u.hypot(v))
+}
