@@ -26,7 +26,7 @@ pub fn same_size(learned: &ScreenSize, present: &ScreenSize, whose: &'static str
     if pixels && meters {
         return Ok(());
     }
-    Err(ModelError::OtherScreen { whose, learned: learned.clone(), present: present.clone() })
+    Err(ModelError::OtherScreen { whose, learned: *learned, present: *present })
 }
 
 /// How far the farthest corner moved, m; `None` when the screen lies where it lay.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::dynamixel::{
-    BusCounts, BusScan, BusTiming, FaultKind, latency_hint, list_ports, open_port,
+    BusCounts, BusError, BusScan, BusTiming, FaultKind, latency_hint, list_ports, open_port,
 };
 use plumbline_hardware::joints::{ArmDriver, ArmOptions, JointState, Move, MoveId, Refusal, Setpoint};
 use plumbline_model::robot::{JointIndex, Posture, Rig};
@@ -35,17 +35,16 @@ pub fn open(
     rig: &Arc<Rig>,
     paths: &Paths,
     switches: &Switches,
-) -> Result<Connected, String> {
+) -> Result<Connected, BusError> {
     let path = path.to_string_lossy();
-    let words = |error: plumbline_hardware::dynamixel::BusError| sentence(&error.to_string());
-    let port = open_port(&path, rig.bus.baud).map_err(words)?;
+    let port = open_port(&path, rig.bus.baud)?;
     let options = ArmOptions {
         stop: switches.stop.clone(),
         heartbeat: Some(switches.heartbeat.clone()),
         guards: vec![Arc::new(paths.clone())],
         ..if twin { patient() } else { ArmOptions::default() }
     };
-    let driver = ArmDriver::connect(port, rig.clone(), options).map_err(words)?;
+    let driver = ArmDriver::connect(port, rig.clone(), options)?;
     let census = census(driver.scan(), latency_hint(&path));
     Ok(Box::new(DrivenArm { driver, census }))
 }
@@ -112,8 +111,8 @@ impl Arm for DrivenArm {
 }
 
 /// Serial ports of this machine.
-pub fn ports() -> Result<Arc<[PortView]>, String> {
-    let ports = list_ports().map_err(|error| sentence(&error.to_string()))?;
+pub fn ports() -> Result<Arc<[PortView]>, BusError> {
+    let ports = list_ports()?;
     Ok(ports.into_iter().map(|port| PortView { what: port.description, path: port.path }).collect())
 }
 

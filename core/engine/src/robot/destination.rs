@@ -5,8 +5,8 @@ use plumbline_model::robot::ik::{Options, Target};
 use plumbline_model::robot::{JointIndex, Posture, Reach, ReachOptions, Refusal, Rig};
 
 use super::command::Destination;
+use super::unable::NoDestination;
 use super::view::PoseView;
-use crate::ground::text::sentence;
 
 /// Where a move goes.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,27 +32,24 @@ pub struct Circumstances<'a> {
 }
 
 /// The posture that a destination means, or a sentence that says why there is none.
-pub fn resolve(destination: &Destination, around: &Circumstances<'_>) -> Result<Resolved, String> {
+pub fn resolve(destination: &Destination, around: &Circumstances<'_>) -> Result<Resolved, NoDestination> {
     let Circumstances { rig, present, .. } = around;
     let resolved = match destination {
         Destination::Joint { joint, angle_rad } => {
-            let servo = rig.servo_of(*joint).ok_or("This joint has no servo, so it cannot be moved.")?;
+            let servo = rig.servo_of(*joint).ok_or(NoDestination::NoServo)?;
             let title = format!("{} to {:.1}°", servo.title, angle_rad.to_degrees());
             Resolved { title, end: present.with(&[*joint], &[*angle_rad]), joints: vec![*joint] }
         }
         Destination::Pose { name } => {
             let pose = around.poses.iter().find(|pose| pose.name == *name);
-            let pose = pose.ok_or_else(|| format!("There is no pose called {name} any more."))?;
+            let pose = pose.ok_or_else(|| NoDestination::NoPose(name.clone()))?;
             let (joints, angles_rad): (Vec<_>, Vec<_>) = pose.joints.iter().copied().unzip();
             Resolved { title: format!("to {}", pose.title), end: present.with(&joints, &angles_rad), joints }
         }
         Destination::Posture(posture) => {
             if posture.len() != present.len() {
-                return Err(format!(
-                    "This posture has {} joints, the robot {}. It is of another robot.",
-                    posture.len(),
-                    present.len()
-                ));
+                let (posture, robot) = (posture.len(), present.len());
+                return Err(NoDestination::OtherRobot { posture, robot });
             }
             let joints = rig.servos.iter().map(|servo| servo.joint).collect();
             Resolved { title: "to a posture".to_owned(), end: posture.clone(), joints }
@@ -67,16 +64,21 @@ pub fn resolve(destination: &Destination, around: &Circumstances<'_>) -> Result<
         Destination::LookAt { point_m } => look_at(around, *point_m)?,
     };
     if !resolved.end.is_finite() {
-        return Err("The destination holds a value that is not a number.".to_owned());
+        return Err(NoDestination::NotANumber);
     }
     within_limits(rig, &resolved)?;
     Ok(resolved)
 }
 
-fn tip(around: &Circumstances<'_>, point_m: [f64; 3], to: &Target, ik: Options) -> Result<Resolved, String> {
-    let reach = around.reach.ok_or("Choose a tip that the arm can move.")?;
+fn tip(
+    around: &Circumstances<'_>,
+    point_m: [f64; 3],
+    to: &Target,
+    ik: Options,
+) -> Result<Resolved, NoDestination> {
+    let reach = around.reach.ok_or(NoDestination::NoTip)?;
     let options = ReachOptions { ik, ..ReachOptions::default() };
-    let plan = reach.plan(around.present, to, &options).map_err(|error| sentence(&error.to_string()))?;
+    let plan = reach.plan(around.present, to, &options)?;
     match plan.refusal {
         // The way is looked at again when it is shown, with what is in it.
         None | Some(Refusal::Collision { .. } | Refusal::BeyondLimit { .. }) => Ok(Resolved {
@@ -84,11 +86,11 @@ fn tip(around: &Circumstances<'_>, point_m: [f64; 3], to: &Target, ik: Options) 
             end: plan.posture,
             joints: reach.solver().joints().to_vec(),
         }),
-        Some(refusal) => Err(sentence(&refusal.to_string())),
+        Some(refusal) => Err(refusal.into()),
     }
 }
 
-fn look_at(around: &Circumstances<'_>, point_m: [f64; 3]) -> Result<Resolved, String> {
+fn look_at(around: &Circumstances<'_>, point_m: [f64; 3]) -> Result<Resolved, NoDestination> {
     let eyes = &around.rig.eyes;
     let (pan_rad, tilt_rad) = around.rig.look_at(point(point_m)?, around.present);
     let joints = vec![eyes.pan, eyes.tilt];
@@ -99,12 +101,12 @@ fn look_at(around: &Circumstances<'_>, point_m: [f64; 3]) -> Result<Resolved, St
     })
 }
 
-fn point(point_m: [f64; 3]) -> Result<Point<plumbline_model::Robot>, String> {
+fn point(point_m: [f64; 3]) -> Result<Point<plumbline_model::Robot>, NoDestination> {
     let [x, y, z] = point_m;
     if [x, y, z].iter().all(|c| c.is_finite()) {
         Ok(Point::new(x, y, z))
     } else {
-        Err("The point holds a value that is not a number.".to_owned())
+        Err(NoDestination::NoPoint)
     }
 }
 
@@ -113,7 +115,7 @@ fn words([x, y, z]: [f64; 3]) -> String {
 }
 
 /// Joints that are moved have to end inside their limits.
-fn within_limits(rig: &Rig, resolved: &Resolved) -> Result<(), String> {
+fn within_limits(rig: &Rig, resolved: &Resolved) -> Result<(), NoDestination> {
     for joint in &resolved.joints {
         let limits = rig.limits_in(*joint, &resolved.end);
         let angle_rad = resolved.end[*joint];
@@ -123,12 +125,8 @@ fn within_limits(rig: &Rig, resolved: &Resolved) -> Result<(), String> {
             let why = rig.coupled_limits.iter().find(|coupled| coupled.joint == *joint);
             let why = why.filter(|_| rig.limits(*joint).contain(angle_rad));
             let why = why.map(|coupled| format!(" ({})", coupled.why)).unwrap_or_default();
-            return Err(format!(
-                "{title} would have to go to {:.1}°, its limits there are {:.1}° to {:.1}°{why}.",
-                angle_rad.to_degrees(),
-                limits.lower_rad.to_degrees(),
-                limits.upper_rad.to_degrees()
-            ));
+            let limits_rad = [limits.lower_rad, limits.upper_rad];
+            return Err(NoDestination::BeyondLimits { joint: title.to_owned(), angle_rad, limits_rad, why });
         }
     }
     Ok(())
@@ -138,7 +136,7 @@ fn within_limits(rig: &Rig, resolved: &Resolved) -> Result<(), String> {
 mod tests {
     use super::*;
 
-    fn resolve_at_home(destination: &Destination) -> Result<Resolved, String> {
+    fn resolve_at_home(destination: &Destination) -> Result<Resolved, NoDestination> {
         let rig = Rig::built_in("nico").expect("the rig that comes with the program");
         let present = rig.home();
         let reach = Reach::new(&rig, "right_palm_center").expect("a tip");
@@ -168,7 +166,7 @@ mod tests {
             (Destination::Posture(Posture::new(vec![0.0; 3])), "of another robot"),
             (Destination::LookAt { point_m: [-1.0, 0.0, 0.3] }, "Head"),
         ] {
-            let message = resolve_at_home(&destination).expect_err("it cannot be done");
+            let message = resolve_at_home(&destination).expect_err("it cannot be done").to_string();
             assert!(message.contains(words), "{message}");
         }
     }
@@ -176,7 +174,8 @@ mod tests {
     #[test]
     fn the_counterweights_are_named_when_the_lowered_head_cannot_turn() {
         let message = resolve_at_home(&Destination::LookAt { point_m: [0.1, 0.5, 0.06] })
-            .expect_err("too far to the side");
+            .expect_err("too far to the side")
+            .to_string();
         assert!(message.contains("counterweights"), "{message}");
     }
 }

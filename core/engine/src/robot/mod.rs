@@ -16,6 +16,7 @@ mod thread;
 mod touch_once;
 pub mod touch_order;
 mod touching;
+mod unable;
 pub mod view;
 mod worker;
 

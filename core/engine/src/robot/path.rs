@@ -7,8 +7,8 @@ use plumbline_hardware::joints::{Guard, Refusal};
 use plumbline_model::robot::collision::{Allowance, CollisionModel, PathCheck as Found};
 use plumbline_model::robot::{Posture, Rig};
 
+use super::unable::InTheWay;
 use super::view::PathCheck;
-use crate::ground::text::sentence;
 
 /// Encoders read to a tick, and a loaded joint hangs: a start this far beyond a limit is no
 /// reason to refuse what leads back.
@@ -58,30 +58,24 @@ impl Paths {
 
     /// The smallest distance on the straight way in joint space, or a sentence that says what
     /// is in the way.
-    pub fn check(&self, from: &Posture, to: &Posture) -> Result<PathCheck, String> {
+    pub fn check(&self, from: &Posture, to: &Posture) -> Result<PathCheck, InTheWay> {
         let from = self.without_slack(from);
         let to = self.without_slack(to);
         let (model, allowances) = self.look();
-        let found =
-            model.check_path(&from, &to, &allowances).map_err(|error| sentence(&error.to_string()))?;
-        match found {
+        match model.check_path(&from, &to, &allowances)? {
             Found::Clear { smallest_m, between, .. } => Ok(PathCheck {
                 smallest_m,
                 between: between
                     .map(|pair| format!("{} and {}", pair.a_name, pair.b_name))
                     .unwrap_or_default(),
             }),
-            Found::Collides { at_fraction, contact, .. } => Err(format!(
-                "{} would run into {} {}. Choose another pose, or go there by way of Home.",
-                sentence_start(&contact.a_name),
-                contact.b_name,
-                at(at_fraction)
-            )),
-            Found::BeyondLimit { name, by_rad, why, at_fraction, .. } => Err(format!(
-                "{name} would turn {:.1}° too far {} ({why}). Choose another pose.",
-                by_rad.to_degrees(),
-                at(at_fraction)
-            )),
+            Found::Collides { at_fraction, contact, .. } => {
+                let a = sentence_start(&contact.a_name);
+                Err(InTheWay::Collides { a, b: contact.b_name, at_fraction })
+            }
+            Found::BeyondLimit { name, by_rad, why, at_fraction, .. } => {
+                Err(InTheWay::BeyondLimit { joint: name, by_rad, why, at_fraction })
+            }
         }
     }
 
@@ -102,14 +96,7 @@ impl Paths {
 /// has checked.
 impl Guard for Paths {
     fn check(&self, present: &Posture, goal: &Posture) -> Result<(), Refusal> {
-        Self::check(self, present, goal).map(drop).map_err(Refusal::Guarded)
-    }
-}
-
-fn at(fraction: f64) -> String {
-    match fraction {
-        fraction if fraction <= 0.0 => "at once".to_owned(),
-        fraction => format!("after {:.0} % of the way", 100.0 * fraction),
+        Self::check(self, present, goal).map(drop).map_err(|way| Refusal::Guarded(way.to_string()))
     }
 }
 
@@ -141,7 +128,7 @@ mod tests {
         let joint = |name| rig.description.find_joint(name).expect("a joint of NICO");
         let down =
             home.with(&[joint("r_shoulder_y"), joint("r_elbow_y"), joint("r_arm_x")], &[0.3, 3.1, 0.1]);
-        let message = paths.check(&home, &down).expect_err("the table is in the way");
+        let message = paths.check(&home, &down).expect_err("the table is in the way").to_string();
         assert!(message.contains("would run into"), "{message}");
     }
 

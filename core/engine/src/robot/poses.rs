@@ -145,13 +145,13 @@ impl PoseLibrary {
     }
 
     /// Adds a pose and writes the file.
-    pub fn save(&mut self, title: &str, joints: Vec<(JointIndex, f64)>, rig: &Rig) -> Result<(), String> {
+    pub fn save(&mut self, title: &str, joints: Vec<(JointIndex, f64)>, rig: &Rig) -> Result<(), PoseError> {
         let title = title.trim();
         if title.is_empty() {
-            return Err("A pose needs a name.".to_owned());
+            return Err(PoseError::NoName);
         }
         if self.all(rig).iter().any(|pose| pose.title == title) {
-            return Err(format!("There is a pose called {title} already. Choose another name."));
+            return Err(PoseError::Taken(title.to_owned()));
         }
         self.own.push(pose(self.free_name(rig), title.to_owned(), joints));
         self.write(rig).inspect_err(|_| {
@@ -160,73 +160,119 @@ impl PoseLibrary {
     }
 
     /// Removes one of the operator's own poses and writes the file.
-    pub fn delete(&mut self, name: &str, rig: &Rig) -> Result<(), String> {
+    pub fn delete(&mut self, name: &str, rig: &Rig) -> Result<(), PoseError> {
         let place = self.own.iter().position(|pose| pose.name == name);
-        let place = place.ok_or_else(|| format!("{name} is not one of your own poses."))?;
+        let place = place.ok_or_else(|| PoseError::NotOwn(name.to_owned()))?;
         let removed = self.own.remove(place);
         self.write(rig).inspect_err(|_| self.own.insert(place, removed))
     }
 
-    fn write(&mut self, rig: &Rig) -> Result<(), String> {
+    fn write(&mut self, rig: &Rig) -> Result<(), PoseError> {
         self.make_room()?;
         let name = |joint: JointIndex| rig.description.joint(joint).name.clone();
         let entry = |pose: &PoseView| Entry {
             title: pose.title.clone(),
             joints_rad: pose.joints.iter().map(|(joint, angle)| (name(*joint), *angle)).collect(),
         };
-        let write = || -> Result<(), String> {
+        let write = || -> Result<(), Box<dyn std::error::Error>> {
             let own = self.own.iter().map(|pose| toml::Value::try_from(entry(pose)));
-            let own = own.collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())?;
+            let own = own.collect::<Result<Vec<_>, _>>()?;
             let mut table = self.others.clone();
             let poses = own.into_iter().chain(self.unusable.iter().cloned()).collect();
             table.insert(LIST.to_owned(), toml::Value::Array(poses));
-            let text = toml::to_string_pretty(&table).map_err(|error| error.to_string())?;
+            let text = toml::to_string_pretty(&table)?;
             let folder = self.file.parent().unwrap_or(Path::new("."));
-            files::make_folder(folder).map_err(|error| error.to_string())?;
-            files::write(&self.file, text).map_err(|error| error.to_string())
+            files::make_folder(folder)?;
+            Ok(files::write(&self.file, text)?)
         };
-        write().map_err(|reason| format!("The poses cannot be saved: {reason}."))
+        write().map_err(|reason| PoseError::Unsaved(reason.to_string()))
     }
 
     /// Puts a file that is none of this program's aside, under a name that is free.
-    fn make_room(&mut self) -> Result<(), String> {
+    fn make_room(&mut self) -> Result<(), PoseError> {
         match &self.damaged {
             None => return Ok(()),
-            Some(Damaged::Unread(reason)) => return Err(format!("The poses cannot be saved: {reason}.")),
+            Some(Damaged::Unread(reason)) => return Err(PoseError::Unsaved(reason.clone())),
             Some(Damaged::NoPoses) => {}
         }
         let names = (1..).map(|number| self.file.with_extension(format!("unusable-{number}.toml")));
         let aside = { names }.find(|name| name.symlink_metadata().is_err());
         let moved = aside.map(|aside| std::fs::rename(&self.file, &aside));
         if let Some(Err(error)) = moved {
-            return Err(format!(
-                "{} cannot be put aside ({error}), so the poses are not saved. Move it away by hand.",
-                self.file.display()
-            ));
+            return Err(PoseError::NotPutAside { file: self.file.clone(), error });
         }
         self.damaged = None;
         Ok(())
     }
 }
 
+/// Why a pose is not kept, and what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum PoseError {
+    /// Nobody could find it again.
+    #[error("A pose needs a name.")]
+    NoName,
+    /// Two would be one.
+    #[error("There is a pose called {0} already. Choose another name.")]
+    Taken(String),
+    /// Those of the rig stay.
+    #[error("{0} is not one of your own poses.")]
+    NotOwn(String),
+    /// The file cannot be written, or is not known.
+    #[error("The poses cannot be saved: {0}.")]
+    Unsaved(String),
+    /// A file of somebody else is in its place.
+    #[error("{} cannot be put aside ({error}), so the poses are not saved. Move it away by hand.", .file.display())]
+    NotPutAside {
+        /// Which.
+        file: PathBuf,
+        /// What the system says.
+        error: std::io::Error,
+    },
+}
+
+/// Why an entry of the file is no pose; stands inside a sentence.
+#[derive(Debug, thiserror::Error)]
+enum NoPose {
+    /// It lacks something.
+    #[error("{0}")]
+    Toml(String),
+    /// Nobody could find it.
+    #[error("its name is empty")]
+    NoName,
+    /// It is of another robot.
+    #[error("the robot has no joint {0}")]
+    NoJoint(String),
+    /// The arm does not get there.
+    #[error("it puts {joint} at {angle_rad} rad, outside of its limits")]
+    BeyondLimits {
+        /// Which.
+        joint: String,
+        /// Where.
+        angle_rad: f64,
+    },
+}
+
 /// Title and joints of an entry, or why it cannot be used.
-fn read_entry(value: &toml::Value, rig: &Rig) -> Result<(String, Vec<(JointIndex, f64)>), String> {
-    let entry: Entry =
-        value.clone().try_into().map_err(|error: toml::de::Error| error.message().to_owned())?;
+fn read_entry(value: &toml::Value, rig: &Rig) -> Result<(String, Vec<(JointIndex, f64)>), NoPose> {
+    let entry: Entry = value
+        .clone()
+        .try_into()
+        .map_err(|error: toml::de::Error| NoPose::Toml(error.message().to_owned()))?;
     let title = entry.title.trim();
     if title.is_empty() {
-        return Err("its name is empty".to_owned());
+        return Err(NoPose::NoName);
     }
     let joint = |(name, angle_rad): (&String, &f64)| {
         let joint = rig.description.find_joint(name);
-        let joint = joint.map_err(|_| format!("the robot has no joint {}", shortened(name)))?;
+        let joint = joint.map_err(|_| NoPose::NoJoint(shortened(name)))?;
         if rig.limits(joint).contain(*angle_rad) {
             Ok((joint, *angle_rad))
         } else {
-            Err(format!("it puts {name} at {angle_rad} rad, outside of its limits"))
+            Err(NoPose::BeyondLimits { joint: name.clone(), angle_rad: *angle_rad })
         }
     };
-    Ok((title.to_owned(), entry.joints_rad.iter().map(joint).collect::<Result<_, String>>()?))
+    Ok((title.to_owned(), entry.joints_rad.iter().map(joint).collect::<Result<_, NoPose>>()?))
 }
 
 fn pose(name: String, title: String, joints: Vec<(JointIndex, f64)>) -> PoseView {
@@ -358,7 +404,7 @@ mod tests {
         std::os::unix::fs::symlink("on-the-other-disk.toml", &file).expect("a link");
         let (mut library, problem) = PoseLibrary::read(folder.path(), &rig);
         assert!(problem.is_some_and(|problem| problem.contains("which does not exist")));
-        let refused = library.save("new", vec![], &rig).expect_err("a link to nothing");
+        let refused = library.save("new", vec![], &rig).expect_err("a link to nothing").to_string();
         assert!(refused.starts_with("The poses cannot be saved: "), "{refused}");
         assert!(titles(&library, &rig).is_empty());
         assert!(file.symlink_metadata().expect("still a link").is_symlink());
@@ -400,7 +446,8 @@ mod tests {
         let rig = rig();
         if let Some(folder) = crate::ground::kept::writing() {
             let (mut library, _) = PoseLibrary::read(&folder, &rig);
-            let refused = library.save("one too many", vec![], &rig).expect_err("the disk is full");
+            let refused =
+                library.save("one too many", vec![], &rig).expect_err("the disk is full").to_string();
             assert!(refused.contains("what was there before is unchanged"), "{refused}");
             assert!(library.delete("own-1", &rig).is_err());
             assert_eq!(titles(&library, &rig).len(), 40, "what cannot be written is not shown either");

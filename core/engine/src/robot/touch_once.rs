@@ -11,10 +11,10 @@ use super::arm::Arm;
 use super::path::Paths;
 use super::touch_order::{TouchNews, TouchOrder, TouchRun, TouchStage};
 use super::touching::{Hand, Run, Step};
+use super::unable::{Interrupted, Unable};
 use super::view::Connection;
 use super::worker::Worker;
 use crate::ground::notice::NoticeLevel;
-use crate::ground::text::sentence;
 use crate::motion::touch_allowances;
 
 impl Worker {
@@ -44,7 +44,7 @@ impl Worker {
 
     pub(super) fn begin_touch_with(&mut self, order: TouchOrder, source: Box<dyn TouchSource>, now: Instant) {
         if let Err(reason) = self.may_touch(&order) {
-            return self.touching.tell(&order, TouchRun::Interrupted(reason));
+            return self.touching.tell(&order, TouchRun::Interrupted(reason.to_string()));
         }
         let refusals = self.state().and_then(|state| state.refusal.as_ref().map(|(number, _)| *number));
         match Run::new(&self.rig, order.clone(), source, refusals.unwrap_or_default(), now) {
@@ -54,23 +54,23 @@ impl Worker {
                 self.touching.run = Some(run);
                 self.step_touch(now);
             }
-            Err(reason) => self.touching.tell(&order, TouchRun::Interrupted(reason)),
+            Err(reason) => self.touching.tell(&order, TouchRun::Interrupted(reason.to_string())),
         }
     }
 
-    fn may_touch(&self, order: &TouchOrder) -> Result<(), String> {
+    fn may_touch(&self, order: &TouchOrder) -> Result<(), Interrupted> {
         if self.touching.run.is_some() {
-            return Err(self.touching.busy());
+            return Err(self.touching.busy().into());
         }
         self.arm()?;
         if self.switches.stop.is_pressed() {
-            return Err("STOP is pressed. Release it, then go on.".to_owned());
+            return Err(Interrupted::StopIsPressed);
         }
         if self.jog.is_some() || self.running.is_some() {
-            return Err("Something else moves the arm. Wait until it stands, then go on.".to_owned());
+            return Err(Interrupted::Moves);
         }
         if self.present().is_none() {
-            return Err("The joints have not been read yet. Wait a moment, then go on.".to_owned());
+            return Err(Interrupted::NotRead);
         }
         let fits = |posture: &plumbline_model::robot::Posture| {
             posture.len() == self.rig.description.movable_count() && posture.is_finite()
@@ -81,7 +81,7 @@ impl Worker {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         let paced = positive(order.lower_speed_m_s) && positive(order.speed_rad_s);
         if !(whole && paced && positive(order.plausible_px)) {
-            return Err("The planned touch has no way that could be gone. Plan anew.".to_owned());
+            return Err(Interrupted::NoWay);
         }
         Ok(())
     }
@@ -106,11 +106,11 @@ impl Worker {
     /// Ends a touch from outside: it cannot go on.
     pub(super) fn interrupt_touch(&mut self, reason: &str) {
         if let Some(run) = self.touching.run.take() {
-            self.went(run, Err(sentence(reason)));
+            self.went(run, Err(Interrupted::Told(reason.to_owned())));
         }
     }
 
-    fn went(&mut self, run: Run, step: Result<Step, String>) {
+    fn went(&mut self, run: Run, step: Result<Step, Interrupted>) {
         match step {
             Ok(Step::Same) => self.touching.run = Some(run),
             Ok(Step::Next) => {
@@ -141,7 +141,7 @@ impl Hand for Worker {
         &self.rig
     }
 
-    fn arm(&self) -> Result<&dyn Arm, String> {
+    fn arm(&self) -> Result<&dyn Arm, Unable> {
         Self::arm(self)
     }
 

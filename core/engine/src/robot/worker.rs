@@ -23,6 +23,7 @@ use super::jog::joint_rates;
 use super::path::{Paths, duration};
 use super::poses::PoseLibrary;
 use super::touching::Touching;
+use super::unable::{FASTEST_JOG, SPEEDS, Unable};
 use super::view::{Connection, PortView, Preview, RobotView};
 use crate::ground::notice::NoticeLevel;
 use crate::ground::text::sentence;
@@ -33,12 +34,6 @@ use crate::twin::view::TwinView;
 const TRAIL: Duration = Duration::from_secs(30);
 /// Places nearer than this to the last one are left out of the trail, m.
 const TRAIL_STEP_M: f64 = 0.002;
-
-/// What can be asked of a jog along each axis (m/s) and about the vertical (rad/s); the joints' own
-/// limits are far below.
-const FASTEST_JOG: [f64; 2] = [1.0, 6.0];
-/// Shares of the usual speed that can be set: a slower move would take hours.
-const SPEEDS: (f64, f64) = (0.01, 2.0);
 
 /// What the state is told.
 #[derive(Clone, Debug)]
@@ -180,7 +175,7 @@ impl Worker {
         let result = match control {
             control if self.touching.forbids(&control) => Err(self.touching.busy()),
             RobotControl::Robot(command) => self.robot(command),
-            RobotControl::Twin(command) => self.desk.control(command, &self.rig),
+            RobotControl::Twin(command) => self.desk.control(command, &self.rig).map_err(Unable::from),
             RobotControl::TurnHead { pan_rad, tilt_rad } => self.turn_head(pan_rad, tilt_rad),
             RobotControl::Touch(order) => {
                 self.begin_touch(*order, Instant::now());
@@ -207,7 +202,7 @@ impl Worker {
         };
         match result {
             Ok(()) => {}
-            Err(reason) => self.refuse(reason),
+            Err(reason) => self.refuse(reason.to_string()),
         }
     }
 
@@ -220,7 +215,7 @@ impl Worker {
         self.refusal = Some(reason);
     }
 
-    fn robot(&mut self, command: RobotCommand) -> Result<(), String> {
+    fn robot(&mut self, command: RobotCommand) -> Result<(), Unable> {
         if !matches!(command, RobotCommand::ListPorts | RobotCommand::Jog(_) | RobotCommand::EndJog) {
             self.refusal = None;
         }
@@ -236,9 +231,7 @@ impl Worker {
                 Ok(())
             }
             RobotCommand::Scan => self.scan(),
-            RobotCommand::ShortenAnswers => {
-                self.arm()?.shorten_answers().map_err(|refusal| sentence(&refusal.to_string()))
-            }
+            RobotCommand::ShortenAnswers => Ok(self.arm()?.shorten_answers()?),
             RobotCommand::Torque { joints, on } => self.torque(&joints, on),
             RobotCommand::Preview(destination) => self.show(&destination),
             RobotCommand::ClearPreview => {
@@ -249,7 +242,7 @@ impl Worker {
             RobotCommand::Jog(rates) => self.begin_jog(rates, Instant::now()),
             RobotCommand::EndJog => self.end_jog(),
             RobotCommand::ChooseTip { link } => {
-                self.chain = self.rig.chain(&link).map_err(|error| sentence(&error.to_string()))?;
+                self.chain = self.rig.chain(&link)?;
                 self.reach = Reach::with_model(&self.rig, &link, self.paths.model()).ok();
                 self.tip = link;
                 self.trail.clear();
@@ -257,10 +250,7 @@ impl Worker {
             }
             RobotCommand::Speed(speed) => {
                 if !(SPEEDS.0..=SPEEDS.1).contains(&speed) {
-                    return Err(format!(
-                        "A speed of {speed} cannot be set: it goes from {} to {} times the usual one.",
-                        SPEEDS.0, SPEEDS.1
-                    ));
+                    return Err(Unable::Speed { asked: speed });
                 }
                 self.speed = speed;
                 if let Some((resolved, _)) = self.preview.take() {
@@ -273,29 +263,29 @@ impl Worker {
                 Ok(())
             }
             RobotCommand::SavePose { title, joints } => self.save_pose(&title, &joints),
-            RobotCommand::DeletePose { name } => self.poses.delete(&name, &self.rig.clone()),
+            RobotCommand::DeletePose { name } => Ok(self.poses.delete(&name, &self.rig.clone())?),
             RobotCommand::DismissRefusal => Ok(()),
         }
     }
 
-    fn connect_twin(&mut self, scenario: &str) -> Result<(), String> {
+    fn connect_twin(&mut self, scenario: &str) -> Result<(), Unable> {
         self.disconnect();
         let to = format!("twin \"{scenario}\"");
-        let port = self.desk.start(scenario, &self.rig).and_then(|port| {
+        let port = self.desk.start(scenario, &self.rig).map_err(Unable::from).and_then(|port| {
             self.twins_started += 1;
-            connect::open(&port, true, &self.rig, &self.paths, &self.switches)
+            Ok(connect::open(&port, true, &self.rig, &self.paths, &self.switches)?)
         });
         self.connected(to, true, port)
     }
 
-    fn connect_port(&mut self, path: PathBuf) -> Result<(), String> {
+    fn connect_port(&mut self, path: PathBuf) -> Result<(), Unable> {
         self.disconnect();
         let to = path.display().to_string();
         let arm = connect::open(&path, false, &self.rig, &self.paths, &self.switches);
-        self.connected(to, false, arm)
+        self.connected(to, false, arm.map_err(Unable::from))
     }
 
-    fn connected(&mut self, to: String, twin: bool, arm: Result<Connected, String>) -> Result<(), String> {
+    fn connected(&mut self, to: String, twin: bool, arm: Result<Connected, Unable>) -> Result<(), Unable> {
         match arm {
             Ok(arm) => {
                 self.arm = Some(arm);
@@ -304,7 +294,7 @@ impl Worker {
                 Ok(())
             }
             Err(reason) => {
-                self.connection = Connection::Lost { to, reason: reason.clone() };
+                self.connection = Connection::Lost { to, reason: reason.to_string() };
                 Err(reason)
             }
         }
@@ -323,25 +313,23 @@ impl Worker {
         self.seen_refusal = 0;
     }
 
-    fn scan(&mut self) -> Result<(), String> {
+    fn scan(&mut self) -> Result<(), Unable> {
         // Who is there is asked when the bus is opened: it is closed and opened again.
         match (self.connection.clone(), self.desk.port()) {
             (Connection::Connected { to, twin: true }, Some(port)) => {
                 self.disconnect();
                 let arm = connect::open(&port, true, &self.rig, &self.paths, &self.switches);
-                self.connected(to, true, arm)
+                self.connected(to, true, arm.map_err(Unable::from))
             }
             (Connection::Connected { to, .. } | Connection::Lost { to, .. }, _) => {
                 self.connect_port(to.into())
             }
-            _ => Err("Nothing is connected. Connect first.".to_owned()),
+            _ => Err(Unable::NothingToScan),
         }
     }
 
-    pub(super) fn arm(&self) -> Result<&dyn Arm, String> {
-        self.arm
-            .as_deref()
-            .ok_or_else(|| "Nothing is connected, so nothing can move. Connect first.".to_owned())
+    pub(super) fn arm(&self) -> Result<&dyn Arm, Unable> {
+        self.arm.as_deref().ok_or(Unable::NotConnected)
     }
 
     /// Present angles.
@@ -350,23 +338,20 @@ impl Worker {
     }
 
     /// Whether it is known where some joints are, and what moves with them.
-    fn knows(&self, joints: &[JointIndex]) -> Result<(), String> {
+    fn knows(&self, joints: &[JointIndex]) -> Result<(), Unable> {
         let Some(state) = self.arm.as_ref().and_then(|arm| arm.state()) else { return Ok(()) };
-        let known = self.together.check(&self.rig, joints, &state.unknown);
-        known.map_err(|refusal| sentence(&refusal.to_string()))
+        Ok(self.together.check(&self.rig, joints, &state.unknown)?)
     }
 
-    fn torque(&mut self, joints: &[JointIndex], on: bool) -> Result<(), String> {
+    fn torque(&mut self, joints: &[JointIndex], on: bool) -> Result<(), Unable> {
         let all: Vec<JointIndex> = self.rig.servos.iter().map(|servo| servo.joint).collect();
         let joints = if joints.is_empty() { &all } else { joints };
-        self.arm()?.torque(joints, on).map_err(|refusal| sentence(&refusal.to_string()))
+        Ok(self.arm()?.torque(joints, on)?)
     }
 
-    fn show(&mut self, destination: &Destination) -> Result<(), String> {
+    fn show(&mut self, destination: &Destination) -> Result<(), Unable> {
         self.preview = None;
-        let present = self
-            .present()
-            .ok_or("The joints have not been read yet. Connect, and wait for the first reading.")?;
+        let present = self.present().ok_or(Unable::NotReadToShow)?;
         let poses = self.poses.all(&self.rig);
         let around =
             Circumstances { rig: &self.rig, reach: self.reach.as_ref(), present: &present, poses: &poses };
@@ -378,7 +363,7 @@ impl Worker {
 
     fn preview_of(&mut self, resolved: Resolved) {
         let Some(present) = self.present() else { return };
-        let path = self.paths.check(&present, &resolved.end);
+        let path = self.paths.check(&present, &resolved.end).map_err(|way| way.to_string());
         let turn = |joint: &JointIndex| (*joint, (resolved.end[*joint] - present[*joint]).abs());
         let largest = resolved.joints.iter().map(turn).max_by(|a, b| a.1.total_cmp(&b.1));
         let title = |joint| self.rig.servo_of(joint).map_or_else(String::new, |servo| servo.title.clone());
@@ -396,17 +381,17 @@ impl Worker {
         (self.speed * self.rig.gate.usual_speed_rad_s).min(self.rig.gate.speed_rad_s)
     }
 
-    fn run_preview(&mut self) -> Result<(), String> {
-        let (resolved, _) = self.preview.take().ok_or("No move is shown. Choose where to go first.")?;
-        let present = self.present().ok_or("The joints have not been read yet.")?;
+    fn run_preview(&mut self) -> Result<(), Unable> {
+        let (resolved, _) = self.preview.take().ok_or(Unable::NoPreview)?;
+        let present = self.present().ok_or(Unable::NotRead)?;
         self.knows(&resolved.joints)?;
         // The arm may have moved since it was shown.
         self.paths.check(&present, &resolved.end)?;
         self.begin(resolved)
     }
 
-    fn turn_head(&mut self, pan_rad: f64, tilt_rad: f64) -> Result<(), String> {
-        let present = self.present().ok_or("The joints have not been read yet.")?;
+    fn turn_head(&mut self, pan_rad: f64, tilt_rad: f64) -> Result<(), Unable> {
+        let present = self.present().ok_or(Unable::NotRead)?;
         let joints = vec![self.rig.eyes.pan, self.rig.eyes.tilt];
         self.knows(&joints)?;
         let end = present.with(&joints, &[pan_rad, tilt_rad]);
@@ -414,33 +399,31 @@ impl Worker {
         self.begin(Resolved { title: "the head to its next pose".to_owned(), end, joints })
     }
 
-    fn begin(&mut self, resolved: Resolved) -> Result<(), String> {
+    fn begin(&mut self, resolved: Resolved) -> Result<(), Unable> {
         let goals = resolved.joints.iter().map(|joint| (*joint, resolved.end[*joint])).collect();
         let motion = Move { goals, pace: Pace::PeakSpeed(self.peak_speed_rad_s()) };
         self.jog = None;
-        let id = self.arm()?.begin(motion).map_err(|refusal| sentence(&refusal.to_string()))?;
+        let id = self.arm()?.begin(motion)?;
         self.running = Some(Running { id, title: resolved.title });
         Ok(())
     }
 
-    fn begin_jog(&mut self, rates: JogRates, now: Instant) -> Result<(), String> {
+    fn begin_jog(&mut self, rates: JogRates, now: Instant) -> Result<(), Unable> {
         let is_slow = |rate: &f64, fastest: f64| (-fastest..=fastest).contains(rate);
         let [fastest_m_s, fastest_rad_s] = FASTEST_JOG;
         if !rates.velocity_m_s.iter().all(|rate| is_slow(rate, fastest_m_s))
             || !is_slow(&rates.yaw_rad_s, fastest_rad_s)
         {
-            return Err(format!(
-                "A tip is jogged by up to {fastest_m_s} m/s along each axis and {fastest_rad_s} rad/s; what was asked for is more, or no number."
-            ));
+            return Err(Unable::TooFast);
         }
         if self.switches.stop.is_pressed() {
-            return Err(sentence(&Refusal::Stopped.to_string()));
+            return Err(Refusal::Stopped.into());
         }
         let until = now + Duration::from_millis(JOG_DEADLINE_MS);
         match &mut self.jog {
             Some(jog) => (jog.rates, jog.until) = (rates, until),
             None => {
-                let goal = self.present().ok_or("The joints have not been read yet.")?;
+                let goal = self.present().ok_or(Unable::NotRead)?;
                 self.knows(self.chain.joints())?;
                 self.refusal = None;
                 (self.preview, self.running) = (None, None);
@@ -451,9 +434,9 @@ impl Worker {
         Ok(())
     }
 
-    fn end_jog(&mut self) -> Result<(), String> {
+    fn end_jog(&mut self) -> Result<(), Unable> {
         if self.jog.take().is_some() {
-            self.arm()?.hold().map_err(|refusal| sentence(&refusal.to_string()))?;
+            self.arm()?.hold()?;
         }
         Ok(())
     }
@@ -483,7 +466,7 @@ impl Worker {
         let lookahead_s = JOG_DEADLINE_MS as f64 / 1e3;
         if let Err(reason) = self.paths.check(&jog.goal, &ahead(lookahead_s)) {
             let _ = self.arm().map(|arm| arm.hold());
-            return self.refuse(reason);
+            return self.refuse(reason.to_string());
         }
         let goal = ahead(step_s);
         let setpoint = Setpoint {
@@ -503,13 +486,12 @@ impl Worker {
                 self.jog = Some(jog);
             }
             Ok(Err(refusal)) => self.refuse(sentence(&refusal.to_string())),
-            Err(reason) => self.refuse(reason),
+            Err(reason) => self.refuse(reason.to_string()),
         }
     }
 
-    fn save_pose(&mut self, title: &str, joints: &[JointIndex]) -> Result<(), String> {
-        let present =
-            self.present().ok_or("The joints have not been read yet, so there is nothing to save.")?;
+    fn save_pose(&mut self, title: &str, joints: &[JointIndex]) -> Result<(), Unable> {
+        let present = self.present().ok_or(Unable::NotReadToSave)?;
         let all: Vec<JointIndex> = self.rig.servos.iter().map(|servo| servo.joint).collect();
         let joints = if joints.is_empty() { &all } else { joints };
         self.knows(joints)?;
@@ -521,7 +503,7 @@ impl Worker {
             let near = limits.excess_rad(angle_rad).abs() < 0.02;
             (*joint, if near { angle_rad.clamp(limits.lower_rad, limits.upper_rad) } else { angle_rad })
         };
-        self.poses.save(title, joints.iter().map(clamped).collect(), &rig)
+        Ok(self.poses.save(title, joints.iter().map(clamped).collect(), &rig)?)
     }
 
     /// Looks at the joints and goes on with what runs.

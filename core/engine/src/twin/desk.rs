@@ -11,16 +11,15 @@ use plumbline_twin::{Fault, Scenario, Toy, Twin, TwinSettings, TwinTouchscreen, 
 
 use super::command::TwinCommand;
 use super::eyes::TwinEyesPlug;
+use super::unable::TwinUnable;
 use super::view::{FaultView, ToyView, TwinView};
 use crate::ground::notice::NoticeLevel;
-use crate::ground::text::sentence;
 
 /// While the board is shown at all places it stays at each for this long: long enough to be
 /// found still, sharp and new.
 const AT_EACH_PLACE: Duration = Duration::from_millis(1600);
 /// So much around the touchscreen is kept free of toys while it is touched: a hand is broad, m.
 const BESIDE_SCREEN_M: f64 = 0.06;
-const NOT_RUNNING: &str = "The twin is not running. Connect to it first.";
 const PHYSICS_FAILED: &str = "The twin's physics have failed inside, so the twin has ended. Nothing real is hurt: connect to the twin again, and report it with the log.";
 /// The same twin every time.
 const SEED: u64 = 1;
@@ -71,20 +70,19 @@ impl TwinDesk {
     }
 
     /// Starts a twin in place of a running one; gives the port of its servos.
-    pub fn start(&mut self, scenario: &str, rig: &Arc<Rig>) -> Result<PathBuf, String> {
+    pub fn start(&mut self, scenario: &str, rig: &Arc<Rig>) -> Result<PathBuf, TwinUnable> {
         self.eyes.set(None);
         (self.twin, self.tour) = (None, None);
         scenario.clone_into(&mut self.scenario);
         let started = self.try_start(scenario, rig);
-        self.failed = started.as_ref().err().cloned();
+        self.failed = started.as_ref().err().map(ToString::to_string);
         started
     }
 
-    fn try_start(&mut self, scenario: &str, rig: &Arc<Rig>) -> Result<PathBuf, String> {
-        let words = |error: plumbline_twin::TwinError| sentence(&error.to_string());
-        let scenario = Scenario::built_in(scenario).map_err(words)?;
+    fn try_start(&mut self, scenario: &str, rig: &Arc<Rig>) -> Result<PathBuf, TwinUnable> {
+        let scenario = Scenario::built_in(scenario)?;
         let settings = TwinSettings { rig: rig.clone(), scenario, seed: SEED, pace: 1.0 };
-        let twin = Twin::start(settings).map_err(words)?;
+        let twin = Twin::start(settings)?;
         self.board_places = board_presets(rig);
         self.eyes.set(Some(twin.scene()));
         let port = twin.port();
@@ -93,9 +91,9 @@ impl TwinDesk {
     }
 
     /// Does what the operator asked.
-    pub fn control(&mut self, command: TwinCommand, rig: &Rig) -> Result<(), String> {
-        let twin = self.twin.as_ref().ok_or(NOT_RUNNING)?;
-        let toy = |name: &str| Toy::from_name(name).ok_or_else(|| format!("There is no toy called {name}."));
+    pub fn control(&mut self, command: TwinCommand, rig: &Rig) -> Result<(), TwinUnable> {
+        let twin = self.twin.as_ref().ok_or(TwinUnable::NotRunning)?;
+        let toy = |name: &str| Toy::from_name(name).ok_or_else(|| TwinUnable::NoToy(name.to_owned()));
         let send = |command| {
             twin.send(command);
             Ok(())
@@ -105,15 +103,15 @@ impl TwinDesk {
             TwinCommand::PlaceToy { toy: name, x_m, y_m } => {
                 let on = |range: [f64; 2], value: f64| value >= range[0] && value <= range[1];
                 if !(on(rig.table.x_range_m, x_m) && on(rig.table.y_range_m, y_m)) {
-                    return Err("That place is not on the table.".to_owned());
+                    return Err(TwinUnable::BesideTable);
                 }
                 send(To::PlaceObject { toy: toy(&name)?, x_m, y_m })
             }
             TwinCommand::RemoveToy { toy: name } => send(To::RemoveObject { toy: toy(&name)? }),
             TwinCommand::HoldBoard { place } => {
                 let robot_from_board = self.board_places.get(place).copied();
-                let robot_from_board = robot_from_board
-                    .ok_or_else(|| format!("The board has {} places.", self.board_places.len()))?;
+                let robot_from_board =
+                    robot_from_board.ok_or(TwinUnable::NoPlace(self.board_places.len()))?;
                 self.tour = None;
                 send(To::PlaceBoard { robot_from_board })
             }
@@ -121,7 +119,7 @@ impl TwinDesk {
                 self.tour = None;
                 let robot_from_board = lying(rig, x_m, y_m, yaw_rad)?;
                 self.make_room(&robot_from_board);
-                let twin = self.twin.as_ref().ok_or(NOT_RUNNING)?;
+                let twin = self.twin.as_ref().ok_or(TwinUnable::NotRunning)?;
                 twin.send(To::PlaceBoard { robot_from_board });
                 Ok(())
             }
@@ -136,21 +134,20 @@ impl TwinDesk {
             TwinCommand::PrepareTouch { screen_height_m, payload_kg } => {
                 self.tour = None;
                 self.free_screen(rig);
-                let twin = self.twin.as_ref().ok_or(NOT_RUNNING)?;
+                let twin = self.twin.as_ref().ok_or(TwinUnable::NotRunning)?;
                 twin.send(To::HideBoard);
                 twin.send(To::PrepareTouch { screen_height_m, payload_kg });
                 Ok(())
             }
             TwinCommand::AdvanceWarmUp { minutes } => {
                 if !(minutes > 0.0 && minutes <= 600.0) {
-                    return Err("The clock can be advanced by up to 600 minutes.".to_owned());
+                    return Err(TwinUnable::TooLong);
                 }
                 send(To::AdvanceWarmUp { minutes })
             }
             TwinCommand::CoolEyes => send(To::CoolEyes),
             TwinCommand::Fault { name, on } => {
-                let fault =
-                    Fault::from_name(&name).ok_or_else(|| format!("There is no fault called {name}."))?;
+                let fault = Fault::from_name(&name).ok_or_else(|| TwinUnable::NoFault(name.clone()))?;
                 send(To::Fault { fault, on })
             }
             TwinCommand::Reset => {
@@ -303,9 +300,9 @@ fn rounded(meters: f64) -> f64 {
 }
 
 /// The board flat on the table, its center at a place.
-fn lying(rig: &Rig, x_m: f64, y_m: f64, yaw_rad: f64) -> Result<Pose<Robot, Board>, String> {
+fn lying(rig: &Rig, x_m: f64, y_m: f64, yaw_rad: f64) -> Result<Pose<Robot, Board>, TwinUnable> {
     if ![x_m, y_m, yaw_rad].iter().all(|value| value.is_finite()) {
-        return Err("The place of the board must be numbers.".to_owned());
+        return Err(TwinUnable::NotNumbers);
     }
     let board = plumbline_model::default_board();
     let turn = nalgebra::UnitQuaternion::from_scaled_axis(nalgebra::Vector3::z() * yaw_rad)
@@ -344,7 +341,9 @@ mod tests {
         }
         assert!(desk.view().failed.is_some_and(|why| why.contains("physics have failed inside")));
         assert_eq!(desk.take_notes().len(), 1);
-        assert!(desk.control(TwinCommand::Reset, &rig).expect_err("it ended").contains("not running"));
+        assert!(
+            desk.control(TwinCommand::Reset, &rig).expect_err("it ended").to_string().contains("not running")
+        );
         desk.start("perfect", &rig).expect("another twin");
         assert!(desk.is_running() && desk.view().failed.is_none());
     }

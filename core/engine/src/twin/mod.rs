@@ -3,10 +3,12 @@
 pub mod command;
 mod desk;
 mod eyes;
+mod unable;
 pub mod view;
 
 pub use desk::TwinDesk;
 pub use eyes::TwinEyesPlug;
+pub use unable::TwinUnable;
 
 /// Names of the twin's scenarios that come with the program.
 pub fn scenarios() -> impl Iterator<Item = &'static str> {

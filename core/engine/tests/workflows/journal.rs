@@ -176,7 +176,7 @@ fn a_replay_is_exact() {
     if replayed != in_the_end {
         let same = replayed.bytes().zip(in_the_end.bytes()).take_while(|(a, b)| a == b).count();
         let around = |text: &str| -> String {
-            let begin = text.char_indices().map(|(at, _)| at).filter(|at| *at + 300 <= same).last();
+            let begin = text.char_indices().map(|(at, _)| at).rfind(|at| *at + 300 <= same);
             text[begin.unwrap_or_default()..].chars().take(600).collect()
         };
         panic!("the replay differs:\n{}\n\nand not\n{}", around(&replayed), around(&in_the_end));

@@ -9,14 +9,15 @@ use plumbline_model::robot::Rig;
 use crate::robot::arm::Arm;
 use crate::robot::path::Paths;
 use crate::robot::touch_order::TouchOrder;
+use crate::robot::unable::Unable;
 
 /// Whoever holds the arm.
 pub trait Hand {
     /// The robot.
     fn rig(&self) -> &Arc<Rig>;
 
-    /// The arm; a sentence when there is none.
-    fn arm(&self) -> Result<&dyn Arm, String>;
+    /// The arm, if there is one.
+    fn arm(&self) -> Result<&dyn Arm, Unable>;
 
     /// The newest state of the arm.
     fn state(&self) -> Option<Arc<JointState>>;

@@ -17,6 +17,7 @@ pub(super) use self::run::{Run, Step};
 use super::command::RobotCommand;
 use super::control::RobotControl;
 use super::touch_order::{TouchNews, TouchOrder, TouchRun};
+use super::unable::Unable;
 
 /// The touch that is under way, and how touches did.
 #[derive(Default)]
@@ -46,9 +47,8 @@ impl Touching {
     }
 
     /// Why it was forbidden.
-    pub fn busy(&self) -> String {
-        let title = self.title().unwrap_or_default();
-        format!("The arm is busy ({title}). Pause the run of touches first.")
+    pub fn busy(&self) -> Unable {
+        Unable::Busy(self.title().unwrap_or_default())
     }
 
     pub(super) fn tell(&mut self, order: &TouchOrder, state: TouchRun) {

@@ -13,8 +13,8 @@ use plumbline_model::{Pixel, Point};
 
 use super::hand::Hand;
 use super::lowering::Descent;
-use crate::ground::text::sentence;
 use crate::robot::touch_order::{TouchMeasurement, TouchOrder, TouchRun, TouchStage};
+use crate::robot::unable::Interrupted;
 
 /// Above the target the encoders have to stand still for this long.
 const STILL: Duration = Duration::from_millis(150);
@@ -47,7 +47,7 @@ pub enum Step {
     End(TouchRun),
 }
 
-type Stepped = Result<Step, String>;
+type Stepped = Result<Step, Interrupted>;
 
 enum Stage {
     Approaching { next: usize, moving: Option<MoveId> },
@@ -92,12 +92,11 @@ impl Run {
         source: Box<dyn TouchSource>,
         refusals: u64,
         _now: Instant,
-    ) -> Result<Self, String> {
-        let unknown = || format!("The robot has no arm with the tip {}. Plan anew.", order.tip);
+    ) -> Result<Self, Interrupted> {
+        let unknown = || Interrupted::NoArm(order.tip.clone());
         let joints = joints_of(rig, &order.tip).ok_or_else(unknown)?;
         let chain = rig.chain(&order.tip).map_err(|_| unknown())?.joints().to_vec();
-        let descent =
-            Descent::new(&order).ok_or("The planned touch does not lead down. Plan anew.".to_owned())?;
+        let descent = Descent::new(&order).ok_or(Interrupted::NotDown)?;
         let stage = Stage::Approaching { next: 0, moving: None };
         Ok(Self { order, stage, joints, chain, descent, source, refusals })
     }
@@ -145,7 +144,7 @@ impl Run {
         match &self.stage {
             Stage::Approaching { moving, .. } => {
                 if moving.is_some() {
-                    hand.arm()?.hold().map_err(|refusal| sentence(&refusal.to_string()))?;
+                    hand.arm()?.hold()?;
                 }
                 Ok(Step::End(end))
             }
@@ -156,23 +155,23 @@ impl Run {
     }
 
     /// The newest state, unless it says that the touch cannot go on.
-    fn checked_state(&self, hand: &dyn Hand) -> Result<Arc<JointState>, String> {
-        let state = hand.state().ok_or("The arm does not answer. Look at its cable and power.")?;
+    fn checked_state(&self, hand: &dyn Hand) -> Result<Arc<JointState>, Interrupted> {
+        let state = hand.state().ok_or(Interrupted::NoAnswer)?;
         if let Some(reason) = &state.gone {
-            return Err(sentence(reason));
+            return Err(Interrupted::Told(reason.clone()));
         }
         if hand.is_stopped() || state.stopped {
-            return Err("STOP was pressed. Release it first.".to_owned());
+            return Err(Interrupted::Stopped);
         }
         if let Some((number, refusal)) = &state.refusal
             && *number > self.refusals
         {
-            return Err(sentence(&refusal.to_string()));
+            return Err(refusal.clone().into());
         }
         let limp = |joint: &&JointIndex| state.of(**joint).is_some_and(|r| r.torque_on == Some(false));
         if let Some(joint) = self.chain.iter().find(limp) {
             let name = hand.rig().servo_of(*joint).map_or("a joint", |servo| servo.title.as_str());
-            return Err(format!("{name} has no torque. Switch its torque on."));
+            return Err(Interrupted::Limp(name.to_owned()));
         }
         let down = match &self.stage {
             Stage::Lowering(down) | Stage::Dwelling { down, .. } => Some(down),
@@ -182,7 +181,7 @@ impl Run {
             && state.stamp.seq > down.cycle + CYCLES
             && !matches!(reason, HoldReason::JogEnded | HoldReason::Asked | HoldReason::Arrived)
         {
-            return Err(sentence(&reason.to_string()));
+            return Err(reason.clone().into());
         }
         Ok(state)
     }
@@ -296,8 +295,7 @@ impl Run {
             return self.retreat(hand, end);
         }
         // The goals stay as they are, so that the arm neither pushes on nor sinks.
-        let goals =
-            state.commanded.as_ref().ok_or("The goals of the joints are not known. Connect again.")?;
+        let goals = state.commanded.as_ref().ok_or(Interrupted::NoGoals)?;
         self.follow(hand, goals, self.order.dwell + Duration::from_secs(1))?;
         let of = |value: fn(&plumbline_hardware::joints::JointReading) -> Option<f64>| -> Vec<Option<f64>> {
             self.chain.iter().map(|joint| state.of(*joint).and_then(value)).collect()
@@ -359,14 +357,14 @@ impl Run {
         Ok(Step::Next)
     }
 
-    fn follow(&self, hand: &dyn Hand, posture: &Posture, valid_for: Duration) -> Result<(), String> {
+    fn follow(&self, hand: &dyn Hand, posture: &Posture, valid_for: Duration) -> Result<(), Interrupted> {
         let joints = self.chain.iter().map(|joint| (*joint, posture[*joint])).collect();
         let setpoint = Setpoint { kind: SetpointKind::Position, joints, valid_for };
-        hand.arm()?.follow(setpoint).map_err(|refusal| sentence(&refusal.to_string()))
+        Ok(hand.arm()?.follow(setpoint)?)
     }
 
-    fn newest(&mut self) -> Result<Option<Touch>, String> {
-        self.source.newest().map_err(|reason| sentence(&reason))
+    fn newest(&mut self) -> Result<Option<Touch>, Interrupted> {
+        self.source.newest().map_err(Interrupted::Told)
     }
 
     /// Encoders of the chain.
@@ -382,9 +380,9 @@ fn go(
     posture: &Posture,
     joints: &[JointIndex],
     speed_rad_s: f64,
-) -> Result<Option<MoveId>, String> {
+) -> Result<Option<MoveId>, Interrupted> {
     let known = state.measured.as_ref().zip(state.commanded.as_ref());
-    let (present, commanded) = known.ok_or("The joints are not known. Look at cables and power.")?;
+    let (present, commanded) = known.ok_or(Interrupted::Unknown)?;
     let away = |joint: &&JointIndex| (commanded[**joint] - posture[**joint]).abs() > THERE_RAD;
     let goals: Vec<(JointIndex, f64)> =
         joints.iter().filter(away).map(|joint| (*joint, posture[*joint])).collect();
@@ -394,18 +392,17 @@ fn go(
     let end = present.with(joints, &posture.of(joints));
     hand.paths().check(present, &end)?;
     let pace = Pace::PeakSpeed(speed_rad_s.min(hand.rig().gate.speed_rad_s));
-    let id = hand.arm()?.begin(Move { goals, pace });
-    id.map(Some).map_err(|refusal| sentence(&refusal.to_string()))
+    Ok(Some(hand.arm()?.begin(Move { goals, pace })?))
 }
 
 /// Whether a move is done; `Err`: it will never be.
-fn has_arrived(state: &JointState, id: MoveId) -> Result<bool, String> {
+fn has_arrived(state: &JointState, id: MoveId) -> Result<bool, Interrupted> {
     match state.outcome(id) {
         None => Ok(false),
         Some(MoveOutcome::Arrived { .. }) => Ok(true),
-        Some(MoveOutcome::Refused(refusal)) => Err(sentence(&refusal.to_string())),
-        Some(MoveOutcome::Held(reason)) => Err(sentence(&reason.to_string())),
-        Some(MoveOutcome::Replaced) => Err("Something else moved the arm.".to_owned()),
+        Some(MoveOutcome::Refused(refusal)) => Err(refusal.clone().into()),
+        Some(MoveOutcome::Held(reason)) => Err(reason.clone().into()),
+        Some(MoveOutcome::Replaced) => Err(Interrupted::Moved),
     }
 }
 

@@ -1,0 +1,231 @@
+//! Why something is not done with the arm: sentences that say what to do.
+
+use plumbline_hardware::dynamixel::BusError;
+use plumbline_hardware::joints::{HoldReason, Refusal};
+use plumbline_model::robot::collision::CollisionError;
+use plumbline_model::robot::{DescriptionError, ReachError, Refusal as OutOfReach};
+
+use super::poses::PoseError;
+use crate::ground::text::sentence;
+use crate::twin::TwinUnable;
+
+/// What can be asked of a jog along each axis (m/s) and about the vertical (rad/s); the joints' own
+/// limits are far below.
+pub const FASTEST_JOG: [f64; 2] = [1.0, 6.0];
+/// Shares of the usual speed that can be set: a slower move would take hours.
+pub const SPEEDS: (f64, f64) = (0.01, 2.0);
+
+/// Why something is not done with the arm.
+#[derive(Debug, thiserror::Error)]
+pub enum Unable {
+    /// There is no arm.
+    #[error("Nothing is connected, so nothing can move. Connect first.")]
+    NotConnected,
+    /// There is no bus.
+    #[error("Nothing is connected. Connect first.")]
+    NothingToScan,
+    /// Nobody knows where the arm is.
+    #[error("The joints have not been read yet.")]
+    NotRead,
+    /// Nobody knows from where it would move.
+    #[error("The joints have not been read yet. Connect, and wait for the first reading.")]
+    NotReadToShow,
+    /// Nobody knows the pose.
+    #[error("The joints have not been read yet, so there is nothing to save.")]
+    NotReadToSave,
+    /// Only what is shown is run.
+    #[error("No move is shown. Choose where to go first.")]
+    NoPreview,
+    /// A share of the usual speed.
+    #[error(
+        "A speed of {asked} cannot be set: it goes from {} to {} times the usual one.",
+        SPEEDS.0,
+        SPEEDS.1
+    )]
+    Speed {
+        /// What was asked for.
+        asked: f64,
+    },
+    /// A hand that jumps.
+    #[error(
+        "A tip is jogged by up to {} m/s along each axis and {} rad/s; what was asked for is more, or no number.",
+        FASTEST_JOG[0],
+        FASTEST_JOG[1]
+    )]
+    TooFast,
+    /// A touch is under way.
+    #[error("The arm is busy ({0}). Pause the run of touches first.")]
+    Busy(String),
+    /// The arm itself says no.
+    #[error("{}", sentence(&.0.to_string()))]
+    Arm(#[from] Refusal),
+    /// The bus cannot be opened.
+    #[error("{}", sentence(&.0.to_string()))]
+    Bus(#[from] BusError),
+    /// The robot has no such tip.
+    #[error("{}", sentence(&.0.to_string()))]
+    Description(#[from] DescriptionError),
+    /// There is no such place to go to.
+    #[error(transparent)]
+    Destination(#[from] NoDestination),
+    /// Something is in the way.
+    #[error(transparent)]
+    Way(#[from] InTheWay),
+    /// A pose cannot be kept.
+    #[error(transparent)]
+    Pose(#[from] PoseError),
+    /// The twin says no.
+    #[error(transparent)]
+    Twin(#[from] TwinUnable),
+}
+
+/// Why a destination means no posture.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoDestination {
+    /// Nothing turns it.
+    #[error("This joint has no servo, so it cannot be moved.")]
+    NoServo,
+    /// It was deleted.
+    #[error("There is no pose called {0} any more.")]
+    NoPose(String),
+    /// A posture of another robot.
+    #[error("This posture has {posture} joints, the robot {robot}. It is of another robot.")]
+    OtherRobot {
+        /// Joints of the posture.
+        posture: usize,
+        /// Joints of the robot.
+        robot: usize,
+    },
+    /// An angle that is none.
+    #[error("The destination holds a value that is not a number.")]
+    NotANumber,
+    /// A place that is none.
+    #[error("The point holds a value that is not a number.")]
+    NoPoint,
+    /// Not every link can be sent somewhere.
+    #[error("Choose a tip that the arm can move.")]
+    NoTip,
+    /// It cannot be asked so.
+    #[error("{}", sentence(&.0.to_string()))]
+    Reach(#[from] ReachError),
+    /// The arm does not get there.
+    #[error("{}", sentence(&.0.to_string()))]
+    OutOfReach(#[from] OutOfReach),
+    /// A joint ends before.
+    #[error(
+        "{joint} would have to go to {:.1}°, its limits there are {:.1}° to {:.1}°{why}.",
+        .angle_rad.to_degrees(),
+        .limits_rad[0].to_degrees(),
+        .limits_rad[1].to_degrees()
+    )]
+    BeyondLimits {
+        /// Which, for people.
+        joint: String,
+        /// Where it would have to go.
+        angle_rad: f64,
+        /// Lower and upper.
+        limits_rad: [f64; 2],
+        /// What limits it, in brackets; empty when it is the joint itself.
+        why: String,
+    },
+}
+
+/// Why a way cannot be gone.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum InTheWay {
+    /// Nobody can say.
+    #[error("{}", sentence(&.0.to_string()))]
+    Unknown(#[from] CollisionError),
+    /// Something is in the way.
+    #[error("{a} would run into {b} {}. Choose another pose, or go there by way of Home.", at(*.at_fraction))]
+    Collides {
+        /// What would run, as the beginning of a sentence.
+        a: String,
+        /// Into what.
+        b: String,
+        /// Where on the way, 0–1.
+        at_fraction: f64,
+    },
+    /// A joint ends.
+    #[error(
+        "{joint} would turn {:.1}° too far {} ({why}). Choose another pose.",
+        .by_rad.to_degrees(),
+        at(*.at_fraction)
+    )]
+    BeyondLimit {
+        /// Which.
+        joint: String,
+        /// By how much.
+        by_rad: f64,
+        /// What limits it.
+        why: String,
+        /// Where on the way, 0–1.
+        at_fraction: f64,
+    },
+}
+
+/// Why a touch cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum Interrupted {
+    /// Something else is done with the arm, or cannot be.
+    #[error(transparent)]
+    Unable(#[from] Unable),
+    /// The robot has no such finger.
+    #[error("The robot has no arm with the tip {0}. Plan anew.")]
+    NoArm(String),
+    /// The way ends above the glass.
+    #[error("The planned touch does not lead down. Plan anew.")]
+    NotDown,
+    /// The plan holds no way.
+    #[error("The planned touch has no way that could be gone. Plan anew.")]
+    NoWay,
+    /// Not begun, because the operator said so.
+    #[error("STOP is pressed. Release it, then go on.")]
+    StopIsPressed,
+    /// The operator said so.
+    #[error("STOP was pressed. Release it first.")]
+    Stopped,
+    /// The arm goes elsewhere.
+    #[error("Something else moves the arm. Wait until it stands, then go on.")]
+    Moves,
+    /// The arm went elsewhere.
+    #[error("Something else moved the arm.")]
+    Moved,
+    /// Nobody knows where the arm is.
+    #[error("The joints have not been read yet. Wait a moment, then go on.")]
+    NotRead,
+    /// Nobody knows any more where the arm is.
+    #[error("The joints are not known. Look at cables and power.")]
+    Unknown,
+    /// Nobody knows where it was sent.
+    #[error("The goals of the joints are not known. Connect again.")]
+    NoGoals,
+    /// No state comes.
+    #[error("The arm does not answer. Look at its cable and power.")]
+    NoAnswer,
+    /// It would fall.
+    #[error("{0} has no torque. Switch its torque on.")]
+    Limp(String),
+    /// The arm itself says no.
+    #[error("{}", sentence(&.0.to_string()))]
+    Arm(#[from] Refusal),
+    /// The arm holds, although it was told to follow.
+    #[error("{}", sentence(&.0.to_string()))]
+    Holds(#[from] HoldReason),
+    /// Whoever was asked says why.
+    #[error("{}", sentence(.0))]
+    Told(String),
+}
+
+impl From<InTheWay> for Interrupted {
+    fn from(way: InTheWay) -> Self {
+        Self::Unable(way.into())
+    }
+}
+
+fn at(fraction: f64) -> String {
+    match fraction {
+        fraction if fraction <= 0.0 => "at once".to_owned(),
+        fraction => format!("after {:.0} % of the way", 100.0 * fraction),
+    }
+}
