@@ -65,10 +65,12 @@ impl LongWork for DetectWork {
         match self {
             Self::Restore(store) => Ok(match store.read() {
                 Ok(settings) => DetectResult::Restored(settings, None),
-                Err(problem) => DetectResult::Restored(DetectionSettings::default(), Some(problem)),
+                Err(problem) => {
+                    DetectResult::Restored(DetectionSettings::default(), Some(problem.to_string()))
+                }
             }),
             Self::Keep(store, settings) => {
-                store.keep(&settings).map_err(JobError::Failed)?;
+                store.keep(&settings).map_err(JobError::failed)?;
                 Ok(DetectResult::Kept(settings))
             }
             Self::Open { open, choice, provider } => {
