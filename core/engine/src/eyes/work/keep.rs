@@ -119,8 +119,11 @@ mod tests {
         // The first pair brings the manifest.
         keep(&session, 0).expect("kept");
         let mut pairs = 1;
-        for nth in 0..15 {
+        // How much is written between two kills is the disk's affair: some pairs, in the end.
+        let mut nth = 0;
+        while nth < 15 || (pairs <= 15 && nth < 100) {
             crate::ground::kept::kill(TEST, folder.path(), nth);
+            nth += 1;
             let read = Session::read(&session).expect("a session");
             assert!(read.stereo.unpaired.len() <= 1 && read.stereo.pairs.len() >= pairs, "kill {nth}");
             pairs = read.stereo.pairs.len();
