@@ -33,10 +33,6 @@ fn no_rooms_of_a_package_use_each_other_in_a_circle() {
         if !circles.is_empty() {
             found += &format!("{}\n{}", package.name, told(&circles));
         }
-        if std::env::var_os("PLUMBLINE_SHOW_CIRCLES").is_some() {
-            let files = crate::modules::circles(&modules.uses(file));
-            println!("{}: files in circles\n{}", package.name, told(&files));
-        }
     }
     assert!(seen > 100, "this test must be able to see who uses whom; it saw {seen} arrows");
     assert!(found.is_empty(), "circles:\n{found}");

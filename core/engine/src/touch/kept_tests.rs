@@ -42,9 +42,11 @@ fn a_kill_takes_no_touch_that_was_reported() {
     }
     let folder = tempfile::tempdir().expect("a folder");
     store::write(folder.path(), &[], &progress(1)).expect("written");
-    let mut known = 1;
-    for nth in 0..20 {
+    let (mut known, mut nth) = (1, 0);
+    // How much is written between two kills is the disk's affair: some touches, in the end.
+    while nth < 20 || (known <= 20 && nth < 100) {
         crate::ground::kept::kill(TEST, folder.path(), nth);
+        nth += 1;
         let (recorded, in_table) = touches(folder.path());
         // The table follows from the progress, which is written first.
         assert!(recorded >= known && (recorded - 1..=recorded).contains(&in_table), "kill {nth}");
