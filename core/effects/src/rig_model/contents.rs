@@ -318,6 +318,12 @@ impl Contents {
             if let Some(number) = numbers.chain(reported).find(|number| !number.is_finite()) {
                 return Err(format!("its effect {name} holds {number}"));
             }
+            if let Some(share) = effect.probability.filter(|share| !(0.0..=1.0).contains(share)) {
+                return Err(format!(
+                    "its effect {name} has a probability of {share}, which is none: a number was changed or \
+                     damaged; search the gap and write the file again"
+                ));
+            }
             for (value, parameter) in effect.values.iter().zip(known.parameters()) {
                 let most = MOST_TYPICAL * parameter.typical;
                 if value.abs() > most {

@@ -192,6 +192,18 @@ fn taking_the_last_effect_out_leaves_the_nominal_robot() {
 }
 
 #[test]
+fn a_probability_is_between_zero_and_one() {
+    let rig = nico();
+    for (share, is_one) in
+        [(0.0, true), (1.0, true), (1.5, false), (-0.1, false), (f64::INFINITY, false), (f64::NAN, false)]
+    {
+        let found = ModelEffect { probability: Some(share), ..effect("joint-zero", "r_elbow_y", &[0.01]) };
+        let added = elbow(&rig).add(&rig, Addition { replaces: true, ..addition(vec![found]) });
+        assert_eq!(added.is_ok(), is_one, "{share}: {added:?}");
+    }
+}
+
+#[test]
 fn what_cannot_be_added_changes_nothing() {
     let rig = nico();
     let mut model = elbow(&rig);
