@@ -10,6 +10,7 @@ mod error;
 pub mod eyes;
 mod hand_look;
 pub mod judging;
+mod lockstep;
 pub mod physics;
 pub mod scenario;
 pub mod scene;
@@ -23,6 +24,7 @@ mod warm_up;
 
 pub use board_presets::{board_presets, default_board};
 pub use error::TwinError;
+pub use lockstep::{Lockstep, ServoState, Touched};
 pub use scenario::Scenario;
 pub use servos::Fault;
 pub use toys::Toy;
