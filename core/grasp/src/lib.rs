@@ -2,6 +2,9 @@
 //!
 //! Nothing here knows whether a robot or a twin moves: a [`Body`] carries out what is asked.
 
+mod arm;
 mod body;
+pub mod plan;
 
+pub use arm::{NoArm, PalmArm};
 pub use body::{Body, Halt, ServoState, Sight};

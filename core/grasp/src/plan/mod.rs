@@ -1,0 +1,198 @@
+//! From the place of an object to the postures that grasp it: how the hand comes, where it closes,
+//! and free ways there and up again.
+
+mod ways;
+
+use std::f64::consts::PI;
+
+use nalgebra::{Point3, Vector3};
+use plumbline_model::robot::Posture;
+use plumbline_model::robot::collision::{CollisionError, CollisionModel};
+use plumbline_model::{Point, Robot};
+
+use crate::arm::PalmArm;
+
+/// The palm waits this high above where it closes, m.
+const ABOVE_M: f64 = 0.09;
+/// It lifts this high, m.
+const LIFT_M: f64 = 0.10;
+/// Postures on the way down are this far apart, m.
+const STEP_M: f64 = 0.01;
+/// Headings that are tried, rad apart.
+const HEADING_STEP_RAD: f64 = PI / 18.0;
+/// Headings of a right hand over a table: from pointing to the right to pointing left and back.
+const HEADINGS_RAD: [f64; 2] = [-0.6 * PI, 0.9 * PI];
+/// A palm inclined farther than this (cosine) does not close around things.
+const LEAST_LEVEL: f64 = 0.6;
+/// Things belong so much nearer to the fingers than the middle of the palm, m.
+const INTO_FINGERS_M: f64 = 0.012;
+/// The palm closes so much below the top of a thing, m…
+const BELOW_TOP_M: f64 = 0.017;
+
+/// What is to be grasped, on what it stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Standing {
+    /// Middle of the object over its support: x and y, m.
+    pub xy_m: [f64; 2],
+    /// Height of what it stands on, m.
+    pub support_m: f64,
+    /// Height of the object, m.
+    pub height_m: f64,
+}
+
+impl Standing {
+    /// Where the palm belongs when the fingers close, for a heading of the hand.
+    pub fn palm(&self, heading_rad: f64) -> Point<Robot> {
+        let back = Vector3::new(heading_rad.cos(), heading_rad.sin(), 0.0) * INTO_FINGERS_M;
+        let z_m = self.support_m + self.height_m - BELOW_TOP_M;
+        Point::from(Point3::new(self.xy_m[0], self.xy_m[1], z_m) - back)
+    }
+}
+
+/// Why a grasp cannot be made. Reads as a sentence.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoPlan {
+    /// The hand does not get there.
+    #[error(
+        "the hand does not reach x {:.0}, y {:.0} mm with its palm down: put the object nearer to the middle of the table",
+        .xy_m[0] * 1e3, .xy_m[1] * 1e3
+    )]
+    OutOfReach {
+        /// Where the object is, m.
+        xy_m: [f64; 2],
+    },
+    /// No way there is free.
+    #[error("no way to above the object is free ({0}): move the arm by hand or take away what is in the way")]
+    NotFree(String),
+    /// A posture is no posture of this robot.
+    #[error(transparent)]
+    Posture(#[from] CollisionError),
+}
+
+/// A grasp that was looked at before anything moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GraspPlan {
+    /// What is to be grasped.
+    pub standing: Standing,
+    /// Azimuth of the fingers, rad.
+    pub heading_rad: f64,
+    /// Cosine of the palm's inclination where it closes.
+    pub level: f64,
+    /// On the way to above the object, that posture last.
+    pub approach: Vec<Posture>,
+    /// From above down to where the hand closes, the first a step below `above`.
+    pub down: Vec<Posture>,
+}
+
+impl GraspPlan {
+    /// The posture above the object.
+    pub fn above(&self) -> Option<&Posture> {
+        self.approach.last()
+    }
+
+    /// The posture in which the hand closes.
+    pub fn closing(&self) -> Option<&Posture> {
+        self.down.last().or(self.above())
+    }
+}
+
+/// Plans grasps of one hand.
+#[derive(Clone, Debug)]
+pub struct GraspPlanner {
+    arm: PalmArm,
+    bodies: CollisionModel,
+}
+
+impl GraspPlanner {
+    /// For a hand as a model has it.
+    pub fn new(arm: PalmArm) -> Self {
+        let bodies = CollisionModel::of_rig(arm.rig());
+        Self { arm, bodies }
+    }
+
+    /// The hand.
+    pub fn arm(&self) -> &PalmArm {
+        &self.arm
+    }
+
+    /// The grasp of what stands somewhere, by an arm that stands at `from`; `sent` shifts every point
+    /// to which the palm is sent (m), as a correction of the published kind does.
+    ///
+    /// # Errors
+    /// Why it cannot be made.
+    pub fn plan(
+        &self,
+        standing: &Standing,
+        shift_m: &Vector3<f64>,
+        from: &Posture,
+    ) -> Result<GraspPlan, NoPlan> {
+        let open = self.open(from);
+        let mut ways: Vec<(f64, Posture, Vec<Posture>, f64)> = vec![];
+        let steps = ((HEADINGS_RAD[1] - HEADINGS_RAD[0]) / HEADING_STEP_RAD).round() as usize;
+        for step in 0..=steps {
+            let heading_rad = HEADINGS_RAD[0] + step as f64 * HEADING_STEP_RAD;
+            let palm = Point::from(standing.palm(heading_rad).coords + shift_m);
+            if let Some((above, down)) = self.way_down(palm, heading_rad, &open) {
+                let level = down.last().map_or(0.0, |closing| self.arm.level(closing));
+                ways.push((level, above, down, heading_rad));
+            }
+        }
+        ways.retain(|(level, ..)| *level >= LEAST_LEVEL);
+        ways.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let out_of_reach = NoPlan::OutOfReach { xy_m: standing.xy_m };
+        let mut why = None;
+        for (level, above, down, heading_rad) in ways {
+            match self.approach(from, &above) {
+                Ok(approach) => {
+                    return Ok(GraspPlan { standing: *standing, heading_rad, level, approach, down });
+                }
+                Err(barred) => why = why.or(Some(barred)),
+            }
+        }
+        Err(why.unwrap_or(out_of_reach))
+    }
+
+    /// Straight up from where the hand closed, fingers as they are.
+    pub fn lift(&self, plan: &GraspPlan, closed: &Posture, by_m: f64) -> Vec<Posture> {
+        let start = self.arm.palm(closed).coords;
+        let steps = (by_m / STEP_M).round().max(1.0) as usize;
+        let mut way: Vec<Posture> = vec![];
+        for step in 1..=steps {
+            let up = Point::from(start + Vector3::z() * (by_m * step as f64 / steps as f64));
+            match self.arm.next_to(up, plan.heading_rad, way.last().unwrap_or(closed)) {
+                Some(next) => way.push(next),
+                None => break,
+            }
+        }
+        way
+    }
+
+    /// How high things are usually lifted, m.
+    pub const LIFT_M: f64 = LIFT_M;
+
+    /// The hand open, the rest as in `from`.
+    pub fn open(&self, from: &Posture) -> Posture {
+        from.with(self.arm.hand(), &vec![0.0; self.arm.hand().len()])
+    }
+
+    fn way_down(
+        &self,
+        palm: Point<Robot>,
+        heading_rad: f64,
+        open: &Posture,
+    ) -> Option<(Posture, Vec<Posture>)> {
+        let at = |height_m: f64| Point::from(palm.coords + Vector3::z() * height_m);
+        let above = self.arm.sent_to(at(ABOVE_M), heading_rad, open)?;
+        let steps = (ABOVE_M / STEP_M).round() as usize;
+        let mut down: Vec<Posture> = vec![];
+        for step in (0..steps).rev() {
+            let next = self.arm.next_to(
+                at(ABOVE_M * step as f64 / steps as f64),
+                heading_rad,
+                down.last().unwrap_or(&above),
+            )?;
+            down.push(next);
+        }
+        Some((above, down))
+    }
+}

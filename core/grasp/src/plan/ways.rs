@@ -1,0 +1,67 @@
+//! Free ways to above an object.
+
+use plumbline_model::robot::Posture;
+use plumbline_model::robot::collision::PathCheck;
+
+use super::{GraspPlanner, NoPlan};
+
+/// Places looked at along a way.
+const SAMPLES: usize = 16;
+/// On its way the palm keeps this high above the table, m, or as high as its lower end.
+const CLEARANCE_M: f64 = 0.11;
+
+impl GraspPlanner {
+    /// A free way from a posture to above the object: straight, else over the posture in which the arm
+    /// is at home, the hand opened on the way.
+    pub(super) fn approach(&self, from: &Posture, above: &Posture) -> Result<Vec<Posture>, NoPlan> {
+        let mut barred = None;
+        for way in self.ways(from, above) {
+            match self.is_free(from, &way)? {
+                None => return Ok(way),
+                Some(why) => barred = barred.or(Some(why)),
+            }
+        }
+        Err(NoPlan::NotFree(barred.unwrap_or_else(|| "there is none".to_owned())))
+    }
+
+    fn ways(&self, from: &Posture, above: &Posture) -> Vec<Vec<Posture>> {
+        let arm = self.arm();
+        let home = self.open(above).with(arm.joints(), &arm.rig().home().of(arm.joints()));
+        let between = home.toward(above, 0.5);
+        let open = self.open(from);
+        vec![
+            vec![above.clone()],
+            vec![home.clone(), above.clone()],
+            vec![open.clone(), home.clone(), above.clone()],
+            vec![open, home, between, above.clone()],
+        ]
+    }
+
+    /// What is in the way; `None`: nothing.
+    fn is_free(&self, from: &Posture, way: &[Posture]) -> Result<Option<String>, NoPlan> {
+        let mut before = from;
+        for next in way {
+            if self.dips(before, next) {
+                return Ok(Some("the hand would sweep over the table".to_owned()));
+            }
+            match self.bodies.check_path(before, next, &[])? {
+                PathCheck::Clear { .. } => before = next,
+                PathCheck::Collides { contact, .. } => {
+                    return Ok(Some(format!("the {} would meet the {}", contact.a_name, contact.b_name)));
+                }
+                PathCheck::BeyondLimit { name, why, .. } => {
+                    return Ok(Some(format!("{name} would turn too far: {why}")));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether the palm comes lower than it should between two postures.
+    fn dips(&self, from: &Posture, to: &Posture) -> bool {
+        let height_m = |posture: &Posture| self.arm().palm(posture).coords.z;
+        let least_m = self.arm().rig().table.height_m + CLEARANCE_M;
+        let least_m = least_m.min(height_m(from)).min(height_m(to)) - 1e-3;
+        (1..SAMPLES).any(|i| height_m(&from.toward(to, i as f64 / SAMPLES as f64)) < least_m)
+    }
+}

@@ -1,0 +1,121 @@
+//! How far off a hand may be and still lift what it closes around: physics decides, on a robot that is
+//! exactly as described, with the place of the object known.
+#![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use plumbline_effects::RigModel;
+use plumbline_grasp::PalmArm;
+use plumbline_grasp::plan::{GraspPlanner, Standing};
+use plumbline_model::robot::{Posture, Rig};
+use plumbline_twin::{Lockstep, Scenario, Toy};
+
+/// The published positions within reach of the right arm: x and y, m.
+const PLACES_M: [[f64; 2]; 22] = [
+    [0.2, -0.4],
+    [0.3, -0.4],
+    [0.2, -0.3],
+    [0.3, -0.3],
+    [0.4, -0.3],
+    [0.2, -0.2],
+    [0.3, -0.2],
+    [0.4, -0.2],
+    [0.2, -0.1],
+    [0.3, -0.1],
+    [0.4, -0.1],
+    [0.2, 0.0],
+    [0.3, 0.0],
+    [0.4, 0.0],
+    [0.2, 0.1],
+    [0.3, 0.1],
+    [0.4, 0.1],
+    [0.2, 0.2],
+    [0.3, 0.2],
+    [0.4, 0.2],
+    [0.2, 0.3],
+    [0.3, 0.3],
+];
+
+fn planner(rig: &Arc<Rig>) -> GraspPlanner {
+    GraspPlanner::new(PalmArm::new(rig, &RigModel::nominal(rig), "right").expect("an arm"))
+}
+
+/// How far (m) a toy was lifted by a hand that is sent so much beside it (along the fingers, across, up).
+fn lifted_m(toy: Toy, at_m: [f64; 2], off_m: [f64; 3]) -> Result<(f64, f64, f64), String> {
+    let rig = Arc::new(Rig::built_in("nico").expect("valid"));
+    let mut twin =
+        Lockstep::new(rig.clone(), &Scenario::built_in("perfect").expect("valid"), 1).expect("a twin");
+    Toy::ALL.iter().filter(|other| **other != toy).for_each(|other| twin.remove_toy(*other));
+    twin.place_toy(toy, at_m[0], at_m[1]).map_err(|error| error.to_string())?;
+    twin.wait(1.0);
+    let place = |twin: &mut Lockstep| {
+        let truth = twin.truth_for_judging();
+        truth
+            .toys
+            .iter()
+            .find(|(other, _)| *other == toy)
+            .and_then(|(_, place)| *place)
+            .expect("out")
+            .translation
+            .vector
+    };
+    let before = place(&mut twin);
+    let half_m = 0.027;
+    let standing =
+        Standing { xy_m: [before.x, before.y], support_m: before.z - half_m, height_m: 2.0 * half_m };
+    let planner = planner(&rig);
+    let from = twin.commanded().clone();
+    let rough = planner.plan(&standing, &Vector3::zeros(), &from).map_err(|error| error.to_string())?;
+    let (sine, cosine) = rough.heading_rad.sin_cos();
+    let shift =
+        Vector3::new(off_m[0] * cosine - off_m[1] * sine, off_m[0] * sine + off_m[1] * cosine, off_m[2]);
+    let plan = planner.plan(&standing, &shift, &from).map_err(|error| error.to_string())?;
+    let began_s = twin.now_s();
+    twin.follow(&plan.approach, 0.8);
+    twin.follow(&plan.down, 0.5);
+    let closing = plan.closing().expect("a way down").clone();
+    let close = rig.pose("close-hand").expect("a pose").applied_to(&closing);
+    let joint = |name: &str| rig.description.find_joint(name).expect("a joint");
+    let thumb = [joint("r_thumb_x"), joint("r_thumb_z")];
+    twin.follow(&[closing.with(&thumb, &close.of(&thumb))], 2.0);
+    twin.follow(&[close.clone()], 2.5);
+    twin.wait(0.3);
+    let up: Vec<Posture> = planner.lift(&plan, &close, GraspPlanner::LIFT_M);
+    twin.follow(&up, 0.4);
+    twin.wait(0.5);
+    let seconds = twin.now_s() - began_s;
+    Ok((place(&mut twin).z - before.z, plan.level, seconds))
+}
+
+#[test]
+#[ignore = "minutes of physics; figures for who chooses how the hand closes"]
+fn at_every_place() {
+    for at_m in PLACES_M {
+        match lifted_m(Toy::Tomato, at_m, [0.0; 3]) {
+            Ok((up_m, level, seconds)) => {
+                println!("{at_m:?}: lifted {:.0} mm, level {level:.2}, {seconds:.1} s", up_m * 1e3)
+            }
+            Err(why) => println!("{at_m:?}: {why}"),
+        }
+    }
+}
+
+#[test]
+#[ignore = "minutes of physics; figures for who chooses how exact a grasp has to be"]
+fn off_by() {
+    for at_m in [[0.3, -0.2], [0.3, 0.1], [0.4, -0.1]] {
+        for (axis, name) in ["along", "across", "up"].iter().enumerate() {
+            let steps = if axis == 2 { -2..=4 } else { -4..=4 };
+            let row: Vec<String> = steps
+                .map(|step| {
+                    let mut off_m = [0.0; 3];
+                    off_m[axis] = f64::from(step) * 0.006;
+                    let up = lifted_m(Toy::Tomato, at_m, off_m).map_or(f64::NAN, |(up_m, ..)| up_m * 1e3);
+                    format!("{:+.0}:{up:.0}", off_m[axis] * 1e3)
+                })
+                .collect();
+            println!("{at_m:?} {name}: {}", row.join("  "));
+        }
+    }
+}
