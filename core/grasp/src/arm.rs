@@ -5,9 +5,9 @@ use std::sync::Arc;
 use nalgebra::Vector3;
 use plumbline_effects::RigModel;
 use plumbline_effects::rig_model::{Conditions, DeviatedArm};
+use plumbline_model::frame::Tip;
 use plumbline_model::robot::ik::{Options, Solver, SolverError, Target};
 use plumbline_model::robot::{Chain, DescriptionError, JointIndex, Posture, Rig};
-use plumbline_model::frame::Tip;
 use plumbline_model::{Point, Pose, Robot};
 
 /// A step of the solution that turns a joint by more is another way to hold the arm, rad.

@@ -3,8 +3,18 @@
 //! Nothing here knows whether a robot or a twin moves: a [`Body`] carries out what is asked.
 
 mod arm;
+pub mod attempt;
 mod body;
+mod knowledge;
+pub mod method;
 pub mod plan;
+pub mod record;
+pub mod see;
+pub mod things;
 
 pub use arm::{NoArm, PalmArm};
+pub use attempt::{Grasper, Order, Watch};
 pub use body::{Body, Halt, ServoState, Sight};
+pub use knowledge::{Corrections, Knowledge};
+pub use method::Method;
+pub use record::{Failure, Outcome, Record, Step};

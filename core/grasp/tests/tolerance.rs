@@ -119,3 +119,51 @@ fn off_by() {
         }
     }
 }
+
+#[test]
+#[ignore = "for who looks for why a grasp failed"]
+fn step_by_step() {
+    for at_m in PLACES_M {
+        let rig = Arc::new(Rig::built_in("nico").expect("valid"));
+        let mut twin =
+            Lockstep::new(rig.clone(), &Scenario::built_in("perfect").expect("valid"), 1).expect("a twin");
+        Toy::ALL.iter().filter(|other| **other != Toy::Tomato).for_each(|other| twin.remove_toy(*other));
+        twin.place_toy(Toy::Tomato, at_m[0], at_m[1]).expect("on the table");
+        twin.wait(1.0);
+        let place = |twin: &mut Lockstep| twin.truth_for_judging().toys[0].1.expect("out").translation.vector;
+        let palm = |twin: &mut Lockstep| {
+            let link = rig.description.find_link("right_palm_center").expect("a tip");
+            twin.truth_for_judging().robot_from_link[link.0].expect("there").translation.vector
+        };
+        let before = place(&mut twin);
+        let standing = Standing { xy_m: [before.x, before.y], support_m: before.z - 0.027, height_m: 0.054 };
+        let planner = planner(&rig);
+        let from = twin.commanded().clone();
+        let Ok(plan) = planner.plan(&standing, &Vector3::zeros(), &from) else { continue };
+        twin.follow(&plan.approach, 0.8);
+        let above = place(&mut twin);
+        let off = |twin: &mut Lockstep, posture: &Posture| {
+            (palm(twin) - planner.arm().palm(posture).coords.coords) * 1e3
+        };
+        let above_off = off(&mut twin, plan.above().expect("above"));
+        twin.follow(&plan.down, 0.5);
+        let down = place(&mut twin);
+        let closing = plan.closing().expect("down").clone();
+        let down_off = off(&mut twin, &closing);
+        println!(
+            "{at_m:?} heading {:.2} support {:.1} way {} pushed above {:.0} down {:.0} mm, palm off above [{:.1} {:.1} {:.1}] down [{:.1} {:.1} {:.1}], joints {:.2?}",
+            plan.heading_rad,
+            (before.z - 0.027) * 1e3,
+            plan.approach.len(),
+            (above - before).norm() * 1e3,
+            (down - before).norm() * 1e3,
+            above_off.x,
+            above_off.y,
+            above_off.z,
+            down_off.x,
+            down_off.y,
+            down_off.z,
+            closing.of(planner.arm().joints()),
+        );
+    }
+}

@@ -25,6 +25,12 @@ pub enum OfflineError {
     /// Stopped on request.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The twin cannot be built.
+    #[error(transparent)]
+    Twin(#[from] plumbline_twin::TwinError),
+    /// The robot has no such hand.
+    #[error(transparent)]
+    Arm(#[from] plumbline_grasp::NoArm),
     /// The board cannot be used.
     #[error(transparent)]
     Board(#[from] BoardError),

@@ -16,6 +16,7 @@ mod disparity;
 pub mod doctor;
 mod error;
 mod gap;
+mod grasp;
 mod ik;
 mod locate;
 mod pairs;

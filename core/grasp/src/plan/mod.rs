@@ -6,8 +6,8 @@ mod ways;
 use std::f64::consts::PI;
 
 use nalgebra::{Point3, Vector3};
-use plumbline_model::robot::Posture;
 use plumbline_model::robot::collision::{CollisionError, CollisionModel};
+use plumbline_model::robot::{JointIndex, Posture};
 use plumbline_model::{Point, Robot};
 
 use crate::arm::PalmArm;
@@ -24,8 +24,15 @@ const HEADING_STEP_RAD: f64 = PI / 18.0;
 const HEADINGS_RAD: [f64; 2] = [-0.6 * PI, 0.9 * PI];
 /// A palm inclined farther than this (cosine) does not close around things.
 const LEAST_LEVEL: f64 = 0.6;
-/// Things belong so much nearer to the fingers than the middle of the palm, m.
-const INTO_FINGERS_M: f64 = 0.012;
+/// More level than this (cosine) makes no difference.
+const LEVEL_ENOUGH: f64 = 0.97;
+/// Fingers and thumb bend this far around nothing, rad.
+const CLOSED_RAD: f64 = 1.8;
+/// Things belong so much nearer to the fingers than the middle of the palm, m, in the middle of how far
+/// off they may be and still be lifted (`tests/tolerance.rs`)…
+const INTO_FINGERS_M: f64 = 0.015;
+/// …and so much toward the right of the hand, m.
+const TO_THE_RIGHT_M: f64 = 0.004;
 /// The palm closes so much below the top of a thing, m…
 const BELOW_TOP_M: f64 = 0.017;
 
@@ -43,7 +50,9 @@ pub struct Standing {
 impl Standing {
     /// Where the palm belongs when the fingers close, for a heading of the hand.
     pub fn palm(&self, heading_rad: f64) -> Point<Robot> {
-        let back = Vector3::new(heading_rad.cos(), heading_rad.sin(), 0.0) * INTO_FINGERS_M;
+        let (sine, cosine) = heading_rad.sin_cos();
+        let back = Vector3::new(cosine, sine, 0.0) * INTO_FINGERS_M
+            - Vector3::new(-sine, cosine, 0.0) * TO_THE_RIGHT_M;
         let z_m = self.support_m + self.height_m - BELOW_TOP_M;
         Point::from(Point3::new(self.xy_m[0], self.xy_m[1], z_m) - back)
     }
@@ -138,18 +147,42 @@ impl GraspPlanner {
             }
         }
         ways.retain(|(level, ..)| *level >= LEAST_LEVEL);
-        ways.sort_by(|a, b| b.0.total_cmp(&a.0));
+        // Level counts, and what is level enough keeps away from the table.
+        ways.sort_by(|a, b| b.0.min(LEVEL_ENOUGH).total_cmp(&a.0.min(LEVEL_ENOUGH)));
         let out_of_reach = NoPlan::OutOfReach { xy_m: standing.xy_m };
-        let mut why = None;
+        let (mut why, mut best): (_, Option<(f64, GraspPlan)>) = (None, None);
         for (level, above, down, heading_rad) in ways {
-            match self.approach(from, &above) {
-                Ok(approach) => {
-                    return Ok(GraspPlan { standing: *standing, heading_rad, level, approach, down });
+            if best.as_ref().is_some_and(|(_, best)| best.level >= LEVEL_ENOUGH && level < LEVEL_ENOUGH) {
+                break;
+            }
+            let free = self.room(&above, &down).and_then(|room_m| Ok((room_m, self.approach(from, &above)?)));
+            match free {
+                Ok((room_m, approach)) if best.as_ref().is_none_or(|(most_m, _)| room_m > *most_m) => {
+                    let standing = *standing;
+                    best = Some((room_m, GraspPlan { standing, heading_rad, level, approach, down }));
                 }
+                Ok(_) => {}
                 Err(barred) => why = why.or(Some(barred)),
             }
         }
+        if let Some((_, plan)) = best {
+            return Ok(plan);
+        }
         Err(why.unwrap_or(out_of_reach))
+    }
+
+    /// The same grasp from above the object with the palm sent elsewhere.
+    ///
+    /// # Errors
+    /// When the hand does not get there.
+    pub fn again(&self, plan: &GraspPlan, shift_m: &Vector3<f64>) -> Result<GraspPlan, NoPlan> {
+        let palm = Point::from(plan.standing.palm(plan.heading_rad).coords + shift_m);
+        let out_of_reach = NoPlan::OutOfReach { xy_m: plan.standing.xy_m };
+        let start = plan.above().ok_or_else(|| out_of_reach.clone())?;
+        let (above, down) = self.way_down(palm, plan.heading_rad, start).ok_or(out_of_reach)?;
+        self.room(&above, &down)?;
+        let level = down.last().map_or(0.0, |closing| self.arm.level(closing));
+        Ok(GraspPlan { level, approach: vec![above], down, ..plan.clone() })
     }
 
     /// Straight up from where the hand closed, fingers as they are.
@@ -173,6 +206,56 @@ impl GraspPlanner {
     /// The hand open, the rest as in `from`.
     pub fn open(&self, from: &Posture) -> Posture {
         from.with(self.arm.hand(), &vec![0.0; self.arm.hand().len()])
+    }
+
+    /// Joints of the fingers without the thumb.
+    pub fn fingers(&self) -> Vec<JointIndex> {
+        let is_finger = |joint: &&JointIndex| !self.is_thumb(**joint);
+        self.arm.hand().iter().filter(is_finger).copied().collect()
+    }
+
+    /// The hand closed, the rest as in `from`.
+    pub fn closed(&self, from: &Posture) -> Posture {
+        let angles: Vec<f64> = self.arm.hand().iter().map(|joint| self.closed_rad(*joint)).collect();
+        from.with(self.arm.hand(), &angles)
+    }
+
+    /// The thumb closed, the rest as in `from`.
+    pub fn thumb_closed(&self, from: &Posture) -> Posture {
+        let thumb: Vec<JointIndex> =
+            self.arm.hand().iter().filter(|joint| self.is_thumb(**joint)).copied().collect();
+        let angles: Vec<f64> = thumb.iter().map(|joint| self.closed_rad(*joint)).collect();
+        from.with(&thumb, &angles)
+    }
+
+    /// The palm turned to the eyes as published: the wrist bends by 45° where the arm is stretched and
+    /// turns by 60° where it is bent, as far as its limits let it; the thumb out of the way.
+    pub fn palm_to_eyes(&self, above: &Posture) -> Posture {
+        let rig = self.arm.rig();
+        let joints = self.arm.joints();
+        let [.., elbow, turn, bend] = *joints else { return above.clone() };
+        let stretched = ((above[elbow].to_degrees() - 60.0) / 100.0).clamp(0.0, 1.0);
+        let within = |joint: JointIndex, angle_rad: f64| {
+            let limits = rig.limits(joint);
+            angle_rad.clamp(limits.lower_rad, limits.upper_rad)
+        };
+        let bent = within(bend, above[bend] - 0.25 * PI * stretched);
+        let turned = within(turn, above[turn] + PI / 3.0 * (1.0 - stretched));
+        above.with(&[turn, bend], &[turned, bent])
+    }
+
+    fn is_thumb(&self, joint: JointIndex) -> bool {
+        self.arm.rig().description.joint(joint).name.contains("thumb")
+    }
+
+    /// Bent inward, as far as the fingers of the pose "close-hand" are.
+    fn closed_rad(&self, joint: JointIndex) -> f64 {
+        if self.arm.rig().description.joint(joint).name.contains("thumb_z") {
+            return 0.0;
+        }
+        let limits = self.arm.rig().limits(joint);
+        let inward = if limits.upper_rad > -limits.lower_rad { 1.0 } else { -1.0 };
+        inward * CLOSED_RAD
     }
 
     fn way_down(

@@ -24,6 +24,26 @@ impl GraspPlanner {
         Err(NoPlan::NotFree(barred.unwrap_or_else(|| "there is none".to_owned())))
     }
 
+    /// The smallest distance (m) of any two bodies on the way down.
+    pub(super) fn room(&self, above: &Posture, down: &[Posture]) -> Result<f64, NoPlan> {
+        let mut before = above;
+        let mut room_m = f64::INFINITY;
+        for next in down {
+            match self.bodies.check_path(before, next, &[])? {
+                PathCheck::Clear { smallest_m, .. } => room_m = room_m.min(smallest_m),
+                PathCheck::Collides { contact, .. } => {
+                    let (a, b) = (contact.a_name, contact.b_name);
+                    return Err(NoPlan::NotFree(format!("going down the {a} would meet the {b}")));
+                }
+                PathCheck::BeyondLimit { name, why, .. } => {
+                    return Err(NoPlan::NotFree(format!("going down {name} would turn too far: {why}")));
+                }
+            }
+            before = next;
+        }
+        Ok(room_m)
+    }
+
     fn ways(&self, from: &Posture, above: &Posture) -> Vec<Vec<Posture>> {
         let arm = self.arm();
         let home = self.open(above).with(arm.joints(), &arm.rig().home().of(arm.joints()));

@@ -1,0 +1,104 @@
+//! Which of the things that are seen is meant, and where it stands.
+
+use nalgebra::Matrix3;
+use plumbline_model::{Point, Robot};
+
+use super::{End, Running};
+use crate::body::Sight;
+use crate::method::Method;
+use crate::plan::Standing;
+use crate::record::{Failure, Step};
+use crate::see::{Seen, SeenPlace};
+use crate::things::Thing;
+
+/// Standard deviation of the height at which the middle of a thing on the table is, m: the table may
+/// be tilted, the thing may lean.
+const HEIGHT_SIGMA_M: f64 = 0.003;
+/// A thing whose middle seems to be this far from where the table says is somewhere else, m, beside
+/// three standard deviations.
+const NOT_ON_TABLE_M: f64 = 0.03;
+/// Farther from the place that was pointed at it is not what was meant, m.
+const NEAR_M: f64 = 0.12;
+
+/// The thing that is grasped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chosen {
+    /// Its middle.
+    pub point: Point<Robot>,
+    /// Its covariance, m².
+    pub covariance_m2: Matrix3<f64>,
+    /// Where it stands.
+    pub standing: Standing,
+}
+
+impl Running<'_> {
+    /// Looks for the object that is meant.
+    pub(super) fn find(&mut self, sight: &Sight) -> Result<Chosen, End> {
+        let grasper = &mut *self.grasper;
+        let seen = grasper.looker.look(sight, &grasper.knowledge)?;
+        self.watch.saw(Step::Look, sight, &seen);
+        self.record.seen = seen;
+        let object = &self.order.object;
+        let thing = Thing::of_class(object)
+            .ok_or_else(|| End::Refused(format!("nothing is known of a thing called {object}")))?;
+        let index = nearest(&self.record.seen, thing.class, self.order.near_m)?;
+        self.record.chosen = Some(index);
+        let place = self.record.seen[index]
+            .place
+            .clone()
+            .map_err(|why| End::Failed(Failure::NotSeen, format!("the {object} has no place: {why}")))?;
+        self.standing(&place, &thing)
+    }
+
+    /// Where it stands. A thing that stands on the table has its middle at a height that is known, which
+    /// tells more of its distance than two eyes so near to each other; ours uses that.
+    fn standing(&self, place: &SeenPlace, thing: &Thing) -> Result<Chosen, End> {
+        let knowledge = &self.grasper.knowledge;
+        let (mut point, mut covariance_m2) = (place.point().coords.coords, place.covariance_m2);
+        let support_m = knowledge.support_m(point.x, point.y);
+        let middle_m = support_m + 0.5 * thing.height_m;
+        let off_m = point.z - middle_m;
+        let sigma_m = covariance_m2[(2, 2)].max(0.0).sqrt();
+        if off_m.abs() > NOT_ON_TABLE_M + 3.0 * sigma_m {
+            return Err(End::Refused(format!(
+                "the {} seems to be {:.0} mm {} the table: put it down, or calibrate the eyes again",
+                thing.class.to_lowercase(),
+                off_m.abs() * 1e3,
+                if off_m > 0.0 { "over" } else { "under" }
+            )));
+        }
+        if self.order.method == Method::M5 {
+            let gain = covariance_m2.column(2) / (covariance_m2[(2, 2)] + HEIGHT_SIGMA_M.powi(2));
+            point -= gain * off_m;
+            let row = covariance_m2.row(2).into_owned();
+            covariance_m2 -= gain * row;
+        }
+        let xy_m = [point.x, point.y];
+        let support_m = knowledge.support_m(point.x, point.y);
+        let standing = Standing { xy_m, support_m, height_m: thing.height_m };
+        Ok(Chosen { point: Point::new(point.x, point.y, point.z), covariance_m2, standing })
+    }
+}
+
+/// The thing of that class nearest to a place, else the one that is seen best.
+fn nearest(seen: &[Seen], class: &str, near_m: Option<[f64; 2]>) -> Result<usize, End> {
+    let not_seen = |why: String| End::Failed(Failure::NotSeen, why);
+    let lower = class.to_lowercase();
+    let of_class = || seen.iter().enumerate().filter(|(_, thing)| thing.class.eq_ignore_ascii_case(class));
+    let placed = of_class().filter_map(|(index, thing)| Some((index, thing.place.as_ref().ok()?)));
+    let far_m =
+        |place: &SeenPlace, [x_m, y_m]: [f64; 2]| (place.point_m[0] - x_m).hypot(place.point_m[1] - y_m);
+    let chosen = match near_m {
+        None => placed.map(|(index, _)| index).next(),
+        Some(near_m) => placed
+            .map(|(index, place)| (index, far_m(place, near_m)))
+            .filter(|(_, far_m)| *far_m < NEAR_M)
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(index, _)| index),
+    };
+    chosen.ok_or_else(|| match of_class().next() {
+        None => not_seen(format!("no {lower} is seen: put it where both eyes see it")),
+        Some((_, Seen { place: Err(why), .. })) => not_seen(format!("the {lower} has no place: {why}")),
+        Some(_) => not_seen(format!("no {lower} is seen near the place that was chosen")),
+    })
+}

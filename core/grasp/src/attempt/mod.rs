@@ -1,0 +1,241 @@
+//! One grasp, from the look at the table to the check of what is in the hand.
+
+mod align;
+mod check;
+mod choose;
+mod ready;
+
+use jiff::Timestamp;
+use plumbline_model::robot::Posture;
+use plumbline_model::robot::Rig;
+use plumbline_vision::detect::DetectError;
+
+use crate::arm::{NoArm, PalmArm};
+use crate::body::{Body, Halt, Sight};
+use crate::knowledge::Knowledge;
+use crate::method::{self, Method};
+use crate::plan::{GraspPlan, GraspPlanner, NoPlan};
+use crate::record::{Failure, Iteration, Moment, Outcome, Record, Step};
+use crate::see::{Looker, Seen};
+
+pub use align::{FoundHand, HandFinder, HandMissing};
+pub use choose::Chosen;
+
+/// Peak joint speed through the air, rad/s.
+const AIR_RAD_S: f64 = 0.8;
+/// Going down, rad/s.
+const DOWN_RAD_S: f64 = 0.5;
+/// Up with something in the hand, rad/s.
+const LIFT_RAD_S: f64 = 0.4;
+/// Thumb and fingers closing, rad/s.
+const CLOSE_RAD_S: f64 = 2.5;
+/// The eyes settle with the arm, s.
+const STILL_S: f64 = 0.3;
+
+/// What is to be grasped, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Order {
+    /// How.
+    pub method: Method,
+    /// Class of the object.
+    pub object: String,
+    /// The one nearest to this place of the table, robot frame, m; `None`: the one that is seen best.
+    pub near_m: Option<[f64; 2]>,
+}
+
+/// Told while it happens.
+pub trait Watch {
+    /// A step begins.
+    fn step(&mut self, step: Step);
+    /// What both eyes saw at that step, and what was found.
+    fn saw(&mut self, step: Step, sight: &Sight, seen: &[Seen]);
+    /// What is about to be sent: it was looked at and nothing has moved yet.
+    fn planned(&mut self, plan: &GraspPlan);
+    /// The hand was looked at.
+    fn aligned(&mut self, iteration: &Iteration);
+}
+
+/// Nobody watches.
+impl Watch for () {
+    fn step(&mut self, _step: Step) {}
+    fn saw(&mut self, _step: Step, _sight: &Sight, _seen: &[Seen]) {}
+    fn planned(&mut self, _plan: &GraspPlan) {}
+    fn aligned(&mut self, _iteration: &Iteration) {}
+}
+
+/// Why an attempt ends before it has lifted.
+enum End {
+    Refused(String),
+    Failed(Failure, String),
+}
+
+impl From<Halt> for End {
+    fn from(halt: Halt) -> Self {
+        match halt {
+            Halt::Blind(why) => Self::Failed(Failure::NotSeen, why),
+            other => Self::Failed(Failure::Halted, other.to_string()),
+        }
+    }
+}
+
+impl From<NoPlan> for End {
+    fn from(no_plan: NoPlan) -> Self {
+        Self::Refused(no_plan.to_string())
+    }
+}
+
+impl From<method::NotTrained> for End {
+    fn from(not_trained: method::NotTrained) -> Self {
+        Self::Refused(not_trained.to_string())
+    }
+}
+
+impl From<DetectError> for End {
+    fn from(error: DetectError) -> Self {
+        Self::Failed(Failure::NotSeen, error.to_string())
+    }
+}
+
+/// Grasps with one hand. Made once, used for many attempts.
+pub struct Grasper {
+    knowledge: Knowledge,
+    looker: Looker,
+    /// The arm as described.
+    described: GraspPlanner,
+    /// The arm with its effects.
+    known: GraspPlanner,
+    finder: Option<Box<dyn HandFinder>>,
+}
+
+impl Grasper {
+    /// For an arm of the robot; `finder` finds the hand for M5.
+    ///
+    /// # Errors
+    /// When the robot has no such arm.
+    pub fn new(
+        knowledge: Knowledge,
+        looker: Looker,
+        arm: &str,
+        finder: Option<Box<dyn HandFinder>>,
+    ) -> Result<Self, NoArm> {
+        let nominal = plumbline_effects::RigModel::nominal(&knowledge.described);
+        let described = GraspPlanner::new(PalmArm::new(&knowledge.described, &nominal, arm)?);
+        let known = GraspPlanner::new(PalmArm::new(&knowledge.rig, &knowledge.effects, arm)?);
+        Ok(Self { knowledge, looker, described, known, finder })
+    }
+
+    /// The robot as it is known.
+    pub fn rig(&self) -> &Rig {
+        &self.knowledge.rig
+    }
+
+    /// What plans for a method.
+    pub fn planner(&self, method: Method) -> &GraspPlanner {
+        if method.knows_effects() { &self.known } else { &self.described }
+    }
+
+    /// Grasps once. Whatever happens, the record says it, and the arm holds where it is.
+    pub fn attempt(&mut self, body: &mut dyn Body, order: &Order, watch: &mut dyn Watch) -> Record {
+        let effects = self.knowledge.effects.effects().len();
+        let model = match effects {
+            _ if !order.method.knows_effects() => "as described".to_owned(),
+            0 => "as described, no effect was named yet".to_owned(),
+            1 => "with one effect".to_owned(),
+            several => format!("with {several} effects"),
+        };
+        let mut record = Record::new(order.method, &order.object, Timestamp::now(), model);
+        let began_s = body.now_s();
+        let mut running = Running { grasper: self, body, order, watch, record: &mut record, began_s };
+        let outcome = match running.run() {
+            Ok(outcome) => outcome,
+            Err(End::Refused(why)) => Outcome::Refused { why },
+            Err(End::Failed(failure, why)) => Outcome::Failed { failure, why },
+        };
+        record.outcome = Some(outcome);
+        record
+    }
+}
+
+/// An attempt that is under way.
+struct Running<'a> {
+    grasper: &'a mut Grasper,
+    body: &'a mut dyn Body,
+    order: &'a Order,
+    watch: &'a mut dyn Watch,
+    record: &'a mut Record,
+    began_s: f64,
+}
+
+impl Running<'_> {
+    fn run(&mut self) -> Result<Outcome, End> {
+        self.begin(Step::Ready);
+        self.ready()?;
+        self.begin(Step::Look);
+        let before = self.body.look()?;
+        let chosen = self.find(&before)?;
+        self.begin(Step::Plan);
+        let method = self.order.method;
+        let (shift_m, _) = method::correction(method, &self.grasper.knowledge, &chosen.point)?;
+        let from = self.body.commanded()?;
+        let mut plan = self.grasper.planner(method).plan(&chosen.standing, &shift_m, &from)?;
+        self.planned(&plan);
+        self.begin(Step::Approach);
+        self.follow(Step::Approach, &plan.approach.clone(), AIR_RAD_S)?;
+        if method.aligns() {
+            self.begin(Step::Align);
+            plan = self.align(plan, shift_m, &chosen, &before)?;
+        }
+        self.begin(Step::Lower);
+        self.follow(Step::Lower, &plan.down, DOWN_RAD_S)?;
+        self.begin(Step::Close);
+        let closed = self.close(&plan)?;
+        self.begin(Step::Lift);
+        let up = self.grasper.planner(method).lift(&plan, &closed, GraspPlanner::LIFT_M);
+        self.follow(Step::Lift, &up, LIFT_RAD_S)?;
+        self.record.seconds = Some(self.body.now_s() - self.began_s);
+        self.begin(Step::Check);
+        self.check(&chosen)
+    }
+
+    fn begin(&mut self, step: Step) {
+        self.watch.step(step);
+    }
+
+    fn planned(&mut self, plan: &GraspPlan) {
+        self.record.wanted_m = Some(plan.standing.palm(plan.heading_rad).coords.coords.into());
+        self.record.standing_m = Some(plan.standing.xy_m);
+        self.record.heading_rad = Some(plan.heading_rad);
+        self.watch.planned(plan);
+    }
+
+    fn follow(&mut self, step: Step, way: &[Posture], speed_rad_s: f64) -> Result<(), End> {
+        let done = self.body.follow(way, speed_rad_s);
+        self.keep(step)?;
+        Ok(done?)
+    }
+
+    /// Where the arm is now, into the record.
+    fn keep(&mut self, after: Step) -> Result<(), End> {
+        let servos = self.body.servos()?;
+        self.record.moments.push(Moment {
+            after,
+            at_s: self.body.now_s(),
+            commanded_rad: self.body.commanded()?.angles_rad().to_vec(),
+            encoder_rad: servos.iter().map(|servo| servo.angle_rad).collect(),
+            load: servos.iter().map(|servo| servo.load).collect(),
+        });
+        Ok(())
+    }
+
+    /// The thumb first: the fingers push against it.
+    fn close(&mut self, plan: &GraspPlan) -> Result<Posture, End> {
+        let open = plan.closing().cloned().ok_or_else(|| End::Refused("there is no way down".to_owned()))?;
+        let planner = self.grasper.planner(self.order.method);
+        let closed = planner.closed(&open);
+        let thumb = planner.thumb_closed(&open);
+        self.follow(Step::Close, &[thumb], CLOSE_RAD_S)?;
+        self.follow(Step::Close, std::slice::from_ref(&closed), CLOSE_RAD_S)?;
+        self.body.wait(STILL_S)?;
+        Ok(closed)
+    }
+}

@@ -1,0 +1,206 @@
+//! What became of a grasp, as it is kept on disk.
+
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+
+use crate::method::Method;
+use crate::see::Seen;
+
+/// Version of the record's file.
+pub const FORMAT: u32 = 1;
+
+/// A step of a grasp, in their order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Step {
+    /// Whether the robot is fit to move.
+    Ready,
+    /// Looking for the object.
+    Look,
+    /// Postures and ways.
+    Plan,
+    /// To above the object.
+    Approach,
+    /// The hand is brought over the object by what the eyes see.
+    Align,
+    /// Straight down.
+    Lower,
+    /// Thumb and fingers.
+    Close,
+    /// Up.
+    Lift,
+    /// Whether it is held.
+    Check,
+}
+
+impl Step {
+    /// All, in their order.
+    pub const ALL: [Self; 9] = [
+        Self::Ready,
+        Self::Look,
+        Self::Plan,
+        Self::Approach,
+        Self::Align,
+        Self::Lower,
+        Self::Close,
+        Self::Lift,
+        Self::Check,
+    ];
+
+    /// Its name for people.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Ready => "Ready",
+            Self::Look => "Look",
+            Self::Plan => "Plan",
+            Self::Approach => "Approach",
+            Self::Align => "Align",
+            Self::Lower => "Lower",
+            Self::Close => "Close",
+            Self::Lift => "Lift",
+            Self::Check => "Check",
+        }
+    }
+}
+
+/// Why a grasp failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Failure {
+    /// The object was not seen.
+    NotSeen,
+    /// The object was taken to be elsewhere.
+    PlaceWrong,
+    /// The hand was not found, or taken to be elsewhere.
+    HandWrong,
+    /// The hand did not come to where it was sent.
+    ReachWrong,
+    /// It was in the hand, or nearly, and was lost.
+    Slipped,
+    /// Something ended it on the way.
+    Halted,
+}
+
+/// What became of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "result", rename_all = "kebab-case")]
+pub enum Outcome {
+    /// It was lifted.
+    Success,
+    /// It was not.
+    Failed {
+        /// Why.
+        failure: Failure,
+        /// A sentence.
+        why: String,
+    },
+    /// Nothing was risked.
+    Refused {
+        /// Why, and what to do.
+        why: String,
+    },
+}
+
+/// One look at the hand.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Iteration {
+    /// Where the palm was sent, m.
+    pub sent_m: [f64; 3],
+    /// Where the hand was found to be, m; `None`: it was not found.
+    pub hand_m: Option<[f64; 3]>,
+    /// Why it was not found.
+    pub not_found: Option<String>,
+    /// Horizontal distance from where it belongs, m.
+    pub distance_m: Option<f64>,
+    /// Standard deviation of the hand's place over the table, m, where it is known.
+    pub sigma_m: Option<f64>,
+}
+
+/// A moment of the arm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Moment {
+    /// What had just been done.
+    pub after: Step,
+    /// Clock of the robot, s.
+    pub at_s: f64,
+    /// Commanded, all joints, rad.
+    pub commanded_rad: Vec<f64>,
+    /// By the encoders, in the order of the servos, rad.
+    pub encoder_rad: Vec<f64>,
+    /// Share of the full torque, in the order of the servos.
+    pub load: Vec<Option<f64>>,
+}
+
+/// A grasp as it is kept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// Version of the format.
+    pub format: u32,
+    /// How.
+    pub method: Method,
+    /// Class of the object.
+    pub object: String,
+    /// When it began.
+    pub began: Timestamp,
+    /// With which model, for people.
+    pub model: String,
+    /// What was seen at first.
+    pub seen: Vec<Seen>,
+    /// The object that was chosen, by its place in `seen`.
+    pub chosen: Option<usize>,
+    /// Where the object stands, over the table, m.
+    pub standing_m: Option<[f64; 2]>,
+    /// Where the palm belongs when the hand closes, m.
+    pub wanted_m: Option<[f64; 3]>,
+    /// Azimuth of the fingers, rad.
+    pub heading_rad: Option<f64>,
+    /// Looks at the hand.
+    pub iterations: Vec<Iteration>,
+    /// The arm after each step.
+    pub moments: Vec<Moment>,
+    /// What was seen at last.
+    pub seen_after: Vec<Seen>,
+    /// How far the fingers were kept from where they were sent after the lift, rad.
+    pub fingers_open_rad: Option<f64>,
+    /// From the beginning to the end of the lift, s of the robot's clock.
+    pub seconds: Option<f64>,
+    /// What it took itself for.
+    pub outcome: Option<Outcome>,
+    /// What the operator said.
+    pub told_by_operator: Option<bool>,
+}
+
+impl Record {
+    /// Of a grasp that begins.
+    pub fn new(method: Method, object: &str, began: Timestamp, model: String) -> Self {
+        Self {
+            format: FORMAT,
+            method,
+            object: object.to_owned(),
+            began,
+            model,
+            seen: vec![],
+            chosen: None,
+            standing_m: None,
+            wanted_m: None,
+            heading_rad: None,
+            iterations: vec![],
+            moments: vec![],
+            seen_after: vec![],
+            fingers_open_rad: None,
+            seconds: None,
+            outcome: None,
+            told_by_operator: None,
+        }
+    }
+
+    /// Whether it was lifted: as the operator said, else as it took itself.
+    pub fn is_success(&self) -> bool {
+        self.told_by_operator.unwrap_or(self.outcome == Some(Outcome::Success))
+    }
+
+    /// Distance of the hand from where it belongs, at the last look, m.
+    pub fn alignment_m(&self) -> Option<f64> {
+        self.iterations.iter().rev().find_map(|iteration| iteration.distance_m)
+    }
+}

@@ -1,0 +1,130 @@
+//! One attempt on a twin, carried out and judged.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use plumbline_grasp::attempt::HandFinder;
+use plumbline_grasp::plan::GraspPlan;
+use plumbline_grasp::record::Iteration;
+use plumbline_grasp::see::{Looker, Seen};
+use plumbline_grasp::{Body, Grasper, Halt, Knowledge, Order, Record, ServoState, Sight, Step, Watch};
+use plumbline_model::robot::{Posture, Rig};
+use plumbline_twin::eyes::EyeRenderer;
+use plumbline_twin::{Lockstep, Scenario, Toy};
+use plumbline_vision::detect::{DetectSettings, DetectorOptions, shipped_detector};
+
+use super::body::TwinBody;
+use super::judge::{Judge, Judged};
+use crate::OfflineError;
+
+/// Since the eyes were switched on, s: they have warmed up, as in the published experiment.
+const WARM_S: f64 = 1800.0;
+
+/// What attempts of one twin share.
+pub(super) struct Bench {
+    rig: Arc<Rig>,
+    scenario: Scenario,
+    grasper: Grasper,
+    eyes: Option<EyeRenderer>,
+}
+
+/// A thing at a place, and how it is to be grasped.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Task {
+    pub order: Order,
+    pub toy: Toy,
+    pub at_m: [f64; 2],
+    pub seed: u64,
+}
+
+impl Bench {
+    pub fn new(
+        rig: Arc<Rig>,
+        scenario: Scenario,
+        knowledge: Knowledge,
+        finder: Option<Box<dyn HandFinder>>,
+    ) -> Result<Self, OfflineError> {
+        let shipped = shipped_detector().ok_or(OfflineError::NoDetector)?;
+        // One thread, so that a sum of numbers is the same on every machine.
+        let options = DetectorOptions { threads: Some(1), ..DetectorOptions::default() };
+        let looker = Looker::new(shipped.open(&options)?, &knowledge, DetectSettings::default());
+        let grasper = Grasper::new(knowledge, looker, "right", finder)?;
+        Ok(Self { rig, scenario, grasper, eyes: None })
+    }
+
+    /// Carries out one attempt in a world of its own.
+    pub fn attempt(&mut self, task: &Task) -> Result<(Record, Judged), OfflineError> {
+        let mut twin =
+            Lockstep::new(self.rig.clone(), &self.scenario, task.seed)?.with_eyes(self.eyes.take());
+        twin.advance_warm_up(WARM_S);
+        let mut body = TwinBody::new(twin, task.toy, task.at_m)?;
+        let judge = Rc::new(RefCell::new(Judge::new(body.twin(), task.toy, &self.rig)));
+        let step = Rc::new(RefCell::new(Step::Ready));
+        let mut watched = Watched { body: &mut body, judge: judge.clone(), step: step.clone() };
+        let mut watch = Steps(step);
+        let record = self.grasper.attempt(&mut watched, &task.order, &mut watch);
+        let judged = judge.borrow().judge(body.twin(), &record);
+        self.eyes = body.into_twin().take_eyes();
+        Ok((record, judged))
+    }
+}
+
+/// Tells the judge where the attempt is.
+struct Steps(Rc<RefCell<Step>>);
+
+impl Watch for Steps {
+    fn step(&mut self, step: Step) {
+        *self.0.borrow_mut() = step;
+    }
+
+    fn saw(&mut self, _step: Step, _sight: &Sight, _seen: &[Seen]) {}
+
+    fn planned(&mut self, _plan: &GraspPlan) {}
+
+    fn aligned(&mut self, _iteration: &Iteration) {}
+}
+
+/// A body with a judge at its side, who looks at it and is not seen.
+struct Watched<'a> {
+    body: &'a mut TwinBody,
+    judge: Rc<RefCell<Judge>>,
+    step: Rc<RefCell<Step>>,
+}
+
+impl Body for Watched<'_> {
+    fn rig(&self) -> &Arc<Rig> {
+        self.body.rig()
+    }
+
+    fn now_s(&self) -> f64 {
+        self.body.now_s()
+    }
+
+    fn servos(&mut self) -> Result<Vec<ServoState>, Halt> {
+        self.body.servos()
+    }
+
+    fn commanded(&mut self) -> Result<Posture, Halt> {
+        self.body.commanded()
+    }
+
+    fn follow(&mut self, way: &[Posture], speed_rad_s: f64) -> Result<(), Halt> {
+        self.body.follow(way, speed_rad_s)?;
+        if *self.step.borrow() == Step::Lower {
+            self.judge.borrow_mut().closing(self.body.twin());
+        }
+        Ok(())
+    }
+
+    fn wait(&mut self, duration_s: f64) -> Result<(), Halt> {
+        self.body.wait(duration_s)
+    }
+
+    fn look(&mut self) -> Result<Sight, Halt> {
+        if *self.step.borrow() == Step::Align {
+            self.judge.borrow_mut().aligned(self.body.twin());
+        }
+        self.body.look()
+    }
+}

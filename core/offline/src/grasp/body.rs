@@ -1,0 +1,79 @@
+//! A twin without a clock as the body of a grasp.
+
+use std::sync::Arc;
+
+use plumbline_grasp::{Body, Halt, ServoState, Sight};
+use plumbline_model::robot::{Posture, Rig};
+use plumbline_twin::{Lockstep, Toy};
+
+/// The twin, and what it lacks to be told from a robot.
+pub(super) struct TwinBody {
+    twin: Lockstep,
+    pairs: u64,
+}
+
+impl TwinBody {
+    /// The twin stands with one toy on its table, which has come to rest.
+    pub fn new(mut twin: Lockstep, toy: Toy, at_m: [f64; 2]) -> Result<Self, plumbline_twin::TwinError> {
+        Toy::ALL.into_iter().filter(|other| *other != toy).for_each(|other| twin.remove_toy(other));
+        twin.place_toy(toy, at_m[0], at_m[1])?;
+        twin.wait(1.0);
+        Ok(Self { twin, pairs: 0 })
+    }
+
+    /// For who judges.
+    pub fn twin(&mut self) -> &mut Lockstep {
+        &mut self.twin
+    }
+
+    /// The twin itself.
+    pub fn into_twin(self) -> Lockstep {
+        self.twin
+    }
+}
+
+impl Body for TwinBody {
+    fn rig(&self) -> &Arc<Rig> {
+        self.twin.rig()
+    }
+
+    fn now_s(&self) -> f64 {
+        self.twin.now_s()
+    }
+
+    fn servos(&mut self) -> Result<Vec<ServoState>, Halt> {
+        let servos = self.twin.servos().into_iter().map(|servo| ServoState {
+            joint: servo.joint,
+            angle_rad: servo.angle_rad,
+            load: Some(servo.load),
+            temperature_c: Some(servo.temperature_c),
+        });
+        Ok(servos.collect())
+    }
+
+    fn commanded(&mut self) -> Result<Posture, Halt> {
+        Ok(self.twin.commanded().clone())
+    }
+
+    fn follow(&mut self, way: &[Posture], speed_rad_s: f64) -> Result<(), Halt> {
+        self.twin.follow(way, speed_rad_s);
+        Ok(())
+    }
+
+    fn wait(&mut self, duration_s: f64) -> Result<(), Halt> {
+        self.twin.wait(duration_s);
+        Ok(())
+    }
+
+    fn look(&mut self) -> Result<Sight, Halt> {
+        let pair = self.twin.look().map_err(|error| Halt::Blind(error.to_string()))?;
+        self.pairs += 1;
+        Ok(Sight {
+            left: Arc::new(pair.left),
+            right: Arc::new(pair.right),
+            posture: self.twin.encoders(),
+            at_s: self.twin.now_s(),
+            seq: self.pairs,
+        })
+    }
+}

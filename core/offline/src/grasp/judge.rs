@@ -1,0 +1,110 @@
+//! Judges attempts: the only part that reads what is really so.
+
+use nalgebra::Vector3;
+use plumbline_grasp::{Failure, Record};
+use plumbline_model::robot::Rig;
+use plumbline_twin::{Lockstep, Toy};
+use serde::{Deserialize, Serialize};
+
+/// A thing that is this much higher than before is lifted, m.
+const LIFTED_M: f64 = 0.04;
+/// A place that was seen farther off than this was wrong, m.
+const PLACE_WRONG_M: f64 = 0.015;
+/// A hand that was seen farther off than this was wrong, m.
+const HAND_WRONG_M: f64 = 0.015;
+
+/// What really happened.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Judged {
+    /// Whether it was lifted.
+    pub lifted: bool,
+    /// Seen place less true place of the object over the table, m.
+    pub camera_error_m: Option<f64>,
+    /// Distance of the palm from where it was meant to be over the table, before the hand closed, by
+    /// the place of the object that was seen, m.
+    pub reach_error_m: Option<f64>,
+    /// Distance of the palm from where it belongs, by the true place of the object, m.
+    pub alignment_m: Option<f64>,
+    /// Distance of the hand that was seen at last from where it truly was, m.
+    pub hand_error_m: Option<f64>,
+    /// Why it failed, by what really happened; `None`: it did not.
+    pub failure: Option<Failure>,
+    /// Refused, nothing moved at last.
+    pub refused: bool,
+}
+
+/// Watches one attempt from outside.
+#[derive(Debug)]
+pub(super) struct Judge {
+    toy: Toy,
+    object_m: Vector3<f64>,
+    palm: Option<usize>,
+    /// Palm when the hand was looked at last, and before it closed.
+    aligned_m: Option<Vector3<f64>>,
+    closing_m: Option<Vector3<f64>>,
+}
+
+impl Judge {
+    pub fn new(twin: &mut Lockstep, toy: Toy, rig: &Rig) -> Self {
+        let palm = rig.arm("right").and_then(|arm| Some(arm.tips.first()?.link.clone()));
+        let palm = palm.and_then(|tip| rig.description.find_link(&tip).ok()).map(|link| link.0);
+        Self { toy, object_m: place(twin, toy), palm, aligned_m: None, closing_m: None }
+    }
+
+    fn palm_m(&self, twin: &mut Lockstep) -> Option<Vector3<f64>> {
+        let places = twin.truth_for_judging().robot_from_link;
+        Some(places.get(self.palm?)?.as_ref()?.translation.vector)
+    }
+
+    /// The hand was looked at just now.
+    pub fn aligned(&mut self, twin: &mut Lockstep) {
+        self.aligned_m = self.palm_m(twin);
+    }
+
+    /// The hand is about to close.
+    pub fn closing(&mut self, twin: &mut Lockstep) {
+        self.closing_m = self.palm_m(twin);
+    }
+
+    /// After the attempt.
+    pub fn judge(&self, twin: &mut Lockstep, record: &Record) -> Judged {
+        let after = place(twin, self.toy);
+        let lifted = after.z - self.object_m.z > LIFTED_M;
+        let flat = |a: Vector3<f64>, b: Vector3<f64>| (a - b).xy().norm();
+        let seen = record.chosen.and_then(|index| record.seen.get(index)?.place.as_ref().ok());
+        let wanted = record.wanted_m.map(Vector3::from);
+        let standing = record.standing_m.map(|[x, y]| Vector3::new(x, y, 0.0));
+        let seen_m = standing.or_else(|| seen.map(|place| place.point().coords.coords));
+        let hand_m = record.iterations.iter().rev().find_map(|look| look.hand_m).map(Vector3::from);
+        let truly_wanted = wanted.zip(standing).map(|(wanted, standing)| wanted - standing + self.object_m);
+        let camera_error_m = seen_m.map(|seen| flat(seen, self.object_m));
+        let hand_error_m = hand_m.zip(self.aligned_m).map(|(seen, truly)| flat(seen, truly));
+        let refused = matches!(record.outcome, Some(plumbline_grasp::Outcome::Refused { .. }));
+        let failure = (!lifted && !refused).then(|| match &record.outcome {
+            Some(plumbline_grasp::Outcome::Failed { failure: Failure::NotSeen, .. }) => Failure::NotSeen,
+            Some(plumbline_grasp::Outcome::Failed { failure: Failure::Halted, .. }) => Failure::Halted,
+            Some(plumbline_grasp::Outcome::Failed { failure: Failure::HandWrong, .. }) => Failure::HandWrong,
+            _ if camera_error_m.is_some_and(|error_m| error_m > PLACE_WRONG_M) => Failure::PlaceWrong,
+            _ if hand_error_m.is_some_and(|error_m| error_m > HAND_WRONG_M) => Failure::HandWrong,
+            _ if flat(after, self.object_m) > LIFTED_M || after.z > self.object_m.z + 0.01 => {
+                Failure::Slipped
+            }
+            _ => Failure::ReachWrong,
+        });
+        Judged {
+            lifted,
+            camera_error_m,
+            reach_error_m: wanted.zip(self.closing_m).map(|(wanted, palm)| flat(wanted, palm)),
+            alignment_m: truly_wanted.zip(self.closing_m).map(|(wanted, palm)| flat(wanted, palm)),
+            hand_error_m,
+            failure,
+            refused,
+        }
+    }
+}
+
+fn place(twin: &mut Lockstep, toy: Toy) -> Vector3<f64> {
+    let toys = twin.truth_for_judging().toys;
+    let found = toys.into_iter().find(|(other, _)| *other == toy).and_then(|(_, place)| place);
+    found.map_or(Vector3::repeat(f64::NAN), |place| place.translation.vector)
+}
