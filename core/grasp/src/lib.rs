@@ -3,5 +3,6 @@
 //! Nothing here knows whether a robot or a twin moves: a [`Body`] carries out what is asked.
 
 mod body;
+pub mod hand;
 
 pub use body::{Body, Halt, ServoState, Sight};
