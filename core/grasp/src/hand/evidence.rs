@@ -137,7 +137,13 @@ impl Evidence {
 
     /// For every pixel how much it speaks for the hand (`hand` where `labels` say so, else for the
     /// nearest of hand and forearm) and against the background.
-    pub fn ratios(&self, hand: &Colors, forearm: Option<&Colors>, around: Option<&Colors>, labels: &[Option<Part>]) -> Vec<f32> {
+    pub fn ratios(
+        &self,
+        hand: &Colors,
+        forearm: Option<&Colors>,
+        around: Option<&Colors>,
+        labels: &[Option<Part>],
+    ) -> Vec<f32> {
         (0..self.region.len())
             .map(|i| {
                 let now = self.now[i];
@@ -179,7 +185,6 @@ fn density_if_still(now: [f32; 3], before: &RgbImage, u: i32, v: i32) -> (f32, b
     } else {
         0.0
     };
-    let density =
-        (1.0 - SHADOWED - CHANGED) * normal(square, 3) + SHADOWED * in_shadow + CHANGED * ANY_COLOR;
+    let density = (1.0 - SHADOWED - CHANGED) * normal(square, 3) + SHADOWED * in_shadow + CHANGED * ANY_COLOR;
     (density, square > (CHANGE_SIGMAS * sigma).powi(2))
 }

@@ -9,7 +9,7 @@ use super::evidence::{Colors, Evidence};
 use super::lines::{from_colors, from_evidence};
 use super::search::{Moves, Scores, best_shift};
 use super::shape::{EyesAt, HandShape, InView, Part, Solid};
-use super::solve::{Measured, Prior, Solution, UNKNOWNS, moved, slope, solve};
+use super::solve::{Measured, Prior, Solution, Unknowns, moved, resized, slope, solve};
 use super::view::{HandView, Region, RimPoint, labels, mask, rays, rim};
 use super::{EyeFit, HandNotSeen, HandOptions, HandSeen, OutlinePoint, Pair, Predicted};
 
@@ -53,8 +53,7 @@ pub fn look_for_hand(
     predicted: &Predicted<'_>,
     options: &HandOptions,
 ) -> Result<HandSeen, HandNotSeen> {
-    let prior = Prior::new(&predicted.covariance_m2, options.sigma_turn_rad, options.sigma_thickness_m)
-        .ok_or(HandNotSeen::NoPrior)?;
+    let prior = Prior::new(&predicted.covariance_m2, options).ok_or(HandNotSeen::NoPrior)?;
     let solids = hand.posed(predicted.posture);
     let mut sights = vec![];
     for eye in Eye::BOTH {
@@ -65,7 +64,7 @@ pub fn look_for_hand(
         return Err(HandNotSeen::OutsideView);
     }
     let search = Search { solids: &solids, predicted, prior, sights };
-    let mut at = nalgebra::SVector::<f64, UNKNOWNS>::zeros();
+    let mut at = Unknowns::zeros();
     let shift = search.first_shift().ok_or(HandNotSeen::NoPrior)?;
     at.fixed_rows_mut::<3>(0).copy_from(&shift);
     let mut solution = None;
@@ -183,12 +182,14 @@ impl Search<'_> {
         let mut shift = Vector3::zeros();
         for round in 0..2 {
             let unknowns = with_shift(&shift);
-            let place = moved(&self.predicted, &unknowns);
+            let place = moved(self.predicted, &unknowns);
+            let solids = self.solids;
             let mut eyes = vec![];
             for sight in &self.sights {
-                let labels_here = labels(&sight.in_view(self.solids, &place), &sight.rays);
+                let labels_here = labels(&sight.in_view(solids, &place), &sight.rays);
                 let Some(ratios) = sight.ratios(&labels_here, round == 0) else { continue };
-                let predicted = labels(&sight.in_view(self.solids, &self.predicted.robot_from_tip), &sight.rays);
+                let predicted =
+                    labels(&sight.in_view(self.solids, &self.predicted.robot_from_tip), &sight.rays);
                 let moves = Moves { px_per_m: sight.moves.px_per_m };
                 eyes.push((moves, Scores::new(&sight.evidence, &ratios, &predicted, sight.reach_px)));
             }
@@ -198,11 +199,11 @@ impl Search<'_> {
     }
 
     /// Lines across the rim of the hand at a place: by evidence up to `half_px`, or by colors.
-    fn lines(&self, at: &nalgebra::SVector<f64, UNKNOWNS>, half_px: Option<usize>) -> Vec<Measured> {
-        let place = moved(self.predicted, at);
+    fn lines(&self, at: &Unknowns, half_px: Option<usize>) -> Vec<Measured> {
+        let (place, solids) = (moved(self.predicted, at), resized(self.solids, at));
         let mut lines = vec![];
         for sight in &self.sights {
-            let hand = sight.in_view(self.solids, &place);
+            let hand = sight.in_view(&solids, &place);
             let labels = labels(&hand, &sight.rays);
             let rim = rim(&hand, sight.camera, &sight.evidence.region, &labels);
             let ratios = half_px.and_then(|_| sight.ratios(&labels, false));
@@ -214,7 +215,8 @@ impl Search<'_> {
                     (Some(_), None) => None,
                     (None, _) => from_colors(sight.images.now, sight.images.before, &point),
                 };
-                let slope = slope(&point, sight.camera, &sight.camera_from_robot, &place);
+                let slope =
+                    slope(&point, &solids[point.solid], sight.camera, &sight.camera_from_robot, &place);
                 if let Some((crossing, slope)) = crossing.zip(slope) {
                     lines.push(Measured { eye: sight.eye, point, crossing, slope });
                 }
@@ -224,12 +226,11 @@ impl Search<'_> {
     }
 
     /// Shares of the hand that look like something else, and that have changed.
-    fn shares(&self, at: &nalgebra::SVector<f64, UNKNOWNS>, sight: &Sight<'_>) -> (f64, Option<f64>) {
-        let place = moved(self.predicted, at);
-        let labels = labels(&sight.in_view(self.solids, &place), &sight.rays);
-        let hand: Vec<usize> = (0..labels.len())
-            .filter(|i| matches!(labels[*i], Some(Part::Palm | Part::Digit)))
-            .collect();
+    fn shares(&self, at: &Unknowns, sight: &Sight<'_>) -> (f64, Option<f64>) {
+        let (place, solids) = (moved(self.predicted, at), resized(self.solids, at));
+        let labels = labels(&sight.in_view(&solids, &place), &sight.rays);
+        let hand: Vec<usize> =
+            (0..labels.len()).filter(|i| matches!(labels[*i], Some(Part::Palm | Part::Digit))).collect();
         let share = |count: usize| count as f64 / hand.len().max(1) as f64;
         let odd = sight
             .ratios(&labels, false)
@@ -242,7 +243,7 @@ impl Search<'_> {
     }
 
     /// Why there are too few lines.
-    fn nothing_there(&self, at: &nalgebra::SVector<f64, UNKNOWNS>, options: &HandOptions) -> HandNotSeen {
+    fn nothing_there(&self, at: &Unknowns, options: &HandOptions) -> HandNotSeen {
         let shares: Vec<_> = self.sights.iter().map(|sight| self.shares(at, sight)).collect();
         let changed = shares.iter().filter_map(|(_, changed)| *changed).reduce(f64::max);
         if let Some(share) = changed.filter(|share| *share < options.least_changed) {
@@ -252,7 +253,12 @@ impl Search<'_> {
         HandNotSeen::Hidden { share }
     }
 
-    fn judged(&self, lines: &[Measured], found: &Solution, options: &HandOptions) -> Result<HandSeen, HandNotSeen> {
+    fn judged(
+        &self,
+        lines: &[Measured],
+        found: &Solution,
+        options: &HandOptions,
+    ) -> Result<HandSeen, HandNotSeen> {
         let at = &found.unknowns;
         let offset_m: Vector3<f64> = at.fixed_rows::<3>(0).into_owned();
         let information = self.predicted.covariance_m2.try_inverse().ok_or(HandNotSeen::NoPrior)?;
@@ -309,8 +315,8 @@ impl Search<'_> {
 /// Pixels whose evidence is below this look like something else than the hand.
 const UNLIKE: f32 = -1.0;
 
-fn with_shift(shift: &Vector3<f64>) -> nalgebra::SVector<f64, UNKNOWNS> {
-    let mut unknowns = nalgebra::SVector::<f64, UNKNOWNS>::zeros();
+fn with_shift(shift: &Vector3<f64>) -> Unknowns {
+    let mut unknowns = Unknowns::zeros();
     unknowns.fixed_rows_mut::<3>(0).copy_from(shift);
     unknowns
 }

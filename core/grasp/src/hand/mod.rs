@@ -72,8 +72,10 @@ pub struct Predicted<'a> {
 pub struct HandOptions {
     /// Standard deviation of the hand's turn about each axis, rad.
     pub sigma_turn_rad: f64,
-    /// Standard deviation of its surface beyond the description, m.
-    pub sigma_thickness_m: f64,
+    /// Standard deviation of the palm's half extents about those of the description, m.
+    pub sigma_palm_m: f64,
+    /// Standard deviation of the radius of fingers and thumb about that of the description, m.
+    pub sigma_digits_m: f64,
     /// At least this share of the hand must lie on the image of an eye, 0–1.
     pub least_in_view: f64,
     /// At most this share of the hand may look like something else, 0–1.
@@ -88,7 +90,8 @@ impl Default for HandOptions {
     fn default() -> Self {
         Self {
             sigma_turn_rad: 0.06,
-            sigma_thickness_m: 0.0015,
+            sigma_palm_m: 0.004,
+            sigma_digits_m: 0.001,
             least_in_view: 0.6,
             most_hidden: 0.5,
             least_changed: 0.15,
@@ -151,7 +154,9 @@ pub struct OutlinePoint {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum HandNotSeen {
     /// It is not on the images.
-    #[error("the hand is outside of what the eyes see: turn the head toward it, or bring the hand back over the table")]
+    #[error(
+        "the hand is outside of what the eyes see: turn the head toward it, or bring the hand back over the table"
+    )]
     OutsideView,
     /// The images are not of the size of the lenses.
     #[error("the images are not of the size that the calibration is for: calibrate at this size")]
@@ -175,7 +180,9 @@ pub enum HandNotSeen {
         share: f64,
     },
     /// What is seen contradicts the prediction, or the outline is not the hand's.
-    #[error("what the eyes see does not fit the hand: {sigmas:.1} standard deviations from where the arm should have it, outline off by {spread_px:.1} px; calibrate the arm or look again")]
+    #[error(
+        "what the eyes see does not fit the hand: {sigmas:.1} standard deviations from where the arm should have it, outline off by {spread_px:.1} px; calibrate the arm or look again"
+    )]
     DoesNotFit {
         /// Distance from the prediction in standard deviations of the prior.
         sigmas: f64,

@@ -21,7 +21,11 @@ pub(super) struct Moves {
 }
 
 impl Moves {
-    pub fn at(camera: &Camera, camera_from_robot: &Isometry3<f64>, robot_from_tip: &Pose<Robot, Tip>) -> Option<Self> {
+    pub fn at(
+        camera: &Camera,
+        camera_from_robot: &Isometry3<f64>,
+        robot_from_tip: &Pose<Robot, Tip>,
+    ) -> Option<Self> {
         let in_camera = camera_from_robot * nalgebra::Point3::from(robot_from_tip.translation_m());
         let projection = camera.model.project_with_jacobian(&in_camera.coords).ok()?;
         let turn = camera_from_robot.rotation.to_rotation_matrix();

@@ -79,8 +79,9 @@ impl HandShape {
                 links.push((joint.child, Part::Digit));
             }
         }
-        let shown =
-            |(link, part): &(LinkIndex, Part)| *part != Part::Forearm && !description.links()[link.0].visuals.is_empty();
+        let shown = |(link, part): &(LinkIndex, Part)| {
+            *part != Part::Forearm && !description.links()[link.0].visuals.is_empty()
+        };
         if !links.iter().any(shown) {
             return Err(HandShapeError::NoShapes { tip: tip.to_owned() });
         }
@@ -112,6 +113,42 @@ pub(super) struct Solid {
     pub part: Part,
 }
 
+impl Solid {
+    /// Half of its extents along its own axes, m.
+    pub fn half_m(&self) -> Vector3<f64> {
+        match self.shape {
+            Shape::Box { half_m } => half_m,
+            Shape::Sphere { radius_m } => Vector3::repeat(radius_m),
+            Shape::Capsule { radius_m, half_length_m } => {
+                Vector3::new(radius_m, radius_m, radius_m + half_length_m)
+            }
+            Shape::Cylinder { radius_m, half_length_m } => Vector3::new(radius_m, radius_m, half_length_m),
+        }
+    }
+
+    /// The same with half extents larger by `by_m` (m); round shapes stay round.
+    pub fn grown(&self, by_m: &Vector3<f64>) -> Self {
+        let around = 0.5 * (by_m.x + by_m.y);
+        let at_least = |value: f64| value.max(LEAST_HALF_M);
+        let shape = match self.shape {
+            Shape::Box { half_m } => Shape::Box { half_m: (half_m + by_m).map(at_least) },
+            Shape::Sphere { radius_m } => Shape::Sphere { radius_m: at_least(radius_m + by_m.sum() / 3.0) },
+            Shape::Capsule { radius_m, half_length_m } => {
+                let radius_m = at_least(radius_m + around);
+                Shape::Capsule { radius_m, half_length_m: at_least(half_length_m + by_m.z - around) }
+            }
+            Shape::Cylinder { radius_m, half_length_m } => Shape::Cylinder {
+                radius_m: at_least(radius_m + around),
+                half_length_m: at_least(half_length_m + by_m.z),
+            },
+        };
+        Self { shape, ..*self }
+    }
+}
+
+/// However wrong a description is, nothing of a hand is thinner than twice this, m.
+const LEAST_HALF_M: f64 = 0.001;
+
 /// The eyes of a robot at one moment: lenses, and where the left eye is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EyesAt {
@@ -136,6 +173,16 @@ impl EyesAt {
     }
 }
 
+/// A ray's first meeting with the hand.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Met {
+    /// Distance along the ray, m.
+    pub range_m: f64,
+    /// Place of the solid in the list.
+    pub solid: usize,
+    pub part: Part,
+}
+
 /// The hand in front of an eye, ready to be met by rays from it.
 #[derive(Clone, Debug)]
 pub(super) struct InView {
@@ -158,7 +205,11 @@ struct Placed {
 }
 
 impl InView {
-    pub(super) fn new(solids: &[Solid], camera_from_robot: &Isometry3<f64>, robot_from_tip: &Pose<Robot, Tip>) -> Self {
+    pub(super) fn new(
+        solids: &[Solid],
+        camera_from_robot: &Isometry3<f64>,
+        robot_from_tip: &Pose<Robot, Tip>,
+    ) -> Self {
         let camera_from_tip = camera_from_robot * robot_from_tip.isometry;
         let placed = |solid: &Solid| {
             let camera_from_shape = camera_from_tip * solid.tip_from_shape;
@@ -177,18 +228,18 @@ impl InView {
         Self { solids: solids.iter().map(placed).collect(), camera_from_tip }
     }
 
-    /// The nearest surface along a unit direction of the camera: its distance (m) and part.
-    pub(super) fn cast(&self, direction: &Vector3<f64>) -> Option<(f64, Part)> {
-        let mut nearest: Option<(f64, Part)> = None;
-        for solid in &self.solids {
+    /// The nearest surface along a unit direction of the camera.
+    pub(super) fn cast(&self, direction: &Vector3<f64>) -> Option<Met> {
+        let mut nearest: Option<Met> = None;
+        for (i, solid) in self.solids.iter().enumerate() {
             if direction.dot(&solid.middle) < solid.least {
                 continue;
             }
             let turned = solid.shape_from_camera * direction;
-            if let Some(t) = meet(&solid.shape, &solid.origin, &turned)
-                && nearest.is_none_or(|(best, _)| t < best)
+            if let Some(range_m) = meet(&solid.shape, &solid.origin, &turned)
+                && nearest.is_none_or(|best| range_m < best.range_m)
             {
-                nearest = Some((t, solid.part));
+                nearest = Some(Met { range_m, solid: i, part: solid.part });
             }
         }
         nearest

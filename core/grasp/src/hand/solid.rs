@@ -12,7 +12,9 @@ pub(super) fn meet(shape: &Shape, origin: &Vector3<f64>, direction: &Vector3<f64
     match *shape {
         Shape::Box { half_m } => meet_box(&half_m, origin, direction),
         Shape::Sphere { radius_m } => meet_sphere(radius_m, origin, direction),
-        Shape::Capsule { radius_m, half_length_m } => meet_capsule(radius_m, half_length_m, origin, direction),
+        Shape::Capsule { radius_m, half_length_m } => {
+            meet_capsule(radius_m, half_length_m, origin, direction)
+        }
         Shape::Cylinder { radius_m, half_length_m } => {
             meet_cylinder(radius_m, half_length_m, origin, direction)
         }

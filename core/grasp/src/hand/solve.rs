@@ -1,27 +1,30 @@
 //! From lines across the rim to the place of the hand: Gauss–Newton with robust weights, and what
 //! was known before as regularization.
 //!
-//! Beside the three coordinates that are asked for, the hand's turn and its thickness are unknown
-//! too: they have assumptions of their own and are integrated out, so that a palm that is a little
-//! thinner than described, or a wrist that is off by some degrees, does not pass for a shift, and
+//! Beside the three coordinates that are asked for, the hand's turn and the sizes of its parts are
+//! unknown too: they have assumptions of their own and are integrated out, so that a palm that is
+//! narrower than described, or a wrist that is off by some degrees, does not pass for a shift, and
 //! the size of the hand does not pass for its distance.
 
-use nalgebra::{Isometry3, Matrix3, Matrix3xX, Point3, SMatrix, SVector, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{
+    Isometry3, Matrix3, Matrix3xX, Point3, SMatrix, SVector, Translation3, UnitQuaternion, Vector3,
+};
 use plumbline_model::frame::{Robot, Tip};
 use plumbline_model::{Camera, Pose, decompose};
 
+use super::HandOptions;
 use super::lines::Crossing;
-use super::shape::Part;
+use super::shape::{Part, Solid};
 use super::view::RimPoint;
 
-/// Shift (robot axes, m), turn (rotation vector about the tip, robot axes, rad), thickness beyond
-/// the description (m).
-pub(super) const UNKNOWNS: usize = 7;
-type Unknowns = SVector<f64, UNKNOWNS>;
+/// Shift (robot axes, m), turn (rotation vector about the tip, robot axes, rad), half extents of the
+/// palm beyond the description (its own axes, m), radius of digits beyond the description (m).
+pub(super) const UNKNOWNS: usize = 10;
+pub(super) type Unknowns = SVector<f64, UNKNOWNS>;
 type Square = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
 /// Shapes of the description and real ones differ by this much at a point of the rim, px: palm, digits.
-const SHAPE_PX: [f64; 2] = [0.7, 1.5];
+const SHAPE_PX: [f64; 2] = [1.0, 1.0];
 /// Over this length of rim they differ in the same way, px.
 const ALIKE_PX: f64 = 5.0;
 /// Residuals beyond this many robust standard deviations count less and less (Tukey's biweight).
@@ -45,7 +48,7 @@ pub(super) struct Prior {
 
 impl Prior {
     /// `None` when the covariance cannot be inverted.
-    pub fn new(covariance_m2: &Matrix3<f64>, sigma_turn_rad: f64, sigma_thickness_m: f64) -> Option<Self> {
+    pub fn new(covariance_m2: &Matrix3<f64>, options: &HandOptions) -> Option<Self> {
         let symmetric = 0.5 * (covariance_m2 + covariance_m2.transpose());
         let eigenvalues = decompose::symmetric_eigenvalues(symmetric)?;
         if !(eigenvalues.min() > 0.0) {
@@ -54,9 +57,10 @@ impl Prior {
         let mut information = Square::zeros();
         information.fixed_view_mut::<3, 3>(0, 0).copy_from(&symmetric.try_inverse()?);
         for k in 3..6 {
-            information[(k, k)] = sigma_turn_rad.powi(-2);
+            information[(k, k)] = options.sigma_turn_rad.powi(-2);
+            information[(3 + k, 3 + k)] = options.sigma_palm_m.powi(-2);
         }
-        information[(6, 6)] = sigma_thickness_m.powi(-2);
+        information[(9, 9)] = options.sigma_digits_m.powi(-2);
         Some(Self { information })
     }
 }
@@ -78,12 +82,27 @@ pub(super) struct Solution {
 pub(super) fn moved(predicted: &super::Predicted<'_>, unknowns: &Unknowns) -> Pose<Robot, Tip> {
     let shift = predicted.robot_from_tip.translation_m() + unknowns.fixed_rows::<3>(0);
     let turn = UnitQuaternion::from_scaled_axis(unknowns.fixed_rows::<3>(3).into_owned());
-    Pose::new(Isometry3::from_parts(Translation3::from(shift), turn * predicted.robot_from_tip.isometry.rotation))
+    Pose::new(Isometry3::from_parts(
+        Translation3::from(shift),
+        turn * predicted.robot_from_tip.isometry.rotation,
+    ))
+}
+
+/// The hand's solids with other sizes.
+pub(super) fn resized(solids: &[Solid], unknowns: &Unknowns) -> Vec<Solid> {
+    let palm_m = unknowns.fixed_rows::<3>(6).into_owned();
+    let of_part = |solid: &Solid| match solid.part {
+        Part::Palm => solid.grown(&palm_m),
+        Part::Digit => solid.grown(&Vector3::repeat(unknowns[9])),
+        Part::Forearm => *solid,
+    };
+    solids.iter().map(of_part).collect()
 }
 
 /// Slopes of a rim point for a hand at `robot_from_tip`.
 pub(super) fn slope(
     point: &RimPoint,
+    solid: &Solid,
     camera: &Camera,
     camera_from_robot: &Isometry3<f64>,
     robot_from_tip: &Pose<Robot, Tip>,
@@ -100,16 +119,23 @@ pub(super) fn slope(
         slope[k] = by_shift[k];
         slope[3 + k] = by_turn[k];
     }
-    slope[6] = by_point.norm();
+    if solid.part == Part::Palm {
+        let in_shape = solid.tip_from_shape.inverse() * Point3::from(point.in_tip);
+        let axes = (robot_from_tip.isometry.rotation * solid.tip_from_shape.rotation).to_rotation_matrix();
+        let half_m = solid.half_m();
+        for k in 0..3 {
+            let outward = axes.matrix().column(k) * (in_shape[k] / half_m[k]).clamp(-1.0, 1.0);
+            slope[6 + k] = by_shift.dot(&outward.transpose());
+        }
+    } else {
+        slope[9] = by_point.norm();
+    }
     Some(slope)
 }
 
 /// One step from where the rim was taken (`at`).
 pub(super) fn solve(lines: &[Measured], prior: &Prior, at: &Unknowns) -> Option<Solution> {
-    // The thickness is no part of what the rim was drawn from.
-    let mut drawn = *at;
-    drawn[6] = 0.0;
-    let target: Vec<f64> = lines.iter().map(|line| line.crossing.shift_px + line.slope.dot(&drawn)).collect();
+    let target: Vec<f64> = lines.iter().map(|line| line.crossing.shift_px + line.slope.dot(at)).collect();
     let mut weights = vec![1.0; lines.len()];
     let mut solution = None;
     for _ in 0..ROUNDS {

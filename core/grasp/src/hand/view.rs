@@ -3,7 +3,7 @@
 use nalgebra::{Vector2, Vector3};
 use plumbline_model::{Camera, Pixel};
 
-use super::shape::{InView, Part};
+use super::shape::{InView, Met, Part};
 
 /// Soft coverage of a region of a raw image.
 #[derive(Clone, Debug, PartialEq)]
@@ -67,12 +67,8 @@ impl Region {
         let from = (low - margin).sup(&Vector2::zeros()).map(f64::floor);
         let to = (high + margin).inf(&last).map(f64::ceil);
         let size = (to - from).add_scalar(1.0);
-        let region = Self {
-            u0: from.x as i32,
-            v0: from.y as i32,
-            width: size.x as usize,
-            height: size.y as usize,
-        };
+        let region =
+            Self { u0: from.x as i32, v0: from.y as i32, width: size.x as usize, height: size.y as usize };
         Some((region, on_image / whole))
     }
 
@@ -102,7 +98,7 @@ fn direction(camera: &Camera, u_px: f64, v_px: f64) -> Option<Vector3<f64>> {
 
 /// Which part each pixel of a region shows, by the ray through its middle.
 pub(super) fn labels(hand: &InView, rays: &[Option<Vector3<f64>>]) -> Vec<Option<Part>> {
-    rays.iter().map(|ray| ray.and_then(|ray| hand.cast(&ray)).map(|(_, part)| part)).collect()
+    rays.iter().map(|ray| ray.and_then(|ray| hand.cast(&ray)).map(|met| met.part)).collect()
 }
 
 /// Coverage by four rays per pixel.
@@ -110,7 +106,7 @@ pub(super) fn mask(hand: &InView, camera: &Camera) -> Option<Mask> {
     let (region, _) = Region::around(hand, camera, 1.0)?;
     let offsets = [(-0.25, -0.25), (0.25, -0.25), (-0.25, 0.25), (0.25, 0.25)];
     let shows = |u: f64, v: f64| {
-        let part = direction(camera, u, v).and_then(|ray| hand.cast(&ray)).map(|(_, part)| part);
+        let part = direction(camera, u, v).and_then(|ray| hand.cast(&ray)).map(|met| met.part);
         matches!(part, Some(Part::Palm | Part::Digit))
     };
     let coverage = |i: usize| {
@@ -136,6 +132,8 @@ pub(super) struct RimPoint {
     pub normal: Vector2<f64>,
     /// Point of the hand's surface there, frame of the tip, m.
     pub in_tip: Vector3<f64>,
+    /// Which solid of the hand, and the part that it belongs to.
+    pub solid: usize,
     pub part: Part,
     /// Length of rim that it stands for, px.
     pub length_px: f64,
@@ -165,12 +163,13 @@ pub(super) fn rim(hand: &InView, camera: &Camera, region: &Region, labels: &[Opt
                 let Some(normal) = outward(&at, u, v, du, dv) else { continue };
                 let start = Vector2::new(f64::from(region.u0 + u), f64::from(region.v0 + v));
                 let step = Vector2::new(f64::from(du), f64::from(dv));
-                let Some((share, t, ray, part)) = last_met(hand, camera, &start, &step) else { continue };
+                let Some((share, ray, met)) = last_met(hand, camera, &start, &step) else { continue };
                 points.push(RimPoint {
                     pixel: start + step * share,
                     normal,
-                    in_tip: (tip_from_camera * nalgebra::Point3::from(ray * t)).coords,
-                    part,
+                    in_tip: (tip_from_camera * nalgebra::Point3::from(ray * met.range_m)).coords,
+                    solid: met.solid,
+                    part: met.part,
                     // A rim at a slant crosses the grid more often than its length says.
                     length_px: normal.dot(&step).abs(),
                 });
@@ -180,31 +179,29 @@ pub(super) fn rim(hand: &InView, camera: &Camera, region: &Region, labels: &[Opt
     points
 }
 
-/// Along the way of one pixel from inside out: share of it, distance, ray and part where the hand is
-/// met for the last time.
+/// Along the way of one pixel from inside out: share of it, ray and meeting where the hand is met for
+/// the last time.
 fn last_met(
     hand: &InView,
     camera: &Camera,
     start: &Vector2<f64>,
     step: &Vector2<f64>,
-) -> Option<(f64, f64, Vector3<f64>, Part)> {
-    let (mut inside, mut outside) = (0.0, 1.0);
-    let mut met = None;
+) -> Option<(f64, Vector3<f64>, Met)> {
     let look = |share: f64| {
         let pixel = start + step * share;
         let ray = direction(camera, pixel.x, pixel.y)?;
-        let (t, part) = hand.cast(&ray)?;
-        (part != Part::Forearm).then_some((t, ray, part))
+        hand.cast(&ray).filter(|met| met.part != Part::Forearm).map(|met| (ray, met))
     };
-    met = look(0.0).or(met);
+    let (mut inside, mut outside) = (0.0, 1.0);
+    let mut last = look(0.0)?;
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (inside + outside);
         match look(middle) {
-            Some(found) => (inside, met) = (middle, Some(found)),
+            Some(found) => (inside, last) = (middle, found),
             None => outside = middle,
         }
     }
-    met.map(|(t, ray, part)| (0.5 * (inside + outside), t, ray, part))
+    Some((0.5 * (inside + outside), last.0, last.1))
 }
 
 /// Normal of the rim between a pixel and its neighbor: away from the middle of what is covered nearby.
