@@ -5,6 +5,7 @@
 mod arm;
 pub mod attempt;
 mod body;
+pub mod hand;
 mod knowledge;
 pub mod method;
 pub mod plan;

@@ -4,6 +4,7 @@ mod align;
 mod check;
 mod choose;
 mod ready;
+mod rendered;
 
 use jiff::Timestamp;
 use plumbline_model::robot::Posture;
@@ -20,6 +21,7 @@ use crate::see::{Looker, Seen};
 
 pub use align::{FoundHand, HandFinder, HandMissing};
 pub use choose::Chosen;
+pub use rendered::{NoHand, RenderedHand};
 
 /// Peak joint speed through the air, rad/s.
 const AIR_RAD_S: f64 = 0.8;

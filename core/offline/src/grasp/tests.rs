@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use plumbline_effects::RigModel;
+use plumbline_grasp::attempt::RenderedHand;
 use plumbline_grasp::{Corrections, Knowledge, Method, Order};
 use plumbline_model::StereoCalibration;
 use plumbline_model::robot::Rig;
@@ -20,7 +21,8 @@ fn bench(scenario: &str) -> Bench {
         effects: Arc::new(RigModel::nominal(&rig)),
         corrections: Corrections::default(),
     };
-    Bench::new(rig, Scenario::built_in(scenario).expect("valid"), knowledge, None).expect("a bench")
+    let finder = Box::new(RenderedHand::of_rig(&rig, "right_palm_center").expect("a hand"));
+    Bench::new(rig, Scenario::built_in(scenario).expect("valid"), knowledge, Some(finder)).expect("a bench")
 }
 
 #[test]
@@ -34,10 +36,13 @@ fn everywhere() {
             let task = Task { order, toy: Toy::Tomato, at_m, seed: 1 };
             let (record, judged) = bench.attempt(&task).expect("carried out");
             println!(
-                "{scenario} {at_m:?}: {:?} lifted {} camera {:.1?} mm reach {:.1?} fingers {:.2?} {:.1?} s, wall {:.1} s",
+                "{scenario} {at_m:?}: {:?} lifted {} camera {:.1?} mm align {:.1?} hand {:.1?} looks {} reach {:.1?} fingers {:.2?} {:.1?} s, wall {:.1} s",
                 record.outcome,
                 judged.lifted,
                 judged.camera_error_m.map(|m| m * 1e3),
+                judged.alignment_m.map(|m| m * 1e3),
+                judged.hand_error_m.map(|m| m * 1e3),
+                record.iterations.len(),
                 judged.reach_error_m.map(|m| m * 1e3),
                 record.fingers_open_rad,
                 record.seconds,
