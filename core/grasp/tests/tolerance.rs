@@ -167,3 +167,21 @@ fn step_by_step() {
         );
     }
 }
+
+#[test]
+#[ignore = "for who looks for why a hand does not come down"]
+fn room_at_the_edge() {
+    let rig = Arc::new(Rig::built_in("nico").expect("valid"));
+    let planner = planner(&rig);
+    let standing = Standing { xy_m: [0.2, 0.3], support_m: 0.054, height_m: 0.054 };
+    let plan = planner.plan(&standing, &Vector3::zeros(), &rig.home()).expect("in reach");
+    let bodies = plumbline_model::robot::collision::CollisionModel::of_rig(&rig);
+    for posture in &plan.down {
+        println!(
+            "level {:.2} palm {:.3?} {:?}",
+            planner.arm().level(posture),
+            planner.arm().palm(posture).coords.coords,
+            bodies.check_posture(posture, &[])
+        );
+    }
+}

@@ -204,7 +204,7 @@ impl Running<'_> {
     }
 
     fn planned(&mut self, plan: &GraspPlan) {
-        self.record.wanted_m = Some(plan.standing.palm(plan.heading_rad).coords.coords.into());
+        self.record.wanted_m = Some(plan.palm_m.into());
         self.record.standing_m = Some(plan.standing.xy_m);
         self.record.heading_rad = Some(plan.heading_rad);
         self.watch.planned(plan);
