@@ -1,0 +1,1 @@
+//! A whole commissioning, and one that is interrupted.
