@@ -57,7 +57,8 @@ pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, Commissio
         mm(of_all)
     ));
     step.before_mm = of_nothing.map(|m| 1e3 * m);
-    let better = |new: Option<f64>, old: Option<f64>| matches!((new, old), (Some(n), Some(o)) if n < WORTH * o);
+    let better =
+        |new: Option<f64>, old: Option<f64>| matches!((new, old), (Some(n), Some(o)) if n < WORTH * o);
     let (mut best, mut chosen) = (of_nothing, None);
     if better(of_named, best) {
         (best, chosen) = (of_named, Some((&named, "named")));

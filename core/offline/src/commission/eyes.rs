@@ -104,7 +104,8 @@ pub(super) fn table_views(lab: &Lab) -> Result<Vec<HeadView>, CommissionError> {
     let text = files::read_text(&file, Size::SHORT)?;
     let postures: BTreeMap<String, Vec<f64>> = serde_json::from_str(&text)
         .map_err(|error| CommissionError::Steps { file, reason: error.to_string() })?;
-    let gone = || CommissionError::Gone { what: "what the eyes' calibration was made from", folder: lab.world() };
+    let gone =
+        || CommissionError::Gone { what: "what the eyes' calibration was made from", folder: lab.world() };
     let evidence = lab.calibration()?.evidence.ok_or_else(gone)?;
     let view = |pair: PairObservation| {
         let posture = Posture::new(postures.get(&pair.name)?.clone());

@@ -87,7 +87,8 @@ pub(super) fn places(
         }
     }
     robot.lockstep().remove_toy(Toy::Tomato);
-    let mm = |of: fn(&nalgebra::Vector3<f64>) -> f64| -> Vec<f64> { errors.iter().map(|e| 1e3 * of(e)).collect() };
+    let mm =
+        |of: fn(&nalgebra::Vector3<f64>) -> f64| -> Vec<f64> { errors.iter().map(|e| 1e3 * of(e)).collect() };
     let (space, plane) = (mm(|e| e.norm()), mm(|e| e.xy().norm()));
     let mean = errors.iter().sum::<nalgebra::Vector3<f64>>() / errors.len().max(1) as f64 * 1e3;
     Ok(PlaceError {
@@ -110,8 +111,7 @@ pub(super) fn touches(
     let stored = store::read(&session(lab))?;
     let touched: Vec<Pixel<Screen>> = stored.progress.counted().map(|record| record.touched).collect();
     let rig = lab.rig_with_screen()?;
-    let corrector =
-        if lab.model()?.is_nominal() { Corrector::None } else { Corrector::Effects(lab.world()) };
+    let corrector = if lab.model()?.is_nominal() { Corrector::None } else { Corrector::Effects(lab.world()) };
     let aims = new_aims(lab, &rig, corrector, context)?;
     let planner = Planner::new(&rig, TIP, ScreenPlace::Measured)?;
     let mut errors = [vec![], vec![]];

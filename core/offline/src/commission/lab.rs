@@ -10,9 +10,9 @@ use plumbline_engine::ground::World;
 use plumbline_engine::ground::shelf::InUse;
 use plumbline_engine::rig_models;
 use plumbline_engine::touch::work::placement_in;
+use plumbline_model::StereoCalibration;
 use plumbline_model::robot::Rig;
 use plumbline_model::touchscreen::ScreenPlacement;
-use plumbline_model::StereoCalibration;
 use plumbline_twin::Scenario;
 use plumbline_vision::mount::MountCalibration;
 
@@ -54,7 +54,8 @@ impl Lab {
     /// The calibration of the eyes in use.
     pub fn calibration(&self) -> Result<StereoCalibration, CommissionError> {
         let list = self.eyes_store().list().map_err(CommissionError::room)?;
-        let in_use = list.iter().find(|entry| entry.in_use).ok_or_else(|| self.gone("the eyes' calibration"))?;
+        let in_use =
+            list.iter().find(|entry| entry.in_use).ok_or_else(|| self.gone("the eyes' calibration"))?;
         let (calibration, _) = self.eyes_store().load(&in_use.id).map_err(CommissionError::room)?;
         Ok(calibration)
     }

@@ -20,13 +20,15 @@ pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, Commissio
     let views = table_views(lab)?;
     let target = Target::UnknownBoard(default_board());
     let options = MountOptions::default();
-    let (used, back): (Vec<_>, Vec<_>) =
-        views.iter().cloned().enumerate().partition(|(i, _)| i % 4 != 1);
-    let plain = |views: Vec<(usize, HeadView)>| -> Vec<HeadView> { views.into_iter().map(|(_, v)| v).collect() };
+    let (used, back): (Vec<_>, Vec<_>) = views.iter().cloned().enumerate().partition(|(i, _)| i % 4 != 1);
+    let plain =
+        |views: Vec<(usize, HeadView)>| -> Vec<HeadView> { views.into_iter().map(|(_, v)| v).collect() };
     let (used, back) = (plain(used), plain(back));
     let cameras = &calibration.cameras;
-    let with_eyes =
-        Rig { eyes: plumbline_model::robot::EyeMount { cameras: *cameras, ..lab.rig.eyes.clone() }, ..(*lab.rig).clone() };
+    let with_eyes = Rig {
+        eyes: plumbline_model::robot::EyeMount { cameras: *cameras, ..lab.rig.eyes.clone() },
+        ..(*lab.rig).clone()
+    };
     step.before_mm = wander_mm(&with_eyes, cameras, &used, &back);
     match calibrate_mount(&lab.rig, &calibration, &used, &target, &options, context) {
         Ok(tried) => step.after_mm = wander_mm(&tried.applied_to(&lab.rig), cameras, &used, &back),
@@ -43,7 +45,9 @@ pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, Commissio
 /// the mean of the others; rms, mm.
 fn wander_mm(rig: &Rig, cameras: &StereoCameras, used: &[HeadView], back: &[HeadView]) -> Option<f64> {
     let corners = |view: &HeadView| -> Vec<Option<Vector3<f64>>> {
-        let (Some(left), Some(right)) = (view.pixels(Eye::Left), view.pixels(Eye::Right)) else { return vec![] };
+        let (Some(left), Some(right)) = (view.pixels(Eye::Left), view.pixels(Eye::Right)) else {
+            return vec![];
+        };
         let robot_from_left = rig.robot_from_left(&view.posture);
         let place = |(left, right): (&Option<_>, &Option<_>)| {
             Some((robot_from_left * cameras.triangulate((*left)?, (*right)?)?).coords.coords)

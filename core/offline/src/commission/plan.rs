@@ -3,8 +3,8 @@
 //! other), whatever of the library's effects is at work.
 
 use nalgebra::{DMatrix, Isometry3};
-use plumbline_effects::measurements::{Apparatus, Observation, What};
 use plumbline_effects::arm::Arm;
+use plumbline_effects::measurements::{Apparatus, Observation, What};
 use plumbline_effects::{Assumed, Effect, Kind, Measurements, Surface};
 use plumbline_engine::motion::{Planner, TouchPath};
 use plumbline_engine::touch::plan::TIP;
@@ -51,8 +51,8 @@ pub(super) struct Chosen {
 
 /// The part of the screen that is touched.
 pub(super) fn area(rig: &Rig) -> Result<TouchArea, CommissionError> {
-    let reached = TouchArea::reached_by(rig, TIP)?
-        .ok_or(CommissionError::TooFewTouches { touched: 0, planned: 0 })?;
+    let reached =
+        TouchArea::reached_by(rig, TIP)?.ok_or(CommissionError::TooFewTouches { touched: 0, planned: 0 })?;
     let inner = |[low, high]: [f64; 2]| [low + MARGIN * (high - low), high - MARGIN * (high - low)];
     Ok(TouchArea { u_px: inner(reached.u_px), v_px: inner(reached.v_px) })
 }
@@ -101,7 +101,8 @@ pub(super) fn choose(rig: &Rig, candidates: &[Candidate]) -> Result<Vec<Chosen>,
         let ph = covariance * h.transpose();
         let mut s = h * &ph;
         (0..3).for_each(|k| s[(k, k)] += 1.0);
-        s.cholesky().map_or(0.0, |factor| (ph.transpose() * &worth * &ph).component_mul(&factor.inverse()).sum())
+        s.cholesky()
+            .map_or(0.0, |factor| (ph.transpose() * &worth * &ph).component_mul(&factor.inverse()).sum())
     };
     let learn = |covariance: &mut DMatrix<f64>, h: &DMatrix<f64>| {
         let ph = &*covariance * h.transpose();
@@ -113,9 +114,7 @@ pub(super) fn choose(rig: &Rig, candidates: &[Candidate]) -> Result<Vec<Chosen>,
     };
     while chosen.len() < TOUCHES - REPEATS {
         let free = (0..candidates.len()).filter(|i| chosen.iter().all(|known| known.candidate != *i));
-        let best = free
-            .map(|i| (i, gain(&covariance, &tangents[i])))
-            .max_by(|a, b| a.1.total_cmp(&b.1));
+        let best = free.map(|i| (i, gain(&covariance, &tangents[i]))).max_by(|a, b| a.1.total_cmp(&b.1));
         let Some((candidate, _)) = best else { break };
         learn(&mut covariance, &tangents[candidate]);
         chosen.push(Chosen { candidate, group: chosen.len() });
@@ -135,15 +134,11 @@ pub(super) fn effects_of(arm: &Arm) -> Vec<Effect> {
 }
 
 /// What a touch shows, in units of its noise: frame first, then each effect of usual size.
-fn touch_tangents(
-    rig: &Rig,
-    arm: &Arm,
-    effects: &[Effect],
-    candidates: &[Candidate],
-) -> Vec<DMatrix<f64>> {
+fn touch_tangents(rig: &Rig, arm: &Arm, effects: &[Effect], candidates: &[Candidate]) -> Vec<DMatrix<f64>> {
     let surface = Some(Surface::of(&rig.touchscreen));
     let rows = candidates.iter().map(|candidate| {
-        let angles_rad = candidate.path.contact.of(&arm.parts.iter().map(|part| part.index).collect::<Vec<_>>());
+        let angles_rad =
+            candidate.path.contact.of(&arm.parts.iter().map(|part| part.index).collect::<Vec<_>>());
         let direction = candidate.path.direction.iter().map(|sign| f64::from(*sign)).collect();
         row(What::Touch, angles_rad, direction)
     });
@@ -153,7 +148,8 @@ fn touch_tangents(
         .rows
         .iter()
         .map(|row| {
-            let tangents = measurements.tangents(row, &assumed, effects).expect("an arm and a screen are there");
+            let tangents =
+                measurements.tangents(row, &assumed, effects).expect("an arm and a screen are there");
             let mut h = beside(&tangents.gauge, &tangents.effects);
             for (k, noise_m) in NOISE_M.into_iter().enumerate() {
                 h.row_mut(k).scale_mut(1.0 / noise_m);

@@ -68,8 +68,7 @@ impl Steps {
     /// What was done in this folder for this twin; nothing where nothing was begun.
     pub fn read(folder: &Path, scenario: &Scenario, seed: u64) -> Result<Self, CommissionError> {
         let fingerprint = fingerprint(scenario);
-        let fresh =
-            Self { format: FORMAT, twin: scenario.name.clone(), fingerprint, seed, done: Vec::new() };
+        let fresh = Self { format: FORMAT, twin: scenario.name.clone(), fingerprint, seed, done: Vec::new() };
         let file = folder.join(FILE);
         if !files::present(&file)? {
             return Ok(fresh);

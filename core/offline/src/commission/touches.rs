@@ -79,7 +79,8 @@ pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Res
             Some(record) => progress.touched(record),
             None => {
                 missed.push(format!("touch {}: no contact near the target", aim.touch.number));
-                progress.end(aim.touch.number, Ended::Missed("The screen felt nothing near the target.".into()));
+                progress
+                    .end(aim.touch.number, Ended::Missed("The screen felt nothing near the target.".into()));
             }
         }
     }
@@ -110,7 +111,8 @@ fn write(lab: &Lab, joints: &[String], plan: &RunPlan, progress: &Progress) -> R
 
 /// Places the screen by the touches and the nominal arm.
 pub(super) fn place(lab: &Lab) -> Result<Step, CommissionError> {
-    let mut step = Step::new("screen", "touched places against the fingertip by the model, each left out once, rms");
+    let mut step =
+        Step::new("screen", "touched places against the fingertip by the model, each left out once, rms");
     let stored = store::read(&session(lab))?;
     let records: Vec<TouchRecord> = stored.progress.counted().cloned().collect();
     let placed = placement::place(&lab.rig, &stored.joints, &records)?;
@@ -186,7 +188,10 @@ fn in_short_ways(chosen: &[Chosen], candidates: &[Candidate]) -> Vec<Chosen> {
     while !left.is_empty() {
         let cost = |pick: &&Chosen| {
             let Some(last) = ordered.last() else { return 0.0 };
-            let way_rad = candidates[last.candidate].path.contact.distance_rad(&candidates[pick.candidate].path.contact);
+            let way_rad = candidates[last.candidate]
+                .path
+                .contact
+                .distance_rad(&candidates[pick.candidate].path.contact);
             way_rad + if last.group == pick.group { 10.0 } else { 0.0 }
         };
         let nearest = (0..left.len()).min_by(|a, b| cost(&left[*a]).total_cmp(&cost(&left[*b]))).unwrap_or(0);
