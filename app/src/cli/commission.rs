@@ -35,7 +35,7 @@ fn text(report: &CommissionReport) -> String {
         "Ready after {:.1} min of the robot: {}, {}\n",
         report.robot_minutes,
         format::count(report.touches, "touch"),
-        format::count(report.board_views, "view of the board"),
+        format::count(report.board_views, "board view"),
     );
     for step in &report.steps {
         text.push_str(&line(step));
