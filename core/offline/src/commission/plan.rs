@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, Isometry3};
 use plumbline_effects::arm::Arm;
 use plumbline_effects::measurements::{Apparatus, Observation, What};
 use plumbline_effects::{Assumed, Effect, Kind, Measurements, Surface};
-use plumbline_engine::motion::{Planner, TouchPath};
+use plumbline_engine::motion::{Hold, Planner, TouchPath};
 use plumbline_engine::touch::plan::TIP;
 use plumbline_model::robot::ik::{Options, Solver, Target};
 use plumbline_model::robot::{Posture, Rig};
@@ -23,6 +23,9 @@ const REPEATS: usize = 3;
 const GRID: [usize; 2] = [7, 4];
 /// The middle of the palm.
 pub(super) const PALM: &str = "right_palm_center";
+/// The hand is turned or leaned by so much, rad.
+const TURN_RAD: f64 = 0.4;
+const LEAN_RAD: f64 = 0.4;
 /// Share of the reachable area that stays untouched at each side, so that the judge has places outside.
 const MARGIN: f64 = 0.1;
 /// Standard deviation of a contact along the glass and of the tip's height there, m.
@@ -37,6 +40,7 @@ const WORK_HEIGHTS_M: [f64; 2] = [0.04, 0.10];
 pub(super) struct Candidate {
     pub path: TouchPath,
     pub side: Side,
+    pub hold: Hold,
     /// Label that blocks cross-validation: a part of the screen.
     pub set: String,
 }
@@ -73,15 +77,25 @@ pub(super) fn candidates(
         for row in 0..rows {
             let part = |i: usize, n: usize| i as f64 / (n - 1) as f64;
             let target = area.at(part(column, columns), part(row, rows));
-            for side in [Side::Above, Side::Left, Side::Right] {
-                if let Ok(path) = planner.plan(target, screen.point_at(target), side, &from) {
-                    let set = format!("part {}-{}", 3 * column / columns + 1, 2 * row / rows + 1);
-                    found.push(Candidate { path, side, set });
-                }
+            let set = format!("part {}-{}", 3 * column / columns + 1, 2 * row / rows + 1);
+            for (side, hold) in ways() {
+                let path = planner.plan_held(target, screen.point_at(target), side, hold, &from);
+                found.extend(path.ok().map(|path| Candidate { path, side, hold, set: set.clone() }));
             }
         }
     }
     Ok(found)
+}
+
+/// From which side and how held a place may be touched: as the window does it, and from above with the
+/// hand turned or leaned, which shows what joints err by apart from each other.
+fn ways() -> Vec<(Side, Hold)> {
+    let usual = [Side::Above, Side::Left, Side::Right].map(|side| (side, Hold::default()));
+    let turned = [TURN_RAD, -TURN_RAD].map(|turn_rad| Hold { turn_rad, ..Hold::default() });
+    let leaned = [[LEAN_RAD, 0.0], [-LEAN_RAD, 0.0], [0.0, LEAN_RAD], [0.0, -LEAN_RAD]]
+        .map(|lean_rad| Hold { lean_rad, ..Hold::default() });
+    let held = turned.into_iter().chain(leaned).map(|hold| (Side::Above, hold));
+    usual.into_iter().chain(held).collect()
 }
 
 /// Chooses among the candidates; some are chosen twice, to tell the noise.

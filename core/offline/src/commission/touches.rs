@@ -67,7 +67,8 @@ pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Res
         context.checkpoint()?;
         context.report(0.25 + 0.75 * k as f64 / plan.touches.len() as f64, "touching the screen");
         let stands = robot.lockstep().commanded().clone();
-        let path = match planner.plan(aim.touch.target, aim.sent(), aim.touch.side, &stands) {
+        let hold = possible[chosen[k].candidate].hold;
+        let path = match planner.plan_held(aim.touch.target, aim.sent(), aim.touch.side, hold, &stands) {
             Ok(path) => path,
             Err(why) => {
                 missed.push(format!("touch {}: {why}", aim.touch.number));
@@ -161,7 +162,7 @@ pub(super) fn rms(values: &[f64]) -> Option<f64> {
 }
 
 fn aim(number: usize, pick: &Chosen, candidates: &[Candidate]) -> Aim {
-    let Candidate { path, side, set } = &candidates[pick.candidate];
+    let Candidate { path, side, set, .. } = &candidates[pick.candidate];
     let sent_m: [f64; 3] = path.sent.coords.coords.into();
     Aim {
         touch: PlannedTouch {
