@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
-use plumbline_engine::eyes::work::{Keep, gray, size};
+use plumbline_engine::eyes::work::{Keep, gray};
 use plumbline_model::files::{self, Size};
 use plumbline_model::robot::Posture;
 use plumbline_model::{
@@ -127,7 +127,7 @@ impl Album<'_> {
     /// Looks, keeps the pair in the session, and finds the board in it.
     fn take(&mut self, robot: &mut Robot, name: String) -> Result<(), CommissionError> {
         let sight = robot.look()?;
-        self.sizes_px = [size(&sight.left), size(&sight.right)];
+        self.sizes_px = [sight.left.dimensions(), sight.right.dimensions()];
         let found = find_in_pair(&name, &gray(&sight.left), &gray(&sight.right), &self.board);
         self.postures.insert(name.clone(), sight.posture.angles_rad().to_vec());
         let stamp = Stamp { seq: self.seen.len() as u64, captured_at: Instant::now() };
