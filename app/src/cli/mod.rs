@@ -3,6 +3,7 @@
 mod bench;
 mod bench_window;
 mod calibrate;
+mod commission;
 mod common;
 mod correct;
 mod detect;
@@ -60,6 +61,8 @@ enum Verb {
     Predict(WithJson<predict::Predict>),
     /// Finds where model and measurement disagree, names what is missing, shows the gap shrink.
     Gap(WithJson<gap::Gap>),
+    /// Commissions a twin without a person: eyes, mount, screen, touches, effects; a judge measures it.
+    Commission(WithJson<commission::Commission>),
     /// Finds things on images with a detector, an ONNX file.
     Detect(WithJson<detect::Detect>),
     /// Judges detectors on a labeled set: average precision by the rule of COCO, times.
@@ -122,6 +125,7 @@ pub fn run() -> ExitCode {
                 Verb::Correct(verb) => verb.run(correct::run),
                 Verb::Predict(verb) => verb.run(predict::run),
                 Verb::Gap(verb) => verb.run(gap::run),
+                Verb::Commission(verb) => verb.run(commission::run),
                 Verb::Detect(verb) => verb.run(detect::run),
                 Verb::DetectEval(verb) => verb.run(detect_eval::run),
                 Verb::DetectorSet(verb) => verb.run(detector_set::run),

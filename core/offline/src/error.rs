@@ -181,6 +181,9 @@ pub enum OfflineError {
         /// Size of the right image.
         right: String,
     },
+    /// A twin is not commissioned.
+    #[error(transparent)]
+    Commission(#[from] super::CommissionError),
     /// The detector cannot be opened.
     #[error(transparent)]
     Detect(#[from] DetectError),
