@@ -12,6 +12,7 @@ mod detector_set;
 mod disparity;
 mod doctor;
 mod gap;
+mod grasp;
 mod ik;
 mod locate;
 mod output;
@@ -69,6 +70,10 @@ enum Verb {
     DetectEval(WithJson<detect_eval::DetectEval>),
     /// Draws labeled images of the twin with everything randomised, to train a detector on.
     DetectorSet(WithJson<detector_set::DetectorSet>),
+    /// Grasps once on the twin.
+    Grasp(WithJson<grasp::Grasp>),
+    /// Runs the grasping experiment on the twin: positions, attempts, methods; in shards if wanted.
+    GraspTrials(WithJson<grasp::GraspTrials>),
     /// Computes the disparity of a pair.
     Disparity(WithJson<disparity::Disparity>),
     /// Says what works on this machine: libraries, graphics, cameras, serial ports, folders.
@@ -129,6 +134,8 @@ pub fn run() -> ExitCode {
                 Verb::Detect(verb) => verb.run(detect::run),
                 Verb::DetectEval(verb) => verb.run(detect_eval::run),
                 Verb::DetectorSet(verb) => verb.run(detector_set::run),
+                Verb::Grasp(verb) => verb.run(grasp::grasp),
+                Verb::GraspTrials(verb) => verb.run(grasp::trials),
                 Verb::Disparity(verb) => verb.run(disparity::run),
                 Verb::Doctor(verb) => verb.run(doctor::run),
                 Verb::Sample(verb) => verb.run(sample::run),

@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use nalgebra::Vector3;
-use plumbline_effects::RigModel;
+use plumbline_effects::RobotModel;
 use plumbline_grasp::PalmArm;
 use plumbline_grasp::plan::{GraspPlanner, Standing};
 use plumbline_model::robot::{Posture, Rig};
@@ -38,7 +38,7 @@ const PLACES_M: [[f64; 2]; 22] = [
 ];
 
 fn planner(rig: &Arc<Rig>) -> GraspPlanner {
-    GraspPlanner::new(PalmArm::new(rig, &RigModel::nominal(rig), "right").expect("an arm"))
+    GraspPlanner::new(PalmArm::new(&RobotModel::nominal(rig.clone()), "right").expect("an arm"))
 }
 
 /// How far (m) a toy was lifted by a hand that is sent so much beside it (along the fingers, across, up).

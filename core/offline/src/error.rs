@@ -28,6 +28,9 @@ pub enum OfflineError {
     /// The twin cannot be built.
     #[error(transparent)]
     Twin(#[from] plumbline_twin::TwinError),
+    /// The experiment cannot be run.
+    #[error(transparent)]
+    Trials(#[from] crate::grasp::TrialsError),
     /// The robot has no such hand.
     #[error(transparent)]
     Arm(#[from] plumbline_grasp::NoArm),

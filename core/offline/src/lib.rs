@@ -43,6 +43,10 @@ pub use detector_set::{ClassBoxes, DetectorSetArgs, DetectorSetReport, detector_
 pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};
 pub use error::OfflineError;
 pub use gap::{EffectReport, GapArgs, GapReport, gap};
+pub use grasp::{
+    GraspArgs, GraspMethod, GraspReport, Judged, MethodSummary, PositionSummary, Spread, Summary, TrialsArgs,
+    TrialsError, grasp, grasp_trials, merge_trials,
+};
 pub use ik::{IkArgs, IkReport, IkSolution, ik};
 pub use locate::{LocateArgs, LocateReport, LocatedPoint, locate};
 pub use plumbline_twin::training_set::SetWorld;

@@ -7,6 +7,7 @@ mod ready;
 mod rendered;
 
 use jiff::Timestamp;
+use plumbline_effects::RobotModel;
 use plumbline_model::robot::Posture;
 use plumbline_model::robot::Rig;
 use plumbline_vision::detect::DetectError;
@@ -120,15 +121,15 @@ impl Grasper {
         arm: &str,
         finder: Option<Box<dyn HandFinder>>,
     ) -> Result<Self, NoArm> {
-        let nominal = plumbline_effects::RigModel::nominal(&knowledge.described);
-        let described = GraspPlanner::new(PalmArm::new(&knowledge.described, &nominal, arm)?);
-        let known = GraspPlanner::new(PalmArm::new(&knowledge.rig, &knowledge.effects, arm)?);
+        let nominal = RobotModel::nominal(knowledge.described.clone());
+        let described = GraspPlanner::new(PalmArm::new(&nominal, arm)?);
+        let known = GraspPlanner::new(PalmArm::new(&knowledge.model, arm)?);
         Ok(Self { knowledge, looker, described, known, finder })
     }
 
     /// The robot as it is known.
     pub fn rig(&self) -> &Rig {
-        &self.knowledge.rig
+        self.knowledge.model.rig()
     }
 
     /// What plans for a method.
@@ -136,16 +137,20 @@ impl Grasper {
         if method.knows_effects() { &self.known } else { &self.described }
     }
 
-    /// Grasps once. Whatever happens, the record says it, and the arm holds where it is.
-    pub fn attempt(&mut self, body: &mut dyn Body, order: &Order, watch: &mut dyn Watch) -> Record {
-        let effects = self.knowledge.effects.effects().len();
-        let model = match effects {
-            _ if !order.method.knows_effects() => "as described".to_owned(),
-            0 => "as described, no effect was named yet".to_owned(),
-            1 => "with one effect".to_owned(),
-            several => format!("with {several} effects"),
+    /// Grasps once, beginning now. Whatever happens, the record says it, and the arm holds where it is.
+    pub fn attempt(
+        &mut self,
+        body: &mut dyn Body,
+        order: &Order,
+        began: Timestamp,
+        watch: &mut dyn Watch,
+    ) -> Record {
+        let model = if order.method.knows_effects() {
+            self.knowledge.model.title()
+        } else {
+            "as described".to_owned()
         };
-        let mut record = Record::new(order.method, &order.object, Timestamp::now(), model);
+        let mut record = Record::new(order.method, &order.object, began, model);
         let began_s = body.now_s();
         let mut running = Running { grasper: self, body, order, watch, record: &mut record, began_s };
         let outcome = match running.run() {

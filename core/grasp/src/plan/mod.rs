@@ -285,7 +285,7 @@ impl GraspPlanner {
         let mut palm = standing.palm(heading_rad);
         for _ in 0..TURNS {
             let (above, down) = self.way_down(Point::from(palm.coords + shift_m), heading_rad, open)?;
-            let turn = self.arm.described(down.last()?).isometry.rotation;
+            let turn = self.arm.robot_from_palm(down.last()?).isometry.rotation;
             let turned = standing.palm_turned(&turn);
             if turned.distance_m(&palm) < TURNED_M {
                 let level = self.arm.level(down.last()?);

@@ -105,7 +105,7 @@ pub enum CommissionError {
 
 impl CommissionError {
     /// From an error of a room, whose words are a sentence.
-    pub(super) fn room(error: impl std::fmt::Display) -> Self {
+    pub(crate) fn room(error: impl std::fmt::Display) -> Self {
         Self::Room(error.to_string())
     }
 }

@@ -24,7 +24,7 @@ pub(super) const EYES_SESSION: &str = "commission_eyes";
 pub(super) const TOUCH_SESSION: &str = "commission_touch";
 
 /// The lab and the robot in it.
-pub(super) struct Lab {
+pub(crate) struct Lab {
     /// What `--data-dir` takes.
     pub folder: PathBuf,
     /// The robot as described.

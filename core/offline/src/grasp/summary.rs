@@ -104,9 +104,9 @@ fn of_method(experiment: &Experiment, method: Method, attempts: &[&Attempt]) -> 
         .filter_map(|(i, [x_m, y_m])| {
             let here: Vec<&&Attempt> =
                 attempts.iter().filter(|attempt| attempt.trial.position == i).collect();
-            let located = here.iter().all(|attempt| {
-                attempt.judged.hand_error_m.is_some_and(|error_m| error_m <= LOCATED_M)
-            });
+            let located = here
+                .iter()
+                .all(|attempt| attempt.judged.hand_error_m.is_some_and(|error_m| error_m <= LOCATED_M));
             (!here.is_empty()).then(|| PositionSummary {
                 x_m: *x_m,
                 y_m: *y_m,

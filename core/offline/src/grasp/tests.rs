@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use plumbline_effects::RigModel;
+use plumbline_effects::RobotModel;
 use plumbline_grasp::attempt::RenderedHand;
 use plumbline_grasp::{Corrections, Knowledge, Method, Order};
 use plumbline_model::StereoCalibration;
@@ -15,10 +15,9 @@ use super::attempt::{Bench, Task};
 fn bench(scenario: &str) -> Bench {
     let rig = Arc::new(Rig::built_in("nico").expect("valid"));
     let knowledge = Knowledge {
-        rig: rig.clone(),
+        model: RobotModel::nominal(rig.clone()),
         described: rig.clone(),
         calibration: Arc::new(StereoCalibration::bare(rig.eyes.cameras.clone())),
-        effects: Arc::new(RigModel::nominal(&rig)),
         corrections: Corrections::default(),
     };
     let finder = Box::new(RenderedHand::of_rig(&rig, "right_palm_center").expect("a hand"));

@@ -106,7 +106,7 @@ pub struct Attempt {
 impl Experiment {
     /// All attempts, in their order: every method at a position before the next attempt there.
     pub fn trials(&self) -> impl Iterator<Item = Trial> + '_ {
-        let of_position = |position: usize| {
+        let of_position = move |position: usize| {
             (0..self.attempts).flat_map(move |attempt| {
                 self.methods.iter().enumerate().map(move |(k, method)| Trial {
                     number: (position * self.attempts + attempt) * self.methods.len() + k,
@@ -136,7 +136,8 @@ impl Experiment {
 pub fn grasp_trials(args: &TrialsArgs, context: &dyn JobContext) -> Result<Summary, OfflineError> {
     let scenario = crate::commission::scenario(&args.twin)?;
     let thing = Thing::of_class(&args.object).ok_or_else(|| TrialsError::unknown(&args.object))?;
-    let toy = Toy::from_name(&thing.class.to_lowercase()).ok_or_else(|| TrialsError::unknown(&args.object))?;
+    let toy =
+        Toy::from_name(&thing.class.to_lowercase()).ok_or_else(|| TrialsError::unknown(&args.object))?;
     let positions_m = match &args.positions {
         None => super::PLACES_M.to_vec(),
         Some(file) => read_positions(file)?,
@@ -207,7 +208,8 @@ pub(super) fn bench(
 ) -> Result<Bench, OfflineError> {
     let rig = Arc::new(Rig::built_in("nico")?);
     let knowledge = lab::knowledge(lab, &rig, &scenario, methods, context)?;
-    let finder = RenderedHand::of_rig(&knowledge.rig, "right_palm_center").map_err(TrialsError::from)?;
+    let finder =
+        RenderedHand::of_rig(knowledge.model.rig(), "right_palm_center").map_err(TrialsError::from)?;
     let finder: Box<dyn HandFinder> = Box::new(finder);
     Bench::new(rig, scenario, knowledge, Some(finder))
 }
@@ -255,8 +257,8 @@ fn read_experiment(folder: &Path) -> Result<Experiment, TrialsError> {
 /// Names and texts of all attempts of a folder, in their order.
 fn attempt_files(folder: &Path) -> Result<BTreeMap<String, String>, TrialsError> {
     let folder = folder.join(ATTEMPTS);
-    let list = std::fs::read_dir(&folder)
-        .map_err(|error| TrialsError::Folder { folder: folder.clone(), error })?;
+    let list =
+        std::fs::read_dir(&folder).map_err(|error| TrialsError::Folder { folder: folder.clone(), error })?;
     let names: BTreeSet<String> = list
         .flatten()
         .map(|entry| entry.file_name().to_string_lossy().into_owned())
