@@ -211,6 +211,7 @@ impl Running<'_> {
     fn planned(&mut self, plan: &GraspPlan) {
         self.record.wanted_m = Some(plan.palm_m.into());
         self.record.standing_m = Some(plan.standing.xy_m);
+        self.record.over_middle_m = Some(plan.palm_m.z - plan.standing.middle_m());
         self.record.heading_rad = Some(plan.heading_rad);
         self.watch.planned(plan);
     }

@@ -51,6 +51,11 @@ pub struct Standing {
 }
 
 impl Standing {
+    /// Height of its middle, m.
+    pub fn middle_m(&self) -> f64 {
+        self.support_m + 0.5 * self.height_m
+    }
+
     /// Where a palm that faces straight down belongs when the fingers close, for a heading of the hand.
     pub fn palm(&self, heading_rad: f64) -> Point<Robot> {
         self.palm_turned(&UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading_rad))
@@ -58,7 +63,7 @@ impl Standing {
 
     /// The same for a palm that is turned somehow: x along the fingers, z out of the back of the hand.
     pub fn palm_turned(&self, robot_from_palm: &UnitQuaternion<f64>) -> Point<Robot> {
-        let middle = Vector3::new(self.xy_m[0], self.xy_m[1], self.support_m + 0.5 * self.height_m);
+        let middle = Vector3::new(self.xy_m[0], self.xy_m[1], self.middle_m());
         let over_m = 0.5 * self.height_m - BELOW_TOP_M;
         let in_hand = Vector3::new(INTO_FINGERS_M, -TO_THE_RIGHT_M, -over_m);
         Point::from(Point3::from(middle - robot_from_palm * in_hand))

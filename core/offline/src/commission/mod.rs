@@ -3,13 +3,15 @@
 //!
 //! Steps, each on disk before the next begins: the finger touches the screen while the eyes warm up
 //! (`touches`), which places it (`screen`); what makes the arm miss (`effects`); correction models
-//! (`models`); the board calibrates the eyes (`eyes`) and their mount (`mount`); and a judge measures
+//! (`models`); the board calibrates the eyes (`eyes`) and their mount
+//! (`mount`); the eyes look at the hand (`hand`); and a judge measures
 //! what came of it (`check`). The judge alone knows what the twin hides.
 
 mod effects;
 mod error;
 mod estimate;
 mod eyes;
+mod hand;
 mod judge;
 pub(crate) mod lab;
 mod models;
@@ -49,14 +51,15 @@ use steps::Steps;
 const JUDGED: &str = "judged.json";
 
 /// Steps in their order and the share of the work at which each begins.
-const STEPS: [(&str, f64); 7] = [
+const STEPS: [(&str, f64); 8] = [
     ("touches", 0.0),
     ("screen", 0.2),
     ("effects", 0.21),
     ("models", 0.5),
     ("eyes", 0.6),
     ("mount", 0.8),
-    ("check", 0.82),
+    ("hand", 0.82),
+    ("check", 0.88),
 ];
 
 /// Which twin, and where to.
@@ -154,6 +157,7 @@ fn one(
         "models" => models::run(lab, steps.of("touches").map_or(0, |step| step.touches), context),
         "eyes" => with_robot(&|robot| eyes::run(lab, robot, context)),
         "mount" => mount::run(lab, context),
+        "hand" => with_robot(&|robot| hand::run(lab, robot, context)),
         // The judge's time is not the robot's.
         _ => with_robot(&|robot| check(lab, robot, context)).map(|step| Step { minutes: 0.0, ..step }),
     }

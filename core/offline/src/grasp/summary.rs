@@ -158,14 +158,14 @@ fn name(failure: Failure) -> &'static str {
 /// One line per attempt, for a spreadsheet.
 pub(super) fn csv(experiment: &Experiment, attempts: &[Attempt]) -> String {
     let mut text = String::from(
-        "number,method,x_m,y_m,attempt,placed_x_m,placed_y_m,lifted,refused,failure,camera_error_m,reach_error_m,alignment_m,hand_error_m,looks,seconds\n",
+        "number,method,x_m,y_m,attempt,placed_x_m,placed_y_m,lifted,refused,failure,camera_error_m,reach_error_m,alignment_m,off_x_m,off_y_m,off_z_m,hand_error_m,looks,seconds\n",
     );
     for Attempt { trial, placed_m, record, judged } in attempts {
         let [x_m, y_m] = experiment.positions_m[trial.position];
         let number = |value: Option<f64>| value.map(|value| format!("{value:.6}")).unwrap_or_default();
         let _ = writeln!(
             text,
-            "{},{},{x_m},{y_m},{},{:.6},{:.6},{},{},{},{},{},{},{},{},{}",
+            "{},{},{x_m},{y_m},{},{:.6},{:.6},{},{},{},{},{},{},{},{},{},{},{},{}",
             trial.number,
             trial.method.name(),
             trial.attempt + 1,
@@ -177,6 +177,9 @@ pub(super) fn csv(experiment: &Experiment, attempts: &[Attempt]) -> String {
             number(judged.camera_error_m),
             number(judged.reach_error_m),
             number(judged.alignment_m),
+            number(judged.palm_off_m.map(|off| off[0])),
+            number(judged.palm_off_m.map(|off| off[1])),
+            number(judged.palm_off_m.map(|off| off[2])),
             number(judged.hand_error_m),
             record.iterations.len(),
             number(record.seconds),
