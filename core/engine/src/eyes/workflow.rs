@@ -252,11 +252,11 @@ impl Workflow for EyesWorkflow {
         }
     }
 
-    fn view(&mut self, _around: &EyesAround, _moment: &Moment) -> Arc<EyesView> {
+    fn view(&mut self, _: &EyesAround, _: &Moment) -> Arc<EyesView> {
         Arc::new(self.shown())
     }
 
-    fn restore(&mut self, _around: &EyesAround, context: &mut Context<'_>) {
+    fn restore(&mut self, _: &EyesAround, context: &mut Context<'_>) {
         let (store, workspace) = (self.store.clone(), self.workspace);
         context.start(EyesWork::Restore(Restore { store, workspace }));
     }
@@ -289,7 +289,7 @@ impl Workflow for EyesWorkflow {
         self.refresh();
     }
 
-    fn work_done(&mut self, id: JobId, result: EyesResult, _around: &EyesAround, context: &mut Context<'_>) {
+    fn work_done(&mut self, id: JobId, result: EyesResult, _: &EyesAround, context: &mut Context<'_>) {
         self.busy.forget(id);
         match result {
             EyesResult::Captured(captured) => self.captured(captured, context),
@@ -315,13 +315,7 @@ impl Workflow for EyesWorkflow {
         self.refresh();
     }
 
-    fn work_ended(
-        &mut self,
-        id: JobId,
-        _why: Option<&str>,
-        _around: &EyesAround,
-        _context: &mut Context<'_>,
-    ) {
+    fn work_ended(&mut self, id: JobId, _: Option<&str>, _: &EyesAround, _: &mut Context<'_>) {
         self.busy.forget(id);
     }
 }

@@ -254,7 +254,7 @@ impl Workflow for GapWorkflow {
         }
     }
 
-    fn view(&mut self, around: &GapAround, _moment: &Moment) -> Arc<GapView> {
+    fn view(&mut self, around: &GapAround, _: &Moment) -> Arc<GapView> {
         Arc::new(self.shown(around))
     }
 
@@ -333,7 +333,7 @@ impl Workflow for GapWorkflow {
         self.look();
     }
 
-    fn work_ended(&mut self, id: JobId, why: Option<&str>, _around: &GapAround, _context: &mut Context<'_>) {
+    fn work_ended(&mut self, id: JobId, why: Option<&str>, _: &GapAround, _: &mut Context<'_>) {
         if self.searching.take_if(|searching| *searching == id).is_some() {
             self.failed = why.map(str::to_owned);
         }

@@ -273,7 +273,7 @@ impl Workflow for ModelsWorkflow {
         }
     }
 
-    fn view(&mut self, around: &ModelsAround, _moment: &Moment) -> Arc<ModelsView> {
+    fn view(&mut self, around: &ModelsAround, _: &Moment) -> Arc<ModelsView> {
         Arc::new(self.shown(around))
     }
 
@@ -346,13 +346,7 @@ impl Workflow for ModelsWorkflow {
         }
     }
 
-    fn work_ended(
-        &mut self,
-        id: JobId,
-        _why: Option<&str>,
-        _around: &ModelsAround,
-        _context: &mut Context<'_>,
-    ) {
+    fn work_ended(&mut self, id: JobId, _: Option<&str>, _: &ModelsAround, _: &mut Context<'_>) {
         self.training.take_if(|training| training.id == id);
         self.changing.take_if(|changing| *changing == id);
         self.tables.work_ended(id);

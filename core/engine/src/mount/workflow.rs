@@ -223,7 +223,7 @@ impl Workflow for MountWorkflow {
         }
     }
 
-    fn view(&mut self, around: &MountAround, _moment: &Moment) -> Arc<MountView> {
+    fn view(&mut self, around: &MountAround, _: &Moment) -> Arc<MountView> {
         Arc::new(self.shown(around))
     }
 
@@ -261,13 +261,7 @@ impl Workflow for MountWorkflow {
         }
     }
 
-    fn work_done(
-        &mut self,
-        id: JobId,
-        result: MountResult,
-        _around: &MountAround,
-        _context: &mut Context<'_>,
-    ) {
+    fn work_done(&mut self, id: JobId, result: MountResult, _: &MountAround, _: &mut Context<'_>) {
         self.solving.take_if(|solving| *solving == id);
         match result {
             MountResult::Solved(mount) => self.proposal = Some(mount),
@@ -280,13 +274,7 @@ impl Workflow for MountWorkflow {
         }
     }
 
-    fn work_ended(
-        &mut self,
-        id: JobId,
-        _why: Option<&str>,
-        _around: &MountAround,
-        _context: &mut Context<'_>,
-    ) {
+    fn work_ended(&mut self, id: JobId, _: Option<&str>, _: &MountAround, _: &mut Context<'_>) {
         self.solving.take_if(|solving| *solving == id);
     }
 }

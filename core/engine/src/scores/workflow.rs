@@ -66,7 +66,7 @@ impl Workflow for ScoresWorkflow {
     type View = ScoresView;
 
     /// The detector that comes with the program is chosen, where it is there.
-    fn new(_folder: &Path) -> Self {
+    fn new(_: &Path) -> Self {
         let shipped = shipped_detector().map(|shipped| ScoredModelFile {
             file: shipped.file,
             chosen: true,
@@ -85,7 +85,7 @@ impl Workflow for ScoresWorkflow {
         }
     }
 
-    fn view(&mut self, _provider: &Provider, _moment: &Moment) -> Arc<ScoresView> {
+    fn view(&mut self, _: &Provider, _: &Moment) -> Arc<ScoresView> {
         Arc::new(self.shown())
     }
 
@@ -116,7 +116,7 @@ impl Workflow for ScoresWorkflow {
         }
     }
 
-    fn work_done(&mut self, id: JobId, result: ScoresResult, _around: &Provider, _context: &mut Context<'_>) {
+    fn work_done(&mut self, id: JobId, result: ScoresResult, _: &Provider, _: &mut Context<'_>) {
         self.evaluating.take_if(|evaluating| *evaluating == id);
         match result {
             ScoresResult::Evaluated(evaluation) => {
@@ -132,7 +132,7 @@ impl Workflow for ScoresWorkflow {
         }
     }
 
-    fn work_ended(&mut self, id: JobId, why: Option<&str>, _around: &Provider, _context: &mut Context<'_>) {
+    fn work_ended(&mut self, id: JobId, why: Option<&str>, _: &Provider, _: &mut Context<'_>) {
         self.opening.take_if(|opening| *opening == id);
         if self.evaluating.take_if(|evaluating| *evaluating == id).is_some() {
             self.failed = why.map(str::to_owned);

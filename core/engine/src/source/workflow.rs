@@ -48,15 +48,15 @@ impl Workflow for SourceWorkflow {
     type Around = ();
     type View = SourceView;
 
-    fn new(_folder: &Path) -> Self {
+    fn new(_: &Path) -> Self {
         Self::default()
     }
 
-    fn view(&mut self, _around: &(), _moment: &Moment) -> Arc<SourceView> {
+    fn view(&mut self, _: &(), _: &Moment) -> Arc<SourceView> {
         self.view.clone()
     }
 
-    fn apply(&mut self, command: SourceCommand, _around: &(), context: &mut Context<'_>) {
+    fn apply(&mut self, command: SourceCommand, _: &(), context: &mut Context<'_>) {
         if let SourceCommand::ListCameras = command {
             context.start(SourceWork::ListCameras);
             return;
@@ -74,10 +74,10 @@ impl Workflow for SourceWorkflow {
         }
     }
 
-    fn work_done(&mut self, _id: JobId, result: SourceResult, _around: &(), _context: &mut Context<'_>) {
+    fn work_done(&mut self, _: JobId, result: SourceResult, _: &(), _: &mut Context<'_>) {
         let SourceResult::Cameras(cameras) = result;
         self.set_cameras(cameras);
     }
 
-    fn work_ended(&mut self, _id: JobId, _why: Option<&str>, _around: &(), _context: &mut Context<'_>) {}
+    fn work_ended(&mut self, _: JobId, _: Option<&str>, _: &(), _: &mut Context<'_>) {}
 }

@@ -125,11 +125,11 @@ impl Workflow for LabelsWorkflow {
         }
     }
 
-    fn view(&mut self, around: &LabelsAround, _moment: &Moment) -> Arc<LabelsView> {
+    fn view(&mut self, around: &LabelsAround, _: &Moment) -> Arc<LabelsView> {
         Arc::new(self.shown(&around.detector))
     }
 
-    fn restore(&mut self, _around: &LabelsAround, context: &mut Context<'_>) {
+    fn restore(&mut self, _: &LabelsAround, context: &mut Context<'_>) {
         context.start(LabelsWork::Restore { memory: self.memory.clone() });
     }
 
@@ -207,13 +207,7 @@ impl Workflow for LabelsWorkflow {
         self.look();
     }
 
-    fn work_done(
-        &mut self,
-        id: JobId,
-        result: LabelsResult,
-        _around: &LabelsAround,
-        context: &mut Context<'_>,
-    ) {
+    fn work_done(&mut self, id: JobId, result: LabelsResult, _: &LabelsAround, context: &mut Context<'_>) {
         self.working.take_if(|working| *working == id);
         match result {
             LabelsResult::Restored(recent) => self.recent = recent,
@@ -243,13 +237,7 @@ impl Workflow for LabelsWorkflow {
         self.look();
     }
 
-    fn work_ended(
-        &mut self,
-        id: JobId,
-        why: Option<&str>,
-        _around: &LabelsAround,
-        context: &mut Context<'_>,
-    ) {
+    fn work_ended(&mut self, id: JobId, why: Option<&str>, _: &LabelsAround, context: &mut Context<'_>) {
         if self.working.take_if(|working| *working == id).is_some() {
             self.failed = why.filter(|_| self.set.is_none()).map(str::to_owned);
         }

@@ -165,7 +165,7 @@ impl Workflow for TouchWorkflow {
         }
     }
 
-    fn view(&mut self, around: &TouchAround, _moment: &Moment) -> Arc<TouchView> {
+    fn view(&mut self, around: &TouchAround, _: &Moment) -> Arc<TouchView> {
         Arc::new(self.shown(around))
     }
 
@@ -255,13 +255,7 @@ impl Workflow for TouchWorkflow {
         self.refresh(around, context);
     }
 
-    fn work_ended(
-        &mut self,
-        id: JobId,
-        _why: Option<&str>,
-        _around: &TouchAround,
-        _context: &mut Context<'_>,
-    ) {
+    fn work_ended(&mut self, id: JobId, _: Option<&str>, _: &TouchAround, _: &mut Context<'_>) {
         for waiting in [&mut self.planning, &mut self.starting, &mut self.placing] {
             *waiting = waiting.filter(|known| *known != id);
         }
