@@ -2,8 +2,8 @@
 //! layout is the same. Channel order is RGB on both sides: nothing here ever makes BGR.
 
 use image::{GrayImage, RgbImage};
-use opencv::boxed_ref::{BoxedRef, BoxedRefMut};
 use opencv::Result;
+use opencv::boxed_ref::{BoxedRef, BoxedRefMut};
 use opencv::core::{Mat, Vec3b};
 
 /// A gray image seen as an 8-bit, one-channel `Mat`; no copy.
