@@ -15,7 +15,7 @@ use crate::ground::{Moment, Nothing, Workflow};
 use crate::scores::view::ScoresView;
 
 /// The whole workflow.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ScoresWorkflow {
     pub(super) models: Vec<ScoredModelFile>,
     pub(super) set: Option<PathBuf>,
@@ -72,17 +72,7 @@ impl Workflow for ScoresWorkflow {
             chosen: true,
             shipped: true,
         });
-        Self {
-            models: shipped.into_iter().collect(),
-            set: None,
-            part: SetPart::default(),
-            evaluating: None,
-            failed: None,
-            evaluation: None,
-            opening: None,
-            cell: None,
-            picture: None,
-        }
+        Self { models: shipped.into_iter().collect(), ..Self::default() }
     }
 
     fn view(&mut self, _: &Provider, _: &Moment) -> Arc<ScoresView> {

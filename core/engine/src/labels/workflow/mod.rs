@@ -44,7 +44,7 @@ pub struct LabelsAround {
 }
 
 /// The whole workflow.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct LabelsWorkflow {
     /// Says which data set was open last.
     memory: PathBuf,
@@ -105,24 +105,7 @@ impl Workflow for LabelsWorkflow {
 
     /// Nothing open. What was open last is remembered in `folder`.
     fn new(folder: &Path) -> Self {
-        Self {
-            memory: folder.join("label-set.txt"),
-            recent: None,
-            set: None,
-            working: None,
-            failed: None,
-            loaded: Loaded::default(),
-            thumbnails: Arc::default(),
-            reading_thumbnails: None,
-            saving: None,
-            unsaved: None,
-            proposing: None,
-            proposer: None,
-            import: None,
-            captured_seq: None,
-            capturing: None,
-            seen: Seen::default(),
-        }
+        Self { memory: folder.join("label-set.txt"), ..Self::default() }
     }
 
     fn view(&mut self, around: &LabelsAround, _: &Moment) -> Arc<LabelsView> {

@@ -39,7 +39,7 @@ pub struct TouchAround {
 }
 
 /// The whole workflow, of one world.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct TouchWorkflow {
     folder: PathBuf,
     /// The part of the screen that the finger reaches, once that was looked for.
@@ -144,25 +144,7 @@ impl Workflow for TouchWorkflow {
     /// Nothing planned. Sessions are kept in `folder/sessions`, the place of the screen in
     /// `folder/screen.toml`.
     fn new(folder: &Path) -> Self {
-        Self {
-            folder: folder.to_owned(),
-            reach: None,
-            placement: None,
-            proposal: None,
-            correct_with: None,
-            options: None,
-            planning: None,
-            planned: None,
-            starting: None,
-            placing: None,
-            run: None,
-            runs: Runs::default(),
-            last_session: None,
-            window: None,
-            last_contact: None,
-            screen: None,
-            seen: Seen::default(),
-        }
+        Self { folder: folder.to_owned(), ..Self::default() }
     }
 
     fn view(&mut self, around: &TouchAround, _: &Moment) -> Arc<TouchView> {
