@@ -176,8 +176,13 @@ fn an_arm_of_which_one_joint_is_not_known_cannot_be_jogged() {
     // The other arm is no reason.
     fake.show(with_robot(of_arm(1)));
     window.run_steps(2);
-    assert!(!window.get_by_label("Hold to move").accesskit_node().is_disabled());
-    assert!(!robot_commands(&fake).is_empty(), "what is held moves now");
+    let button = window.get_by_label("Hold to move");
+    assert!(!button.accesskit_node().is_disabled());
+    assert_eq!(robot_commands(&fake), [], "what was pressed before is pressed anew to move");
+    window.event(pointer(window.get_by_label("Forward").rect().center(), false, Modifiers::SHIFT));
+    window.run_steps(2);
+    hold(&mut window, "Forward", Modifiers::SHIFT);
+    assert!(matches!(robot_commands(&fake).first(), Some(RobotCommand::Jog(_))));
 }
 
 #[test]

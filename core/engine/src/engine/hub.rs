@@ -58,7 +58,7 @@ impl Failure {
 /// pressed, before what it owned is let go.
 ///
 /// # Errors
-/// When it failed.
+/// Why it failed; by then that is shown and STOP is pressed.
 pub(super) fn run(
     settings: EngineSettings,
     commands: &Receiver<Command>,
