@@ -100,9 +100,7 @@ impl Desk {
             held: None,
             waiting: VecDeque::new(),
         };
-        desk.with(|workflow, around, context| {
-            Workflow::restore(workflow, around, context);
-        });
+        desk.with(TouchWorkflow::restore);
         desk
     }
 
@@ -140,7 +138,7 @@ impl Desk {
             }
             Err(error) => {
                 self.notices.add(NoticeLevel::Error, error.to_string());
-                self.workflow.work_ended(id);
+                self.with(|workflow, around, context| workflow.work_ended(id, None, around, context));
             }
         }
     }
@@ -156,7 +154,7 @@ impl Desk {
     /// Work that was held ends as if it had been cancelled.
     pub fn cancel(&mut self) {
         while let Some((id, _)) = self.waiting.pop_front() {
-            self.workflow.work_ended(id);
+            self.with(|workflow, around, context| workflow.work_ended(id, None, around, context));
         }
     }
 
@@ -170,7 +168,7 @@ impl Desk {
     }
 
     pub fn view(&self) -> TouchView {
-        self.workflow.view(&self.around())
+        self.workflow.shown(&self.around())
     }
 
     /// The newest message.
