@@ -185,3 +185,30 @@ fn room_at_the_edge() {
         );
     }
 }
+
+#[test]
+#[ignore = "minutes of physics; where grasps are fragile"]
+fn a_little_off_everywhere() {
+    let mut all = 0;
+    for at_m in PLACES_M {
+        let off = [
+            [3.0, 3.0, 1.0],
+            [-3.0, 3.0, -1.0],
+            [3.0, -3.0, 2.0],
+            [-3.0, -3.0, 0.0],
+            [0.0, 5.0, 0.0],
+            [0.0, -5.0, 0.0],
+        ];
+        let lifted: Vec<String> = off
+            .iter()
+            .map(|off| {
+                let up = lifted_m(Toy::Tomato, at_m, off.map(|mm| mm * 1e-3))
+                    .map_or(f64::NAN, |(up_m, ..)| up_m * 1e3);
+                all += usize::from(up > 40.0);
+                format!("{up:.0}")
+            })
+            .collect();
+        println!("{at_m:?}: {}", lifted.join(" "));
+    }
+    println!("{all} of {}", 6 * PLACES_M.len());
+}
