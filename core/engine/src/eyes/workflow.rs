@@ -297,7 +297,7 @@ impl Workflow for EyesWorkflow {
     type View = EyesView;
 
     fn new(folder: &Path) -> Self {
-        let (store, rig) = (Store::new(folder.join("calibrations")), default_rig());
+        let (store, rig) = (Store::of_world(folder), default_rig());
         Self::new(store, folder.join("sessions"), rig.workspace(&rig.home()))
     }
 

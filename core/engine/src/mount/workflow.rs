@@ -20,6 +20,7 @@ use crate::ground::shelf::InUse;
 use crate::ground::text::sentence;
 use crate::ground::{Moment, Workflow};
 use crate::mount::view::MountView;
+use crate::rig_models::mount_in;
 use crate::robot::RobotControl;
 use crate::robot::view::RobotView;
 
@@ -95,7 +96,7 @@ impl MountWorkflow {
     /// Nothing seen. The mount in use is kept in a file of `folder`.
     pub fn new(folder: &Path) -> Self {
         Self {
-            kept: InUse::new(folder.join("mount.toml")),
+            kept: mount_in(folder),
             views: Vec::new(),
             board: None,
             planned: Vec::new(),

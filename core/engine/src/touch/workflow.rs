@@ -19,11 +19,12 @@ use super::run::{Now, Phase, Run};
 use super::seen::Seen;
 use super::store::{self, Runs, TrainedRun};
 use super::view::{ContactSource, ContactView};
-use super::work::{Context, TouchResult, TouchWork, placement_in};
+use super::work::{Context, TouchResult, TouchWork};
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
 use crate::ground::{Moment, Workflow};
 use crate::motion::ScreenPlace;
+use crate::rig_models::screen_in;
 use crate::robot::view::{Connection, RobotView};
 use crate::robot::{RobotControl, TouchNews};
 use crate::touch::view::TouchView;
@@ -290,14 +291,14 @@ impl TouchWorkflow {
         self.no_run_under_way()?;
         let proposal = self.proposal.as_ref();
         let proposal = proposal.ok_or(Refusal::NoPlacement)?;
-        let kept = placement_in(&self.folder);
+        let kept = screen_in(&self.folder);
         context.start(TouchWork::Accept { kept, placement: proposal.placement.clone() });
         Ok(())
     }
 
     fn use_nominal(&mut self, context: &mut Context<'_>) -> Result<(), Refusal> {
         self.no_run_under_way()?;
-        context.start(TouchWork::Forget { kept: placement_in(&self.folder) });
+        context.start(TouchWork::Forget { kept: screen_in(&self.folder) });
         Ok(())
     }
 
