@@ -30,6 +30,19 @@ pub struct Accepted<'a> {
 }
 
 impl Accepted<'_> {
+    /// Whether a model is of just that.
+    pub fn is_in(&self, model: &RobotModel, described: &Rig) -> bool {
+        let rig = model.rig();
+        let same_effects = match self.effects {
+            None => model.is_nominal(),
+            Some(effects) => Arc::ptr_eq(model.added(), effects),
+        };
+        same_effects
+            && rig.eyes.cameras == *self.cameras.unwrap_or(&described.eyes.cameras)
+            && rig.eyes.head_from_left == self.head_from_left.unwrap_or(described.eyes.head_from_left)
+            && rig.touchscreen == *self.screen.unwrap_or(&described.touchscreen)
+    }
+
     /// The description with it.
     ///
     /// # Errors

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use plumbline_correction::{CorrectionModel, Method};
+use plumbline_effects::{RigModel, RobotModel};
 use plumbline_hardware::joints::Touch;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::Touchscreen;
@@ -37,6 +38,8 @@ pub struct TouchAround {
     pub robot: Arc<RobotView>,
     /// Models that targets can be corrected with: proposals, then the one in use.
     pub models: Vec<Arc<CorrectionModel>>,
+    /// The robot as it is known.
+    pub model: Arc<RobotModel>,
 }
 
 /// The whole workflow, of one world.
@@ -48,6 +51,8 @@ pub struct TouchWorkflow {
     pub(super) placement: Option<Arc<ScreenPlacement>>,
     pub(super) proposal: Option<Proposal>,
     pub(super) correct_with: Option<Correction>,
+    /// The effects that targets were corrected by, or not, last.
+    follows: Option<Arc<RigModel>>,
     /// What was asked for last, to be planned again when something changes.
     pub(super) options: Option<PlanOptions>,
     pub(super) planning: Option<JobId>,
@@ -77,6 +82,7 @@ impl TouchWorkflow {
             placement: None,
             proposal: None,
             correct_with: None,
+            follows: None,
             options: None,
             planning: None,
             planned: None,
@@ -195,7 +201,7 @@ impl TouchWorkflow {
         let corrector = match self.correct_with {
             None => Corrector::None,
             Some(Correction::Model(method)) => Corrector::Model(model_of(around, method)?),
-            Some(Correction::Effects) => Corrector::Effects(self.folder.clone()),
+            Some(Correction::Effects) => Corrector::Effects(around.model.clone()),
         };
         if let Some(earlier) = self.planning.take() {
             context.cancel(earlier);
@@ -499,8 +505,28 @@ impl TouchWorkflow {
         }
     }
 
+    /// Targets are corrected by the model's effects from the moment that it has some, until the operator
+    /// chooses otherwise; a run that is under way ends as it began.
+    fn follow_model(&mut self, around: &TouchAround, context: &mut Context<'_>) {
+        let now = around.model.added();
+        let same = self.follows.as_ref().is_some_and(|before| Arc::ptr_eq(before, now));
+        if same || self.no_run_under_way().is_err() {
+            return;
+        }
+        let before = self.follows.replace(now.clone());
+        let had_effects = before.is_some_and(|before| !before.is_nominal());
+        match (had_effects, !now.is_nominal(), self.correct_with) {
+            (false, true, None) => self.correct_with = Some(Correction::Effects),
+            (true, false, Some(Correction::Effects)) => self.correct_with = None,
+            (true, true, Some(Correction::Effects)) => {}
+            _ => return,
+        }
+        self.plan_anew(around, context);
+    }
+
     /// What follows from a change: the end of a run, the screen on its block, what is shown.
-    fn refresh(&mut self, around: &TouchAround, context: &mut Context<'_>) {
+    pub fn refresh(&mut self, around: &TouchAround, context: &mut Context<'_>) {
+        self.follow_model(around, context);
         if self.run.as_mut().is_some_and(Run::take_ended) {
             self.ended(around, context);
         }
