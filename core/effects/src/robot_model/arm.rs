@@ -104,9 +104,17 @@ impl ModelArm {
     /// Covariance of the tip's place when a posture is commanded, by what is not known of the effects'
     /// values, robot axes, m². Zero without effects, and for effects whose covariance nobody knows.
     pub fn covariance_m2(&self, commanded: &Posture, conditions: &Conditions) -> Matrix3<f64> {
+        self.spread_m2(Angles::Commanded, commanded, conditions)
+    }
+
+    /// The same when encoders read a posture.
+    pub fn covariance_by_encoders_m2(&self, encoders: &Posture, conditions: &Conditions) -> Matrix3<f64> {
+        self.spread_m2(Angles::Encoder, encoders, conditions)
+    }
+
+    fn spread_m2(&self, angles: Angles, posture: &Posture, conditions: &Conditions) -> Matrix3<f64> {
         let place = |effects: &[Present]| {
-            let place = self.place_with(Angles::Commanded, commanded, conditions, effects);
-            Some(place.translation.vector)
+            Some(self.place_with(angles, posture, conditions, effects).translation.vector)
         };
         of_values(&self.parts.free, place).expect("an arm has a place with whatever effects")
     }

@@ -20,7 +20,7 @@ use crate::eyes::Eyes;
 use crate::rig_model::{Measured, RigModel, RigModelError};
 
 pub use arm::ModelArm;
-pub use place::{PlaceInRobot, SeenUnder};
+pub use place::{PlaceInRobot, SeenUnder, worst_sigma_m};
 
 /// The robot as it is known now: its description with what was calibrated (lenses, mount of the
 /// eyes, place of the screen), and the effects that were accepted. Cheap to clone.

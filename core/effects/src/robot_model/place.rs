@@ -37,9 +37,15 @@ impl PlaceInRobot {
     /// One standard deviation along the worst direction, m; infinite where the covariance holds what
     /// is no number.
     pub fn sigma_m(&self) -> f64 {
-        let largest = decompose::symmetric_eigenvalues(self.covariance_m2).map(|variances| variances.max());
-        largest.filter(|variance| variance.is_finite()).map_or(f64::INFINITY, |m2| m2.max(0.0).sqrt())
+        worst_sigma_m(&self.covariance_m2)
     }
+}
+
+/// One standard deviation along the worst direction (m) of a covariance (m²); infinite where it holds
+/// what is no number.
+pub fn worst_sigma_m(covariance_m2: &Matrix3<f64>) -> f64 {
+    let largest = decompose::symmetric_eigenvalues(*covariance_m2).map(|variances| variances.max());
+    largest.filter(|variance| variance.is_finite()).map_or(f64::INFINITY, |m2| m2.max(0.0).sqrt())
 }
 
 impl RobotModel {
@@ -58,6 +64,12 @@ impl RobotModel {
             measured.present.effect.deviate_eyes(&situation, &measured.present.values, &mut deviation);
         }
         Pose::new(self.eyes.robot_from_left(&row.neck_rad, &deviation))
+    }
+
+    /// Angles of the head (pan, tilt; rad) at which the left eye looks at a point, limits not
+    /// considered, see [`plumbline_model::robot::Rig::look_at`].
+    pub fn look_at(&self, point: Point<Robot>, posture: &Posture) -> (f64, f64) {
+        self.rig.look_at_by(point, posture, |posture| self.robot_from_left(posture))
     }
 
     /// Where something is that stereo with the calibrated eyes puts at `in_left` (left camera, m;

@@ -222,7 +222,7 @@ impl Workflow for EyesWorkflow {
         let rig = default_rig();
         let board = default_board();
         Self {
-            store: Store::new(folder.join("calibrations")),
+            store: Store::of_world(folder),
             sessions: folder.join("sessions"),
             session: None,
             workspace: rig.workspace(&rig.home()),

@@ -20,7 +20,7 @@ use crate::ground::{Moment, Nothing, Workflow};
 
 /// What the workflow can see of the rest.
 pub struct GapAround {
-    /// The robot as its description has it.
+    /// The robot with what was calibrated.
     pub rig: Arc<Rig>,
     /// The session that was touched last; offered first.
     pub newest_session: Option<PathBuf>,
@@ -56,6 +56,11 @@ pub(super) struct Seen {
 }
 
 impl GapWorkflow {
+    /// The model in use; `None`: not read yet, or it cannot be.
+    pub fn model(&self) -> Option<&Arc<RigModel>> {
+        self.model.as_ref()
+    }
+
     fn list(&self, context: &mut Context<'_>) {
         let watched: Vec<KeptSession> =
             self.findings.iter().flat_map(|named| named.kept.sessions.clone()).collect();

@@ -20,6 +20,7 @@ use crate::ground::shelf::InUse;
 use crate::ground::text::sentence;
 use crate::ground::{Moment, Workflow};
 use crate::mount::view::MountView;
+use crate::rig_models::mount_in;
 use crate::robot::RobotControl;
 use crate::robot::view::RobotView;
 
@@ -209,7 +210,7 @@ impl Workflow for MountWorkflow {
     /// Nothing seen. The mount in use is kept in a file of `folder`.
     fn new(folder: &Path) -> Self {
         Self {
-            kept: InUse::new(folder.join("mount.toml")),
+            kept: mount_in(folder),
             views: Vec::new(),
             board: None,
             planned: Vec::new(),

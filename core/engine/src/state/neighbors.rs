@@ -177,7 +177,7 @@ impl Neighbors<EyesWorkflow> for State {
     }
 
     fn after(&mut self, _world: World) {
-        self.use_calibration();
+        self.use_models();
     }
 }
 
@@ -194,7 +194,7 @@ impl Neighbors<MountWorkflow> for State {
     }
 
     fn after(&mut self, _world: World) {
-        self.use_mount();
+        self.use_models();
     }
 }
 
@@ -204,11 +204,12 @@ impl Neighbors<TouchWorkflow> for State {
             rig: self.rig.clone(),
             robot: self.robot.clone(),
             models: self.rooms.models.of(world).usable(),
+            model: self.models.of(world).clone(),
         }
     }
 
     fn after(&mut self, world: World) {
-        self.use_screen();
+        self.use_models();
         let finished = self.rooms.touch.of(world).finished_session();
         let Some(finished) = finished.map(|(session, revision)| (session.to_owned(), revision)) else {
             return;
@@ -216,11 +217,12 @@ impl Neighbors<TouchWorkflow> for State {
         if self.learned_from.get(&world) == Some(&finished) {
             return;
         }
+        // What is told below comes back here.
+        self.learned_from.insert(world, finished.clone());
         self.with::<ModelsWorkflow>(world, |models, around, context| {
             models.touched(&finished.0, around, context);
         });
         self.with::<GapWorkflow>(world, |gap, _, context| gap.touched(&finished.0, context));
-        self.learned_from.insert(world, finished);
     }
 }
 
@@ -240,5 +242,10 @@ impl Neighbors<GapWorkflow> for State {
             rig: self.rig_of(world),
             newest_session: self.rooms.touch.of(world).session().map(Path::to_owned),
         }
+    }
+
+    fn after(&mut self, world: World) {
+        self.use_models();
+        self.with::<TouchWorkflow>(world, |touch, around, context| touch.refresh(around, context));
     }
 }

@@ -19,6 +19,7 @@ use crate::ground::LongWork;
 use crate::ground::jobs::JobError;
 use crate::ground::shelf::InUse;
 use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
+use crate::rig_models::screen_in;
 use crate::robot::{RobotControl, TouchOrder};
 
 /// Work of this workflow.
@@ -232,13 +233,8 @@ impl LongWork for TouchWork {
     }
 }
 
-/// The place of the screen in use, in the world's folder.
-pub fn placement_in(folder: &std::path::Path) -> InUse {
-    InUse::new(folder.join("screen.toml"))
-}
-
 fn restore(folder: &std::path::Path, rig: &Rig) -> TouchResult {
-    let kept = placement_in(folder)
+    let kept = screen_in(folder)
         .read(|file| ScreenPlacement::read(file, &rig.name).map_err(NotRestored::from))
         .transpose();
     let placement = kept.map(|placement| placement.map(Arc::new).map_err(Arc::new));

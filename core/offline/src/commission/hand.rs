@@ -64,9 +64,7 @@ struct Found {
 pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Result<Step, CommissionError> {
     let mut step = Step::new("hand", "hands that were not used, seen against where the arm has them, rms");
     let calibration = Arc::new(lab.calibration()?);
-    let mounted = lab.mount()?.applied_to(&lab.rig);
-    let placed = lab.placement()?.applied_to(&mounted).map_err(CommissionError::room)?;
-    let model = RobotModel::new(Arc::new(placed), Arc::new(lab.model()?)).map_err(CommissionError::room)?;
+    let model = lab.known()?;
     let arm = PalmArm::new(&model, "right").map_err(CommissionError::room)?;
     let planner = GraspPlanner::new(arm);
     let (before, looks) = look(robot, &planner, &model, context)?;

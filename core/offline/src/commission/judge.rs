@@ -111,7 +111,8 @@ pub(super) fn touches(
     let stored = store::read(&session(lab))?;
     let touched: Vec<Pixel<Screen>> = stored.progress.counted().map(|record| record.touched).collect();
     let rig = lab.rig_with_screen()?;
-    let corrector = if lab.model()?.is_nominal() { Corrector::None } else { Corrector::Effects(lab.world()) };
+    let corrector =
+        if lab.model()?.is_nominal() { Corrector::None } else { Corrector::Effects(Arc::new(lab.known()?)) };
     let aims = new_aims(lab, &rig, corrector, context)?;
     let planner = Planner::new(&rig, TIP, ScreenPlace::Measured)?;
     let mut errors = [vec![], vec![]];

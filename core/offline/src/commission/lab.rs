@@ -4,12 +4,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use plumbline_effects::RigModel;
+use plumbline_effects::{RigModel, RobotModel};
 use plumbline_engine::eyes::store::Store as EyesStore;
 use plumbline_engine::ground::World;
 use plumbline_engine::ground::shelf::InUse;
-use plumbline_engine::rig_models;
-use plumbline_engine::touch::work::placement_in;
+use plumbline_engine::rig_models::{self, screen_in};
 use plumbline_model::StereoCalibration;
 use plumbline_model::robot::Rig;
 use plumbline_model::touchscreen::ScreenPlacement;
@@ -86,7 +85,7 @@ impl Lab {
 
     /// Where the screen was found to lie.
     pub fn placement(&self) -> Result<ScreenPlacement, CommissionError> {
-        let placement = placement_in(&self.world())
+        let placement = screen_in(&self.world())
             .read(|file| ScreenPlacement::read(file, &self.rig.name).map_err(CommissionError::room))?;
         placement.ok_or_else(|| self.gone("the place of the screen"))
     }
@@ -94,7 +93,7 @@ impl Lab {
     /// Puts a place of the screen in use.
     pub fn accept_placement(&self, placement: &ScreenPlacement) -> Result<(), CommissionError> {
         let no_folder = |error: std::io::Error| CommissionError::room(error);
-        placement_in(&self.world())
+        screen_in(&self.world())
             .put(no_folder, |file: &Path| placement.write(file).map_err(CommissionError::room))
     }
 
@@ -107,6 +106,11 @@ impl Lab {
     /// The model with the effects in use.
     pub fn model(&self) -> Result<RigModel, CommissionError> {
         rig_models::load(&self.world(), &self.rig).map_err(CommissionError::room)
+    }
+
+    /// The robot as it is known: all that was accepted.
+    pub fn known(&self) -> Result<RobotModel, CommissionError> {
+        rig_models::in_use(&self.world(), &self.rig).map_err(CommissionError::room)
     }
 
     fn gone(&self, what: &'static str) -> CommissionError {

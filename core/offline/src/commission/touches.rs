@@ -57,6 +57,7 @@ pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Res
         },
         touches: aims,
         corrected_with: None,
+        model: String::new(),
         duration_s: 0.0,
         score: None,
     };

@@ -4,7 +4,6 @@ use std::path::Path;
 use std::sync::Arc;
 
 use plumbline_correction::Method as Correction;
-use plumbline_effects::RobotModel;
 use plumbline_grasp::{Corrections, Knowledge, Method};
 use plumbline_model::JobContext;
 use plumbline_model::robot::Rig;
@@ -26,9 +25,7 @@ pub(super) fn knowledge(
 ) -> Result<Knowledge, OfflineError> {
     let lab = Lab { folder: folder.to_owned(), rig: rig.clone(), scenario: scenario.clone(), seed: 1 };
     let calibration = lab.calibration()?;
-    let mounted = lab.mount()?.applied_to(rig);
-    let placed = lab.placement()?.applied_to(&mounted).map_err(CommissionError::room)?;
-    let model = RobotModel::new(Arc::new(placed), Arc::new(lab.model()?)).map_err(CommissionError::room)?;
+    let model = lab.known()?;
     let mut corrections = Corrections::default();
     if methods.iter().any(|method| *method != Method::M5) {
         let [m1, m2, m3] = <[_; 3]>::try_from(published(&lab, &Correction::ALL, context)?)

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use plumbline_correction::CorrectionModel;
+use plumbline_effects::{RigModel, RobotModel};
 use plumbline_model::robot::Rig;
 use plumbline_model::session::Touchscreen;
 use plumbline_model::touch_plan::{PlanOptions, TouchArea};
@@ -36,6 +37,8 @@ pub struct TouchAround {
     pub robot: Arc<RobotView>,
     /// Models that targets can be corrected with: proposals, then the one in use.
     pub models: Vec<Arc<CorrectionModel>>,
+    /// The robot as it is known.
+    pub model: Arc<RobotModel>,
 }
 
 /// The whole workflow, of one world.
@@ -47,6 +50,8 @@ pub struct TouchWorkflow {
     pub(super) placement: Option<Arc<ScreenPlacement>>,
     pub(super) proposal: Option<Proposal>,
     pub(super) correct_with: Option<Correction>,
+    /// The effects that targets were corrected by, or not, last.
+    follows: Option<Arc<RigModel>>,
     /// What was asked for last, to be planned again when something changes.
     pub(super) options: Option<PlanOptions>,
     pub(super) planning: Option<JobId>,
@@ -85,7 +90,8 @@ impl TouchWorkflow {
     }
 
     /// What follows from a change: the end of a run, the screen on its block, what is shown.
-    fn refresh(&mut self, around: &TouchAround, context: &mut Context<'_>) {
+    pub fn refresh(&mut self, around: &TouchAround, context: &mut Context<'_>) {
+        self.follow_model(around, context);
         if self.run.as_mut().is_some_and(Run::take_ended) {
             self.ended(around, context);
         }

@@ -10,24 +10,25 @@ use plumbline_model::touchscreen::ScreenPlacement;
 use super::super::placement::Proposal;
 use super::super::refusal::{NotRestored, Refusal, Unplaced};
 use super::super::store::Runs;
-use super::super::work::{Context, TouchWork, placement_in};
+use super::super::work::{Context, TouchWork};
 use super::TouchWorkflow;
 use crate::ground::notice::NoticeLevel;
 use crate::motion::ScreenPlace;
+use crate::rig_models::screen_in;
 
 impl TouchWorkflow {
     pub(super) fn accept_placement(&mut self, context: &mut Context<'_>) -> Result<(), Refusal> {
         self.no_run_under_way()?;
         let proposal = self.proposal.as_ref();
         let proposal = proposal.ok_or(Refusal::NoPlacement)?;
-        let kept = placement_in(&self.folder);
+        let kept = screen_in(&self.folder);
         context.start(TouchWork::Accept { kept, placement: proposal.placement.clone() });
         Ok(())
     }
 
     pub(super) fn use_nominal(&mut self, context: &mut Context<'_>) -> Result<(), Refusal> {
         self.no_run_under_way()?;
-        context.start(TouchWork::Forget { kept: placement_in(&self.folder) });
+        context.start(TouchWork::Forget { kept: screen_in(&self.folder) });
         Ok(())
     }
 

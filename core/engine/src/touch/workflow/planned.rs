@@ -26,7 +26,7 @@ impl TouchWorkflow {
         let corrector = match self.correct_with {
             None => Corrector::None,
             Some(Correction::Model(method)) => Corrector::Model(model_of(around, method)?),
-            Some(Correction::Effects) => Corrector::Effects(self.folder.clone()),
+            Some(Correction::Effects) => Corrector::Effects(around.model.clone()),
         };
         if let Some(earlier) = self.planning.take() {
             context.cancel(earlier);
@@ -41,6 +41,25 @@ impl TouchWorkflow {
             corrector,
         })));
         Ok(())
+    }
+
+    /// Targets are corrected by the model's effects from the moment that it has some, until the operator
+    /// chooses otherwise; a run that is under way ends as it began.
+    pub(super) fn follow_model(&mut self, around: &TouchAround, context: &mut Context<'_>) {
+        let now = around.model.added();
+        let same = self.follows.as_ref().is_some_and(|before| Arc::ptr_eq(before, now));
+        if same || self.no_run_under_way().is_err() {
+            return;
+        }
+        let before = self.follows.replace(now.clone());
+        let had_effects = before.is_some_and(|before| !before.is_nominal());
+        match (had_effects, !now.is_nominal(), self.correct_with) {
+            (false, true, None) => self.correct_with = Some(Correction::Effects),
+            (true, false, Some(Correction::Effects)) => self.correct_with = None,
+            (true, true, Some(Correction::Effects)) => {}
+            _ => return,
+        }
+        self.plan_anew(around, context);
     }
 
     /// Plans once more what is planned, because what it depends on has changed.
