@@ -56,10 +56,16 @@ impl Knowledge {
     /// beside it, in the plane in which the screen was found to lie, m.
     pub fn support_m(&self, x_m: f64, y_m: f64) -> f64 {
         let screen = self.model.touchscreen();
-        let normal: Vector3<f64> = screen.normal().vector();
-        let origin = screen.origin.coords.coords;
-        let glass_m = origin.z - (normal.x * (x_m - origin.x) + normal.y * (y_m - origin.y)) / normal.z;
+        let glass_m = self.glass_m(x_m, y_m);
         let on_glass = screen.contains(screen.pixel_at(Point::new(x_m, y_m, glass_m)));
         if on_glass { glass_m } else { glass_m - GLASS_OVER_TABLE_M }
+    }
+
+    /// Height of the glass at a place, or of its plane beside it, m.
+    pub fn glass_m(&self, x_m: f64, y_m: f64) -> f64 {
+        let screen = self.model.touchscreen();
+        let normal: Vector3<f64> = screen.normal().vector();
+        let origin = screen.origin.coords.coords;
+        origin.z - (normal.x * (x_m - origin.x) + normal.y * (y_m - origin.y)) / normal.z
     }
 }

@@ -28,7 +28,8 @@ pub struct Judged {
     /// The palm before the hand closed, less where it belongs by the true place of the object, robot
     /// axes, m.
     pub palm_off_m: Option<[f64; 3]>,
-    /// Distance of the hand that was seen at last from where it truly was, m.
+    /// Distance of the hand that was seen at last from where it truly was, over the table, seen from the
+    /// object, m.
     pub hand_error_m: Option<f64>,
     /// Why it failed, by what really happened; `None`: it did not.
     pub failure: Option<Failure>,
@@ -86,7 +87,9 @@ impl Judge {
             Vector3::new(beside.x, beside.y, over_m) + self.object_m
         });
         let camera_error_m = seen_m.map(|seen| flat(seen, self.object_m));
-        let hand_error_m = hand_m.zip(self.aligned_m).map(|(seen, truly)| flat(seen, truly));
+        // Hand and object are seen by the same eyes: what matters is how they are seen to each other.
+        let eyes_off = seen_m.map(|seen| seen - self.object_m).unwrap_or_default();
+        let hand_error_m = hand_m.zip(self.aligned_m).map(|(seen, truly)| flat(seen - eyes_off, truly));
         let refused = matches!(record.outcome, Some(plumbline_grasp::Outcome::Refused { .. }));
         let failure = (!lifted && !refused).then(|| match &record.outcome {
             Some(plumbline_grasp::Outcome::Failed { failure: Failure::NotSeen, .. }) => Failure::NotSeen,
