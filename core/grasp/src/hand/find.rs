@@ -9,7 +9,7 @@ use super::evidence::{Colors, Evidence};
 use super::lines::{from_colors, from_evidence};
 use super::search::{Moves, Scores, best_shift};
 use super::shape::{EyesAt, HandShape, InView, Part, Solid};
-use super::solve::{Measured, Prior, Solution, Unknowns, moved, resized, slope, solve};
+use super::solve::{Measured, Prior, Solution, Unknowns, moved, nothing, resized, slope, solve, three};
 use super::view::{HandView, Region, RimPoint, labels, mask, rays, rim};
 use super::{EyeFit, HandNotSeen, HandOptions, HandSeen, OutlinePoint, Pair, Predicted};
 
@@ -53,8 +53,8 @@ pub fn look_for_hand(
     predicted: &Predicted<'_>,
     options: &HandOptions,
 ) -> Result<HandSeen, HandNotSeen> {
-    let prior = Prior::new(&predicted.covariance_m2, options).ok_or(HandNotSeen::NoPrior)?;
     let solids = hand.posed(predicted.posture);
+    let prior = Prior::new(&predicted.covariance_m2, &solids, options).ok_or(HandNotSeen::NoPrior)?;
     let mut sights = vec![];
     for eye in Eye::BOTH {
         let images = Images { now: now.of(eye), before: before.map(|pair| pair.of(eye)) };
@@ -64,7 +64,7 @@ pub fn look_for_hand(
         return Err(HandNotSeen::OutsideView);
     }
     let search = Search { solids: &solids, predicted, prior, sights };
-    let mut at = Unknowns::zeros();
+    let mut at = nothing(&solids);
     let shift = search.first_shift().ok_or(HandNotSeen::NoPrior)?;
     at.fixed_rows_mut::<3>(0).copy_from(&shift);
     let mut solution = None;
@@ -74,7 +74,7 @@ pub fn look_for_hand(
             return Err(search.nothing_there(&at, options));
         }
         let found = solve(&lines, &search.prior, &at).ok_or(HandNotSeen::NoPrior)?;
-        at = found.unknowns;
+        at = found.unknowns.clone();
         solution = Some((lines, found));
     }
     let (lines, found) = solution.ok_or(HandNotSeen::NoPrior)?;
@@ -181,7 +181,8 @@ impl Search<'_> {
         let covariance_m2: &Matrix3<f64> = &self.predicted.covariance_m2;
         let mut shift = Vector3::zeros();
         for round in 0..2 {
-            let unknowns = with_shift(&shift);
+            let mut unknowns = nothing(self.solids);
+            unknowns.fixed_rows_mut::<3>(0).copy_from(&shift);
             let place = moved(self.predicted, &unknowns);
             let solids = self.solids;
             let mut eyes = vec![];
@@ -215,8 +216,14 @@ impl Search<'_> {
                     (Some(_), None) => None,
                     (None, _) => from_colors(sight.images.now, sight.images.before, &point),
                 };
-                let slope =
-                    slope(&point, &solids[point.solid], sight.camera, &sight.camera_from_robot, &place);
+                let slope = slope(
+                    &point,
+                    &solids[point.solid],
+                    sight.camera,
+                    &sight.camera_from_robot,
+                    &place,
+                    at.len(),
+                );
                 if let Some((crossing, slope)) = crossing.zip(slope) {
                     lines.push(Measured { eye: sight.eye, point, crossing, slope });
                 }
@@ -260,7 +267,7 @@ impl Search<'_> {
         options: &HandOptions,
     ) -> Result<HandSeen, HandNotSeen> {
         let at = &found.unknowns;
-        let offset_m: Vector3<f64> = at.fixed_rows::<3>(0).into_owned();
+        let offset_m: Vector3<f64> = three(at, 0);
         let information = self.predicted.covariance_m2.try_inverse().ok_or(HandNotSeen::NoPrior)?;
         let sigmas = offset_m.dot(&(information * offset_m)).max(0.0).sqrt();
         let mut fit = [None, None];
@@ -289,7 +296,7 @@ impl Search<'_> {
         Ok(HandSeen {
             offset_m,
             covariance_m2: found.covariance.fixed_view::<3, 3>(0, 0).into_owned(),
-            turn_rad: at.fixed_rows::<3>(3).into_owned(),
+            turn_rad: three(at, 3),
             robot_from_tip: moved(self.predicted, at),
             fit,
         })
@@ -314,9 +321,3 @@ impl Search<'_> {
 
 /// Pixels whose evidence is below this look like something else than the hand.
 const UNLIKE: f32 = -1.0;
-
-fn with_shift(shift: &Vector3<f64>) -> Unknowns {
-    let mut unknowns = Unknowns::zeros();
-    unknowns.fixed_rows_mut::<3>(0).copy_from(shift);
-    unknowns
-}
