@@ -23,6 +23,7 @@ mod find;
 mod lines;
 mod search;
 mod shape;
+mod sight;
 mod solid;
 mod solve;
 #[cfg(test)]
@@ -82,6 +83,8 @@ pub struct HandOptions {
     pub sigma_bent_m: f64,
     /// At least this share of the hand must lie on the image of an eye, 0–1.
     pub least_in_view: f64,
+    /// The tip may lie this far off the optical axis of an eye, rad: beyond, the face covers the rim.
+    pub most_off_axis_rad: f64,
     /// At most this share of the hand may look like something else, 0–1.
     pub most_hidden: f64,
     /// At least this share of the hand must differ from the pair before, 0–1.
@@ -99,6 +102,7 @@ impl Default for HandOptions {
             sigma_digit_m: 0.002,
             sigma_bent_m: 0.01,
             least_in_view: 0.6,
+            most_off_axis_rad: 1.35,
             most_hidden: 0.5,
             least_changed: 0.15,
             most_sigmas: 4.0,

@@ -88,7 +88,7 @@ impl Scores {
 
 /// The shift (robot axes, m) whose silhouettes fit the evidence and the prior best.
 pub(super) fn best_shift(
-    eyes: &[(Moves, Scores)],
+    eyes: &[(&Moves, Scores)],
     covariance_m2: &Matrix3<f64>,
     step_m: f64,
 ) -> Option<Vector3<f64>> {

@@ -39,8 +39,8 @@ pub(super) fn three(unknowns: &Unknowns, first: usize) -> Vector3<f64> {
     unknowns.fixed_rows::<3>(first).into_owned()
 }
 
-/// Shapes of the description and real ones differ by this much at a point of the rim, px: palm, digits.
-const SHAPE_PX: [f64; 2] = [0.5, 0.5];
+/// Shapes of the description, resized, and real ones differ by this much at a point of the rim, px.
+const SHAPE_PX: f64 = 0.6;
 /// Over this length of rim they differ in the same way, px.
 const ALIKE_PX: f64 = 5.0;
 /// Residuals beyond this many robust standard deviations count less and less (Tukey's biweight).
@@ -199,11 +199,7 @@ const ROUNDS: usize = 6;
 
 /// Weight of a line, 1/px²: what it says, no better than shapes are known, and shared with its neighbors.
 fn information(line: &Measured) -> f64 {
-    let shape_px = match line.point.part {
-        Part::Palm => SHAPE_PX[0],
-        Part::Digit | Part::Forearm => SHAPE_PX[1],
-    };
-    let variance = 1.0 / line.crossing.information + shape_px * shape_px;
+    let variance = 1.0 / line.crossing.information + SHAPE_PX * SHAPE_PX;
     line.point.length_px / ALIKE_PX / variance
 }
 
@@ -213,7 +209,7 @@ fn scale(solution: &mut Solution, lines: &[Measured], prior: &Prior) {
     for ((line, residual), weight) in lines.iter().zip(&solution.residuals).zip(&solution.weights) {
         let weight = weight * information(line);
         square += weight * residual * residual;
-        count += weight * (1.0 / line.crossing.information + 0.5);
+        count += weight * (1.0 / line.crossing.information + SHAPE_PX * SHAPE_PX);
     }
     let factor = if count > 0.0 { (square / count).max(1.0) } else { 1.0 };
     let mut normal = prior.information.clone();
