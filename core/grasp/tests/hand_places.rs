@@ -1,5 +1,18 @@
 //! The hand over the 22 places of the published grasps, found on twins: judged against what is
 //! really so.
+//!
+//! Measured over all places, three predictions each (truth plus 3 mm per axis, turned by 0.03 rad per
+//! axis), with a pair before, on both scenarios, on an empty table, with a toy under the hand, with
+//! others beside, and high before the room: 66 of 66 within 8 mm each; horizontal error median 1.3 to
+//! 1.7 mm, 95 % 3.7 to 4.8 mm (predicted: 3.5 and 7); 66 to 77 % of coordinates within one stated
+//! sigma, none beyond 3.0; 15 ms of a processor core, 34 at most low over the table, 62 high.
+//! From nominal kinematics (16 to 19 mm off on "lab", prior 20 mm): 22 of 22, horizontal median 1.7 to
+//! 2.0 mm, 95 % 3.0 to 3.8 mm; high before the room 20 of 22 and 8 mm. 22 ms, 50 at most low, 83 high.
+//! Without a pair before some are lost: 59 to 66 of 66, and worse beside toys.
+//!
+//! The published way (boxes of the shipped detector in both eyes, "lab"): low over the table 22 of 22
+//! within 20 mm, 17 within 8 mm by the middles of the boxes, 21 by their own pixels; high before the
+//! room 17 within 20 mm, 13 and 6 within 8 mm.
 #![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
 
 use std::sync::Arc;
@@ -183,6 +196,23 @@ impl Score {
     }
 }
 
+impl Score {
+    /// What is promised where the prediction is good to 3 mm and there is a pair before.
+    fn check(&self) {
+        let located = self.errors_m.iter().filter(|error| error.norm() <= 0.008).count();
+        assert_eq!(located, self.looks, "{:?}", self.failures);
+        let mut horizontal_m = self.horizontal_m.clone();
+        horizontal_m.sort_by(f64::total_cmp);
+        let (median_m, p95_m) =
+            (horizontal_m[horizontal_m.len() / 2], horizontal_m[horizontal_m.len() * 95 / 100]);
+        assert!(median_m <= 0.002 && p95_m <= 0.0055, "median {median_m} m, 95 % {p95_m} m");
+        let within = self.sigmas.iter().filter(|sigma| sigma.abs() <= 1.0).count();
+        let share = within as f64 / self.sigmas.len() as f64;
+        assert!((0.6..0.85).contains(&share), "{share} within one sigma");
+        assert!(self.sigmas.iter().all(|sigma| sigma.abs() < 4.0), "a sigma of more than 4");
+    }
+}
+
 struct Trial {
     /// Standard deviation of the error put on the truth; `None`: nominal kinematics.
     truth_and_m: Option<f64>,
@@ -311,8 +341,9 @@ fn places() {
                 }
             }
             let ours = Trial { truth_and_m: Some(0.003), prior_m: 0.003, with_before: true, repeats: 3 };
-            judge(&rig, &shown, &ours, std::env::var_os("HAND_VERBOSE").is_some())
-                .print(&format!("{scenario}, {title}, 3 mm"));
+            let mut score = judge(&rig, &shown, &ours, std::env::var_os("HAND_VERBOSE").is_some());
+            score.print(&format!("{scenario}, {title}, 3 mm"));
+            score.check();
             let blind = Trial { with_before: false, ..ours };
             judge(&rig, &shown, &blind, false).print(&format!("{scenario}, {title}, 3 mm, no pair before"));
             let nominal = Trial { truth_and_m: None, prior_m: 0.02, with_before: true, repeats: 1 };
@@ -384,6 +415,7 @@ fn published_way() {
         }
         for (way, mut errors) in ["middles of boxes", "own pixels"].into_iter().zip(errors) {
             errors.sort_by(f64::total_cmp);
+            assert!(errors[errors.len() / 2] < 0.03, "{way}: not even half of the places");
             let within = |limit_m: f64| errors.iter().filter(|error| **error <= limit_m).count();
             println!(
                 "published, {way}, {title} over the table: within 8 mm {}, 20 mm {}, 50 mm {} of {}; no place {}; median {:.1} mm",

@@ -21,6 +21,8 @@ const STEP_M: f64 = 0.0025;
 const LEAST_LINES: usize = 20;
 /// Images are cut anew when the hand was looked for farther than this, px.
 const NARROW_PX: f64 = 6.0;
+/// Without a pair before, edges of the background pass for the hand's: a line is off by this much, px.
+const BACKGROUND_PX: f64 = 1.3;
 /// A residual larger than this is no outline of the hand, px.
 const MOST_SPREAD_PX: f64 = 3.0;
 
@@ -136,6 +138,10 @@ impl Search<'_> {
                     (Some(_), None) => None,
                     (None, _) => from_colors(sight.images.now, sight.images.before, &point),
                 };
+                let crossing = crossing.map(|crossing| match sight.images.before {
+                    Some(_) => crossing,
+                    None => crossing.doubted(BACKGROUND_PX),
+                });
                 let slope = slope(
                     &point,
                     &solids[point.solid],
