@@ -201,7 +201,7 @@ fn changed(at: &Isometry3<f64>, scale: f64, unknown: usize, by: f64) -> (Isometr
     (moved, scale)
 }
 
-/// Where a point of the outline is seen, and the direction out of the frame there (unit), px.
+/// Where a point of the outline is seen, and the direction across its edge out of the frame (unit), px.
 fn on_image(
     rig: &Rig,
     picture: &Picture,
@@ -219,8 +219,11 @@ fn on_image(
         Some(cameras.camera(picture.eye).project(&in_eye.coords).ok()?.vector())
     };
     let pixel = seen(*point)?;
-    let toward = (seen(point + out * 0.005)? - pixel).try_normalize(1e-6)?;
-    Some((pixel, toward))
+    // Across the edge as the image has it, which is not where the direction out is seen.
+    let along = seen(point + out.cross(&Vector3::z()) * 0.005)? - pixel;
+    let across = Vector2::new(-along.y, along.x).try_normalize(1e-6)?;
+    let outward = seen(point + out * 0.005)? - pixel;
+    Some((pixel, across * across.dot(&outward).signum()))
 }
 
 /// Where the dark frame ends along a line through `pixel` toward the table: distance from `pixel`, px.
