@@ -4,7 +4,7 @@
 
 use plumbline_effects::arm::Arm;
 use plumbline_effects::rig_model::{Addition, ModelEffect, PlacedScreen, StepGap};
-use plumbline_effects::{Effect, Measurements, RigModel};
+use plumbline_effects::{Effect, Kind, Measurements, RigModel};
 use plumbline_engine::gap::search::{measured, search};
 use plumbline_engine::gap::sessions::stamps;
 use plumbline_engine::gap::store::{KeptFinding, KeptSession, Store};
@@ -17,7 +17,8 @@ use plumbline_model::touchscreen::place_screen;
 use plumbline_model::{JobContext, Session};
 
 use super::error::CommissionError;
-use super::estimate::{Fit, fit, held_out_m};
+use super::estimate::{Fit, Known, fit, held_out_m};
+use super::glass::SeenScreen;
 use super::lab::Lab;
 use super::plan::effects_of;
 use super::steps::Step;
@@ -42,13 +43,15 @@ pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, Commissio
 
     directions(lab, &mut measurements)?;
     let arm = Arm::of_rig(&lab.rig, TIP)?;
+    let seen = SeenScreen::read(lab)?;
+    let known = Known { rig: &lab.rig, seen: seen.as_ref() };
     let named = named_effects(&finding, &arm);
     let all = effects_of(&arm);
     context.checkpoint()?;
-    let of_nothing = held_out_m(&measurements, &[]);
-    let of_named = if named.is_empty() { None } else { held_out_m(&measurements, &named) };
+    let of_nothing = held_out_m(&measurements, &[], &known);
+    let of_named = if named.is_empty() { None } else { held_out_m(&measurements, &named, &known) };
     context.checkpoint()?;
-    let of_all = held_out_m(&measurements, &all);
+    let of_all = held_out_m(&measurements, &all, &known);
     let mm = |m: Option<f64>| m.map_or("not known".to_owned(), |m| format!("{:.2} mm", 1e3 * m));
     step.notes.push(format!(
         "Held-out touches err by {} without effects, {} with those named, {} with all usual ones.",
@@ -59,21 +62,25 @@ pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, Commissio
     step.before_mm = of_nothing.map(|m| 1e3 * m);
     let better =
         |new: Option<f64>, old: Option<f64>| matches!((new, old), (Some(n), Some(o)) if n < WORTH * o);
-    let (mut best, mut chosen) = (of_nothing, None);
+    let none = vec![];
+    let (mut best, mut effects, mut what) = (of_nothing, &none, "no effect of the arm");
     if better(of_named, best) {
-        (best, chosen) = (of_named, Some((&named, "named")));
+        (best, effects, what) = (of_named, &named, "those named");
     }
     if better(of_all, best) {
-        (best, chosen) = (of_all, Some((&all, "all usual effects, each drawn to zero")));
+        (best, effects, what) = (of_all, &all, "all usual effects, each drawn to zero");
     }
     step.after_mm = best.map(|m| 1e3 * m);
-    let Some((effects, what)) = chosen else {
-        step.notes.push("No effect is in use: none lowers the error on held-out touches.".to_owned());
-        return Ok(step);
-    };
     step.notes.push(format!("In use: {what}."));
     let rows: Vec<_> = measurements.rows.iter().collect();
-    let Some(fitted) = fit(&measurements, &rows, effects) else { return Ok(step) };
+    let Some(fitted) = fit(&measurements, &rows, effects, &known) else { return Ok(step) };
+    if let Some((zero_rad, sd_rad)) = fitted.neck_rad {
+        step.notes.push(format!(
+            "The neck's turn is off by {:.2}° ± {:.2}°.",
+            zero_rad.to_degrees(),
+            sd_rad.to_degrees()
+        ));
+    }
     accept(lab, &measurements, &fitted, &finding, (of_nothing, best))?;
     Ok(step)
 }
@@ -137,6 +144,23 @@ fn accept(
             probability,
             parameters: vec![],
         });
+    }
+    if let Some((zero_rad, sd_rad)) = fitted.neck_rad {
+        let joint = lab.rig.description.joint(lab.rig.eyes.pan).name.clone();
+        effects.push(ModelEffect {
+            id: Kind::HeadJoint.id().to_owned(),
+            title: format!("{joint}: {}", Kind::HeadJoint.about()),
+            site: joint,
+            tip: None,
+            shape: None,
+            values: vec![zero_rad],
+            covariance: vec![sd_rad * sd_rad],
+            probability: None,
+            parameters: vec![],
+        });
+    }
+    if effects.is_empty() {
+        return Ok(());
     }
     let gap = before.zip(after).map(|(before, after)| StepGap {
         unit: "m".to_owned(),

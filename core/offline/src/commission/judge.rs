@@ -70,7 +70,7 @@ pub(super) fn places(
     robot: &mut Robot,
     context: &dyn JobContext,
 ) -> Result<PlaceError, CommissionError> {
-    let mut seer = Seer::new(&lab.calibration()?, lab.rig_with_eyes()?)?;
+    let mut seer = Seer::new(&lab.calibration()?, lab.rig_with_eyes()?, &lab.model()?)?;
     robot.go(&lab.rig.home());
     let mut errors: Vec<nalgebra::Vector3<f64>> = vec![];
     let all: Vec<(f64, f64)> = GRID_X_M.iter().flat_map(|x| GRID_Y_M.iter().map(move |y| (*x, *y))).collect();
@@ -79,11 +79,18 @@ pub(super) fn places(
         context.report(0.5 * k as f64 / all.len() as f64, "judging where the tomato is found");
         robot.lockstep().place_toy(Toy::Tomato, *x_m, *y_m)?;
         robot.lockstep().wait(REST_S);
-        let sight = robot.look()?;
+        let found = seer.look_for(robot, "Tomato")?;
         let truth = robot.lockstep().truth_for_judging();
         let stands = truth.toys.iter().find_map(|(toy, place)| place.filter(|_| *toy == Toy::Tomato));
-        if let (Some(found), Some(stands)) = (seer.find(&sight, "Tomato")?, stands) {
-            errors.push(found.coords.coords - stands.translation.vector);
+        if let (Some(found), Some(stands)) = (found, stands) {
+            let error = found.coords.coords - stands.translation.vector;
+            eprintln!(
+                "tomato at ({x_m:.1}, {y_m:.1}) m: found {:.1} {:.1} {:.1} mm beside",
+                1e3 * error.x,
+                1e3 * error.y,
+                1e3 * error.z
+            );
+            errors.push(error);
         }
     }
     robot.lockstep().remove_toy(Toy::Tomato);

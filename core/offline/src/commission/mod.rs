@@ -2,15 +2,16 @@
 //! but for the hands that hold the board.
 //!
 //! Steps, each on disk before the next begins: the finger touches the screen while the eyes warm up
-//! (`touches`), which places it (`screen`); what makes the arm miss (`effects`); correction models
-//! (`models`); the board calibrates the eyes (`eyes`) and their mount
-//! (`mount`); the eyes look at the hand (`hand`); and a judge measures
-//! what came of it (`check`). The judge alone knows what the twin hides.
+//! (`touches`); the board calibrates the eyes (`eyes`) and their mount (`mount`); the touches place the
+//! screen and the eyes look where it lies, which ties the arm to the eyes (`screen`); what makes the arm
+//! miss (`effects`); correction models (`models`); the eyes look at the hand (`hand`); and a judge
+//! measures what came of it (`check`). The judge alone knows what the twin hides.
 
 mod effects;
 mod error;
 mod estimate;
 mod eyes;
+mod glass;
 mod hand;
 mod judge;
 pub(crate) mod lab;
@@ -53,13 +54,13 @@ const JUDGED: &str = "judged.json";
 /// Steps in their order and the share of the work at which each begins.
 const STEPS: [(&str, f64); 8] = [
     ("touches", 0.0),
-    ("screen", 0.2),
-    ("effects", 0.21),
-    ("models", 0.5),
-    ("eyes", 0.6),
-    ("mount", 0.8),
-    ("hand", 0.82),
-    ("check", 0.88),
+    ("eyes", 0.2),
+    ("mount", 0.4),
+    ("screen", 0.42),
+    ("effects", 0.45),
+    ("models", 0.7),
+    ("hand", 0.8),
+    ("check", 0.85),
 ];
 
 /// Which twin, and where to.
@@ -152,7 +153,7 @@ fn one(
     };
     match name {
         "touches" => with_robot(&|robot| touches::run(lab, robot, context)),
-        "screen" => touches::place(lab),
+        "screen" => with_robot(&|robot| touches::place(lab, robot, context)),
         "effects" => effects::run(lab, context),
         "models" => models::run(lab, steps.of("touches").map_or(0, |step| step.touches), context),
         "eyes" => with_robot(&|robot| eyes::run(lab, robot, context)),

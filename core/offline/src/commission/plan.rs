@@ -30,8 +30,8 @@ const LEAN_RAD: f64 = 0.4;
 const MARGIN: f64 = 0.1;
 /// Standard deviation of a contact along the glass and of the tip's height there, m.
 pub(super) const NOISE_M: [f64; 3] = [0.8e-3, 0.8e-3, 0.6e-3];
-/// Where the screen lies is known to within, m and rad.
-pub(super) const SCREEN_SD: [f64; 2] = [0.02, 0.03];
+/// A person lays the screen where it belongs to within, m and rad.
+pub(super) const SCREEN_SD: [f64; 2] = [0.01, 0.02];
 /// Heights over the table at which the palm will work, m.
 const WORK_HEIGHTS_M: [f64; 2] = [0.04, 0.10];
 
@@ -278,7 +278,7 @@ fn row(what: What, encoder_rad: Vec<f64>, direction: Vec<f64>) -> Observation {
 }
 
 /// One matrix to the right of another one.
-pub(super) fn beside(left: &DMatrix<f64>, right: &DMatrix<f64>) -> DMatrix<f64> {
+fn beside(left: &DMatrix<f64>, right: &DMatrix<f64>) -> DMatrix<f64> {
     let mut both = DMatrix::zeros(left.nrows(), left.ncols() + right.ncols());
     both.columns_mut(0, left.ncols()).copy_from(left);
     both.columns_mut(left.ncols(), right.ncols()).copy_from(right);

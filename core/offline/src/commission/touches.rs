@@ -15,6 +15,7 @@ use plumbline_model::{JobContext, Pixel, Point};
 use plumbline_twin::Touched;
 
 use super::error::CommissionError;
+use super::glass::{pose, see};
 use super::lab::{Lab, TOUCH_SESSION};
 use super::plan::{Candidate, Chosen, TOUCHES, area, candidates, choose};
 use super::robot::{Robot, SPEED_RAD_S};
@@ -111,8 +112,8 @@ fn write(lab: &Lab, joints: &[String], plan: &RunPlan, progress: &Progress) -> R
     std::fs::rename(&begun, &folder).map_err(CommissionError::room)
 }
 
-/// Places the screen by the touches and the nominal arm.
-pub(super) fn place(lab: &Lab) -> Result<Step, CommissionError> {
+/// Places the screen by the touches and the nominal arm, and looks where the eyes see it.
+pub(super) fn place(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Result<Step, CommissionError> {
     let mut step =
         Step::new("screen", "touched places against the fingertip by the model, each left out once, rms");
     let stored = store::read(&session(lab))?;
@@ -130,6 +131,24 @@ pub(super) fn place(lab: &Lab) -> Result<Step, CommissionError> {
     step.after_mm = rms(&left_out);
     step.notes.extend(placed.remarks.iter().cloned());
     lab.accept_placement(&placed)?;
+    match see(lab, robot, &lab.rig_with_eyes()?, &placed.screen, context)? {
+        Some(seen) => {
+            let off = seen.robot_from_screen * pose(&placed.screen).inverse();
+            let middle = placed.screen.point_at(placed.screen.middle()).coords;
+            let shift_mm = 1e3 * ((off * middle) - middle);
+            step.notes.push(format!(
+                "The eyes see it {:.1} {:.1} {:.1} mm beside and {:.2}° turned ({} edges, {:.2} px).",
+                shift_mm.x,
+                shift_mm.y,
+                shift_mm.z,
+                off.rotation.angle().to_degrees(),
+                seen.edges,
+                seen.rms_px
+            ));
+            seen.write(lab)?;
+        }
+        None => step.notes.push("The eyes do not see its edges.".to_owned()),
+    }
     Ok(step)
 }
 
