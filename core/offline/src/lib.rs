@@ -38,7 +38,7 @@ pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};
 pub use error::OfflineError;
 pub use gap::{GapArgs, GapReport, gap};
 pub use ik::{IkArgs, IkReport, IkSolution, ik};
-pub use locate::{LocateArgs, LocateReport, LocatedPoint, locate};
+pub use locate::{LocateArgs, LocateReport, LocateRobot, LocatedPoint, PointInRobot, locate};
 pub use plumbline_twin::training_set::SetWorld;
 pub use plumbline_vision::detect as detector;
 pub use plumbline_vision::detect_score as scores;
