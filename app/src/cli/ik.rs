@@ -48,8 +48,9 @@ pub fn run(arguments: Ik, output: &Output) -> anyhow::Result<()> {
 fn text(report: &IkReport) -> String {
     let targets = format::count(report.solutions.len(), "target");
     let mut text = format!("{} of {targets} reached by {}\n", report.reached, report.tip);
-    if !report.effects.is_empty() {
-        text.push_str(&format!("  with {}\n", report.effects.join(", ")));
+    match report.effects.is_empty() {
+        true => text.push_str(&format!("  robot {}\n", report.model)),
+        false => text.push_str(&format!("  robot {}: {}\n", report.model, report.effects.join(", "))),
     }
     for solution in &report.solutions {
         text.push_str(&line(solution));

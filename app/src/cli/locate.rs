@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use plumbline_offline::{self as offline, LocateArgs, LocateReport, LocatedPoint};
+use plumbline_offline::{self as offline, LocateArgs, LocateReport, LocateRobot, LocatedPoint};
 use plumbline_widgets::format;
 
 use super::calibrate::say_notes;
@@ -25,6 +25,23 @@ pub struct Locate {
     /// of the top-left pixel.
     #[arg(long, value_name = "CSV")]
     points: PathBuf,
+    /// Model with effects (rig-model.toml, as gap --add writes it) or a rig file: places in the robot's
+    /// frame are added, by the robot as this model knows it.
+    #[arg(long, value_name = "FILE")]
+    rig_model: Option<PathBuf>,
+    /// Robot that the model is of: the name of one that comes with the program (nico), or a rig file.
+    #[arg(long, value_name = "NAME|FILE", default_value = "nico", requires = "rig_model")]
+    rig: String,
+    /// Calibrated mount of the eyes (mount.toml); nominal without it.
+    #[arg(long, value_name = "FILE", requires = "rig_model")]
+    mount: Option<PathBuf>,
+    /// Angle of the head to the side when the images were taken, rad, positive to the left; that of the
+    /// home pose without it.
+    #[arg(long, value_name = "RAD", requires = "rig_model", allow_negative_numbers = true)]
+    head_z_rad: Option<f64>,
+    /// Angle of the head up, rad; that of the home pose without it.
+    #[arg(long, value_name = "RAD", requires = "rig_model", allow_negative_numbers = true)]
+    head_y_rad: Option<f64>,
 }
 
 /// Locates every point of the table.
@@ -34,6 +51,12 @@ pub fn run(arguments: Locate, output: &Output) -> anyhow::Result<()> {
         left: arguments.left,
         right: arguments.right,
         points: arguments.points,
+        robot: arguments.rig_model.map(|rig_model| LocateRobot {
+            rig: arguments.rig,
+            rig_model,
+            mount: arguments.mount,
+            head_rad: [arguments.head_z_rad, arguments.head_y_rad],
+        }),
     };
     let report = offline::locate(&args, output)?;
     say_notes(&report.notes);
@@ -46,6 +69,14 @@ fn text(report: &LocateReport) -> String {
         "{found} of {} located, in the left camera's frame\n",
         format::count(report.points.len(), "point")
     );
+    if let Some(model) = &report.model {
+        let named = if report.effects.is_empty() {
+            String::new()
+        } else {
+            format!(": {}", report.effects.join(", "))
+        };
+        text.push_str(&format!("  in the robot's frame by the robot {model}{named}\n"));
+    }
     for point in &report.points {
         text.push_str(&line(point));
     }
@@ -56,7 +87,11 @@ fn line(point: &LocatedPoint) -> String {
     let at = format::pixel_position([point.u_px, point.v_px]);
     match (point.x_m, point.y_m, point.z_m, point.sigma_m) {
         (Some(x), Some(y), Some(z), Some(sigma)) => {
-            format!("  {at}  {} ± {}\n", format::position_mm([x, y, z]), format::mm(sigma))
+            let robot = point.robot.map_or_else(String::new, |robot| {
+                let place = format::position_mm([robot.robot_x_m, robot.robot_y_m, robot.robot_z_m]);
+                format!("  robot {place} ± {}", format::mm(robot.robot_sigma_m))
+            });
+            format!("  {at}  {} ± {}{robot}\n", format::position_mm([x, y, z]), format::mm(sigma))
         }
         _ => format!("  {at}  {}\n", point.reason.as_deref().unwrap_or("not found")),
     }

@@ -16,6 +16,7 @@ use plumbline_vision::detect::DetectError;
 use plumbline_vision::detect_score::EvaluateError;
 use plumbline_vision::disparity::DisparityError;
 use plumbline_vision::locate::NoBaseline;
+use plumbline_vision::mount::MountFileError;
 use plumbline_vision::rectify::RectifyError;
 use plumbline_vision::yolo_set::YoloSetError;
 
@@ -46,6 +47,9 @@ pub enum OfflineError {
     /// The pairs cannot be solved.
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// A calibrated mount cannot be read.
+    #[error(transparent)]
+    Mount(#[from] MountFileError),
     /// A calibration file cannot be read or written.
     #[error(transparent)]
     Format(#[from] FormatError),

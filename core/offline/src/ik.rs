@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
-use plumbline_effects::RigModel;
 use plumbline_effects::rig_model::{Conditions, ModelEffect};
+use plumbline_effects::robot_model::worst_sigma_m;
+use plumbline_effects::{RigModel, RobotModel};
 use plumbline_model::robot::Rig;
-use plumbline_model::robot::ik::{Options, Solver, SolverError, Target};
+use plumbline_model::robot::ik::{Options, Target};
 use plumbline_model::{JobContext, Point, Pose};
 use serde::Serialize;
 
@@ -43,6 +45,8 @@ pub struct IkReport {
     pub tip: String,
     /// Targets that are reached.
     pub reached: usize,
+    /// The model of the robot that was solved with: "as described", "with 2 effects".
+    pub model: String,
     /// Effects that were solved with, as `id@site`.
     pub effects: Vec<String>,
     /// In the order of the table.
@@ -58,6 +62,9 @@ pub struct IkSolution {
     pub position_error_m: f64,
     /// What is left of the orientation or heading asked for; zero when none was.
     pub orientation_error_rad: f64,
+    /// One standard deviation of the tip's place along the worst direction, by what is not known of the
+    /// effects; zero without effects.
+    pub effects_sigma_m: f64,
     /// `reached`, `limited-by:<joint>` or `out-of-reach`; with effects also `unsettled`: no command
     /// was found that leads there.
     pub status: String,
@@ -66,31 +73,34 @@ pub struct IkSolution {
 /// Solves every target of the table, each from the rig's home posture.
 pub fn ik(args: &IkArgs, context: &dyn JobContext) -> Result<IkReport, OfflineError> {
     let rig = find_rig(&args.rig)?;
-    let solver = Solver::of_rig(&rig, &args.tip)?;
+    let rig = Arc::new(rig);
     let model = match &args.rig_model {
-        None => RigModel::nominal(&rig),
-        Some(file) => RigModel::read(file, &rig)?,
+        None => RobotModel::nominal(rig.clone()),
+        Some(file) => RobotModel::new(rig.clone(), Arc::new(RigModel::read(file, &rig)?))?,
     };
-    let arm = model.arm(&rig, &args.tip).map_err(SolverError::from)?;
+    let arm = model.arm(&args.tip)?;
     let targets = read_targets(&args.targets)?;
-    let start_rad = rig.home().of(solver.joints());
+    let (start, conditions) = (rig.home(), Conditions::default());
     let options = if args.upright { Options::upright() } else { Options::default() };
+    let nominal = arm.deviated().is_nominal();
     let effects =
-        if arm.is_nominal() { vec![] } else { model.effects().iter().map(ModelEffect::name).collect() };
-    let mut report =
-        IkReport { tip: args.tip.clone(), reached: 0, effects, solutions: Vec::with_capacity(targets.len()) };
+        if nominal { vec![] } else { model.added().effects().iter().map(ModelEffect::name).collect() };
+    let solutions = Vec::with_capacity(targets.len());
+    let mut report = IkReport { tip: args.tip.clone(), reached: 0, model: model.title(), effects, solutions };
     for (k, target) in targets.iter().enumerate() {
         if k % REPORTED == 0 {
             context.checkpoint()?;
             context.report(k as f64 / targets.len() as f64, "solving");
         }
-        let found = arm.reach(&solver, target, &start_rad, &options, &Conditions::default())?;
+        let found = arm.reach(target, &start, &options, &conditions)?;
         let best = found.answer.best();
+        let commanded = start.with(arm.joints(), &best.joints);
         report.reached += usize::from(found.is_reached());
         report.solutions.push(IkSolution {
-            joints: solver.names().iter().cloned().zip(best.joints.iter().copied()).collect(),
+            joints: arm.solver().names().iter().cloned().zip(best.joints.iter().copied()).collect(),
             position_error_m: found.error_m,
             orientation_error_rad: best.orientation_error_rad,
+            effects_sigma_m: worst_sigma_m(&arm.covariance_m2(&commanded, &conditions)),
             status: found.status(),
         });
     }
@@ -99,7 +109,7 @@ pub fn ik(args: &IkArgs, context: &dyn JobContext) -> Result<IkReport, OfflineEr
 }
 
 /// A rig that comes with the program, or else a file.
-fn find_rig(rig: &str) -> Result<Rig, OfflineError> {
+pub(super) fn find_rig(rig: &str) -> Result<Rig, OfflineError> {
     let built_in = Rig::built_in_names().any(|name| name == rig);
     let looks_like_a_file = rig.contains(['/', '\\']) || rig.ends_with(".toml");
     Ok(if built_in || !looks_like_a_file { Rig::built_in(rig)? } else { Rig::read(Path::new(rig))? })

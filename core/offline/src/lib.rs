@@ -48,7 +48,7 @@ pub use grasp::{
     TrialsError, grasp, grasp_trials, merge_trials,
 };
 pub use ik::{IkArgs, IkReport, IkSolution, ik};
-pub use locate::{LocateArgs, LocateReport, LocatedPoint, locate};
+pub use locate::{LocateArgs, LocateReport, LocateRobot, LocatedPoint, PointInRobot, locate};
 pub use plumbline_twin::training_set::SetWorld;
 pub use plumbline_vision::detect as detector;
 pub use plumbline_vision::detect_score as scores;

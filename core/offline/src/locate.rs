@@ -1,17 +1,25 @@
 //! `plumbline locate`: where in space points of the raw left image are.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use image::RgbImage;
+use plumbline_effects::rig_model::ModelEffect;
+use plumbline_effects::{RobotModel, SeenUnder};
 use plumbline_engine::ground::text::sentence;
+use plumbline_engine::rig_models::Accepted;
 use plumbline_hardware::load_image;
-use plumbline_model::{JobContext, Pixel, Raw};
+use plumbline_model::robot::{Posture, RigPart};
+use plumbline_model::{JobContext, Pixel, Raw, StereoCameras};
 use plumbline_vision::calibration_file;
-use plumbline_vision::locate::Locator;
+use plumbline_vision::locate::{Located, Locator};
+use plumbline_vision::mount::MountCalibration;
 use serde::Serialize;
 
 use super::OfflineError;
+use super::ik::find_rig;
 use super::pairs::check_sizes;
+use super::session::ModelFile;
 use super::table::Table;
 
 /// What to locate.
@@ -25,6 +33,22 @@ pub struct LocateArgs {
     pub right: PathBuf,
     /// Table with the columns `u_px`, `v_px`: pixels of the raw left image.
     pub points: PathBuf,
+    /// The robot whose eyes they are, for places in its frame.
+    pub robot: Option<LocateRobot>,
+}
+
+/// The robot whose eyes took the images.
+#[derive(Clone, Debug)]
+pub struct LocateRobot {
+    /// Name of a rig that comes with the program, or the path of a rig file.
+    pub rig: String,
+    /// A model with effects, or a rig file that takes the place of `rig`.
+    pub rig_model: PathBuf,
+    /// A calibrated mount of the eyes; `None`: nominal.
+    pub mount: Option<PathBuf>,
+    /// Angles of the head (pan, positive to the left; tilt, positive up; rad); `None`: as in the rig's
+    /// home pose.
+    pub head_rad: [Option<f64>; 2],
 }
 
 /// Where the points are.
@@ -34,6 +58,12 @@ pub struct LocateReport {
     pub points: Vec<LocatedPoint>,
     /// What was noticed about the images.
     pub notes: Vec<String>,
+    /// The model of the robot that places in its frame rest on: "as described", "with 2 effects".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub model: Option<String>,
+    /// Its effects, as `id@site`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub effects: Vec<String>,
 }
 
 /// One point. What is not known is null, and `reason` says why.
@@ -57,6 +87,22 @@ pub struct LocatedPoint {
     pub match_v_px: Option<f64>,
     /// Why the point was not found.
     pub reason: Option<String>,
+    /// Where it is in the robot's frame; only where a model of the robot was given.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub robot: Option<PointInRobot>,
+}
+
+/// A point in the robot's frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PointInRobot {
+    /// Forward.
+    pub robot_x_m: f64,
+    /// To the left.
+    pub robot_y_m: f64,
+    /// Up.
+    pub robot_z_m: f64,
+    /// One standard deviation along the worst direction, with that of the model's effects.
+    pub robot_sigma_m: f64,
 }
 
 /// Locates every point of the table.
@@ -67,6 +113,7 @@ pub fn locate(args: &LocateArgs, context: &dyn JobContext) -> Result<LocateRepor
     let left = read_image(&args.left, &mut notes)?;
     let right = read_image(&args.right, &mut notes)?;
     check_sizes(&calibration.cameras, [left.dimensions(), right.dimensions()])?;
+    let robot = args.robot.as_ref().map(|robot| known(robot, &calibration.cameras)).transpose()?;
     let locator = Locator::new(&calibration)?;
     context.checkpoint()?;
     context.report(0.1, "locating");
@@ -82,12 +129,49 @@ pub fn locate(args: &LocateArgs, context: &dyn JobContext) -> Result<LocateRepor
                 sigma_m: Some(found.sigma_m),
                 match_u_px: Some(found.match_in_right.u_px),
                 match_v_px: Some(found.match_in_right.v_px),
+                robot: robot.as_ref().and_then(|robot| in_robot(robot, &found)),
                 ..asked
             },
             Err(reason) => LocatedPoint { reason: Some(sentence(&reason.to_string())), ..asked },
         }
     });
-    Ok(LocateReport { points: points.collect(), notes })
+    let points = points.collect();
+    let model = robot.as_ref().map(|(model, _)| model.title());
+    let effects = robot.iter().flat_map(|(model, _)| model.added().effects().iter().map(ModelEffect::name));
+    Ok(LocateReport { points, notes, model, effects: effects.collect() })
+}
+
+/// The robot as it is known, with these eyes, and how it stands.
+fn known(args: &LocateRobot, cameras: &StereoCameras) -> Result<(RobotModel, Posture), OfflineError> {
+    let mut rig = find_rig(&args.rig)?;
+    let effects = match ModelFile::read(&args.rig_model, &rig)? {
+        ModelFile::Effects(effects) => Some(Arc::new(*effects)),
+        ModelFile::Rig(other) => {
+            rig = *other;
+            None
+        }
+        ModelFile::Placement(placement) => {
+            rig.touchscreen = placement.screen;
+            None
+        }
+    };
+    rig.need(RigPart::Eyes)?;
+    let mount = args.mount.as_ref().map(|file| MountCalibration::read(file, &rig)).transpose()?;
+    let head_from_left = mount.map(|mount| mount.head_from_left);
+    let accepted =
+        Accepted { cameras: Some(cameras), head_from_left, screen: None, effects: effects.as_ref() };
+    let model = accepted.robot_model(&rig)?;
+    let mut posture = rig.home();
+    for (joint, angle_rad) in [rig.eyes.pan, rig.eyes.tilt].into_iter().zip(args.head_rad) {
+        posture[joint] = angle_rad.unwrap_or(posture[joint]);
+    }
+    Ok((model, posture))
+}
+
+fn in_robot((model, posture): &(RobotModel, Posture), found: &Located) -> Option<PointInRobot> {
+    let place = model.place(&found.point, &found.covariance_m2, posture, &SeenUnder::default())?;
+    let at = place.point.coords;
+    Some(PointInRobot { robot_x_m: at.x, robot_y_m: at.y, robot_z_m: at.z, robot_sigma_m: place.sigma_m() })
 }
 
 /// Reads an image and keeps what was noticed about it.

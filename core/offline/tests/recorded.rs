@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use plumbline_model::camera::ModelKind;
 use plumbline_model::{InnerCorners, Unattended};
 use plumbline_offline::{
-    CalibrateArgs, CheckArgs, DisparityArgs, LocateArgs, OfflineError, calibrate_stereo, check, disparity,
-    locate,
+    CalibrateArgs, CheckArgs, DisparityArgs, LocateArgs, LocateReport, LocateRobot, OfflineError,
+    calibrate_stereo, check, disparity, locate,
 };
 use serde_json::Value;
 
@@ -92,11 +92,15 @@ fn calibrate_check_locate_disparity() {
     let [left, right] = ["left", "right"].map(|eye| folder.path().join("wall").join(eye).join("wall.png"));
     let points = folder.path().join("points.csv");
     std::fs::write(&points, "u_px,v_px\n165,125\n140,110\n-5,3\n").expect("written");
-    let located = locate(
-        &LocateArgs { cameras: cameras.clone(), left: left.clone(), right: right.clone(), points },
-        &Unattended,
-    )
-    .expect("located");
+    let args = LocateArgs {
+        cameras: cameras.clone(),
+        left: left.clone(),
+        right: right.clone(),
+        points,
+        robot: None,
+    };
+    let located = locate(&args, &Unattended).expect("located");
+    in_the_robots_frame(&args, &located, folder.path());
     let json = serde_json::to_value(&located).expect("serializable");
     keys(
         &json["points"][0],
@@ -120,6 +124,50 @@ fn calibrate_check_locate_disparity() {
     keys(&serde_json::to_value(&mapped).expect("serializable"), &["valid_fraction", "milliseconds"]);
     let pixels = u64::from(mapped.width_px) * u64::from(mapped.height_px);
     assert!(std::fs::metadata(out).expect("written").len() > 4 * pixels);
+}
+
+/// With a model of the robot the same points have a place in its frame, which the model decides.
+fn in_the_robots_frame(args: &LocateArgs, bare: &LocateReport, folder: &Path) {
+    const NOD_RAD: f64 = 0.03;
+    let rig = plumbline_model::robot::default_rig();
+    let mut model = plumbline_effects::RigModel::nominal(&rig);
+    let file = folder.join("rig-model.toml");
+    let with = |model: &plumbline_effects::RigModel, tilt_rad: f64| {
+        model.write(&file, &rig).expect("written");
+        let robot = LocateRobot {
+            rig: "nico".to_owned(),
+            rig_model: file.clone(),
+            mount: None,
+            head_rad: [Some(0.1), Some(tilt_rad)],
+        };
+        let located =
+            locate(&LocateArgs { robot: Some(robot), ..args.clone() }, &Unattended).expect("located");
+        assert_eq!(located.points[2].robot, None, "it was not found");
+        let place = located.points[0].robot.expect("found");
+        (located, nalgebra::Vector3::new(place.robot_x_m, place.robot_y_m, place.robot_z_m))
+    };
+    let (described, nominal_m) = with(&model, -0.5);
+    assert_eq!(described.model.as_deref(), Some("as described"));
+    assert_eq!(bare.model, None);
+    assert_eq!((described.points[0].x_m, bare.points[0].robot), (bare.points[0].x_m, None));
+    let sigma_m = described.points[0].robot.expect("found").robot_sigma_m;
+    assert!((sigma_m - bare.points[0].sigma_m.expect("found")).abs() < 1e-9);
+    let (_, nodding_m) = with(&model, -0.5 + NOD_RAD);
+    model.contents.effects = vec![plumbline_effects::rig_model::ModelEffect {
+        id: "head-joint".to_owned(),
+        site: rig.description.joint(rig.eyes.tilt).name.clone(),
+        title: String::new(),
+        tip: None,
+        shape: None,
+        values: vec![NOD_RAD],
+        covariance: vec![1e-4],
+        probability: None,
+        parameters: vec![],
+    }];
+    let (known, place_m) = with(&model, -0.5);
+    assert_eq!((known.model.as_deref(), known.effects.len()), (Some("with 1 effect"), 1));
+    assert!((place_m - nodding_m).norm() < 1e-6 && (place_m - nominal_m).norm() > 5e-3);
+    assert!(known.points[0].robot.expect("found").robot_sigma_m > sigma_m);
 }
 
 #[test]

@@ -203,6 +203,19 @@ pub struct StepGap {
 }
 
 impl StepGap {
+    /// Whether every number of it is one; else which is not.
+    pub(super) fn check(&self) -> Result<(), String> {
+        let range = self.closure_range.into_iter().flatten();
+        let mut numbers = [self.before, self.after, self.floor].into_iter().chain(self.closure).chain(range);
+        match numbers.find(|number| !number.is_finite()) {
+            None => Ok(()),
+            Some(number) => Err(format!(
+                "a gap of its history holds {number}, which is no error: a number was changed or damaged; search the \
+                 gap and write the file again"
+            )),
+        }
+    }
+
     /// Meters of what an older file has in millimeters.
     pub(super) fn make_si(&mut self) {
         if self.unit == "mm" {

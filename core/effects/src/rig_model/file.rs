@@ -63,9 +63,14 @@ impl RigModel {
         if read.rig != rig.name {
             return Err(RigModelError::OtherRig { found: read.rig, expected: rig.name.clone() });
         }
+        let unusable = |reason| RigModelError::EffectOfFile { file: file.to_owned(), reason };
+        read.history
+            .iter()
+            .filter_map(|step| step.gap.as_ref())
+            .try_for_each(StepGap::check)
+            .map_err(unusable)?;
         // What could come back by an undo must be usable, too.
         for contents in std::iter::once(&read.present).chain(read.history.iter().map(|step| &step.before)) {
-            let unusable = |reason| RigModelError::EffectOfFile { file: file.to_owned(), reason };
             contents.check(rig).map_err(unusable)?;
         }
         Ok(Self { rig: read.rig, contents: read.present, history: read.history })

@@ -76,6 +76,28 @@ fn elbow(rig: &Rig) -> RigModel {
 }
 
 #[test]
+fn every_number_of_the_history_is_one() {
+    let (rig, folder) = (nico(), tempfile::tempdir().expect("temporary folder"));
+    let file = folder.path().join("model.toml");
+    let spoil: [fn(&mut StepGap, f64); 5] = [
+        |gap, bad| gap.before = bad,
+        |gap, bad| gap.after = bad,
+        |gap, bad| gap.floor = bad,
+        |gap, bad| gap.closure = Some(bad),
+        |gap, bad| gap.closure_range = Some([0.7, bad]),
+    ];
+    for spoil in spoil {
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let mut model = elbow(&rig);
+            spoil(model.history[0].gap.as_mut().expect("it has one"), bad);
+            let said = model.write(&file, &rig).expect_err("it could not be read again").to_string();
+            assert!(said.contains("a gap of its history holds"), "{said}");
+            assert!(!file.exists());
+        }
+    }
+}
+
+#[test]
 fn what_is_written_is_read_again() {
     let (rig, folder) = (nico(), tempfile::tempdir().expect("temporary folder"));
     let file = folder.path().join("model.toml");

@@ -15,6 +15,6 @@ pub mod work;
 mod workflow;
 
 pub use detector::{Detects, LoadedDetector, OpenDetector, SHOWN_FROM};
-pub use objects::{FoundObjects, Objects};
+pub use objects::{Defect, FoundObjects, Objects};
 pub use stage::{DetectFailure, DetectInput, DetectOutput, DetectStage};
 pub use workflow::{DetectAround, DetectWorkflow};

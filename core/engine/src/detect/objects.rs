@@ -10,7 +10,7 @@ use plumbline_vision::detect_places::{ObjectPlace, Place, PlaceFinder, PlaceOpti
 use super::view::{ObjectPlaceView, ObjectView, SeenBox};
 use crate::ground::jobs::panic_message;
 use crate::ground::text::sentence;
-use crate::live::{LiveSetup, NoPlace, fitting};
+use crate::live::{LiveSetup, NoPlace, NoSetup, fitting};
 
 /// Points along each edge of a box that are taken over to the rectified image: straight edges are
 /// bent by the lens.
@@ -35,19 +35,24 @@ pub struct FoundObjects {
     pub no_places_because: Option<String>,
 }
 
+/// A defect of this program, met while objects were placed; the message of its panic.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("Places of objects: this program made a mistake ({0}). Please report it with the journal.")]
+pub struct Defect(pub String);
+
 impl Objects {
-    /// What the boxes of a pair are. A panic inside is returned as its message.
+    /// What the boxes of a pair are. A panic inside is returned as a defect.
     ///
     /// # Errors
     /// What the program said when it met a defect of its own.
     pub fn find(
         &mut self,
         frame: &StereoFrame,
-        setup: Result<&Arc<LiveSetup>, &String>,
+        setup: Result<&Arc<LiveSetup>, &NoSetup>,
         names: &ClassNames,
         boxes: [&[Detection]; 2],
-    ) -> Result<FoundObjects, String> {
-        let setup = setup.map_err(String::clone).and_then(|setup| {
+    ) -> Result<FoundObjects, Defect> {
+        let setup = setup.map_err(NoSetup::to_string).and_then(|setup| {
             let fits = fitting(frame, &setup.pair.cameras);
             fits.map(|()| setup).map_err(|error| error.to_string())
         });
@@ -55,7 +60,7 @@ impl Objects {
         let mut objects = std::panic::catch_unwind(work).map_err(|panic| {
             // What it kept may be half changed.
             self.finder = None;
-            panic_message(panic.as_ref())
+            Defect(panic_message(panic.as_ref()))
         })?;
         let no_places_because = setup.err();
         if let Some(why) = &no_places_because {

@@ -14,7 +14,7 @@ use crate::ground::jobs::panic_message;
 use crate::ground::stage::Stage;
 use crate::ground::text::sentence;
 use crate::ground::watched::WatchedThread;
-use crate::live::LiveSetup;
+use crate::live::{LiveSetup, NoSetup};
 
 /// A pair, and with what it is looked at.
 #[derive(Clone, Debug)]
@@ -27,8 +27,8 @@ pub struct DetectInput {
     pub detector: Arc<LoadedDetector>,
     /// What is shown of what it finds.
     pub settings: Arc<DetectionSettings>,
-    /// What places rest on, or a sentence that says why there are none.
-    pub setup: Result<Arc<LiveSetup>, String>,
+    /// What places rest on, or why there are none.
+    pub setup: Result<Arc<LiveSetup>, NoSetup>,
 }
 
 /// What came of it.
@@ -131,11 +131,8 @@ impl DetectStage {
         let found = self.objects.find(&input.frame, input.setup.as_ref(), names, boxes);
         let found = match found {
             Ok(found) => found,
-            Err(message) => {
-                let why = format!(
-                    "Places of objects: this program made a mistake ({message}). Please report it with the journal."
-                );
-                return (is_new, Err(DetectFailure { why, broken: false }));
+            Err(defect) => {
+                return (is_new, Err(DetectFailure { why: defect.to_string(), broken: false }));
             }
         };
         timing.places = begun.elapsed();

@@ -8,7 +8,8 @@ mod setup;
 pub mod view;
 mod workflow;
 
+pub use no_reading::NoReading;
 pub use probe::{ProbeInput, ProbeOutput, ProbeStage};
 pub use rectify::{RectifyInput, RectifyOutput, RectifyStage};
-pub use setup::{LiveSetup, NoPlace, OtherSize, aimed, fitting};
+pub use setup::{LiveSetup, NoPlace, NoSetup, OtherSize, aimed, fitting};
 pub use workflow::LiveWorkflow;

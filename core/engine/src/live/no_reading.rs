@@ -7,7 +7,7 @@ use plumbline_vision::rectify::RectifyError;
 use super::setup::{NoPlace, OtherSize};
 
 /// Why a point was not measured.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 pub enum NoReading {
     /// Only one image is measured in.
     #[error("points are chosen in the left image; the right one shows where they are found")]

@@ -11,7 +11,6 @@ use super::setup::{LiveSetup, fitting};
 use super::view::ProbeReading;
 use crate::eyes::work::gray;
 use crate::ground::stage::Stage;
-use crate::ground::text::sentence;
 use crate::ground::watched::WatchedThread;
 
 /// A pair and the point asked for.
@@ -32,8 +31,8 @@ pub struct ProbeOutput {
     pub point: ProbePoint,
     /// Of which setup.
     pub generation: u64,
-    /// Where it is, or a sentence that says why that is not known.
-    pub reading: Result<ProbeReading, String>,
+    /// Where it is, or why that is not known.
+    pub reading: Result<ProbeReading, NoReading>,
 }
 
 /// Keeps the locator of the calibration in use.
@@ -57,11 +56,7 @@ impl Stage for ProbeStage {
     }
 
     fn process(&mut self, input: ProbeInput) -> ProbeOutput {
-        ProbeOutput {
-            point: input.point,
-            generation: input.setup.generation,
-            reading: self.measure(&input).map_err(|reason| sentence(&reason.to_string())),
-        }
+        ProbeOutput { point: input.point, generation: input.setup.generation, reading: self.measure(&input) }
     }
 }
 

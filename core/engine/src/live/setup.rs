@@ -13,6 +13,7 @@ use plumbline_model::{
 };
 
 use super::command::AimChoice;
+use crate::ground::text::sentence;
 
 /// What rectification and measuring rest on. Results of an older one are not shown any more.
 #[derive(Clone, Debug)]
@@ -52,6 +53,17 @@ impl LiveSetup {
     pub fn robot_from_left(&self) -> Pose<Robot, LeftCamera> {
         self.model.robot_from_left(&self.posture)
     }
+}
+
+/// Why nothing can be rectified or measured.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoSetup {
+    /// Nobody calibrated these eyes.
+    #[error("The eyes are not calibrated yet. Go to step 1, Eyes, or read a calibration file there.")]
+    NotCalibrated,
+    /// The virtual pair cannot look so.
+    #[error("{}", sentence(&.0.to_string()))]
+    Aim(#[from] AimError),
 }
 
 /// The effects of the model leave no place for what is seen.

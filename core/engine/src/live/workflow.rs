@@ -13,7 +13,7 @@ use plumbline_model::{AimError, AimedPair, StereoCalibration, StereoFrame, Works
 use super::command::{AimChoice, HeadPose, LiveCommand, ProbePoint, Products};
 use super::probe::{ProbeInput, ProbeOutput};
 use super::rectify::{RectifyInput, RectifyOutput};
-use super::setup::{LiveSetup, OtherSize, aimed, fitting, max_disparity_px};
+use super::setup::{LiveSetup, NoSetup, OtherSize, aimed, fitting, max_disparity_px};
 use super::view::{AimView, CornersView, DisparityView, LiveView, ProbeView, RectifiedView, Statistics};
 use crate::eyes::Look;
 use crate::ground::jobs::JobId;
@@ -43,8 +43,8 @@ pub struct LiveWorkflow {
     /// Lenses as the rig file has them, for eyes that nobody has calibrated yet.
     nominal: Option<Arc<StereoCalibration>>,
     generation: u64,
-    /// Or a sentence that says why there is none.
-    setup: Result<Arc<LiveSetup>, String>,
+    /// Or why there is none.
+    setup: Result<Arc<LiveSetup>, NoSetup>,
     probe_asked: Option<ProbePoint>,
     raw: Option<StereoFrame>,
     rectified: Option<RectifiedView>,
@@ -76,7 +76,7 @@ impl Default for LiveWorkflow {
             calibration: None,
             nominal: None,
             generation: 0,
-            setup: Err(NO_CALIBRATION.to_owned()),
+            setup: Err(NoSetup::NotCalibrated),
             probe_asked: None,
             raw: None,
             rectified: None,
@@ -89,9 +89,6 @@ impl Default for LiveWorkflow {
         }
     }
 }
-
-const NO_CALIBRATION: &str =
-    "The eyes are not calibrated yet. Go to step 1, Eyes, or read a calibration file there.";
 
 impl LiveWorkflow {
     /// Applies a command.
@@ -174,6 +171,7 @@ impl LiveWorkflow {
         }
         let before = std::mem::replace(&mut self.model, model.clone());
         if before.rig().eyes != model.rig().eyes || !Arc::ptr_eq(before.added(), model.added()) {
+            self.nominal = self.nominal.as_ref().map(|_| lenses_of(model));
             self.set_up();
         } else if let Ok(setup) = &mut self.setup {
             Arc::make_mut(setup).model = model.clone();
@@ -183,8 +181,7 @@ impl LiveWorkflow {
     /// Whether the rig's lenses stand in as long as nobody has calibrated these eyes.
     pub fn use_nominal_lenses(&mut self, wanted: bool) {
         if wanted != self.nominal.is_some() {
-            let lenses = || Arc::new(StereoCalibration::bare(self.model.rig().eyes.cameras));
-            self.nominal = wanted.then(lenses);
+            self.nominal = wanted.then(|| lenses_of(&self.model));
             self.set_up();
         }
     }
@@ -247,7 +244,7 @@ impl LiveWorkflow {
     }
 
     /// What places rest on, or why there are none.
-    pub fn setup(&self) -> Result<Arc<LiveSetup>, String> {
+    pub fn setup(&self) -> Result<Arc<LiveSetup>, NoSetup> {
         self.setup.clone()
     }
 
@@ -335,6 +332,7 @@ impl LiveWorkflow {
             return;
         }
         self.clocks.probe.note(now, output.stamp.captured_at, output.busy);
+        let reading = reading.map_err(|why| sentence(&why.to_string()));
         self.probe = Some(ProbeView { asked: point, stamp: Some(output.stamp), reading });
     }
 
@@ -351,7 +349,7 @@ impl LiveWorkflow {
             probe: self.clocks.probe.figures(now),
             time_difference_s: self.raw.as_ref().and_then(|frame| frame.time_difference_s),
         };
-        let no_setup = self.setup.as_ref().err().cloned();
+        let no_setup = self.setup.as_ref().err().map(NoSetup::to_string);
         let down = self.down.get(&WatchedThread::Rectify).cloned();
         let no_rectified_because = no_setup
             .or_else(|| self.misfit().map(|misfit| misfit.to_string()))
@@ -387,7 +385,7 @@ impl LiveWorkflow {
         self.clear_products();
         self.aimed_for = self.head;
         self.setup = match self.calibration.as_ref().or(self.nominal.as_ref()) {
-            None => Err(NO_CALIBRATION.to_owned()),
+            None => Err(NoSetup::NotCalibrated),
             Some(calibration) => {
                 let workspace = self.workspace();
                 aimed(self.aim, &calibration.cameras, &workspace)
@@ -409,7 +407,7 @@ impl LiveWorkflow {
                             posture: self.posture(),
                         })
                     })
-                    .map_err(|error| sentence(&error.to_string()))
+                    .map_err(NoSetup::from)
             }
         };
     }
@@ -444,6 +442,11 @@ impl Workflow for LiveWorkflow {
     }
 
     fn work_ended(&mut self, _id: JobId, _why: Option<&str>, _around: &(), _context: &mut Context<'_>) {}
+}
+
+/// Lenses that nobody calibrated, as they are in a model.
+fn lenses_of(model: &RobotModel) -> Arc<StereoCalibration> {
+    Arc::new(StereoCalibration::bare(model.rig().eyes.cameras))
 }
 
 fn aim_view(choice: AimChoice, pair: &AimedPair) -> AimView {

@@ -317,13 +317,13 @@ mod tests {
 
     #[test]
     fn the_head_looks_from_where_the_eyes_really_are() {
-        let model = known(&[("camera-mount", "eyes", &[0.0, 0.0, 0.0, 0.05, 0.03, 0.0])]);
-        let to = Destination::LookAt { point_m: [0.4, -0.1, 0.06] };
+        let model = known(&[("camera-mount", "eyes", &[0.0, 0.0, 0.0, 0.05, 0.02, 0.0])]);
+        let to = Destination::LookAt { point_m: [0.4, 0.0, 0.06] };
         let effects: [(&str, &str, &[f64]); 1] =
-            [("camera-mount", "eyes", &[0.0, 0.0, 0.0, 0.05, 0.03, 0.0])];
+            [("camera-mount", "eyes", &[0.0, 0.0, 0.0, 0.05, 0.02, 0.0])];
         let [real, nominal] = [resolve_with(&to, &effects), resolve_at_home(&to)].map(|resolved| {
             let end = resolved.expect("in sight").end;
-            let in_left = model.robot_from_left(&end).inverse() * Point::new(0.4, -0.1, 0.06);
+            let in_left = model.robot_from_left(&end).inverse() * Point::new(0.4, 0.0, 0.06);
             in_left.coords.x.hypot(in_left.coords.y) / in_left.coords.z
         });
         assert!(real < 1e-3 && nominal > 0.03, "{real} {nominal}");

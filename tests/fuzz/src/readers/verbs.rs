@@ -162,6 +162,7 @@ fn located(folder: &Path) -> Heard {
         left: folder.join("views/left.png"),
         right: folder.join("views/right.png"),
         points: folder.join("views/points.csv"),
+        robot: None,
     };
     match locate(&args, &Unattended) {
         Ok(report) => {

@@ -18,7 +18,7 @@ use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
 use crate::ground::statistics::StageClock;
 use crate::ground::{Moment, Nothing, Workflow};
-use crate::live::LiveSetup;
+use crate::live::{LiveSetup, NoSetup};
 
 /// What detection can see of the rest.
 pub struct DetectAround {
@@ -29,7 +29,7 @@ pub struct DetectAround {
     /// Whether pairs are photographs that have nothing to do with each other.
     pub photographs: bool,
     /// What places rest on, or why there are none.
-    pub setup: Result<Arc<LiveSetup>, String>,
+    pub setup: Result<Arc<LiveSetup>, NoSetup>,
 }
 
 /// Detection, live.
