@@ -102,8 +102,7 @@ pub(super) fn fit(
         }
     }
     let n = typical.len();
-    let covariance =
-        DMatrix::from_fn(n, n, |r, c| inverse[(FRAME + r, FRAME + c)] * typical[r] * typical[c]);
+    let covariance = DMatrix::from_fn(n, n, |r, c| inverse[(FRAME + r, FRAME + c)] * typical[r] * typical[c]);
     let neck_rad = known.seen.map(|_| (at[6], inverse[(6, 6)].max(0.0).sqrt()));
     Some(Fit { assumed, covariance, neck_rad })
 }

@@ -238,11 +238,7 @@ fn edge(image: &GrayImage, pixel: &Vector2<f64>, toward: &Vector2<f64>, window_p
             beside.into_iter().sum::<Option<f64>>().map(|sum| sum / 3.0)
         })
         .collect::<Option<_>>()?;
-    let (darkest, dark) = profile
-        .iter()
-        .copied()
-        .enumerate()
-        .min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (darkest, dark) = profile.iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let bright = profile[darkest..].iter().copied().fold(dark, f64::max);
     if bright - dark < 50.0 {
         return None;
