@@ -48,6 +48,12 @@ fn text(report: &CommissionReport) -> String {
         mm(places.median),
         mm(places.p95)
     ));
+    let palm = &report.palm_error_mm;
+    text.push_str(&format!(
+        "        the palm is {} off where it is sent (median), {} beside an object that the eyes found\n",
+        mm(palm.median),
+        mm(palm.to_object_median)
+    ));
     let touches = &report.touch_error_mm;
     text.push_str(&format!(
         "        new touches miss by {} inside of the touched area, {} outside; by {} without corrections\n",

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 use plumbline_effects::RobotModel;
 use plumbline_effects::rig_model::Conditions;
 use plumbline_effects::robot_model::ModelArm;
 use plumbline_model::frame::Tip;
 use plumbline_model::robot::ik::{Options, SolverError, Target};
-use plumbline_model::robot::{JointIndex, Posture, Rig};
+use plumbline_model::robot::{Arm, JointIndex, Posture, Rig};
 use plumbline_model::{Point, Pose, Robot};
 
 /// A step of the solution that turns a joint by more is another way to hold the arm, rad.
@@ -37,6 +37,8 @@ pub struct PalmArm {
     arm: ModelArm,
     /// Joints of the fingers.
     hand: Vec<JointIndex>,
+    /// Middle of the palm's body on the palm, m.
+    palm_from_body_m: Vector3<f64>,
 }
 
 impl PalmArm {
@@ -49,7 +51,8 @@ impl PalmArm {
         let no_arm = || NoArm::NoArm { rig: rig.name.clone(), arm: arm.to_owned() };
         let arm = rig.arm(arm).ok_or_else(no_arm)?;
         let tip = &arm.tips.first().ok_or_else(no_arm)?.link;
-        Ok(Self { arm: model.arm(tip)?, hand: arm.hand.clone(), rig: rig.clone() })
+        let palm_from_body_m = body_of_palm(rig, arm, tip).unwrap_or_default();
+        Ok(Self { arm: model.arm(tip)?, hand: arm.hand.clone(), palm_from_body_m, rig: rig.clone() })
     }
 
     /// The robot.
@@ -75,6 +78,12 @@ impl PalmArm {
     /// The same with how it is turned: x along the fingers, z out of the back of the hand.
     pub fn robot_from_palm(&self, commanded: &Posture) -> Pose<Robot, Tip> {
         self.arm.robot_from_tip(commanded, &Conditions::default())
+    }
+
+    /// Middle of the palm's body, which a box around the hand is drawn for; the palm itself where the
+    /// description shows no body.
+    pub fn body(&self, commanded: &Posture) -> Vector3<f64> {
+        (self.robot_from_palm(commanded).isometry * Point3::from(self.palm_from_body_m)).coords
     }
 
     /// How sure the model is of that place, from the uncertainty of its effects, m².
@@ -111,4 +120,18 @@ impl PalmArm {
         let joints = reached.answer.is_reached().then(|| reached.answer.best().joints)?;
         Some(from.with(self.joints(), &joints))
     }
+}
+
+/// Middle of what is drawn of the palm, frame of the tip, m; `None`: nothing is.
+fn body_of_palm(rig: &Rig, arm: &Arm, tip: &str) -> Option<Vector3<f64>> {
+    let description = &rig.description;
+    let palm = description.joint(*arm.joints.last()?).child;
+    let poses = description.forward(&rig.home());
+    let tip_from_palm =
+        poses.of(description.find_link(tip).ok()?).isometry.inverse() * poses.of(palm).isometry;
+    let shapes = &description.links()[palm.0].visuals;
+    let middle: Vector3<f64> =
+        shapes.iter().map(|shape| shape.link_from_shape.translation.vector).sum::<Vector3<f64>>()
+            / shapes.len().max(1) as f64;
+    (!shapes.is_empty()).then(|| (tip_from_palm * Point3::from(middle)).coords)
 }

@@ -96,14 +96,15 @@ impl Running<'_> {
             self.body.wait(STILL_S)?;
             let sight = self.body.look()?;
             let arm = self.grasper.described.arm();
-            let (sent, turned) = (arm.palm(&above).coords.coords, arm.palm(&shown).coords.coords);
+            let (sent, turned) = (arm.palm(&above).coords.coords, arm.body(&shown));
             let hand = self.detected_hand(&sight, turned)?;
             let Some(hand) = hand else {
                 self.looked(sent, Err("no hand was detected in both eyes".to_owned()), None, None);
                 let why = "the hand was not found by the detector".to_owned();
                 return Err(End::Failed(Failure::HandWrong, why));
             };
-            // Turning the palm to the eyes moves it; by how much, the description says.
+            // The box is around the body of a palm that is turned to the eyes; how that lies to the palm
+            // over the object, the description says.
             let palm = hand + (sent - turned);
             let wanted = plan.palm_m;
             let missing = (wanted - palm).xy();

@@ -4,7 +4,7 @@
 
 use plumbline_effects::arm::Arm;
 use plumbline_effects::rig_model::{Addition, ModelEffect, PlacedScreen, StepGap};
-use plumbline_effects::{Effect, Kind, Measurements, RigModel};
+use plumbline_effects::{Effect, Kind, Measurements, Present, RigModel};
 use plumbline_engine::gap::search::{measured, search};
 use plumbline_engine::gap::sessions::stamps;
 use plumbline_engine::gap::store::{KeptFinding, KeptSession, Store};
@@ -20,6 +20,7 @@ use super::error::CommissionError;
 use super::estimate::{Fit, Known, fit, held_out_m};
 use super::glass::SeenScreen;
 use super::lab::Lab;
+use super::lag;
 use super::plan::effects_of;
 use super::steps::Step;
 use super::touches::session;
@@ -81,7 +82,7 @@ pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, Commissio
             sd_rad.to_degrees()
         ));
     }
-    accept(lab, &measurements, &fitted, &finding, (of_nothing, best))?;
+    accept(lab, &arm, &measurements, &fitted, &finding, (of_nothing, best))?;
     Ok(step)
 }
 
@@ -110,9 +111,26 @@ fn directions(lab: &Lab, measurements: &mut Measurements) -> Result<(), Commissi
     Ok(())
 }
 
+fn model_effect(present: &Present, covariance: Vec<f64>, finding: &Finding) -> ModelEffect {
+    let Present { effect, values } = present;
+    let named = finding.effects.iter().find(|named| named.id == effect.id() && named.site == effect.site);
+    ModelEffect {
+        id: effect.id().to_owned(),
+        site: effect.site.clone(),
+        title: effect.title.clone(),
+        tip: Some(TIP.to_owned()),
+        shape: effect.shape,
+        values: values.clone(),
+        covariance,
+        probability: named.map(|named| named.probability),
+        parameters: vec![],
+    }
+}
+
 /// Puts the fitted effects in use, and the screen where they place it.
 fn accept(
     lab: &Lab,
+    arm: &Arm,
     measurements: &Measurements,
     fitted: &Fit,
     finding: &Finding,
@@ -128,22 +146,10 @@ fn accept(
         let width = present.values.len();
         let covariance = fitted.covariance.view((at, at), (width, width));
         at += width;
-        let probability = finding
-            .effects
-            .iter()
-            .find(|named| named.id == present.effect.id() && named.site == present.effect.site)
-            .map(|named| named.probability);
-        effects.push(ModelEffect {
-            id: present.effect.id().to_owned(),
-            site: present.effect.site.clone(),
-            title: present.effect.title.clone(),
-            tip: Some(TIP.to_owned()),
-            shape: present.effect.shape,
-            values: present.values.clone(),
-            covariance: covariance.iter().copied().collect(),
-            probability,
-            parameters: vec![],
-        });
+        effects.push(model_effect(present, covariance.iter().copied().collect(), finding));
+    }
+    for (present, covariance) in lag::fit(measurements, arm) {
+        effects.push(model_effect(&present, covariance, finding));
     }
     if let Some((zero_rad, sd_rad)) = fitted.neck_rad {
         let joint = lab.rig.description.joint(lab.rig.eyes.pan).name.clone();

@@ -3,19 +3,21 @@
 
 use std::sync::Arc;
 
+use plumbline_effects::rig_model::Conditions;
 use plumbline_engine::motion::{Planner, ScreenPlace};
 use plumbline_engine::touch::plan::{Aim, Corrector, PlanRequest, TIP, make};
 use plumbline_engine::touch::store;
 use plumbline_model::robot::Rig;
+use plumbline_model::robot::ik::{Options, Solver, Target};
 use plumbline_model::session::Screen;
 use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose, Sides, TouchArea};
-use plumbline_model::{JobContext, Pixel};
+use plumbline_model::{JobContext, Pixel, Point};
 use plumbline_twin::Toy;
 use serde::{Deserialize, Serialize};
 
 use super::error::CommissionError;
 use super::lab::Lab;
-use super::plan::area;
+use super::plan::{PALM, area};
 use super::robot::Robot;
 use super::see::Seer;
 use super::touches::{rms, session, touch};
@@ -27,6 +29,8 @@ const GRID_Y_M: [f64; 9] = [-0.4, -0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3, 0.4];
 const CHECKED: usize = 6;
 /// So many are planned, so that there are enough of both kinds.
 const DRAWN: usize = 48;
+/// The palm is sent so high over the table, m.
+const PALM_HEIGHT_M: f64 = 0.1;
 /// A toy that was put down comes to rest, s.
 const REST_S: f64 = 0.8;
 
@@ -46,6 +50,29 @@ pub struct PlaceError {
     /// Places where the object was found.
     pub found: usize,
     /// Places where it stood.
+    pub places: usize,
+}
+
+/// Where the object was found, less where it was, at one place; robot frame, m.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Judged {
+    at_m: [f64; 2],
+    error_m: nalgebra::Vector3<f64>,
+}
+
+/// Errors of the palm, mm.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PalmError {
+    /// Median of its distance in space from where it was sent, robot frame.
+    pub median: Option<f64>,
+    /// 95 % of them lie below.
+    pub p95: Option<f64>,
+    /// Median of its distance along the table from an object that it was sent to where the eyes found it:
+    /// errors that arm and eyes share do not count.
+    pub to_object_median: Option<f64>,
+    /// 95 % of those lie below.
+    pub to_object_p95: Option<f64>,
+    /// Places that it was sent to.
     pub places: usize,
 }
 
@@ -69,10 +96,10 @@ pub(super) fn places(
     lab: &Lab,
     robot: &mut Robot,
     context: &dyn JobContext,
-) -> Result<PlaceError, CommissionError> {
+) -> Result<(PlaceError, Vec<Judged>), CommissionError> {
     let mut seer = Seer::new(&lab.calibration()?, lab.rig_with_eyes()?, &lab.model()?)?;
     robot.go(&lab.rig.home());
-    let mut errors: Vec<nalgebra::Vector3<f64>> = vec![];
+    let mut judged: Vec<Judged> = vec![];
     let all: Vec<(f64, f64)> = GRID_X_M.iter().flat_map(|x| GRID_Y_M.iter().map(move |y| (*x, *y))).collect();
     for (k, (x_m, y_m)) in all.iter().enumerate() {
         context.checkpoint()?;
@@ -84,21 +111,16 @@ pub(super) fn places(
         let stands = truth.toys.iter().find_map(|(toy, place)| place.filter(|_| *toy == Toy::Tomato));
         if let (Some(found), Some(stands)) = (found, stands) {
             let error = found.coords.coords - stands.translation.vector;
-            eprintln!(
-                "tomato at ({x_m:.1}, {y_m:.1}) m: found {:.1} {:.1} {:.1} mm beside",
-                1e3 * error.x,
-                1e3 * error.y,
-                1e3 * error.z
-            );
-            errors.push(error);
+            judged.push(Judged { at_m: [*x_m, *y_m], error_m: error });
         }
     }
     robot.lockstep().remove_toy(Toy::Tomato);
+    let errors: Vec<nalgebra::Vector3<f64>> = judged.iter().map(|judged| judged.error_m).collect();
     let mm =
         |of: fn(&nalgebra::Vector3<f64>) -> f64| -> Vec<f64> { errors.iter().map(|e| 1e3 * of(e)).collect() };
     let (space, plane) = (mm(|e| e.norm()), mm(|e| e.xy().norm()));
     let mean = errors.iter().sum::<nalgebra::Vector3<f64>>() / errors.len().max(1) as f64 * 1e3;
-    Ok(PlaceError {
+    let error = PlaceError {
         median: quantile(&space, 0.5),
         p95: quantile(&space, 0.95),
         plane_median: quantile(&plane, 0.5),
@@ -106,6 +128,48 @@ pub(super) fn places(
         mean: (!errors.is_empty()).then(|| mean.into()),
         found: errors.len(),
         places: all.len(),
+    };
+    Ok((error, judged))
+}
+
+/// Sends the palm over places of the table in its reach, with the effects in use, and compares.
+pub(super) fn palm(
+    lab: &Lab,
+    robot: &mut Robot,
+    found: &[Judged],
+    context: &dyn JobContext,
+) -> Result<PalmError, CommissionError> {
+    let (rig, model) = (&lab.rig, lab.model()?);
+    let (arm, solver) = (model.arm(rig, PALM)?, Solver::of_rig(rig, PALM)?);
+    let link = rig.description.find_link(PALM)?;
+    let ready = Planner::new(rig, TIP, ScreenPlace::Nominal)?.ready(&rig.home());
+    let (mut alone, mut to_object) = (vec![], vec![]);
+    for judged in found.iter().filter(|judged| judged.at_m[1] <= 0.1) {
+        context.checkpoint()?;
+        context.report(0.55, "judging where the palm gets to");
+        let [x_m, y_m] = judged.at_m;
+        let point = Point::new(x_m, y_m, rig.table.height_m + PALM_HEIGHT_M);
+        let start = ready.of(solver.joints());
+        let reached =
+            arm.reach(&solver, &Target::Position(point), &start, &Options::upright(), &Conditions::default());
+        let Some(reached) = reached.ok().filter(plumbline_effects::rig_model::Reached::is_reached) else {
+            continue;
+        };
+        robot.go(&ready);
+        robot.go(&ready.with(solver.joints(), &reached.answer.best().joints));
+        let truth = robot.lockstep().truth_for_judging();
+        let Some(palm) = truth.robot_from_link[link.0] else { continue };
+        let error = palm.translation.vector - point.coords.coords;
+        alone.push(1e3 * error.norm());
+        to_object.push(1e3 * (error + judged.error_m).xy().norm());
+    }
+    robot.go(&ready);
+    Ok(PalmError {
+        median: quantile(&alone, 0.5),
+        p95: quantile(&alone, 0.95),
+        to_object_median: quantile(&to_object, 0.5),
+        to_object_p95: quantile(&to_object, 0.95),
+        places: alone.len(),
     })
 }
 

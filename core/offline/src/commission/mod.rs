@@ -14,7 +14,12 @@ mod eyes;
 mod glass;
 mod hand;
 mod judge;
+<<<<<<< HEAD
 pub(crate) mod lab;
+=======
+mod lab;
+mod lag;
+>>>>>>> h3
 mod models;
 mod mount;
 mod plan;
@@ -39,7 +44,7 @@ use plumbline_twin::eyes::EyeRenderer;
 use serde::Serialize;
 
 pub use error::CommissionError;
-pub use judge::{PlaceError, TouchError};
+pub use judge::{PalmError, PlaceError, TouchError};
 pub use steps::Step;
 
 use super::OfflineError;
@@ -89,6 +94,8 @@ pub struct CommissionReport {
     pub in_use: Vec<String>,
     /// Where the tomato was found against where it was, by the judge.
     pub place_error_mm: PlaceError,
+    /// Where the palm gets to, by the judge.
+    pub palm_error_mm: PalmError,
     /// New touches, by the judge.
     pub touch_error_mm: TouchError,
     /// One after the other.
@@ -166,12 +173,13 @@ fn one(
 
 fn check(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Result<Step, CommissionError> {
     let mut step = Step::new("check", "new touches inside of the touched area, along the glass, rms");
-    let places = judge::places(lab, robot, context)?;
+    let (places, found) = judge::places(lab, robot, context)?;
+    let palm = judge::palm(lab, robot, &found, context)?;
     let touched = judge::touches(lab, robot, context)?;
     step.before_mm = touched.uncorrected;
     step.after_mm = touched.inside;
     let file = lab.folder.join(JUDGED);
-    let text = serde_json::to_string_pretty(&(places, touched))
+    let text = serde_json::to_string_pretty(&(places, palm, touched))
         .map_err(|error| CommissionError::Steps { file: file.clone(), reason: error.to_string() })?;
     files::write(&file, text)?;
     Ok(step)
@@ -180,7 +188,7 @@ fn check(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Result<Step,
 fn report(lab: &Lab, steps: Steps) -> Result<CommissionReport, CommissionError> {
     let file = lab.folder.join(JUDGED);
     let text = files::read_text(&file, Size::SHORT)?;
-    let (place_error_mm, touch_error_mm) = serde_json::from_str(&text)
+    let (place_error_mm, palm_error_mm, touch_error_mm) = serde_json::from_str(&text)
         .map_err(|error| CommissionError::Steps { file: file.clone(), reason: error.to_string() })?;
     let (findings, _) = GapStore::new(lab.world().join("gap")).read(&lab.rig.name);
     let effects =
@@ -192,6 +200,7 @@ fn report(lab: &Lab, steps: Steps) -> Result<CommissionReport, CommissionError> 
         effects,
         in_use: lab.model()?.effects().iter().map(plumbline_effects::rig_model::ModelEffect::name).collect(),
         place_error_mm,
+        palm_error_mm,
         touch_error_mm,
         steps: steps.done,
     })

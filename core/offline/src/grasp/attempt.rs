@@ -53,6 +53,12 @@ impl Bench {
         Ok(Self { rig, scenario, grasper, eyes: None })
     }
 
+    /// The robot as described.
+    #[cfg(test)]
+    pub fn rig(&self) -> &Rig {
+        &self.rig
+    }
+
     /// Carries out one attempt in a world of its own, whose clock begins in 1970: two runs of the same
     /// attempt are the same file.
     pub fn attempt(&mut self, task: &Task) -> Result<(Record, Judged), OfflineError> {
