@@ -4,7 +4,7 @@
 //! Measured over all places, three predictions each (truth plus 3 mm per axis, turned by 0.03 rad per
 //! axis), with a pair before, on both scenarios, on an empty table, with a toy under the hand, with
 //! others beside, and high before the room: 66 of 66 within 8 mm each; horizontal error median 1.3 to
-//! 1.7 mm, 95 % 3.7 to 4.8 mm (predicted: 3.5 and 7); 66 to 77 % of coordinates within one stated
+//! 1.7 mm, 95 % 3.7 to 4.8 mm (such a prediction itself: 3.5 and 7.3); 66 to 77 % of coordinates within one stated
 //! sigma, none beyond 3.0; 15 ms of a processor core, 34 at most low over the table, 62 high.
 //! From nominal kinematics (16 to 19 mm off on "lab", prior 20 mm): 22 of 22, horizontal median 1.7 to
 //! 2.0 mm, 95 % 3.0 to 3.8 mm; high before the room 20 of 22 and 8 mm. 22 ms, 50 at most low, 83 high.
