@@ -31,6 +31,9 @@ const TURNS: usize = 6;
 const TURNED_M: f64 = 0.0005;
 /// Fingers and thumb bend this far around nothing, rad.
 const CLOSED_RAD: f64 = 1.8;
+/// A way with less room than this between any two bodies, m, counts as this much more turning, rad.
+const ROOM_M: f64 = 0.008;
+const CRAMPED_RAD: f64 = 2.0;
 /// Things belong so much nearer to the fingers than the middle of the palm, m, in the middle of how far
 /// off they may be and still be lifted (`tests/tolerance.rs`)…
 const INTO_FINGERS_M: f64 = 0.015;
@@ -167,7 +170,8 @@ impl GraspPlanner {
             }
         }
         ways.retain(|(level, ..)| *level >= LEAST_LEVEL);
-        // Level counts, and what is level enough keeps away from the table.
+        // Level counts; of what is level enough that which turns least on its way down and up again: an
+        // arm that has to turn much shakes what it holds.
         ways.sort_by(|a, b| b.0.min(LEVEL_ENOUGH).total_cmp(&a.0.min(LEVEL_ENOUGH)));
         let out_of_reach = NoPlan::OutOfReach { xy_m: standing.xy_m };
         let (mut why, mut best): (_, Option<(f64, GraspPlan)>) = (None, None);
@@ -178,11 +182,14 @@ impl GraspPlanner {
             let WayDown { palm_m, above, down, .. } = way;
             let free = self.room(&above, &down).and_then(|room_m| Ok((room_m, self.approach(from, &above)?)));
             match free {
-                Ok((room_m, approach)) if best.as_ref().is_none_or(|(most_m, _)| room_m > *most_m) => {
-                    let standing = *standing;
-                    best = Some((room_m, GraspPlan { standing, heading_rad, level, palm_m, approach, down }));
+                Ok((room_m, approach)) => {
+                    let cost = turn_rad(&above, &down) + CRAMPED_RAD * f64::from(room_m < ROOM_M);
+                    if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                        let standing = *standing;
+                        best =
+                            Some((cost, GraspPlan { standing, heading_rad, level, palm_m, approach, down }));
+                    }
                 }
-                Ok(_) => {}
                 Err(barred) => why = why.or(Some(barred)),
             }
         }
@@ -321,4 +328,10 @@ impl GraspPlanner {
         }
         Some((above, down))
     }
+}
+
+/// The largest turns of a joint on a way, added up, rad.
+fn turn_rad(above: &Posture, down: &[Posture]) -> f64 {
+    let before = std::iter::once(above).chain(down);
+    before.zip(down).map(|(before, next)| before.distance_rad(next)).sum()
 }

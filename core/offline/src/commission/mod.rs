@@ -14,12 +14,8 @@ mod eyes;
 mod glass;
 mod hand;
 mod judge;
-<<<<<<< HEAD
 pub(crate) mod lab;
-=======
-mod lab;
 mod lag;
->>>>>>> h3
 mod models;
 mod mount;
 mod plan;

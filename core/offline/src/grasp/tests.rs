@@ -117,17 +117,28 @@ fn one_in_a_lab() {
     let method = Method::from_name(&told("PLUMBLINE_METHODS", "m5")).expect("a method");
     let scenario = crate::commission::scenario(&told("PLUMBLINE_TWIN", "lab")).expect("a twin");
     let lab = told("PLUMBLINE_LAB", "target/lab");
-    let mut bench = super::trials::bench(lab.as_ref(), scenario, &[method], &plumbline_model::Unattended).expect("a lab");
+    let mut bench =
+        super::trials::bench(lab.as_ref(), scenario, &[method], &plumbline_model::Unattended).expect("a lab");
     for seed in 1..4 {
         let order = Order { method, object: "Tomato".to_owned(), near_m: None };
         let task = Task { order, toy: Toy::Tomato, at_m: [at_m[0], at_m[1]], seed };
         let (mut record, judged) = bench.attempt(&task).expect("carried out");
         record.seen.clear();
         record.seen_after.clear();
-        println!("{judged:?}\n{:?} heading {:?} fingers {:?} over {:?}", record.outcome, record.heading_rad, record.fingers_open_rad, record.over_middle_m);
+        println!(
+            "{judged:?}\n{:?} heading {:?} fingers {:?} over {:?}",
+            record.outcome, record.heading_rad, record.fingers_open_rad, record.over_middle_m
+        );
         for moment in &record.moments {
-            let off: Vec<String> = moment.load.iter().zip(&bench.rig().servos).filter(|(_, s)| s.joint_name.starts_with("r_"))
-                .map(|(load, s)| format!("{}:{:.2}", s.joint_name.trim_start_matches("r_"), load.unwrap_or_default())).collect();
+            let off: Vec<String> = moment
+                .load
+                .iter()
+                .zip(&bench.rig().servos)
+                .filter(|(_, s)| s.joint_name.starts_with("r_"))
+                .map(|(load, s)| {
+                    format!("{}:{:.2}", s.joint_name.trim_start_matches("r_"), load.unwrap_or_default())
+                })
+                .collect();
             println!("{:?} {:.1} {}", moment.after, moment.at_s, off.join(" "));
         }
     }
