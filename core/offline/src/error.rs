@@ -189,8 +189,8 @@ pub enum OfflineError {
         right: String,
     },
     /// A twin is not commissioned.
-    #[error(transparent)]
-    Commission(#[from] super::CommissionError),
+    #[error("{0}")]
+    Commission(Box<super::CommissionError>),
     /// The detector cannot be opened.
     #[error(transparent)]
     Detect(#[from] DetectError),
@@ -236,6 +236,12 @@ pub enum OfflineError {
         /// What the system says.
         error: std::io::Error,
     },
+}
+
+impl From<super::CommissionError> for OfflineError {
+    fn from(error: super::CommissionError) -> Self {
+        Self::Commission(Box::new(error))
+    }
 }
 
 impl OfflineError {

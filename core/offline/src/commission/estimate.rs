@@ -9,7 +9,7 @@ use plumbline_effects::{Assumed, Effect, Measurements, Present};
 use plumbline_model::robot::Rig;
 
 use super::glass::{SeenScreen, pose};
-use super::plan::{NOISE_M, SCREEN_SD};
+use super::plan::{NOISE_M, SCREEN_SD, moves_palm};
 
 /// What the neck's zero is off by, usually, rad: as the library of effects has it.
 const NECK_SD_RAD: f64 = 0.026;
@@ -17,9 +17,13 @@ const NECK_SD_RAD: f64 = 0.026;
 const FRAME: usize = 7;
 
 /// What is known besides the touches.
+#[derive(Clone, Copy)]
 pub(super) struct Known<'a> {
     pub rig: &'a Rig,
     pub seen: Option<&'a SeenScreen>,
+    /// This robot's arm is off by this share of what robots usually are. What is only between finger and
+    /// screen counts in full.
+    pub share: f64,
 }
 
 /// A fit.
@@ -46,10 +50,17 @@ pub(super) fn fit(
     let typical: Vec<f64> =
         effects.iter().flat_map(|effect| effect.parameters().iter().map(|p| p.typical)).collect();
     let count = FRAME + typical.len();
+    let shares: Vec<f64> = effects
+        .iter()
+        .flat_map(|effect| {
+            let share = if moves_palm(effect) { known.share } else { 1.0 };
+            vec![share; effect.parameters().len()]
+        })
+        .collect();
     let sd = |k: usize| match k {
         0..6 => SCREEN_SD[k / 3],
         6 => NECK_SD_RAD,
-        _ => 1.0,
+        _ => shares[k - FRAME],
     };
     let mut assumed = Assumed {
         effects: effects

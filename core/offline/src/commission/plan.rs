@@ -204,7 +204,7 @@ fn palm_tangents(rig: &Rig, effects: &[Effect]) -> Result<DMatrix<f64>, Commissi
 }
 
 /// Whether an effect moves the palm too, or only the fingertip on its screen.
-fn moves_palm(effect: &Effect) -> bool {
+pub(super) fn moves_palm(effect: &Effect) -> bool {
     !matches!(
         effect.kind,
         Kind::TipOffset
