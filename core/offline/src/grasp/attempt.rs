@@ -21,6 +21,9 @@ use crate::OfflineError;
 /// Since the eyes were switched on, s: they have warmed up, as in the published experiment.
 const WARM_S: f64 = 1800.0;
 
+/// Does something before a move, or ends it.
+pub(super) type Disturb<'a> = dyn FnMut(Step, &mut Lockstep) -> Result<(), Halt> + 'a;
+
 /// What attempts of one twin share.
 pub(super) struct Bench {
     rig: Arc<Rig>,
@@ -62,13 +65,22 @@ impl Bench {
     /// Carries out one attempt in a world of its own, whose clock begins in 1970: two runs of the same
     /// attempt are the same file.
     pub fn attempt(&mut self, task: &Task) -> Result<(Record, Judged), OfflineError> {
+        self.attempt_disturbed(task, &mut |_, _| Ok(()))
+    }
+
+    /// The same, with somebody who may do something before each move, or end it.
+    pub fn attempt_disturbed(
+        &mut self,
+        task: &Task,
+        disturb: &mut Disturb<'_>,
+    ) -> Result<(Record, Judged), OfflineError> {
         let mut twin =
             Lockstep::new(self.rig.clone(), &self.scenario, task.seed)?.with_eyes(self.eyes.take());
         twin.advance_warm_up(WARM_S);
         let mut body = TwinBody::new(twin, task.toy, task.at_m)?;
         let judge = Rc::new(RefCell::new(Judge::new(body.twin(), task.toy, &self.rig)));
         let step = Rc::new(RefCell::new(Step::Ready));
-        let mut watched = Watched { body: &mut body, judge: judge.clone(), step: step.clone() };
+        let mut watched = Watched { body: &mut body, judge: judge.clone(), step: step.clone(), disturb };
         let mut watch = Steps(step);
         let record = self.grasper.attempt(&mut watched, &task.order, jiff::Timestamp::UNIX_EPOCH, &mut watch);
         let judged = judge.borrow().judge(body.twin(), &record);
@@ -93,13 +105,14 @@ impl Watch for Steps {
 }
 
 /// A body with a judge at its side, who looks at it and is not seen.
-struct Watched<'a> {
+struct Watched<'a, 'b> {
     body: &'a mut TwinBody,
     judge: Rc<RefCell<Judge>>,
     step: Rc<RefCell<Step>>,
+    disturb: &'a mut Disturb<'b>,
 }
 
-impl Body for Watched<'_> {
+impl Body for Watched<'_, '_> {
     fn rig(&self) -> &Arc<Rig> {
         self.body.rig()
     }
@@ -117,6 +130,8 @@ impl Body for Watched<'_> {
     }
 
     fn follow(&mut self, way: &[Posture], speed_rad_s: f64) -> Result<(), Halt> {
+        let step = *self.step.borrow();
+        (self.disturb)(step, self.body.twin())?;
         self.body.follow(way, speed_rad_s)?;
         if *self.step.borrow() == Step::Lower {
             self.judge.borrow_mut().closing(self.body.twin());

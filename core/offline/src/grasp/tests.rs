@@ -1,16 +1,18 @@
 //! Grasps of a twin that is exactly as described, with nothing learned.
 #![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use plumbline_effects::RobotModel;
 use plumbline_grasp::attempt::RenderedHand;
-use plumbline_grasp::{Corrections, Knowledge, Method, Order};
-use plumbline_model::StereoCalibration;
+use plumbline_grasp::{Corrections, Failure, Halt, Knowledge, Method, Order, Outcome, Record, Step};
 use plumbline_model::robot::Rig;
-use plumbline_twin::{Scenario, Toy};
+use plumbline_model::{StereoCalibration, Unattended};
+use plumbline_twin::{Lockstep, Scenario, Toy};
 
 use super::attempt::{Bench, Task};
+use super::trials::{Experiment, begin, carry_out, conclude};
 
 fn bench(scenario: &str) -> Bench {
     let rig = Arc::new(Rig::built_in("nico").expect("valid"));
@@ -22,6 +24,144 @@ fn bench(scenario: &str) -> Bench {
     };
     let finder = Box::new(RenderedHand::of_rig(&rig, "right_palm_center").expect("a hand"));
     Bench::new(rig, Scenario::built_in(scenario).expect("valid"), knowledge, Some(finder)).expect("a bench")
+}
+
+fn task(method: Method, toy: Toy, at_m: [f64; 2]) -> Task {
+    let order = Order { method, object: toy.name().to_owned(), near_m: None };
+    Task { order, toy, at_m, seed: 1 }
+}
+
+fn failure(record: &Record) -> Option<Failure> {
+    match record.outcome {
+        Some(Outcome::Failed { failure, .. }) => Some(failure),
+        _ => None,
+    }
+}
+
+#[test]
+fn a_tomato_is_lifted_and_the_record_says_how() {
+    let (record, judged) =
+        bench("perfect").attempt(&task(Method::M5, Toy::Tomato, [0.3, -0.1])).expect("done");
+    assert_eq!(record.outcome, Some(Outcome::Success));
+    assert!(judged.lifted && judged.failure.is_none(), "{judged:?}");
+    assert!(
+        judged.alignment_m.is_some_and(|m| m < 0.005) && judged.camera_error_m.is_some_and(|m| m < 0.005)
+    );
+    assert!(record.seconds.is_some_and(|s| s < 25.0), "{:?}", record.seconds);
+    assert!(record.iterations.iter().all(|look| look.hand_m.is_some()) && !record.iterations.is_empty());
+    let after: Vec<Step> = record.moments.iter().map(|moment| moment.after).collect();
+    for step in [Step::Approach, Step::Lower, Step::Close, Step::Lift, Step::Check] {
+        assert!(after.contains(&step), "{step:?} is in the record");
+    }
+}
+
+#[test]
+fn what_is_not_seen_or_out_of_reach_moves_nothing() {
+    let mut bench = bench("perfect");
+    let moved = |record: &Record| !record.moments.is_empty();
+    let mut nowhere = task(Method::M5, Toy::Duck, [0.3, -0.1]);
+    nowhere.order.object = "tomato".to_owned();
+    let (record, _) = bench.attempt(&nowhere).expect("done");
+    assert_eq!(failure(&record), Some(Failure::NotSeen), "{:?}", record.outcome);
+    assert!(!moved(&record));
+    let (record, judged) = bench.attempt(&task(Method::M5, Toy::Tomato, [0.45, 0.35])).expect("done");
+    assert!(
+        matches!(&record.outcome, Some(Outcome::Refused { why }) if why.contains("nearer")),
+        "{:?}",
+        record.outcome
+    );
+    assert!(judged.refused && !moved(&record));
+    let (record, _) = bench.attempt(&task(Method::M3, Toy::Tomato, [0.3, -0.1])).expect("done");
+    assert!(
+        matches!(&record.outcome, Some(Outcome::Refused { why }) if why.contains("Models")),
+        "{:?}",
+        record.outcome
+    );
+}
+
+#[test]
+fn stopped_in_any_step_the_record_says_so_and_the_next_grasp_works() {
+    let mut bench = bench("perfect");
+    let task = task(Method::M5, Toy::Tomato, [0.3, -0.1]);
+    for step in [Step::Approach, Step::Align, Step::Lower, Step::Close, Step::Lift] {
+        let mut stop = |now: Step, _: &mut Lockstep| if now == step { Err(Halt::Stopped) } else { Ok(()) };
+        let (record, judged) = bench.attempt_disturbed(&task, &mut stop).expect("done");
+        if step == Step::Align && record.iterations.len() < 2 {
+            // It stood right at the first look.
+            continue;
+        }
+        assert_eq!(failure(&record), Some(Failure::Halted), "{step:?}: {:?}", record.outcome);
+        assert!(!judged.lifted, "{step:?}");
+    }
+    let (record, _) = bench.attempt(&task).expect("done");
+    assert_eq!(record.outcome, Some(Outcome::Success));
+}
+
+#[test]
+fn what_is_taken_away_or_pushed_on_the_way_is_not_called_held() {
+    let mut bench = bench("perfect");
+    let task = task(Method::M5, Toy::Tomato, [0.3, -0.1]);
+    let mut take = |now: Step, twin: &mut Lockstep| {
+        if now == Step::Lower {
+            twin.remove_toy(Toy::Tomato);
+        }
+        Ok(())
+    };
+    let (record, _) = bench.attempt_disturbed(&task, &mut take).expect("done");
+    assert_eq!(failure(&record), Some(Failure::Slipped), "{:?}", record.outcome);
+    let mut push = |now: Step, twin: &mut Lockstep| {
+        if now == Step::Lower {
+            twin.place_toy(Toy::Tomato, 0.3, 0.2).expect("on the table");
+        }
+        Ok(())
+    };
+    let (record, judged) = bench.attempt_disturbed(&task, &mut push).expect("done");
+    assert!(failure(&record).is_some() && !judged.lifted, "{:?}", record.outcome);
+}
+
+#[test]
+fn two_shards_put_together_are_one_run_byte_for_byte() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let experiment = Experiment {
+        format: super::trials::FORMAT,
+        twin: "perfect".to_owned(),
+        methods: vec![Method::M5],
+        attempts: 1,
+        positions_m: vec![[0.3, -0.2], [0.3, 0.1], [0.4, 0.0]],
+        object: "Tomato".to_owned(),
+        seed: 7,
+    };
+    let run = |name: &str, shard| {
+        let out = folder.path().join(name);
+        begin(&out, &experiment).expect("begun");
+        let mut bench = bench("perfect");
+        carry_out(&experiment, &mut bench, Toy::Tomato, shard, &out, &Unattended).expect("carried out");
+        (conclude(&out, &experiment).expect("concluded"), out)
+    };
+    let (whole, whole_in) = run("whole", None);
+    let (_, first) = run("first", Some((1, 2)));
+    let (part, second) = run("second", Some((2, 2)));
+    assert_eq!((whole.missing, part.missing), (0, 2));
+    let merged_in = folder.path().join("merged");
+    let merged = super::merge_trials(&[second.clone(), first], &merged_in).expect("merged");
+    assert_eq!(merged, whole);
+    let files = |at: &Path| -> Vec<(PathBuf, Vec<u8>)> {
+        let mut found = vec![];
+        for folder in [at.to_owned(), at.join("attempts")] {
+            for entry in std::fs::read_dir(&folder).expect("there").flatten().filter(|e| e.path().is_file()) {
+                let name = entry.path().strip_prefix(at).expect("inside").to_owned();
+                found.push((name, std::fs::read(entry.path()).expect("readable")));
+            }
+        }
+        found.sort();
+        found
+    };
+    assert_eq!(files(&whole_in), files(&merged_in));
+    // Another experiment is not mixed in.
+    let other = Experiment { seed: 8, ..experiment.clone() };
+    let refused = begin(&whole_in, &other).expect_err("another one").to_string();
+    assert!(refused.contains("another experiment"), "{refused}");
+    assert!(super::merge_trials(&[], &merged_in).is_err());
 }
 
 #[test]
@@ -59,7 +199,7 @@ fn in_a_lab() {
     let told = |name: &str, usual: &str| std::env::var(name).unwrap_or_else(|_| usual.to_owned());
     let (lab, twin) = (told("PLUMBLINE_LAB", "target/lab"), told("PLUMBLINE_TWIN", "lab"));
     let seed = told("PLUMBLINE_SEED", "1").parse().expect("a number");
-    let context = plumbline_model::Unattended;
+    let context = Unattended;
     let args = crate::CommissionArgs { twin: twin.clone(), seed, out: lab.clone().into() };
     let commissioned = crate::commission(&args, &context).expect("commissioned");
     println!(
@@ -117,8 +257,7 @@ fn one_in_a_lab() {
     let method = Method::from_name(&told("PLUMBLINE_METHODS", "m5")).expect("a method");
     let scenario = crate::commission::scenario(&told("PLUMBLINE_TWIN", "lab")).expect("a twin");
     let lab = told("PLUMBLINE_LAB", "target/lab");
-    let mut bench =
-        super::trials::bench(lab.as_ref(), scenario, &[method], &plumbline_model::Unattended).expect("a lab");
+    let mut bench = super::trials::bench(lab.as_ref(), scenario, &[method], &Unattended).expect("a lab");
     for seed in 1..4 {
         let order = Order { method, object: "Tomato".to_owned(), near_m: None };
         let task = Task { order, toy: Toy::Tomato, at_m: [at_m[0], at_m[1]], seed };

@@ -153,11 +153,24 @@ pub fn grasp_trials(args: &TrialsArgs, context: &dyn JobContext) -> Result<Summa
     };
     begin(&args.out, &experiment)?;
     let mut bench = bench(&args.lab, scenario, &args.methods, context)?;
-    let mine: Vec<Trial> = experiment.trials().filter(|trial| is_mine(trial, args.shard)).collect();
+    carry_out(&experiment, &mut bench, toy, args.shard, &args.out, context)?;
+    conclude(&args.out, &experiment)
+}
+
+/// Carries out what is not done yet of a part of an experiment.
+pub(super) fn carry_out(
+    experiment: &Experiment,
+    bench: &mut Bench,
+    toy: Toy,
+    shard: Option<(usize, usize)>,
+    out: &Path,
+    context: &dyn JobContext,
+) -> Result<(), OfflineError> {
+    let mine: Vec<Trial> = experiment.trials().filter(|trial| is_mine(trial, shard)).collect();
     for (done, trial) in mine.iter().enumerate() {
         context.checkpoint()?;
         context.report(done as f64 / mine.len().max(1) as f64, "grasping");
-        let file = file_of(&args.out, trial);
+        let file = file_of(out, trial);
         if file.exists() {
             continue;
         }
@@ -167,7 +180,7 @@ pub fn grasp_trials(args: &TrialsArgs, context: &dyn JobContext) -> Result<Summa
         write_json(&file, &attempt)?;
     }
     context.report(1.0, "grasping");
-    conclude(&args.out, &experiment)
+    Ok(())
 }
 
 /// Puts shards of one experiment together.
@@ -218,7 +231,7 @@ fn is_mine(trial: &Trial, shard: Option<(usize, usize)>) -> bool {
     shard.is_none_or(|(part, parts)| trial.number % parts.max(1) + 1 == part)
 }
 
-fn begin(out: &Path, experiment: &Experiment) -> Result<(), TrialsError> {
+pub(super) fn begin(out: &Path, experiment: &Experiment) -> Result<(), TrialsError> {
     std::fs::create_dir_all(out.join(ATTEMPTS))
         .map_err(|error| TrialsError::Folder { folder: out.to_owned(), error })?;
     let plan = out.join(PLAN);
@@ -229,7 +242,7 @@ fn begin(out: &Path, experiment: &Experiment) -> Result<(), TrialsError> {
     write_json(&plan, experiment)
 }
 
-fn conclude(out: &Path, experiment: &Experiment) -> Result<Summary, OfflineError> {
+pub(super) fn conclude(out: &Path, experiment: &Experiment) -> Result<Summary, OfflineError> {
     let mut attempts: Vec<Attempt> = vec![];
     for (file, text) in attempt_files(out)? {
         let attempt = serde_json::from_str(&text)
