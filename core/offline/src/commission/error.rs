@@ -75,13 +75,15 @@ pub enum CommissionError {
     Room(String),
     /// The finger touches too little.
     #[error(
-        "the finger met the glass at {touched} of {planned} places, which tell nothing: is the screen where the rig file has it?"
+        "the finger met the glass at {touched} of {planned} places, which tell nothing: is the screen where the rig file has it? {example}"
     )]
     TooFewTouches {
         /// Contacts.
         touched: usize,
         /// Places that it was sent to.
         planned: usize,
+        /// What became of the first one that was missed.
+        example: String,
     },
     /// Nothing can be planned.
     #[error(transparent)]

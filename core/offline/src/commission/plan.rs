@@ -55,8 +55,11 @@ pub(super) struct Chosen {
 
 /// The part of the screen that is touched.
 pub(super) fn area(rig: &Rig) -> Result<TouchArea, CommissionError> {
-    let reached =
-        TouchArea::reached_by(rig, TIP)?.ok_or(CommissionError::TooFewTouches { touched: 0, planned: 0 })?;
+    let reached = TouchArea::reached_by(rig, TIP)?.ok_or(CommissionError::TooFewTouches {
+        touched: 0,
+        planned: 0,
+        example: "It reaches no part of it.".to_owned(),
+    })?;
     let inner = |[low, high]: [f64; 2]| [low + MARGIN * (high - low), high - MARGIN * (high - low)];
     Ok(TouchArea { u_px: inner(reached.u_px), v_px: inner(reached.v_px) })
 }

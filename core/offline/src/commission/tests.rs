@@ -127,7 +127,7 @@ impl JobContext for Told {
     }
 }
 
-/// The touches and where they place the screen, interrupted in between: the file of steps says what is
+/// The touches and the eyes, interrupted in between: the file of steps says what is
 /// done, what is done is not done again, and another twin is refused the folder.
 #[test]
 fn a_work_that_was_ended_between_two_steps_goes_on_after_the_first() {
@@ -144,14 +144,16 @@ fn a_work_that_was_ended_between_two_steps_goes_on_after_the_first() {
 
     let rig = Arc::new(Rig::built_in("nico").expect("valid"));
     let lab = Lab { folder: folder.path().to_owned(), rig, scenario, seed: 1 };
-    let mut steps = first.clone();
     let told = Told::default();
-    let placed = one(&lab, "screen", &steps, &mut None, &told).expect("placed");
+    let eyes = one(&lab, "eyes", &first, &mut None, &told).expect("calibrated");
     assert!(told.0.lock().expect("not poisoned").iter().all(|doing| !doing.contains("touching")));
-    assert!(placed.after_mm.expect("judged") < 4.0, "{placed:?}");
-    steps.add(&lab.folder, placed).expect("kept");
+    assert!(eyes.board_views == 20 && eyes.after_mm.expect("judged") < 1.5, "{eyes:?}");
+    // The eyes were on while the finger touched.
+    assert!((first.done[0].minutes + eyes.minutes) > 20.0, "{eyes:?}");
+    let mut steps = first.clone();
+    steps.add(&lab.folder, eyes).expect("kept");
     assert_eq!(Steps::read(&lab.folder, &lab.scenario, 1).expect("kept"), steps);
-    assert!(lab.placement().is_ok());
+    assert!(lab.calibration().is_ok());
 
     let other = commission(&args(2), &Unattended).expect_err("another twin's folder");
     assert!(other.to_string().contains("seed 1") && other.to_string().contains("--out"), "{other}");

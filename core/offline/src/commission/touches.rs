@@ -91,7 +91,8 @@ pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Res
     robot.go(&lab.rig.home());
     let touched = progress.counted().count();
     if touched < FEWEST {
-        return Err(CommissionError::TooFewTouches { touched, planned: plan.touches.len() });
+        let example = missed.first().cloned().unwrap_or_default();
+        return Err(CommissionError::TooFewTouches { touched, planned: plan.touches.len(), example });
     }
     progress.finished = true;
     write(lab, &joints, &plan, &progress)?;
