@@ -2,18 +2,17 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use plumbline_gap::Finding;
 
-use crate::ReportContext;
+use crate::About;
 use crate::drawing::Drawing;
 use crate::font::{self, Weight};
 use crate::svg::{self, escaped};
 
 /// One file with all that it needs. Nothing in it runs and nothing is fetched, which the policy in
 /// its head tells the browser, too.
-pub fn of(drawing: &Drawing, finding: &Finding, context: &ReportContext) -> String {
-    let title = escaped(&font::printable(&format!("Gap of {} · {}", finding.rig, context.date)));
-    let description = escaped(&font::printable(&finding.sentence));
+pub fn of(drawing: &Drawing, about: &About) -> String {
+    let title = escaped(&font::printable(&about.title));
+    let description = escaped(&font::printable(&about.sentence));
     let face = |weight: Weight, number: u32| {
         format!(
             "@font-face{{font-family:Inter;font-weight:{number};src:url(data:font/ttf;base64,{}) format(\"truetype\")}}",

@@ -1,9 +1,10 @@
-//! The gap on one page for a colleague, as HTML and PDF.
+//! The gap, or an experiment with grasps, on one page for a colleague, as HTML and PDF.
 //!
 //! One drawing of an A4 page is laid out (`page`) and written twice: as an inline SVG in an HTML
 //! file that needs no other file, and as a PDF. Lengths on the page are points (1/72 inch).
 
 mod drawing;
+pub mod experiment;
 mod font;
 mod html;
 mod page;
@@ -50,7 +51,7 @@ pub enum ReportError {
 /// The page as an HTML file that needs no other file: fonts and figures are inside. Prints on one
 /// A4 page.
 pub fn html(finding: &Finding, context: &ReportContext) -> String {
-    html::of(&page::draw(finding, context), finding, context)
+    html::of(&page::draw(finding, context), &about(finding, context))
 }
 
 /// The page as SVG, A4 portrait. The font is Inter, which the viewer must have.
@@ -63,5 +64,24 @@ pub fn svg(finding: &Finding, context: &ReportContext) -> String {
 /// # Errors
 /// When the file cannot be made; HTML always can.
 pub fn pdf(finding: &Finding, context: &ReportContext) -> Result<Vec<u8>, ReportError> {
-    pdf::of(&page::draw(finding, context), finding, context)
+    pdf::of(&page::draw(finding, context), &about(finding, context))
+}
+
+/// What a file says of itself beside its page.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct About {
+    /// Title of the file.
+    pub title: String,
+    /// What is on it, for who cannot see it.
+    pub sentence: String,
+    /// Version of the program that found it.
+    pub version: String,
+}
+
+fn about(finding: &Finding, context: &ReportContext) -> About {
+    About {
+        title: format!("Gap of {} · {}", finding.rig, context.date),
+        sentence: finding.sentence.clone(),
+        version: finding.version.clone(),
+    }
 }

@@ -11,24 +11,23 @@ use krilla::page::PageSettings;
 use krilla::paint::{Fill, FillRule, Stroke, StrokeDash};
 use krilla::surface::Surface;
 use krilla::text::{Font, TextDirection};
-use plumbline_gap::Finding;
 
 use crate::drawing::{self, Color, Drawing, Mark};
 use crate::font::{self, Weight};
-use crate::{ReportContext, ReportError};
+use crate::{About, ReportError};
 
 /// Distance of the control points of a quarter of a circle, per radius.
 const QUARTER: f64 = 0.552_284_75;
 
 /// The page as a file.
-pub fn of(drawing: &Drawing, finding: &Finding, context: &ReportContext) -> Result<Vec<u8>, ReportError> {
+pub fn of(drawing: &Drawing, about: &About) -> Result<Vec<u8>, ReportError> {
     let refused = |reason: &str| ReportError::Pdf { reason: reason.to_owned() };
     let mut document = Document::new();
     document.set_metadata(
         Metadata::new()
-            .title(font::printable(&format!("Gap of {} · {}", finding.rig, context.date)))
-            .description(font::printable(&finding.sentence))
-            .creator(format!("Plumbline {}", font::printable(&finding.version)))
+            .title(font::printable(&about.title))
+            .description(font::printable(&about.sentence))
+            .creator(format!("Plumbline {}", font::printable(&about.version)))
             .language("en".to_owned()),
     );
     let mut fonts = HashMap::new();

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use plumbline_effects::rig_model::Conditions;
-use plumbline_engine::motion::{Planner, ScreenPlace};
+use plumbline_engine::motion::{Hold, Planner, ScreenPlace};
 use plumbline_engine::touch::plan::{Aim, Corrector, PlanRequest, TIP, make};
 use plumbline_engine::touch::store;
 use plumbline_model::robot::Rig;
@@ -20,7 +20,7 @@ use super::lab::Lab;
 use super::plan::{PALM, area};
 use super::robot::Robot;
 use super::see::Seer;
-use super::touches::{rms, session, touch};
+use super::touches::{Depths, rms, session};
 
 /// Places of the published grid: along x, then along y, robot frame, m.
 const GRID_X_M: [f64; 4] = [0.2, 0.3, 0.4, 0.5];
@@ -185,7 +185,7 @@ pub(super) fn touches(
     let corrector =
         if lab.model()?.is_nominal() { Corrector::None } else { Corrector::Effects(Arc::new(lab.known()?)) };
     let aims = new_aims(lab, &rig, corrector, context)?;
-    let planner = Planner::new(&rig, TIP, ScreenPlace::Measured)?;
+    let mut depths = Depths::new(&rig, ScreenPlace::Measured)?;
     let mut errors = [vec![], vec![]];
     for aim in &aims {
         context.checkpoint()?;
@@ -197,9 +197,8 @@ pub(super) fn touches(
             0.6 + 0.4 * (errors[0].len() + errors[1].len()) as f64 / (2 * CHECKED) as f64,
             "judging where new touches land",
         );
-        let stands = robot.lockstep().commanded().clone();
-        let Ok(path) = planner.plan(aim.touch.target, aim.sent(), aim.touch.side, &stands) else { continue };
-        if let Some(measured) = touch(robot, &path, planner.chain()) {
+        let met = depths.touch(robot, aim.touch.target, aim.sent(), aim.touch.side, Hold::default());
+        if let Ok(measured) = met {
             errors[side].push(miss_mm(&rig, measured.pixel, aim.touch.target));
         }
     }
@@ -240,13 +239,12 @@ fn new_aims(
 
 /// The first of the new targets, sent as if nothing had been commissioned.
 fn uncorrected(lab: &Lab, robot: &mut Robot, aims: &[Aim]) -> Result<Option<f64>, CommissionError> {
-    let planner = Planner::new(&lab.rig, TIP, ScreenPlace::Nominal)?;
+    let mut depths = Depths::new(&lab.rig, ScreenPlace::Nominal)?;
     let mut errors = vec![];
     for aim in aims.iter().take(CHECKED) {
-        let stands = robot.lockstep().commanded().clone();
         let sent = lab.rig.touchscreen.point_at(aim.touch.target);
-        let Ok(path) = planner.plan(aim.touch.target, sent, aim.touch.side, &stands) else { continue };
-        if let Some(measured) = touch(robot, &path, planner.chain()) {
+        let met = depths.touch(robot, aim.touch.target, sent, aim.touch.side, Hold::default());
+        if let Ok(measured) = met {
             errors.push(miss_mm(&lab.rig, measured.pixel, aim.touch.target));
         }
     }

@@ -4,15 +4,14 @@
 use std::path::PathBuf;
 
 use plumbline_correction::{CorrectionModel, Method, Recipe, Touch, TouchData, TrainOptions, train};
-use plumbline_engine::motion::{Planner, ScreenPlace};
-use plumbline_engine::touch::plan::TIP;
+use plumbline_engine::motion::{Hold, ScreenPlace};
 use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose, Side, Sides, TouchArea, TouchPlan};
 use plumbline_model::{JobContext, files};
 
 use super::error::CommissionError;
 use super::lab::Lab;
 use super::robot::Robot;
-use super::touches::touch;
+use super::touches::Depths;
 
 /// The area of the published touches, px of the screen.
 const AREA: TouchArea = TouchArea { u_px: [120.0, 1761.0], v_px: [335.0, 1055.0] };
@@ -79,28 +78,21 @@ fn touches(lab: &Lab, context: &dyn JobContext) -> Result<TouchData, CommissionE
     };
     let screen = &lab.rig.touchscreen;
     let plan = TouchPlan::make(&options, screen).map_err(CommissionError::room)?;
-    let planner = Planner::new(&lab.rig, TIP, ScreenPlace::Nominal)?;
+    let mut depths = Depths::new(&lab.rig, ScreenPlace::Nominal)?;
     let mut robot = Robot::new(lab, 0.0, None)?;
     let mut touches = vec![];
     let mut left_out = vec![];
     for (row, planned) in plan.touches.iter().enumerate() {
         context.checkpoint()?;
         context.report(row as f64 / plan.touches.len() as f64, "touching for the published models");
-        let stands = robot.lockstep().commanded().clone();
-        let path = match planner.plan(planned.target, screen.point_at(planned.target), Side::Above, &stands) {
-            Ok(path) => path,
-            Err(why) => {
-                left_out.push(why.to_string());
-                continue;
-            }
-        };
-        let measured = touch(&mut robot, &path, planner.chain());
-        let met = measured.and_then(|measured| Some((measured.pixel, measured.commanded_tip?)));
-        match met {
-            Some((pixel, sent)) => {
+        let sent = screen.point_at(planned.target);
+        let met = depths.touch(&mut robot, planned.target, sent, Side::Above, Hold::default());
+        match met.map(|measured| (measured.pixel, measured.commanded_tip)) {
+            Ok((pixel, Some(sent))) => {
                 touches.push(Touch { pixel, sent, set: Some(planned.set.clone()), group: None, row });
             }
-            None => left_out.push("no contact near the target".to_owned()),
+            Ok(_) => left_out.push("it is not known where the finger was sent".to_owned()),
+            Err(why) => left_out.push(why),
         }
     }
     TouchData::new(touches, screen.clone(), left_out).map_err(CommissionError::room)

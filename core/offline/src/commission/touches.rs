@@ -2,16 +2,18 @@
 //! met tells where it lies.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Instant;
 
-use plumbline_engine::motion::{Planner, ScreenPlace, TouchPath};
+use plumbline_engine::motion::{Hold, Planner, ScreenPlace, TouchPath};
 use plumbline_engine::robot::TouchMeasurement;
 use plumbline_engine::touch::plan::{Aim, FORMAT, RunPlan, TIP};
 use plumbline_engine::touch::record::{Ended, Progress, TouchRecord};
 use plumbline_engine::touch::{placement, store};
-use plumbline_model::robot::Chain;
-use plumbline_model::touch_plan::{Pattern, PlanOptions, PlannedTouch, Purpose, Sides};
-use plumbline_model::{JobContext, Pixel, Point};
+use plumbline_model::robot::{Chain, Rig};
+use plumbline_model::session::Screen;
+use plumbline_model::touch_plan::{Pattern, PlanOptions, PlannedTouch, Purpose, Side, Sides};
+use plumbline_model::{JobContext, Pixel, Point, Robot as RobotFrame};
 use plumbline_twin::Touched;
 
 use super::error::CommissionError;
@@ -39,6 +41,7 @@ pub(super) fn session(lab: &Lab) -> PathBuf {
 pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Result<Step, CommissionError> {
     let step = Step::new("touches", "");
     let planner = Planner::new(&lab.rig, TIP, ScreenPlace::Nominal)?;
+    let mut depths = Depths::new(&lab.rig, ScreenPlace::Nominal)?;
     let area = area(&lab.rig)?;
     let possible = candidates(&planner, &area, context)?;
     context.report(0.2, "choosing touches");
@@ -68,22 +71,13 @@ pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Res
     for (k, aim) in plan.touches.iter().enumerate() {
         context.checkpoint()?;
         context.report(0.25 + 0.75 * k as f64 / plan.touches.len() as f64, "touching the screen");
-        let stands = robot.lockstep().commanded().clone();
         let hold = possible[chosen[k].candidate].hold;
-        let path = match planner.plan_held(aim.touch.target, aim.sent(), aim.touch.side, hold, &stands) {
-            Ok(path) => path,
+        let met = depths.touch(robot, aim.touch.target, aim.sent(), aim.touch.side, hold);
+        match met.and_then(|measured| TouchRecord::new(aim, &measured).ok_or_else(|| NOTHING.to_owned())) {
+            Ok(record) => progress.touched(record),
             Err(why) => {
                 missed.push(format!("touch {}: {why}", aim.touch.number));
-                progress.end(aim.touch.number, Ended::Missed(why.to_string()));
-                continue;
-            }
-        };
-        match touch(robot, &path, planner.chain()).and_then(|measured| TouchRecord::new(aim, &measured)) {
-            Some(record) => progress.touched(record),
-            None => {
-                missed.push(format!("touch {}: no contact near the target", aim.touch.number));
-                progress
-                    .end(aim.touch.number, Ended::Missed("The screen felt nothing near the target.".into()));
+                progress.end(aim.touch.number, Ended::Missed(why));
             }
         }
     }
@@ -98,6 +92,65 @@ pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Res
     write(lab, &joints, &plan, &progress)?;
     let notes = if missed.is_empty() { vec![] } else { vec![format!("Missed: {}.", missed.join("; "))] };
     Ok(Step { touches: touched, notes, ..step })
+}
+
+/// Why a touch counts for nothing.
+const NOTHING: &str = "the screen felt nothing near the target";
+
+/// Planners for a screen that lies where it is taken to lie, and for one that lies lower: an arm that stands
+/// higher than its encoders say ends over the glass when it is sent to it.
+pub(super) struct Depths {
+    planners: Vec<(f64, Planner)>,
+    /// Of the planners, the one whose finger met the glass last.
+    usual: usize,
+}
+
+/// How much lower the glass is looked for, m; the finger comes down slowly and stops when it is met.
+const LOWER_M: [f64; 3] = [0.0, 0.012, 0.024];
+
+impl Depths {
+    pub(super) fn new(rig: &Arc<Rig>, place: ScreenPlace) -> Result<Self, CommissionError> {
+        let planner = |lower_m: f64| -> Result<(f64, Planner), CommissionError> {
+            let mut lower = (**rig).clone();
+            lower.touchscreen = lower.touchscreen.raised(-lower_m);
+            lower.table.height_m -= lower_m;
+            lower.gate.floor_m -= lower_m;
+            Ok((lower_m, Planner::new(&Arc::new(lower), TIP, place)?))
+        };
+        Ok(Self { planners: LOWER_M.into_iter().map(planner).collect::<Result<_, _>>()?, usual: 0 })
+    }
+
+    /// The joints of the finger.
+    pub(super) fn chain(&self) -> &Chain {
+        self.planners[0].1.chain()
+    }
+
+    /// Touches a target with the tip sent to a point, deeper where nothing was met; else why not.
+    pub(super) fn touch(
+        &mut self,
+        robot: &mut Robot,
+        target: Pixel<Screen>,
+        sent: Point<RobotFrame>,
+        side: Side,
+        hold: Hold,
+    ) -> Result<TouchMeasurement, String> {
+        let mut why = NOTHING.to_owned();
+        for k in self.usual..self.planners.len() {
+            let (lower_m, planner) = &self.planners[k];
+            let stands = robot.lockstep().commanded().clone();
+            let [x, y, z] = sent.coords.coords.into();
+            match planner.plan_held(target, Point::new(x, y, z - lower_m), side, hold, &stands) {
+                Ok(path) => {
+                    if let Some(measured) = touch(robot, &path, planner.chain()) {
+                        self.usual = k;
+                        return Ok(measured);
+                    }
+                }
+                Err(no_way) => why = no_way.to_string(),
+            }
+        }
+        Err(why)
+    }
 }
 
 /// The session in one folder of a name that does not change, whole or not at all.

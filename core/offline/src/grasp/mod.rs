@@ -5,6 +5,7 @@ mod body;
 mod judge;
 mod lab;
 mod one;
+mod page;
 mod summary;
 #[cfg(test)]
 mod tests;

@@ -11,7 +11,7 @@ use super::trials::{Attempt, Experiment};
 /// A hand that was seen no farther than this from where it truly was is located, m.
 const LOCATED_M: f64 = 0.015;
 /// The area of the published networks: x and y, m.
-const AREA_M: [[f64; 2]; 2] = [[0.27, 0.48], [-0.23, 0.23]];
+pub(super) const AREA_M: [[f64; 2]; 2] = [[0.27, 0.48], [-0.23, 0.23]];
 
 /// What came of an experiment.
 #[derive(Clone, Debug, PartialEq, Serialize)]

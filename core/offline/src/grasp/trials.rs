@@ -13,6 +13,7 @@ use plumbline_grasp::{Method, Order, Record};
 use plumbline_model::JobContext;
 use plumbline_model::files::{self, Size};
 use plumbline_model::robot::Rig;
+use plumbline_report::experiment::{experiment_html, experiment_pdf};
 use plumbline_twin::{Scenario, Toy};
 use serde::{Deserialize, Serialize};
 
@@ -254,6 +255,9 @@ pub(super) fn conclude(out: &Path, experiment: &Experiment) -> Result<Summary, O
     write_json(&out.join(SUMMARY), &summary)?;
     files::write(&out.join("attempts.csv"), super::summary::csv(experiment, &attempts))
         .map_err(TrialsError::from)?;
+    let page = super::page::page(experiment, &summary, &Rig::built_in("nico")?);
+    files::write(&out.join("report.html"), experiment_html(&page)).map_err(TrialsError::from)?;
+    files::write(&out.join("report.pdf"), experiment_pdf(&page)?).map_err(TrialsError::from)?;
     Ok(summary)
 }
 
