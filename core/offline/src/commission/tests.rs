@@ -32,7 +32,7 @@ impl Dice {
 }
 
 /// A scenario file. Ranges: encoder zeros ±0.03 rad (head ±0.015), slack to 0.008 rad, give to
-/// 0.008 rad/Nm, axes ±0.01 rad, joints ±2 mm, table ±8 mm and ±0.01 rad, screen ±10 mm, ±0.02 rad and
+/// 0.008 rad/Nm, axes ±0.01 rad, joints ±2 mm, table ±8 mm and ±0.01 rad, screen on it ±10 mm, up to 3 mm higher, ±0.02 rad and
 /// ±1 %, eyes ±6 mm and ±0.03 rad, right eye ±0.01 rad, warming up ±0.3 mrad/K, fingertip ±4 mm.
 fn drawn(seed: u64) -> String {
     let mut dice = Dice(seed);
@@ -56,7 +56,9 @@ fn drawn(seed: u64) -> String {
     }
     let (table_rad, table_m) = (dice.three(0.01), dice.three(0.008));
     text.push_str(&format!("\n[table]\nrotation_rad = {table_rad}\ntranslation_m = {table_m}\n"));
-    let (turn, shift) = (dice.three(0.02), dice.three(0.01));
+    // It lies on the table: it may be turned and shifted there, and stand a little higher, not deeper.
+    let turn = format!("[0.0, 0.0, {:.6}]", dice.within(0.02));
+    let shift = format!("[{:.6}, {:.6}, {:.6}]", dice.within(0.01), dice.within(0.01), 0.003 * dice.share());
     let scale = [0; 2].map(|_| 1.0 + dice.within(0.01));
     text.push_str(&format!(
         "\n[touchscreen]\nrotation_rad = {turn}\ntranslation_m = {shift}\nscale = [{:.6}, {:.6}]\n",

@@ -120,11 +120,6 @@ impl Depths {
         Ok(Self { planners: LOWER_M.into_iter().map(planner).collect::<Result<_, _>>()?, usual: 0 })
     }
 
-    /// The joints of the finger.
-    pub(super) fn chain(&self) -> &Chain {
-        self.planners[0].1.chain()
-    }
-
     /// Touches a target with the tip sent to a point, deeper where nothing was met; else why not.
     pub(super) fn touch(
         &mut self,
