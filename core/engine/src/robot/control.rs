@@ -5,6 +5,7 @@ use plumbline_model::frame::{Head, LeftCamera, Pose};
 use plumbline_model::session::Touchscreen;
 
 use super::command::RobotCommand;
+use super::lead::Led;
 use super::touch_order::TouchOrder;
 use crate::twin::command::TwinCommand;
 
@@ -28,6 +29,8 @@ pub enum RobotControl {
     AbandonTouch,
     /// The touch window felt a contact.
     Contact(Touch),
+    /// Somebody leads the arm, order by order.
+    Lead(Led),
     /// A workflow turns the head.
     TurnHead {
         /// Positive to the left, rad.

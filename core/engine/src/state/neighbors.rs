@@ -1,8 +1,12 @@
 //! What each workflow can see of the rest, and who gets which command and which result.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
+use plumbline_correction::Method;
+use plumbline_grasp::Corrections;
+use plumbline_model::robot::Rig;
 use plumbline_vision::detect::Provider;
 
 use super::State;
@@ -12,6 +16,7 @@ use crate::command::{Command, JobCommand, NoticeCommand};
 use crate::detect::{DetectAround, DetectWorkflow};
 use crate::eyes::{EyesAround, EyesWorkflow};
 use crate::gap::{GapAround, GapWorkflow};
+use crate::grasp::{GraspAround, GraspWorkflow};
 use crate::ground::jobs::JobId;
 use crate::ground::stage::Skipped;
 use crate::ground::{Moment, Workflow, World};
@@ -239,6 +244,37 @@ impl Neighbors<GapWorkflow> for State {
         GapAround {
             rig: self.rig_of(world),
             newest_session: self.rooms.touch.of(world).session().map(Path::to_owned),
+        }
+    }
+}
+
+impl Neighbors<GraspWorkflow> for State {
+    fn around(&self, world: World) -> GraspAround {
+        let Rooms { eyes, mount, touch, models, detect, source, .. } = &self.rooms;
+        let placed = self.rig_of(world);
+        let rig = match mount.of(world).in_use() {
+            None => placed,
+            Some(mount) => {
+                let mut rig = Rig::clone(&placed);
+                rig.eyes.head_from_left = mount.head_from_left;
+                Arc::new(rig)
+            }
+        };
+        let usable = models.of(world).usable();
+        let model = |method| usable.iter().find(|model| model.method() == method).cloned();
+        let (detector, provider) = detect.chosen();
+        GraspAround {
+            described: self.rig.clone(),
+            rig,
+            robot: self.robot.clone(),
+            calibration: eyes.of(world).in_use().cloned(),
+            has_mount: mount.of(world).in_use().is_some(),
+            has_screen: touch.of(world).screen().is_some(),
+            corrections: Corrections { m1: model(Method::M1), m2: model(Method::M2), m3: model(Method::M3) },
+            detector: (detector.clone(), provider),
+            own_eyes: self.shown == world && self.shows_own_eyes(),
+            source: source.view().clone(),
+            found: detect.found().cloned(),
         }
     }
 }

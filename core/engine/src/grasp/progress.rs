@@ -1,0 +1,142 @@
+//! How an attempt goes on, for the window; and what is kept of it on the way.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use plumbline_grasp::plan::GraspPlan;
+use plumbline_grasp::see::Seen;
+use plumbline_grasp::{Failure, Method, Outcome, Record, Sight, Step, Watch};
+use plumbline_model::JobContext;
+
+use super::keeping::{Keeping, KeepingError};
+use super::view::{GraspIteration, GraspRun, LampState};
+use crate::robot::Reins;
+
+/// What the window sees of an attempt while it goes on. Clones share it.
+#[derive(Clone, Debug, Default)]
+pub struct Progress(Arc<Mutex<GraspRun>>);
+
+impl Progress {
+    /// Of an attempt that begins.
+    pub fn new(method: Method, object: &str) -> Self {
+        let lamps = steps_of(method).map(|step| (step, LampState::Dark)).collect();
+        let run = GraspRun { method: Some(method), object: object.to_owned(), lamps, ..GraspRun::default() };
+        Self(Arc::new(Mutex::new(run)))
+    }
+
+    /// As it is now.
+    pub fn run(&self) -> GraspRun {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Changes it.
+    pub fn change(&self, change: impl FnOnce(&mut GraspRun)) {
+        change(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+
+    /// Everything that the record of its end says.
+    pub fn ended(&self, record: &Record) {
+        self.change(|run| {
+            run.outcome.clone_from(&record.outcome);
+            run.fingers_open_rad = record.fingers_open_rad;
+            run.seconds = record.seconds;
+            let last = match &record.outcome {
+                // Whether it holds was looked at: all steps were made.
+                Some(Outcome::Success) => LampState::Done,
+                Some(Outcome::Failed { failure: Failure::Slipped | Failure::ReachWrong, .. }) => {
+                    LampState::Done
+                }
+                _ => LampState::Failed,
+            };
+            run.lamps
+                .iter_mut()
+                .filter(|(_, lamp)| *lamp == LampState::Lit)
+                .for_each(|(_, lamp)| *lamp = last);
+        });
+    }
+}
+
+fn steps_of(method: Method) -> impl Iterator<Item = Step> {
+    Step::ALL.into_iter().filter(move |step| *step != Step::Align || method.aligns())
+}
+
+/// Watches an attempt: tells the window, and keeps what has to be on disk before it goes on.
+pub struct Watcher<'a> {
+    progress: Progress,
+    keeping: Option<Keeping>,
+    context: &'a dyn JobContext,
+    reins: Reins,
+    looks: usize,
+    /// The plan that was shown last.
+    pub plan: Option<GraspPlan>,
+    /// Why it could not be kept, so that it was ended.
+    pub problem: Option<KeepingError>,
+}
+
+impl<'a> Watcher<'a> {
+    /// `keeping`: where it is kept, if it is.
+    pub fn new(
+        progress: Progress,
+        keeping: Option<Keeping>,
+        context: &'a dyn JobContext,
+        reins: Reins,
+    ) -> Self {
+        Self { progress, keeping, context, reins, looks: 0, plan: None, problem: None }
+    }
+
+    /// Keeps something; what cannot be kept ends the attempt.
+    fn keep(&mut self, keep: impl FnOnce(&Keeping) -> Result<(), KeepingError>) {
+        if let Some(keeping) = &self.keeping
+            && let Err(problem) = keep(keeping)
+        {
+            log::error!("{problem}");
+            self.problem.get_or_insert(problem);
+            self.reins.end();
+        }
+    }
+}
+
+impl Watch for Watcher<'_> {
+    fn step(&mut self, step: Step) {
+        self.progress.change(|run| {
+            for (other, lamp) in &mut run.lamps {
+                if *other == step {
+                    *lamp = LampState::Lit;
+                } else if *lamp == LampState::Lit {
+                    *lamp = LampState::Done;
+                }
+            }
+        });
+        let place = Step::ALL.iter().position(|other| *other == step).unwrap_or_default();
+        self.context.report(place as f64 / Step::ALL.len() as f64, &step.title().to_lowercase());
+    }
+
+    fn saw(&mut self, step: Step, sight: &Sight, seen: &[Seen]) {
+        let name = match step {
+            Step::Align => {
+                self.looks += 1;
+                format!("aligned_{}", self.looks)
+            }
+            Step::Check => "after".to_owned(),
+            _ => "before".to_owned(),
+        };
+        self.keep(|keeping| keeping.images(&name, sight));
+        if !seen.is_empty() || step != Step::Align {
+            self.progress.change(|run| run.seen = seen.to_vec());
+        }
+        self.context.report(0.0, &step.title().to_lowercase());
+    }
+
+    fn planned(&mut self, plan: &GraspPlan) {
+        self.plan = Some(plan.clone());
+    }
+
+    fn aligned(&mut self, iteration: &GraspIteration) {
+        self.progress.change(|run| run.iterations.push(iteration.clone()));
+        self.context.report(0.5, "align");
+    }
+
+    fn about_to(&mut self, record: &Record) {
+        self.keep(|keeping| keeping.record(record));
+        self.progress.change(|run| run.chosen = record.chosen);
+    }
+}
