@@ -4,7 +4,8 @@ use plumbline_engine::view::{GraspPhase, SeenThing};
 use plumbline_engine::{GraspCommand, View};
 use plumbline_model::Eye;
 use plumbline_widgets::class_color;
-use plumbline_widgets::overlay::{Emphasis, LabeledBox, Mark, Overlay};
+use plumbline_widgets::overlay::{Emphasis, LabeledBox, Mark, Overlay, PointShape};
+use plumbline_widgets::theme::Role;
 
 use crate::operator::Outbox;
 
@@ -32,6 +33,12 @@ pub fn overlay(view: &View, eye: Eye) -> Option<Overlay> {
     });
     let mut overlay = Overlay::new();
     overlay.push(Mark::Boxes(boxes.collect()));
+    if let Some(wanted_px) = run.wanted_px[eye.index()] {
+        overlay.point(wanted_px, PointShape::Ring, 7.0, Role::Predicted);
+    }
+    if let Some(hand_px) = run.hand_px[eye.index()] {
+        overlay.plus(hand_px, Role::Measured);
+    }
     Some(overlay)
 }
 

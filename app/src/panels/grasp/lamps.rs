@@ -48,7 +48,7 @@ pub fn show(ui: &mut Ui, lamps: &[(GraspStep, LampState)]) {
         }
         painter.text(pos2(x, rect.bottom() - 4.0), Align2::CENTER_BOTTOM, step.title(), font.clone(), color);
         let area = egui::Rect::from_center_size(at, vec2(each, HEIGHT));
-        let response = ui.interact(area, ui.id().with(("step", i)), Sense::hover());
+        let response = ui.interact(area, ui.scope_id().with(("step", i)), Sense::hover());
         let label = format!("{} {words}", step.title());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &label));
         response.on_hover_text(label);

@@ -70,7 +70,13 @@ impl Attempt {
             Ok(order) => order,
             Err(why) => return Ok(Proposed { plan: Err(why), seen: vec![], chosen: None }),
         };
-        let mut watcher = Watcher::new(self.progress.clone(), None, context, self.ropes.reins.clone());
+        let mut watcher = Watcher::new(
+            self.progress.clone(),
+            None,
+            context,
+            self.ropes.reins.clone(),
+            grasper.knowledge().clone(),
+        );
         let (plan, record) = grasper.propose(&mut body, &order, &mut watcher);
         let plan = match (plan, body.commanded()) {
             (Some(plan), Ok(from)) => Ok(Arc::new(self.shown(&grasper, &from, &plan, &record))),
@@ -90,7 +96,13 @@ impl Attempt {
         let mut body = self.body(context);
         let ropes = &self.ropes;
         let kept = Some(keeping.clone());
-        let mut watcher = Watcher::new(self.progress.clone(), kept, context, ropes.reins.clone());
+        let mut watcher = Watcher::new(
+            self.progress.clone(),
+            kept,
+            context,
+            ropes.reins.clone(),
+            grasper.knowledge().clone(),
+        );
         let mut record = match self.order(&mut grasper, &mut body) {
             Ok(order) => {
                 self.progress.change(|run| run.object.clone_from(&order.object));

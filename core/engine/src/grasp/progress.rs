@@ -2,10 +2,12 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use nalgebra::Point3;
 use plumbline_grasp::plan::GraspPlan;
 use plumbline_grasp::see::Seen;
-use plumbline_grasp::{Failure, Method, Outcome, Record, Sight, Step, Watch};
-use plumbline_model::JobContext;
+use plumbline_grasp::{Failure, Knowledge, Method, Outcome, Record, Sight, Step, Watch};
+use plumbline_model::robot::Posture;
+use plumbline_model::{Eye, JobContext};
 
 use super::keeping::{Keeping, KeepingError};
 use super::view::{GraspIteration, GraspRun, LampState};
@@ -65,7 +67,10 @@ pub struct Watcher<'a> {
     keeping: Option<Keeping>,
     context: &'a dyn JobContext,
     reins: Reins,
+    knowledge: Knowledge,
     looks: usize,
+    /// Where the joints were at the last look.
+    looked_from: Option<Posture>,
     /// The plan that was shown last.
     pub plan: Option<GraspPlan>,
     /// Why it could not be kept, so that it was ended.
@@ -79,8 +84,23 @@ impl<'a> Watcher<'a> {
         keeping: Option<Keeping>,
         context: &'a dyn JobContext,
         reins: Reins,
+        knowledge: Knowledge,
     ) -> Self {
-        Self { progress, keeping, context, reins, looks: 0, plan: None, problem: None }
+        let (plan, problem, looked_from) = (None, None, None);
+        Self { progress, keeping, context, reins, knowledge, looks: 0, looked_from, plan, problem }
+    }
+
+    /// Where a point (robot frame, m) is in both eyes at the last look, raw px.
+    fn in_eyes(&self, [x_m, y_m, z_m]: [f64; 3]) -> [Option<[f64; 2]>; 2] {
+        let Some(posture) = &self.looked_from else { return [None; 2] };
+        let cameras = &self.knowledge.calibration.cameras;
+        let left_from_robot = self.knowledge.robot_from_left(posture).isometry.inverse();
+        let in_left = left_from_robot * Point3::new(x_m, y_m, z_m);
+        let in_right = cameras.right_from_left.isometry * in_left;
+        let pixel = |eye: Eye, point: Point3<f64>| {
+            cameras.camera(eye).model.project(&point.coords).ok().map(|pixel| [pixel.u_px, pixel.v_px])
+        };
+        [pixel(Eye::Left, in_left), pixel(Eye::Right, in_right)]
     }
 
     /// Keeps something; what cannot be kept ends the attempt.
@@ -120,6 +140,7 @@ impl Watch for Watcher<'_> {
             _ => "before".to_owned(),
         };
         self.keep(|keeping| keeping.images(&name, sight));
+        self.looked_from = Some(sight.posture.clone());
         if !seen.is_empty() || step != Step::Align {
             self.progress.change(|run| run.seen = seen.to_vec());
         }
@@ -127,11 +148,17 @@ impl Watch for Watcher<'_> {
     }
 
     fn planned(&mut self, plan: &GraspPlan) {
+        let wanted_px = self.in_eyes(plan.standing.palm(plan.heading_rad).coords.coords.into());
+        self.progress.change(|run| run.wanted_px = wanted_px);
         self.plan = Some(plan.clone());
     }
 
     fn aligned(&mut self, iteration: &GraspIteration) {
-        self.progress.change(|run| run.iterations.push(iteration.clone()));
+        let hand_px = iteration.hand_m.map_or([None; 2], |hand_m| self.in_eyes(hand_m));
+        self.progress.change(|run| {
+            run.hand_px = hand_px;
+            run.iterations.push(iteration.clone());
+        });
         self.context.report(0.5, "align");
     }
 

@@ -78,7 +78,7 @@ impl RestsOn {
         opened.map_err(JobError::told)
     }
 
-    /// What finds the hand; without it the hand goes by the model alone, which the record says.
+    /// What finds the hand; without it the hand goes by the model alone.
     fn finder(&self, arm: &str) -> Option<Box<dyn HandFinder>> {
         let tip = &self.rig.arm(arm)?.tips.first()?.link;
         match RenderedHand::of_rig(&self.rig, tip) {

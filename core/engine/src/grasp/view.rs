@@ -174,6 +174,10 @@ pub struct GraspRun {
     pub seen: Vec<SeenThing>,
     /// The thing that was chosen, by its place in `seen`.
     pub chosen: Option<usize>,
+    /// Where the palm was found at the last look, in the left and in the right eye, raw px.
+    pub hand_px: [Option<[f64; 2]>; 2],
+    /// Where it belongs when it closes, as `hand_px`.
+    pub wanted_px: [Option<[f64; 2]>; 2],
     /// What became of it; `None` while it goes on.
     pub outcome: Option<GraspOutcome>,
     /// What the operator said of it.

@@ -144,6 +144,11 @@ impl Grasper {
         &self.knowledge.rig
     }
 
+    /// What it rests on.
+    pub fn knowledge(&self) -> &Knowledge {
+        &self.knowledge
+    }
+
     /// What plans for a method.
     pub fn planner(&self, method: Method) -> &GraspPlanner {
         if method.knows_effects() { &self.known } else { &self.described }

@@ -30,6 +30,8 @@ impl Bench {
         };
         let bench = Self { engine: Engine::start(settings, Arc::new(|| {})), folder };
         bench.until("the twin is connected", |view| view.robot.measured.is_some() && view.twin.running);
+        // A busy machine starts it so slowly that STOP may have been pressed.
+        bench.send(RobotCommand::ReleaseStop);
         bench.send(RobotCommand::Torque { joints: vec![], on: true });
         for other in Toy::ALL.into_iter().filter(|other| *other != toy) {
             bench.send(TwinCommand::RemoveToy { toy: other.name().to_owned() });
