@@ -140,11 +140,6 @@ pub fn ms(seconds: f64) -> String {
     Quantity::Time.text(seconds)
 }
 
-/// Degrees Celsius: `41.2 °C`.
-pub fn celsius(temperature_c: f64) -> String {
-    Quantity::Temperature.text(temperature_c)
-}
-
 /// Hertz: `29.9 Hz`.
 pub fn hertz(rate_hz: f64) -> String {
     Quantity::Rate.text(rate_hz)
@@ -266,7 +261,6 @@ mod tests {
         assert_eq!(joint_degrees(f64::NAN), "—");
         assert_eq!(ms(1.0 / 30.0), "33.3 ms");
         assert_eq!(px(0.0961), "0.0961 px");
-        assert_eq!(celsius(41.0), "41.0 °C");
         assert_eq!(meters(0.45), "0.450 m");
         assert_eq!(hertz(29.97), "30.0 Hz");
         assert_eq!(Quantity::LengthPerPixel.text(0.0021), "2.10 mm/px");

@@ -132,7 +132,8 @@ impl<'a> JogPad<'a> {
         self
     }
 
-    /// Draws it. The directions are found by their words, the enable button as "Hold to move".
+    /// Draws it. The directions are found by their words, the enable button as "Hold to move", or as why
+    /// nothing can be moved.
     pub fn show(self, ui: &mut Ui, speed: &mut JogSpeed) -> JogPadResponse {
         let start = ui.cursor().min;
         ui.label(theme::strong(ui, format!("Moves the {}", self.what)));
@@ -152,7 +153,8 @@ impl<'a> JogPad<'a> {
         let buttons = DIRECTIONS.each_ref().map(|direction| interact(ui, rect, base, direction, usable));
         let enable_rect = Rect::from_min_max(pos2(rect.left(), rect.bottom() - ENABLE_HEIGHT), rect.max);
         let enable = ui.interact(enable_rect, base.with("enable"), sense(usable));
-        enable.widget_info(|| WidgetInfo::labeled(egui::Role::Button, usable, "Hold to move"));
+        let enable_label = self.why_not.unwrap_or("Hold to move");
+        enable.widget_info(|| WidgetInfo::labeled(egui::Role::Button, usable, enable_label));
 
         let focused = buttons.iter().chain([&enable]).any(Response::has_focus);
         let active = focused || ui.rect_contains_pointer(whole);

@@ -21,23 +21,12 @@ pub struct ProgressLine<'a> {
 struct JobProgress {
     fraction: f64,
     left: Option<Duration>,
-    pause: Option<Paused>,
     cancelling: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Paused {
-    No,
-    Yes,
 }
 
 /// What the operator asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProgressAction {
-    /// Halt for now.
-    Pause,
-    /// Go on.
-    Resume,
     /// Give up.
     Cancel,
     /// Show the log.
@@ -57,7 +46,7 @@ impl<'a> ProgressLine<'a> {
 
     /// A job: what it does, and how far it is, 0..=1.
     pub fn job(sentence: &'a str, fraction: f64) -> Self {
-        let job = JobProgress { fraction, left: None, pause: None, cancelling: false };
+        let job = JobProgress { fraction, left: None, cancelling: false };
         Self { sentence, role: Role::Ink, job: Some(job) }
     }
 
@@ -65,14 +54,6 @@ impl<'a> ProgressLine<'a> {
     pub fn time_left(mut self, left: Option<Duration>) -> Self {
         if let Some(job) = &mut self.job {
             job.left = left;
-        }
-        self
-    }
-
-    /// The job can be paused, and whether it is.
-    pub fn pausable(mut self, paused: bool) -> Self {
-        if let Some(job) = &mut self.job {
-            job.pause = Some(if paused { Paused::Yes } else { Paused::No });
         }
         self
     }
@@ -105,30 +86,16 @@ impl<'a> ProgressLine<'a> {
         action
     }
 
-    /// From right to left: cancel, pause, time left, bar.
+    /// From right to left: cancel, time left, bar.
     fn controls(&self, ui: &mut Ui, job: JobProgress) -> Option<ProgressAction> {
         let mut action = None;
         let cancel = if job.cancelling { "Cancelling…" } else { "Cancel" };
         if ui.add_enabled(!job.cancelling, egui::Button::new(cancel)).clicked() {
             action = Some(ProgressAction::Cancel);
         }
-        if let Some(paused) = job.pause {
-            let (text, wanted) = match paused {
-                Paused::No => ("Pause", ProgressAction::Pause),
-                Paused::Yes => ("Resume", ProgressAction::Resume),
-            };
-            if ui.button(text).clicked() {
-                action = Some(wanted);
-            }
-        }
         ui.add_space(space::S);
-        let left = match (job.pause, job.left) {
-            (Some(Paused::Yes), _) => "paused".to_owned(),
-            (_, Some(left)) => format::time_left(left),
-            (_, None) => String::new(),
-        };
-        if !left.is_empty() {
-            ui.label(RichText::new(left).color(theme::tokens(ui).text_weak));
+        if let Some(left) = job.left {
+            ui.label(RichText::new(format::time_left(left)).color(theme::tokens(ui).text_weak));
         }
         ui.label(format::percent(job.fraction));
         progress_bar(ui, self.sentence, job.fraction, BAR);

@@ -9,7 +9,7 @@ use egui_kittest::{Harness, kittest::NodeT, kittest::Queryable};
 use nalgebra::{Point3, Translation3, Vector3};
 use plumbline_widgets::joint_row::{Freshness, JointRow, JointState, ReducedRange};
 use plumbline_widgets::scene3d::{PickId, Scene, Scene3d, SceneCamera, Shape, Solid, Tint, ViewPreset};
-use plumbline_widgets::{JogIntent, JogPad, JogSpeed, PoseCard, PoseIntent, PoseList, theme};
+use plumbline_widgets::{JogIntent, JogPad, JogSpeed, theme};
 
 fn harness<State>(
     size: egui::Vec2,
@@ -339,39 +339,6 @@ fn the_enable_key_of_a_gamepad_counts() {
     hold(&mut harness, "Turn right");
     let intent = harness.state().intent.expect("a turn");
     assert!(intent.yaw_rate_rad_s < 0.0 && intent.velocity_m_s == Vector3::zeros());
-}
-
-// -------------------------------------------------------------------- poses
-
-#[test]
-fn poses_give_intents_and_refuse_what_cannot_be() {
-    type State = (Option<PoseIntent>, String);
-    let mut harness = harness(vec2(640.0, 400.0), State::default(), |ui, (last, name): &mut State| {
-        let pose = |name| PoseCard { name, description: "", why_not: None, previewed: false, reached: false };
-        let poses =
-            [pose("home"), PoseCard { why_not: Some("inside the table"), previewed: true, ..pose("drop") }];
-        *last = PoseList::new(&poses).show(ui, name).or(last.take());
-    });
-    let mut press = |label: &str| {
-        harness.get_by_label(label).click();
-        harness.run_steps(2);
-        harness.state_mut().0.take()
-    };
-    assert_eq!(press("Preview home"), Some(PoseIntent::Preview(0)));
-    assert_eq!(press("Move to home"), Some(PoseIntent::MoveThere(0)));
-    assert_eq!(press("Hide preview drop"), Some(PoseIntent::HidePreview(1)));
-    assert_eq!(press("Move to drop"), None);
-    assert_eq!(press("Save present as drop"), Some(PoseIntent::SavePresent(1)));
-    assert_eq!(press("Save present pose"), None, "without a name");
-    harness.state_mut().1 = "home".to_owned();
-    harness.run_steps(2);
-    assert!(harness.query_by_label_contains("There is a pose “home” already").is_some());
-    harness.state_mut().1 = " above ".to_owned();
-    harness.run_steps(2);
-    harness.get_by_label("Save present pose").click();
-    harness.run_steps(2);
-    assert_eq!(harness.state().0, Some(PoseIntent::SaveAs("above".to_owned())));
-    assert_eq!(harness.state().1, "");
 }
 
 // -------------------------------------------------------------------- scene

@@ -3,6 +3,7 @@
 mod bench;
 mod bench_window;
 mod calibrate;
+mod commission;
 mod common;
 mod correct;
 mod detect;
@@ -11,6 +12,7 @@ mod detector_set;
 mod disparity;
 mod doctor;
 mod gap;
+mod grasp;
 mod ik;
 mod locate;
 mod output;
@@ -60,12 +62,18 @@ enum Verb {
     Predict(WithJson<predict::Predict>),
     /// Finds where model and measurement disagree, names what is missing, shows the gap shrink.
     Gap(WithJson<gap::Gap>),
+    /// Commissions a twin without a person: eyes, mount, screen, touches, effects; a judge measures it.
+    Commission(WithJson<commission::Commission>),
     /// Finds things on images with a detector, an ONNX file.
     Detect(WithJson<detect::Detect>),
     /// Judges detectors on a labeled set: average precision by the rule of COCO, times.
     DetectEval(WithJson<detect_eval::DetectEval>),
     /// Draws labeled images of the twin with everything randomised, to train a detector on.
     DetectorSet(WithJson<detector_set::DetectorSet>),
+    /// Grasps once on the twin.
+    Grasp(WithJson<grasp::Grasp>),
+    /// Runs the grasping experiment on the twin: positions, attempts, methods; in shards if wanted.
+    GraspTrials(WithJson<grasp::GraspTrials>),
     /// Computes the disparity of a pair.
     Disparity(WithJson<disparity::Disparity>),
     /// Says what works on this machine: libraries, graphics, cameras, serial ports, folders.
@@ -122,9 +130,12 @@ pub fn run() -> ExitCode {
                 Verb::Correct(verb) => verb.run(correct::run),
                 Verb::Predict(verb) => verb.run(predict::run),
                 Verb::Gap(verb) => verb.run(gap::run),
+                Verb::Commission(verb) => verb.run(commission::run),
                 Verb::Detect(verb) => verb.run(detect::run),
                 Verb::DetectEval(verb) => verb.run(detect_eval::run),
                 Verb::DetectorSet(verb) => verb.run(detector_set::run),
+                Verb::Grasp(verb) => verb.run(grasp::grasp),
+                Verb::GraspTrials(verb) => verb.run(grasp::trials),
                 Verb::Disparity(verb) => verb.run(disparity::run),
                 Verb::Doctor(verb) => verb.run(doctor::run),
                 Verb::Sample(verb) => verb.run(sample::run),

@@ -24,8 +24,9 @@ pub fn probe_readout(ui: &mut Ui, probe: Option<&ProbeView>) {
             big_figure(ui, "from the left eye", &format::mm_with(range_m, reading.sigma_m), Role::Ink);
             ui.add_space(space::S);
             let robot = reading.point_in_robot.coords;
-            let hint = "From the head's drawing: the mount of the eyes has not been calibrated";
-            ui.label(theme::small(ui, "Robot frame, nominal")).on_hover_text(hint);
+            let hint =
+                "The robot with what was calibrated, and with the effects that were added to its model";
+            ui.label(theme::small(ui, format!("Robot frame, robot {}", reading.model))).on_hover_text(hint);
             coordinates(ui, "robot", [robot.x, robot.y, robot.z]);
             let left = reading.point_in_left.coords;
             ui.add_space(space::XS);
@@ -54,6 +55,6 @@ fn image_rows(reading: &ProbeReading) -> Vec<KeyValue> {
         KeyValue::text("Right", at(reading.right_raw.u_px, reading.right_raw.v_px)).unit("px"),
         KeyValue::optional("Disparity", Quantity::Pixels, reading.disparity_px),
         KeyValue::quantity("Uncertainty", Quantity::Length, reading.sigma_m)
-            .help("One standard deviation along the worst direction, from the match and the calibration"),
+            .help("One standard deviation along the worst direction, from the match, the calibration and the effects of the model"),
     ]
 }

@@ -63,4 +63,9 @@ fn data_lamp(view: &View, ui: &mut Ui) {
         let value = format!("{lost} lost");
         Lamp::new("Journal", &value, Health::Warning).reason(Some(&reason)).show(ui);
     }
+    if view.lost_commands > 0 {
+        let value = format!("{} lost", view.lost_commands);
+        let reason = "So many things were asked for at once that some were not taken, and are not done. The log names them; ask for them again.";
+        Lamp::new("Requests", &value, Health::Failed).reason(Some(reason)).show(ui);
+    }
 }

@@ -3,6 +3,7 @@
 //! Once per frame it takes the engine's newest view, draws it, and hands over what the operator
 //! asked for. It computes nothing, opens no file and waits for nothing.
 
+mod answers;
 mod apply;
 mod arrangement;
 mod ask;
@@ -11,6 +12,7 @@ mod connect;
 mod dialogs;
 mod drop;
 mod faults;
+mod follow;
 mod frame;
 mod frame_time;
 mod frame_times_overlay;

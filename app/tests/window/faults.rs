@@ -138,12 +138,13 @@ fn what_the_journal_lacks_and_where_data_go_is_said() {
         journal_lost: 12,
         ..KeptView::default()
     };
-    let fake = Fake::over(View { kept: Arc::new(kept), ..everything() });
+    let fake = Fake::over(View { kept: Arc::new(kept), lost_commands: 3, ..everything() });
     let window = fake.window(on(Screen::Live));
     assert!(shows(&window, "Journal 12 lost") && shows(&window, "Data at risk"));
+    assert!(shows(&window, "Requests 3 lost"));
     let fake = Fake::over(everything());
     let window = fake.window(on(Screen::Live));
-    for words in ["Journal", "Data at risk", "Program"] {
+    for words in ["Journal", "Data at risk", "Requests", "Program"] {
         assert!(!says(&window, words), "while all is well nothing is said: {words}");
     }
 }

@@ -86,6 +86,13 @@ fn named_effects_are_sized_and_added() {
 }
 
 #[test]
+fn what_an_effect_does_to_image_points_is_in_pixels() {
+    let (_, mut window) = window_of(with(found(sample::pixels())));
+    click(&mut window, "Name and add");
+    assert!(says(&window, "1.90 px") && !says(&window, "1900"));
+}
+
+#[test]
 fn an_effect_can_be_left_out() {
     let (fake, mut window) = window_of(with(found(sample::named())));
     click(&mut window, "Name and add");

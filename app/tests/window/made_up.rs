@@ -61,7 +61,7 @@ pub fn connected() -> RobotView {
         measured: Some(measured.clone()),
         commanded: Some(measured),
         tip,
-        tip_place: Some(TipPlace { point: Point::new(at.x, at.y, at.z), yaw_rad: 0.2 }),
+        tip_place: Some(TipPlace { point: Point::new(at.x, at.y, at.z), yaw_rad: 0.2, sigma_m: 0.0 }),
         trail: trail.collect(),
         poses: poses.chain([own]).collect(),
         bus: BusView { cycles_per_s: Some(62.4), cycles: 12_345, ..BusView::default() },
@@ -113,6 +113,8 @@ pub fn preview(path: Result<PathCheck, String>) -> Preview {
         path,
         duration: Duration::from_millis(1400),
         largest_turn: Some(("Right elbow".to_owned(), 0.61)),
+        model: "as described".into(),
+        tip_sigma_m: None,
     }
 }
 

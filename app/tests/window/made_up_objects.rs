@@ -43,6 +43,7 @@ pub fn tomato() -> ObjectView {
         covariance_m2: Matrix3::from_diagonal(&nalgebra::Vector3::from(sigma_m.map(|s: f64| s * s))),
         range_m: 0.452,
         range_sigma_m: 0.0043,
+        model: "as described".into(),
     };
     ObjectView {
         class: ClassIndex(7),

@@ -74,6 +74,7 @@ pub fn planned(options: PlanOptions) -> TouchView {
         reachable,
         refusals: refusals.into_iter().filter(|(_, count)| *count > 0).collect(),
         duration: Duration::from_secs(7 * reachable as u64),
+        model: "".into(),
         score: Some(score()),
         postures: vec![Some(posture); touches.len()].into(),
     };

@@ -10,7 +10,7 @@ use plumbline_engine::view::{BusView, Connection, MotionState, PortView, RobotVi
 use plumbline_engine::{Command, Destination, RobotCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
-use crate::made_up::{connected, everything, free_path, joint, preview, with_robot};
+use crate::made_up::{connected, everything, free_path, joint, preview, rig, with_robot};
 
 fn on_robot() -> WindowSettings {
     WindowSettings { screen: Screen::Robot, ..WindowSettings::default() }
@@ -159,6 +159,30 @@ fn a_held_jog_key_is_renewed_and_released_at_once() {
     window.event(egui::Event::ModifiersChanged(Modifiers::NONE));
     window.run_steps(2);
     assert_eq!(robot_commands(&fake).last(), Some(&RobotCommand::EndJog));
+}
+
+#[test]
+fn an_arm_of_which_one_joint_is_not_known_cannot_be_jogged() {
+    let of_arm = |arm: usize| RobotView { unknown: [rig().arms[arm].joints[3]].into(), ..connected() };
+    let fake = Fake::over(with_robot(of_arm(0)));
+    let mut window = fake.window(on_robot());
+    let why = "it is not known where Right elbow is: check the cable and power of its servo";
+    for label in [why, "Forward"] {
+        assert!(window.get_by_label(label).accesskit_node().is_disabled(), "{label}");
+    }
+    assert!(!shows(&window, "Hold to move"));
+    hold(&mut window, "Forward", Modifiers::SHIFT);
+    assert_eq!(robot_commands(&fake), []);
+    // The other arm is no reason.
+    fake.show(with_robot(of_arm(1)));
+    window.run_steps(2);
+    let button = window.get_by_label("Hold to move");
+    assert!(!button.accesskit_node().is_disabled());
+    assert_eq!(robot_commands(&fake), [], "what was pressed before is pressed anew to move");
+    window.event(pointer(window.get_by_label("Forward").rect().center(), false, Modifiers::SHIFT));
+    window.run_steps(2);
+    hold(&mut window, "Forward", Modifiers::SHIFT);
+    assert!(matches!(robot_commands(&fake).first(), Some(RobotCommand::Jog(_))));
 }
 
 #[test]

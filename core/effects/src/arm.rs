@@ -191,6 +191,11 @@ impl Arm {
 
     /// Where the tip is when something deviates, robot frame, m.
     pub fn tip_m(&self, angles_rad: &[f64], deviation: &Deviation) -> Point3<f64> {
+        self.robot_from_tip(angles_rad, deviation).translation.vector.into()
+    }
+
+    /// The same with how the tip is turned.
+    pub fn robot_from_tip(&self, angles_rad: &[f64], deviation: &Deviation) -> Isometry3<f64> {
         let mut place = Isometry3::from_parts(
             Translation3::from(deviation.base_m),
             UnitQuaternion::from_scaled_axis(deviation.base_rad),
@@ -201,7 +206,9 @@ impl Arm {
             place.rotation *= UnitQuaternion::from_scaled_axis(deviation.skew_rad[i]);
             place.rotation *= UnitQuaternion::from_axis_angle(&part.axis, angle_rad + deviation.joint_rad[i]);
         }
-        place * self.last_from_tip * Point3::from(deviation.tip_m) + deviation.contact_m
+        place *= self.last_from_tip * Translation3::from(deviation.tip_m);
+        place.translation.vector += deviation.contact_m;
+        place
     }
 
     /// Moment of gravity about each joint's origin, robot frame, N m, with a point mass (kg) at

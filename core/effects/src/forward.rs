@@ -51,6 +51,16 @@ impl Measurements {
         scene.predict(&arm, &eyes, &assumed.placements[row.session])
     }
 
+    /// Place of the arm's tip at the angles of a row, with these effects; `None` without an arm.
+    pub(crate) fn robot_from_tip(&self, row: &Observation, effects: &[Present]) -> Option<Isometry3<f64>> {
+        let scene = Scene::of(self, row);
+        let (mut arm, mut eyes) = scene.begin();
+        for present in effects {
+            scene.add(&present.effect, &present.values, &mut arm, &mut eyes);
+        }
+        Some(scene.apparatus.arm.as_ref()?.robot_from_tip(row.angles_rad(), &arm))
+    }
+
     /// The prediction, and its change with the session's frame and with each candidate, around
     /// what is assumed.
     pub fn tangents(&self, row: &Observation, assumed: &Assumed, candidates: &[Effect]) -> Option<Tangents> {

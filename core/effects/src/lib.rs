@@ -8,6 +8,7 @@
 //! - [`measurements`]: rows of sessions as predictions need them.
 //! - [`forward`]: predicts a row with effects, and how it changes with each of them.
 //! - [`rig_model`]: a rig's model with the effects that were accepted: file, history, predictions.
+//! - [`robot_model`]: the robot as it is known now, for whatever looks, moves or grasps.
 //! - [`observability`]: scores a plan of touches by the effects it will be able to tell apart.
 
 pub mod arm;
@@ -21,10 +22,12 @@ mod laws_candidates;
 #[cfg(test)]
 mod laws_other_robots;
 pub mod library;
+mod looking;
 pub mod measurements;
 pub mod observability;
 mod observation;
 pub mod rig_model;
+pub mod robot_model;
 mod slopes;
 
 pub use arm::Part;
@@ -37,3 +40,4 @@ pub use observability::{
 };
 pub use observation::{Observation, What};
 pub use rig_model::{RigModel, RigModelError};
+pub use robot_model::{ModelArm, PlaceInRobot, RobotModel, SeenUnder};

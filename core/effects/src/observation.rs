@@ -133,6 +133,34 @@ pub struct Observation {
 }
 
 impl Observation {
+    /// A row that nobody measured, of which nothing is known.
+    pub(crate) fn imagined(what: What) -> Self {
+        Self {
+            session: 0,
+            row: 0,
+            what,
+            measured: vec![0.0; what.len()],
+            commanded_rad: None,
+            encoder_rad: None,
+            direction: vec![],
+            payload_kg: 0.0,
+            screen_height_m: 0.0,
+            t_secs: None,
+            move_secs: None,
+            hold_secs: None,
+            speed_rad_s: None,
+            torque_nm: None,
+            temperature_c: None,
+            neck_rad: vec![],
+            truth_m: None,
+            background_m: None,
+            object: None,
+            cell: 0,
+            set: None,
+            approach: None,
+        }
+    }
+
     /// The angles that predictions start from: encoder readings where all are there, else the
     /// commanded ones. Empty for what the eyes saw.
     pub fn angles_rad(&self) -> &[f64] {

@@ -13,13 +13,13 @@ pub mod grasp;
 pub mod labels;
 pub mod live;
 pub mod models;
-mod motion;
-mod mount;
+pub mod motion;
+pub mod mount;
 pub mod rig_models;
 pub mod robot;
 mod scores;
 mod source;
-mod touch;
+pub mod touch;
 mod twin;
 
 pub mod command;

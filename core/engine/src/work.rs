@@ -35,13 +35,6 @@ macro_rules! works {
                 }
             }
 
-            /// Whether it is over so soon that it needs no line when it is done.
-            pub fn is_quiet(&self) -> bool {
-                match self {
-                    $(Self::$workflow(work) => work.is_quiet(),)+
-                }
-            }
-
             /// Does it, on the thread of the caller.
             ///
             /// # Errors

@@ -158,7 +158,7 @@ pub struct NamedEffect {
     pub covariance: Vec<f64>,
     /// Root mean square of what it does to the rows, in units of the floor.
     pub size_sigmas: f64,
-    /// The same in meters on the table (px for eye points).
+    /// The same in meters on the table; in px where [`Shown::unit`] is [`ShownUnit::Pixel`].
     #[serde(alias = "size_mm")]
     pub size_m: f64,
     /// Every name that the data cannot tell from this one, as `id@site`, itself first.

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 use plumbline_correction::CorrectionModel;
-use plumbline_effects::RigModel;
+use plumbline_effects::RobotModel;
+use plumbline_effects::robot_model::{PlaceInRobot, SeenUnder};
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::{LeftCamera, Point, Pose, Robot, StereoCalibration};
 
@@ -14,14 +15,12 @@ const GLASS_OVER_TABLE_M: f64 = 0.002;
 /// What a grasp rests on.
 #[derive(Clone, Debug)]
 pub struct Knowledge {
-    /// The robot with what was calibrated: lenses, mount of the eyes, place of the screen.
-    pub rig: Arc<Rig>,
+    /// The robot as it is known: lenses, mount of the eyes, place of the screen, effects.
+    pub model: RobotModel,
     /// The robot as described, which the published methods know.
     pub described: Arc<Rig>,
     /// The calibration of the eyes.
     pub calibration: Arc<StereoCalibration>,
-    /// The effects that were accepted.
-    pub effects: Arc<RigModel>,
     /// Models learned from touches, where they were trained.
     pub corrections: Corrections,
 }
@@ -40,29 +39,33 @@ pub struct Corrections {
 impl Knowledge {
     /// Where the left eye is.
     pub fn robot_from_left(&self, posture: &Posture) -> Pose<Robot, LeftCamera> {
-        self.rig.robot_from_left(posture)
+        self.model.robot_from_left(posture)
     }
 
-    /// A place seen by the eyes and its covariance (m²), axes of the robot.
+    /// A place seen by the eyes, and how sure it is.
     pub fn place(
         &self,
         in_left: &Point<LeftCamera>,
         covariance_m2: &Matrix3<f64>,
         posture: &Posture,
-    ) -> (Point<Robot>, Matrix3<f64>) {
-        let robot_from_left = self.robot_from_left(posture);
-        let turn = robot_from_left.isometry.rotation.to_rotation_matrix();
-        (robot_from_left * *in_left, turn * covariance_m2 * turn.transpose())
+    ) -> Option<PlaceInRobot> {
+        self.model.place(in_left, covariance_m2, posture, &SeenUnder::default())
     }
 
     /// Height of what things stand on at a place: the glass where the touchscreen lies, the table
     /// beside it, in the plane in which the screen was found to lie, m.
     pub fn support_m(&self, x_m: f64, y_m: f64) -> f64 {
-        let screen = &self.rig.touchscreen;
-        let normal: Vector3<f64> = screen.normal().vector();
-        let origin = screen.origin.coords.coords;
-        let glass_m = origin.z - (normal.x * (x_m - origin.x) + normal.y * (y_m - origin.y)) / normal.z;
+        let screen = self.model.touchscreen();
+        let glass_m = self.glass_m(x_m, y_m);
         let on_glass = screen.contains(screen.pixel_at(Point::new(x_m, y_m, glass_m)));
         if on_glass { glass_m } else { glass_m - GLASS_OVER_TABLE_M }
+    }
+
+    /// Height of the glass at a place, or of its plane beside it, m.
+    pub fn glass_m(&self, x_m: f64, y_m: f64) -> f64 {
+        let screen = self.model.touchscreen();
+        let normal: Vector3<f64> = screen.normal().vector();
+        let origin = screen.origin.coords.coords;
+        origin.z - (normal.x * (x_m - origin.x) + normal.y * (y_m - origin.y)) / normal.z
     }
 }

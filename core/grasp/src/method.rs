@@ -68,8 +68,9 @@ pub struct NotTrained(pub Method);
 /// knows that part of the table.
 ///
 /// The corrections were learned for the fingertip on the glass and are used for the palm above it, as
-/// published. The pixel of a place is that of the screen as described, which is the hand-aligned
-/// placement of the published software.
+/// published: a model says where the robot as described must be sent so that its finger meets the glass at
+/// a pixel. Which pixel a place has, the place of the screen says, to which the published simulation was
+/// aligned by hand.
 ///
 /// # Errors
 /// When the model was not trained.
@@ -78,9 +79,9 @@ pub fn correction(
     knowledge: &Knowledge,
     place: &Point<Robot>,
 ) -> Result<(Vector3<f64>, bool), NotTrained> {
-    let screen = &knowledge.described.touchscreen;
+    let screen = knowledge.model.touchscreen();
     let [x_m, y_m] = [place.coords.x, place.coords.y];
-    let glass_m = screen.origin.coords.z;
+    let glass_m = knowledge.glass_m(x_m, y_m);
     let needs = |model: &Option<Arc<CorrectionModel>>| model.clone().ok_or(NotTrained(method));
     let height = |x_m: f64, y_m: f64| -> Result<f64, NotTrained> {
         let m1 = needs(&knowledge.corrections.m1)?;

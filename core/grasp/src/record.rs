@@ -155,6 +155,8 @@ pub struct Record {
     pub standing_m: Option<[f64; 2]>,
     /// Where the palm belongs when the hand closes, m.
     pub wanted_m: Option<[f64; 3]>,
+    /// So high the palm belongs over the middle of the object, m.
+    pub over_middle_m: Option<f64>,
     /// Azimuth of the fingers, rad.
     pub heading_rad: Option<f64>,
     /// Looks at the hand.
@@ -187,6 +189,7 @@ impl Record {
             chosen: None,
             standing_m: None,
             wanted_m: None,
+            over_middle_m: None,
             heading_rad: None,
             iterations: vec![],
             moments: vec![],

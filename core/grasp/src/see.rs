@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 use crate::body::Sight;
 use crate::knowledge::Knowledge;
 
+/// Where the effects of the eyes cannot be undone.
+const BEYOND: &str = "the model of the eyes knows no such place";
+
 /// A thing that was seen.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Seen {
@@ -88,11 +91,14 @@ impl Looker {
                 class: self.names.get(thing.class).unwrap_or_default().to_owned(),
                 confidence: thing.confidence,
                 boxes_px: Eye::BOTH.map(|eye| area(eye, thing.seen.index(eye))),
-                place: thing.place.map_err(|why| why.to_string()).map(|place| {
+                place: thing.place.map_err(|why| why.to_string()).and_then(|place| {
                     let middle = &place.middle;
-                    let (point, covariance_m2) =
-                        knowledge.place(&middle.point, &middle.covariance_m2, &sight.posture);
-                    SeenPlace { point_m: point.coords.coords.into(), covariance_m2 }
+                    let place = knowledge.place(&middle.point, &middle.covariance_m2, &sight.posture);
+                    let place = place.ok_or_else(|| BEYOND.to_owned())?;
+                    Ok(SeenPlace {
+                        point_m: place.point.coords.coords.into(),
+                        covariance_m2: place.covariance_m2,
+                    })
                 }),
             })
             .collect();

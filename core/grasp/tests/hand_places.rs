@@ -1,17 +1,31 @@
 //! The hand over the 22 places of the published grasps, found on twins: judged against what is
 //! really so.
+//!
+//! Measured over all places, three predictions each (truth plus 3 mm per axis, turned by 0.03 rad per
+//! axis), with a pair before, on both scenarios, on an empty table, with a toy under the hand, with
+//! others beside, and high before the room: 66 of 66 within 8 mm each; horizontal error median 1.3 to
+//! 1.7 mm, 95 % 3.7 to 4.8 mm (predicted: 3.5 and 7); 66 to 77 % of coordinates within one stated
+//! sigma, none beyond 3.0; 15 ms of a processor core, 34 at most low over the table, 62 high.
+//! From nominal kinematics (16 to 19 mm off on "lab", prior 20 mm): 22 of 22, horizontal median 1.7 to
+//! 2.0 mm, 95 % 3.0 to 3.8 mm; high before the room 20 of 22 and 8 mm. 22 ms, 50 at most low, 83 high.
+//! Without a pair before some are lost: 59 to 66 of 66, and worse beside toys.
+//!
+//! The published way (boxes of the shipped detector in both eyes, "lab"): low over the table 22 of 22
+//! within 20 mm, 17 within 8 mm by the middles of the boxes, 21 by their own pixels; high before the
+//! room 17 within 20 mm, 13 and 6 within 8 mm.
 #![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use plumbline_grasp::hand::{EyesAt, HandOptions, HandShape, Pair, Predicted, look_for_hand};
 use plumbline_model::robot::ik::{Options, Solver, Target};
 use plumbline_model::robot::{Posture, Rig};
-use plumbline_model::{Point, Pose, StereoCameras};
+use plumbline_model::{Detection, Point, Pose, StereoCalibration, StereoCameras};
 use plumbline_twin::truth::Truth;
 use plumbline_twin::{Lockstep, Scenario, Toy, eyes::RenderedPair};
+use plumbline_vision::detect::{DetectSettings, DetectorOptions, shipped_detector};
+use plumbline_vision::detect_places::{PlaceFinder, PlaceOptions};
 
 /// x and y of the published targets, m.
 const PLACES_M: [[f64; 2]; 22] = [
@@ -127,6 +141,12 @@ fn show(scenario: &str, toys: &[(Toy, [f64; 2])], heights_m: [f64; 2]) -> (Arc<R
     (rig, shown)
 }
 
+/// Time that this thread has had on a processor, s: others of a busy machine do not count.
+fn processor_s() -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    text.split(' ').next().and_then(|ns| ns.parse::<f64>().ok()).map_or(f64::NAN, |ns| ns * 1e-9)
+}
+
 /// What a series of looks comes to.
 #[derive(Default)]
 struct Score {
@@ -155,7 +175,7 @@ impl Score {
             self.errors_m.iter().sum::<Vector3<f64>>() / self.errors_m.len().max(1) as f64 * 1e3;
         let mut norms: Vec<f64> = self.errors_m.iter().map(nalgebra::Matrix::norm).collect();
         println!(
-            "{title}: located {located}/{} | horizontal median {:.2} p95 {:.2} mm | whole median {:.2} p95 {:.2} mm (predicted {:.2}) | bias {:.2} {:.2} {:.2} mm | within 1 sigma {:.0} %, 2 sigma {:.0} %, worst {worst:.1} | {:.1} ms median, {:.1} most",
+            "{title}: located {located}/{} | horizontal median {:.2} p95 {:.2} mm | whole median {:.2} p95 {:.2} mm (predicted {:.2}) | bias {:.2} {:.2} {:.2} mm | within 1 sigma {:.0} %, 2 sigma {:.0} %, worst {worst:.1} | {:.1} ms of a processor median, {:.1} most",
             self.looks,
             quantile(&mut self.horizontal_m, 0.5),
             quantile(&mut self.horizontal_m, 0.95),
@@ -173,6 +193,23 @@ impl Score {
         for failure in &self.failures {
             println!("    {failure}");
         }
+    }
+}
+
+impl Score {
+    /// What is promised where the prediction is good to 3 mm and there is a pair before.
+    fn check(&self) {
+        let located = self.errors_m.iter().filter(|error| error.norm() <= 0.008).count();
+        assert_eq!(located, self.looks, "{:?}", self.failures);
+        let mut horizontal_m = self.horizontal_m.clone();
+        horizontal_m.sort_by(f64::total_cmp);
+        let (median_m, p95_m) =
+            (horizontal_m[horizontal_m.len() / 2], horizontal_m[horizontal_m.len() * 95 / 100]);
+        assert!(median_m <= 0.002 && p95_m <= 0.0055, "median {median_m} m, 95 % {p95_m} m");
+        let within = self.sigmas.iter().filter(|sigma| sigma.abs() <= 1.0).count();
+        let share = within as f64 / self.sigmas.len() as f64;
+        assert!((0.6..0.85).contains(&share), "{share} within one sigma");
+        assert!(self.sigmas.iter().all(|sigma| sigma.abs() < 4.0), "a sigma of more than 4");
     }
 }
 
@@ -214,7 +251,7 @@ fn judge(rig: &Rig, shown: &[Shown], trial: &Trial, verbose: bool) -> Score {
             };
             let (before, now) = (pair("before"), pair("now"));
             let before = trial.with_before.then_some(Pair { left: &before.left, right: &before.right });
-            let started = Instant::now();
+            let started_s = processor_s();
             let found = look_for_hand(
                 before,
                 Pair { left: &now.left, right: &now.right },
@@ -223,7 +260,7 @@ fn judge(rig: &Rig, shown: &[Shown], trial: &Trial, verbose: bool) -> Score {
                 &predicted_hand,
                 &HandOptions::default(),
             );
-            score.times_s.push(started.elapsed().as_secs_f64());
+            score.times_s.push(processor_s() - started_s);
             score.looks += 1;
             score.prior_m.push((truth.translation.vector - predicted.translation.vector).norm());
             match found {
@@ -272,9 +309,10 @@ fn judge(rig: &Rig, shown: &[Shown], trial: &Trial, verbose: bool) -> Score {
 fn places() {
     let only = std::env::var("HAND_ONLY").unwrap_or_default();
     for scenario in ["perfect", "lab"] {
-        for (title, toys) in [
-            ("empty table", vec![]),
-            ("tomato under the hand", vec![(Toy::Tomato, [0.0, 0.0])]),
+        for (title, toys, heights_m) in [
+            ("empty table", vec![], [0.07, 0.07]),
+            ("high, the room behind", vec![], [0.18, 0.24]),
+            ("tomato under the hand", vec![(Toy::Tomato, [0.0, 0.0])], [0.06, 0.08]),
             (
                 "tomato under the hand, others beside",
                 vec![
@@ -283,12 +321,13 @@ fn places() {
                     (Toy::Banana, [0.10, -0.02]),
                     (Toy::Mushroom, [0.02, -0.10]),
                 ],
+                [0.06, 0.08],
             ),
         ] {
             if !format!("{scenario}, {title}").contains(&only) {
                 continue;
             }
-            let (rig, shown) = show(scenario, &toys, [0.07, 0.07]);
+            let (rig, shown) = show(scenario, &toys, heights_m);
             if std::env::var_os("HAND_PICTURES").is_some() {
                 for look in &shown {
                     let name = format!(
@@ -302,13 +341,91 @@ fn places() {
                 }
             }
             let ours = Trial { truth_and_m: Some(0.003), prior_m: 0.003, with_before: true, repeats: 3 };
-            judge(&rig, &shown, &ours, std::env::var_os("HAND_VERBOSE").is_some())
-                .print(&format!("{scenario}, {title}, 3 mm"));
+            let mut score = judge(&rig, &shown, &ours, std::env::var_os("HAND_VERBOSE").is_some());
+            score.print(&format!("{scenario}, {title}, 3 mm"));
+            score.check();
             let blind = Trial { with_before: false, ..ours };
             judge(&rig, &shown, &blind, false).print(&format!("{scenario}, {title}, 3 mm, no pair before"));
             let nominal = Trial { truth_and_m: None, prior_m: 0.02, with_before: true, repeats: 1 };
             judge(&rig, &shown, &nominal, std::env::var_os("HAND_VERBOSE").is_some())
                 .print(&format!("{scenario}, {title}, nominal kinematics"));
+        }
+    }
+}
+
+/// The published way at the same places: the box of a hand in both eyes, and stereo.
+///
+/// Two kinds of stereo: the middles of both boxes, triangulated; and the box's own pixels matched.
+/// Judged against the middle of the palm, which the boxes are drawn around.
+#[test]
+#[ignore = "needs the detector: cargo test --release -p plumbline-grasp --test hand_places -- --ignored --nocapture published"]
+fn published_way() {
+    let (Some(shipped), rig) = (shipped_detector(), Arc::new(Rig::built_in("nico").expect("valid"))) else {
+        println!("skipped: there is no detector here");
+        return;
+    };
+    let options = DetectorOptions { threads: Some(1), ..DetectorOptions::default() };
+    let mut detector = match shipped.open(&options) {
+        Ok(detector) => detector,
+        Err(why) => {
+            println!("skipped: {why}");
+            return;
+        }
+    };
+    let palm = rig.description.find_link("right_palm").expect("a palm");
+    let box_middle = rig.description.links()[palm.0].visuals[0].link_from_shape.translation.vector;
+    let names = detector.info().names.clone();
+    let is_hand = |class| names.get(class).is_some_and(|name| name.ends_with("Hand"));
+    for (title, heights_m) in [("7 cm", [0.07, 0.07]), ("18 and 24 cm", [0.18, 0.24])] {
+        let (_, shown) = show("lab", &[], heights_m);
+        let mut errors = [vec![], vec![]];
+        for look in &shown {
+            let eyes = look.true_eyes();
+            let palm_m =
+                look.truth.robot_from_link[palm.0].expect("placed") * nalgebra::Point3::from(box_middle);
+            let mut boxes = [&look.now.left, &look.now.right].map(|image| {
+                let mut found = vec![];
+                detector.detect(image, &DetectSettings::default(), &mut found).expect("an answer");
+                found.retain(|found: &Detection| is_hand(found.class));
+                // The most confident comes first.
+                found.truncate(1);
+                found
+            });
+            let calibration = StereoCalibration::bare(eyes.cameras);
+            let mut places = vec![];
+            // Both boxes are the hand, whichever it is called.
+            if let ([left], [right]) = (&boxes[0][..], &boxes[1][..]) {
+                let class = left.class;
+                let right = Detection { class, ..*right };
+                boxes[1] = vec![right];
+            }
+            let mut finder = PlaceFinder::new(Some(&calibration), PlaceOptions::for_classes(&names));
+            finder.find((&look.now.left, &boxes[0]), (&look.now.right, &boxes[1]), &mut places);
+            let matched =
+                places.first().and_then(|place| place.place.as_ref().ok()).map(|place| place.middle.point);
+            let middles = boxes[0].first().zip(boxes[1].first());
+            let triangulated = middles
+                .and_then(|(left, right)| eyes.cameras.triangulate(left.area.middle(), right.area.middle()));
+            let error = |point: Option<Point<_>>| {
+                point.map(|point| ((eyes.robot_from_left * point).coords - palm_m).norm())
+            };
+            for (errors, found) in errors.iter_mut().zip([error(triangulated), error(matched)]) {
+                errors.push(found.unwrap_or(f64::INFINITY));
+            }
+        }
+        for (way, mut errors) in ["middles of boxes", "own pixels"].into_iter().zip(errors) {
+            errors.sort_by(f64::total_cmp);
+            assert!(errors[errors.len() / 2] < 0.03, "{way}: not even half of the places");
+            let within = |limit_m: f64| errors.iter().filter(|error| **error <= limit_m).count();
+            println!(
+                "published, {way}, {title} over the table: within 8 mm {}, 20 mm {}, 50 mm {} of {}; no place {}; median {:.1} mm",
+                within(0.008),
+                within(0.02),
+                within(0.05),
+                errors.len(),
+                errors.iter().filter(|error| !error.is_finite()).count(),
+                errors[errors.len() / 2] * 1e3
+            );
         }
     }
 }

@@ -28,6 +28,9 @@ pub enum OfflineError {
     /// The twin cannot be built.
     #[error(transparent)]
     Twin(#[from] plumbline_twin::TwinError),
+    /// The experiment cannot be run.
+    #[error(transparent)]
+    Trials(#[from] crate::grasp::TrialsError),
     /// The robot has no such hand.
     #[error(transparent)]
     Arm(#[from] plumbline_grasp::NoArm),
@@ -181,6 +184,9 @@ pub enum OfflineError {
         /// Size of the right image.
         right: String,
     },
+    /// A twin is not commissioned.
+    #[error(transparent)]
+    Commission(#[from] super::CommissionError),
     /// The detector cannot be opened.
     #[error(transparent)]
     Detect(#[from] DetectError),

@@ -8,6 +8,7 @@
 mod bench;
 mod calibrate;
 mod check;
+mod commission;
 mod correct;
 mod detect;
 mod detect_eval;
@@ -31,13 +32,21 @@ mod train;
 pub use bench::{BenchReport, Figure, Peer, bench};
 pub use calibrate::{CalibrateArgs, CalibrateReport, LeftOutCorner, PairErrors, Rejected, calibrate_stereo};
 pub use check::{CheckArgs, CheckReport, check};
+pub use commission::{
+    CommissionArgs, CommissionError, CommissionReport, PlaceError, Step as CommissionStep, TouchError,
+    commission,
+};
 pub use correct::{CorrectArgs, CorrectReport, CorrectedPoint, correct};
 pub use detect::{DetectArgs, DetectReport, FoundBox, LeftOutImage, detect};
 pub use detect_eval::{ClassReport, DetectEvalArgs, DetectEvalReport, FailedModel, ModelReport, detect_eval};
 pub use detector_set::{ClassBoxes, DetectorSetArgs, DetectorSetReport, detector_set};
 pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};
 pub use error::OfflineError;
-pub use gap::{GapArgs, GapReport, gap};
+pub use gap::{EffectReport, GapArgs, GapReport, gap};
+pub use grasp::{
+    GraspArgs, GraspMethod, GraspReport, Judged, MethodSummary, PositionSummary, Spread, Summary, TrialsArgs,
+    TrialsError, grasp, grasp_trials, merge_trials,
+};
 pub use ik::{IkArgs, IkReport, IkSolution, ik};
 pub use locate::{LocateArgs, LocateReport, LocatedPoint, locate};
 pub use plumbline_twin::training_set::SetWorld;

@@ -198,6 +198,7 @@ pub fn pixels() -> Finding {
     finding.sentence = "The eyes sit 1.4° turned against the head.".to_owned();
     finding.effects.truncate(1);
     finding.effects[0].id = "camera-mount".to_owned();
+    finding.effects[0].size_m = 1.9;
     finding.effects[0].title = "Eyes: mounted elsewhere than in the model".to_owned();
     finding
 }

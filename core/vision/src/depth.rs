@@ -82,11 +82,6 @@ impl PointMap {
         self.index(x_px, y_px).map(|i| self.depths_m[i]).filter(|depth| *depth < UNKNOWN)
     }
 
-    /// All depths along the aimed axis row by row, meters, +infinity where unknown: for textures.
-    pub fn depths_m(&self) -> &[f32] {
-        &self.depths_m
-    }
-
     fn index(&self, x_px: u32, y_px: u32) -> Option<usize> {
         (x_px < self.width_px && y_px < self.height_px)
             .then(|| y_px as usize * self.width_px as usize + x_px as usize)

@@ -100,8 +100,6 @@ pub struct CanvasResponse {
     pub response: Response,
     /// A box was drawn, moved or resized.
     pub placed: Option<Placed>,
-    /// Where the pointer is on the image, edges as in a [`PixelBox`].
-    pub pointer_px: Option<[f32; 2]>,
 }
 
 impl CanvasState {
@@ -139,7 +137,7 @@ impl<'a> BoxCanvas<'a> {
         let pointer_px = response.hover_pos().map(|at| on_box_scale(transform.to_image(at)));
         let placed = self.hand(ui, &response, &transform, state);
         paint::paint(ui, rect, &self, &transform, state, pointer_px.filter(|_| response.hovered()));
-        CanvasResponse { response, placed, pointer_px }
+        CanvasResponse { response, placed }
     }
 
     /// A box that was drawn is chosen once it is there.

@@ -1,13 +1,12 @@
-//! Pages with what moves the robot: joints, jog pad, poses.
+//! Pages with what moves the robot: joints, jog pad.
 
 use std::time::Duration;
 
-use egui::{Ui, vec2};
+use egui::Ui;
 
 use super::{GalleryState, sample};
 use crate::jog_pad::{JogPad, JogSpeed};
 use crate::joint_row::{Freshness, JointHistory, JointRow, JointState, ReducedRange, joint_header};
-use crate::pose_list::{PoseCard, PoseIntent, PoseList};
 use crate::theme::{self, space};
 
 pub(super) const JOINTS: usize = 10;
@@ -141,41 +140,5 @@ pub(super) fn jog(ui: &mut Ui, state: &mut GalleryState) {
                 JogPad::new("left hand").why_not(Some(why_not)).show(ui, &mut JogSpeed::default());
             });
         });
-        ui.vertical(|ui| {
-            ui.set_max_width(520.0);
-            theme::heading(ui, "Poses");
-            ui.add_space(space::S);
-            poses(ui, state);
-            ui.add_space(space::L);
-            theme::group_heading(ui, "Empty library");
-            ui.push_id("empty", |ui| PoseList::new(&[]).show(ui, &mut String::new()));
-        });
     });
-}
-
-fn poses(ui: &mut Ui, state: &mut GalleryState) {
-    let pose =
-        |name, description| PoseCard { name, description, why_not: None, previewed: false, reached: false };
-    let poses = [
-        PoseCard { reached: true, ..pose("home", "Both arms beside the table, eyes 30° down") },
-        PoseCard {
-            previewed: true,
-            ..pose("above the screen", "Index finger 60 mm over the middle of the glass")
-        },
-        pose("show the palm", "For the camera: right palm towards the eyes"),
-        PoseCard {
-            why_not: Some("12 mm inside the table. Raise the table floor or save it again."),
-            ..pose("drop", "Over the box")
-        },
-    ];
-    let mut name = std::mem::take(&mut state.pose_name);
-    let shown = ui.allocate_ui(vec2(520.0, 300.0), |ui| PoseList::new(&poses).show(ui, &mut name)).inner;
-    state.pose_name = name;
-    if let Some(intent) = shown {
-        state.last = match intent {
-            PoseIntent::SaveAs(name) => format!("save as {name}"),
-            other => format!("{other:?}"),
-        };
-    }
-    ui.label(theme::small(ui, format!("last: {}", state.last)));
 }

@@ -95,8 +95,7 @@ fn lamps(ui: &mut Ui, state: &mut GalleryState) {
 fn bottom(ui: &mut Ui, state: &mut GalleryState) {
     ui.add_space(space::XS);
     let line = ProgressLine::job("Touch: 34 of 80. The arm settles above target 35.", 0.42)
-        .time_left(Some(Duration::from_secs(130)))
-        .pausable(false);
+        .time_left(Some(Duration::from_secs(130)));
     if let Some(action) = line.show(ui) {
         state.last = format!("{action:?}");
     }
@@ -141,7 +140,7 @@ pub(super) fn buttons(ui: &mut Ui, state: &mut GalleryState) {
         ProgressLine::idle("Show the board to both eyes; the next pair is taken by itself."),
         ProgressLine::warning("The right camera is lost. Check its cable; it is tried again every second."),
         ProgressLine::job("Solving, iteration 4", 0.31).time_left(Some(Duration::from_millis(2_400))),
-        ProgressLine::job("Touch: 34 of 80", 0.42).pausable(true),
+        ProgressLine::job("Touch: 34 of 80", 0.42),
         ProgressLine::job("Searching the gap", 0.9).cancelling(true),
     ];
     for (index, line) in lines.into_iter().enumerate() {

@@ -60,8 +60,6 @@ pub struct GalleryState {
     pub speed: JogSpeed,
     /// What is asked of the jog pad right now.
     pub jog: Option<JogIntent>,
-    /// Name of a new pose.
-    pub pose_name: String,
     /// Chosen point of the table, and the points.
     pub chosen_point: Option<usize>,
     /// Where the points of the table were dragged to, meters.
@@ -102,7 +100,7 @@ pub const PAGES: [Page; 22] = [
     Page { name: "Scene", draw: robot::scene },
     Page { name: "Scene states", draw: robot::scene_states },
     Page { name: "Joints", draw: control::joints },
-    Page { name: "Jog and poses", draw: control::jog },
+    Page { name: "Jog", draw: control::jog },
     Page { name: "Inspector", draw: tables::inspector },
     Page { name: "Buttons and progress", draw: controls::buttons },
     Page { name: "Notifications", draw: controls::notifications },

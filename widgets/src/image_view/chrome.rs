@@ -28,9 +28,7 @@ pub(super) fn paint(
         let at = corner.left_top() + vec2(0.0, below);
         chip(ui, rect, at, Align2::LEFT_TOP, sentence, Some(Role::Warning));
     }
-    if view.readout
-        && let Some(at_px) = hover_px
-    {
+    if let Some(at_px) = hover_px {
         let text = readout(view, transform, picture, at_px);
         chip(ui, rect, corner.left_bottom(), Align2::LEFT_BOTTOM, &text, None);
     }

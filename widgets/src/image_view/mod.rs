@@ -52,7 +52,6 @@ pub struct ImageView<'a> {
     value_text: Option<ValueText<'a>>,
     size: Option<Vec2>,
     caption: bool,
-    readout: bool,
 }
 
 /// What happened to a view.
@@ -82,7 +81,6 @@ impl<'a> ImageView<'a> {
             value_text: None,
             size: None,
             caption: true,
-            readout: true,
         }
     }
 
@@ -120,12 +118,6 @@ impl<'a> ImageView<'a> {
     /// Whether the label is drawn on the image. Default: yes.
     pub fn caption(mut self, shown: bool) -> Self {
         self.caption = shown;
-        self
-    }
-
-    /// Whether position and value under the pointer are drawn. Default: yes.
-    pub fn readout(mut self, shown: bool) -> Self {
-        self.readout = shown;
         self
     }
 

@@ -1,7 +1,7 @@
 //! From where the scene is looked at.
 
 use egui::{Pos2, Vec2, pos2};
-use nalgebra::{Isometry3, Point3, Vector3};
+use nalgebra::{Point3, Vector3};
 
 /// Nothing nearer than this is drawn, in meters.
 pub(super) const NEAR_M: f64 = 0.02;
@@ -83,19 +83,6 @@ impl SceneCamera {
             ViewPreset::Side => place([0.22, 0.0, 0.20], 90.0, 4.0, 1.7, 32.0),
             ViewPreset::Top => place([0.42, 0.0, 0.06], 0.0, 90.0, 2.5, 32.0),
             ViewPreset::Robot => place([0.40, 0.0, 0.06], 0.0, 48.0, 0.47, 80.0),
-        }
-    }
-
-    /// Where an eye is, looking where it looks, upright. The camera's frame has OpenCV axes.
-    pub fn at_eye(robot_from_camera: &Isometry3<f64>, look_at_distance_m: f64) -> Self {
-        let axis = robot_from_camera.rotation * Vector3::z();
-        let eye = Point3::from(robot_from_camera.translation.vector);
-        Self {
-            target_m: eye + axis * look_at_distance_m,
-            heading_rad: axis.y.atan2(axis.x),
-            pitch_rad: -axis.z.clamp(-1.0, 1.0).asin(),
-            distance_m: look_at_distance_m,
-            ..Self::preset(ViewPreset::Robot)
         }
     }
 
@@ -221,19 +208,6 @@ mod tests {
             let up = at(&SceneCamera::preset(preset), 0.3, 0.0, 0.2);
             assert!(preset == ViewPreset::Top || up.y < at(&SceneCamera::preset(preset), 0.3, 0.0, 0.1).y);
         }
-    }
-
-    #[test]
-    fn an_eye_has_its_place_and_axis_in_the_middle() {
-        let workspace = plumbline_model::Workspace::default();
-        let robot_from_left = workspace.robot_from_left.isometry;
-        let view = SceneCamera::at_eye(&robot_from_left, 0.5).view(SIZE);
-        assert!((view.eye_m.coords - robot_from_left.translation.vector).norm() < 1e-9);
-        let on_axis = robot_from_left * Point3::new(0.0, 0.0, 0.3);
-        let (place, _) = view.project(&on_axis).expect("in front");
-        assert!((place - view.center).length() < 1e-3);
-        let image_right = view.project(&(robot_from_left * Point3::new(0.1, 0.0, 0.3))).expect("in front").0;
-        assert!(image_right.x > place.x + 50.0 && (image_right.y - place.y).abs() < 1.0);
     }
 
     #[test]

@@ -70,11 +70,6 @@ impl TriangleMesh {
         Ok(Self { facets, bounding_radius_m: f64::from(radius) })
     }
 
-    /// How many triangles there are.
-    pub fn triangle_count(&self) -> usize {
-        self.facets.triangles.len()
-    }
-
     pub(super) fn bounding_radius_m(&self) -> f64 {
         self.bounding_radius_m
     }
@@ -327,7 +322,7 @@ mod tests {
     fn a_mesh_keeps_sharp_edges_and_refuses_what_is_wrong() {
         let vertices = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let mesh = TriangleMesh::new(&vertices, &[[0, 2, 1], [0, 1, 3], [0, 0, 1]]).expect("two triangles");
-        assert_eq!(mesh.triangle_count(), 2);
+        assert_eq!(mesh.facets().triangles.len(), 2);
         assert_eq!(mesh.facets().normals[0], Vector3::new(0.0, 0.0, -1.0));
         let unknown = TriangleMesh::new(&vertices, &[[0, 1, 9]]).expect_err("vertex 9");
         assert!(unknown.to_string().contains("vertex 9"), "{unknown}");

@@ -27,8 +27,6 @@ pub mod space {
     pub const M: f32 = 16.0;
     /// Between groups.
     pub const L: f32 = 24.0;
-    /// Around the content of an empty panel.
-    pub const XL: f32 = 40.0;
 }
 
 /// The three type sizes, in points.

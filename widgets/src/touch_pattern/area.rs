@@ -31,13 +31,13 @@ struct Drag {
     holds: Option<[Hold; 2]>,
 }
 
-/// The area while it is dragged, and whether the drag has ended.
+/// The area while it is dragged, and where it was let go.
 pub(super) fn drag(
     ui: &Ui,
     response: &Response,
     transform: PatternTransform,
     area: PatternArea,
-) -> Option<(PatternArea, bool)> {
+) -> Option<PatternArea> {
     let id: Id = response.id.with("drag");
     if let Some(at) = response.hover_pos() {
         cursor(ui, holds(transform, area, at));
@@ -53,9 +53,9 @@ pub(super) fn drag(
     let dragged = at.map(|at| begun.at(transform.to_px(at), transform.size_px));
     if response.drag_stopped() || !response.dragged() {
         ui.data_mut(|data| data.remove::<Drag>(id));
-        return dragged.filter(|_| response.drag_stopped()).map(|area| (area, true));
+        return dragged.filter(|_| response.drag_stopped());
     }
-    dragged.map(|area| (area, false))
+    dragged
 }
 
 impl Drag {

@@ -78,8 +78,6 @@ pub struct TouchPatternResponse {
     pub clicked: Option<usize>,
     /// The area as it is being dragged, whole pixels.
     pub area: Option<PatternArea>,
-    /// Whether the drag has ended.
-    pub area_done: bool,
 }
 
 /// More touches than this get no label of their own; they are still found by the pointer.
@@ -176,17 +174,11 @@ impl<'a> TouchPattern<'a> {
             self.area.filter(|_| self.editable).and_then(|area| area::drag(ui, &response, transform, area));
         let (hovered, clicked) = self.pointed_at(ui, transform, &response);
         if ui.is_rect_visible(whole) {
-            let shown = dragged.map(|(area, _)| area).or(self.area);
+            let shown = dragged.or(self.area);
             paint::pattern(ui, transform, &self, shown, hovered);
             paint::focus(ui, rect, &response);
         }
-        TouchPatternResponse {
-            response,
-            hovered,
-            clicked,
-            area: dragged.map(|(area, _)| area),
-            area_done: dragged.is_some_and(|(_, done)| done),
-        }
+        TouchPatternResponse { response, hovered, clicked, area: dragged }
     }
 
     /// The largest size with the screen's proportions that fits.

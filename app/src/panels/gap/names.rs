@@ -14,7 +14,7 @@ use plumbline_widgets::{format, parameter};
 use super::parts::{finding, line, state};
 use super::state::Sort;
 use crate::operator::GapAction;
-use crate::operator::snapshot::gap::{Candidate, Finding, NamedEffect, Verdict};
+use crate::operator::snapshot::gap::{Candidate, Finding, NamedEffect, Shown, Verdict};
 use crate::operator::words::gap as words;
 use crate::panels::parts::action_button;
 use crate::panels::{PanelContext, padded};
@@ -88,7 +88,7 @@ fn card(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding, i: usize) 
                 ui.label(text);
             }
         });
-        sizes(ui, effect);
+        sizes(ui, effect, &shown.finding.shown);
         let role = if shown.finding.verdict == Verdict::NotInLibrary { Role::Weak } else { Role::Predicted };
         if effect.class.len() > 1 {
             probability_bar(ui, &format!("{}, class", effect.title), effect.class_probability, role)
@@ -124,7 +124,7 @@ fn head(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding, i: usize) 
 }
 
 /// Parameters with their intervals, and what the effect does on the table.
-fn sizes(ui: &mut Ui, effect: &NamedEffect) {
+fn sizes(ui: &mut Ui, effect: &NamedEffect, shown: &Shown) {
     Grid::new(("size", &effect.id, &effect.site)).num_columns(3).spacing([space::M, 2.0]).show(ui, |ui| {
         for found in &effect.parameters {
             ui.label(theme::weak(ui, parameter::words(&found.name)));
@@ -143,7 +143,7 @@ fn sizes(ui: &mut Ui, effect: &NamedEffect) {
         }
         if effect.size_m > 0.0 {
             ui.label(theme::weak(ui, "does"));
-            ui.label(format::mm(effect.size_m));
+            ui.label(words::error(shown, effect.size_m));
             let sigmas = format::significant(effect.size_sigmas, 2);
             ui.label(theme::weak(ui, format!("rms, {sigmas} × the noise")));
             ui.end_row();

@@ -48,7 +48,7 @@ fn placed(ui: &mut Ui, object: &ObjectView, place: &ObjectPlaceView) {
     let label = format!("{}, from the left eye", object.name);
     big_figure(ui, &label, &format::mm_with(place.range_m, place.range_sigma_m), Role::Ink);
     ui.add_space(space::S);
-    ui.label(theme::small(ui, "Middle, robot frame"));
+    ui.label(theme::small(ui, format!("Middle, robot frame, robot {}", place.model)));
     let at = place.point_in_robot.coords;
     let rows: Vec<KeyValue> = ["x", "y", "z"]
         .into_iter()

@@ -340,6 +340,8 @@ mod tests {
             path: Err("test".to_owned()),
             duration: std::time::Duration::from_secs(1),
             largest_turn: None,
+            model: "as described".into(),
+            tip_sigma_m: None,
         };
         view.robot = Arc::new(RobotView { preview: Some(preview), ..(*view.robot).clone() });
         let scene = scene(&view, &RobotPanels::default(), None, true);

@@ -7,7 +7,7 @@ use plumbline_engine::{JogRates, RobotCommand};
 use plumbline_widgets::jog_pad::{JogPad, JogSpeed};
 use plumbline_widgets::theme;
 
-use super::parts::{cannot_move, refusal_line};
+use super::parts::{cannot_jog, refusal_line};
 use super::state::Asked;
 use crate::operator::words::robot::tip_title;
 use crate::operator::{GamepadState, STOP_BUTTONS};
@@ -29,11 +29,11 @@ fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         choose_tip(ui, &view.robot, &mut |link| cx.outbox.send(RobotCommand::ChooseTip { link }));
         gamepad(ui, cx.state.robot.gamepad.as_ref());
     });
-    let why = cannot_move(&view.robot);
+    let why = cannot_jog(&view.robot);
     let tip = tip_title(&view.robot).to_lowercase();
     let pad = cx.state.robot.gamepad.clone().filter(|pad| pad.enabled && why.is_none());
     let shown = JogPad::new(&tip)
-        .why_not(why)
+        .why_not(why.as_deref())
         .enabled_elsewhere(pad.is_some())
         .show(ui, &mut cx.state.robot.jog_speed);
     let by_hand = shown.intent.map(|intent| JogRates {

@@ -1,5 +1,6 @@
 //! What the panes of the robot share.
 
+use std::borrow::Cow;
 use std::time::Duration;
 
 use egui::Ui;
@@ -103,7 +104,7 @@ pub fn cannot_show(robot: &RobotView) -> Option<&'static str> {
 }
 
 /// Why nothing can be moved just now; `None` when it can.
-pub fn cannot_move(robot: &RobotView) -> Option<&'static str> {
+fn cannot_move(robot: &RobotView) -> Option<&'static str> {
     if !robot.connection.is_connected() {
         Some("no robot is connected")
     } else if robot.stopped {
@@ -111,4 +112,21 @@ pub fn cannot_move(robot: &RobotView) -> Option<&'static str> {
     } else {
         None
     }
+}
+
+/// Why the chosen tip cannot be jogged just now; `None` when it can. Where one joint of an arm is not
+/// known, the whole arm stays.
+pub fn cannot_jog(robot: &RobotView) -> Option<Cow<'static, str>> {
+    if let Some(why) = cannot_move(robot) {
+        return Some(why.into());
+    }
+    if robot.measured.is_none() {
+        return Some("the joints have not been read yet".into());
+    }
+    let rig = robot.rig.as_ref()?;
+    let arm = rig.arms.iter().find(|arm| arm.tips.iter().any(|tip| tip.link == robot.tip))?;
+    let mut joints = arm.joints.iter().chain(&arm.hand);
+    let unknown = joints.find(|joint| robot.unknown.contains(joint))?;
+    let title = rig.servo_of(*unknown).map_or("one of its joints", |servo| &servo.title);
+    Some(format!("it is not known where {title} is: check the cable and power of its servo").into())
 }

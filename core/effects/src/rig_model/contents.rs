@@ -1,7 +1,7 @@
 //! What a model holds, as it stands in its file.
 
 use jiff::Timestamp;
-use nalgebra::Isometry3;
+use nalgebra::{DMatrix, Isometry3};
 use plumbline_model::plausible;
 use plumbline_model::robot::{DescriptionError, Rig};
 use plumbline_model::session::Touchscreen;
@@ -268,6 +268,13 @@ impl ModelEffect {
             .then(|| Present { effect, values: self.values.clone() })
     }
 
+    /// Covariance of its values; `None` when it is not known.
+    pub(super) fn covariance_of_values(&self) -> Option<DMatrix<f64>> {
+        let count = self.values.len();
+        (count > 0 && self.covariance.len() == count * count)
+            .then(|| DMatrix::from_row_slice(count, count, &self.covariance))
+    }
+
     /// Whether it follows the tip and not the arm: another tip of the same hand does not have it.
     pub(super) fn is_of_the_tip(&self) -> bool {
         Kind::of_id(&self.id).is_some_and(Kind::is_of_tip)
@@ -276,7 +283,7 @@ impl ModelEffect {
 
 impl Contents {
     /// Whether every effect is one of the library and has a place in the rig; else why not.
-    pub(super) fn check(&self, rig: &Rig) -> Result<(), String> {
+    pub(crate) fn check(&self, rig: &Rig) -> Result<(), String> {
         for effect in &self.effects {
             let name = effect.name();
             if Kind::of_id(&effect.id).is_none() {

@@ -25,6 +25,7 @@ pub use contents::{
 pub use error::RigModelError;
 pub use export::{ExportError, Exported};
 pub use file::{FORMAT, is_rig_model};
+pub(crate) use predict::Measured;
 pub use predict::predict_session_with;
 pub use reach::{Conditions, DeviatedArm, Reached, SETTLED_M};
 

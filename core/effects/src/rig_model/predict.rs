@@ -1,25 +1,18 @@
 //! What a robot with the model's effects should have measured, row by row.
 
-use nalgebra::{Isometry3, Matrix3, Vector3};
+use nalgebra::{DMatrix, Isometry3};
 use plumbline_model::predict::{PredictError, SessionPrediction, predict_session};
 use plumbline_model::robot::Rig;
 use plumbline_model::session::{LocalizationTable, PoseTable, Screen, Session, TouchTable, Touchscreen};
-use plumbline_model::{Pixel, Point, Raw, Robot};
+use plumbline_model::{Pixel, Point};
 
 use super::RigModel;
 use crate::arm::Arm;
-use crate::eyes::{Eyes, EyesDeviation};
+use crate::eyes::Eyes;
 use crate::forward::Assumed;
-use crate::library::Present;
-use crate::library::Surface;
-use crate::measurements::{Measurements, Observation, What};
-
-/// Steps of Newton's method from a measurement to the place that it means.
-const STEPS: usize = 30;
-/// Where it has converged, in natural coordinates (rad; a micrometer at 1 m is a millionth).
-const CONVERGED_RAD: f64 = 1e-9;
-/// Step of its differences, rad.
-const DIFFERENCE_RAD: f64 = 1e-5;
+use crate::library::{Present, Surface};
+use crate::looking::Looking;
+use crate::measurements::{Measurements, What};
 
 /// Predicts every row of a session as [`predict_session`] does, with the effects of a model. Touches
 /// are projected onto `screen`, or onto the screen where the model has it for this session; poses are
@@ -105,10 +98,24 @@ impl RigModel {
     /// Effects that an arm which ends in `tip`, or eyes, have. Those of the other arm are left out, and
     /// those of another tip's own.
     pub fn present(&self, tip: Option<&str>, arm: Option<&Arm>, eyes: Option<&Eyes>) -> Vec<Present> {
+        self.measured(tip, arm, eyes).into_iter().map(|measured| measured.present).collect()
+    }
+
+    /// The same, with how well their values are known.
+    pub(crate) fn measured(
+        &self,
+        tip: Option<&str>,
+        arm: Option<&Arm>,
+        eyes: Option<&Eyes>,
+    ) -> Vec<Measured> {
         let here = |effect: &&super::ModelEffect| {
             !effect.is_of_the_tip() || effect.tip.as_deref().is_none_or(|own| Some(own) == tip)
         };
-        self.effects().iter().filter(here).filter_map(|effect| effect.on(arm, eyes)).collect()
+        let measured = |effect: &super::ModelEffect| {
+            let covariance = effect.covariance_of_values();
+            effect.on(arm, eyes).map(|present| Measured { present, covariance })
+        };
+        self.effects().iter().filter(here).filter_map(measured).collect()
     }
 
     /// Rows for a search for what comes in addition: predictions of these rows hold this model's
@@ -125,6 +132,14 @@ impl RigModel {
         let eyes = measurements.apparatuses.iter().find_map(|apparatus| apparatus.eyes.as_ref());
         self.present(tip, arm, eyes)
     }
+}
+
+/// An effect that is there, and how well its values are known.
+#[derive(Clone, Debug)]
+pub(crate) struct Measured {
+    pub present: Present,
+    /// Covariance of the values; `None` where nobody knows it.
+    pub covariance: Option<DMatrix<f64>>,
 }
 
 /// Those that are there without a touchscreen.
@@ -176,76 +191,4 @@ fn filled(session: &Session, nominal: &SessionPrediction) -> Session {
         filled.localizations = Some(LocalizationTable::from_rows(table.head_joints().to_vec(), &rows));
     }
     filled
-}
-
-/// Eyes with effects in the situation of a row.
-struct Looking<'a> {
-    eyes: &'a Eyes,
-    row: &'a Observation,
-    effects: &'a [Present],
-}
-
-impl Looking<'_> {
-    fn deviation(&self, situation: &crate::eyes::EyeSituation) -> EyesDeviation {
-        let mut deviation = EyesDeviation::none(self.eyes.neck.len());
-        for present in self.effects {
-            present.effect.deviate_eyes(situation, &present.values, &mut deviation);
-        }
-        deviation
-    }
-
-    fn robot_from_left(&self) -> Isometry3<f64> {
-        self.eyes.robot_from_left(&self.row.neck_rad, &EyesDeviation::none(self.eyes.neck.len()))
-    }
-
-    /// Where both eyes see a place, raw px.
-    fn pixels(&self, truth: Point<Robot>) -> Option<(Pixel<Raw>, Pixel<Raw>)> {
-        let situation = self.eyes.situation(self.row, truth.coords);
-        let seen = self.eyes.image_points(&situation, &self.deviation(&situation))?;
-        Some((Pixel::new(seen[0], seen[1]), Pixel::new(seen[2], seen[3])))
-    }
-
-    /// What stereo with the nominal eyes makes of a place, in their natural coordinates.
-    fn natural(&self, truth: Point<Robot>) -> Option<Vector3<f64>> {
-        let situation = self.eyes.situation(self.row, truth.coords);
-        let seen = self.eyes.estimate(self.row, &situation, &self.deviation(&situation))?;
-        Some(Vector3::new(seen[0], seen[1], seen[2]))
-    }
-
-    fn place(&self, natural: &Vector3<f64>) -> Option<Point<Robot>> {
-        Some(Point::from(self.robot_from_left() * self.eyes.place(natural.as_slice())?))
-    }
-
-    /// What stereo with the nominal eyes makes of a place.
-    fn estimate(&self, truth: Point<Robot>) -> Option<Point<Robot>> {
-        self.place(&self.natural(truth)?)
-    }
-
-    /// The other way: the place that stereo with the nominal eyes makes `inferred` of. Newton's method
-    /// in natural coordinates, where effects are nearly shifts. `None` when there is no such place.
-    fn place_of(&self, inferred: Point<Robot>) -> Option<Point<Robot>> {
-        let in_left = self.robot_from_left().inverse() * inferred.coords;
-        if in_left.z <= 0.0 {
-            return None;
-        }
-        let wanted = Vector3::from(self.eyes.natural(&in_left));
-        let off = |natural: &Vector3<f64>| Some(self.natural(self.place(natural)?)? - wanted);
-        let mut natural = wanted;
-        for _ in 0..STEPS {
-            let left = off(&natural)?;
-            if left.norm() < CONVERGED_RAD {
-                return self.place(&natural);
-            }
-            let mut slope = Matrix3::zeros();
-            for k in 0..3 {
-                let step = Vector3::ith(k, DIFFERENCE_RAD);
-                slope.set_column(
-                    k,
-                    &((off(&(natural + step))? - off(&(natural - step))?) / (2.0 * DIFFERENCE_RAD)),
-                );
-            }
-            natural -= slope.lu().solve(&left)?;
-        }
-        None
-    }
 }

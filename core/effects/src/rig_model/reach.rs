@@ -1,6 +1,7 @@
 //! Inverse kinematics with effects: what must be commanded so that the real tip gets to a target.
 
 use nalgebra::{Isometry3, Vector3};
+use plumbline_model::predict::Angles;
 use plumbline_model::robot::ik::{Answer, IkError, Options, Solver, Target};
 use plumbline_model::robot::{DescriptionError, Rig};
 use plumbline_model::session::{Screen, Touchscreen};
@@ -10,8 +11,7 @@ use super::RigModel;
 use super::predict::in_the_air;
 use crate::arm::Arm;
 use crate::forward::Assumed;
-use crate::library::Present;
-use crate::library::Surface;
+use crate::library::{Present, Surface};
 use crate::measurements::{Apparatus, Measurements, Observation, What};
 
 /// The tip counts as there within this, m.
@@ -137,38 +137,39 @@ impl DeviatedArm {
         conditions: &Conditions,
     ) -> Vector3<f64> {
         debug_assert_eq!(commanded_rad.len(), self.joints, "one angle per joint");
-        let row = Observation {
-            session: 0,
-            row: 0,
-            what,
-            measured: vec![0.0; what.len()],
-            commanded_rad: Some(commanded_rad.to_vec()),
-            encoder_rad: None,
-            direction: if conditions.direction.len() == self.joints {
-                conditions.direction.clone()
-            } else {
-                vec![0.0; self.joints]
-            },
-            payload_kg: conditions.payload_kg,
-            screen_height_m,
-            t_secs: conditions.t_secs,
-            move_secs: None,
-            hold_secs: None,
-            speed_rad_s: None,
-            torque_nm: None,
-            temperature_c: None,
-            neck_rad: vec![],
-            truth_m: None,
-            background_m: None,
-            object: None,
-            cell: 0,
-            set: None,
-            approach: None,
-        };
+        let angles_rad = Some(commanded_rad.to_vec());
+        let row = Observation { screen_height_m, commanded_rad: angles_rad, ..self.row(what, conditions) };
         let assumed = if what == What::Touch { &self.touching } else { &self.free };
         let at = self.measurements.predict(&row, assumed);
         let at = at.expect("an arm and a screen are there, which is all that touches and poses need");
         Vector3::new(at[0], at[1], at[2])
+    }
+
+    fn row(&self, what: What, conditions: &Conditions) -> Observation {
+        let known = conditions.direction.len() == self.joints;
+        Observation {
+            direction: if known { conditions.direction.clone() } else { vec![0.0; self.joints] },
+            payload_kg: conditions.payload_kg,
+            t_secs: conditions.t_secs,
+            ..Observation::imagined(what)
+        }
+    }
+
+    /// Place of the tip with these effects in place of its own; angles (rad) as commanded, or as the
+    /// encoders read them.
+    pub(crate) fn robot_from_tip(
+        &self,
+        angles: (Angles, &[f64]),
+        conditions: &Conditions,
+        effects: &[Present],
+    ) -> Isometry3<f64> {
+        let (angles, angles_rad) = angles;
+        let mut row = self.row(What::Pose, conditions);
+        match angles {
+            Angles::Commanded => row.commanded_rad = Some(angles_rad.to_vec()),
+            Angles::Encoder => row.encoder_rad = Some(angles_rad.to_vec()),
+        }
+        self.measurements.robot_from_tip(&row, effects).expect("there is an arm")
     }
 
     /// What must be commanded so that the tip gets to a target: nominal inverse kinematics of a point

@@ -4,14 +4,13 @@ use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 
 use plumbline_model::detection::{ClassIndex, ClassNames, Detection, PixelBox};
-use plumbline_model::frame::LeftCamera;
-use plumbline_model::{AimedPair, Eye, Pixel, Pose, Raw, Rectified, Robot, StereoCalibration, StereoFrame};
+use plumbline_model::{AimedPair, Eye, Pixel, Raw, Rectified, StereoCalibration, StereoFrame};
 use plumbline_vision::detect_places::{ObjectPlace, Place, PlaceFinder, PlaceOptions, RangeFrom, Seen};
 
 use super::view::{ObjectPlaceView, ObjectView, SeenBox};
 use crate::ground::jobs::panic_message;
 use crate::ground::text::sentence;
-use crate::live::{LiveSetup, fitting};
+use crate::live::{LiveSetup, NoPlace, fitting};
 
 /// Points along each edge of a box that are taken over to the rectified image: straight edges are
 /// bent by the lens.
@@ -102,13 +101,12 @@ impl Objects {
                 line_in_other: curve.as_slice().into(),
             }
         };
-        let robot_from_left = setup.map_or_else(Pose::identity, |setup| setup.robot_from_left);
         let mut view = |object: &ObjectPlace| {
             let mut of = |eye, boxes: &[Detection]| {
                 object.seen.index(eye).and_then(|i| boxes.get(i)).map(|found| seen_box(eye, found))
             };
             let (left, right) = (of(Eye::Left, left), of(Eye::Right, right));
-            object_view(object, names, left, right, &robot_from_left)
+            object_view(object, names, left, right, setup)
         };
         self.places.iter().map(&mut view).collect()
     }
@@ -119,13 +117,19 @@ fn object_view(
     names: &ClassNames,
     left: Option<SeenBox>,
     right: Option<SeenBox>,
-    robot_from_left: &Pose<Robot, LeftCamera>,
+    setup: Option<&Arc<LiveSetup>>,
 ) -> ObjectView {
     let (epipolar_px, alone_because) = match &object.seen {
         Seen::Both { epipolar_px, .. } => (Some(*epipolar_px), None),
         Seen::One { why, .. } => (None, Some(sentence(&why.to_string()))),
     };
     let place = object.place.as_ref();
+    let in_robot = match (place, setup) {
+        (Err(why), _) => Err(sentence(&why.to_string())),
+        (Ok(place), Some(setup)) => place_view(place, setup).map_err(|why| sentence(&why.to_string())),
+        // The reason takes the place of this where there is no setup.
+        (Ok(_), None) => Err(String::new()),
+    };
     ObjectView {
         class: object.class,
         name: class_name(names, object.class),
@@ -133,28 +137,27 @@ fn object_view(
         right,
         epipolar_px,
         alone_because,
-        place: place
-            .map(|place| place_view(place, robot_from_left))
-            .map_err(|why| sentence(&why.to_string())),
+        place: in_robot,
         voted: place.map(|place| place.votes.cells().collect()).unwrap_or_default(),
         leak: place.ok().and_then(leak),
         doubts: doubts(object, names),
     }
 }
 
-fn place_view(place: &Place, robot_from_left: &Pose<Robot, LeftCamera>) -> ObjectPlaceView {
-    let middle = &place.middle;
-    let turn = robot_from_left.isometry.rotation.to_rotation_matrix().into_inner();
-    let covariance_m2 = turn * middle.covariance_m2 * turn.transpose();
-    let along = middle.point.direction().map(|direction| direction.vector());
-    let range_variance_m2 = along.map_or(0.0, |along| (along.transpose() * middle.covariance_m2 * along).x);
-    ObjectPlaceView {
-        point_in_robot: *robot_from_left * middle.point,
-        sigma_m: [0, 1, 2].map(|i| covariance_m2[(i, i)].max(0.0).sqrt()),
-        covariance_m2,
-        range_m: middle.point.range_m(),
+/// Where the middle of an object is by the model in use.
+fn place_view(place: &Place, setup: &LiveSetup) -> Result<ObjectPlaceView, NoPlace> {
+    let found = setup.place(&place.middle.point, &place.middle.covariance_m2)?;
+    let from_eye = found.point.coords.coords - setup.robot_from_left().translation_m();
+    let along = from_eye.try_normalize(0.0).unwrap_or_default();
+    let range_variance_m2 = (along.transpose() * found.covariance_m2 * along).x;
+    Ok(ObjectPlaceView {
+        point_in_robot: found.point,
+        sigma_m: [0, 1, 2].map(|i| found.covariance_m2[(i, i)].max(0.0).sqrt()),
+        covariance_m2: found.covariance_m2,
+        range_m: from_eye.norm(),
         range_sigma_m: range_variance_m2.max(0.0).sqrt(),
-    }
+        model: setup.title.clone(),
+    })
 }
 
 /// What lies behind and was kept out.

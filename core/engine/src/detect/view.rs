@@ -219,9 +219,9 @@ pub struct SeenBox {
 /// Where an object is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectPlaceView {
-    /// Its middle, in the robot's frame.
+    /// Its middle, in the robot's frame, by the model in use.
     pub point_in_robot: Point<Robot>,
-    /// Standard deviations along x, y, z of the robot, meters.
+    /// Standard deviations along x, y, z of the robot, with those of the model's effects, meters.
     pub sigma_m: [f64; 3],
     /// Covariance in the robot's frame, m².
     pub covariance_m2: nalgebra::Matrix3<f64>,
@@ -229,6 +229,8 @@ pub struct ObjectPlaceView {
     pub range_m: f64,
     /// Standard deviation of that, meters.
     pub range_sigma_m: f64,
+    /// The model of the robot, for people: "as described", "with 2 effects".
+    pub model: Arc<str>,
 }
 
 /// Where the time of one result went, both eyes together.

@@ -47,8 +47,7 @@ impl Hub<'_> {
     pub(super) fn answer_for_the_robot(&mut self, control: &RobotControl) {
         match control {
             // These come by themselves; nobody waits for an answer.
-            RobotControl::PlaceEyes { .. }
-            | RobotControl::PlaceScreen(_)
+            RobotControl::UseModel(_)
             | RobotControl::AbandonTouch
             | RobotControl::Contact(_)
             | RobotControl::Robot(

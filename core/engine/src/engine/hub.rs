@@ -37,37 +37,51 @@ const SILENT: Duration = Duration::from_secs(5);
 /// When closing, jobs get this long to reach their next checkpoint.
 const CLOSING: Duration = Duration::from_secs(2);
 
+/// Why the engine has ended by itself.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Failure {
+    /// It could not begin.
+    #[error("the system gives no threads ({0}): close other programs")]
+    NoThreads(std::io::Error),
+    /// A defect; what the program said.
+    #[error("{0}")]
+    Panicked(String),
+}
+
+impl Failure {
+    fn of(panic: &(dyn Any + Send)) -> Self {
+        Self::Panicked(panic_message(panic))
+    }
+}
+
 /// Runs until the window drops its end of the commands. When it fails that is shown, and STOP is
 /// pressed, before what it owned is let go.
 ///
 /// # Errors
-/// What the program said when it failed.
+/// Why it failed; by then that is shown and STOP is pressed.
 pub(super) fn run(
     settings: EngineSettings,
     commands: &Receiver<Command>,
     shared: &Shared,
-) -> Result<(), String> {
-    let failed = |said: String| {
+) -> Result<(), Failure> {
+    let failed = |failure: Failure| {
         shared.switches.stop.press();
-        shared.publish_failure(&said);
-        said
+        shared.publish_failure(&failure.to_string());
+        failure
     };
-    let words = |panic: Box<dyn Any + Send>| panic_message(panic.as_ref());
     let started = catch_unwind(AssertUnwindSafe(|| Hub::start(settings, shared)));
     let mut hub = match started {
         Ok(Ok(hub)) => hub,
-        Ok(Err(error)) => {
-            return Err(failed(format!("the system gives no threads ({error}): close other programs")));
-        }
-        Err(panic) => return Err(failed(words(panic))),
+        Ok(Err(error)) => return Err(failed(Failure::NoThreads(error))),
+        Err(panic) => return Err(failed(Failure::of(panic.as_ref()))),
     };
     // A hub that failed is only dropped, so nothing half done is used.
     if let Err(panic) = catch_unwind(AssertUnwindSafe(|| hub.work(commands))) {
-        let said = failed(words(panic));
+        let failure = failed(Failure::of(panic.as_ref()));
         if let Err(panic) = catch_unwind(AssertUnwindSafe(|| drop(hub))) {
-            log::error!("while letting go: {}", words(panic));
+            log::error!("while letting go: {}", panic_message(panic.as_ref()));
         }
-        return Err(said);
+        return Err(failure);
     }
     Ok(())
 }

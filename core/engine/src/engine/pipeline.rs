@@ -5,8 +5,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Sender};
+use plumbline_effects::RobotModel;
 use plumbline_model::StereoFrame;
-use plumbline_model::robot::{Rig, default_rig};
+use plumbline_model::robot::default_rig;
 
 use super::Shared;
 use crate::detect::DetectStage;
@@ -200,7 +201,7 @@ impl Pipeline {
         let start = Start { bell: &bell, trial: &trial };
         match thread {
             WatchedThread::Robot => {
-                let worker = self.another_worker(state.rig_in_use(), state.twins_started());
+                let worker = self.another_worker(state.model_of_the_arm(), state.twins_started());
                 (self.robot, self.news, self.touches) = start.robot(worker, self.notes_in.clone())?;
             }
             WatchedThread::Source => {
@@ -220,10 +221,13 @@ impl Pipeline {
     }
 
     /// Not connected; it knows where eyes and screen lie, and counts on.
-    fn another_worker(&self, rig: Arc<Rig>, twins_started: u64) -> Worker {
+    fn another_worker(&self, model: Arc<RobotModel>, twins_started: u64) -> Worker {
         let desk = TwinDesk::new(self.eyes.clone());
-        Worker::new(rig, &self.data_dir, self.switches.clone(), desk)
-            .in_place_of_one_that_started(twins_started)
+        let rig = model.rig().clone();
+        let mut worker = Worker::new(rig, &self.data_dir, self.switches.clone(), desk)
+            .in_place_of_one_that_started(twins_started);
+        worker.use_model(model);
+        worker
     }
 
     /// Gives the state what has come; whether there was anything.

@@ -6,7 +6,7 @@ use plumbline_hardware::SourceSpec;
 use plumbline_model::Chessboard;
 
 use super::collection::CollectError;
-use super::command::{ExportFormat, Exported, EyesCommand};
+use super::command::{ExportFormat, Exported};
 use super::view::CollectedPair;
 use super::work::{
     Accept, Capture, CollectRecording, Context, Export, EyesWork, Open, OpenWhat, Recognize, Solve,
@@ -15,36 +15,7 @@ use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::notice::NoticeLevel;
 
 impl EyesWorkflow {
-    /// Applies a command.
-    pub fn apply(&mut self, command: EyesCommand, around: &EyesAround, context: &mut Context<'_>) {
-        match command {
-            EyesCommand::ChooseBoard { columns, rows, square_m } => {
-                self.choose_board(columns, rows, square_m, context);
-            }
-            EyesCommand::RecognizeBoard => self.recognize_board(around, context),
-            EyesCommand::ChooseOptions(options) => self.options = options,
-            EyesCommand::MinutesSinceOn(minutes) => self.set_minutes(minutes, context),
-            EyesCommand::Capture => self.capture(around, context),
-            EyesCommand::AutoCapture(on) => self.set_auto_capture(on, around, context),
-            EyesCommand::CollectRecording => self.collect_recording(around, context),
-            EyesCommand::DeleteLast => self.edit(context, |pairs| pairs.delete_last().map(drop)),
-            EyesCommand::Delete { pair } => self.edit(context, |pairs| pairs.delete(&pair)),
-            EyesCommand::DeleteAll => self.edit(context, |pairs| pairs.delete_all().map(drop)),
-            EyesCommand::Undo => self.edit(context, |pairs| pairs.undo()),
-            EyesCommand::DropPair { pair } => self.edit(context, |pairs| pairs.drop_pair(&pair)),
-            EyesCommand::RestorePair { pair } => self.edit(context, |pairs| pairs.restore_pair(&pair)),
-            EyesCommand::Solve => self.solve(around, context),
-            EyesCommand::Accept => self.accept(context),
-            EyesCommand::Discard => (self.proposal, self.solved_from) = (None, None),
-            EyesCommand::Import { files, length } => self.open(OpenWhat::Files { files, length }, context),
-            EyesCommand::ProposeEarlier { id } => self.open(OpenWhat::Earlier { id }, context),
-            EyesCommand::CollectEvidence => self.collect_evidence(context),
-            EyesCommand::Export { what, format, file } => self.export(what, format, file, context),
-        }
-        self.refresh();
-    }
-
-    fn choose_board(&mut self, columns: u32, rows: u32, square_m: f64, context: &mut Context<'_>) {
+    pub(super) fn choose_board(&mut self, columns: u32, rows: u32, square_m: f64, context: &mut Context<'_>) {
         match Chessboard::from_squares(columns, rows, square_m) {
             Ok(board) => {
                 let before = self.collection.pairs().len();
@@ -61,7 +32,7 @@ impl EyesWorkflow {
         }
     }
 
-    fn set_minutes(&mut self, minutes: Option<f64>, context: &mut Context<'_>) {
+    pub(super) fn set_minutes(&mut self, minutes: Option<f64>, context: &mut Context<'_>) {
         match minutes {
             Some(value) if !(0.0..=LONGEST_ON_MINUTES).contains(&value) => {
                 context.refuse(format!("Give the minutes since the cameras were switched on as a number from 0 to {LONGEST_ON_MINUTES}, or leave it empty."));
@@ -70,7 +41,7 @@ impl EyesWorkflow {
         }
     }
 
-    fn recognize_board(&mut self, around: &EyesAround, context: &mut Context<'_>) {
+    pub(super) fn recognize_board(&mut self, around: &EyesAround, context: &mut Context<'_>) {
         match &around.newest {
             Some(frame) => {
                 let work = Recognize { frame: frame.clone(), board: *self.board() };
@@ -80,7 +51,7 @@ impl EyesWorkflow {
         }
     }
 
-    fn capture(&mut self, around: &EyesAround, context: &mut Context<'_>) {
+    pub(super) fn capture(&mut self, around: &EyesAround, context: &mut Context<'_>) {
         let Some(frame) = &around.newest else { return context.refuse(NO_IMAGE) };
         if self.busy.capturing.is_some() {
             return;
@@ -93,7 +64,7 @@ impl EyesWorkflow {
         self.busy.capturing = Some(context.start(EyesWork::Capture(work)));
     }
 
-    fn set_auto_capture(&mut self, on: bool, around: &EyesAround, context: &mut Context<'_>) {
+    pub(super) fn set_auto_capture(&mut self, on: bool, around: &EyesAround, context: &mut Context<'_>) {
         self.auto_capture = on;
         // A picture that stands still is looked at only once: it may be worth capturing now.
         if let Some(look) = self.last_look.take().filter(|_| on) {
@@ -101,7 +72,7 @@ impl EyesWorkflow {
         }
     }
 
-    fn collect_recording(&mut self, around: &EyesAround, context: &mut Context<'_>) {
+    pub(super) fn collect_recording(&mut self, around: &EyesAround, context: &mut Context<'_>) {
         if self.busy.collecting.is_some() {
             return context.refuse("The recording is being searched already. Wait for it or cancel it.");
         }
@@ -127,7 +98,7 @@ impl EyesWorkflow {
         self.busy.collecting = Some(context.start(EyesWork::CollectRecording(work)));
     }
 
-    fn edit(
+    pub(super) fn edit(
         &mut self,
         context: &mut Context<'_>,
         edit: impl FnOnce(&mut super::collection::Collection) -> Result<(), CollectError>,
@@ -137,7 +108,7 @@ impl EyesWorkflow {
         }
     }
 
-    fn solve(&mut self, around: &EyesAround, context: &mut Context<'_>) {
+    pub(super) fn solve(&mut self, around: &EyesAround, context: &mut Context<'_>) {
         if self.busy.solving.is_some() {
             return context.refuse("A solution is under way already. Wait for it or cancel it.");
         }
@@ -157,7 +128,7 @@ impl EyesWorkflow {
         self.busy.solving = Some(context.start(EyesWork::Solve(work)));
     }
 
-    fn accept(&mut self, context: &mut Context<'_>) {
+    pub(super) fn accept(&mut self, context: &mut Context<'_>) {
         if self.busy.accepting.is_some() {
             return;
         }
@@ -176,7 +147,7 @@ impl EyesWorkflow {
         self.busy.accepting = Some(context.start(EyesWork::Accept(work)));
     }
 
-    fn open(&mut self, what: OpenWhat, context: &mut Context<'_>) {
+    pub(super) fn open(&mut self, what: OpenWhat, context: &mut Context<'_>) {
         if self.busy.opening.is_some() {
             return context.refuse("Another calibration is being read. Wait for it.");
         }
@@ -186,7 +157,7 @@ impl EyesWorkflow {
     }
 
     /// Takes the pairs of the proposal, or else of the calibration in use, to solve them again.
-    fn collect_evidence(&mut self, context: &mut Context<'_>) {
+    pub(super) fn collect_evidence(&mut self, context: &mut Context<'_>) {
         let calibration = self.proposal.as_ref().map(|p| &p.calibration).or(self.in_use()).cloned();
         let Some(calibration) = calibration else {
             return context.refuse("There is no calibration to take pairs from. Read one first.");
@@ -216,7 +187,7 @@ impl EyesWorkflow {
         self.board_chosen = true;
     }
 
-    fn export(
+    pub(super) fn export(
         &mut self,
         what: Exported,
         format: ExportFormat,

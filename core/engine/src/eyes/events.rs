@@ -10,10 +10,9 @@ use super::collection::Collection;
 use super::coverage::Novelty;
 use super::look::Look;
 use super::view::{CaptureHint, CollectedPair, Origin, Proposal};
-use super::work::{Captured, Collected, Context, EyesResult, EyesWork, Keep, Opened, Restored, Solved};
+use super::work::{Captured, Collected, Context, EyesWork, Keep, Opened, Restored, Solved};
 use super::workflow::{EyesAround, EyesWorkflow};
 use super::{auto_capture, coverage};
-use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
 
 /// That a pair was captured is shown for this long.
@@ -120,39 +119,7 @@ impl EyesWorkflow {
         context.start(EyesWork::Keep(work));
     }
 
-    /// Work has ended with a result.
-    pub fn work_done(&mut self, id: JobId, result: EyesResult, context: &mut Context<'_>) {
-        self.busy.forget(id);
-        match result {
-            EyesResult::Captured(captured) => self.captured(captured, context),
-            EyesResult::Recognized(seen) => self.board_seen = Some(seen),
-            EyesResult::Kept(_) => {}
-            EyesResult::Collected(collected) => self.collected(collected, context),
-            EyesResult::Solved(solved) => self.solved(solved),
-            EyesResult::Opened(opened) => self.opened(opened),
-            EyesResult::Accepted(accepted) => {
-                let same = |proposal: &Arc<Proposal>| {
-                    Arc::ptr_eq(&proposal.calibration, &accepted.in_use.calibration)
-                };
-                // A newer proposal that came meanwhile still waits for a decision.
-                if self.proposal.as_ref().is_some_and(same) {
-                    (self.proposal, self.solved_from) = (None, None);
-                }
-                self.in_use = Some(Arc::new(accepted.in_use));
-                self.earlier = accepted.earlier.into();
-            }
-            EyesResult::Exported(_) => {}
-            EyesResult::Restored(restored) => self.restored(restored, context),
-        }
-        self.refresh();
-    }
-
-    /// Work has ended without a result; nothing was changed.
-    pub fn work_ended(&mut self, id: JobId) {
-        self.busy.forget(id);
-    }
-
-    fn captured(&mut self, captured: Captured, context: &mut Context<'_>) {
+    pub(super) fn captured(&mut self, captured: Captured, context: &mut Context<'_>) {
         if captured.board == *self.board() {
             self.captured_at = Some(captured.frame.stamp.captured_at);
             self.add(captured.pair, &captured.frame, captured.sizes_px, context);
@@ -161,7 +128,7 @@ impl EyesWorkflow {
         }
     }
 
-    fn collected(&mut self, collected: Collected, context: &mut Context<'_>) {
+    pub(super) fn collected(&mut self, collected: Collected, context: &mut Context<'_>) {
         self.not_collected = collected.not_collected.into();
         if collected.board != *self.board() {
             return context
@@ -176,17 +143,17 @@ impl EyesWorkflow {
         }
     }
 
-    fn solved(&mut self, solved: Solved) {
+    pub(super) fn solved(&mut self, solved: Solved) {
         self.solved_from = Some((solved.revision, solved.options));
         self.proposal = Some(Arc::new(proposal(solved.calibration, Origin::Solved, solved.assessment)));
     }
 
-    fn opened(&mut self, opened: Opened) {
+    pub(super) fn opened(&mut self, opened: Opened) {
         self.solved_from = None;
         self.proposal = Some(Arc::new(proposal(opened.calibration, opened.origin, opened.assessment)));
     }
 
-    fn restored(&mut self, restored: Restored, context: &mut Context<'_>) {
+    pub(super) fn restored(&mut self, restored: Restored, context: &mut Context<'_>) {
         for problem in restored.problems {
             context.notices.add(NoticeLevel::Warning, problem);
         }

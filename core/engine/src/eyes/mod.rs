@@ -17,6 +17,7 @@ mod look;
 pub mod map;
 pub mod place;
 pub mod sharpness;
+mod shown;
 pub mod store;
 pub mod view;
 pub mod work;

@@ -1,7 +1,7 @@
 //! Accepted calibrations on disk. Each stays in a file of its own for ever; a small file says
 //! which one is in use. Every write goes to a temporary name first.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
 use plumbline_model::files::{self, FileError, Size};
@@ -64,6 +64,11 @@ impl Store {
         Self { shelf: Shelf::new(folder, "yaml") }
     }
 
+    /// Those of the world with this folder.
+    pub fn of_world(folder: &Path) -> Self {
+        Self::new(folder.join("calibrations"))
+    }
+
     /// Keeps a calibration and makes it the one in use.
     pub fn accept(&self, calibration: &StereoCalibration, accepted: Timestamp) -> Result<Entry, StoreError> {
         self.shelf.make_folder().map_err(self.io())?;
@@ -101,6 +106,24 @@ impl Store {
         let file = self.shelf.file_inside(id).filter(|file| file.is_file());
         let file = file.ok_or_else(|| StoreError::NoSuchCalibration(id.to_owned()))?;
         Ok((native::read(&file)?, self.entry(id).accepted))
+    }
+
+    /// The calibration in use; if its file is damaged, the newest that is not. `None` when none was
+    /// ever accepted.
+    ///
+    /// # Errors
+    /// When none of those that were accepted can be read.
+    pub fn in_use(&self) -> Result<Option<StereoCalibration>, StoreError> {
+        let mut entries = self.list()?;
+        entries.sort_by_key(|entry| !entry.in_use);
+        let mut first_error = None;
+        for entry in entries {
+            match self.load(&entry.id) {
+                Ok((calibration, _)) => return Ok(Some(calibration)),
+                Err(error) => first_error = first_error.or(Some(error)),
+            }
+        }
+        first_error.map_or(Ok(None), Err)
     }
 
     fn entry_file(&self, id: &str) -> PathBuf {

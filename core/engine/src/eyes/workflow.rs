@@ -1,4 +1,4 @@
-//! What is known while the eyes are being calibrated, and what the window shows of it.
+//! What is known while the eyes are being calibrated.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -20,10 +20,9 @@ use super::view::{
     AcceptedCalibration, BoardPlace, BoardSeen, CaptureHint, CollectedPair, Coverage, EarlierCalibration,
     EyesView, GhostBoard, Origin, Proposal,
 };
-use super::work::{Context, EyesResult, EyesWork, Restore};
+use super::work::{Context, EyesResult, EyesWork, OpenWhat, Restore};
 use super::{coverage, ghost};
 use crate::ground::jobs::JobId;
-use crate::ground::step::StepState;
 use crate::ground::{Moment, Nothing, Workflow};
 use crate::source::view::SourceView;
 
@@ -62,8 +61,8 @@ pub struct EyesWorkflow {
     pub(super) in_use: Option<Arc<AcceptedCalibration>>,
     pub(super) earlier: Arc<[EarlierCalibration]>,
     pub(super) busy: Busy,
-    image_size_px: Option<(u32, u32)>,
-    derived: Derived,
+    pub(super) image_size_px: Option<(u32, u32)>,
+    pub(super) derived: Derived,
 }
 
 /// Work that must not be started twice.
@@ -91,7 +90,8 @@ impl Busy {
         }
     }
 
-    fn any(&self) -> bool {
+    /// Whether something is under way.
+    pub fn any(&self) -> bool {
         *self != Self::default()
     }
 }
@@ -106,54 +106,15 @@ struct DerivedFrom {
 
 /// Computed from the rest; recomputed only when that changes.
 #[derive(Clone, Debug)]
-struct Derived {
+pub(super) struct Derived {
     /// Of what this was computed.
     of: Option<DerivedFrom>,
-    coverage: Arc<Coverage>,
-    ghost: Option<Arc<GhostBoard>>,
-    collected: Arc<[Arc<CollectedPair>]>,
+    pub coverage: Arc<Coverage>,
+    pub ghost: Option<Arc<GhostBoard>>,
+    pub collected: Arc<[Arc<CollectedPair>]>,
 }
 
 impl EyesWorkflow {
-    /// Nothing collected, nothing in use. Captured pairs are kept in a folder of `sessions`.
-    pub fn new(store: Store, sessions: PathBuf, workspace: Workspace) -> Self {
-        let board = default_board();
-        Self {
-            store,
-            sessions,
-            session: None,
-            workspace,
-            collection: Collection::new(board),
-            board_chosen: false,
-            options: CalibrationOptions::default(),
-            minutes_since_on: None,
-            auto_capture: false,
-            auto: AutoCapture::default(),
-            last_look: None,
-            hint: None,
-            captured_at: None,
-            board_seen: None,
-            not_collected: Arc::from([]),
-            proposal: None,
-            solved_from: None,
-            in_use: None,
-            earlier: Arc::from([]),
-            busy: Busy::default(),
-            image_size_px: None,
-            derived: Derived {
-                of: None,
-                coverage: Arc::new(coverage::empty(&board)),
-                ghost: None,
-                collected: Arc::from([]),
-            },
-        }
-    }
-
-    /// Where calibrations are kept.
-    pub fn store(&self) -> &Store {
-        &self.store
-    }
-
     /// The board looked for.
     pub fn board(&self) -> &Chessboard {
         self.collection.board()
@@ -246,47 +207,6 @@ impl EyesWorkflow {
             self.proposal = Some(Arc::new(Proposal { stale, ..(**proposal).clone() }));
         }
     }
-
-    /// What the window shows.
-    pub fn view(&self) -> EyesView {
-        EyesView {
-            step: self.step(),
-            board: *self.board(),
-            board_chosen: self.board_chosen,
-            options: self.options.clone(),
-            minutes_since_on: self.minutes_since_on,
-            board_seen: self.board_seen.clone(),
-            auto_capture: self.auto_capture,
-            hint: self.hint.clone(),
-            collected: self.derived.collected.clone(),
-            dropped: Arc::new(self.collection.dropped().clone()),
-            not_collected: self.not_collected.clone(),
-            can_undo: self.collection.can_undo(),
-            coverage: self.derived.coverage.clone(),
-            ghost: self.derived.ghost.clone(),
-            solving: self.busy.solving,
-            proposal: self.proposal.clone(),
-            in_use: self.in_use.clone(),
-            earlier: self.earlier.clone(),
-        }
-    }
-
-    fn step(&self) -> StepState {
-        if self.busy.any() {
-            return StepState::Running;
-        }
-        let Some(in_use) = self.in_use() else { return StepState::NotDone };
-        let (calibrated, now) = (in_use.cameras.left.size_px(), self.image_size_px);
-        match now {
-            Some(now) if now != calibrated => StepState::Stale {
-                why: format!(
-                    "The images are {}×{} px now, the calibration in use is for {}×{} px. Calibrate again with these images.",
-                    now.0, now.1, calibrated.0, calibrated.1
-                ),
-            },
-            _ => StepState::Done,
-        }
-    }
 }
 
 impl Workflow for EyesWorkflow {
@@ -296,35 +216,106 @@ impl Workflow for EyesWorkflow {
     type Around = EyesAround;
     type View = EyesView;
 
+    /// Nothing collected, nothing in use. Calibrations are kept in `folder/calibrations`, captured pairs
+    /// in `folder/sessions`.
     fn new(folder: &Path) -> Self {
-        let (store, rig) = (Store::new(folder.join("calibrations")), default_rig());
-        Self::new(store, folder.join("sessions"), rig.workspace(&rig.home()))
+        let rig = default_rig();
+        let board = default_board();
+        Self {
+            store: Store::of_world(folder),
+            sessions: folder.join("sessions"),
+            session: None,
+            workspace: rig.workspace(&rig.home()),
+            collection: Collection::new(board),
+            board_chosen: false,
+            options: CalibrationOptions::default(),
+            minutes_since_on: None,
+            auto_capture: false,
+            auto: AutoCapture::default(),
+            last_look: None,
+            hint: None,
+            captured_at: None,
+            board_seen: None,
+            not_collected: Arc::from([]),
+            proposal: None,
+            solved_from: None,
+            in_use: None,
+            earlier: Arc::from([]),
+            busy: Busy::default(),
+            image_size_px: None,
+            derived: Derived {
+                of: None,
+                coverage: Arc::new(coverage::empty(&board)),
+                ghost: None,
+                collected: Arc::from([]),
+            },
+        }
     }
 
-    fn view(&mut self, _around: &EyesAround, _moment: &Moment) -> Arc<EyesView> {
-        Arc::new(Self::view(self))
+    fn view(&mut self, _: &EyesAround, _: &Moment) -> Arc<EyesView> {
+        Arc::new(self.shown())
     }
 
-    fn restore(&mut self, _around: &EyesAround, context: &mut Context<'_>) {
+    fn restore(&mut self, _: &EyesAround, context: &mut Context<'_>) {
         let (store, workspace) = (self.store.clone(), self.workspace);
         context.start(EyesWork::Restore(Restore { store, workspace }));
     }
 
     fn apply(&mut self, command: EyesCommand, around: &EyesAround, context: &mut Context<'_>) {
-        self.apply(command, around, context);
+        match command {
+            EyesCommand::ChooseBoard { columns, rows, square_m } => {
+                self.choose_board(columns, rows, square_m, context);
+            }
+            EyesCommand::RecognizeBoard => self.recognize_board(around, context),
+            EyesCommand::ChooseOptions(options) => self.options = options,
+            EyesCommand::MinutesSinceOn(minutes) => self.set_minutes(minutes, context),
+            EyesCommand::Capture => self.capture(around, context),
+            EyesCommand::AutoCapture(on) => self.set_auto_capture(on, around, context),
+            EyesCommand::CollectRecording => self.collect_recording(around, context),
+            EyesCommand::DeleteLast => self.edit(context, |pairs| pairs.delete_last().map(drop)),
+            EyesCommand::Delete { pair } => self.edit(context, |pairs| pairs.delete(&pair)),
+            EyesCommand::DeleteAll => self.edit(context, |pairs| pairs.delete_all().map(drop)),
+            EyesCommand::Undo => self.edit(context, |pairs| pairs.undo()),
+            EyesCommand::DropPair { pair } => self.edit(context, |pairs| pairs.drop_pair(&pair)),
+            EyesCommand::RestorePair { pair } => self.edit(context, |pairs| pairs.restore_pair(&pair)),
+            EyesCommand::Solve => self.solve(around, context),
+            EyesCommand::Accept => self.accept(context),
+            EyesCommand::Discard => (self.proposal, self.solved_from) = (None, None),
+            EyesCommand::Import { files, length } => self.open(OpenWhat::Files { files, length }, context),
+            EyesCommand::ProposeEarlier { id } => self.open(OpenWhat::Earlier { id }, context),
+            EyesCommand::CollectEvidence => self.collect_evidence(context),
+            EyesCommand::Export { what, format, file } => self.export(what, format, file, context),
+        }
+        self.refresh();
     }
 
-    fn work_done(&mut self, id: JobId, result: EyesResult, _around: &EyesAround, context: &mut Context<'_>) {
-        self.work_done(id, result, context);
+    fn work_done(&mut self, id: JobId, result: EyesResult, _: &EyesAround, context: &mut Context<'_>) {
+        self.busy.forget(id);
+        match result {
+            EyesResult::Captured(captured) => self.captured(captured, context),
+            EyesResult::Recognized(seen) => self.board_seen = Some(seen),
+            EyesResult::Kept(_) => {}
+            EyesResult::Collected(collected) => self.collected(collected, context),
+            EyesResult::Solved(solved) => self.solved(solved),
+            EyesResult::Opened(opened) => self.opened(opened),
+            EyesResult::Accepted(accepted) => {
+                let same = |proposal: &Arc<Proposal>| {
+                    Arc::ptr_eq(&proposal.calibration, &accepted.in_use.calibration)
+                };
+                // A newer proposal that came meanwhile still waits for a decision.
+                if self.proposal.as_ref().is_some_and(same) {
+                    (self.proposal, self.solved_from) = (None, None);
+                }
+                self.in_use = Some(Arc::new(accepted.in_use));
+                self.earlier = accepted.earlier.into();
+            }
+            EyesResult::Exported(_) => {}
+            EyesResult::Restored(restored) => self.restored(restored, context),
+        }
+        self.refresh();
     }
 
-    fn work_ended(
-        &mut self,
-        id: JobId,
-        _why: Option<&str>,
-        _around: &EyesAround,
-        _context: &mut Context<'_>,
-    ) {
-        self.work_ended(id);
+    fn work_ended(&mut self, id: JobId, _: Option<&str>, _: &EyesAround, _: &mut Context<'_>) {
+        self.busy.forget(id);
     }
 }

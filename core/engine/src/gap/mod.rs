@@ -5,10 +5,10 @@
 
 pub mod command;
 mod model;
-mod search;
-mod sessions;
+pub mod search;
+pub mod sessions;
 mod shown;
-mod store;
+pub mod store;
 #[cfg(test)]
 mod tests;
 pub mod view;

@@ -10,7 +10,7 @@ use crate::ground::step::StepState;
 
 impl GapWorkflow {
     /// What the window shows.
-    pub fn view(&self, around: &GapAround) -> GapView {
+    pub(super) fn shown(&self, around: &GapAround) -> GapView {
         GapView {
             step: self.step_state(),
             sessions: Arc::from(self.sessions.as_slice()),

@@ -20,7 +20,7 @@ use crate::ground::{Moment, Nothing, Workflow};
 
 /// What the workflow can see of the rest.
 pub struct GapAround {
-    /// The robot as its description has it.
+    /// The robot with what was calibrated.
     pub rig: Arc<Rig>,
     /// The session that was touched last; offered first.
     pub newest_session: Option<PathBuf>,
@@ -56,69 +56,9 @@ pub(super) struct Seen {
 }
 
 impl GapWorkflow {
-    /// Nothing found. Sessions are looked for in `folder/sessions`, findings are kept in `folder/gap`.
-    pub fn new(folder: &Path) -> Self {
-        Self {
-            folder: folder.to_owned(),
-            store: Store::new(folder.join("gap")),
-            sessions: Vec::new(),
-            chosen: Vec::new(),
-            with: GapModel::default(),
-            searching: None,
-            failed: None,
-            findings: Vec::new(),
-            changed: Vec::new(),
-            shown: None,
-            beside: None,
-            model: None,
-            changing: None,
-            seen: Seen::default(),
-        }
-    }
-
-    /// Applies a command of the operator.
-    pub fn apply(&mut self, command: GapCommand, around: &GapAround, context: &mut Context<'_>) {
-        match command {
-            GapCommand::ListSessions => self.list(context),
-            GapCommand::Choose { sessions } => {
-                self.chosen = sessions;
-                self.failed = None;
-                if self.chosen.iter().any(|chosen| !self.sessions.iter().any(|s| s.folder == *chosen)) {
-                    self.list(context);
-                }
-            }
-            GapCommand::CompareWith(with) => self.with = with,
-            GapCommand::Find { seed } => self.find(seed, around, context),
-            GapCommand::Show { id } => {
-                if self.named(&id).is_some() {
-                    self.beside.take_if(|beside| *beside == id);
-                    self.shown = Some(id);
-                }
-            }
-            GapCommand::Beside { id } => {
-                self.beside = id.filter(|id| self.named(id).is_some() && self.shown.as_ref() != Some(id));
-            }
-            GapCommand::Delete { id } => {
-                context.start(GapWork::Delete { store: self.store.clone(), id });
-            }
-            GapCommand::Add { effects } => self.add(effects, around, context),
-            GapCommand::Undo => {
-                let at = context.time.day;
-                self.change("Go back to the model before", around, context, |model| model.undo(at));
-            }
-            GapCommand::UseNominal => {
-                let at = context.time.day;
-                self.change("Take all effects out of the model", around, context, |model| {
-                    for effect in model.effects().to_vec() {
-                        // An effect that was added twice goes with the first of its parts.
-                        let _ = model.remove(&effect.id, &effect.site, at);
-                    }
-                    Ok(())
-                });
-            }
-            GapCommand::Report { file, pdf } => self.report(file, pdf, around, context),
-        }
-        self.look();
+    /// The model in use; `None`: not read yet, or it cannot be.
+    pub fn model(&self) -> Option<&Arc<RigModel>> {
+        self.model.as_ref()
     }
 
     fn list(&self, context: &mut Context<'_>) {
@@ -261,34 +201,6 @@ impl GapWorkflow {
         None
     }
 
-    /// Work has ended with a result.
-    pub fn work_done(&mut self, id: JobId, result: GapResult, around: &GapAround, context: &mut Context<'_>) {
-        self.searching.take_if(|searching| *searching == id);
-        self.changing.take_if(|changing| *changing == id);
-        match result {
-            GapResult::Restored(restored) => self.restored(*restored, around, context),
-            GapResult::Listed { sessions, changed } => {
-                (self.sessions, self.changed) = (sessions, changed);
-                self.choose_first(around);
-            }
-            GapResult::Found(named) => {
-                let before = self.shown.replace(named.id.clone());
-                self.beside = before.filter(|before| self.is_comparable(before, &named));
-                self.findings.insert(0, named);
-            }
-            GapResult::Deleted(id) => {
-                self.findings.retain(|named| named.id != id);
-                self.beside.take_if(|beside| *beside == id);
-                if self.shown.take_if(|shown| *shown == id).is_some() {
-                    self.shown = self.findings.first().map(|named| named.id.clone());
-                }
-            }
-            GapResult::InUse(model) => self.model = Some(model),
-            GapResult::Written(_) => {}
-        }
-        self.look();
-    }
-
     /// The same sessions with another model are worth seeing side by side.
     fn is_comparable(&self, id: &str, with: &Named) -> bool {
         self.named(id).is_some_and(|named| {
@@ -318,14 +230,6 @@ impl GapWorkflow {
         let first = usable.map(|session| session.folder.as_path()).next();
         self.chosen = around.newest_session.as_deref().or(first).map(Path::to_owned).into_iter().collect();
     }
-
-    /// Work has ended without a result: everything is as it was.
-    pub fn work_ended(&mut self, id: JobId, why: Option<&str>) {
-        if self.searching.take_if(|searching| *searching == id).is_some() {
-            self.failed = why.map(str::to_owned);
-        }
-        self.changing.take_if(|changing| *changing == id);
-    }
 }
 
 impl Workflow for GapWorkflow {
@@ -335,12 +239,28 @@ impl Workflow for GapWorkflow {
     type Around = GapAround;
     type View = GapView;
 
+    /// Nothing found. Sessions are looked for in `folder/sessions`, findings are kept in `folder/gap`.
     fn new(folder: &Path) -> Self {
-        Self::new(folder)
+        Self {
+            folder: folder.to_owned(),
+            store: Store::new(folder.join("gap")),
+            sessions: Vec::new(),
+            chosen: Vec::new(),
+            with: GapModel::default(),
+            searching: None,
+            failed: None,
+            findings: Vec::new(),
+            changed: Vec::new(),
+            shown: None,
+            beside: None,
+            model: None,
+            changing: None,
+            seen: Seen::default(),
+        }
     }
 
-    fn view(&mut self, around: &GapAround, _moment: &Moment) -> Arc<GapView> {
-        Arc::new(Self::view(self, around))
+    fn view(&mut self, around: &GapAround, _: &Moment) -> Arc<GapView> {
+        Arc::new(self.shown(around))
     }
 
     fn restore(&mut self, around: &GapAround, context: &mut Context<'_>) {
@@ -348,14 +268,80 @@ impl Workflow for GapWorkflow {
     }
 
     fn apply(&mut self, command: GapCommand, around: &GapAround, context: &mut Context<'_>) {
-        self.apply(command, around, context);
+        match command {
+            GapCommand::ListSessions => self.list(context),
+            GapCommand::Choose { sessions } => {
+                self.chosen = sessions;
+                self.failed = None;
+                if self.chosen.iter().any(|chosen| !self.sessions.iter().any(|s| s.folder == *chosen)) {
+                    self.list(context);
+                }
+            }
+            GapCommand::CompareWith(with) => self.with = with,
+            GapCommand::Find { seed } => self.find(seed, around, context),
+            GapCommand::Show { id } => {
+                if self.named(&id).is_some() {
+                    self.beside.take_if(|beside| *beside == id);
+                    self.shown = Some(id);
+                }
+            }
+            GapCommand::Beside { id } => {
+                self.beside = id.filter(|id| self.named(id).is_some() && self.shown.as_ref() != Some(id));
+            }
+            GapCommand::Delete { id } => {
+                context.start(GapWork::Delete { store: self.store.clone(), id });
+            }
+            GapCommand::Add { effects } => self.add(effects, around, context),
+            GapCommand::Undo => {
+                let at = context.time.day;
+                self.change("Go back to the model before", around, context, |model| model.undo(at));
+            }
+            GapCommand::UseNominal => {
+                let at = context.time.day;
+                self.change("Take all effects out of the model", around, context, |model| {
+                    for effect in model.effects().to_vec() {
+                        // An effect that was added twice goes with the first of its parts.
+                        let _ = model.remove(&effect.id, &effect.site, at);
+                    }
+                    Ok(())
+                });
+            }
+            GapCommand::Report { file, pdf } => self.report(file, pdf, around, context),
+        }
+        self.look();
     }
 
     fn work_done(&mut self, id: JobId, result: GapResult, around: &GapAround, context: &mut Context<'_>) {
-        self.work_done(id, result, around, context);
+        self.searching.take_if(|searching| *searching == id);
+        self.changing.take_if(|changing| *changing == id);
+        match result {
+            GapResult::Restored(restored) => self.restored(*restored, around, context),
+            GapResult::Listed { sessions, changed } => {
+                (self.sessions, self.changed) = (sessions, changed);
+                self.choose_first(around);
+            }
+            GapResult::Found(named) => {
+                let before = self.shown.replace(named.id.clone());
+                self.beside = before.filter(|before| self.is_comparable(before, &named));
+                self.findings.insert(0, named);
+            }
+            GapResult::Deleted(id) => {
+                self.findings.retain(|named| named.id != id);
+                self.beside.take_if(|beside| *beside == id);
+                if self.shown.take_if(|shown| *shown == id).is_some() {
+                    self.shown = self.findings.first().map(|named| named.id.clone());
+                }
+            }
+            GapResult::InUse(model) => self.model = Some(model),
+            GapResult::Written(_) => {}
+        }
+        self.look();
     }
 
-    fn work_ended(&mut self, id: JobId, why: Option<&str>, _around: &GapAround, _context: &mut Context<'_>) {
-        self.work_ended(id, why);
+    fn work_ended(&mut self, id: JobId, why: Option<&str>, _: &GapAround, _: &mut Context<'_>) {
+        if self.searching.take_if(|searching| *searching == id).is_some() {
+            self.failed = why.map(str::to_owned);
+        }
+        self.changing.take_if(|changing| *changing == id);
     }
 }

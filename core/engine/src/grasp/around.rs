@@ -1,8 +1,8 @@
 //! What grasping can see of the rest.
 
-use std::path::Path;
 use std::sync::Arc;
 
+use plumbline_effects::RobotModel;
 use plumbline_grasp::Corrections;
 use plumbline_model::StereoCalibration;
 use plumbline_model::robot::Rig;
@@ -18,8 +18,8 @@ use crate::source::view::SourceView;
 pub struct GraspAround {
     /// The robot as its description has it.
     pub described: Arc<Rig>,
-    /// The same with the mount of its eyes and the place of its screen.
-    pub rig: Arc<Rig>,
+    /// The robot as it is known in this world.
+    pub model: Arc<RobotModel>,
     /// The robot now.
     pub robot: Arc<RobotView>,
     /// The calibration of the eyes; `None`: none was accepted.
@@ -41,11 +41,10 @@ pub struct GraspAround {
 }
 
 impl GraspAround {
-    /// What an attempt of the world with this folder rests on.
-    pub(super) fn rests_on(&self, folder: &Path) -> RestsOn {
+    /// What an attempt rests on.
+    pub(super) fn rests_on(&self) -> RestsOn {
         RestsOn {
-            folder: folder.to_owned(),
-            rig: self.rig.clone(),
+            model: self.model.clone(),
             described: self.described.clone(),
             calibration: self.calibration.clone(),
             corrections: self.corrections.clone(),

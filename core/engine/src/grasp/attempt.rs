@@ -77,7 +77,7 @@ impl Attempt {
             self.ropes.reins.clone(),
             grasper.knowledge().clone(),
         );
-        let (plan, record) = grasper.propose(&mut body, &order, &mut watcher);
+        let (plan, record) = grasper.propose(&mut body, &order, self.at, &mut watcher);
         let plan = match (plan, body.commanded()) {
             (Some(plan), Ok(from)) => Ok(Arc::new(self.shown(&grasper, &from, &plan, &record))),
             (Some(_), Err(halt)) => Err(halt.to_string()),
@@ -106,11 +106,11 @@ impl Attempt {
         let mut record = match self.order(&mut grasper, &mut body) {
             Ok(order) => {
                 self.progress.change(|run| run.object.clone_from(&order.object));
-                grasper.attempt(&mut body, &order, &mut watcher)
+                grasper.attempt(&mut body, &order, self.at, &mut watcher)
             }
             Err(why) => {
                 let object = self.target.class.as_deref().unwrap_or("thing");
-                let mut record = Record::new(self.method, object, Timestamp::now(), String::new());
+                let mut record = Record::new(self.method, object, self.at, String::new());
                 record.outcome = Some(Outcome::Refused { why });
                 record
             }
@@ -125,7 +125,7 @@ impl Attempt {
     }
 
     fn body<'a>(&self, context: &'a dyn JobContext) -> LedBody<'a> {
-        LedBody::new(self.rests_on.rig.clone(), &self.arm, self.ropes.clone(), context)
+        LedBody::new(self.rests_on.model.rig().clone(), &self.arm, self.ropes.clone(), context)
     }
 
     /// What is grasped: as the operator chose, else what can be held and is seen best.
@@ -166,7 +166,7 @@ impl Attempt {
             heading_rad: plan.heading_rad,
             level: plan.level,
             palm_way_m: postures.iter().map(palm).collect(),
-            turns: turns(&self.rests_on.rig, &postures).into(),
+            turns: turns(self.rests_on.model.rig(), &postures).into(),
             duration: whole(from, plan, &lift),
             postures: postures.into(),
         }

@@ -148,7 +148,7 @@ impl Watch for Watcher<'_> {
     }
 
     fn planned(&mut self, plan: &GraspPlan) {
-        let wanted_px = self.in_eyes(plan.standing.palm(plan.heading_rad).coords.coords.into());
+        let wanted_px = self.in_eyes(plan.palm_m.into());
         self.progress.change(|run| run.wanted_px = wanted_px);
         self.plan = Some(plan.clone());
     }

@@ -1,8 +1,8 @@
 //! What an attempt rests on: the robot with what was calibrated, and what finds things.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
+use plumbline_effects::RobotModel;
 use plumbline_grasp::attempt::{HandFinder, RenderedHand};
 use plumbline_grasp::see::Looker;
 use plumbline_grasp::{Corrections, Grasper, Knowledge, Method};
@@ -12,15 +12,12 @@ use plumbline_vision::detect::{DetectSettings, Detector, DetectorOptions, Provid
 
 use crate::detect::command::DetectorChoice;
 use crate::ground::jobs::JobError;
-use crate::rig_models;
 
 /// What an attempt rests on, as data.
 #[derive(Clone, Debug)]
 pub struct RestsOn {
-    /// The folder of the world, where the effects that were accepted are kept.
-    pub folder: PathBuf,
-    /// The robot with the mount of its eyes and the place of its screen.
-    pub rig: Arc<Rig>,
+    /// The robot as it is known in this world: lenses, mount, place of the screen, effects.
+    pub model: Arc<RobotModel>,
     /// The robot as described.
     pub described: Arc<Rig>,
     /// The calibration of the eyes; `None`: the lenses as described.
@@ -34,27 +31,21 @@ pub struct RestsOn {
 impl RestsOn {
     /// All of it, for an arm.
     pub fn grasper(&self, arm: &str, method: Method) -> Result<Grasper, JobError> {
-        let knowledge = self.knowledge()?;
+        let knowledge = self.knowledge();
         let looker = Looker::new(self.detector()?, &knowledge, DetectSettings::default());
         let finder = (method == Method::M5).then(|| self.finder(arm)).flatten();
         Grasper::new(knowledge, looker, arm, finder).map_err(JobError::told)
     }
 
     /// What is known of the robot.
-    pub fn knowledge(&self) -> Result<Knowledge, JobError> {
-        let calibration = self.calibration.clone();
+    pub fn knowledge(&self) -> Knowledge {
         let bare = || Arc::new(StereoCalibration::bare(self.described.eyes.cameras));
-        let calibration = calibration.unwrap_or_else(bare);
-        let mut rig = (*self.rig).clone();
-        rig.eyes.cameras = calibration.cameras;
-        let effects = rig_models::load(&self.folder, &self.described).map_err(JobError::failed)?;
-        Ok(Knowledge {
-            rig: Arc::new(rig),
+        Knowledge {
+            model: (*self.model).clone(),
             described: self.described.clone(),
-            calibration,
-            effects: Arc::new(effects),
+            calibration: self.calibration.clone().unwrap_or_else(bare),
             corrections: self.corrections.clone(),
-        })
+        }
     }
 
     fn detector(&self) -> Result<Detector, JobError> {
@@ -80,8 +71,9 @@ impl RestsOn {
 
     /// What finds the hand; without it the hand goes by the model alone.
     fn finder(&self, arm: &str) -> Option<Box<dyn HandFinder>> {
-        let tip = &self.rig.arm(arm)?.tips.first()?.link;
-        match RenderedHand::of_rig(&self.rig, tip) {
+        let rig = self.model.rig();
+        let tip = &rig.arm(arm)?.tips.first()?.link;
+        match RenderedHand::of_rig(rig, tip) {
             Ok(hand) => Some(Box::new(hand)),
             Err(why) => {
                 log::warn!("the hand goes by the model alone: {why}");

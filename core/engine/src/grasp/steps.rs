@@ -1,7 +1,6 @@
 //! Single steps of a hand.
 
 use nalgebra::Vector3;
-use plumbline_effects::RigModel;
 use plumbline_grasp::plan::GraspPlanner;
 use plumbline_grasp::{Body, Halt, NoArm, PalmArm};
 use plumbline_model::robot::Posture;
@@ -71,11 +70,9 @@ impl HandWork {
     /// Makes the step; `Err` inside: why not, the arm holds.
     pub fn carry_out(&self, context: &dyn JobContext) -> Result<Result<(), NoStep>, JobError> {
         context.report(0.1, "moving");
-        let knowledge = self.rests_on.knowledge()?;
-        let effects: &RigModel = &knowledge.effects;
-        let arm = PalmArm::new(&knowledge.rig, effects, &self.arm).map_err(JobError::told)?;
+        let arm = PalmArm::new(&self.rests_on.model, &self.arm).map_err(JobError::told)?;
         let planner = GraspPlanner::new(arm);
-        let body = LedBody::new(self.rests_on.rig.clone(), &self.arm, self.ropes.clone(), context);
+        let body = LedBody::new(self.rests_on.model.rig().clone(), &self.arm, self.ropes.clone(), context);
         let mut hand = Hand { planner: &planner, body, context };
         Ok(match self.step {
             HandStep::Open => hand.open(),
@@ -181,7 +178,7 @@ impl Hand<'_> {
 
     /// Azimuth of the fingers.
     fn heading_rad(&self, posture: &Posture) -> f64 {
-        let fingers = self.planner.arm().described(posture).isometry.rotation * Vector3::x();
+        let fingers = self.planner.arm().robot_from_palm(posture).isometry.rotation * Vector3::x();
         fingers.y.atan2(fingers.x)
     }
 }

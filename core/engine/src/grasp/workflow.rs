@@ -218,7 +218,7 @@ impl GraspWorkflow {
         let job = match what {
             What::Hand(step) => context.start(GraspWork::Hand(Box::new(HandWork {
                 step,
-                rests_on: around.rests_on(&self.folder),
+                rests_on: around.rests_on(),
                 arm: self.arm.clone(),
                 ropes,
                 closed_at_m: self.closed_at_m,
@@ -245,7 +245,7 @@ impl GraspWorkflow {
         let progress = Progress::new(self.method, &object);
         self.progress = Some(progress.clone());
         Attempt {
-            rests_on: around.rests_on(&self.folder),
+            rests_on: around.rests_on(),
             arm: self.arm.clone(),
             method: self.method,
             target,

@@ -58,11 +58,6 @@ impl<T> Putter<T> {
         true
     }
 
-    /// Takes back a value that was not taken yet, without counting it as skipped.
-    pub fn withdraw(&self) -> Option<T> {
-        self.shared.lock().value.take()
-    }
-
     /// How many values were replaced before they were taken.
     pub fn skipped(&self) -> u64 {
         self.shared.lock().skipped

@@ -32,6 +32,9 @@ pub enum EditError {
     /// The list changed since.
     #[error("There is no such box any more.")]
     NoSuchBox,
+    /// The list changed since.
+    #[error("There is no such proposal any more.")]
+    NoSuchProposal,
     /// Not a class of the data set.
     #[error("The data set has no class number {}; it has {classes}.", class.0 + 1)]
     NoSuchClass {

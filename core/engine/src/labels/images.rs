@@ -1,9 +1,11 @@
 //! The images of an open data set: their boxes, and the few whose pixels are in memory.
 
 use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use image::RgbImage;
+use plumbline_model::files::{self, FileError};
 use plumbline_vision::yolo_set::{LabeledBox, label_text};
 
 use super::history::BoxHistory;
@@ -67,19 +69,41 @@ pub fn eye_word(name: &str) -> Option<&'static str> {
     ["left", "right"].into_iter().find(|eye| name.contains(eye))
 }
 
+/// Why an image of a data set cannot be shown.
+#[derive(Debug, thiserror::Error)]
+#[error("{} cannot be read ({why}). Restore the file or take it out of the data set.", .file.display())]
+pub struct Unreadable {
+    /// Which image.
+    file: PathBuf,
+    /// What is wrong with it.
+    why: FileError,
+}
+
+/// The pixels of an image, or why there are none.
+pub type Pixels = Result<Arc<RgbImage>, Arc<Unreadable>>;
+
+/// Reads an image.
+///
+/// # Errors
+/// When there is no image in the file.
+pub fn read_image(file: &Path) -> Result<RgbImage, Unreadable> {
+    let image = files::read_image(file).map(image::DynamicImage::into_rgb8);
+    image.map_err(|why| Unreadable { file: file.to_owned(), why })
+}
+
 /// Images whose pixels are kept.
 const KEPT: usize = 12;
 
 /// Pixels of the images looked at last.
 #[derive(Clone, Debug, Default)]
 pub struct Loaded {
-    images: VecDeque<(String, Result<Arc<RgbImage>, String>)>,
+    images: VecDeque<(String, Pixels)>,
     reading: Option<JobId>,
 }
 
 impl Loaded {
     /// The pixels of an image, or why there are none.
-    pub fn get(&self, name: &str) -> Option<&Result<Arc<RgbImage>, String>> {
+    pub fn get(&self, name: &str) -> Option<&Pixels> {
         self.images.iter().find(|(known, _)| known == name).map(|(_, pixels)| pixels)
     }
 
@@ -99,7 +123,7 @@ impl Loaded {
     }
 
     /// It was read.
-    pub fn read(&mut self, job: JobId, name: String, pixels: Result<Arc<RgbImage>, String>) {
+    pub fn read(&mut self, job: JobId, name: String, pixels: Pixels) {
         self.reading.take_if(|reading| *reading == job);
         if !self.has(&name) {
             self.images.push_back((name, pixels));

@@ -16,6 +16,6 @@ pub mod view;
 pub mod work;
 mod workflow;
 
+pub(crate) use images::read_image;
 pub(crate) use store::{data_yaml_of, failed as set_failed, write as write_text};
-pub(crate) use work::read_image;
 pub use workflow::{LabelsAround, LabelsWorkflow};

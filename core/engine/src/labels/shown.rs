@@ -9,7 +9,7 @@ use crate::detect::command::DetectorChoice;
 
 impl LabelsWorkflow {
     /// What the window shows.
-    pub fn view(&self, detector: &DetectorChoice) -> LabelsView {
+    pub(super) fn shown(&self, detector: &DetectorChoice) -> LabelsView {
         LabelsView {
             set: self.seen.set.clone(),
             working: self.working,
@@ -40,13 +40,13 @@ impl LabelsWorkflow {
                     counts: counts(&images),
                     images,
                     problems: problems(set),
-                    shown: self.shown(set),
+                    shown: self.shown_image(set),
                 }
             }
         };
     }
 
-    fn shown(&self, set: &Set) -> Option<ShownLabels> {
+    fn shown_image(&self, set: &Set) -> Option<ShownLabels> {
         let index = set.shown?;
         let image = set.images.get(index)?;
         let entry = &image.entry;
@@ -54,7 +54,9 @@ impl LabelsWorkflow {
         Some(ShownLabels {
             name: entry.name.clone(),
             index,
-            pixels: unusable.or_else(|| self.loaded.get(&entry.name).cloned()),
+            pixels: unusable.or_else(|| {
+                self.loaded.get(&entry.name).cloned().map(|read| read.map_err(|e| e.to_string()))
+            }),
             boxes: image.history.boxes().into(),
             revision: image.revision,
             proposals: image.proposals.as_slice().into(),

@@ -7,6 +7,7 @@ use image::RgbImage;
 use plumbline_model::{ClassNames, JobContext, StereoFrame, files};
 use plumbline_vision::yolo_set::{ClassMapping, SplitOptions, YoloSet};
 
+use super::images::{Pixels, read_image};
 use super::store::{self, Entry, OpenedSet};
 use super::transfer::{self, ImportPlan};
 use super::view::{LabelBox, ProposedBox};
@@ -123,9 +124,9 @@ pub enum LabelsResult {
     /// A data set is open.
     Opened(Box<OpenedSet>),
     /// An image, or why there is none.
-    Loaded(String, Result<Arc<RgbImage>, String>),
+    Loaded(String, Pixels),
     /// Small images by name.
-    Thumbnails(Vec<(String, Result<Arc<RgbImage>, String>)>),
+    Thumbnails(Vec<(String, Pixels)>),
     /// All of it is on disk.
     Saved,
     /// A pair is in the data set.
@@ -186,7 +187,9 @@ impl LongWork for LabelsWork {
                 store::create(&folder, &names)?;
                 opened(&folder, &memory, context)
             }
-            Self::Load { name, file } => Ok(LabelsResult::Loaded(name, read_image(&file).map(Arc::new))),
+            Self::Load { name, file } => {
+                Ok(LabelsResult::Loaded(name, read_image(&file).map(Arc::new).map_err(Arc::new)))
+            }
             Self::Thumbnails { files } => thumbnails(files, context),
             Self::Save { files } => save(&files),
             Self::Capture { frame, captured, folder } => {
@@ -264,17 +267,6 @@ fn opened(
     Ok(LabelsResult::Opened(Box::new(set)))
 }
 
-/// Reads an image; an error is a sentence.
-pub fn read_image(file: &std::path::Path) -> Result<RgbImage, String> {
-    let image = files::read_image(file);
-    image.map(image::DynamicImage::into_rgb8).map_err(|error| {
-        format!(
-            "{} cannot be read ({error}). Restore the file or take it out of the data set.",
-            file.display()
-        )
-    })
-}
-
 /// Width of a small picture, px.
 const SMALL_WIDTH: u32 = 128;
 
@@ -286,7 +278,7 @@ fn thumbnails(files: Vec<(String, PathBuf)>, context: &dyn JobContext) -> Result
             let height = (image.height() * SMALL_WIDTH / image.width().max(1)).max(1);
             Arc::new(image::imageops::thumbnail(&image, SMALL_WIDTH, height))
         });
-        small.push((name, picture));
+        small.push((name, picture.map_err(Arc::new)));
     }
     Ok(LabelsResult::Thumbnails(small))
 }

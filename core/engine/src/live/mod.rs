@@ -10,5 +10,5 @@ mod workflow;
 
 pub use probe::{ProbeInput, ProbeOutput, ProbeStage};
 pub use rectify::{RectifyInput, RectifyOutput, RectifyStage};
-pub use setup::{LiveSetup, OtherSize, aimed, fitting};
+pub use setup::{LiveSetup, NoPlace, OtherSize, aimed, fitting};
 pub use workflow::LiveWorkflow;

@@ -4,7 +4,7 @@ use plumbline_vision::disparity::DisparityError;
 use plumbline_vision::locate::{NoBaseline, NotLocated};
 use plumbline_vision::rectify::RectifyError;
 
-use super::setup::OtherSize;
+use super::setup::{NoPlace, OtherSize};
 
 /// Why a point was not measured.
 #[derive(Debug, thiserror::Error)]
@@ -24,6 +24,9 @@ pub enum NoReading {
     /// This point cannot be located.
     #[error(transparent)]
     Locate(#[from] NotLocated),
+    /// No place of the robot's frame looks so.
+    #[error(transparent)]
+    NoPlace(#[from] NoPlace),
     /// Nothing came back.
     #[error("nothing was measured")]
     Nothing,

@@ -85,6 +85,7 @@ impl ProbeStage {
             Some(located) => located?,
             None => return Err(NoReading::Nothing),
         };
+        let place = setup.place(&located.point, &located.covariance_m2)?;
         let in_views = setup.pair.project(located.point).ok();
         let left_rectified =
             in_views.map(|(left, _)| left).filter(|pixel| pixel.is_inside(setup.pair.size_px()));
@@ -94,8 +95,9 @@ impl ProbeStage {
             left_rectified,
             disparity_px: in_views.map(|(left, right)| left.u_px - right.u_px),
             point_in_left: located.point,
-            point_in_robot: setup.robot_from_left * located.point,
-            sigma_m: located.sigma_m,
+            point_in_robot: place.point,
+            sigma_m: place.sigma_m(),
+            model: setup.title.clone(),
         })
     }
 

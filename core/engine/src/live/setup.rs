@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
+use nalgebra::Matrix3;
+use plumbline_effects::{PlaceInRobot, RobotModel, SeenUnder};
 use plumbline_model::aim::DEFAULT_SIZE_PX;
 use plumbline_model::camera::ModelKind;
+use plumbline_model::robot::Posture;
 use plumbline_model::{
-    AimError, AimedPair, Eye, LeftCamera, Pose, Robot, StereoCalibration, StereoCameras, StereoFrame,
+    AimError, AimedPair, Eye, LeftCamera, Point, Pose, Robot, StereoCalibration, StereoCameras, StereoFrame,
     Workspace,
 };
 
@@ -22,9 +25,42 @@ pub struct LiveSetup {
     pub pair: AimedPair,
     /// Largest disparity that is searched, pixels.
     pub max_disparity_px: u32,
-    /// Where the left eye is.
-    pub robot_from_left: Pose<Robot, LeftCamera>,
+    /// The robot as it is known.
+    pub model: Arc<RobotModel>,
+    /// What it is called for people.
+    pub title: Arc<str>,
+    /// How the head stands, the rest of the robot as usual.
+    pub posture: Posture,
 }
+
+impl LiveSetup {
+    /// Where in the robot's frame something is that stereo puts at a point of the left camera
+    /// (covariance in its axes, m²).
+    ///
+    /// # Errors
+    /// When the effects leave no such place.
+    pub fn place(
+        &self,
+        in_left: &Point<LeftCamera>,
+        covariance_m2: &Matrix3<f64>,
+    ) -> Result<PlaceInRobot, NoPlace> {
+        let place = self.model.place(in_left, covariance_m2, &self.posture, &SeenUnder::default());
+        place.ok_or(NoPlace)
+    }
+
+    /// Where the left eye is.
+    pub fn robot_from_left(&self) -> Pose<Robot, LeftCamera> {
+        self.model.robot_from_left(&self.posture)
+    }
+}
+
+/// The effects of the model leave no place for what is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "with the effects of the model in use there is no place that the eyes would see so: measure another point, or \
+     look at the model in step 5, Gap"
+)]
+pub struct NoPlace;
 
 /// Images and calibration do not fit together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

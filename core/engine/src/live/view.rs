@@ -135,10 +135,13 @@ pub struct ProbeReading {
     pub disparity_px: Option<f64>,
     /// In the left camera's frame.
     pub point_in_left: Point<LeftCamera>,
-    /// In the robot's frame.
+    /// In the robot's frame, by the model in use.
     pub point_in_robot: Point<Robot>,
-    /// One standard deviation of its place, along its worst direction, meters.
+    /// One standard deviation of its place in the robot's frame, along its worst direction, with that
+    /// of the model's effects, meters.
     pub sigma_m: f64,
+    /// The model of the robot, for people: "as described", "with 2 effects".
+    pub model: Arc<str>,
 }
 
 /// What the virtual pair looks like.

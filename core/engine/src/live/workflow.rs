@@ -5,8 +5,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
+use plumbline_effects::RobotModel;
 use plumbline_model::aim::DEFAULT_SIZE_PX;
-use plumbline_model::robot::{Rig, default_rig};
+use plumbline_model::robot::{Posture, default_rig};
 use plumbline_model::{AimError, AimedPair, StereoCalibration, StereoFrame, Workspace};
 
 use super::command::{AimChoice, HeadPose, LiveCommand, ProbePoint, Products};
@@ -36,8 +37,8 @@ pub struct LiveWorkflow {
     head: HeadPose,
     /// The head angles that the present setup was aimed for.
     aimed_for: HeadPose,
-    /// Where the eyes sit.
-    rig: Arc<Rig>,
+    /// The robot as it is known.
+    model: Arc<RobotModel>,
     calibration: Option<Arc<StereoCalibration>>,
     /// Lenses as the rig file has them, for eyes that nobody has calibrated yet.
     nominal: Option<Arc<StereoCalibration>>,
@@ -71,7 +72,7 @@ impl Default for LiveWorkflow {
             aim: AimChoice::default(),
             head: HeadPose::default(),
             aimed_for: HeadPose::default(),
-            rig: default_rig(),
+            model: Arc::new(RobotModel::nominal(default_rig())),
             calibration: None,
             nominal: None,
             generation: 0,
@@ -160,27 +161,29 @@ impl LiveWorkflow {
             self.set_up();
             return;
         }
-        let robot_from_left = self.workspace().robot_from_left;
+        let posture = self.posture();
         if let Ok(setup) = &mut self.setup {
-            Arc::make_mut(setup).robot_from_left = robot_from_left;
+            Arc::make_mut(setup).posture = posture;
         }
     }
 
-    /// Where the eyes sit in which head.
-    pub fn rig(&self) -> &Arc<Rig> {
-        &self.rig
-    }
-
-    /// Another head, or other places of the eyes in it.
-    pub fn set_rig(&mut self, rig: Arc<Rig>) {
-        self.rig = rig;
-        self.set_up();
+    /// Takes over what is known of the robot; places rest on it from now on.
+    pub fn set_model(&mut self, model: &Arc<RobotModel>) {
+        if Arc::ptr_eq(&self.model, model) {
+            return;
+        }
+        let before = std::mem::replace(&mut self.model, model.clone());
+        if before.rig().eyes != model.rig().eyes || !Arc::ptr_eq(before.added(), model.added()) {
+            self.set_up();
+        } else if let Ok(setup) = &mut self.setup {
+            Arc::make_mut(setup).model = model.clone();
+        }
     }
 
     /// Whether the rig's lenses stand in as long as nobody has calibrated these eyes.
     pub fn use_nominal_lenses(&mut self, wanted: bool) {
         if wanted != self.nominal.is_some() {
-            let lenses = || Arc::new(StereoCalibration::bare(self.rig.eyes.cameras));
+            let lenses = || Arc::new(StereoCalibration::bare(self.model.rig().eyes.cameras));
             self.nominal = wanted.then(lenses);
             self.set_up();
         }
@@ -188,10 +191,15 @@ impl LiveWorkflow {
 
     /// The part of the table that the eyes look at, and from where.
     pub fn workspace(&self) -> Workspace {
+        let posture = self.posture();
+        let robot_from_left = self.model.robot_from_left(&posture);
+        Workspace { robot_from_left, ..self.model.rig().workspace(&posture) }
+    }
+
+    fn posture(&self) -> Posture {
         let HeadPose { head_z_rad, head_y_rad } = self.head;
-        let posture =
-            self.rig.home().with(&[self.rig.eyes.pan, self.rig.eyes.tilt], &[head_z_rad, head_y_rad]);
-        self.rig.workspace(&posture)
+        let rig = self.model.rig();
+        rig.home().with(&[rig.eyes.pan, rig.eyes.tilt], &[head_z_rad, head_y_rad])
     }
 
     /// Newest pair.
@@ -396,7 +404,9 @@ impl LiveWorkflow {
                             calibration: calibration.clone(),
                             max_disparity_px: max_disparity_px(&pair, &workspace),
                             pair,
-                            robot_from_left: workspace.robot_from_left,
+                            model: self.model.clone(),
+                            title: self.model.title().into(),
+                            posture: self.posture(),
                         })
                     })
                     .map_err(|error| sentence(&error.to_string()))

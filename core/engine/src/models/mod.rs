@@ -6,13 +6,13 @@
 pub mod command;
 mod error;
 pub mod files;
-mod learn;
-mod losses;
+pub mod learn;
+pub mod losses;
 mod map;
-mod screen;
+pub mod screen;
 mod sessions;
 mod shown;
-mod store;
+pub mod store;
 pub mod tables;
 #[cfg(test)]
 pub(crate) mod tests;

@@ -12,13 +12,13 @@ use crate::ground::step::StepState;
 
 impl ModelsWorkflow {
     /// What the window shows.
-    pub fn view(&self, around: &ModelsAround) -> ModelsView {
+    pub(super) fn shown(&self, around: &ModelsAround) -> ModelsView {
         ModelsView {
             step: self.step_state(around),
             next: self.next(around),
             sessions: Arc::from(self.sessions.as_slice()),
             session: self.session.clone(),
-            data: self.data.clone(),
+            data: self.data.clone().map(|read| read.map_err(|reason| reason.to_string())),
             training: self.training.is_some(),
             losses: self.loss_points(),
             proposals: self.proposals.values().map(|proposal| proposal.model.clone()).collect(),
@@ -101,7 +101,7 @@ impl ModelsWorkflow {
             _ if self.in_use.is_some() => self.next_with_model(around),
             None if self.session.is_some() => "The touches are being read.".to_owned(),
             None => "Touch the screen first, step 3, or choose a session with touches.".to_owned(),
-            Some(Err(reason)) => reason.clone(),
+            Some(Err(reason)) => reason.to_string(),
             Some(Ok(data)) => format!("Train models on the {} touches of this session.", data.len()),
         }
     }

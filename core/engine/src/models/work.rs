@@ -7,6 +7,7 @@ use plumbline_correction::{CorrectionModel, Method, TouchData};
 use plumbline_model::JobContext;
 use plumbline_model::robot::Rig;
 
+use super::error::ModelError;
 use super::files;
 use super::learn::{Trained, learn, options};
 use super::losses::Losses;
@@ -110,7 +111,7 @@ pub enum ModelsResult {
         /// Its folder.
         session: PathBuf,
         /// Its touches.
-        data: Result<Arc<TouchData>, String>,
+        data: Result<Arc<TouchData>, Arc<ModelError>>,
     },
     /// Proposals.
     Trained(Box<Trained>),
@@ -190,7 +191,7 @@ impl LongWork for ModelsWork {
                 Ok(ModelsResult::Listed(sessions::list(&folder).map_err(JobError::failed)?))
             }
             Self::Read { session, rig } => {
-                let data = touch_data(&session, &rig).map(Arc::new).map_err(|error| error.to_string());
+                let data = touch_data(&session, &rig).map(Arc::new).map_err(Arc::new);
                 Ok(ModelsResult::Read { session, data })
             }
             Self::Train { session, rig, methods, seed, published_recipe, losses } => {
@@ -233,7 +234,7 @@ impl ModelsResult {
             Self::Restored(_) => "The models in use were read.".to_owned(),
             Self::Listed(sessions) => format!("{} sessions with touches.", sessions.len()),
             Self::Read { data: Ok(data), .. } => format!("{} touches can be learned from.", data.len()),
-            Self::Read { data: Err(reason), .. } => reason.clone(),
+            Self::Read { data: Err(reason), .. } => reason.to_string(),
             Self::Trained(trained) => trained_summary(trained),
             Self::InUse { model: Some(model), .. } => format!("{} is in use.", model.method().name()),
             Self::InUse { model: None, .. } => "No model is in use: targets are sent as they are.".to_owned(),

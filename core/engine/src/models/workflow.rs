@@ -8,6 +8,7 @@ use plumbline_correction::{Comparison, CorrectionModel, LossPoint, Method, Touch
 use plumbline_model::robot::Rig;
 
 use super::command::ModelsCommand;
+use super::error::ModelError;
 use super::learn::Trained;
 use super::losses::Losses;
 use super::screen::Corners;
@@ -64,7 +65,7 @@ pub struct ModelsWorkflow {
     store: Store,
     pub(super) sessions: Vec<TouchSession>,
     pub(super) session: Option<PathBuf>,
-    pub(super) data: Option<Result<Arc<TouchData>, String>>,
+    pub(super) data: Option<Result<Arc<TouchData>, Arc<ModelError>>>,
     /// Of the last training that was not cancelled.
     losses: Losses,
     pub(super) training: Option<Training>,
@@ -80,27 +81,6 @@ pub struct ModelsWorkflow {
 }
 
 impl ModelsWorkflow {
-    /// Nothing trained. Sessions are looked for in `folder/sessions`, models and tables are kept in
-    /// `folder/models` and `folder/tables`.
-    pub fn new(folder: &Path) -> Self {
-        Self {
-            folder: folder.to_owned(),
-            store: Store::new(folder.join("models")),
-            sessions: Vec::new(),
-            session: None,
-            data: None,
-            losses: Losses::default(),
-            training: None,
-            changing: None,
-            proposals: BTreeMap::new(),
-            comparison: None,
-            shown: None,
-            in_use: None,
-            history: None,
-            tables: TablesEditor::new(folder.join("tables")),
-        }
-    }
-
     /// The model in use.
     pub fn in_use(&self) -> Option<&Arc<CorrectionModel>> {
         self.in_use.as_ref().map(|in_use| &in_use.model)
@@ -114,39 +94,6 @@ impl ModelsWorkflow {
     /// Loss curves, as they grow or as they were.
     pub(super) fn loss_points(&self) -> Arc<[LossPoint]> {
         self.training.as_ref().map_or(&self.losses, |training| &training.losses).points()
-    }
-
-    /// Applies a command of the operator.
-    pub fn apply(&mut self, command: ModelsCommand, around: &ModelsAround, context: &mut Context<'_>) {
-        match command {
-            ModelsCommand::ListSessions => {
-                context.start(ModelsWork::List { folder: self.folder.join("sessions") });
-            }
-            ModelsCommand::ChooseSession { session } => self.choose(session, around, context),
-            ModelsCommand::Train { methods, seed, published_recipe } => {
-                self.train(methods, (seed, published_recipe), around, context);
-            }
-            ModelsCommand::Show(method) => self.shown = Some(method),
-            ModelsCommand::Accept(method) => self.accept(method, context),
-            ModelsCommand::Discard => self.proposals.clear(),
-            ModelsCommand::Undo => self.undo(around, context),
-            ModelsCommand::UseNone if self.in_use.is_none() => {
-                context.refuse("No model is in use: targets are sent as they are.");
-            }
-            ModelsCommand::UseNone => self.change(None, context),
-            ModelsCommand::Import { file } => {
-                context.start(ModelsWork::Import { file, rig: around.rig.clone() });
-            }
-            ModelsCommand::Export { method, onnx, file } => match self.model(method) {
-                Some(model) => {
-                    context.start(ModelsWork::Export { model, onnx, file });
-                }
-                None => context.refuse(no_model(method)),
-            },
-            ModelsCommand::Tables(command) => {
-                self.tables.apply(command, &around.rig, around.robot.measured.as_ref(), context);
-            }
-        }
     }
 
     /// The proposal of this kind, else the one in use.
@@ -241,40 +188,6 @@ impl ModelsWorkflow {
         self.history.clone()
     }
 
-    /// Work has ended with a result.
-    pub fn work_done(
-        &mut self,
-        id: JobId,
-        result: ModelsResult,
-        around: &ModelsAround,
-        context: &mut Context<'_>,
-    ) {
-        let training = self.training.take_if(|training| training.id == id);
-        self.changing.take_if(|changing| *changing == id);
-        match result {
-            ModelsResult::Restored(restored) => self.restored(*restored, around, context),
-            ModelsResult::Listed(sessions) => self.listed(sessions, around, context),
-            ModelsResult::Read { session, data } => {
-                if self.session.as_ref() == Some(&session) {
-                    self.data = Some(data);
-                }
-            }
-            ModelsResult::Trained(trained) => {
-                if let Some(training) = training {
-                    self.trained(*trained, training);
-                }
-            }
-            ModelsResult::InUse { history, model, map } => self.use_model(history, model, map),
-            ModelsResult::Imported { model, map } => {
-                self.shown = Some(model.method());
-                let screen_m = screen_of(&around.rig);
-                self.proposals.insert(model.method(), Proposal { model, map, screen_m });
-            }
-            ModelsResult::Exported(_) => {}
-            ModelsResult::Tables(result) => self.tables.work_done(id, result, &around.rig, context),
-        }
-    }
-
     fn trained(&mut self, trained: Trained, training: Training) {
         let Training { session, losses, screen_m, .. } = training;
         (self.session, self.losses) = (Some(session), losses);
@@ -330,13 +243,6 @@ impl ModelsWorkflow {
         self.in_use = model.zip(map.or(own)).map(|(model, map)| InUse { model, map });
         self.shown = self.in_use().map(|model| model.method()).or(self.shown);
     }
-
-    /// Work has ended without a result: everything is as it was.
-    pub fn work_ended(&mut self, id: JobId) {
-        self.training.take_if(|training| training.id == id);
-        self.changing.take_if(|changing| *changing == id);
-        self.tables.work_ended(id);
-    }
 }
 
 impl Workflow for ModelsWorkflow {
@@ -346,12 +252,29 @@ impl Workflow for ModelsWorkflow {
     type Around = ModelsAround;
     type View = ModelsView;
 
+    /// Nothing trained. Sessions are looked for in `folder/sessions`, models and tables are kept in
+    /// `folder/models` and `folder/tables`.
     fn new(folder: &Path) -> Self {
-        Self::new(folder)
+        Self {
+            folder: folder.to_owned(),
+            store: Store::new(folder.join("models")),
+            sessions: Vec::new(),
+            session: None,
+            data: None,
+            losses: Losses::default(),
+            training: None,
+            changing: None,
+            proposals: BTreeMap::new(),
+            comparison: None,
+            shown: None,
+            in_use: None,
+            history: None,
+            tables: TablesEditor::new(folder.join("tables")),
+        }
     }
 
-    fn view(&mut self, around: &ModelsAround, _moment: &Moment) -> Arc<ModelsView> {
-        Arc::new(Self::view(self, around))
+    fn view(&mut self, around: &ModelsAround, _: &Moment) -> Arc<ModelsView> {
+        Arc::new(self.shown(around))
     }
 
     fn restore(&mut self, around: &ModelsAround, context: &mut Context<'_>) {
@@ -359,7 +282,35 @@ impl Workflow for ModelsWorkflow {
     }
 
     fn apply(&mut self, command: ModelsCommand, around: &ModelsAround, context: &mut Context<'_>) {
-        self.apply(command, around, context);
+        match command {
+            ModelsCommand::ListSessions => {
+                context.start(ModelsWork::List { folder: self.folder.join("sessions") });
+            }
+            ModelsCommand::ChooseSession { session } => self.choose(session, around, context),
+            ModelsCommand::Train { methods, seed, published_recipe } => {
+                self.train(methods, (seed, published_recipe), around, context);
+            }
+            ModelsCommand::Show(method) => self.shown = Some(method),
+            ModelsCommand::Accept(method) => self.accept(method, context),
+            ModelsCommand::Discard => self.proposals.clear(),
+            ModelsCommand::Undo => self.undo(around, context),
+            ModelsCommand::UseNone if self.in_use.is_none() => {
+                context.refuse("No model is in use: targets are sent as they are.");
+            }
+            ModelsCommand::UseNone => self.change(None, context),
+            ModelsCommand::Import { file } => {
+                context.start(ModelsWork::Import { file, rig: around.rig.clone() });
+            }
+            ModelsCommand::Export { method, onnx, file } => match self.model(method) {
+                Some(model) => {
+                    context.start(ModelsWork::Export { model, onnx, file });
+                }
+                None => context.refuse(no_model(method)),
+            },
+            ModelsCommand::Tables(command) => {
+                self.tables.apply(command, &around.rig, around.robot.measured.as_ref(), context);
+            }
+        }
     }
 
     fn work_done(
@@ -369,17 +320,36 @@ impl Workflow for ModelsWorkflow {
         around: &ModelsAround,
         context: &mut Context<'_>,
     ) {
-        self.work_done(id, result, around, context);
+        let training = self.training.take_if(|training| training.id == id);
+        self.changing.take_if(|changing| *changing == id);
+        match result {
+            ModelsResult::Restored(restored) => self.restored(*restored, around, context),
+            ModelsResult::Listed(sessions) => self.listed(sessions, around, context),
+            ModelsResult::Read { session, data } => {
+                if self.session.as_ref() == Some(&session) {
+                    self.data = Some(data);
+                }
+            }
+            ModelsResult::Trained(trained) => {
+                if let Some(training) = training {
+                    self.trained(*trained, training);
+                }
+            }
+            ModelsResult::InUse { history, model, map } => self.use_model(history, model, map),
+            ModelsResult::Imported { model, map } => {
+                self.shown = Some(model.method());
+                let screen_m = screen_of(&around.rig);
+                self.proposals.insert(model.method(), Proposal { model, map, screen_m });
+            }
+            ModelsResult::Exported(_) => {}
+            ModelsResult::Tables(result) => self.tables.work_done(id, result, &around.rig, context),
+        }
     }
 
-    fn work_ended(
-        &mut self,
-        id: JobId,
-        _why: Option<&str>,
-        _around: &ModelsAround,
-        _context: &mut Context<'_>,
-    ) {
-        self.work_ended(id);
+    fn work_ended(&mut self, id: JobId, _: Option<&str>, _: &ModelsAround, _: &mut Context<'_>) {
+        self.training.take_if(|training| training.id == id);
+        self.changing.take_if(|changing| *changing == id);
+        self.tables.work_ended(id);
     }
 }
 

@@ -4,4 +4,4 @@ mod no_way;
 mod path;
 
 pub use no_way::NoWay;
-pub use path::{Planner, ScreenPlace, TouchPace, TouchPath, touch_allowances};
+pub use path::{Hold, Planner, ScreenPlace, TouchPace, TouchPath, touch_allowances};

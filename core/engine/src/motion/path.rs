@@ -15,7 +15,7 @@ use plumbline_model::robot::ik::{Options, Solution, Solver, Target};
 use plumbline_model::robot::{Chain, JointIndex, LinkIndex, Posture, Rig};
 use plumbline_model::session::Screen;
 use plumbline_model::touch_plan::Side;
-use plumbline_model::{Pixel, Point, Robot};
+use plumbline_model::{Direction, Pixel, Point, Robot};
 
 /// The heading over a place of the table is found at this height above the table, m: about that of a
 /// fingertip on the glass.
@@ -107,6 +107,30 @@ impl TouchPace {
     pub fn at(self, share: f64) -> Self {
         Self { speed_rad_s: self.speed_rad_s * share, lower_speed_m_s: self.lower_speed_m_s * share, ..self }
     }
+}
+
+/// How the hand is held at a touch, other than as its place has it: what other postures at the same place
+/// show of the arm's errors the usual one does not.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hold {
+    /// Turned about the vertical by this much, rad.
+    pub turn_rad: f64,
+    /// The top of the finger leaned toward the robot's x and y by about this much, rad.
+    pub lean_rad: [f64; 2],
+}
+
+impl Hold {
+    /// Where the tip's z axis should point.
+    fn tool_z(self) -> Option<Direction<Robot>> {
+        Direction::new(Vector3::new(self.lean_rad[0], self.lean_rad[1], 1.0))
+    }
+}
+
+/// Heading of the tip and where its z axis should point, while it comes down.
+#[derive(Clone, Copy)]
+struct Held {
+    heading_rad: f64,
+    hold: Hold,
 }
 
 /// Postures of one touch.
@@ -257,13 +281,32 @@ impl Planner {
         side: Side,
         from: &Posture,
     ) -> Result<TouchPath, NoWay> {
+        self.plan_held(target, sent, side, Hold::default(), from)
+    }
+
+    /// As [`Self::plan`], the hand held in another way than the place has it.
+    ///
+    /// # Errors
+    /// A sentence that says why it cannot be touched so.
+    pub fn plan_held(
+        &self,
+        target: Pixel<Screen>,
+        sent: Point<Robot>,
+        side: Side,
+        hold: Hold,
+        from: &Posture,
+    ) -> Result<TouchPath, NoWay> {
         let numbers = [target.u_px, target.v_px, sent.coords.x, sent.coords.y, sent.coords.z];
         if !(numbers.iter().all(|number| number.is_finite()) && from.is_finite()) {
             return Err(NoWay::NotANumber);
         }
-        let (contact, heading_rad) = self.contact(sent, target, from)?;
+        let (contact, held) = self.contact(sent, target, hold, from)?;
         let upright = self.inclination(&contact);
-        let down = self.lowering(target, sent, side, &contact, heading_rad)?;
+        if hold != Hold::default() && upright < LEAST_UPRIGHT {
+            return Err(NoWay::Inclined { target, inclined_rad: upright.clamp(-1.0, 1.0).acos() });
+        }
+        let heading_rad = held.heading_rad;
+        let down = self.lowering(target, sent, side, &contact, held)?;
         let FreeWay { lowering, approach, turns_rad } = self.highest_free(target, from, down)?;
         let tips: Vec<Point<Robot>> = lowering.iter().map(|posture| self.tip(posture)).collect();
         Ok(TouchPath {
@@ -296,18 +339,19 @@ impl Planner {
         &self,
         sent: Point<Robot>,
         target: Pixel<Screen>,
+        hold: Hold,
         from: &Posture,
-    ) -> Result<(Posture, f64), NoWay> {
+    ) -> Result<(Posture, Held), NoWay> {
         let over = Point::new(sent.coords.x, sent.coords.y, self.rig.table.height_m + HEADING_ABOVE_M);
-        let held = self.posture(from, &self.upright(over, target)?);
-        let heading_rad = self.heading_rad(&held);
+        let usual = self.posture(from, &self.upright(over, target)?);
+        let heading_rad = self.heading_rad(&usual) + hold.turn_rad;
         let at = Target::PositionYaw { point: sent, yaw_rad: heading_rad };
-        let options = Options { other_starts: 0, ..Options::upright() };
-        let answer = self.solver.solve_from(&at, &held, &options)?;
+        let options = Options { other_starts: 0, tool_z: hold.tool_z(), ..Options::default() };
+        let answer = self.solver.solve_from(&at, &usual, &options)?;
         if !answer.is_reached() {
             return Err(NoWay::OutOfReach { target });
         }
-        Ok((self.posture(from, answer.best()), heading_rad))
+        Ok((self.posture(from, answer.best()), Held { heading_rad, hold }))
     }
 
     /// Cosine of the finger's inclination, 1 straight down.
@@ -381,9 +425,9 @@ impl Planner {
         side: Side,
         from: &Posture,
     ) -> Result<(Vec<f64>, Vec<f64>), NoWay> {
-        let (contact, heading_rad) = self.contact(sent, target, from)?;
-        let at = |step: usize| on_the_way(sent, side, heading_rad, step as f64 * STEP_M);
-        let above = self.follow(&contact, LAST_STEPS, at);
+        let (contact, held) = self.contact(sent, target, Hold::default(), from)?;
+        let at = |step: usize| on_the_way(sent, side, held.heading_rad, step as f64 * STEP_M);
+        let above = self.follow(&contact, LAST_STEPS, held.hold, at);
         let before = above.last().unwrap_or(&contact);
         let sign = |joint: &JointIndex| f64::from(sign(contact[*joint] - before[*joint]));
         let joints = self.chain.joints();
@@ -397,20 +441,21 @@ impl Planner {
         sent: Point<Robot>,
         side: Side,
         contact: &Posture,
-        heading_rad: f64,
+        held: Held,
     ) -> Result<Lowering, NoWay> {
         let glass_m = self.rig.touchscreen.point_at(target).coords.z;
         let upper_m = sent.coords.z.max(glass_m) - sent.coords.z;
         let (top_m, least_m) = (upper_m + self.above_m, upper_m + ABOVE_MEASURED_M);
         let bottom_m = sent.coords.z - sent.coords.z.min(glass_m) + BELOW_M;
-        let at = |height_m: f64| on_the_way(sent, side, heading_rad, height_m);
+        let at = |height_m: f64| on_the_way(sent, side, held.heading_rad, height_m);
         let steps = |length_m: f64| (length_m / STEP_M).ceil() as usize;
-        let up = self.follow(contact, steps(top_m), |step| at(top_m.min(step as f64 * STEP_M)));
+        let up = self.follow(contact, steps(top_m), held.hold, |step| at(top_m.min(step as f64 * STEP_M)));
         let least = steps(least_m);
         if up.len() < least {
             return Err(NoWay::TooLow { target, high_m: up.len() as f64 * STEP_M });
         }
-        let down = self.follow(contact, steps(bottom_m), |step| at(-bottom_m.min(step as f64 * STEP_M)));
+        let down =
+            self.follow(contact, steps(bottom_m), held.hold, |step| at(-bottom_m.min(step as f64 * STEP_M)));
         let allowed_m = self.rig.gate.floor_m + FLOOR_MARGIN_M;
         let above_floor =
             |posture: &&Posture| self.floor.lowest(posture).is_none_or(|(_, height_m)| height_m >= allowed_m);
@@ -427,8 +472,14 @@ impl Planner {
 
     /// Postures of neighboring targets, each from the one before, as long as they are reached
     /// without holding the arm in another way.
-    fn follow(&self, start: &Posture, steps: usize, target: impl Fn(usize) -> Target) -> Vec<Posture> {
-        let options = Options { other_starts: 0, ..Options::upright() };
+    fn follow(
+        &self,
+        start: &Posture,
+        steps: usize,
+        hold: Hold,
+        target: impl Fn(usize) -> Target,
+    ) -> Vec<Posture> {
+        let options = Options { other_starts: 0, tool_z: hold.tool_z(), ..Options::default() };
         let mut found: Vec<Posture> = vec![];
         for step in 1..=steps {
             let before = found.last().unwrap_or(start);

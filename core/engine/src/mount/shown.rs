@@ -10,7 +10,7 @@ use crate::ground::step::StepState;
 
 impl MountWorkflow {
     /// What the window shows.
-    pub fn view(&self, around: &MountAround) -> MountView {
+    pub(super) fn shown(&self, around: &MountAround) -> MountView {
         MountView {
             step: self.step_state(around),
             views: self.views.iter().map(|view| self.summary(view, around)).collect(),

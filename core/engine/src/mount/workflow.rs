@@ -20,6 +20,7 @@ use crate::ground::shelf::InUse;
 use crate::ground::text::sentence;
 use crate::ground::{Moment, Workflow};
 use crate::mount::view::MountView;
+use crate::rig_models::mount_in;
 use crate::robot::RobotControl;
 use crate::robot::view::RobotView;
 
@@ -92,23 +93,6 @@ pub(super) enum Waiting {
 }
 
 impl MountWorkflow {
-    /// Nothing seen. The mount in use is kept in a file of `folder`.
-    pub fn new(folder: &Path) -> Self {
-        Self {
-            kept: InUse::new(folder.join("mount.toml")),
-            views: Vec::new(),
-            board: None,
-            planned: Vec::new(),
-            tour: None,
-            proposal: None,
-            in_use: None,
-            solving: None,
-            last_look: None,
-            counted: 0,
-            waiting: None,
-        }
-    }
-
     /// The mount in use; `None`: nominal.
     pub fn in_use(&self) -> Option<&Arc<MountCalibration>> {
         self.in_use.as_ref()
@@ -117,37 +101,6 @@ impl MountWorkflow {
     /// Whether the board has to be looked for.
     pub fn wants_corners(&self) -> bool {
         self.tour.is_some() || self.waiting.is_some()
-    }
-
-    /// Applies a command of the operator.
-    pub fn apply(&mut self, command: MountCommand, around: &MountAround, context: &mut Context<'_>) {
-        match command {
-            MountCommand::Plan => self.wait_for_image(Waiting::Plan, around, context),
-            MountCommand::Tour => {
-                if self.planned.is_empty() {
-                    return context.refuse("No head poses are planned yet. Plan them first.");
-                }
-                self.tour = Some(Tour::new(&self.planned));
-                self.step(around, context);
-            }
-            MountCommand::Capture => self.wait_for_image(Waiting::Capture, around, context),
-            MountCommand::Delete { view } => self.views.retain(|known| known.name != view),
-            MountCommand::DeleteAll => {
-                self.views.clear();
-                (self.tour, self.proposal) = (None, None);
-            }
-            MountCommand::Solve => self.solve(around, context),
-            MountCommand::Accept => match self.proposal.clone() {
-                Some(mount) => {
-                    context.start(MountWork::Save { kept: self.kept.clone(), mount });
-                }
-                None => context.refuse("Nothing waits to be accepted. Solve first."),
-            },
-            MountCommand::Discard => self.proposal = None,
-            MountCommand::UseNominal => {
-                context.start(MountWork::Forget { kept: self.kept.clone() });
-            }
-        }
     }
 
     fn wait_for_image(&mut self, what: Waiting, around: &MountAround, context: &mut Context<'_>) {
@@ -245,10 +198,72 @@ impl MountWorkflow {
         self.views.push(view);
         Ok(())
     }
+}
 
-    /// Work has ended with a result.
-    pub fn work_done(&mut self, id: JobId, result: MountResult) {
-        self.work_ended(id);
+impl Workflow for MountWorkflow {
+    type Command = MountCommand;
+    type Work = MountWork;
+    type Control = RobotControl;
+    type Around = MountAround;
+    type View = MountView;
+
+    /// Nothing seen. The mount in use is kept in a file of `folder`.
+    fn new(folder: &Path) -> Self {
+        Self {
+            kept: mount_in(folder),
+            views: Vec::new(),
+            board: None,
+            planned: Vec::new(),
+            tour: None,
+            proposal: None,
+            in_use: None,
+            solving: None,
+            last_look: None,
+            counted: 0,
+            waiting: None,
+        }
+    }
+
+    fn view(&mut self, around: &MountAround, _: &Moment) -> Arc<MountView> {
+        Arc::new(self.shown(around))
+    }
+
+    fn restore(&mut self, around: &MountAround, context: &mut Context<'_>) {
+        context.start(MountWork::Restore { kept: self.kept.clone(), rig: around.rig.clone() });
+    }
+
+    fn apply(&mut self, command: MountCommand, around: &MountAround, context: &mut Context<'_>) {
+        match command {
+            MountCommand::Plan => self.wait_for_image(Waiting::Plan, around, context),
+            MountCommand::Tour => {
+                if self.planned.is_empty() {
+                    return context.refuse("No head poses are planned yet. Plan them first.");
+                }
+                self.tour = Some(Tour::new(&self.planned));
+                self.step(around, context);
+            }
+            MountCommand::Capture => self.wait_for_image(Waiting::Capture, around, context),
+            MountCommand::Delete { view } => self.views.retain(|known| known.name != view),
+            MountCommand::DeleteAll => {
+                self.views.clear();
+                (self.tour, self.proposal) = (None, None);
+            }
+            MountCommand::Solve => self.solve(around, context),
+            MountCommand::Accept => match self.proposal.clone() {
+                Some(mount) => {
+                    context.start(MountWork::Save { kept: self.kept.clone(), mount });
+                }
+                None => context.refuse("Nothing waits to be accepted. Solve first."),
+            },
+            MountCommand::Discard => self.proposal = None,
+            MountCommand::UseNominal => {
+                context.start(MountWork::Forget { kept: self.kept.clone() });
+            }
+        }
+    }
+
+    fn work_done(&mut self, id: JobId, result: MountResult, _: &MountAround, _: &mut Context<'_>) {
+        self.solving.take_if(|solving| *solving == id);
         match result {
             MountResult::Solved(mount) => self.proposal = Some(mount),
             MountResult::Saved(mount) => {
@@ -260,53 +275,8 @@ impl MountWorkflow {
         }
     }
 
-    /// Work has ended without a result.
-    pub fn work_ended(&mut self, id: JobId) {
-        self.solving = self.solving.filter(|solving| *solving != id);
-    }
-}
-
-impl Workflow for MountWorkflow {
-    type Command = MountCommand;
-    type Work = MountWork;
-    type Control = RobotControl;
-    type Around = MountAround;
-    type View = MountView;
-
-    fn new(folder: &Path) -> Self {
-        Self::new(folder)
-    }
-
-    fn view(&mut self, around: &MountAround, _moment: &Moment) -> Arc<MountView> {
-        Arc::new(Self::view(self, around))
-    }
-
-    fn restore(&mut self, around: &MountAround, context: &mut Context<'_>) {
-        context.start(MountWork::Restore { kept: self.kept.clone(), rig: around.rig.clone() });
-    }
-
-    fn apply(&mut self, command: MountCommand, around: &MountAround, context: &mut Context<'_>) {
-        self.apply(command, around, context);
-    }
-
-    fn work_done(
-        &mut self,
-        id: JobId,
-        result: MountResult,
-        _around: &MountAround,
-        _context: &mut Context<'_>,
-    ) {
-        self.work_done(id, result);
-    }
-
-    fn work_ended(
-        &mut self,
-        id: JobId,
-        _why: Option<&str>,
-        _around: &MountAround,
-        _context: &mut Context<'_>,
-    ) {
-        self.work_ended(id);
+    fn work_ended(&mut self, id: JobId, _: Option<&str>, _: &MountAround, _: &mut Context<'_>) {
+        self.solving.take_if(|solving| *solving == id);
     }
 }
 

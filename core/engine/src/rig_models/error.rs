@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use plumbline_effects::RigModelError;
 use plumbline_model::files::FileError;
+use plumbline_model::touchscreen::PlacementError;
+use plumbline_vision::mount::MountFileError;
 
+use crate::eyes::store::StoreError;
 use crate::ground::text::sentence;
 
 /// Why the model in use cannot be read or changed.
@@ -13,6 +16,15 @@ pub enum ModelInUseError {
     /// The model itself.
     #[error("{}", sentence(&.0.to_string()))]
     Model(#[from] RigModelError),
+    /// The calibration of the eyes.
+    #[error("{}", sentence(&.0.to_string()))]
+    Eyes(#[from] StoreError),
+    /// The mount of the eyes.
+    #[error("{}", sentence(&.0.to_string()))]
+    Mount(#[from] MountFileError),
+    /// The place of the touchscreen.
+    #[error("{}", sentence(&.0.to_string()))]
+    Screen(#[from] PlacementError),
     /// Its file.
     #[error("{}", sentence(&.0.to_string()))]
     File(#[from] FileError),

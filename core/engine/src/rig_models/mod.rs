@@ -1,5 +1,5 @@
-//! The model in use of a world: the robot's description and the effects that were accepted. It lives
-//! in one file; what predicts, touches or solves reads it from there.
+//! The model in use of a world: the robot's description and what was accepted. Effects live in one
+//! file; [`in_use`] puts them together with what was calibrated.
 
 use std::path::{Path, PathBuf};
 
@@ -13,15 +13,17 @@ use plumbline_gap::finding::{NamedEffect, Shown, ShownUnit};
 use plumbline_model::Session;
 use plumbline_model::robot::Rig;
 
-use crate::ground::shelf::InUse;
+use crate::ground::shelf::InUse as Kept;
 
 mod error;
+mod in_use;
 #[cfg(test)]
 pub(crate) mod made_up;
 #[cfg(test)]
 mod tests;
 
 pub use error::ModelInUseError;
+pub use in_use::{Accepted, in_use, mount_in, screen_in};
 
 /// The file, in the folder of a world.
 pub const FILE: &str = "rig-model.toml";
@@ -36,7 +38,7 @@ pub fn file(folder: &Path) -> PathBuf {
 /// # Errors
 /// A sentence, when there is a file that cannot be used.
 pub fn load(folder: &Path, rig: &Rig) -> Result<RigModel, ModelInUseError> {
-    let read = InUse::new(file(folder)).read(|file| RigModel::read(file, rig).map_err(ModelInUseError::from));
+    let read = Kept::new(file(folder)).read(|file| RigModel::read(file, rig).map_err(ModelInUseError::from));
     Ok(read?.unwrap_or_else(|| RigModel::nominal(rig)))
 }
 
@@ -46,7 +48,7 @@ pub fn load(folder: &Path, rig: &Rig) -> Result<RigModel, ModelInUseError> {
 /// A sentence; then what was in use stays so.
 pub fn save(folder: &Path, model: &RigModel, rig: &Rig) -> Result<(), ModelInUseError> {
     let no_folder = |error| ModelInUseError::NoFolder { folder: folder.to_owned(), error };
-    InUse::new(file(folder)).put(no_folder, |file| Ok(model.write(file, rig)?))
+    Kept::new(file(folder)).put(no_folder, |file| Ok(model.write(file, rig)?))
 }
 
 /// Accepts effects of a finding, by their places in it, and puts the model in use. `sessions` are

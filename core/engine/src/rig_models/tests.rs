@@ -161,3 +161,49 @@ fn the_model_of_another_rig_is_refused() {
     let said = load(folder.path(), &other).expect_err("another rig").to_string();
     assert!(said.contains("belongs to the robot \"nico\", not to \"icub\""), "{said}");
 }
+
+#[test]
+fn all_that_was_accepted_is_put_together() {
+    use plumbline_model::{StereoCalibration, StereoCameras};
+
+    use crate::eyes::store::Store;
+
+    let (rig, folder) = (nico(), tempfile::tempdir().expect("a folder for the test"));
+    let plain = in_use(folder.path(), &rig).expect("nothing was accepted");
+    assert!(plain.is_nominal());
+    assert_eq!(**plain.rig(), rig);
+
+    let mut cameras: StereoCameras = rig.eyes.cameras;
+    cameras.right_from_left.isometry.translation.vector.x *= 1.02;
+    let store = Store::of_world(folder.path());
+    store.accept(&StereoCalibration::bare(cameras), Timestamp::now()).expect("kept");
+    let motion = nalgebra::Isometry3::translation(0.01, 0.0, 0.002);
+    let corners = rig.touchscreen.corners();
+    let pixels = [[0.0, 0.0], [1919.0, 0.0], [1919.0, 1079.0], [0.0, 1079.0]];
+    let touches: Vec<_> = pixels
+        .into_iter()
+        .map(|[u_px, v_px]| {
+            let pixel = plumbline_model::Pixel::new(u_px, v_px);
+            (pixel, plumbline_model::Point::from(motion * rig.touchscreen.point_at(pixel).coords))
+        })
+        .collect();
+    let placement = plumbline_model::touchscreen::place_screen(&rig.touchscreen, &touches)
+        .expect("four corners")
+        .of_rig(&rig.name);
+    screen_in(folder.path())
+        .put(|error| panic!("{error}"), |file| placement.write(file).map_err(|error| panic!("{error}")))
+        .unwrap_or_else(|()| unreachable!("it would have panicked"));
+    let effects = model_with(&rig, &[("joint-zero", "r_elbow_y", &[0.03])]);
+    save(folder.path(), &effects, &rig).expect("written");
+
+    let all = in_use(folder.path(), &rig).expect("all of it can be used");
+    assert_eq!(all.title(), "with 1 effect");
+    assert_eq!(all.rig().eyes.head_from_left, rig.eyes.head_from_left);
+    assert!((all.rig().eyes.cameras.baseline_m() - cameras.baseline_m()).abs() < 1e-9);
+    for (moved, nominal) in all.rig().touchscreen.corners().iter().zip(corners) {
+        assert!((moved.coords - nominal.coords - motion.translation.vector).norm() < 1e-9);
+    }
+    std::fs::write(mount_in(folder.path()).file(), "format = 1\n").expect("written");
+    let said = in_use(folder.path(), &rig).expect_err("no mount").to_string();
+    assert!(said.contains("mount.toml") && said.ends_with('.'), "{said}");
+}

@@ -1,8 +1,9 @@
 //! What is handed to the robot's thread.
 
+use std::sync::Arc;
+
+use plumbline_effects::RobotModel;
 use plumbline_hardware::joints::Touch;
-use plumbline_model::frame::{Head, LeftCamera, Pose};
-use plumbline_model::session::Touchscreen;
 
 use super::command::RobotCommand;
 use super::lead::Led;
@@ -16,13 +17,8 @@ pub enum RobotControl {
     Robot(RobotCommand),
     /// The operator wants something of the twin.
     Twin(TwinCommand),
-    /// The eyes sit elsewhere in the head: looking at a point needs to know.
-    PlaceEyes {
-        /// Place of the left eye.
-        head_from_left: Pose<Head, LeftCamera>,
-    },
-    /// The touchscreen lies elsewhere.
-    PlaceScreen(Touchscreen),
+    /// The robot is known otherwise than before: what was calibrated, and the effects of the model.
+    UseModel(Arc<RobotModel>),
     /// Touch the screen once.
     Touch(Box<TouchOrder>),
     /// End the touch that is under way: up again, if the arm may move.

@@ -5,7 +5,9 @@
 //! Source: Nakamura and Hanafusa: Inverse kinematic solutions with singularity robustness (1986).
 
 use nalgebra::{DMatrix, DVector};
-use plumbline_model::robot::Chain;
+use plumbline_effects::ModelArm;
+use plumbline_effects::rig_model::Conditions;
+use plumbline_model::robot::Posture;
 
 use super::command::JogRates;
 
@@ -13,66 +15,134 @@ use super::command::JogRates;
 const DAMPING: f64 = 0.02;
 /// A turn of 1 rad/s counts as much as this many m/s.
 const LEVER_M: f64 = 0.1;
+/// Half of a difference of a joint's angle, rad.
+const STEP_RAD: f64 = 1e-5;
 
-/// Joint speeds (rad/s, one per joint of the chain) at which the tip goes as asked, all slowed
-/// down together so that none is faster than `fastest_rad_s`.
-pub fn joint_rates(chain: &Chain, angles_rad: &[f64], rates: &JogRates, fastest_rad_s: f64) -> Vec<f64> {
-    let (_, jacobian) = chain.jacobian(angles_rad);
-    let mut rows = DMatrix::zeros(4, chain.len());
-    rows.rows_mut(0, 3).copy_from(&jacobian.rows(0, 3));
-    rows.row_mut(3).copy_from(&(jacobian.row(5) * LEVER_M));
+/// Joint speeds (rad/s, one per joint of the arm) at which the real tip goes as asked when a posture is
+/// commanded, all slowed down together so that none is faster than `fastest_rad_s`.
+pub fn joint_rates(arm: &ModelArm, commanded: &Posture, rates: &JogRates, fastest_rad_s: f64) -> Vec<f64> {
+    let rows = slopes(arm, commanded);
     let [x, y, z] = rates.velocity_m_s;
     let wanted = DVector::from_vec(vec![x, y, z, rates.yaw_rad_s * LEVER_M]);
     let square = &rows * rows.transpose() + DMatrix::identity(4, 4) * (DAMPING * DAMPING);
-    let Some(inverse) = square.try_inverse() else { return vec![0.0; chain.len()] };
+    let Some(inverse) = square.try_inverse() else { return vec![0.0; arm.joints().len()] };
     let speeds = rows.transpose() * inverse * wanted;
     let fastest = speeds.amax();
     let slow_down = if fastest > fastest_rad_s { fastest_rad_s / fastest } else { 1.0 };
     speeds.iter().map(|speed| speed * slow_down).collect()
 }
 
+/// Velocity of the tip (m/rad) and its turn about the vertical (times [`LEVER_M`]), one column per
+/// joint.
+fn slopes(arm: &ModelArm, commanded: &Posture) -> DMatrix<f64> {
+    let mut rows = DMatrix::zeros(4, arm.joints().len());
+    if arm.is_nominal() {
+        let (_, jacobian) = arm.chain().jacobian(&commanded.of(arm.joints()));
+        rows.rows_mut(0, 3).copy_from(&jacobian.rows(0, 3));
+        rows.row_mut(3).copy_from(&(jacobian.row(5) * LEVER_M));
+        return rows;
+    }
+    let conditions = Conditions::default();
+    for (i, joint) in arm.joints().iter().enumerate() {
+        let at = |step_rad: f64| {
+            let turned = commanded.with(&[*joint], &[commanded[*joint] + step_rad]);
+            arm.robot_from_tip(&turned, &conditions).isometry
+        };
+        let (behind, ahead) = (at(-STEP_RAD), at(STEP_RAD));
+        let velocity = (ahead.translation.vector - behind.translation.vector) / (2.0 * STEP_RAD);
+        let turn = (ahead.rotation * behind.rotation.inverse()).scaled_axis() / (2.0 * STEP_RAD);
+        rows.fixed_view_mut::<3, 1>(0, i).copy_from(&velocity);
+        rows[(3, i)] = turn.z * LEVER_M;
+    }
+    rows
+}
+
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use nalgebra::Vector3;
+    use plumbline_effects::RobotModel;
     use plumbline_model::robot::Rig;
 
     use super::*;
+    use crate::rig_models::made_up::model_with;
 
-    fn chain() -> (Rig, Chain) {
-        let rig = Rig::built_in("nico").expect("the rig that comes with the program");
-        let chain = rig.chain("right_index_tip").expect("a tip");
-        (rig, chain)
+    const TIP: &str = "right_index_tip";
+
+    fn nominal() -> (Arc<Rig>, ModelArm) {
+        let rig = Arc::new(Rig::built_in("nico").expect("the rig that comes with the program"));
+        let arm = RobotModel::nominal(rig.clone()).arm(TIP).expect("a tip");
+        (rig, arm)
+    }
+
+    fn ready(rig: &Rig) -> Posture {
+        rig.pose("touch-ready").expect("a pose of NICO").applied_to(&rig.home())
+    }
+
+    /// Where the tip goes per second.
+    fn went(arm: &ModelArm, from: &Posture, speeds: &[f64]) -> Vector3<f64> {
+        let step = 1e-4;
+        let angles: Vec<f64> =
+            from.of(arm.joints()).iter().zip(speeds).map(|(angle, speed)| angle + speed * step).collect();
+        let place = |posture: &Posture| arm.tip(posture, &Conditions::default()).coords;
+        (place(&from.with(arm.joints(), &angles)) - place(from)) / step
     }
 
     #[test]
     fn the_tip_goes_where_it_is_asked_to() {
-        let (rig, chain) = chain();
-        let pose = rig.pose("touch-ready").expect("a pose of NICO").applied_to(&rig.home());
-        let angles = pose.of(chain.joints());
+        let (rig, arm) = nominal();
         let rates = JogRates { velocity_m_s: [0.05, -0.02, 0.01], yaw_rad_s: 0.0 };
-        let speeds = joint_rates(&chain, &angles, &rates, 10.0);
-        let step = 1e-3;
-        let moved: Vec<f64> = angles.iter().zip(&speeds).map(|(a, s)| a + s * step).collect();
-        let went = (chain.robot_from_tip(&moved).translation_m()
-            - chain.robot_from_tip(&angles).translation_m())
-            / step;
-        let asked = nalgebra::Vector3::from(rates.velocity_m_s);
+        let speeds = joint_rates(&arm, &ready(&rig), &rates, 10.0);
+        let asked = Vector3::from(rates.velocity_m_s);
+        let went = went(&arm, &ready(&rig), &speeds);
         assert!((went - asked).norm() < 0.15 * asked.norm(), "{went:?}");
     }
 
     #[test]
+    fn with_effects_the_real_tip_goes_where_it_is_asked_to() {
+        let (rig, nominal) = nominal();
+        let effects = [("joint-zero", "r_elbow_y", [0.2].as_slice()), ("joint-zero", "r_arm_x", &[-0.15])];
+        let model = RobotModel::new(rig.clone(), Arc::new(model_with(&rig, &effects))).expect("they fit");
+        let real = model.arm(TIP).expect("a tip");
+        let rates = JogRates { velocity_m_s: [0.05, -0.02, 0.01], yaw_rad_s: 0.0 };
+        // Damping makes the tip slower, not astray: what is asked of the arm without effects and of that
+        // with them is judged by the same measure.
+        let asked = Vector3::from(rates.velocity_m_s);
+        let [with, without] = [&real, &nominal].map(|by| {
+            let speeds = joint_rates(by, &ready(&rig), &rates, 10.0);
+            (went(&real, &ready(&rig), &speeds) - asked).norm() / asked.norm()
+        });
+        assert!(with < 0.15 && without > 1.5 * with, "astray by {with} with and {without} without");
+    }
+
+    #[test]
+    fn differences_are_the_jacobian() {
+        let (rig, arm) = nominal();
+        // An effect of size nearly zero, so that differences are taken.
+        let model = model_with(&rig, &[("joint-zero", "r_elbow_y", &[1e-12])]);
+        let model = RobotModel::new(rig.clone(), Arc::new(model)).expect("it fits");
+        let nearly = model.arm(TIP).expect("a tip");
+        assert!(!nearly.is_nominal());
+        let (by_differences, exact) = (slopes(&nearly, &ready(&rig)), slopes(&arm, &ready(&rig)));
+        assert!((by_differences - exact).amax() < 1e-8);
+    }
+
+    #[test]
     fn no_joint_is_faster_than_allowed_even_at_a_stretched_arm() {
-        let (_, chain) = chain();
-        let stretched = vec![0.0, 1.2, 0.0, std::f64::consts::PI, 0.0, 0.0];
+        let (rig, arm) = nominal();
+        let angles = [0.0, 1.2, 0.0, std::f64::consts::PI, 0.0, 0.0];
+        let stretched = rig.home().with(arm.joints(), &angles);
         let rates = JogRates { velocity_m_s: [1.0, 1.0, 1.0], yaw_rad_s: 3.0 };
-        for speed in joint_rates(&chain, &stretched, &rates, 0.5) {
+        for speed in joint_rates(&arm, &stretched, &rates, 0.5) {
             assert!(speed.is_finite() && speed.abs() <= 0.5 + 1e-12, "{speed}");
         }
     }
 
     #[test]
     fn no_wish_no_motion() {
-        let (rig, chain) = chain();
-        let speeds = joint_rates(&chain, &rig.home().of(chain.joints()), &JogRates::default(), 0.5);
+        let (rig, arm) = nominal();
+        let speeds = joint_rates(&arm, &rig.home(), &JogRates::default(), 0.5);
         assert!(speeds.iter().all(|speed| *speed == 0.0));
     }
 }

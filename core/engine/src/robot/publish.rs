@@ -3,6 +3,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use plumbline_effects::rig_model::Conditions;
+use plumbline_effects::robot_model::worst_sigma_m;
 use plumbline_hardware::joints::{HoldReason, JointReading, JointState, Motion};
 use plumbline_model::robot::{Posture, Servo};
 
@@ -50,6 +52,7 @@ impl Worker {
                 .as_ref()
                 .filter(|_| state.is_some_and(|state| self.chain.joints().iter().all(|j| state.knows(*j))))
                 .map(|posture| self.tip_place(posture)),
+            model: self.title.clone(),
             unknown: state.map_or_else(Default::default, |state| state.unknown.clone()),
             measured,
             trail: self.trail.iter().map(|(_, place)| *place).collect(),
@@ -126,12 +129,16 @@ impl Worker {
         }
     }
 
-    fn tip_place(&self, posture: &Posture) -> TipPlace {
-        let place = self.chain.robot_from_tip_in(posture);
+    fn tip_place(&self, encoders: &Posture) -> TipPlace {
+        let place = self.tip_by_encoders(encoders);
         let x_axis = place.isometry.rotation * nalgebra::Vector3::x();
+        let sigma_m = self.arm_model.as_ref().map_or(0.0, |arm| {
+            worst_sigma_m(&arm.covariance_by_encoders_m2(encoders, &Conditions::default()))
+        });
         TipPlace {
             point: plumbline_model::Point::from(nalgebra::Point3::from(place.translation_m())),
             yaw_rad: x_axis.y.atan2(x_axis.x),
+            sigma_m,
         }
     }
 
@@ -173,6 +180,7 @@ impl RobotView {
             && self.poses == other.poses
             && self.ports == other.ports
             && self.tip == other.tip
+            && self.model == other.model
             && (self.speed - other.speed).abs() < f64::EPSILON
             && self.measured.is_some() == other.measured.is_some()
             && self.unknown == other.unknown

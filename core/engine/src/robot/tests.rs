@@ -3,6 +3,8 @@
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use plumbline_effects::RobotModel;
+use plumbline_effects::rig_model::Conditions;
 use plumbline_hardware::joints::{
     BusStatistics, HoldReason, JointReading, JointState, Motion, Move, MoveId, Refusal, Setpoint,
 };
@@ -14,6 +16,7 @@ use super::command::{Destination, JogRates, RobotCommand};
 use super::control::RobotControl;
 use super::view::Connection;
 use super::{Switches, Worker};
+use crate::rig_models::made_up::model_with;
 use crate::twin::command::TwinCommand;
 use crate::twin::{TwinDesk, TwinEyesPlug};
 
@@ -275,4 +278,38 @@ fn the_twin_is_not_commanded_while_it_does_not_run() {
     let mut bench = Bench::new();
     bench.worker.control(RobotControl::Twin(TwinCommand::HideBoard));
     assert!(bench.refusal().is_some_and(|reason| reason.contains("not running")));
+}
+
+#[test]
+fn what_is_known_of_the_robot_decides_where_it_is_sent_and_taken_back_all_is_as_before() {
+    const POINT_M: [f64; 3] = [0.3, -0.2, 0.2];
+    let mut bench = Bench::connected();
+    let shown = |bench: &mut Bench| {
+        bench.send(RobotCommand::Preview(Destination::TipPosition { point_m: POINT_M }));
+        bench.worker.preview.clone().expect("it is shown").1
+    };
+    let before = shown(&mut bench);
+    assert_eq!((&*before.model, before.tip_sigma_m), ("as described", Some(0.0)));
+    let place = bench.worker.take_news().expect("news").robot.tip_place.expect("known");
+
+    let effects = model_with(&bench.rig, &[("joint-zero", "r_elbow_y", &[0.08])]);
+    let known = RobotModel::new(bench.rig.clone(), Arc::new(effects)).expect("it fits");
+    bench.worker.control(RobotControl::UseModel(Arc::new(known.clone())));
+    assert!(bench.worker.preview.is_none(), "it was found with another arm");
+    let with = shown(&mut bench);
+    assert_eq!(&*with.model, "with 1 effect");
+    let arm = known.arm("right_palm_center").expect("a tip");
+    let beside_m = |end: &Posture| {
+        let tip = arm.tip(end, &Conditions::default());
+        tip.distance_m(&plumbline_model::Point::new(POINT_M[0], POINT_M[1], POINT_M[2]))
+    };
+    assert!(beside_m(&with.end) < 1e-4 && beside_m(&before.end) > 5e-3);
+    let robot = bench.worker.take_news().expect("news").robot.clone();
+    assert_eq!(&*robot.model, "with 1 effect");
+    assert!(robot.tip_place.expect("known").point.distance_m(&place.point) > 5e-3);
+
+    let nominal = RobotModel::nominal(bench.rig.clone());
+    bench.worker.control(RobotControl::UseModel(Arc::new(nominal)));
+    assert_eq!(shown(&mut bench), before);
+    assert_eq!(bench.worker.take_news().expect("news").robot.tip_place, Some(place));
 }

@@ -108,6 +108,16 @@ pub enum NoDestination {
     /// Not every link can be sent somewhere.
     #[error("Choose a tip that the arm can move.")]
     NoTip,
+    /// Effects jump there.
+    #[error(
+        "The effects of the model leave no command that leads there: the nearest one ends {:.1} mm beside it. Choose \
+         another place.",
+        .by_m * 1e3
+    )]
+    Unsettled {
+        /// What is left, m.
+        by_m: f64,
+    },
     /// It cannot be asked so.
     #[error("{}", sentence(&.0.to_string()))]
     Reach(#[from] ReachError),

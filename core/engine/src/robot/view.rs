@@ -30,6 +30,8 @@ pub struct RobotView {
     pub tip: String,
     /// Where the model says that tip is, by the encoders.
     pub tip_place: Option<TipPlace>,
+    /// The model of the robot, for people: "as described", "with 2 effects".
+    pub model: Arc<str>,
     /// Places of the tip during the last half minute, oldest first.
     pub trail: Arc<[Point<Robot>]>,
     /// A move that was asked for and does not run yet.
@@ -195,6 +197,9 @@ pub struct TipPlace {
     pub point: Point<Robot>,
     /// Turn about the vertical, rad.
     pub yaw_rad: f64,
+    /// One standard deviation of the place along the worst direction, by what is not known of the
+    /// model's effects, m; zero without effects.
+    pub sigma_m: f64,
 }
 
 /// A move that does not run yet.
@@ -210,6 +215,11 @@ pub struct Preview {
     pub duration: Duration,
     /// The joint that turns most, for people, and by how much (rad).
     pub largest_turn: Option<(String, f64)>,
+    /// The model of the robot, for people: "as described", "with 2 effects".
+    pub model: Arc<str>,
+    /// One standard deviation of the place that the tip gets to, along the worst direction, by what is
+    /// not known of the model's effects, m; `None` where no place was asked for.
+    pub tip_sigma_m: Option<f64>,
 }
 
 /// A path that can run.

@@ -6,10 +6,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use plumbline_effects::rig_model::Conditions;
+use plumbline_effects::{ModelArm, RobotModel};
 use plumbline_hardware::joints::{
     Chains, Motion, Move, MoveId, MoveOutcome, Pace, Refusal, Setpoint, SetpointKind,
 };
-use plumbline_model::frame::{Point, Robot};
+use plumbline_model::frame::{Point, Pose, Robot, Tip};
 use plumbline_model::robot::{Chain, JointIndex, Posture, Reach, Rig};
 
 use super::Switches;
@@ -24,7 +26,7 @@ use super::lead::Leading;
 use super::path::{Paths, duration};
 use super::poses::PoseLibrary;
 use super::touching::Touching;
-use super::unable::{FASTEST_JOG, SPEEDS, Unable};
+use super::unable::{FASTEST_JOG, NoDestination, SPEEDS, Unable};
 use super::view::{Connection, PortView, Preview, RobotView};
 use crate::ground::notice::NoticeLevel;
 use crate::ground::text::sentence;
@@ -74,6 +76,12 @@ pub struct Worker {
     pub(super) desk: TwinDesk,
     pub(super) tip: String,
     pub(super) chain: Chain,
+    /// The robot as it is known; its description is `rig`.
+    model: Arc<RobotModel>,
+    /// What that is called for people.
+    pub(super) title: Arc<str>,
+    /// The arm of the chosen tip with the model's effects; `None` when it cannot be moved.
+    pub(super) arm_model: Option<ModelArm>,
     /// Which joints move together.
     together: Chains,
     reach: Option<Reach>,
@@ -102,6 +110,7 @@ impl Worker {
         let tip =
             rig.arms.first().and_then(|arm| arm.tips.first()).map(|tip| tip.link.clone()).unwrap_or_default();
         let paths = Paths::new(&rig);
+        let model = Arc::new(RobotModel::nominal(rig.clone()));
         let chain = rig.chain(&tip).or_else(|_| rig.chain(&rig.description.links()[0].name));
         Self {
             switches,
@@ -112,6 +121,9 @@ impl Worker {
             desk,
             chain: chain.expect("the base is a link, and a rig's tips are checked when it is read"),
             reach: Reach::with_model(&rig, &tip, paths.model()).ok(),
+            arm_model: model.arm(&tip).ok(),
+            title: model.title().into(),
+            model,
             together: Chains::of(&rig.description),
             tip,
             paths,
@@ -194,20 +206,41 @@ impl Worker {
                 self.felt_by_window(contact);
                 Ok(())
             }
-            RobotControl::PlaceScreen(screen) => {
-                Arc::make_mut(&mut self.rig).touchscreen = screen;
-                self.paths.place(&self.rig);
-                self.reach = Reach::with_model(&self.rig, &self.tip, self.paths.model()).ok();
-                Ok(())
-            }
-            RobotControl::PlaceEyes { head_from_left } => {
-                Arc::make_mut(&mut self.rig).eyes.head_from_left = head_from_left;
+            RobotControl::UseModel(model) => {
+                self.use_model(model);
                 Ok(())
             }
         };
         match result {
             Ok(()) => {}
             Err(reason) => self.refuse(reason.to_string()),
+        }
+    }
+
+    /// From now on the robot is known so. A move that is shown was found with another arm where the
+    /// effects are others: it is shown no more.
+    pub fn use_model(&mut self, model: Arc<RobotModel>) {
+        let screen_moved = self.rig.touchscreen != model.rig().touchscreen;
+        let other_effects = !Arc::ptr_eq(self.model.added(), model.added())
+            && self.model.added().contents != model.added().contents;
+        (self.rig, self.title) = (model.rig().clone(), model.title().into());
+        self.arm_model = model.arm(&self.tip).ok();
+        self.model = model;
+        if screen_moved {
+            self.paths.place(&self.rig);
+            self.reach = Reach::with_model(&self.rig, &self.tip, self.paths.model()).ok();
+        }
+        if other_effects {
+            self.preview = None;
+            self.trail.clear();
+        }
+    }
+
+    /// Where the tip is when encoders read a posture.
+    pub(super) fn tip_by_encoders(&self, encoders: &Posture) -> Pose<Robot, Tip> {
+        match &self.arm_model {
+            Some(arm) => arm.robot_from_tip_by_encoders(encoders, &Conditions::default()),
+            None => self.chain.robot_from_tip_in(encoders),
         }
     }
 
@@ -249,6 +282,7 @@ impl Worker {
             RobotCommand::ChooseTip { link } => {
                 self.chain = self.rig.chain(&link)?;
                 self.reach = Reach::with_model(&self.rig, &link, self.paths.model()).ok();
+                self.arm_model = self.model.arm(&link).ok();
                 self.tip = link;
                 self.trail.clear();
                 Ok(())
@@ -359,8 +393,8 @@ impl Worker {
         self.preview = None;
         let present = self.present().ok_or(Unable::NotReadToShow)?;
         let poses = self.poses.all(&self.rig);
-        let around =
-            Circumstances { rig: &self.rig, reach: self.reach.as_ref(), present: &present, poses: &poses };
+        let reach = self.reach.as_ref().zip(self.arm_model.as_ref());
+        let around = Circumstances { model: &self.model, reach, present: &present, poses: &poses };
         let resolved = resolve(destination, &around)?;
         self.knows(&resolved.joints)?;
         self.preview_of(resolved);
@@ -379,6 +413,8 @@ impl Worker {
             path,
             duration: duration(largest.map_or(0.0, |(_, turn_rad)| turn_rad), self.peak_speed_rad_s()),
             largest_turn: largest.map(|(joint, turn_rad)| (title(joint), turn_rad)),
+            model: self.title.clone(),
+            tip_sigma_m: resolved.tip_sigma_m,
         };
         self.preview = Some((resolved, preview));
     }
@@ -402,7 +438,7 @@ impl Worker {
         self.knows(&joints)?;
         let end = present.with(&joints, &[pan_rad, tilt_rad]);
         self.paths.check(&present, &end)?;
-        self.begin(Resolved { title: "the head to its next pose".to_owned(), end, joints })
+        self.begin(Resolved::of_joints("the head to its next pose".to_owned(), end, joints))
     }
 
     fn begin(&mut self, resolved: Resolved) -> Result<(), Unable> {
@@ -456,7 +492,10 @@ impl Worker {
             return;
         }
         let fastest = self.peak_speed_rad_s();
-        let speeds = joint_rates(&self.chain, &jog.goal.of(self.chain.joints()), &jog.rates, fastest);
+        let speeds = match &self.arm_model {
+            Some(arm) => joint_rates(arm, &jog.goal, &jog.rates, fastest),
+            None => return self.refuse(Unable::from(NoDestination::NoTip).to_string()),
+        };
         let step_s = now.saturating_duration_since(jog.last).as_secs_f64().min(0.1);
         let ahead = |seconds: f64| {
             let angles: Vec<f64> = self
@@ -558,7 +597,7 @@ impl Worker {
         while self.trail.front().is_some_and(|(at, _)| now.saturating_duration_since(*at) > TRAIL) {
             self.trail.pop_front();
         }
-        let place = self.chain.robot_from_tip_in(posture).translation_m();
+        let place = self.tip_by_encoders(posture).translation_m();
         let place = Point::new(place.x, place.y, place.z);
         if self.trail.back().is_none_or(|(_, last)| last.distance_m(&place) > TRAIL_STEP_M) {
             self.trail.push_back((now, place));

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use plumbline_model::{ClassIndex, JobContext};
-use plumbline_vision::detect::{Detector, DetectorOptions};
+use plumbline_vision::detect::{DetectError, Detector, DetectorOptions};
 use plumbline_vision::detect_score::{
     Cell, EvaluateError, EvaluateOptions, Interval, Intervals, ModelEvaluation, PartOfJob, Summary, evaluate,
 };
@@ -46,7 +46,7 @@ pub fn judge(
         let name = name_of(file);
         rows.push(ScoreRow {
             model: name.clone(),
-            scores: judged.as_ref().map(scores_of).map_err(Clone::clone),
+            scores: judged.as_ref().map(scores_of).map_err(ToString::to_string),
         });
         evaluations.push(judged.ok().map(|evaluation| ModelEvaluation { model: name, ..evaluation }));
     }
@@ -85,13 +85,24 @@ fn read(set: &Path, part: SetPart, context: &dyn JobContext) -> Result<YoloSurve
     Ok(survey)
 }
 
-/// One detector; the inner error is a sentence for its row.
+/// Why a detector has no scores.
+#[derive(Debug, thiserror::Error)]
+enum NotJudged {
+    /// It cannot be opened.
+    #[error("{}", sentence(&.0.to_string()))]
+    Detector(#[from] DetectError),
+    /// It cannot be judged on this data set.
+    #[error("{}", sentence(&.0.to_string()))]
+    Evaluate(EvaluateError),
+}
+
+/// One detector; the inner error is told in its row, and the others go on.
 fn one(
     file: &Path,
     set: &YoloSet,
     provider: Provider,
     context: &dyn JobContext,
-) -> Result<Result<ModelEvaluation, String>, JobError> {
+) -> Result<Result<ModelEvaluation, NotJudged>, JobError> {
     context.checkpoint()?;
     // The window and what is live behind it go on meanwhile.
     let options = DetectorOptions {
@@ -102,12 +113,12 @@ fn one(
     };
     let mut detector = match Detector::open(file, &options) {
         Ok(detector) => detector,
-        Err(error) => return Ok(Err(sentence(&error.to_string()))),
+        Err(error) => return Ok(Err(error.into())),
     };
     match evaluate(&mut detector, set, &EvaluateOptions::default(), context) {
         Ok(evaluation) => Ok(Ok(evaluation)),
         Err(EvaluateError::Cancelled(cancelled)) => Err(cancelled.into()),
-        Err(error) => Ok(Err(sentence(&error.to_string()))),
+        Err(error) => Ok(Err(NotJudged::Evaluate(error))),
     }
 }
 

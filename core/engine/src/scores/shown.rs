@@ -5,7 +5,7 @@ use super::view::ScoresView;
 
 impl ScoresWorkflow {
     /// What the window shows.
-    pub fn view(&self) -> ScoresView {
+    pub(super) fn shown(&self) -> ScoresView {
         ScoresView {
             models: self.models.as_slice().into(),
             set: self.set.clone(),

@@ -15,7 +15,7 @@ use crate::ground::{Moment, Nothing, Workflow};
 use crate::scores::view::ScoresView;
 
 /// The whole workflow.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct ScoresWorkflow {
     pub(super) models: Vec<ScoredModelFile>,
     pub(super) set: Option<PathBuf>,
@@ -29,50 +29,6 @@ pub struct ScoresWorkflow {
 }
 
 impl ScoresWorkflow {
-    /// The detector that comes with the program is chosen, where it is there.
-    pub fn new(shipped: Option<PathBuf>) -> Self {
-        let shipped = shipped.map(|file| ScoredModelFile { file, chosen: true, shipped: true });
-        Self {
-            models: shipped.into_iter().collect(),
-            set: None,
-            part: SetPart::default(),
-            evaluating: None,
-            failed: None,
-            evaluation: None,
-            opening: None,
-            cell: None,
-            picture: None,
-        }
-    }
-
-    /// Applies a command of the operator.
-    pub fn apply(&mut self, command: ScoresCommand, provider: Provider, context: &mut Context<'_>) {
-        match command {
-            ScoresCommand::AddModels { files } => files.into_iter().for_each(|file| self.add(file)),
-            ScoresCommand::RemoveModel { file } => self.models.retain(|model| model.file != file),
-            ScoresCommand::ChooseModel { file, chosen } => {
-                for model in self.models.iter_mut().filter(|model| model.file == file) {
-                    model.chosen = chosen;
-                }
-            }
-            ScoresCommand::ChooseSet { path } => (self.set, self.failed) = (Some(path), None),
-            ScoresCommand::ChoosePart(part) => (self.part, self.failed) = (part, None),
-            ScoresCommand::Evaluate => self.evaluate(provider, context),
-            ScoresCommand::OpenCell { model, cell } => self.open_cell(model, cell, context),
-            ScoresCommand::CloseCell => (self.cell, self.picture) = (None, None),
-            ScoresCommand::ShowPicture(picture) => {
-                let known = self.cell.as_ref().map_or(0, |cell| cell.pictures.len());
-                self.picture = picture.filter(|picture| *picture < known);
-            }
-            ScoresCommand::ExportCsv { file } => match &self.evaluation {
-                Some(evaluation) => {
-                    context.start(ScoresWork::ExportCsv { evaluation: evaluation.clone(), file });
-                }
-                None => context.refuse("Judge a detector first, then write the table."),
-            },
-        }
-    }
-
     fn add(&mut self, file: PathBuf) {
         match self.models.iter_mut().find(|model| model.file == file) {
             Some(model) => model.chosen = true,
@@ -100,9 +56,57 @@ impl ScoresWorkflow {
         self.picture = None;
         self.opening = Some(context.start(ScoresWork::OpenCell { evaluation, model, cell }));
     }
+}
 
-    /// Work has ended with a result.
-    pub fn work_done(&mut self, id: JobId, result: ScoresResult) {
+impl Workflow for ScoresWorkflow {
+    type Command = ScoresCommand;
+    type Work = ScoresWork;
+    type Control = Nothing;
+    type Around = Provider;
+    type View = ScoresView;
+
+    /// The detector that comes with the program is chosen, where it is there.
+    fn new(_: &Path) -> Self {
+        let shipped = shipped_detector().map(|shipped| ScoredModelFile {
+            file: shipped.file,
+            chosen: true,
+            shipped: true,
+        });
+        Self { models: shipped.into_iter().collect(), ..Self::default() }
+    }
+
+    fn view(&mut self, _: &Provider, _: &Moment) -> Arc<ScoresView> {
+        Arc::new(self.shown())
+    }
+
+    fn apply(&mut self, command: ScoresCommand, provider: &Provider, context: &mut Context<'_>) {
+        match command {
+            ScoresCommand::AddModels { files } => files.into_iter().for_each(|file| self.add(file)),
+            ScoresCommand::RemoveModel { file } => self.models.retain(|model| model.file != file),
+            ScoresCommand::ChooseModel { file, chosen } => {
+                for model in self.models.iter_mut().filter(|model| model.file == file) {
+                    model.chosen = chosen;
+                }
+            }
+            ScoresCommand::ChooseSet { path } => (self.set, self.failed) = (Some(path), None),
+            ScoresCommand::ChoosePart(part) => (self.part, self.failed) = (part, None),
+            ScoresCommand::Evaluate => self.evaluate(*provider, context),
+            ScoresCommand::OpenCell { model, cell } => self.open_cell(model, cell, context),
+            ScoresCommand::CloseCell => (self.cell, self.picture) = (None, None),
+            ScoresCommand::ShowPicture(picture) => {
+                let known = self.cell.as_ref().map_or(0, |cell| cell.pictures.len());
+                self.picture = picture.filter(|picture| *picture < known);
+            }
+            ScoresCommand::ExportCsv { file } => match &self.evaluation {
+                Some(evaluation) => {
+                    context.start(ScoresWork::ExportCsv { evaluation: evaluation.clone(), file });
+                }
+                None => context.refuse("Judge a detector first, then write the table."),
+            },
+        }
+    }
+
+    fn work_done(&mut self, id: JobId, result: ScoresResult, _: &Provider, _: &mut Context<'_>) {
         self.evaluating.take_if(|evaluating| *evaluating == id);
         match result {
             ScoresResult::Evaluated(evaluation) => {
@@ -118,39 +122,10 @@ impl ScoresWorkflow {
         }
     }
 
-    /// Work has ended without a result: everything is as it was.
-    pub fn work_ended(&mut self, id: JobId, why: Option<&str>) {
+    fn work_ended(&mut self, id: JobId, why: Option<&str>, _: &Provider, _: &mut Context<'_>) {
         self.opening.take_if(|opening| *opening == id);
         if self.evaluating.take_if(|evaluating| *evaluating == id).is_some() {
             self.failed = why.map(str::to_owned);
         }
-    }
-}
-
-impl Workflow for ScoresWorkflow {
-    type Command = ScoresCommand;
-    type Work = ScoresWork;
-    type Control = Nothing;
-    type Around = Provider;
-    type View = ScoresView;
-
-    fn new(_folder: &Path) -> Self {
-        Self::new(shipped_detector().map(|shipped| shipped.file))
-    }
-
-    fn view(&mut self, _provider: &Provider, _moment: &Moment) -> Arc<ScoresView> {
-        Arc::new(Self::view(self))
-    }
-
-    fn apply(&mut self, command: ScoresCommand, provider: &Provider, context: &mut Context<'_>) {
-        self.apply(command, *provider, context);
-    }
-
-    fn work_done(&mut self, id: JobId, result: ScoresResult, _around: &Provider, _context: &mut Context<'_>) {
-        self.work_done(id, result);
-    }
-
-    fn work_ended(&mut self, id: JobId, why: Option<&str>, _around: &Provider, _context: &mut Context<'_>) {
-        self.work_ended(id, why);
     }
 }

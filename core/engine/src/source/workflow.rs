@@ -23,25 +23,6 @@ pub struct SourceWorkflow {
 }
 
 impl SourceWorkflow {
-    /// Applies a command. Most are the source thread's business.
-    pub fn apply(&mut self, command: SourceCommand, context: &mut Context<'_>) {
-        if let SourceCommand::ListCameras = command {
-            context.start(SourceWork::ListCameras);
-            return;
-        }
-        if let SourceCommand::PairsPerSecond(rate) = command
-            && !PAIRS_PER_SECOND.contains(&rate)
-        {
-            let (least, most) = (PAIRS_PER_SECOND.start(), PAIRS_PER_SECOND.end());
-            let text = format!("{rate} pairs per second cannot be played: give between {least} and {most}.");
-            context.notices.add(NoticeLevel::Error, text);
-            return;
-        }
-        if let Some(control) = Control::from_command(command) {
-            context.control(control);
-        }
-    }
-
     /// Takes over what the source thread says of itself.
     pub fn update(&mut self, view: SourceView) {
         self.view = Arc::new(SourceView { cameras: self.cameras.clone(), ..view });
@@ -67,22 +48,36 @@ impl Workflow for SourceWorkflow {
     type Around = ();
     type View = SourceView;
 
-    fn new(_folder: &Path) -> Self {
+    fn new(_: &Path) -> Self {
         Self::default()
     }
 
-    fn view(&mut self, _around: &(), _moment: &Moment) -> Arc<SourceView> {
+    fn view(&mut self, _: &(), _: &Moment) -> Arc<SourceView> {
         self.view.clone()
     }
 
-    fn apply(&mut self, command: SourceCommand, _around: &(), context: &mut Context<'_>) {
-        self.apply(command, context);
+    fn apply(&mut self, command: SourceCommand, _: &(), context: &mut Context<'_>) {
+        if let SourceCommand::ListCameras = command {
+            context.start(SourceWork::ListCameras);
+            return;
+        }
+        if let SourceCommand::PairsPerSecond(rate) = command
+            && !PAIRS_PER_SECOND.contains(&rate)
+        {
+            let (least, most) = (PAIRS_PER_SECOND.start(), PAIRS_PER_SECOND.end());
+            let text = format!("{rate} pairs per second cannot be played: give between {least} and {most}.");
+            context.notices.add(NoticeLevel::Error, text);
+            return;
+        }
+        if let Some(control) = Control::from_command(command) {
+            context.control(control);
+        }
     }
 
-    fn work_done(&mut self, _id: JobId, result: SourceResult, _around: &(), _context: &mut Context<'_>) {
+    fn work_done(&mut self, _: JobId, result: SourceResult, _: &(), _: &mut Context<'_>) {
         let SourceResult::Cameras(cameras) = result;
         self.set_cameras(cameras);
     }
 
-    fn work_ended(&mut self, _id: JobId, _why: Option<&str>, _around: &(), _context: &mut Context<'_>) {}
+    fn work_ended(&mut self, _: JobId, _: Option<&str>, _: &(), _: &mut Context<'_>) {}
 }

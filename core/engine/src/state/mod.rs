@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use plumbline_effects::{RigModel, RobotModel};
 use plumbline_hardware::SourceSpec;
 use plumbline_model::StereoFrame;
 use plumbline_model::robot::{Rig, default_rig};
@@ -27,11 +28,13 @@ use crate::ground::jobs::list::JobList;
 use crate::ground::jobs::{JobId, JobState, JobView, Outcome};
 use crate::ground::notice::{NoticeLevel, Notices};
 use crate::ground::stage::{StagePanic, Timed};
+use crate::ground::text::sentence;
 use crate::ground::watched::{ThreadFault, WatchedThread};
-use crate::ground::{Asked, Clock, Context, Moment, Time, Workflow, World};
+use crate::ground::{Asked, Clock, Context, Moment, PerWorld, Time, Workflow, World};
 use crate::labels::work::LabelsWork;
 use crate::live::{ProbeInput, ProbeOutput, RectifyInput, RectifyOutput};
 use crate::mount::MountWorkflow;
+use crate::rig_models::Accepted;
 use crate::robot::view::{Connection, RobotView};
 use crate::robot::{News, RobotControl, TouchNews};
 use crate::source::view::SourceView;
@@ -47,7 +50,14 @@ pub struct State {
     robot: Arc<RobotView>,
     twin: Arc<TwinView>,
     twins_started: u64,
+    /// The robot as its description has it.
     rig: Arc<Rig>,
+    /// The robot as it is known in each world.
+    models: PerWorld<Arc<RobotModel>>,
+    /// Effects that do not fit to this robot, told once.
+    refused: Option<Arc<RigModel>>,
+    /// What the robot's thread was told of it last.
+    told_the_arm: Arc<RobotModel>,
     /// Whose eyes the source shows.
     shown: World,
     /// Whose arm: that of the connected robot, else that of the world whose eyes are shown.
@@ -74,12 +84,16 @@ pub struct State {
 impl State {
     /// Nothing opened; what was accepted before is read as the first job.
     pub fn new(data_dir: &Path) -> Self {
+        let nominal = Arc::new(RobotModel::nominal(default_rig()));
         let mut state = Self {
             rooms: Rooms::new(data_dir),
             robot: Arc::default(),
             twin: Arc::default(),
             twins_started: 0,
-            rig: default_rig(),
+            rig: nominal.rig().clone(),
+            models: PerWorld::new(|_| nominal.clone()),
+            refused: None,
+            told_the_arm: nominal,
             shown: World::default(),
             arm_of: World::default(),
             learned_from: BTreeMap::new(),
@@ -166,56 +180,54 @@ impl State {
         self.rooms.eyes.of(self.shown)
     }
 
-    /// The live view rests on the calibration of the eyes that are shown.
-    fn use_calibration(&mut self) {
-        let Rooms { live, eyes, .. } = &mut self.rooms;
-        live.set_calibration(eyes.of(self.shown).in_use());
-    }
-
     /// Where the eyes are over the table, for the maps of the next assessment.
     fn use_workspace(&mut self) {
         let workspace = self.rooms.live.workspace();
         self.rooms.eyes.iter_mut().for_each(|eyes| eyes.set_workspace(workspace));
     }
 
-    /// The robot of a world, its touchscreen where it was measured to lie.
+    /// The robot of a world, with what was calibrated there.
     fn rig_of(&self, world: World) -> Arc<Rig> {
-        match self.rooms.touch.of(world).screen() {
-            None => self.rig.clone(),
-            Some(screen) => {
-                let mut rig = (*self.rig).clone();
-                rig.touchscreen = screen.clone();
-                Arc::new(rig)
+        self.models.of(world).rig().clone()
+    }
+
+    /// Puts together anew what is known of the robot, where something was accepted or taken back, and
+    /// hands it to everybody who looks, moves or touches.
+    fn use_models(&mut self) {
+        World::ALL.into_iter().for_each(|world| self.put_together(world));
+        let shown = self.shown;
+        self.rooms.live.set_model(self.models.of(shown));
+        self.rooms.live.set_calibration(self.rooms.eyes.of(shown).in_use());
+        self.use_workspace();
+        let of_arm = self.model_of_the_arm();
+        if !Arc::ptr_eq(&self.told_the_arm, &of_arm) {
+            self.told_the_arm = of_arm.clone();
+            self.actions.push(Action::Robot(RobotControl::UseModel(of_arm)));
+        }
+    }
+
+    fn put_together(&mut self, world: World) {
+        let Rooms { eyes, mount, touch, gap, .. } = &self.rooms;
+        let (eyes, mount) = (eyes.of(world).in_use(), mount.of(world).in_use());
+        let accepted = Accepted {
+            cameras: eyes.map(|calibration| &calibration.cameras),
+            head_from_left: mount.map(|mount| mount.head_from_left),
+            screen: touch.of(world).screen(),
+            effects: gap.of(world).model().filter(|effects| {
+                !self.refused.as_ref().is_some_and(|refused| Arc::ptr_eq(refused, effects))
+            }),
+        };
+        let known = self.models.of_mut(world);
+        if accepted.is_in(known, &self.rig) {
+            return;
+        }
+        match accepted.robot_model(&self.rig) {
+            Ok(model) => *known = Arc::new(model),
+            Err(reason) => {
+                self.refused = accepted.effects.cloned();
+                self.notices.add(NoticeLevel::Error, sentence(&reason.to_string()));
             }
         }
-    }
-
-    /// The screen lies where it was measured, for everything that draws or touches it.
-    fn use_screen(&mut self) {
-        let shown = self.rooms.touch.of(self.arm_of).screen();
-        let screen = shown.unwrap_or(&self.rig.touchscreen).clone();
-        if self.rooms.live.rig().touchscreen == screen {
-            return;
-        }
-        let mut rig = Rig::clone(self.rooms.live.rig());
-        rig.touchscreen = screen.clone();
-        self.rooms.live.set_rig(Arc::new(rig));
-        self.use_workspace();
-        self.actions.push(Action::Robot(RobotControl::PlaceScreen(screen)));
-    }
-
-    /// The eyes sit where the mount in use says, for everything that looks or turns the head.
-    fn use_mount(&mut self) {
-        let in_use = self.rooms.mount.of(self.shown).in_use();
-        let head_from_left = in_use.map_or(self.rig.eyes.head_from_left, |mount| mount.head_from_left);
-        if self.rooms.live.rig().eyes.head_from_left == head_from_left {
-            return;
-        }
-        let mut rig = Rig::clone(self.rooms.live.rig());
-        rig.eyes.head_from_left = head_from_left;
-        self.rooms.live.set_rig(Arc::new(rig));
-        self.use_workspace();
-        self.actions.push(Action::Robot(RobotControl::PlaceEyes { head_from_left }));
     }
 
     /// A pair has come from the source.
@@ -238,12 +250,11 @@ impl State {
             self.rooms.detect.clear();
         }
         self.shown = World::of(view.spec.as_ref());
-        self.use_mount();
         let own_eyes = is_of_this_robot(view.spec.as_ref());
-        self.rooms.live.use_nominal_lenses(own_eyes);
         self.rooms.source.update(view);
         self.source_before_silence = None;
-        self.use_calibration();
+        self.use_models();
+        self.rooms.live.use_nominal_lenses(own_eyes);
     }
 
     /// The source has a message for the operator.
@@ -273,7 +284,7 @@ impl State {
             Connection::Connected { twin, .. } => World::of_robot(*twin),
             _ => self.arm_of,
         };
-        self.use_screen();
+        self.use_models();
         self.with::<MountWorkflow>(self.shown, |mount, around, context| mount.step(around, context));
         self.with::<TouchWorkflow>(self.arm_of, |touch, around, context| touch.step(around, context));
     }

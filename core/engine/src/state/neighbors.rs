@@ -1,12 +1,10 @@
 //! What each workflow can see of the rest, and who gets which command and which result.
 
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_correction::Method;
 use plumbline_grasp::Corrections;
-use plumbline_model::robot::Rig;
 use plumbline_vision::detect::Provider;
 
 use super::State;
@@ -182,7 +180,7 @@ impl Neighbors<EyesWorkflow> for State {
     }
 
     fn after(&mut self, _world: World) {
-        self.use_calibration();
+        self.use_models();
     }
 }
 
@@ -199,7 +197,7 @@ impl Neighbors<MountWorkflow> for State {
     }
 
     fn after(&mut self, _world: World) {
-        self.use_mount();
+        self.use_models();
     }
 }
 
@@ -209,11 +207,12 @@ impl Neighbors<TouchWorkflow> for State {
             rig: self.rig.clone(),
             robot: self.robot.clone(),
             models: self.rooms.models.of(world).usable(),
+            model: self.models.of(world).clone(),
         }
     }
 
     fn after(&mut self, world: World) {
-        self.use_screen();
+        self.use_models();
         let finished = self.rooms.touch.of(world).finished_session();
         let Some(finished) = finished.map(|(session, revision)| (session.to_owned(), revision)) else {
             return;
@@ -221,11 +220,12 @@ impl Neighbors<TouchWorkflow> for State {
         if self.learned_from.get(&world) == Some(&finished) {
             return;
         }
+        // What is told below comes back here.
+        self.learned_from.insert(world, finished.clone());
         self.with::<ModelsWorkflow>(world, |models, around, context| {
             models.touched(&finished.0, around, context);
         });
         self.with::<GapWorkflow>(world, |gap, _, context| gap.touched(&finished.0, context));
-        self.learned_from.insert(world, finished);
     }
 }
 
@@ -246,26 +246,22 @@ impl Neighbors<GapWorkflow> for State {
             newest_session: self.rooms.touch.of(world).session().map(Path::to_owned),
         }
     }
+
+    fn after(&mut self, world: World) {
+        self.use_models();
+        self.with::<TouchWorkflow>(world, |touch, around, context| touch.refresh(around, context));
+    }
 }
 
 impl Neighbors<GraspWorkflow> for State {
     fn around(&self, world: World) -> GraspAround {
         let Rooms { eyes, mount, touch, models, detect, source, .. } = &self.rooms;
-        let placed = self.rig_of(world);
-        let rig = match mount.of(world).in_use() {
-            None => placed,
-            Some(mount) => {
-                let mut rig = Rig::clone(&placed);
-                rig.eyes.head_from_left = mount.head_from_left;
-                Arc::new(rig)
-            }
-        };
         let usable = models.of(world).usable();
         let model = |method| usable.iter().find(|model| model.method() == method).cloned();
         let (detector, provider) = detect.chosen();
         GraspAround {
             described: self.rig.clone(),
-            rig,
+            model: self.models.of(world).clone(),
             robot: self.robot.clone(),
             calibration: eyes.of(world).in_use().cloned(),
             has_mount: mount.of(world).in_use().is_some(),

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use plumbline_effects::RobotModel;
 use plumbline_hardware::SourceSpec;
-use plumbline_model::robot::Rig;
 
 use super::State;
 use crate::ground::data_folder::KeptView;
@@ -125,9 +125,9 @@ impl State {
         }
     }
 
-    /// The robot with eyes and screen where they were measured to lie.
-    pub fn rig_in_use(&self) -> Arc<Rig> {
-        self.rooms.live.rig().clone()
+    /// The connected robot as it is known.
+    pub fn model_of_the_arm(&self) -> Arc<RobotModel> {
+        self.models.of(self.arm_of).clone()
     }
 
     /// Counts twins.

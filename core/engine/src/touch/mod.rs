@@ -9,14 +9,14 @@ mod figures;
 mod kept_tests;
 #[cfg(test)]
 mod path_tests;
-mod placement;
-mod plan;
-mod record;
-mod refusal;
+pub mod placement;
+pub mod plan;
+pub mod record;
+pub mod refusal;
 mod run;
 mod seen;
 mod shown;
-mod store;
+pub mod store;
 #[cfg(test)]
 mod testing;
 #[cfg(test)]

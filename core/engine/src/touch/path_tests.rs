@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use plumbline_effects::RobotModel;
 use plumbline_effects::rig_model::Conditions;
 use plumbline_model::Pixel;
 use plumbline_model::robot::Posture;
@@ -12,7 +13,6 @@ use super::command::Correction;
 use super::plan::{self, Corrector, PlanRequest, TIP};
 use super::testing::rig;
 use crate::motion::{Planner, ScreenPlace, TouchPath};
-use crate::rig_models;
 use crate::rig_models::made_up::model_with;
 
 /// Rounding of inverse kinematics, m.
@@ -135,7 +135,6 @@ fn where_the_arm_does_not_get_so_high_it_waits_as_high_as_it_gets() {
 /// Inverse kinematics with the effects of the model in use: the arm that has them ends on the pixels.
 #[test]
 fn touches_are_sent_where_the_arm_with_its_effects_ends_on_the_pixel() {
-    let folder = tempfile::tempdir().expect("a folder for the test");
     let rig = rig();
     let area = TouchArea { u_px: [900.0, 1300.0], v_px: [500.0, 850.0] };
     let request = |corrector| PlanRequest {
@@ -144,13 +143,15 @@ fn touches_are_sent_where_the_arm_with_its_effects_ends_on_the_pixel() {
         options: PlanOptions::check_reach(area, 8, 1),
         corrector,
     };
-    let effects = Corrector::Effects(folder.path().to_owned());
-    let refused = plan::make(&request(effects.clone()), &Unattended).expect_err("no model").to_string();
+    let nominal = Corrector::Effects(Arc::new(RobotModel::nominal(rig.clone())));
+    let refused = plan::make(&request(nominal), &Unattended).expect_err("no effects").to_string();
     assert!(refused.contains("No effect was added"), "{refused}");
     let model =
         model_with(&rig, &[("joint-zero", "r_elbow_y", &[0.03]), ("joint-sag", "r_shoulder_y", &[0.02])]);
-    rig_models::save(folder.path(), &model, &rig).expect("written");
+    let known = RobotModel::new(rig.clone(), Arc::new(model.clone())).expect("it fits");
+    let effects = Corrector::Effects(Arc::new(known));
     let plan = plan::make(&request(effects), &Unattended).expect("planned");
+    assert_eq!(plan.model, "with 2 effects");
     assert_eq!(plan.corrected_with, Some(Correction::Effects));
     let arm = model.arm(&rig, TIP).expect("a tip");
     let chain = rig.chain(TIP).expect("a tip");

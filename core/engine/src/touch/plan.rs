@@ -2,15 +2,15 @@
 //! is made.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
 use plumbline_correction::CorrectionModel;
 use plumbline_effects::observability::{Noise, PlanScore, PlannedContact, score};
-use plumbline_effects::rig_model::DeviatedArm;
+use plumbline_effects::{ModelArm, RobotModel};
 use plumbline_model::JobContext;
-use plumbline_model::robot::{DescriptionError, Posture, Rig};
+use plumbline_model::robot::ik::SolverError;
+use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::session::Touchscreen;
 use plumbline_model::touch_plan::{PlanOptions, PlannedTouch, TouchPlan};
 use plumbline_model::{Point, Robot};
@@ -21,7 +21,6 @@ use super::view::PlanView;
 use crate::ground::jobs::JobError;
 use crate::ground::text::sentence;
 use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
-use crate::rig_models::{self, ModelInUseError};
 
 /// The tip that touches.
 pub const TIP: &str = "right_index_tip";
@@ -73,6 +72,10 @@ pub struct RunPlan {
     pub touches: Vec<Aim>,
     /// What corrected the targets.
     pub corrected_with: Option<Correction>,
+    /// The model of the robot that they were corrected with, for people: "with 2 effects"; empty where
+    /// no effects corrected them.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub model: String,
     /// How long it takes, estimated, s.
     pub duration_s: f64,
     /// What it will be able to tell apart; not kept on disk.
@@ -98,6 +101,7 @@ impl RunPlan {
             reachable: self.reachable(),
             refusals: refusals(&self.touches),
             duration: Duration::try_from_secs_f64(self.duration_s).unwrap_or_default(),
+            model: self.model.as_str().into(),
             score: self.score.clone(),
             postures: self.touches.iter().map(|aim| aim.posture.clone()).collect(),
         }
@@ -125,8 +129,8 @@ pub enum Corrector {
     None,
     /// A model that was trained from touches.
     Model(Arc<CorrectionModel>),
-    /// The effects of the model in use, of the world in this folder.
-    Effects(PathBuf),
+    /// The effects of the robot as it is known.
+    Effects(Arc<RobotModel>),
 }
 
 impl Corrector {
@@ -137,6 +141,13 @@ impl Corrector {
             Self::Effects(_) => Some(Correction::Effects),
         }
     }
+
+    fn model(&self) -> String {
+        match self {
+            Self::None | Self::Model(_) => String::new(),
+            Self::Effects(model) => model.title(),
+        }
+    }
 }
 
 /// Plans every touch, in order, by an arm that begins ready to touch.
@@ -144,7 +155,7 @@ pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, 
     let PlanRequest { rig, place, options, corrector } = request;
     let words = |error: &dyn std::fmt::Display| JobError::failed(sentence(&error.to_string()));
     let plan = TouchPlan::make(options, &rig.touchscreen).map_err(|error| words(&error))?;
-    let senders = Senders::of(corrector, rig).map_err(JobError::failed)?;
+    let senders = Senders::of(corrector).map_err(JobError::failed)?;
     let (pace, count) = (TouchPace::default(), plan.touches.len());
     let mut duration = Duration::ZERO;
     let mut planner: Option<(f64, Planner)> = None;
@@ -203,6 +214,7 @@ pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, 
         options: options.clone(),
         touches,
         corrected_with: corrector.name(),
+        model: corrector.model(),
         duration_s: duration.as_secs_f64(),
         score,
     })
@@ -211,9 +223,6 @@ pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, 
 /// Why targets cannot be corrected as was asked.
 #[derive(Debug, thiserror::Error)]
 enum NotCorrected {
-    /// The model in use cannot be read.
-    #[error(transparent)]
-    Model(#[from] ModelInUseError),
     /// There is nothing to correct with.
     #[error(
         "No effect was added to the model yet. Search the gap and add what it names, or correct with something else."
@@ -221,7 +230,7 @@ enum NotCorrected {
     Nominal,
     /// The model does not speak of this arm.
     #[error("{}", sentence(&.0.to_string()))]
-    Arm(#[from] DescriptionError),
+    Arm(#[from] SolverError),
 }
 
 /// What decides where the tip is sent.
@@ -232,21 +241,20 @@ enum Senders<'a> {
     /// the block, too.
     Model(&'a CorrectionModel),
     /// Where the arm with its effects ends on the pixel.
-    Effects { arm: Box<DeviatedArm>, screen: Touchscreen },
+    Effects { arm: ModelArm, screen: Touchscreen },
 }
 
 impl<'a> Senders<'a> {
-    fn of(corrector: &'a Corrector, rig: &Rig) -> Result<Self, NotCorrected> {
+    fn of(corrector: &'a Corrector) -> Result<Self, NotCorrected> {
         Ok(match corrector {
             Corrector::None => Self::Plain,
             Corrector::Model(model) => Self::Model(model),
-            Corrector::Effects(folder) => {
-                let model = rig_models::load(folder, rig)?;
+            Corrector::Effects(model) => {
                 if model.is_nominal() {
                     return Err(NotCorrected::Nominal);
                 }
-                let arm = Box::new(model.arm(rig, TIP)?);
-                let screen = model.screen(&rig.touchscreen).unwrap_or(&rig.touchscreen).clone();
+                let arm = model.arm(TIP)?;
+                let screen = model.touchscreen().clone();
                 Self::Effects { arm, screen }
             }
         })
@@ -270,7 +278,13 @@ impl<'a> Senders<'a> {
                     // A joint that nearly stands must not turn round from one point to the next.
                     Ok::<_, NoWay>((angles_rad, direction.get_or_insert(signs).clone()))
                 };
-                match arm.sent_for(screen, touch.target, touch.screen_height_m, touch.payload_kg, commanded) {
+                match arm.deviated().sent_for(
+                    screen,
+                    touch.target,
+                    touch.screen_height_m,
+                    touch.payload_kg,
+                    commanded,
+                ) {
                     Ok(Some(point)) => sent = point,
                     Ok(None) => {
                         refusal = Some(format!(

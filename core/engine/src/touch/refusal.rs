@@ -104,6 +104,19 @@ pub enum Unplaced {
     Placement(#[from] PlacementError),
 }
 
+/// Why the place of the screen that was accepted is not used.
+#[derive(Debug, thiserror::Error)]
+pub enum NotRestored {
+    /// Its file is no placement of this robot.
+    #[error("{} {NOMINAL}", sentence(&.0.to_string()))]
+    Placement(#[from] PlacementError),
+    /// The file itself.
+    #[error("{} {NOMINAL}", sentence(&.0.to_string()))]
+    File(#[from] FileError),
+}
+
+const NOMINAL: &str = "Until then the nominal place is used.";
+
 /// Why a run cannot be begun, written or opened.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {

@@ -88,7 +88,7 @@ impl TouchWorkflow {
     }
 
     /// What the window shows.
-    pub fn view(&self, around: &TouchAround) -> TouchView {
+    pub(super) fn shown(&self, around: &TouchAround) -> TouchView {
         let Seen { plan, touches, counts, figures, .. } = self.seen.clone();
         TouchView {
             step: self.step_state(around),

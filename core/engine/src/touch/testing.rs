@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use plumbline_correction::CorrectionModel;
+use plumbline_effects::RobotModel;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::Screen;
 use plumbline_model::touch_plan::{Pattern, PlanOptions, Side, TouchArea};
@@ -60,6 +61,7 @@ pub struct Desk {
     pub robot: RobotView,
     pub rig: Arc<Rig>,
     pub models: Vec<Arc<CorrectionModel>>,
+    pub model: Arc<RobotModel>,
     pub notices: Notices,
     /// What the robot's thread was told and the test has not looked at.
     pub controls: VecDeque<RobotControl>,
@@ -90,6 +92,7 @@ impl Desk {
             robot,
             rig: rig.clone(),
             models: vec![],
+            model: Arc::new(RobotModel::nominal(rig.clone())),
             notices: Notices::default(),
             controls: VecDeque::new(),
             bias_px: (8.0, -5.0),
@@ -100,9 +103,7 @@ impl Desk {
             held: None,
             waiting: VecDeque::new(),
         };
-        desk.with(|workflow, around, context| {
-            Workflow::restore(workflow, around, context);
-        });
+        desk.with(TouchWorkflow::restore);
         desk
     }
 
@@ -116,7 +117,7 @@ impl Desk {
 
     fn around(&self) -> TouchAround {
         let robot = Arc::new(self.robot.clone());
-        TouchAround { rig: self.rig.clone(), robot, models: self.models.clone() }
+        TouchAround { rig: self.rig.clone(), robot, models: self.models.clone(), model: self.model.clone() }
     }
 
     /// Does the work that was asked for, and what follows from it.
@@ -140,7 +141,7 @@ impl Desk {
             }
             Err(error) => {
                 self.notices.add(NoticeLevel::Error, error.to_string());
-                self.workflow.work_ended(id);
+                self.with(|workflow, around, context| workflow.work_ended(id, None, around, context));
             }
         }
     }
@@ -156,7 +157,7 @@ impl Desk {
     /// Work that was held ends as if it had been cancelled.
     pub fn cancel(&mut self) {
         while let Some((id, _)) = self.waiting.pop_front() {
-            self.workflow.work_ended(id);
+            self.with(|workflow, around, context| workflow.work_ended(id, None, around, context));
         }
     }
 
@@ -170,7 +171,7 @@ impl Desk {
     }
 
     pub fn view(&self) -> TouchView {
-        self.workflow.view(&self.around())
+        self.workflow.shown(&self.around())
     }
 
     /// The newest message.

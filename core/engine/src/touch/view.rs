@@ -113,6 +113,9 @@ pub struct PlanView {
     pub refusals: Vec<(String, usize)>,
     /// How long it takes, estimated.
     pub duration: Duration,
+    /// The model of the robot that targets were corrected with, for people: "with 2 effects"; empty
+    /// where no effects corrected them.
+    pub model: Arc<str>,
     /// What the plan will be able to tell apart; `None` when it could not be scored.
     pub score: Option<PlanScore>,
     /// Postures at the contacts that can be reached, for drawing; in the order of the plan.

@@ -12,13 +12,14 @@ use plumbline_model::touchscreen::ScreenPlacement;
 use super::placement::{self, Proposal};
 use super::plan::{self, Aim, PlanRequest, RunPlan, TIP};
 use super::record::{Progress, TouchRecord};
-use super::refusal::{RunError, Unplaced};
+use super::refusal::{NotRestored, RunError, Unplaced};
 use super::store::{self, Runs, Stored};
 use crate::ground;
 use crate::ground::LongWork;
 use crate::ground::jobs::JobError;
 use crate::ground::shelf::InUse;
 use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
+use crate::rig_models::screen_in;
 use crate::robot::{RobotControl, TouchOrder};
 
 /// Work of this workflow.
@@ -114,7 +115,7 @@ pub enum TouchResult {
     /// What was accepted before.
     Restored {
         /// The place of the screen in use, or why it cannot be used; `None`: nominal.
-        placement: Option<Result<Arc<ScreenPlacement>, String>>,
+        placement: Option<Result<Arc<ScreenPlacement>, Arc<NotRestored>>>,
         /// Runs of earlier starts.
         runs: Runs,
         /// The part of the screen that the finger reaches.
@@ -232,16 +233,11 @@ impl LongWork for TouchWork {
     }
 }
 
-/// The place of the screen in use, in the world's folder.
-pub fn placement_in(folder: &std::path::Path) -> InUse {
-    InUse::new(folder.join("screen.toml"))
-}
-
 fn restore(folder: &std::path::Path, rig: &Rig) -> TouchResult {
-    let kept =
-        placement_in(folder).read(|file| ScreenPlacement::read(file, &rig.name).map_err(JobError::told));
-    let nominal = |error| format!("{error} Until then the nominal place is used.");
-    let placement = kept.map(|placement| placement.map(Arc::new)).map_err(nominal).transpose();
+    let kept = screen_in(folder)
+        .read(|file| ScreenPlacement::read(file, &rig.name).map_err(NotRestored::from))
+        .transpose();
+    let placement = kept.map(|placement| placement.map(Arc::new).map_err(Arc::new));
     // A rig without this finger cannot touch anyway; planning says so.
     let reach = TouchArea::reached_by(rig, TIP).ok().flatten();
     TouchResult::Restored { placement, runs: store::list(&folder.join("sessions")), reach }

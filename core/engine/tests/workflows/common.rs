@@ -11,6 +11,7 @@ use plumbline_engine::eyes::place::pose_at;
 use plumbline_engine::ground::Time;
 use plumbline_engine::ground::stage::{Stage, Timed};
 use plumbline_engine::live::{ProbeStage, RectifyStage};
+use plumbline_engine::robot::RobotControl;
 use plumbline_engine::state::State;
 use plumbline_engine::view::SourceView;
 use plumbline_engine::{Action, Command, Skipped, View};
@@ -130,6 +131,8 @@ pub struct Desk {
     pub seq: u64,
     /// What would be handed to the source thread.
     pub to_source: Vec<plumbline_engine::Control>,
+    /// What would be handed to the robot's thread.
+    pub to_robot: Vec<RobotControl>,
     /// Work is left alone until [`Desk::work`] is called.
     pub hold_work: bool,
     /// What time it is; `None`: that of the system.
@@ -146,6 +149,7 @@ impl Desk {
             probe: ProbeStage::default(),
             seq: 0,
             to_source: Vec::new(),
+            to_robot: Vec::new(),
             hold_work: false,
             time: None,
         };
@@ -211,8 +215,8 @@ impl Desk {
             }
             for action in actions {
                 match action {
-                    // No robot takes part in these workflows.
-                    plumbline_engine::Action::Robot(_) => {}
+                    // No robot takes part in these workflows; what it would be told is kept.
+                    Action::Robot(control) => self.to_robot.push(control),
                     Action::Start(id, work) => {
                         self.state.work_ended(id, work.run(&Unattended).into(), Duration::ZERO);
                     }

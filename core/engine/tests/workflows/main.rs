@@ -7,4 +7,5 @@ mod detect;
 mod eyes;
 mod journal;
 mod measured;
+mod model_in_use;
 mod threads;

@@ -5,8 +5,9 @@
 //! the arm's error, weighted by how sure each is.
 
 use nalgebra::{Matrix3, Vector3};
+use plumbline_model::frame::Tip;
 use plumbline_model::robot::Posture;
-use plumbline_model::{Point, Robot};
+use plumbline_model::{Point, Pose, Robot};
 
 use super::{Chosen, End, Running, STILL_S};
 use crate::body::Sight;
@@ -25,10 +26,10 @@ const NEAR_M: f64 = 0.002;
 const LOOKS: usize = 4;
 /// A shift of the target beyond this is no correction any more, m.
 const FARTHEST_M: f64 = 0.08;
-/// Hand and object together may be this uncertain over the table, m: a third of how far off a hand may
-/// be and still hold what it closes around (`tests/tolerance.rs`).
-const MOST_SIGMA_M: f64 = 0.006;
-/// Standard deviation per axis of where an arm with its effects comes, where nothing else is known, m.
+/// Hand and object together may be this uncertain over the table, m: about how far off a hand may be and
+/// still hold what it closes around (`tests/tolerance.rs`).
+const MOST_SIGMA_M: f64 = 0.010;
+/// Standard deviation per axis of what the named effects leave of an arm's error, m.
 const ARM_SIGMA_M: f64 = 0.004;
 /// The arm's error changes by this much from posture to posture of the same grasp, m per axis.
 const DRIFT_SIGMA_M: f64 = 0.0007;
@@ -51,8 +52,8 @@ pub struct HandMissing(pub String);
 
 /// Finds the hand in a pair of images from where the arm's model has it.
 pub trait HandFinder: Send {
-    /// `before`: a pair without the hand, the head as now; `palm`: where the model has the palm (as
-    /// described in its turn), `covariance_m2`: how sure it is, m².
+    /// `before`: a pair without the hand, the head as now; `robot_from_palm`: where the model has the
+    /// palm, `covariance_m2`: how sure it is, m².
     ///
     /// # Errors
     /// Why it was not found.
@@ -62,7 +63,7 @@ pub trait HandFinder: Send {
         before: &Sight,
         now: &Sight,
         commanded: &Posture,
-        palm: Point<Robot>,
+        robot_from_palm: &Pose<Robot, Tip>,
         covariance_m2: &Matrix3<f64>,
     ) -> Result<FoundHand, HandMissing>;
 }
@@ -104,7 +105,7 @@ impl Running<'_> {
             };
             // Turning the palm to the eyes moves it; by how much, the description says.
             let palm = hand + (sent - turned);
-            let wanted = plan.standing.palm(plan.heading_rad).coords.coords;
+            let wanted = plan.palm_m;
             let missing = (wanted - palm).xy();
             self.looked(sent, Ok(palm), Some(missing.norm()), None);
             if missing.norm() < PUBLISHED_NEAR_M {
@@ -151,16 +152,19 @@ impl Running<'_> {
     ) -> Result<(), End> {
         // What is known of the arm's error here: real palm less where the model has it.
         let mut error_m = Vector3::zeros();
-        let mut covariance_m2 = Matrix3::identity() * ARM_SIGMA_M.powi(2);
+        let commanded = self.body.commanded()?;
+        let mut covariance_m2 =
+            self.grasper.known.arm().covariance_m2(&commanded) + Matrix3::identity() * ARM_SIGMA_M.powi(2);
         for look in 1..=LOOKS {
             self.body.wait(STILL_S)?;
             let sight = self.body.look()?;
             let commanded = self.body.commanded()?;
-            let modeled = self.grasper.known.arm().palm(&commanded).coords.coords;
+            let mut robot_from_palm = self.grasper.known.arm().robot_from_palm(&commanded);
+            let modeled = robot_from_palm.translation_m();
             let sent = modeled + error_m;
-            let palm = Point::new(sent.x, sent.y, sent.z);
+            robot_from_palm.isometry.translation.vector = sent;
             let knowledge = &self.grasper.knowledge;
-            match finder.find(knowledge, before, &sight, &commanded, palm, &covariance_m2) {
+            match finder.find(knowledge, before, &sight, &commanded, &robot_from_palm, &covariance_m2) {
                 Ok(found) => {
                     error_m = found.palm.coords.coords - modeled;
                     covariance_m2 = found.covariance_m2;
@@ -172,7 +176,7 @@ impl Running<'_> {
                     return self.sure_enough(chosen, &covariance_m2);
                 }
             }
-            let wanted = plan.standing.palm(plan.heading_rad).coords.coords;
+            let wanted = plan.palm_m;
             let wanted_above = Vector3::new(wanted.x, wanted.y, modeled.z);
             let missing_m = (wanted_above - (modeled + error_m)).xy().norm();
             let sigma_m = over_table_m(&covariance_m2);

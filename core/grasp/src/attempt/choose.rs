@@ -13,7 +13,7 @@ use crate::things::Thing;
 
 /// Standard deviation of the height at which the middle of a thing on the table is, m: the table may
 /// be tilted, the thing may lean.
-const HEIGHT_SIGMA_M: f64 = 0.003;
+const HEIGHT_SIGMA_M: f64 = 0.002;
 /// A thing whose middle seems to be this far from where the table says is somewhere else, m, beside
 /// three standard deviations.
 const NOT_ON_TABLE_M: f64 = 0.03;

@@ -8,6 +8,7 @@ mod rendered;
 
 use jiff::Timestamp;
 use nalgebra::Vector3;
+use plumbline_effects::RobotModel;
 use plumbline_model::robot::Posture;
 use plumbline_model::robot::Rig;
 use plumbline_vision::detect::DetectError;
@@ -133,15 +134,15 @@ impl Grasper {
         arm: &str,
         finder: Option<Box<dyn HandFinder>>,
     ) -> Result<Self, NoArm> {
-        let nominal = plumbline_effects::RigModel::nominal(&knowledge.described);
-        let described = GraspPlanner::new(PalmArm::new(&knowledge.described, &nominal, arm)?);
-        let known = GraspPlanner::new(PalmArm::new(&knowledge.rig, &knowledge.effects, arm)?);
+        let nominal = RobotModel::nominal(knowledge.described.clone());
+        let described = GraspPlanner::new(PalmArm::new(&nominal, arm)?);
+        let known = GraspPlanner::new(PalmArm::new(&knowledge.model, arm)?);
         Ok(Self { knowledge, looker, described, known, finder })
     }
 
     /// The robot as it is known.
     pub fn rig(&self) -> &Rig {
-        &self.knowledge.rig
+        self.knowledge.model.rig()
     }
 
     /// What it rests on.
@@ -154,9 +155,15 @@ impl Grasper {
         if method.knows_effects() { &self.known } else { &self.described }
     }
 
-    /// Grasps once. Whatever happens, the record says it, and the arm holds where it is.
-    pub fn attempt(&mut self, body: &mut dyn Body, order: &Order, watch: &mut dyn Watch) -> Record {
-        let mut record = self.record_of(order);
+    /// Grasps once, beginning now. Whatever happens, the record says it, and the arm holds where it is.
+    pub fn attempt(
+        &mut self,
+        body: &mut dyn Body,
+        order: &Order,
+        began: Timestamp,
+        watch: &mut dyn Watch,
+    ) -> Record {
+        let mut record = self.record_of(order, began);
         let began_s = body.now_s();
         let mut running = Running { grasper: self, body, order, watch, record: &mut record, began_s };
         record.outcome = Some(match running.run() {
@@ -172,9 +179,10 @@ impl Grasper {
         &mut self,
         body: &mut dyn Body,
         order: &Order,
+        began: Timestamp,
         watch: &mut dyn Watch,
     ) -> (Option<GraspPlan>, Record) {
-        let mut record = self.record_of(order);
+        let mut record = self.record_of(order, began);
         let began_s = body.now_s();
         let mut running = Running { grasper: self, body, order, watch, record: &mut record, began_s };
         match running.prepare() {
@@ -194,15 +202,10 @@ impl Grasper {
         self.looker.look(sight, &self.knowledge)
     }
 
-    fn record_of(&self, order: &Order) -> Record {
-        let effects = self.knowledge.effects.effects().len();
-        let model = match effects {
-            _ if !order.method.knows_effects() => "as described".to_owned(),
-            0 => "as described, no effect was named yet".to_owned(),
-            1 => "with one effect".to_owned(),
-            several => format!("with {several} effects"),
-        };
-        Record::new(order.method, &order.object, Timestamp::now(), model)
+    fn record_of(&self, order: &Order, began: Timestamp) -> Record {
+        let knows_effects = order.method.knows_effects();
+        let model = if knows_effects { self.knowledge.model.title() } else { "as described".to_owned() };
+        Record::new(order.method, &order.object, began, model)
     }
 }
 
@@ -269,8 +272,9 @@ impl Running<'_> {
     }
 
     fn planned(&mut self, plan: &GraspPlan) {
-        self.record.wanted_m = Some(plan.standing.palm(plan.heading_rad).coords.coords.into());
+        self.record.wanted_m = Some(plan.palm_m.into());
         self.record.standing_m = Some(plan.standing.xy_m);
+        self.record.over_middle_m = Some(plan.palm_m.z - plan.standing.middle_m());
         self.record.heading_rad = Some(plan.heading_rad);
         self.watch.planned(plan);
     }

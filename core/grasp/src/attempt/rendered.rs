@@ -1,7 +1,8 @@
 //! Finds the hand by rendering it where the arm's model has it.
 
-use nalgebra::{Isometry3, Matrix3, Translation3};
-use plumbline_model::robot::{Chain, DescriptionError, Posture, Rig};
+use nalgebra::Matrix3;
+use plumbline_model::frame::Tip;
+use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::{Point, Pose, Robot};
 
 use super::align::{FoundHand, HandFinder, HandMissing};
@@ -13,7 +14,6 @@ use crate::knowledge::Knowledge;
 #[derive(Clone, Debug)]
 pub struct RenderedHand {
     shape: HandShape,
-    chain: Chain,
     options: HandOptions,
 }
 
@@ -23,9 +23,6 @@ pub enum NoHand {
     /// It has no shape.
     #[error(transparent)]
     Shape(#[from] HandShapeError),
-    /// Its arm is not described.
-    #[error(transparent)]
-    Description(#[from] DescriptionError),
 }
 
 impl RenderedHand {
@@ -34,11 +31,7 @@ impl RenderedHand {
     /// # Errors
     /// When the description has no such hand, or no shape for it.
     pub fn of_rig(rig: &Rig, tip: &str) -> Result<Self, NoHand> {
-        Ok(Self {
-            shape: HandShape::of_rig(rig, tip)?,
-            chain: rig.chain(tip)?,
-            options: HandOptions::default(),
-        })
+        Ok(Self { shape: HandShape::of_rig(rig, tip)?, options: HandOptions::default() })
     }
 }
 
@@ -49,21 +42,19 @@ impl HandFinder for RenderedHand {
         before: &Sight,
         now: &Sight,
         commanded: &Posture,
-        palm: Point<Robot>,
+        robot_from_palm: &Pose<Robot, Tip>,
         covariance_m2: &Matrix3<f64>,
     ) -> Result<FoundHand, HandMissing> {
-        let turn = self.chain.robot_from_tip_in(commanded).isometry.rotation;
-        let place = Isometry3::from_parts(Translation3::from(palm.coords.coords), turn);
         let eyes = EyesAt {
             cameras: knowledge.calibration.cameras.clone(),
             robot_from_left: knowledge.robot_from_left(&now.posture),
         };
         let predicted =
-            Predicted { posture: commanded, robot_from_tip: Pose::new(place), covariance_m2: *covariance_m2 };
+            Predicted { posture: commanded, robot_from_tip: *robot_from_palm, covariance_m2: *covariance_m2 };
         let (before, now) = (Some(Pair::from(before)), Pair::from(now));
         let seen = look_for_hand(before, now, &eyes, &self.shape, &predicted, &self.options)
             .map_err(|why| HandMissing(why.to_string()))?;
-        let found = palm.coords.coords + seen.offset_m;
+        let found = robot_from_palm.translation_m() + seen.offset_m;
         Ok(FoundHand { palm: Point::new(found.x, found.y, found.z), covariance_m2: seen.covariance_m2 })
     }
 }

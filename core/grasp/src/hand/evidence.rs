@@ -41,19 +41,24 @@ fn width(bin: usize) -> f32 {
     edge(bin + 1) - edge(bin)
 }
 
-/// Density of colors.
+/// The bin of a color in the cube of all.
+fn cell(color: [f32; 3]) -> u16 {
+    let [r, g, b] = color.map(bin);
+    ((r * BINS + g) * BINS + b) as u16
+}
+
+/// Density of colors, as logarithms.
 pub(super) struct Colors {
-    density: Vec<f32>,
+    log_density: Vec<f32>,
 }
 
 impl Colors {
     /// From samples; each counts a little in the bins beside its own.
-    fn of(samples: impl Iterator<Item = [f32; 3]>) -> Option<Self> {
+    fn of(samples: impl Iterator<Item = u16>) -> Option<Self> {
         let mut mass = vec![0.0f32; BINS * BINS * BINS];
         let mut count = 0u32;
-        for color in samples {
-            let [r, g, b] = color.map(bin);
-            mass[(r * BINS + g) * BINS + b] += 1.0;
+        for cell in samples {
+            mass[usize::from(cell)] += 1.0;
             count += 1;
         }
         if count < 30 {
@@ -65,14 +70,13 @@ impl Colors {
         let total: f32 = mass.iter().sum();
         for (i, cell) in mass.iter_mut().enumerate() {
             let volume = width(i / BINS / BINS) * width(i / BINS % BINS) * width(i % BINS);
-            *cell /= total * volume;
+            *cell = ((1.0 - ODD) * *cell / (total * volume) + ODD * ANY_COLOR).ln();
         }
-        Some(Self { density: mass })
+        Some(Self { log_density: mass })
     }
 
-    fn density(&self, color: [f32; 3]) -> f32 {
-        let [r, g, b] = color.map(bin);
-        (1.0 - ODD) * self.density[(r * BINS + g) * BINS + b] + ODD * ANY_COLOR
+    fn log(&self, cell: u16) -> f32 {
+        self.log_density[usize::from(cell)]
     }
 }
 
@@ -97,8 +101,8 @@ pub(super) fn color(image: &RgbImage, u: i32, v: i32) -> [f32; 3] {
 /// What is known of one eye's pixels in a region.
 pub(super) struct Evidence {
     pub region: Region,
-    /// Colors now.
-    now: Vec<[f32; 3]>,
+    /// Colors now, by their bins.
+    now: Vec<u16>,
     /// Logarithm of the density of the color now if nothing is in front of what was there; and
     /// whether it has changed. `None` without an image before.
     still: Option<Vec<(f32, bool)>>,
@@ -106,18 +110,17 @@ pub(super) struct Evidence {
 
 impl Evidence {
     pub fn new(region: Region, now: &RgbImage, before: Option<&RgbImage>) -> Self {
-        let colors = |image: &RgbImage| -> Vec<[f32; 3]> {
-            (0..region.len()).map(|i| region.pixel(i)).map(|(u, v)| color(image, u, v)).collect()
-        };
-        let now_colors = colors(now);
+        let colors: Vec<[f32; 3]> =
+            (0..region.len()).map(|i| region.pixel(i)).map(|(u, v)| color(now, u, v)).collect();
         let still = before.map(|before| {
-            let one = |i: usize| {
+            let one = |(i, now): (usize, &[f32; 3])| {
                 let (u, v) = region.pixel(i);
-                density_if_still(now_colors[i], before, u, v)
+                let (density, changed) = density_if_still(*now, before, u, v);
+                (density.ln(), changed)
             };
-            (0..region.len()).map(one).collect()
+            colors.iter().enumerate().map(one).collect()
         });
-        Self { region, now: now_colors, still }
+        Self { region, now: colors.into_iter().map(cell).collect(), still }
     }
 
     /// Whether there is an image from before.
@@ -135,8 +138,8 @@ impl Evidence {
         Colors::of((0..self.region.len()).filter(|i| chosen(*i)).map(|i| self.now[i]))
     }
 
-    /// For every pixel how much it speaks for the hand (`hand` where `labels` say so, else for the
-    /// nearest of hand and forearm) and against the background.
+    /// For every pixel how much it speaks for the hand (for the forearm where `labels` say so) and
+    /// against the background.
     pub fn ratios(
         &self,
         hand: &Colors,
@@ -148,15 +151,15 @@ impl Evidence {
             .map(|i| {
                 let now = self.now[i];
                 let front = match (labels[i], forearm) {
-                    (Some(Part::Forearm), Some(forearm)) => forearm.density(now),
-                    _ => hand.density(now),
+                    (Some(Part::Forearm), Some(forearm)) => forearm.log(now),
+                    _ => hand.log(now),
                 };
                 let behind = match (&self.still, around) {
                     (Some(still), _) => still[i].0,
-                    (None, Some(around)) => around.density(now),
-                    (None, None) => ANY_COLOR,
+                    (None, Some(around)) => around.log(now),
+                    (None, None) => ANY_COLOR.ln(),
                 };
-                (front.ln() - behind.ln()).clamp(-MOST, MOST)
+                (front - behind).clamp(-MOST, MOST)
             })
             .collect()
     }

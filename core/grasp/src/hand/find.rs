@@ -1,28 +1,28 @@
 //! From a prediction and a pair of images to the place of the hand.
 
-use image::RgbImage;
-use nalgebra::{Isometry3, Matrix3, Vector3};
-use plumbline_model::frame::{Robot, Tip};
-use plumbline_model::{Camera, Eye, Pose};
+use nalgebra::{Matrix3, Vector3};
+use plumbline_model::Eye;
 
-use super::evidence::{Colors, Evidence};
 use super::lines::{from_colors, from_evidence};
-use super::search::{Moves, Scores, best_shift};
+use super::search::{Scores, best_shift};
 use super::shape::{EyesAt, HandShape, InView, Part, Solid};
-use super::solve::{Measured, Prior, Solution, Unknowns, moved, resized, slope, solve};
-use super::view::{HandView, Region, RimPoint, labels, mask, rays, rim};
+use super::sight::{Around, Images, Sight};
+use super::solve::{Measured, Prior, Solution, Unknowns, moved, nothing, resized, slope, solve, three};
+use super::view::{HandView, RimPoint, labels, mask, rim};
 use super::{EyeFit, HandNotSeen, HandOptions, HandSeen, OutlinePoint, Pair, Predicted};
 
 /// Half lengths of the lines on which evidence is added up, px: one round each.
 const EVIDENCE_PX: [usize; 3] = [9, 6, 4];
 /// Rounds in which colors are fitted.
 const COLOR_ROUNDS: usize = 3;
-/// The region goes this far beyond the hand and the farthest shift, px.
-const MARGIN_PX: f64 = 12.0;
 /// Candidates of the first search lie this far apart, m: about a pixel.
 const STEP_M: f64 = 0.0025;
 /// Fewer lines than this are no hand.
 const LEAST_LINES: usize = 20;
+/// Images are cut anew when the hand was looked for farther than this, px.
+const NARROW_PX: f64 = 6.0;
+/// Without a pair before, edges of the background pass for the hand's: a line is off by this much, px.
+const BACKGROUND_PX: f64 = 1.3;
 /// A residual larger than this is no outline of the hand, px.
 const MOST_SPREAD_PX: f64 = 3.0;
 
@@ -53,20 +53,25 @@ pub fn look_for_hand(
     predicted: &Predicted<'_>,
     options: &HandOptions,
 ) -> Result<HandSeen, HandNotSeen> {
-    let prior = Prior::new(&predicted.covariance_m2, options).ok_or(HandNotSeen::NoPrior)?;
     let solids = hand.posed(predicted.posture);
-    let mut sights = vec![];
-    for eye in Eye::BOTH {
-        let images = Images { now: now.of(eye), before: before.map(|pair| pair.of(eye)) };
-        sights.extend(Sight::new(eye, images, eyes, &solids, predicted, options)?);
-    }
-    if sights.is_empty() {
-        return Err(HandNotSeen::OutsideView);
-    }
-    let search = Search { solids: &solids, predicted, prior, sights };
-    let mut at = Unknowns::zeros();
+    let prior = Prior::new(&predicted.covariance_m2, &solids, options).ok_or(HandNotSeen::NoPrior)?;
+    let sights = |around: &Around<'_>| -> Result<Vec<Sight<'_>>, HandNotSeen> {
+        let of = |eye| Sight::new(eye, images(before, now, eye), eyes, around, options);
+        let sights: Vec<Sight<'_>> =
+            Eye::BOTH.into_iter().map(of).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
+        if sights.is_empty() { Err(HandNotSeen::OutsideView) } else { Ok(sights) }
+    };
+    let wide =
+        Around { solids: &solids, place: predicted.robot_from_tip, covariance_m2: predicted.covariance_m2 };
+    let mut search = Search { solids: &solids, predicted, prior, sights: sights(&wide)? };
+    let mut at = nothing(&solids);
     let shift = search.first_shift().ok_or(HandNotSeen::NoPrior)?;
     at.fixed_rows_mut::<3>(0).copy_from(&shift);
+    if search.sights.iter().any(|sight| sight.reach_px > NARROW_PX) {
+        // From here on less of the images matters.
+        let narrow = Around { place: moved(predicted, &at), covariance_m2: Matrix3::zeros(), ..wide };
+        search.sights = sights(&narrow)?;
+    }
     let mut solution = None;
     for round in 0..EVIDENCE_PX.len() + COLOR_ROUNDS {
         let lines = search.lines(&at, EVIDENCE_PX.get(round).copied());
@@ -74,97 +79,15 @@ pub fn look_for_hand(
             return Err(search.nothing_there(&at, options));
         }
         let found = solve(&lines, &search.prior, &at).ok_or(HandNotSeen::NoPrior)?;
-        at = found.unknowns;
+        at = found.unknowns.clone();
         solution = Some((lines, found));
     }
     let (lines, found) = solution.ok_or(HandNotSeen::NoPrior)?;
     search.judged(&lines, &found, options)
 }
 
-impl<'a> Pair<'a> {
-    fn of(&self, eye: Eye) -> &'a RgbImage {
-        match eye {
-            Eye::Left => self.left,
-            Eye::Right => self.right,
-        }
-    }
-}
-
-#[derive(Clone, Copy)]
-struct Images<'a> {
-    now: &'a RgbImage,
-    before: Option<&'a RgbImage>,
-}
-
-/// One eye's images with what is known of them.
-struct Sight<'a> {
-    eye: Eye,
-    images: Images<'a>,
-    camera: &'a Camera,
-    camera_from_robot: Isometry3<f64>,
-    evidence: Evidence,
-    rays: Vec<Option<Vector3<f64>>>,
-    moves: Moves,
-    reach_px: f64,
-}
-
-impl<'a> Sight<'a> {
-    /// `None` when too little of the hand lies on this eye's image.
-    fn new(
-        eye: Eye,
-        images: Images<'a>,
-        eyes: &'a EyesAt,
-        solids: &[Solid],
-        predicted: &Predicted<'_>,
-        options: &HandOptions,
-    ) -> Result<Option<Self>, HandNotSeen> {
-        let camera = eyes.camera(eye);
-        let fits = |image: &RgbImage| image.dimensions() == camera.size_px();
-        if !fits(images.now) || !images.before.is_none_or(fits) {
-            return Err(HandNotSeen::OtherSize);
-        }
-        let camera_from_robot = eyes.camera_from_robot(eye);
-        let Some(moves) = Moves::at(camera, &camera_from_robot, &predicted.robot_from_tip) else {
-            return Ok(None);
-        };
-        let reach_px = moves.reach_px(&predicted.covariance_m2);
-        let hand = InView::new(solids, &camera_from_robot, &predicted.robot_from_tip);
-        let around = Region::around(&hand, camera, MARGIN_PX + reach_px);
-        let Some((region, _)) = around.filter(|(_, share)| *share >= options.least_in_view) else {
-            return Ok(None);
-        };
-        let evidence = Evidence::new(region, images.now, images.before);
-        let rays = rays(&region, camera);
-        Ok(Some(Self { eye, images, camera, camera_from_robot, evidence, rays, moves, reach_px }))
-    }
-
-    fn in_view(&self, solids: &[Solid], robot_from_tip: &Pose<Robot, Tip>) -> InView {
-        InView::new(solids, &self.camera_from_robot, robot_from_tip)
-    }
-
-    /// Evidence with colors learned where the labels say. At first the hand may lie beside its labels:
-    /// then only what has changed is learned from.
-    fn ratios(&self, labels: &[Option<Part>], first: bool) -> Option<Vec<f32>> {
-        let region = &self.evidence.region;
-        let is_hand = |i: usize| matches!(labels[i], Some(Part::Palm | Part::Digit));
-        let changed = |i: usize| self.evidence.has_changed(i) != Some(false);
-        let width = region.width;
-        let deep = |i: usize| {
-            is_hand(i)
-                && [1, width].iter().all(|step| {
-                    i >= *step && is_hand(i - step) && i + step < labels.len() && is_hand(i + step)
-                })
-        };
-        let hand = if first {
-            self.evidence.colors(|i| is_hand(i) && changed(i)).or_else(|| self.evidence.colors(is_hand))?
-        } else {
-            self.evidence.colors(deep)?
-        };
-        let forearm = self.evidence.colors(|i| labels[i] == Some(Part::Forearm) && (!first || changed(i)));
-        let around: Option<Colors> =
-            if self.evidence.knows_before() { None } else { self.evidence.colors(|i| labels[i].is_none()) };
-        Some(self.evidence.ratios(&hand, forearm.as_ref(), around.as_ref(), labels))
-    }
+fn images<'a>(before: Option<Pair<'a>>, now: Pair<'a>, eye: Eye) -> Images<'a> {
+    Images { now: now.of(eye), before: before.map(|pair| pair.of(eye)) }
 }
 
 /// All that is known, while it is looked for.
@@ -181,7 +104,8 @@ impl Search<'_> {
         let covariance_m2: &Matrix3<f64> = &self.predicted.covariance_m2;
         let mut shift = Vector3::zeros();
         for round in 0..2 {
-            let unknowns = with_shift(&shift);
+            let mut unknowns = nothing(self.solids);
+            unknowns.fixed_rows_mut::<3>(0).copy_from(&shift);
             let place = moved(self.predicted, &unknowns);
             let solids = self.solids;
             let mut eyes = vec![];
@@ -190,8 +114,7 @@ impl Search<'_> {
                 let Some(ratios) = sight.ratios(&labels_here, round == 0) else { continue };
                 let predicted =
                     labels(&sight.in_view(self.solids, &self.predicted.robot_from_tip), &sight.rays);
-                let moves = Moves { px_per_m: sight.moves.px_per_m };
-                eyes.push((moves, Scores::new(&sight.evidence, &ratios, &predicted, sight.reach_px)));
+                eyes.push((&sight.moves, Scores::new(&sight.evidence, &ratios, &predicted, sight.reach_px)));
             }
             shift = best_shift(&eyes, covariance_m2, STEP_M)?;
         }
@@ -215,8 +138,18 @@ impl Search<'_> {
                     (Some(_), None) => None,
                     (None, _) => from_colors(sight.images.now, sight.images.before, &point),
                 };
-                let slope =
-                    slope(&point, &solids[point.solid], sight.camera, &sight.camera_from_robot, &place);
+                let crossing = crossing.map(|crossing| match sight.images.before {
+                    Some(_) => crossing,
+                    None => crossing.doubted(BACKGROUND_PX),
+                });
+                let slope = slope(
+                    &point,
+                    &solids[point.solid],
+                    sight.camera,
+                    &sight.camera_from_robot,
+                    &place,
+                    at.len(),
+                );
                 if let Some((crossing, slope)) = crossing.zip(slope) {
                     lines.push(Measured { eye: sight.eye, point, crossing, slope });
                 }
@@ -260,7 +193,7 @@ impl Search<'_> {
         options: &HandOptions,
     ) -> Result<HandSeen, HandNotSeen> {
         let at = &found.unknowns;
-        let offset_m: Vector3<f64> = at.fixed_rows::<3>(0).into_owned();
+        let offset_m: Vector3<f64> = three(at, 0);
         let information = self.predicted.covariance_m2.try_inverse().ok_or(HandNotSeen::NoPrior)?;
         let sigmas = offset_m.dot(&(information * offset_m)).max(0.0).sqrt();
         let mut fit = [None, None];
@@ -289,7 +222,7 @@ impl Search<'_> {
         Ok(HandSeen {
             offset_m,
             covariance_m2: found.covariance.fixed_view::<3, 3>(0, 0).into_owned(),
-            turn_rad: at.fixed_rows::<3>(3).into_owned(),
+            turn_rad: three(at, 3),
             robot_from_tip: moved(self.predicted, at),
             fit,
         })
@@ -314,9 +247,3 @@ impl Search<'_> {
 
 /// Pixels whose evidence is below this look like something else than the hand.
 const UNLIKE: f32 = -1.0;
-
-fn with_shift(shift: &Vector3<f64>) -> Unknowns {
-    let mut unknowns = Unknowns::zeros();
-    unknowns.fixed_rows_mut::<3>(0).copy_from(shift);
-    unknowns
-}

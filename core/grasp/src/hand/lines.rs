@@ -18,6 +18,13 @@ pub(super) struct Crossing {
     pub information: f64,
 }
 
+impl Crossing {
+    /// The same with one more error of this standard deviation.
+    pub fn doubted(self, sigma_px: f64) -> Self {
+        Self { information: 1.0 / (1.0 / self.information + sigma_px * sigma_px), ..self }
+    }
+}
+
 /// Pixels beside each other are not independent: each counts for this much of one.
 const INDEPENDENT: f64 = 0.5;
 /// Steps of possible places, px.

@@ -23,6 +23,7 @@ mod find;
 mod lines;
 mod search;
 mod shape;
+mod sight;
 mod solid;
 mod solve;
 #[cfg(test)]
@@ -75,9 +76,15 @@ pub struct HandOptions {
     /// Standard deviation of the palm's half extents about those of the description, m.
     pub sigma_palm_m: f64,
     /// Standard deviation of the radius of fingers and thumb about that of the description, m.
-    pub sigma_digits_m: f64,
+    pub sigma_radius_m: f64,
+    /// Standard deviation of the place of a straight finger on the hand, m.
+    pub sigma_digit_m: f64,
+    /// How much more a bent finger may be off, m per rad: real ones bend in two places.
+    pub sigma_bent_m: f64,
     /// At least this share of the hand must lie on the image of an eye, 0–1.
     pub least_in_view: f64,
+    /// The tip may lie this far off the optical axis of an eye, rad: beyond, the face covers the rim.
+    pub most_off_axis_rad: f64,
     /// At most this share of the hand may look like something else, 0–1.
     pub most_hidden: f64,
     /// At least this share of the hand must differ from the pair before, 0–1.
@@ -91,8 +98,11 @@ impl Default for HandOptions {
         Self {
             sigma_turn_rad: 0.06,
             sigma_palm_m: 0.004,
-            sigma_digits_m: 0.001,
+            sigma_radius_m: 0.001,
+            sigma_digit_m: 0.002,
+            sigma_bent_m: 0.01,
             least_in_view: 0.6,
+            most_off_axis_rad: 1.35,
             most_hidden: 0.5,
             least_changed: 0.15,
             most_sigmas: 4.0,

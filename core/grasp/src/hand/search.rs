@@ -11,8 +11,10 @@ use super::solve::{SIGMAS, candidates};
 
 /// Pixels of a silhouette are far from independent: their sum counts this much less.
 const TEMPER: f64 = 30.0;
-/// Only every so manyth pixel of the silhouette is looked at, along both axes.
-const EVERY: usize = 2;
+/// Only every so manyth pixel of the silhouette is looked at, along both axes: nearby, and where the
+/// hand is looked for farther than [`FAR_PX`].
+const EVERY: [usize; 2] = [2, 4];
+const FAR_PX: i32 = 10;
 
 /// How an eye's image moves with the hand.
 pub(super) struct Moves {
@@ -52,11 +54,12 @@ pub(super) struct Scores {
 impl Scores {
     pub fn new(evidence: &Evidence, ratios: &[f32], labels: &[Option<Part>], reach_px: f64) -> Self {
         let reach = reach_px.ceil() as i32 + 1;
+        let every = EVERY[usize::from(reach > FAR_PX)];
         let (width, height) = (evidence.region.width as i32, evidence.region.height as i32);
         let chosen: Vec<(i32, i32)> = (0..labels.len())
             .filter(|i| labels[*i].is_some())
             .map(|i| ((i % evidence.region.width) as i32, (i / evidence.region.width) as i32))
-            .filter(|(u, v)| (*u as usize).is_multiple_of(EVERY) && (*v as usize).is_multiple_of(EVERY))
+            .filter(|(u, v)| (*u as usize).is_multiple_of(every) && (*v as usize).is_multiple_of(every))
             .collect();
         let mut sums = Vec::with_capacity(((2 * reach + 1) * (2 * reach + 1)) as usize);
         for dv in -reach..=reach {
@@ -68,7 +71,7 @@ impl Scores {
                         sum += ratios[(v * width + u) as usize];
                     }
                 }
-                sums.push(sum * (EVERY * EVERY) as f32);
+                sums.push(sum * (every * every) as f32);
             }
         }
         Self { reach, sums }
@@ -88,7 +91,7 @@ impl Scores {
 
 /// The shift (robot axes, m) whose silhouettes fit the evidence and the prior best.
 pub(super) fn best_shift(
-    eyes: &[(Moves, Scores)],
+    eyes: &[(&Moves, Scores)],
     covariance_m2: &Matrix3<f64>,
     step_m: f64,
 ) -> Option<Vector3<f64>> {

@@ -92,16 +92,31 @@ impl HandShape {
     pub(super) fn posed(&self, posture: &Posture) -> Vec<Solid> {
         let poses = self.description.forward(posture);
         let tip_from_robot = poses.of(self.tip).isometry.inverse();
-        let of_link = |(link, part): &(LinkIndex, Part)| {
+        let mut solids = vec![];
+        let mut digits = 0;
+        for (link, part) in &self.links {
             let tip_from_link = tip_from_robot * poses.of(*link).isometry;
-            let part = *part;
-            self.description.links()[link.0].visuals.iter().map(move |visual| Solid {
-                shape: visual.shape,
-                tip_from_shape: tip_from_link * visual.link_from_shape,
-                part,
-            })
-        };
-        self.links.iter().flat_map(of_link).collect()
+            for visual in &self.description.links()[link.0].visuals {
+                let digit = (*part == Part::Digit).then_some(digits);
+                digits += usize::from(digit.is_some());
+                solids.push(Solid {
+                    shape: visual.shape,
+                    tip_from_shape: tip_from_link * visual.link_from_shape,
+                    part: *part,
+                    digit,
+                    bend_rad: self.bend_rad(*link, posture),
+                });
+            }
+        }
+        solids
+    }
+
+    /// By how much the joint above a link is turned from zero, rad.
+    fn bend_rad(&self, link: LinkIndex, posture: &Posture) -> f64 {
+        self.description.joint_above(link).map_or(0.0, |joint| {
+            let straight = joint.parent_from_joint.rotation;
+            joint.parent_from_child(posture).rotation.angle_to(&straight)
+        })
     }
 }
 
@@ -111,6 +126,10 @@ pub(super) struct Solid {
     pub shape: Shape,
     pub tip_from_shape: Isometry3<f64>,
     pub part: Part,
+    /// Counts the shapes of fingers and thumb.
+    pub digit: Option<usize>,
+    /// By how much the joint that carries it is turned from zero, rad.
+    pub bend_rad: f64,
 }
 
 impl Solid {

@@ -7,7 +7,7 @@
 //! the size of the hand does not pass for its distance.
 
 use nalgebra::{
-    Isometry3, Matrix3, Matrix3xX, Point3, SMatrix, SVector, Translation3, UnitQuaternion, Vector3,
+    DMatrix, DVector, Isometry3, Matrix3, Matrix3xX, Point3, Translation3, UnitQuaternion, Vector3,
 };
 use plumbline_model::frame::{Robot, Tip};
 use plumbline_model::{Camera, Pose, decompose};
@@ -18,20 +18,36 @@ use super::shape::{Part, Solid};
 use super::view::RimPoint;
 
 /// Shift (robot axes, m), turn (rotation vector about the tip, robot axes, rad), half extents of the
-/// palm beyond the description (its own axes, m), radius of digits beyond the description (m).
-pub(super) const UNKNOWNS: usize = 10;
-pub(super) type Unknowns = SVector<f64, UNKNOWNS>;
-type Square = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+/// palm beyond the description (its own axes, m), radius of digits beyond the description (m), and of
+/// every digit its shift on the hand (axes of the tip, m).
+pub(super) type Unknowns = DVector<f64>;
+type Square = DMatrix<f64>;
 
-/// Shapes of the description and real ones differ by this much at a point of the rim, px: palm, digits.
-const SHAPE_PX: [f64; 2] = [1.0, 1.0];
+/// Places in [`Unknowns`].
+const TURN: usize = 3;
+const PALM: usize = 6;
+const RADIUS: usize = 9;
+const DIGITS: usize = 10;
+
+/// Nothing found yet.
+pub(super) fn nothing(solids: &[Solid]) -> Unknowns {
+    Unknowns::zeros(DIGITS + 3 * solids.iter().filter(|solid| solid.digit.is_some()).count())
+}
+
+/// Coordinates `first` to `first + 2`.
+pub(super) fn three(unknowns: &Unknowns, first: usize) -> Vector3<f64> {
+    unknowns.fixed_rows::<3>(first).into_owned()
+}
+
+/// Shapes of the description, resized, and real ones differ by this much at a point of the rim, px.
+const SHAPE_PX: f64 = 0.6;
 /// Over this length of rim they differ in the same way, px.
 const ALIKE_PX: f64 = 5.0;
 /// Residuals beyond this many robust standard deviations count less and less (Tukey's biweight).
 const TUKEY: f64 = 4.0;
 
 /// A line across the rim with what was found on it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Measured {
     pub eye: plumbline_model::Eye,
     pub point: RimPoint,
@@ -41,26 +57,33 @@ pub(super) struct Measured {
 }
 
 /// What is assumed before looking.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Prior {
     information: Square,
 }
 
 impl Prior {
     /// `None` when the covariance cannot be inverted.
-    pub fn new(covariance_m2: &Matrix3<f64>, options: &HandOptions) -> Option<Self> {
+    pub fn new(covariance_m2: &Matrix3<f64>, solids: &[Solid], options: &HandOptions) -> Option<Self> {
         let symmetric = 0.5 * (covariance_m2 + covariance_m2.transpose());
         let eigenvalues = decompose::symmetric_eigenvalues(symmetric)?;
         if !(eigenvalues.min() > 0.0) {
             return None;
         }
-        let mut information = Square::zeros();
+        let count = nothing(solids).len();
+        let mut information = Square::zeros(count, count);
         information.fixed_view_mut::<3, 3>(0, 0).copy_from(&symmetric.try_inverse()?);
-        for k in 3..6 {
-            information[(k, k)] = options.sigma_turn_rad.powi(-2);
-            information[(3 + k, 3 + k)] = options.sigma_palm_m.powi(-2);
+        for k in 0..3 {
+            information[(TURN + k, TURN + k)] = options.sigma_turn_rad.powi(-2);
+            information[(PALM + k, PALM + k)] = options.sigma_palm_m.powi(-2);
         }
-        information[(9, 9)] = options.sigma_digits_m.powi(-2);
+        information[(RADIUS, RADIUS)] = options.sigma_radius_m.powi(-2);
+        for (digit, solid) in solids.iter().filter_map(|solid| Some((solid.digit?, solid))) {
+            let sigma_m = options.sigma_digit_m + options.sigma_bent_m * solid.bend_rad;
+            for k in DIGITS + 3 * digit..DIGITS + 3 * digit + 3 {
+                information[(k, k)] = sigma_m.powi(-2);
+            }
+        }
         Some(Self { information })
     }
 }
@@ -80,8 +103,8 @@ pub(super) struct Solution {
 
 /// The predicted place, moved.
 pub(super) fn moved(predicted: &super::Predicted<'_>, unknowns: &Unknowns) -> Pose<Robot, Tip> {
-    let shift = predicted.robot_from_tip.translation_m() + unknowns.fixed_rows::<3>(0);
-    let turn = UnitQuaternion::from_scaled_axis(unknowns.fixed_rows::<3>(3).into_owned());
+    let shift = predicted.robot_from_tip.translation_m() + three(unknowns, 0);
+    let turn = UnitQuaternion::from_scaled_axis(three(unknowns, TURN));
     Pose::new(Isometry3::from_parts(
         Translation3::from(shift),
         turn * predicted.robot_from_tip.isometry.rotation,
@@ -90,11 +113,15 @@ pub(super) fn moved(predicted: &super::Predicted<'_>, unknowns: &Unknowns) -> Po
 
 /// The hand's solids with other sizes.
 pub(super) fn resized(solids: &[Solid], unknowns: &Unknowns) -> Vec<Solid> {
-    let palm_m = unknowns.fixed_rows::<3>(6).into_owned();
-    let of_part = |solid: &Solid| match solid.part {
-        Part::Palm => solid.grown(&palm_m),
-        Part::Digit => solid.grown(&Vector3::repeat(unknowns[9])),
-        Part::Forearm => *solid,
+    let palm_m = three(unknowns, PALM);
+    let of_part = |solid: &Solid| match (solid.part, solid.digit) {
+        (Part::Palm, _) => solid.grown(&palm_m),
+        (Part::Digit, Some(digit)) => {
+            let mut solid = solid.grown(&Vector3::repeat(unknowns[RADIUS]));
+            solid.tip_from_shape.translation.vector += three(unknowns, DIGITS + 3 * digit);
+            solid
+        }
+        _ => *solid,
     };
     solids.iter().map(of_part).collect()
 }
@@ -106,6 +133,7 @@ pub(super) fn slope(
     camera: &Camera,
     camera_from_robot: &Isometry3<f64>,
     robot_from_tip: &Pose<Robot, Tip>,
+    count: usize,
 ) -> Option<Unknowns> {
     let arm = robot_from_tip.isometry.rotation * point.in_tip;
     let in_camera = camera_from_robot * Point3::from(robot_from_tip.translation_m() + arm);
@@ -114,10 +142,10 @@ pub(super) fn slope(
     let by_point = point.normal.transpose() * projection.by_point;
     let by_shift = by_point * turn.matrix();
     let by_turn = -(by_shift * arm.cross_matrix());
-    let mut slope = Unknowns::zeros();
+    let mut slope = Unknowns::zeros(count);
     for k in 0..3 {
         slope[k] = by_shift[k];
-        slope[3 + k] = by_turn[k];
+        slope[TURN + k] = by_turn[k];
     }
     if solid.part == Part::Palm {
         let in_shape = solid.tip_from_shape.inverse() * Point3::from(point.in_tip);
@@ -125,10 +153,14 @@ pub(super) fn slope(
         let half_m = solid.half_m();
         for k in 0..3 {
             let outward = axes.matrix().column(k) * (in_shape[k] / half_m[k]).clamp(-1.0, 1.0);
-            slope[6 + k] = by_shift.dot(&outward.transpose());
+            slope[PALM + k] = by_shift.dot(&outward.transpose());
         }
     } else {
-        slope[9] = by_point.norm();
+        slope[RADIUS] = by_point.norm();
+    }
+    if let Some(digit) = solid.digit {
+        let by_digit = by_shift * robot_from_tip.isometry.rotation.to_rotation_matrix().matrix();
+        (0..3).for_each(|k| slope[DIGITS + 3 * digit + k] = by_digit[k]);
     }
     Some(slope)
 }
@@ -139,15 +171,15 @@ pub(super) fn solve(lines: &[Measured], prior: &Prior, at: &Unknowns) -> Option<
     let mut weights = vec![1.0; lines.len()];
     let mut solution = None;
     for _ in 0..ROUNDS {
-        let mut normal = prior.information;
-        let mut right = Unknowns::zeros();
+        let mut normal = prior.information.clone();
+        let mut right = Unknowns::zeros(at.len());
         for ((line, target), weight) in lines.iter().zip(&target).zip(&weights) {
             let weight = weight * information(line);
-            normal += weight * line.slope * line.slope.transpose();
-            right += weight * *target * line.slope;
+            normal.syger(weight, &line.slope, &line.slope, 1.0);
+            right.axpy(weight * target, &line.slope, 1.0);
         }
-        let covariance = normal.try_inverse()?;
-        let unknowns = covariance * right;
+        let covariance = normal.cholesky()?.inverse();
+        let unknowns = &covariance * right;
         let residuals: Vec<f64> =
             lines.iter().zip(&target).map(|(line, target)| target - line.slope.dot(&unknowns)).collect();
         let spread_px = spread(&residuals);
@@ -167,11 +199,7 @@ const ROUNDS: usize = 6;
 
 /// Weight of a line, 1/px²: what it says, no better than shapes are known, and shared with its neighbors.
 fn information(line: &Measured) -> f64 {
-    let shape_px = match line.point.part {
-        Part::Palm => SHAPE_PX[0],
-        Part::Digit | Part::Forearm => SHAPE_PX[1],
-    };
-    let variance = 1.0 / line.crossing.information + shape_px * shape_px;
+    let variance = 1.0 / line.crossing.information + SHAPE_PX * SHAPE_PX;
     line.point.length_px / ALIKE_PX / variance
 }
 
@@ -181,15 +209,15 @@ fn scale(solution: &mut Solution, lines: &[Measured], prior: &Prior) {
     for ((line, residual), weight) in lines.iter().zip(&solution.residuals).zip(&solution.weights) {
         let weight = weight * information(line);
         square += weight * residual * residual;
-        count += weight * (1.0 / line.crossing.information + 0.5);
+        count += weight * (1.0 / line.crossing.information + SHAPE_PX * SHAPE_PX);
     }
     let factor = if count > 0.0 { (square / count).max(1.0) } else { 1.0 };
-    let mut normal = prior.information;
+    let mut normal = prior.information.clone();
     for (line, weight) in lines.iter().zip(&solution.weights) {
-        normal += (weight * information(line) / factor) * line.slope * line.slope.transpose();
+        normal.syger(weight * information(line) / factor, &line.slope, &line.slope, 1.0);
     }
-    if let Some(covariance) = normal.try_inverse() {
-        solution.covariance = covariance;
+    if let Some(factors) = normal.cholesky() {
+        solution.covariance = factors.inverse();
     }
 }
 

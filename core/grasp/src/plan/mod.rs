@@ -5,7 +5,7 @@ mod ways;
 
 use std::f64::consts::PI;
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, UnitQuaternion, Vector3};
 use plumbline_model::robot::collision::{CollisionError, CollisionModel};
 use plumbline_model::robot::{JointIndex, Posture};
 use plumbline_model::{Point, Robot};
@@ -26,6 +26,9 @@ const HEADINGS_RAD: [f64; 2] = [-0.6 * PI, 0.9 * PI];
 const LEAST_LEVEL: f64 = 0.6;
 /// More level than this (cosine) makes no difference.
 const LEVEL_ENOUGH: f64 = 0.97;
+/// How a palm is turned and where it belongs depend on each other: so many times, until it is this near, m.
+const TURNS: usize = 6;
+const TURNED_M: f64 = 0.0005;
 /// Fingers and thumb bend this far around nothing, rad.
 const CLOSED_RAD: f64 = 1.8;
 /// Things belong so much nearer to the fingers than the middle of the palm, m, in the middle of how far
@@ -48,13 +51,22 @@ pub struct Standing {
 }
 
 impl Standing {
-    /// Where the palm belongs when the fingers close, for a heading of the hand.
+    /// Height of its middle, m.
+    pub fn middle_m(&self) -> f64 {
+        self.support_m + 0.5 * self.height_m
+    }
+
+    /// Where a palm that faces straight down belongs when the fingers close, for a heading of the hand.
     pub fn palm(&self, heading_rad: f64) -> Point<Robot> {
-        let (sine, cosine) = heading_rad.sin_cos();
-        let back = Vector3::new(cosine, sine, 0.0) * INTO_FINGERS_M
-            - Vector3::new(-sine, cosine, 0.0) * TO_THE_RIGHT_M;
-        let z_m = self.support_m + self.height_m - BELOW_TOP_M;
-        Point::from(Point3::new(self.xy_m[0], self.xy_m[1], z_m) - back)
+        self.palm_turned(&UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading_rad))
+    }
+
+    /// The same for a palm that is turned somehow: x along the fingers, z out of the back of the hand.
+    pub fn palm_turned(&self, robot_from_palm: &UnitQuaternion<f64>) -> Point<Robot> {
+        let middle = Vector3::new(self.xy_m[0], self.xy_m[1], self.middle_m());
+        let over_m = 0.5 * self.height_m - BELOW_TOP_M;
+        let in_hand = Vector3::new(INTO_FINGERS_M, -TO_THE_RIGHT_M, -over_m);
+        Point::from(Point3::from(middle - robot_from_palm * in_hand))
     }
 }
 
@@ -87,6 +99,8 @@ pub struct GraspPlan {
     pub heading_rad: f64,
     /// Cosine of the palm's inclination where it closes.
     pub level: f64,
+    /// Where the real palm belongs when the hand closes, robot frame, m.
+    pub palm_m: Vector3<f64>,
     /// On the way to above the object, that posture last.
     pub approach: Vec<Posture>,
     /// From above down to where the hand closes, the first a step below `above`.
@@ -103,6 +117,14 @@ impl GraspPlan {
     pub fn closing(&self) -> Option<&Posture> {
         self.down.last().or(self.above())
     }
+}
+
+/// Above what stands somewhere, and down.
+struct WayDown {
+    palm_m: Vector3<f64>,
+    above: Posture,
+    down: Vec<Posture>,
+    level: f64,
 }
 
 /// Plans grasps of one hand.
@@ -136,14 +158,12 @@ impl GraspPlanner {
         from: &Posture,
     ) -> Result<GraspPlan, NoPlan> {
         let open = self.open(from);
-        let mut ways: Vec<(f64, Posture, Vec<Posture>, f64)> = vec![];
+        let mut ways: Vec<(f64, f64, WayDown)> = vec![];
         let steps = ((HEADINGS_RAD[1] - HEADINGS_RAD[0]) / HEADING_STEP_RAD).round() as usize;
         for step in 0..=steps {
             let heading_rad = HEADINGS_RAD[0] + step as f64 * HEADING_STEP_RAD;
-            let palm = Point::from(standing.palm(heading_rad).coords + shift_m);
-            if let Some((above, down)) = self.way_down(palm, heading_rad, &open) {
-                let level = down.last().map_or(0.0, |closing| self.arm.level(closing));
-                ways.push((level, above, down, heading_rad));
+            if let Some(way) = self.way_to(standing, heading_rad, shift_m, &open) {
+                ways.push((way.level, heading_rad, way));
             }
         }
         ways.retain(|(level, ..)| *level >= LEAST_LEVEL);
@@ -151,15 +171,16 @@ impl GraspPlanner {
         ways.sort_by(|a, b| b.0.min(LEVEL_ENOUGH).total_cmp(&a.0.min(LEVEL_ENOUGH)));
         let out_of_reach = NoPlan::OutOfReach { xy_m: standing.xy_m };
         let (mut why, mut best): (_, Option<(f64, GraspPlan)>) = (None, None);
-        for (level, above, down, heading_rad) in ways {
+        for (level, heading_rad, way) in ways {
             if best.as_ref().is_some_and(|(_, best)| best.level >= LEVEL_ENOUGH && level < LEVEL_ENOUGH) {
                 break;
             }
+            let WayDown { palm_m, above, down, .. } = way;
             let free = self.room(&above, &down).and_then(|room_m| Ok((room_m, self.approach(from, &above)?)));
             match free {
                 Ok((room_m, approach)) if best.as_ref().is_none_or(|(most_m, _)| room_m > *most_m) => {
                     let standing = *standing;
-                    best = Some((room_m, GraspPlan { standing, heading_rad, level, approach, down }));
+                    best = Some((room_m, GraspPlan { standing, heading_rad, level, palm_m, approach, down }));
                 }
                 Ok(_) => {}
                 Err(barred) => why = why.or(Some(barred)),
@@ -176,13 +197,12 @@ impl GraspPlanner {
     /// # Errors
     /// When the hand does not get there.
     pub fn again(&self, plan: &GraspPlan, shift_m: &Vector3<f64>) -> Result<GraspPlan, NoPlan> {
-        let palm = Point::from(plan.standing.palm(plan.heading_rad).coords + shift_m);
         let out_of_reach = NoPlan::OutOfReach { xy_m: plan.standing.xy_m };
         let start = plan.above().ok_or_else(|| out_of_reach.clone())?;
-        let (above, down) = self.way_down(palm, plan.heading_rad, start).ok_or(out_of_reach)?;
+        let way = self.way_to(&plan.standing, plan.heading_rad, shift_m, start).ok_or(out_of_reach)?;
+        let WayDown { palm_m, above, down, level } = way;
         self.room(&above, &down)?;
-        let level = down.last().map_or(0.0, |closing| self.arm.level(closing));
-        Ok(GraspPlan { level, approach: vec![above], down, ..plan.clone() })
+        Ok(GraspPlan { level, palm_m, approach: vec![above], down, ..plan.clone() })
     }
 
     /// Straight up from where the hand closed, fingers as they are.
@@ -261,6 +281,29 @@ impl GraspPlanner {
         let limits = self.arm.rig().limits(joint);
         let inward = if limits.upper_rad > -limits.lower_rad { 1.0 } else { -1.0 };
         inward * CLOSED_RAD
+    }
+
+    /// The way down onto what stands somewhere; a palm that cannot be level comes from where it is
+    /// turned to.
+    fn way_to(
+        &self,
+        standing: &Standing,
+        heading_rad: f64,
+        shift_m: &Vector3<f64>,
+        open: &Posture,
+    ) -> Option<WayDown> {
+        let mut palm = standing.palm(heading_rad);
+        for _ in 0..TURNS {
+            let (above, down) = self.way_down(Point::from(palm.coords + shift_m), heading_rad, open)?;
+            let turn = self.arm.robot_from_palm(down.last()?).isometry.rotation;
+            let turned = standing.palm_turned(&turn);
+            if turned.distance_m(&palm) < TURNED_M {
+                let level = self.arm.level(down.last()?);
+                return Some(WayDown { palm_m: palm.coords.coords, above, down, level });
+            }
+            palm = turned;
+        }
+        None
     }
 
     fn way_down(

@@ -395,9 +395,19 @@ impl Rig {
     /// frame, limits not considered. Turning the head moves the eye too, so this is found by
     /// repeated aiming; each pass leaves about a quarter of the error for points at arm's length.
     pub fn look_at(&self, point: Point<Robot>, posture: &Posture) -> (f64, f64) {
+        self.look_at_by(point, posture, |posture| self.robot_from_left(posture))
+    }
+
+    /// The same with a left eye that is elsewhere in each posture than the description has it.
+    pub fn look_at_by(
+        &self,
+        point: Point<Robot>,
+        posture: &Posture,
+        robot_from_left: impl Fn(&Posture) -> Pose<Robot, LeftCamera>,
+    ) -> (f64, f64) {
         let mut posture = posture.clone();
         for _ in 0..40 {
-            let eye = self.robot_from_left(&posture).isometry;
+            let eye = robot_from_left(&posture).isometry;
             let wanted = point.coords.coords - eye.translation.vector;
             let axis = eye.rotation * Vector3::z();
             let level = |v: &Vector3<f64>| v.z.atan2(v.x.hypot(v.y));

@@ -25,7 +25,11 @@ pub struct Judged {
     pub reach_error_m: Option<f64>,
     /// Distance of the palm from where it belongs, by the true place of the object, m.
     pub alignment_m: Option<f64>,
-    /// Distance of the hand that was seen at last from where it truly was, m.
+    /// The palm before the hand closed, less where it belongs by the true place of the object, robot
+    /// axes, m.
+    pub palm_off_m: Option<[f64; 3]>,
+    /// Distance of the hand that was seen at last from where it truly was, over the table, seen from the
+    /// object, m.
     pub hand_error_m: Option<f64>,
     /// Why it failed, by what really happened; `None`: it did not.
     pub failure: Option<Failure>,
@@ -76,9 +80,16 @@ impl Judge {
         let standing = record.standing_m.map(|[x, y]| Vector3::new(x, y, 0.0));
         let seen_m = standing.or_else(|| seen.map(|place| place.point().coords.coords));
         let hand_m = record.iterations.iter().rev().find_map(|look| look.hand_m).map(Vector3::from);
-        let truly_wanted = wanted.zip(standing).map(|(wanted, standing)| wanted - standing + self.object_m);
+        // How high a palm belongs over the middle of a thing does not depend on where it stands.
+        let over_m = record.over_middle_m.unwrap_or_default();
+        let truly_wanted = wanted.zip(standing).map(|(wanted, standing)| {
+            let beside = wanted - standing;
+            Vector3::new(beside.x, beside.y, over_m) + self.object_m
+        });
         let camera_error_m = seen_m.map(|seen| flat(seen, self.object_m));
-        let hand_error_m = hand_m.zip(self.aligned_m).map(|(seen, truly)| flat(seen, truly));
+        // Hand and object are seen by the same eyes: what matters is how they are seen to each other.
+        let eyes_off = seen_m.map(|seen| seen - self.object_m).unwrap_or_default();
+        let hand_error_m = hand_m.zip(self.aligned_m).map(|(seen, truly)| flat(seen - eyes_off, truly));
         let refused = matches!(record.outcome, Some(plumbline_grasp::Outcome::Refused { .. }));
         let failure = (!lifted && !refused).then(|| match &record.outcome {
             Some(plumbline_grasp::Outcome::Failed { failure: Failure::NotSeen, .. }) => Failure::NotSeen,
@@ -96,6 +107,7 @@ impl Judge {
             camera_error_m,
             reach_error_m: wanted.zip(self.closing_m).map(|(wanted, palm)| flat(wanted, palm)),
             alignment_m: truly_wanted.zip(self.closing_m).map(|(wanted, palm)| flat(wanted, palm)),
+            palm_off_m: truly_wanted.zip(self.closing_m).map(|(wanted, palm)| (palm - wanted).into()),
             hand_error_m,
             failure,
             refused,

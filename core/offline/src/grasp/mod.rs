@@ -3,10 +3,20 @@
 mod attempt;
 mod body;
 mod judge;
+mod lab;
+mod one;
+mod summary;
 #[cfg(test)]
 mod tests;
+mod trial_error;
+mod trials;
 
 pub use judge::Judged;
+pub use one::{GraspArgs, GraspReport, grasp};
+pub use plumbline_grasp::Method as GraspMethod;
+pub use summary::{MethodSummary, PositionSummary, Spread, Summary};
+pub use trial_error::TrialsError;
+pub use trials::{TrialsArgs, grasp_trials, merge_trials};
 
 /// The published positions: x and y, robot frame, m. The nine by four grid of 10 cm as far as the right
 /// arm reaches.

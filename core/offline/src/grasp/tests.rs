@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use plumbline_effects::RigModel;
+use plumbline_effects::RobotModel;
 use plumbline_grasp::attempt::RenderedHand;
 use plumbline_grasp::{Corrections, Knowledge, Method, Order};
 use plumbline_model::StereoCalibration;
@@ -15,10 +15,9 @@ use super::attempt::{Bench, Task};
 fn bench(scenario: &str) -> Bench {
     let rig = Arc::new(Rig::built_in("nico").expect("valid"));
     let knowledge = Knowledge {
-        rig: rig.clone(),
+        model: RobotModel::nominal(rig.clone()),
         described: rig.clone(),
         calibration: Arc::new(StereoCalibration::bare(rig.eyes.cameras.clone())),
-        effects: Arc::new(RigModel::nominal(&rig)),
         corrections: Corrections::default(),
     };
     let finder = Box::new(RenderedHand::of_rig(&rig, "right_palm_center").expect("a hand"));
@@ -50,4 +49,61 @@ fn everywhere() {
             );
         }
     }
+}
+
+/// Figures of a lab that is commissioned in the folder `PLUMBLINE_LAB` (or was), of the twin
+/// `PLUMBLINE_TWIN`, by the methods `PLUMBLINE_METHODS`.
+#[test]
+#[ignore = "minutes; figures for who works on grasps"]
+fn in_a_lab() {
+    let told = |name: &str, usual: &str| std::env::var(name).unwrap_or_else(|_| usual.to_owned());
+    let (lab, twin) = (told("PLUMBLINE_LAB", "target/lab"), told("PLUMBLINE_TWIN", "lab"));
+    let seed = told("PLUMBLINE_SEED", "1").parse().expect("a number");
+    let context = plumbline_model::Unattended;
+    let args = crate::CommissionArgs { twin: twin.clone(), seed, out: lab.clone().into() };
+    let commissioned = crate::commission(&args, &context).expect("commissioned");
+    println!(
+        "{:.1} min, place {:?}, touch {:?}",
+        commissioned.robot_minutes, commissioned.place_error_mm, commissioned.touch_error_mm
+    );
+    for step in &commissioned.steps {
+        println!(
+            "{} {:.1} min {:?} -> {:?} {:?}",
+            step.name, step.minutes, step.before_mm, step.after_mm, step.notes
+        );
+    }
+    let methods = told("PLUMBLINE_METHODS", "m5");
+    let methods: Vec<Method> = methods.split(',').filter_map(Method::from_name).collect();
+    let attempts = told("PLUMBLINE_ATTEMPTS", "1").parse().expect("a number");
+    let out = tempfile::tempdir().expect("a folder");
+    let args = super::TrialsArgs {
+        twin,
+        lab: lab.into(),
+        methods,
+        attempts,
+        positions: None,
+        object: told("PLUMBLINE_OBJECT", "tomato"),
+        seed,
+        shard: None,
+        out: out.path().to_owned(),
+    };
+    let summary = super::grasp_trials(&args, &context).expect("carried out");
+    for (name, of) in &summary.methods {
+        println!(
+            "{name}: {}/{} inside {}/{} hand {}/{} refused {} {:?} align {:?} reach {:?} camera {:?} {:?} s",
+            of.successes,
+            of.attempts,
+            of.inside,
+            of.inside_attempts,
+            of.hand_located,
+            of.hand_positions,
+            of.refused,
+            of.failures,
+            of.alignment_mm,
+            of.reach_error_mm,
+            of.camera_error_mm,
+            of.seconds_median,
+        );
+    }
+    println!("{}", std::fs::read_to_string(out.path().join("attempts.csv")).expect("written"));
 }

@@ -4,6 +4,7 @@ use plumbline_effects::Kind;
 use plumbline_gap::finding::NamedEffect;
 use plumbline_gap::{Finding, Verdict};
 
+use super::figures::unit;
 use super::{Area, Detail, GAP, GUTTER, HEADING, heading, rule};
 use crate::drawing::{Anchor, Drawing, Style, ink};
 use crate::font;
@@ -103,7 +104,7 @@ impl Entry {
         }
         Self {
             name: wrap(&effect.title, name_width, NAME, detail.name),
-            values: wrap(&values(effect), name_width, Style::BODY, detail.name),
+            values: wrap(&values(effect, unit(finding)), name_width, Style::BODY, detail.name),
             meaning: wrap(&meaning, words_width, Style::BODY, detail.meaning),
             remedy: if detail.remedy == 0 {
                 vec![]
@@ -183,14 +184,15 @@ fn columns(width: f64) -> [f64; 3] {
     [0.38 * free, 0.43 * free, 0.19 * free]
 }
 
-fn values(effect: &NamedEffect) -> String {
+/// Parameters, and what the effect does to the rows in the unit of held-out errors: `(name, scale)`.
+fn values(effect: &NamedEffect, (unit, scale): (&str, f64)) -> String {
     let named = effect.parameters.len() > 1;
     let mut parts: Vec<String> =
         effect.parameters.iter().take(MOST_PARAMETERS).map(|found| with_interval(found, named)).collect();
     if effect.parameters.len() > MOST_PARAMETERS {
         parts.push("…".to_owned());
     }
-    let moved = format!("{} mm in these rows", significant(1e3 * effect.size_m, 2));
+    let moved = format!("{} {unit} in these rows", significant(scale * effect.size_m, 2));
     if effect.size_m.is_finite() {
         parts.push(moved);
     }

@@ -27,7 +27,7 @@ pub fn summary(drawing: &mut Drawing, area: Area, finding: &Finding, context: &R
 }
 
 /// Unit that held-out errors are printed in, and what one of the finding's is in it.
-fn unit(finding: &Finding) -> (&'static str, f64) {
+pub(super) fn unit(finding: &Finding) -> (&'static str, f64) {
     match finding.shown.unit {
         ShownUnit::Meter => ("mm", 1e3),
         ShownUnit::Pixel => ("px", 1.0),

@@ -117,6 +117,12 @@ fn the_page_says_what_was_found() {
 }
 
 #[test]
+fn what_an_effect_does_to_image_points_is_in_pixels() {
+    let said = said(&draw(&sample::pixels(), &ReportContext::default()));
+    assert!(said.contains("1.9 px in these rows") && !said.contains("mm in these rows"), "{said}");
+}
+
+#[test]
 fn each_verdict_has_its_own_words() {
     let says = |finding: &Finding, part: &str| {
         let said = said(&draw(finding, &sample::context()));

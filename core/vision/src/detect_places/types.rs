@@ -175,13 +175,6 @@ pub struct Place {
     pub leak: Option<LeakWarning>,
 }
 
-impl Place {
-    /// From [`Place::middle`], for lists: x, y, z in the left camera, m.
-    pub fn xyz_m(&self) -> [f64; 3] {
-        self.middle.point.coords.coords.into()
-    }
-}
-
 /// What a range comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RangeFrom {

@@ -3,11 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use image::RgbImage;
-
-use super::super::images::Image;
+use super::super::images::{Image, Pixels};
 use super::super::store::{Entry, OpenedSet};
-use super::super::work::{LabelsResult, LabelsWork};
+use super::super::work::LabelsWork;
 use super::{LabelsWorkflow, Set};
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
@@ -18,37 +16,6 @@ use crate::labels::work::Context;
 const THUMBNAILS_AT_ONCE: usize = 24;
 
 impl LabelsWorkflow {
-    /// Work has ended with a result.
-    pub fn work_done(&mut self, id: JobId, result: LabelsResult, context: &mut Context<'_>) {
-        self.working.take_if(|working| *working == id);
-        match result {
-            LabelsResult::Restored(recent) => self.recent = recent,
-            LabelsResult::Opened(set) => self.opened(*set, context),
-            LabelsResult::Loaded(name, pixels) => {
-                self.loaded.read(id, name, pixels);
-                self.load(context);
-            }
-            LabelsResult::Thumbnails(pictures) => {
-                self.reading_thumbnails.take_if(|reading| *reading == id);
-                self.take_thumbnails(pictures);
-                self.read_thumbnails(context);
-            }
-            LabelsResult::Saved => self.saved(id, context),
-            LabelsResult::Captured(entries) => {
-                self.capturing.take_if(|capturing| *capturing == id);
-                self.captured(entries, context);
-            }
-            LabelsResult::Proposed { name, boxes, choice, detector, unknown } => {
-                self.proposing.take_if(|(proposing, _)| *proposing == id);
-                self.proposer = Some((choice, detector));
-                self.proposed(&name, boxes, &unknown, context);
-            }
-            LabelsResult::Exported(_) => {}
-            LabelsResult::Planned(plan) => self.import = Some(plan),
-        }
-        self.look();
-    }
-
     pub(super) fn opened(&mut self, set: OpenedSet, context: &mut Context<'_>) {
         // A changed set that is read again stays at the image that was shown.
         let shown = self.set.as_ref().and_then(Set::shown_image).map(|image| image.entry.name.clone());
@@ -73,7 +40,7 @@ impl LabelsWorkflow {
         }
     }
 
-    pub(super) fn take_thumbnails(&mut self, pictures: Vec<(String, Result<Arc<RgbImage>, String>)>) {
+    pub(super) fn take_thumbnails(&mut self, pictures: Vec<(String, Pixels)>) {
         let Some(set) = &mut self.set else { return };
         let small = Arc::make_mut(&mut self.thumbnails);
         for (name, picture) in pictures {
@@ -81,7 +48,7 @@ impl LabelsWorkflow {
                 Ok(picture) => drop(small.insert(name, picture)),
                 Err(why) => {
                     if let Some(image) = set.images.iter_mut().find(|image| image.entry.name == name) {
-                        image.entry.unusable = Some(why);
+                        image.entry.unusable = Some(why.to_string());
                     }
                 }
             }
@@ -133,33 +100,5 @@ impl LabelsWorkflow {
         if image.proposals.is_empty() {
             context.notices.add(NoticeLevel::Info, format!("The detector proposes nothing new for {name}."));
         }
-    }
-
-    /// Work has ended without a result: everything is as it was.
-    pub fn work_ended(&mut self, id: JobId, why: Option<&str>, context: &mut Context<'_>) {
-        if self.working.take_if(|working| *working == id).is_some() {
-            self.failed = why.filter(|_| self.set.is_none()).map(str::to_owned);
-        }
-        self.loaded.gave_nothing(id);
-        self.proposing.take_if(|(proposing, _)| *proposing == id);
-        self.reading_thumbnails.take_if(|reading| *reading == id);
-        if self.capturing.take_if(|capturing| *capturing == id).is_some() {
-            self.captured_seq = None;
-        }
-        if let Some(saving) = self.saving.take_if(|saving| saving.job == id) {
-            if let Some(set) = &mut self.set {
-                set.dirty.extend(saving.images);
-                set.to_check_dirty |= saving.to_check;
-                let count = set.dirty.len();
-                let why = why.unwrap_or("It was stopped.");
-                self.unsaved = Some(format!(
-                    "Boxes of {count} image{} are not on disk: {why} They are kept here.",
-                    if count == 1 { "" } else { "s" }
-                ));
-            }
-        } else {
-            self.save(context);
-        }
-        self.look();
     }
 }

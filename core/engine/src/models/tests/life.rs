@@ -182,7 +182,7 @@ fn a_screen_that_was_placed_anew_makes_the_model_stale() {
     let mut workflow = ModelsWorkflow::new(lab.folder.path());
     let robot = RobotView::default();
     let view_on = |workflow: &ModelsWorkflow, rig: Rig| {
-        workflow.view(&ModelsAround {
+        workflow.shown(&ModelsAround {
             rig: Arc::new(rig),
             robot: Arc::new(robot.clone()),
             newest_session: None,

@@ -58,13 +58,6 @@ pub enum PathCheck {
 /// What stops a joint at its own limit.
 const OWN_LIMIT: &str = "the end of its range";
 
-impl PathCheck {
-    /// Whether the way can be taken.
-    pub fn is_clear(&self) -> bool {
-        matches!(self, Self::Clear { .. })
-    }
-}
-
 /// How things stand at one place on the way.
 enum Standing {
     Free { nearest: Option<(f64, usize)> },

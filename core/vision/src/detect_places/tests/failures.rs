@@ -162,7 +162,9 @@ fn odd_boxes_are_answered() {
         .collect();
     let found = find(&tiny, &shifted, &PlaceOptions::default());
     for place in found.iter().filter_map(|object| object.place.as_ref().ok()) {
-        assert!(place.xyz_m().iter().all(|x| x.is_finite()) && place.middle.sigma_m().is_finite());
+        assert!(
+            place.middle.point.coords.iter().all(|x| x.is_finite()) && place.middle.sigma_m().is_finite()
+        );
     }
 }
 

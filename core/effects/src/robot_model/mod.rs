@@ -1,0 +1,107 @@
+//! The robot as it is known now: what everything that looks, moves or grasps works with, so that what
+//! was accepted is used everywhere, and the same way.
+//!
+//! Without effects every answer is exactly that of the description: [`Rig::robot_from_left`] and the
+//! [`Chain`](plumbline_model::robot::Chain) of a tip.
+
+mod arm;
+#[cfg(test)]
+mod laws;
+mod place;
+mod uncertainty;
+
+use std::sync::Arc;
+
+use plumbline_model::robot::Rig;
+use plumbline_model::robot::ik::SolverError;
+use plumbline_model::session::Touchscreen;
+
+use crate::eyes::Eyes;
+use crate::rig_model::{Measured, RigModel, RigModelError};
+
+pub use arm::ModelArm;
+pub use place::{PlaceInRobot, SeenUnder, worst_sigma_m};
+
+/// The robot as it is known now: its description with what was calibrated (lenses, mount of the
+/// eyes, place of the screen), and the effects that were accepted. Cheap to clone.
+#[derive(Clone, Debug)]
+pub struct RobotModel {
+    rig: Arc<Rig>,
+    added: Arc<RigModel>,
+    eyes: Arc<Eyes>,
+    /// Effects on the eyes.
+    of_eyes: Arc<[Measured]>,
+}
+
+impl RobotModel {
+    /// The robot as its description has it.
+    pub fn nominal(rig: Arc<Rig>) -> Self {
+        let added = Arc::new(RigModel::nominal(&rig));
+        Self::put_together(rig, added)
+    }
+
+    /// With effects that were accepted.
+    ///
+    /// # Errors
+    /// When they are of another rig, or do not fit to this one.
+    pub fn new(rig: Arc<Rig>, added: Arc<RigModel>) -> Result<Self, RigModelError> {
+        if added.rig != rig.name {
+            return Err(RigModelError::OtherRig { found: added.rig.clone(), expected: rig.name.clone() });
+        }
+        added.contents.check(&rig).map_err(RigModelError::Effect)?;
+        Ok(Self::put_together(rig, added))
+    }
+
+    fn put_together(rig: Arc<Rig>, added: Arc<RigModel>) -> Self {
+        let eyes = Eyes::of_rig(&rig).expect("the link of the eyes is one of the description");
+        let of_eyes = added.measured(None, None, Some(&eyes));
+        Self { rig, added, eyes: Arc::new(eyes), of_eyes: of_eyes.into() }
+    }
+
+    /// The same effects on a rig whose calibrations are others.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_rig(&self, rig: Arc<Rig>) -> Result<Self, RigModelError> {
+        Self::new(rig, self.added.clone())
+    }
+
+    /// The description with what was calibrated.
+    pub fn rig(&self) -> &Arc<Rig> {
+        &self.rig
+    }
+
+    /// The effects that were accepted.
+    pub fn added(&self) -> &Arc<RigModel> {
+        &self.added
+    }
+
+    /// Whether no effect is in force.
+    pub fn is_nominal(&self) -> bool {
+        self.added.is_nominal()
+    }
+
+    /// For people, short: "as described", "with 2 effects".
+    pub fn title(&self) -> String {
+        match self.added.effects().len() {
+            0 => "as described".to_owned(),
+            1 => "with 1 effect".to_owned(),
+            count => format!("with {count} effects"),
+        }
+    }
+
+    /// The touchscreen where it lies for a robot with these effects.
+    pub fn touchscreen(&self) -> &Touchscreen {
+        let nominal = &self.rig.touchscreen;
+        self.added.screen(nominal).filter(|_| !self.is_nominal()).unwrap_or(nominal)
+    }
+
+    /// The arm that ends in a tip ("`right_palm_center`", "`right_index_tip`"). Made in milliseconds: make
+    /// it once for many targets.
+    ///
+    /// # Errors
+    /// When the rig has no such tip, or its chain cannot be solved.
+    pub fn arm(&self, tip: &str) -> Result<ModelArm, SolverError> {
+        ModelArm::new(&self.rig, &self.added, tip)
+    }
+}

@@ -1,0 +1,50 @@
+//! What the window shows while the eyes are being calibrated.
+
+use std::sync::Arc;
+
+use super::view::EyesView;
+use super::workflow::EyesWorkflow;
+use crate::ground::step::StepState;
+
+impl EyesWorkflow {
+    /// What the window shows.
+    pub(super) fn shown(&self) -> EyesView {
+        EyesView {
+            step: self.step(),
+            board: *self.board(),
+            board_chosen: self.board_chosen,
+            options: self.options.clone(),
+            minutes_since_on: self.minutes_since_on,
+            board_seen: self.board_seen.clone(),
+            auto_capture: self.auto_capture,
+            hint: self.hint.clone(),
+            collected: self.derived.collected.clone(),
+            dropped: Arc::new(self.collection.dropped().clone()),
+            not_collected: self.not_collected.clone(),
+            can_undo: self.collection.can_undo(),
+            coverage: self.derived.coverage.clone(),
+            ghost: self.derived.ghost.clone(),
+            solving: self.busy.solving,
+            proposal: self.proposal.clone(),
+            in_use: self.in_use.clone(),
+            earlier: self.earlier.clone(),
+        }
+    }
+
+    fn step(&self) -> StepState {
+        if self.busy.any() {
+            return StepState::Running;
+        }
+        let Some(in_use) = self.in_use() else { return StepState::NotDone };
+        let (calibrated, now) = (in_use.cameras.left.size_px(), self.image_size_px);
+        match now {
+            Some(now) if now != calibrated => StepState::Stale {
+                why: format!(
+                    "The images are {}×{} px now, the calibration in use is for {}×{} px. Calibrate again with these images.",
+                    now.0, now.1, calibrated.0, calibrated.1
+                ),
+            },
+            _ => StepState::Done,
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! The robot as it is known in a world: its description, with all that was accepted there. It is put
+//! together here and nowhere else, from what is on disk or from what the rooms hold.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use plumbline_effects::{RigModel, RigModelError, RobotModel};
+use plumbline_model::StereoCameras;
+use plumbline_model::frame::{Head, LeftCamera, Pose};
+use plumbline_model::robot::Rig;
+use plumbline_model::session::Touchscreen;
+use plumbline_model::touchscreen::ScreenPlacement;
+use plumbline_vision::mount::MountCalibration;
+
+use super::{ModelInUseError, load};
+use crate::eyes::store::Store;
+use crate::ground::shelf::InUse;
+
+/// What was accepted in a world. What is `None` is as the description has it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Accepted<'a> {
+    /// Lenses, and how the eyes sit to each other.
+    pub cameras: Option<&'a StereoCameras>,
+    /// How the eyes sit in the head.
+    pub head_from_left: Option<Pose<Head, LeftCamera>>,
+    /// Where the touchscreen lies.
+    pub screen: Option<&'a Touchscreen>,
+    /// Effects.
+    pub effects: Option<&'a Arc<RigModel>>,
+}
+
+impl Accepted<'_> {
+    /// Whether a model is of just that.
+    pub fn is_in(&self, model: &RobotModel, described: &Rig) -> bool {
+        let rig = model.rig();
+        let same_effects = match self.effects {
+            None => model.is_nominal(),
+            Some(effects) => Arc::ptr_eq(model.added(), effects),
+        };
+        same_effects
+            && rig.eyes.cameras == *self.cameras.unwrap_or(&described.eyes.cameras)
+            && rig.eyes.head_from_left == self.head_from_left.unwrap_or(described.eyes.head_from_left)
+            && rig.touchscreen == *self.screen.unwrap_or(&described.touchscreen)
+    }
+
+    /// The description with it.
+    ///
+    /// # Errors
+    /// When the effects are of another robot, or have no place in this one.
+    pub fn robot_model(&self, described: &Rig) -> Result<RobotModel, RigModelError> {
+        let mut rig = described.clone();
+        if let Some(cameras) = self.cameras {
+            rig.eyes.cameras = *cameras;
+        }
+        if let Some(head_from_left) = self.head_from_left {
+            rig.eyes.head_from_left = head_from_left;
+        }
+        if let Some(screen) = self.screen {
+            rig.touchscreen = screen.clone();
+        }
+        let rig = Arc::new(rig);
+        match self.effects {
+            None => Ok(RobotModel::nominal(rig)),
+            Some(effects) => RobotModel::new(rig, effects.clone()),
+        }
+    }
+}
+
+/// The robot with all that was accepted in the folder of a world: calibration and mount of the eyes,
+/// place of the touchscreen, effects. `described` is the robot as its description has it.
+///
+/// # Errors
+/// A sentence, when something that was accepted cannot be used.
+pub fn in_use(folder: &Path, described: &Rig) -> Result<RobotModel, ModelInUseError> {
+    let calibration = Store::of_world(folder).in_use()?;
+    let mount = mount_in(folder)
+        .read(|file| MountCalibration::read(file, described).map_err(ModelInUseError::from))?;
+    let placement = screen_in(folder)
+        .read(|file| ScreenPlacement::read(file, &described.name).map_err(ModelInUseError::from))?;
+    let effects = Arc::new(load(folder, described)?);
+    let accepted = Accepted {
+        cameras: calibration.as_ref().map(|calibration| &calibration.cameras),
+        head_from_left: mount.as_ref().map(|mount| mount.head_from_left),
+        screen: placement.as_ref().map(|placement| &placement.screen),
+        effects: Some(&effects),
+    };
+    Ok(accepted.robot_model(described)?)
+}
+
+/// The mount in use, in the folder of a world.
+pub fn mount_in(folder: &Path) -> InUse {
+    InUse::new(folder.join("mount.toml"))
+}
+
+/// The place of the screen in use, in the folder of a world.
+pub fn screen_in(folder: &Path) -> InUse {
+    InUse::new(folder.join("screen.toml"))
+}

@@ -1,0 +1,79 @@
+//! Where the screen lies.
+
+use std::sync::Arc;
+
+use plumbline_model::robot::Rig;
+use plumbline_model::session::Touchscreen;
+use plumbline_model::touch_plan::Purpose;
+use plumbline_model::touchscreen::ScreenPlacement;
+
+use super::super::placement::Proposal;
+use super::super::refusal::{NotRestored, Refusal, Unplaced};
+use super::super::store::Runs;
+use super::super::work::{Context, TouchWork};
+use super::TouchWorkflow;
+use crate::ground::notice::NoticeLevel;
+use crate::motion::ScreenPlace;
+use crate::rig_models::screen_in;
+
+impl TouchWorkflow {
+    pub(super) fn accept_placement(&mut self, context: &mut Context<'_>) -> Result<(), Refusal> {
+        self.no_run_under_way()?;
+        let proposal = self.proposal.as_ref();
+        let proposal = proposal.ok_or(Refusal::NoPlacement)?;
+        let kept = screen_in(&self.folder);
+        context.start(TouchWork::Accept { kept, placement: proposal.placement.clone() });
+        Ok(())
+    }
+
+    pub(super) fn use_nominal(&mut self, context: &mut Context<'_>) -> Result<(), Refusal> {
+        self.no_run_under_way()?;
+        context.start(TouchWork::Forget { kept: screen_in(&self.folder) });
+        Ok(())
+    }
+
+    pub(super) fn restored(
+        &mut self,
+        placement: Option<Result<Arc<ScreenPlacement>, Arc<NotRestored>>>,
+        runs: Runs,
+        context: &mut Context<'_>,
+    ) {
+        self.runs = runs;
+        match placement {
+            None => {}
+            Some(Ok(placement)) => self.placement = Some(placement),
+            Some(Err(reason)) => context.notices.add(NoticeLevel::Warning, reason.to_string()),
+        }
+    }
+
+    pub(super) fn placed(&mut self, placed: Result<Proposal, Arc<Unplaced>>, context: &mut Context<'_>) {
+        let run = self.run.as_mut();
+        let wanted = run.as_ref().is_some_and(|run| run.plan.options.purpose == Purpose::PlaceScreen);
+        match placed {
+            Ok(proposal) => {
+                if let Some(run) = run.filter(|run| run.session == proposal.session) {
+                    run.progress.gave_placement = Some(proposal.placement.at);
+                    run.changed();
+                }
+                if let Some(trained) = &mut self.runs.trained
+                    && trained.session == proposal.session
+                {
+                    trained.gave_placement = Some(proposal.placement.at);
+                }
+                self.proposal = Some(proposal);
+            }
+            Err(reason) if wanted => context.refuse(reason),
+            Err(reason) => log::info!("no place of the screen from these touches: {reason}"),
+        }
+    }
+
+    /// The screen where it is taken to lie, without a block.
+    pub(in crate::touch) fn placed_screen(&self, rig: &Rig) -> Touchscreen {
+        self.placement.as_ref().map_or(&rig.touchscreen, |placement| &placement.screen).clone()
+    }
+
+    /// Whether the place of the screen was measured.
+    pub(super) fn screen_place(&self) -> ScreenPlace {
+        if self.placement.is_some() { ScreenPlace::Measured } else { ScreenPlace::Nominal }
+    }
+}

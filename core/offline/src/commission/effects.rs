@@ -1,0 +1,213 @@
+//! Step effects: what makes the arm miss. The search names what the touches can name. What they cannot
+//! name is still there: all usual effects together, each drawn to zero, are fitted too. Of the nominal
+//! arm, the named effects and all together the one that errs least on touches held out is put in use.
+
+use plumbline_effects::arm::Arm;
+use plumbline_effects::rig_model::{Addition, ModelEffect, PlacedScreen, StepGap};
+use plumbline_effects::{Effect, Kind, Measurements, RigModel};
+use plumbline_engine::gap::search::{measured, search};
+use plumbline_engine::gap::sessions::stamps;
+use plumbline_engine::gap::store::{KeptFinding, KeptSession, Store};
+use plumbline_engine::gap::{Finding, Verdict, model_name};
+use plumbline_engine::rig_models;
+use plumbline_engine::touch::plan::TIP;
+use plumbline_engine::touch::store;
+use plumbline_gap::Options;
+use plumbline_model::touchscreen::place_screen;
+use plumbline_model::{JobContext, Session};
+
+use super::error::CommissionError;
+use super::estimate::{Fit, Known, fit, held_out_m};
+use super::glass::SeenScreen;
+use super::lab::Lab;
+use super::plan::effects_of;
+use super::steps::Step;
+use super::touches::session;
+
+/// Another model has to err less by this share on held-out touches, or the simpler one stays.
+const WORTH: f64 = 0.95;
+
+/// Searches, compares, and puts a model in use.
+pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, CommissionError> {
+    let mut step = Step::new("effects", "touches held out, along the glass and in height, rms");
+    let folder = session(lab);
+    let mut measurements = measured(std::slice::from_ref(&folder), &lab.rig)?;
+    let options = Options { seed: lab.seed, show: true, advise: false, ..Options::default() };
+    let nominal = RigModel::nominal(&lab.rig);
+    let finding = search(&measurements, &nominal, &options, context)?;
+    let kept = vec![KeptSession { folder: folder.clone(), tables: stamps(&folder) }];
+    let about = (model_name(&nominal), vec![]);
+    let store = Store::new(lab.world().join("gap"));
+    store.keep(KeptFinding::new(finding.clone(), kept, about)).map_err(CommissionError::room)?;
+    step.notes.push(finding.sentence.clone());
+
+    directions(lab, &mut measurements)?;
+    let arm = Arm::of_rig(&lab.rig, TIP)?;
+    let seen = SeenScreen::read(lab)?;
+    let known = Known { rig: &lab.rig, seen: seen.as_ref() };
+    let named = named_effects(&finding, &arm);
+    let all = effects_of(&arm);
+    context.checkpoint()?;
+    let of_nothing = held_out_m(&measurements, &[], &known);
+    let of_named = if named.is_empty() { None } else { held_out_m(&measurements, &named, &known) };
+    context.checkpoint()?;
+    let of_all = held_out_m(&measurements, &all, &known);
+    let mm = |m: Option<f64>| m.map_or("not known".to_owned(), |m| format!("{:.2} mm", 1e3 * m));
+    step.notes.push(format!(
+        "Held-out touches err by {} without effects, {} with those named, {} with all usual ones.",
+        mm(of_nothing),
+        mm(of_named),
+        mm(of_all)
+    ));
+    step.before_mm = of_nothing.map(|m| 1e3 * m);
+    let better =
+        |new: Option<f64>, old: Option<f64>| matches!((new, old), (Some(n), Some(o)) if n < WORTH * o);
+    let none = vec![];
+    let (mut best, mut effects, mut what) = (of_nothing, &none, "no effect of the arm");
+    if better(of_named, best) {
+        (best, effects, what) = (of_named, &named, "those named");
+    }
+    if better(of_all, best) {
+        (best, effects, what) = (of_all, &all, "all usual effects, each drawn to zero");
+    }
+    step.after_mm = best.map(|m| 1e3 * m);
+    step.notes.push(format!("In use: {what}."));
+    let rows: Vec<_> = measurements.rows.iter().collect();
+    let Some(fitted) = fit(&measurements, &rows, effects, &known) else { return Ok(step) };
+    if let Some((zero_rad, sd_rad)) = fitted.neck_rad {
+        step.notes.push(format!(
+            "The neck's turn is off by {:.2}° ± {:.2}°.",
+            zero_rad.to_degrees(),
+            sd_rad.to_degrees()
+        ));
+    }
+    accept(lab, &measurements, &fitted, &finding, (of_nothing, best))?;
+    Ok(step)
+}
+
+/// Effects of a finding that can be added, of the library.
+fn named_effects(finding: &Finding, arm: &Arm) -> Vec<Effect> {
+    let named = matches!(finding.verdict, Verdict::Named | Verdict::Class);
+    let effects = finding.effects.iter().filter(|effect| named && effect.not_addable.is_none());
+    effects
+        .filter_map(|effect| Effect::find(&effect.id, &effect.site, effect.shape, Some(arm), None))
+        .collect()
+}
+
+/// The signs of the joints' last motions, which the window's table has in columns of its own.
+fn directions(lab: &Lab, measurements: &mut Measurements) -> Result<(), CommissionError> {
+    let stored = store::read(&session(lab))?;
+    let signs: Vec<Vec<f64>> = stored
+        .progress
+        .counted()
+        .map(|record| record.direction.iter().map(|sign| f64::from(*sign)).collect())
+        .collect();
+    for row in &mut measurements.rows {
+        if let Some(signs) = signs.get(row.row).filter(|signs| signs.len() == row.direction.len()) {
+            row.direction.clone_from(signs);
+        }
+    }
+    Ok(())
+}
+
+/// Puts the fitted effects in use, and the screen where they place it.
+fn accept(
+    lab: &Lab,
+    measurements: &Measurements,
+    fitted: &Fit,
+    finding: &Finding,
+    (before, after): (Option<f64>, Option<f64>),
+) -> Result<(), CommissionError> {
+    let read = Session::read(&session(lab))?;
+    let title = measurements.apparatuses[0].title.clone();
+    let nominal = read.manifest.touchscreen.clone().unwrap_or_else(|| lab.rig.touchscreen.clone());
+    let placed = PlacedScreen::moved(&title, &nominal, &fitted.assumed.placements[0]);
+    let mut at = 0;
+    let mut effects = vec![];
+    for present in &fitted.assumed.effects {
+        let width = present.values.len();
+        let covariance = fitted.covariance.view((at, at), (width, width));
+        at += width;
+        let probability = finding
+            .effects
+            .iter()
+            .find(|named| named.id == present.effect.id() && named.site == present.effect.site)
+            .map(|named| named.probability);
+        effects.push(ModelEffect {
+            id: present.effect.id().to_owned(),
+            site: present.effect.site.clone(),
+            title: present.effect.title.clone(),
+            tip: Some(TIP.to_owned()),
+            shape: present.effect.shape,
+            values: present.values.clone(),
+            covariance: covariance.iter().copied().collect(),
+            probability,
+            parameters: vec![],
+        });
+    }
+    if let Some((zero_rad, sd_rad)) = fitted.neck_rad {
+        let joint = lab.rig.description.joint(lab.rig.eyes.pan).name.clone();
+        effects.push(ModelEffect {
+            id: Kind::HeadJoint.id().to_owned(),
+            title: format!("{joint}: {}", Kind::HeadJoint.about()),
+            site: joint,
+            tip: None,
+            shape: None,
+            values: vec![zero_rad],
+            covariance: vec![sd_rad * sd_rad],
+            probability: None,
+            parameters: vec![],
+        });
+    }
+    if effects.is_empty() {
+        return Ok(());
+    }
+    let gap = before.zip(after).map(|(before, after)| StepGap {
+        unit: "m".to_owned(),
+        rows: measurements.rows.len(),
+        before,
+        after,
+        floor: 0.0,
+        closure: None,
+        closure_range: None,
+    });
+    let addition = Addition {
+        effects,
+        screens: vec![placed.clone()],
+        externals: vec![],
+        replaces: true,
+        at: jiff::Timestamp::now(),
+        sentence: finding.sentence.clone(),
+        sessions: vec![title],
+        version: finding.version.clone(),
+        gap,
+    };
+    let mut model = RigModel::nominal(&lab.rig);
+    model.add(&lab.rig, addition).map_err(CommissionError::room)?;
+    rig_models::save(&lab.world(), &model, &lab.rig).map_err(CommissionError::room)?;
+
+    // The same screen for those who know of no effects: it is where the finger found it.
+    let screen = &placed.screen;
+    let normal = screen.normal().vector();
+    let middle = screen.middle();
+    let [u_m, v_m] = screen.pitch_m();
+    let touches: Vec<_> = measurements
+        .rows
+        .iter()
+        .filter_map(|row| {
+            let touched = plumbline_model::Pixel::new(
+                middle.u_px + row.measured[0] / u_m,
+                middle.v_px + row.measured[1] / v_m,
+            );
+            let predicted = measurements.predict(row, &fitted.assumed)?;
+            let at = plumbline_model::Pixel::new(
+                middle.u_px + predicted[0] / u_m,
+                middle.v_px + predicted[1] / v_m,
+            );
+            let tip = screen.point_at(at).coords + normal * predicted[2];
+            Some((touched, plumbline_model::Point::from(tip)))
+        })
+        .collect();
+    let placement = place_screen(&lab.rig.touchscreen, &touches).map_err(CommissionError::room)?;
+    lab.accept_placement(&placement.of_rig(&lab.rig.name))
+}

@@ -1,0 +1,274 @@
+//! Steps touches and screen: the finger goes to the glass where that tells most, and where the glass was
+//! met tells where it lies.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use plumbline_engine::motion::{Planner, ScreenPlace, TouchPath};
+use plumbline_engine::robot::TouchMeasurement;
+use plumbline_engine::touch::plan::{Aim, FORMAT, RunPlan, TIP};
+use plumbline_engine::touch::record::{Ended, Progress, TouchRecord};
+use plumbline_engine::touch::{placement, store};
+use plumbline_model::robot::Chain;
+use plumbline_model::touch_plan::{Pattern, PlanOptions, PlannedTouch, Purpose, Sides};
+use plumbline_model::{JobContext, Pixel, Point};
+use plumbline_twin::Touched;
+
+use super::error::CommissionError;
+use super::glass::{pose, see};
+use super::lab::{Lab, TOUCH_SESSION};
+use super::plan::{Candidate, Chosen, TOUCHES, area, candidates, choose};
+use super::robot::{Robot, SPEED_RAD_S};
+use super::steps::Step;
+
+/// The tip comes down with this speed, m/s.
+const LOWER_M_S: f64 = 0.02;
+/// Encoders are read once more so much later, s.
+const DWELL_S: f64 = 0.3;
+/// A contact farther from its target is not the finger's, m.
+const PLAUSIBLE_M: f64 = 0.06;
+/// Fewer touches place no screen.
+const FEWEST: usize = 6;
+
+/// Folder of the session.
+pub(super) fn session(lab: &Lab) -> PathBuf {
+    lab.sessions().join(TOUCH_SESSION)
+}
+
+/// Touches and writes the session.
+pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Result<Step, CommissionError> {
+    let step = Step::new("touches", "");
+    let planner = Planner::new(&lab.rig, TIP, ScreenPlace::Nominal)?;
+    let area = area(&lab.rig)?;
+    let possible = candidates(&planner, &area, context)?;
+    context.report(0.2, "choosing touches");
+    let chosen = in_short_ways(&choose(&lab.rig, &possible)?, &possible);
+    let aims: Vec<Aim> = chosen.iter().enumerate().map(|(k, pick)| aim(k + 1, pick, &possible)).collect();
+    let plan = RunPlan {
+        format: FORMAT,
+        options: PlanOptions {
+            area,
+            patterns: vec![Pattern::Random { count: TOUCHES }],
+            repeats: 1,
+            sides: Sides::LeftAndRight,
+            screen_heights_m: vec![0.0],
+            payloads_kg: vec![0.0],
+            seed: lab.seed,
+            purpose: Purpose::Train,
+        },
+        touches: aims,
+        corrected_with: None,
+        model: String::new(),
+        duration_s: 0.0,
+        score: None,
+    };
+    let mut progress = Progress::new(Purpose::Train, jiff::Timestamp::now(), plan.touches.len());
+    let joints = planner.chain().names().to_vec();
+    let mut missed = vec![];
+    for (k, aim) in plan.touches.iter().enumerate() {
+        context.checkpoint()?;
+        context.report(0.25 + 0.75 * k as f64 / plan.touches.len() as f64, "touching the screen");
+        let stands = robot.lockstep().commanded().clone();
+        let hold = possible[chosen[k].candidate].hold;
+        let path = match planner.plan_held(aim.touch.target, aim.sent(), aim.touch.side, hold, &stands) {
+            Ok(path) => path,
+            Err(why) => {
+                missed.push(format!("touch {}: {why}", aim.touch.number));
+                progress.end(aim.touch.number, Ended::Missed(why.to_string()));
+                continue;
+            }
+        };
+        match touch(robot, &path, planner.chain()).and_then(|measured| TouchRecord::new(aim, &measured)) {
+            Some(record) => progress.touched(record),
+            None => {
+                missed.push(format!("touch {}: no contact near the target", aim.touch.number));
+                progress
+                    .end(aim.touch.number, Ended::Missed("The screen felt nothing near the target.".into()));
+            }
+        }
+    }
+    robot.go(&planner.ready(&lab.rig.home()));
+    robot.go(&lab.rig.home());
+    let touched = progress.counted().count();
+    if touched < FEWEST {
+        return Err(CommissionError::TooFewTouches { touched, planned: plan.touches.len() });
+    }
+    progress.finished = true;
+    write(lab, &joints, &plan, &progress)?;
+    let notes = if missed.is_empty() { vec![] } else { vec![format!("Missed: {}.", missed.join("; "))] };
+    Ok(Step { touches: touched, notes, ..step })
+}
+
+/// The session in one folder of a name that does not change, whole or not at all.
+fn write(lab: &Lab, joints: &[String], plan: &RunPlan, progress: &Progress) -> Result<(), CommissionError> {
+    let folder = session(lab);
+    if folder.exists() {
+        // What a work that was interrupted here had left.
+        std::fs::remove_dir_all(&folder).map_err(CommissionError::room)?;
+    }
+    let manifest = store::manifest(&lab.rig.name, &lab.rig.touchscreen, joints, plan, progress.started);
+    let begun = store::begin(&lab.sessions(), &manifest, plan, progress)?;
+    store::write(&begun, joints, progress)?;
+    std::fs::rename(&begun, &folder).map_err(CommissionError::room)
+}
+
+/// Places the screen by the touches and the nominal arm, and looks where the eyes see it.
+pub(super) fn place(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Result<Step, CommissionError> {
+    let mut step =
+        Step::new("screen", "touched places against the fingertip by the model, each left out once, rms");
+    let stored = store::read(&session(lab))?;
+    let records: Vec<TouchRecord> = stored.progress.counted().cloned().collect();
+    let placed = placement::place(&lab.rig, &stored.joints, &records)?;
+    step.before_mm = miss_mm(lab, &stored.joints, &records, None);
+    let left_out: Vec<f64> = (0..records.len())
+        .filter_map(|k| {
+            let others: Vec<TouchRecord> =
+                records.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, r)| r.clone()).collect();
+            let without = placement::place(&lab.rig, &stored.joints, &others).ok()?;
+            miss_mm(lab, &stored.joints, std::slice::from_ref(&records[k]), Some(&without.screen))
+        })
+        .collect();
+    step.after_mm = rms(&left_out);
+    step.notes.extend(placed.remarks.iter().cloned());
+    lab.accept_placement(&placed)?;
+    match see(lab, robot, &lab.rig_with_eyes()?, &placed.screen, context)? {
+        Some(seen) => {
+            let off = seen.robot_from_screen * pose(&placed.screen).inverse();
+            let middle = placed.screen.point_at(placed.screen.middle()).coords;
+            let shift_mm = 1e3 * ((off * middle) - middle);
+            step.notes.push(format!(
+                "The eyes see it {:.1} {:.1} {:.1} mm beside and {:.2}° turned ({} edges, {:.2} px).",
+                shift_mm.x,
+                shift_mm.y,
+                shift_mm.z,
+                off.rotation.angle().to_degrees(),
+                seen.edges,
+                seen.rms_px
+            ));
+            seen.write(lab)?;
+        }
+        None => step.notes.push("The eyes do not see its edges.".to_owned()),
+    }
+    Ok(step)
+}
+
+/// Rms distance of the fingertip, by encoders and the nominal arm, from the pixel it touched on a screen
+/// (`None`: where the rig has it), mm.
+fn miss_mm(
+    lab: &Lab,
+    joints: &[String],
+    records: &[TouchRecord],
+    screen: Option<&plumbline_model::session::Touchscreen>,
+) -> Option<f64> {
+    let chain = lab.rig.chain(TIP).ok()?;
+    let screen = screen.unwrap_or(&lab.rig.touchscreen);
+    let order: Option<Vec<usize>> =
+        chain.names().iter().map(|name| joints.iter().position(|joint| joint == name)).collect();
+    let order = order?;
+    let misses: Vec<f64> = records
+        .iter()
+        .filter_map(|record| {
+            let angles_rad: Option<Vec<f64>> = order.iter().map(|k| record.encoder_rad[*k]).collect();
+            let tip = chain.robot_from_tip(&angles_rad?).translation_m();
+            Some(1e3 * (tip - screen.point_at(record.touched).coords.coords).norm())
+        })
+        .collect();
+    rms(&misses)
+}
+
+pub(super) fn rms(values: &[f64]) -> Option<f64> {
+    let squares: f64 = values.iter().map(|value| value * value).sum();
+    (!values.is_empty()).then(|| (squares / values.len() as f64).sqrt())
+}
+
+fn aim(number: usize, pick: &Chosen, candidates: &[Candidate]) -> Aim {
+    let Candidate { path, side, set, .. } = &candidates[pick.candidate];
+    let sent_m: [f64; 3] = path.sent.coords.coords.into();
+    Aim {
+        touch: PlannedTouch {
+            number,
+            target: path.target,
+            set: set.clone(),
+            group: format!("g{:02}", pick.group + 1),
+            side: *side,
+            screen_height_m: 0.0,
+            payload_kg: 0.0,
+        },
+        place_m: sent_m,
+        sent_m,
+        inside: true,
+        refusal: None,
+        posture: Some(path.contact.clone()),
+    }
+}
+
+/// Always the nearest next; repeats of a touch are not made one after the other.
+fn in_short_ways(chosen: &[Chosen], candidates: &[Candidate]) -> Vec<Chosen> {
+    let mut left: Vec<&Chosen> = chosen.iter().collect();
+    let mut ordered: Vec<Chosen> = vec![];
+    while !left.is_empty() {
+        let cost = |pick: &&Chosen| {
+            let Some(last) = ordered.last() else { return 0.0 };
+            let way_rad = candidates[last.candidate]
+                .path
+                .contact
+                .distance_rad(&candidates[pick.candidate].path.contact);
+            way_rad + if last.group == pick.group { 10.0 } else { 0.0 }
+        };
+        let nearest = (0..left.len()).min_by(|a, b| cost(&left[*a]).total_cmp(&cost(&left[*b]))).unwrap_or(0);
+        let Chosen { candidate, group } = *left.remove(nearest);
+        ordered.push(Chosen { candidate, group });
+    }
+    ordered
+}
+
+/// Goes above, lowers until the glass is met, reads, and goes up again. `None`: the glass was not met, or
+/// far from the target.
+pub(super) fn touch(robot: &mut Robot, path: &TouchPath, chain: &Chain) -> Option<TouchMeasurement> {
+    let pitch_m = {
+        let [u_m, v_m] = robot.lockstep().rig().touchscreen.pitch_m();
+        u_m.min(v_m)
+    };
+    let before_s = robot.on_s() - robot.lockstep().now_s();
+    let lockstep = robot.lockstep();
+    lockstep.follow(&path.approach, SPEED_RAD_S);
+    lockstep.follow(std::slice::from_ref(path.above()), SPEED_RAD_S);
+    let started_s = lockstep.now_s();
+    let touched = lockstep.follow_until_touched(&path.lower, lower_speed_rad_s(path));
+    let servos = lockstep.servos();
+    lockstep.wait(DWELL_S);
+    let later = lockstep.encoders();
+    lockstep.follow(std::slice::from_ref(path.above()), SPEED_RAD_S);
+    let Touched { contact, commanded, encoders } = touched?;
+    let pixel = Pixel::new(f64::from(contact.pixel[0]), f64::from(contact.pixel[1]));
+    let off_px = (pixel.u_px - path.target.u_px).hypot(pixel.v_px - path.target.v_px);
+    if off_px * pitch_m > PLAUSIBLE_M {
+        return None;
+    }
+    let joints = chain.joints();
+    let known = |angles: Vec<f64>| angles.into_iter().map(Some).collect::<Vec<_>>();
+    let of_servo = |value: fn(&plumbline_twin::ServoState) -> f64| -> Vec<Option<f64>> {
+        joints.iter().map(|joint| servos.iter().find(|servo| servo.joint == *joint).map(value)).collect()
+    };
+    let tip = chain.robot_from_tip_in(&commanded).translation_m();
+    Some(TouchMeasurement {
+        pixel,
+        at: Instant::now(),
+        commanded_rad: known(commanded.of(joints)),
+        commanded_tip: Some(Point::new(tip.x, tip.y, tip.z)),
+        encoder_rad: known(encoders.of(joints)),
+        later_encoder_rad: known(later.of(joints)),
+        direction: path.direction.clone(),
+        temperature_c: of_servo(|servo| servo.temperature_c),
+        load: of_servo(|servo| servo.load),
+        move_secs: contact.time_s - started_s,
+        connected_secs: before_s + contact.time_s,
+    })
+}
+
+/// Peak joint speed with which a lowering takes as long as its tip should, step by step.
+fn lower_speed_rad_s(path: &TouchPath) -> f64 {
+    let tips = path.lower_tip.windows(2).map(|pair| pair[0].distance_m(&pair[1])).sum::<f64>();
+    let turns = path.lower.windows(2).map(|pair| pair[0].distance_rad(&pair[1])).sum::<f64>();
+    1.875 * turns / (tips / LOWER_M_S).max(1e-3)
+}
