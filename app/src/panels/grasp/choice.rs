@@ -22,7 +22,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 fn row(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(2.0, 2.0);
-        ui.add_sized([54.0, 20.0], egui::Label::new(theme::small(ui, name)).halign(egui::Align::Min));
+        ui.add_sized([46.0, 20.0], egui::Label::new(theme::small(ui, name)).halign(egui::Align::Min));
         contents(ui);
     });
 }
@@ -60,11 +60,6 @@ fn methods(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             if chip.on_disabled_hover_text(known.lacks.clone().unwrap_or_default()).clicked() {
                 cx.outbox.send(GraspCommand::Method(known.method));
             }
-        }
-        let about = grasp.methods.iter().find(|known| grasp.method == Some(known.method));
-        if let Some(about) = about {
-            ui.add_space(space::S);
-            ui.add(egui::Label::new(theme::small(ui, about.about)).truncate());
         }
     });
 }

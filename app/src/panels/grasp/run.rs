@@ -18,10 +18,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             ui.add_space(space::S);
             buttons(ui, cx);
             ui.add_space(space::S);
-            gates(ui, &cx.view.grasp);
-            planned(ui, cx);
             if let Some(run) = cx.view.grasp.run.clone() {
-                ui.add_space(space::S);
                 lamps::show(ui, &run.lamps);
                 ui.add_space(space::XS);
                 result::show(ui, cx, &run);
@@ -29,8 +26,11 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                     ui.add_space(space::S);
                     aligned::show(ui, &run.iterations);
                 }
+                ui.add_space(space::S);
             }
-            ui.add_space(space::M);
+            planned(ui, cx);
+            gates(ui, &cx.view.grasp);
+            ui.add_space(space::S);
             hand(ui, cx);
         });
     });
@@ -92,7 +92,6 @@ fn gates(ui: &mut Ui, grasp: &GraspView) {
 /// What would be sent, in words, and where along it the ghost stands.
 fn planned(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let Some(plan) = cx.view.grasp.plan.clone() else { return };
-    ui.add_space(space::S);
     let [x_m, y_m] = plan.at_m;
     let sigma =
         plan.sigma_m.map_or_else(String::new, |sigma_m| format!(" (known to {})", format::mm(sigma_m)));
@@ -117,6 +116,7 @@ fn planned(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let slider =
         Slider::new(&mut cx.state.grasp.along, 0.0..=1.0).show_value(false).text("ghost along the way");
     ui.add(slider);
+    ui.add_space(space::S);
 }
 
 /// Every step by itself.

@@ -43,7 +43,7 @@ impl Progress {
             run.seconds = record.seconds;
             let last = match &record.outcome {
                 // Whether it holds was looked at: all steps were made.
-                Some(Outcome::Success) => LampState::Done,
+                Some(Outcome::Success) | None => LampState::Done,
                 Some(Outcome::Failed { failure: Failure::Slipped | Failure::ReachWrong, .. }) => {
                     LampState::Done
                 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use plumbline_grasp::things::Thing;
 use plumbline_grasp::{Method, Outcome};
-use plumbline_model::{Eye, StereoFrame};
+use plumbline_model::StereoFrame;
 
 use super::around::GraspAround;
 use super::attempt::{Attempt, Proposed};
@@ -13,7 +13,9 @@ use super::body::Ropes;
 use super::command::{GraspCommand, GraspTarget, HandStep};
 use super::gates::{gates, shut};
 use super::keeping::grasps_in;
+use super::pointing::pointed_at;
 use super::progress::Progress;
+use super::refusal::Refusal;
 use super::sights::Sights;
 use super::steps::HandWork;
 use super::view::{AttemptView, GraspView, PlannedGrasp};
@@ -22,35 +24,6 @@ use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
 use crate::ground::{Moment, Workflow};
 use crate::robot::{Leader, Reins, RobotControl};
-
-/// Farther from every box than this nothing was pointed at, px.
-const NEAR_BOX_PX: f64 = 60.0;
-
-/// Why something is not done, and what to do.
-#[derive(Debug, thiserror::Error)]
-enum Refusal {
-    /// One after the other.
-    #[error("Something is under way ({0}): wait until it is done, or end it.")]
-    UnderWay(&'static str),
-    /// There is nothing to pause, resume or end.
-    #[error("Nothing is under way.")]
-    NothingUnderWay,
-    /// A gate is shut.
-    #[error("{0}")]
-    Shut(String),
-    /// The rig has others.
-    #[error("The robot has no arm called {0}.")]
-    NoArm(String),
-    /// Nothing is known of it.
-    #[error("Nothing is known of a thing called {0}: choose one of the list.")]
-    NoThing(String),
-    /// The image shows nothing there.
-    #[error("Nothing that can be held was detected there: click on a box.")]
-    NothingThere,
-    /// It is not in the list.
-    #[error("There is no attempt called {0} any more.")]
-    NoAttempt(String),
-}
 
 /// What is under way.
 #[derive(Clone, Debug)]
@@ -308,24 +281,6 @@ impl GraspWorkflow {
             context.refuse(why);
         }
     }
-}
-
-/// The thing that was detected nearest to there, if it can be held.
-fn pointed_at(around: &GraspAround, eye: Eye, at_px: [f64; 2]) -> Option<GraspTarget> {
-    let found = around.found.as_ref()?;
-    let held = |name: &str| Thing::of_class(name).is_some_and(|thing| thing.can_be_held);
-    let off_px = |area: &plumbline_model::detection::PixelBox| {
-        let out = |at: f64, low: f32, high: f32| (f64::from(low) - at).max(at - f64::from(high)).max(0.0);
-        out(at_px[0], area.x0_px, area.x1_px).hypot(out(at_px[1], area.y0_px, area.y1_px))
-    };
-    let candidates = found.objects.iter().filter(|object| held(&object.name));
-    let near = candidates.filter_map(|object| Some((off_px(&object.seen(eye)?.area), object)));
-    let (_, object) = near.filter(|(off, _)| *off < NEAR_BOX_PX).min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let near_m = object.place.as_ref().ok().map(|place| {
-        let point = place.point_in_robot.coords;
-        [point.x, point.y]
-    });
-    Some(GraspTarget { class: Some(object.name.clone()), near_m })
 }
 
 impl Workflow for GraspWorkflow {

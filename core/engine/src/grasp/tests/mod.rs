@@ -3,4 +3,5 @@
 #![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
 
 mod bench;
+mod refusals;
 mod twin;
