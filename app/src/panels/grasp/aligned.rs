@@ -5,11 +5,11 @@ use plumbline_engine::view::GraspIteration;
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role};
 
-const HEIGHT: f32 = 74.0;
+const HEIGHT: f32 = 64.0;
 const BAR: f32 = 26.0;
-const GAP: f32 = 22.0;
+const GAP: f32 = 38.0;
 /// Bars are drawn on a scale of at least this, m.
-const LEAST_SCALE_M: f64 = 0.01;
+const LEAST_SCALE_M: f64 = 0.004;
 
 /// A bar per look, in mm.
 pub fn show(ui: &mut Ui, iterations: &[GraspIteration]) {
@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, iterations: &[GraspIteration]) {
     let painter = ui.painter();
     painter.hline(rect.x_range(), floor, egui::Stroke::new(1.0, tokens.grid));
     for (i, (look, text)) in iterations.iter().zip(&words).enumerate() {
-        let x = rect.left() + 8.0 + i as f32 * (BAR + GAP);
+        let x = rect.left() + 14.0 + i as f32 * (BAR + GAP);
         let Some(distance_m) = look.distance_m else {
             let at = pos2(x + BAR / 2.0, floor - 4.0);
             painter.text(at, Align2::CENTER_BOTTOM, "–", font.clone(), Role::Warning.color(tokens));

@@ -31,7 +31,7 @@ fn objects(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let grasp = &cx.view.grasp;
     row(ui, "Object", |ui| {
         let target = &grasp.target;
-        let any = ui.selectable_label(target.class.is_none(), "Seen best");
+        let any = ui.selectable_label(target.class.is_none(), "Any");
         if any.on_hover_text("What can be held and is seen best").clicked() {
             cx.outbox.send(GraspCommand::Target(GraspTarget::default()));
         }

@@ -72,20 +72,19 @@ fn doing(view: &View) -> String {
     crate::operator::words::capitalized(&running.unwrap_or_default())
 }
 
-/// What is not as it should be; when all is well, one word.
+/// What keeps anything from moving; when nothing does and nothing else is shown, one word. Notes stand in
+/// the inspector.
 fn gates(ui: &mut Ui, grasp: &GraspView) {
     if grasp.phase != GraspPhase::Idle {
         return;
     }
     let tokens = theme::tokens(ui);
-    if grasp.trouble().is_none() {
+    if grasp.trouble().is_none() && grasp.run.is_none() {
         ui.label(RichText::new("Ready.").color(Role::Accepted.color(tokens)));
     }
-    for gate in grasp.gates.iter().filter(|gate| gate.state != GateState::Open) {
-        let role = if gate.state == GateState::Shut { Role::Warning } else { Role::Weak };
-        let sign = if gate.state == GateState::Shut { "not ready" } else { "note" };
-        let text = RichText::new(format!("{}, {sign}: {}", gate.name, gate.text)).color(role.color(tokens));
-        ui.label(text);
+    for gate in grasp.gates.iter().filter(|gate| gate.state == GateState::Shut) {
+        let text = format!("{}, not ready: {}", gate.name, gate.text);
+        ui.label(RichText::new(text).color(Role::Warning.color(tokens)));
     }
 }
 
