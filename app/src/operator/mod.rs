@@ -13,9 +13,9 @@ mod touch_monitor;
 pub mod words;
 
 pub use actions::{
-    Action, DetectAction, GapAction, LabelsAction, ModelsAction, MountAction, Preset, RobotAction,
-    ScoresAction, TouchAction, default_scenario, format_name, gap_plan, is_under_way, needs_window,
-    screen_of, usual_area,
+    Action, DetectAction, GapAction, GraspAction, LabelsAction, ModelsAction, MountAction, Preset,
+    RobotAction, ScoresAction, TouchAction, default_scenario, format_name, gap_plan, is_under_way,
+    needs_window, screen_of, usual_area,
 };
 pub use gamepad::{GamepadState, STOP_BUTTONS};
 pub use guidance::{

@@ -23,6 +23,8 @@ pub enum Screen {
     Models,
     /// The gap between model and measurement: compare, find, name, add, show.
     Gap,
+    /// Grasping things.
+    Grasp,
     /// The robot: its joints, moving it.
     Robot,
     /// Detectors judged on a labeled data set.
@@ -33,7 +35,7 @@ pub enum Screen {
 
 impl Screen {
     /// All of them, in the order of work.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Live,
         Self::Collect,
         Self::Judge,
@@ -42,6 +44,7 @@ impl Screen {
         Self::Touch,
         Self::Models,
         Self::Gap,
+        Self::Grasp,
         Self::Robot,
         Self::Scores,
         Self::Images,
@@ -140,6 +143,10 @@ pub enum Pane {
     GapNext,
     /// Models and findings so far.
     GapHistory,
+    /// What is grasped and how, the attempt as it goes on, its result.
+    GraspRun,
+    /// What became of attempts.
+    GraspAttempts,
     /// Which detectors are judged on what.
     ScoreChoice,
     /// Detectors compared.
@@ -203,6 +210,8 @@ impl Pane {
             Self::GapShown => "Before and after",
             Self::GapNext => "Next experiment",
             Self::GapHistory => "History",
+            Self::GraspRun => "Grasp",
+            Self::GraspAttempts => "Attempts",
             Self::ScoreChoice => "Detectors and data set",
             Self::ScoreTable => "Detectors compared",
             Self::ScoreClasses => "Per class",

@@ -29,6 +29,7 @@ impl Action {
             Self::Go(Screen::Touch) => command(Key::Num7),
             Self::Go(Screen::Models) => command(Key::Num8),
             Self::Go(Screen::Gap) => command(Key::Num9),
+            Self::Go(Screen::Grasp) => command(Key::Num0),
             Self::Go(Screen::Images) => command(Key::D),
             Self::Go(Screen::Scores) => shift(Key::D),
             Self::Capture => plain(Key::C),

@@ -16,9 +16,9 @@ use plumbline_widgets::texture::TextureCache;
 use super::board_draft::BoardDraft;
 use super::probe_state::ProbeState;
 use super::{
-    gap::state::GapPanels, labels::state::LabelsPanels, models::state::ModelsPanels,
-    objects::state::ObjectsPanels, robot::state::RobotPanels, scores::state::ScoresPanels,
-    touch::state::TouchPanels, twin::state::TwinPanels,
+    gap::state::GapPanels, grasp::state::GraspPanels, labels::state::LabelsPanels,
+    models::state::ModelsPanels, objects::state::ObjectsPanels, robot::state::RobotPanels,
+    scores::state::ScoresPanels, touch::state::TouchPanels, twin::state::TwinPanels,
 };
 use crate::operator::{Outbox, Screen};
 
@@ -62,6 +62,8 @@ pub struct PanelState {
     pub models: ModelsPanels,
     /// The gap between model and measurement.
     pub gap: GapPanels,
+    /// Grasping.
+    pub grasp: GraspPanels,
     /// The lab's own data sets.
     pub labels: LabelsPanels,
     /// Judging detectors.
@@ -90,6 +92,7 @@ impl Default for PanelState {
             touch: TouchPanels::default(),
             models: ModelsPanels::default(),
             gap: GapPanels::default(),
+            grasp: GraspPanels::default(),
             labels: LabelsPanels::default(),
             scores: ScoresPanels::default(),
         }

@@ -10,7 +10,7 @@ use plumbline_widgets::image_view::{Content, ImageView};
 use plumbline_widgets::overlay::{Mark, Overlay, PointShape};
 use plumbline_widgets::theme::Role;
 
-use super::{PanelContext, objects, picture, residuals, source_state};
+use super::{PanelContext, grasp, objects, picture, residuals, source_state};
 use crate::operator::Screen;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
@@ -23,7 +23,8 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
         cx.outbox.want(Products { corners: true, ..Products::default() });
     }
     let on_live = cx.screen == Screen::Live;
-    if on_live && cx.state.objects.shown {
+    let grasping = cx.screen == Screen::Grasp;
+    if (on_live && cx.state.objects.shown) || (grasping && grasp::wants_detections(cx.view)) {
         cx.outbox.want(Products { detections: true, ..Products::default() });
     }
     let view = cx.view;
@@ -36,6 +37,10 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
         boxes.append(overlay);
         overlay = boxes;
         note = objects::stale(view, &cx.state.objects);
+    }
+    if grasping {
+        let boxes = grasp::overlay(view, eye);
+        overlay = boxes.unwrap_or_else(|| objects::raw(view, &cx.state.objects, eye));
     }
     let picture = view.live.raw.as_ref().map(|frame| {
         let image = if eye == Eye::Left { &frame.left } else { &frame.right };
@@ -51,7 +56,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
     if shown.button_clicked {
         source_state::button_clicked(view, cx.outbox);
     }
-    if !collecting {
+    if grasping {
+        grasp::click(view, cx.outbox, eye, shown.clicked_px);
+    } else if !collecting {
         let point = |at: [f64; 2]| ProbePoint::Raw { eye, u_px: at[0], v_px: at[1] };
         cx.outbox.probe = shown.hover_px.map(point).or(cx.outbox.probe);
         // A click on a box chooses the object; a point below it is measured by pointing at it.

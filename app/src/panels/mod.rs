@@ -14,6 +14,7 @@ mod eye;
 mod figures;
 mod files;
 mod gap;
+mod grasp;
 mod labels;
 mod models;
 mod mount;
@@ -37,6 +38,8 @@ mod verdict_line;
 pub use context::{PanelContext, PanelState};
 pub(crate) use context::{padded, shown_calibration, shown_calibration_ref};
 pub(crate) use gap::show_inspector as show_gap_inspector;
+pub(crate) use grasp::parts::{ghost as grasp_ghost, palm_way};
+pub(crate) use grasp::show_inspector as show_grasp_inspector;
 pub(crate) use labels::show_inspector as show_labels_inspector;
 pub(crate) use models::show_inspector as show_models_inspector;
 pub(crate) use objects::show_inspector as show_objects_inspector;
@@ -96,6 +99,8 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
         | Pane::GapShown
         | Pane::GapNext
         | Pane::GapHistory => gap::show(ui, pane, cx),
+        Pane::GraspRun => grasp::show_run(ui, cx),
+        Pane::GraspAttempts => grasp::show_attempts(ui, cx),
         Pane::ScoreChoice
         | Pane::ScoreTable
         | Pane::ScoreClasses

@@ -222,6 +222,7 @@ impl PlumblineWindow {
             Action::Touch(action) => return action.command(&self.view),
             Action::Models(action) => return action.command(&self.view),
             Action::Gap(action) => return action.command(&self.view),
+            Action::Grasp(action) => return action.command(&self.view),
             Action::Labels(action) => return action.command(&self.view),
             Action::Scores(action) => return action.command(&self.view),
             Action::Detect(action) => return action.command(),

@@ -16,6 +16,7 @@ pub fn default_arrangement(screen: Screen) -> Tree<Pane> {
         Screen::Touch => touch(&mut tiles),
         Screen::Models => models(&mut tiles),
         Screen::Gap => gap(&mut tiles),
+        Screen::Grasp => grasp(&mut tiles),
         Screen::Robot => robot(&mut tiles),
         Screen::Scores => scores(&mut tiles),
         Screen::Images => images(&mut tiles),
@@ -100,6 +101,18 @@ fn gap(tiles: &mut Tiles<Pane>) -> TileId {
     let shown = tabs(tiles, &[Pane::GapShown, Pane::GapNext, Pane::GapHistory]);
     let right = column(tiles, &[(map, 1.0), (shown, 1.15)]);
     row(tiles, &[(work, 1.0), (right, 1.1)])
+}
+
+fn grasp(tiles: &mut Tiles<Pane>) -> TileId {
+    let left = tabs(tiles, &[Pane::LeftEye]);
+    let right = tabs(tiles, &[Pane::RightEye]);
+    let scene = tabs(tiles, &[Pane::Scene, Pane::Twin]);
+    let run = tabs(tiles, &[Pane::GraspRun]);
+    let attempts = tabs(tiles, &[Pane::GraspAttempts]);
+    let eyes = row(tiles, &[(left, 1.0), (right, 1.0)]);
+    let seen = column(tiles, &[(eyes, 0.6), (scene, 1.0)]);
+    let work = column(tiles, &[(run, 3.4), (attempts, 1.0)]);
+    row(tiles, &[(seen, 1.15), (work, 1.0)])
 }
 
 fn robot(tiles: &mut Tiles<Pane>) -> TileId {

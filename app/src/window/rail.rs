@@ -40,6 +40,7 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
                 ("Touch", 3, touch_state(view), Screen::Touch),
                 ("Models", 4, models_state(view), Screen::Models),
                 ("Gap", 5, gap_state(view), Screen::Gap),
+                ("Grasp", 6, step_state(&view.grasp.step), Screen::Grasp),
             ] {
                 let step = RailStep::new(name, state).number(number).selected(screen == target);
                 if step.show(ui).clicked() {

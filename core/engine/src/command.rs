@@ -59,6 +59,8 @@ commands! {
     Models(models / ModelsCommand);
     /// Finding, naming and adding what makes measurement differ from the model.
     Gap(gap / GapCommand);
+    /// Grasping.
+    Grasp(grasp / GraspCommand);
     /// The lab's own data sets: images with boxes.
     Labels(labels / LabelsCommand);
     /// Judging detectors.

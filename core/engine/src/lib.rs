@@ -9,6 +9,7 @@ pub mod ground;
 pub mod detect;
 pub mod eyes;
 pub mod gap;
+pub mod grasp;
 pub mod labels;
 pub mod live;
 pub mod models;
@@ -30,10 +31,11 @@ pub mod engine;
 
 pub use command::{
     AimChoice, BoxEdit, Command, ConfusionCell, ContactWith, Correction, Destination, DetectCommand,
-    DetectorChoice, ExportFormat, Exported, EyesCommand, FileLength, GapCommand, GapModel, GraspTable,
-    HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LabelsCommand, LiveCommand, ModelsCommand,
-    MountCommand, NoticeCommand, ProbePoint, Products, Provider, RobotCommand, ScoresCommand, ScreenContact,
-    ScreenWindow, SetPart, SourceCommand, TablesCommand, TouchCommand, TwinCommand, WatchCommand,
+    DetectorChoice, ExportFormat, Exported, EyesCommand, FileLength, GapCommand, GapModel, GraspCommand,
+    GraspTable, GraspTarget, HandStep, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LabelsCommand,
+    LiveCommand, ModelsCommand, MountCommand, NoticeCommand, ProbePoint, Products, Provider, RobotCommand,
+    ScoresCommand, ScreenContact, ScreenWindow, SetPart, SourceCommand, TablesCommand, TouchCommand,
+    TwinCommand, WatchCommand,
 };
 pub use engine::settings::{self, EngineSettings};
 pub use engine::{Engine, Wake, journal};

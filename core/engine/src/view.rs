@@ -58,6 +58,8 @@ views! {
     models: models / ModelsView;
     /// The gap between model and measurement.
     gap: gap / GapView;
+    /// Grasping.
+    grasp: grasp / GraspView;
     /// The lab's own data sets.
     labels: labels / LabelsView;
     /// Scores of detectors.

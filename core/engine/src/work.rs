@@ -72,6 +72,8 @@ works! {
     Models(models / ModelsWork);
     /// Part of the gap.
     Gap(gap / GapWork);
+    /// Part of grasping.
+    Grasp(grasp / GraspWork);
     /// Part of the lab's own data sets.
     Labels(labels / LabelsWork);
     /// Part of judging detectors.

@@ -144,6 +144,9 @@ pub struct Record {
     pub began: Timestamp,
     /// With which model, for people.
     pub model: String,
+    /// The step that was begun last: where it came to, if there is no outcome.
+    #[serde(default)]
+    pub step: Option<Step>,
     /// What was seen at first.
     pub seen: Vec<Seen>,
     /// The object that was chosen, by its place in `seen`.
@@ -181,6 +184,7 @@ impl Record {
             object: object.to_owned(),
             began,
             model,
+            step: None,
             seen: vec![],
             chosen: None,
             standing_m: None,

@@ -2,6 +2,7 @@
 
 mod detect;
 mod gap;
+mod grasp;
 mod labels;
 mod models;
 mod robot;
@@ -9,6 +10,7 @@ mod touch;
 
 pub use detect::DetectAction;
 pub use gap::{GapAction, plan as gap_plan};
+pub use grasp::GraspAction;
 pub use labels::{LabelsAction, ScoresAction};
 pub use models::ModelsAction;
 pub use robot::{MountAction, RobotAction, default_scenario};
@@ -92,6 +94,8 @@ pub enum Action {
     Models(ModelsAction),
     /// Of the gap between model and measurement.
     Gap(GapAction),
+    /// Of grasping.
+    Grasp(GraspAction),
     /// Of the lab's own data sets.
     Labels(LabelsAction),
     /// Of judging detectors.
@@ -135,7 +139,7 @@ macro_rules! into_action {
 }
 into_action!(
     Robot: RobotAction, Mount: MountAction, Touch: TouchAction, Models: ModelsAction, Gap: GapAction,
-    Labels: LabelsAction, Scores: ScoresAction, Detect: DetectAction
+    Grasp: GraspAction,    Labels: LabelsAction, Scores: ScoresAction, Detect: DetectAction
 );
 
 /// All actions with a place in the palette, in its order.
@@ -145,10 +149,11 @@ pub fn all() -> impl Iterator<Item = Action> {
     let touch = TouchAction::ALL.into_iter().map(Action::Touch);
     let models = ModelsAction::ALL.into_iter().map(Action::Models);
     let gap = GapAction::ALL.into_iter().map(Action::Gap);
+    let grasp = GraspAction::ALL.into_iter().map(Action::Grasp);
     let detect = DetectAction::ALL.into_iter().map(Action::Detect);
     let labels = LabelsAction::ALL.into_iter().map(Action::Labels);
     let scores = ScoresAction::ALL.into_iter().map(Action::Scores);
-    let steps = robot.chain(mount).chain(touch).chain(models).chain(gap);
+    let steps = robot.chain(mount).chain(touch).chain(models).chain(gap).chain(grasp);
     let threads = WatchedThread::ALL.into_iter().map(Action::StartAgain);
     ALL.iter().copied().chain(detect).chain(steps).chain(labels).chain(scores).chain(threads)
 }
@@ -175,6 +180,7 @@ const ALL: &[Action] = &[
     Action::Go(Screen::Touch),
     Action::Go(Screen::Models),
     Action::Go(Screen::Gap),
+    Action::Go(Screen::Grasp),
     Action::Go(Screen::Robot),
     Action::Go(Screen::Images),
     Action::Go(Screen::Scores),
@@ -245,6 +251,7 @@ impl Action {
             Self::Go(Screen::Touch) => "Go to Touch",
             Self::Go(Screen::Models) => "Go to Models",
             Self::Go(Screen::Gap) => "Go to Gap",
+            Self::Go(Screen::Grasp) => "Go to Grasp",
             Self::Go(Screen::Robot) => "Go to Robot",
             Self::Go(Screen::Images) => "Go to Detect: images",
             Self::Go(Screen::Scores) => "Go to Detect: scores",
@@ -253,6 +260,7 @@ impl Action {
             Self::Touch(action) => action.label(),
             Self::Models(action) => action.label(),
             Self::Gap(action) => action.label(),
+            Self::Grasp(action) => action.label(),
             Self::Labels(action) => action.label(),
             Self::Scores(action) => action.label(),
             Self::Detect(action) => action.label(),
@@ -315,6 +323,7 @@ impl Action {
             Self::Touch(action) => action.refusal(view),
             Self::Models(action) => action.refusal(view),
             Self::Gap(action) => action.refusal(view),
+            Self::Grasp(action) => action.refusal(view),
             Self::Labels(action) => action.refusal(view),
             Self::Scores(action) => action.refusal(view),
             Self::Detect(action) => action.refusal(view),

@@ -2,6 +2,7 @@
 
 mod detect;
 mod gap;
+mod grasp;
 mod models;
 mod robot;
 mod sentence;
@@ -43,6 +44,7 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
         Screen::Touch => touch::touch(view),
         Screen::Models => models::models(view),
         Screen::Gap => gap::gap(view),
+        Screen::Grasp => grasp::grasp(view),
         Screen::Robot => robot::robot(view),
         Screen::Scores => detect::scores(view),
         Screen::Images => detect::images(view),
@@ -60,7 +62,8 @@ pub fn failed_inside(view: &View, screen: Screen) -> Option<Guidance> {
 
 /// What only looks goes on while STOP is latched; what moves says so.
 fn stopped(view: &View, screen: Screen) -> Option<Guidance> {
-    let moves = matches!(screen, Screen::Live | Screen::Mount | Screen::Touch | Screen::Robot);
+    let moves =
+        matches!(screen, Screen::Live | Screen::Mount | Screen::Touch | Screen::Grasp | Screen::Robot);
     let connected = view.robot.connection.is_connected();
     (moves && connected && view.robot.stopped)
         .then(|| say("Stopped: nothing moves until you press Release STOP, at the top right.").warn())

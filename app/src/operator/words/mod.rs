@@ -1,6 +1,7 @@
 //! What several panels, the bottom line and the window say in the same words.
 
 pub mod gap;
+pub mod grasp;
 pub mod robot;
 
 use std::path::Path;

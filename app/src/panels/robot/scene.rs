@@ -5,7 +5,7 @@ use plumbline_engine::Destination;
 use plumbline_engine::view::Connection;
 use plumbline_widgets::empty::Message;
 use plumbline_widgets::format;
-use plumbline_widgets::scene3d::Scene3d;
+use plumbline_widgets::scene3d::{Line, Scene3d, Tint};
 use plumbline_widgets::theme::{self, space};
 
 use super::bodies::{Thing, scene, thing};
@@ -24,8 +24,13 @@ const NAMES_FROM: f32 = 520.0;
 const ABOVE_M: f64 = 0.08;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    let ghost = crate::panels::touch_ghost(cx);
-    let drawn = scene(cx.view, &cx.state.robot, ghost, ui.available_width() >= NAMES_FROM);
+    let planned = crate::panels::grasp_ghost(cx);
+    let ghost = crate::panels::touch_ghost(cx).or(planned.as_ref());
+    let mut drawn = scene(cx.view, &cx.state.robot, ghost, ui.available_width() >= NAMES_FROM);
+    let palm_way = crate::panels::palm_way(cx);
+    if palm_way.len() > 1 {
+        drawn.lines.push(Line::new(palm_way, Tint::Ghost).width(2.0));
+    }
     if drawn.is_empty() && super::parts::without_joints(ui, cx, None) {
         return;
     }

@@ -56,6 +56,7 @@ impl Hub<'_> {
             RobotControl::Robot(_)
             | RobotControl::Twin(_)
             | RobotControl::Touch(_)
+            | RobotControl::Lead(_)
             | RobotControl::TurnHead { .. } => {
                 let why = self.state.meaning(WatchedThread::Robot);
                 self.state.notify(NoticeLevel::Warning, &*why);

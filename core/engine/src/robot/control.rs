@@ -6,6 +6,7 @@ use plumbline_effects::RobotModel;
 use plumbline_hardware::joints::Touch;
 
 use super::command::RobotCommand;
+use super::lead::Led;
 use super::touch_order::TouchOrder;
 use crate::twin::command::TwinCommand;
 
@@ -24,6 +25,8 @@ pub enum RobotControl {
     AbandonTouch,
     /// The touch window felt a contact.
     Contact(Touch),
+    /// Somebody leads the arm, order by order.
+    Lead(Led),
     /// A workflow turns the head.
     TurnHead {
         /// Positive to the left, rad.

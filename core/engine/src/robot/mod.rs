@@ -7,6 +7,7 @@ pub mod control;
 mod destination;
 mod history;
 mod jog;
+pub mod lead;
 mod path;
 mod poses;
 mod publish;
@@ -23,6 +24,8 @@ mod worker;
 use plumbline_hardware::joints::{Heartbeat, StopSwitch};
 
 pub use control::RobotControl;
+pub use lead::{GivenUp, LeadAnswer, LeadOrder, Leader, Led, Reins};
+pub use path::duration;
 pub use poses::PoseLibrary;
 pub use thread::{RobotThread, Wires as RobotWires};
 pub use touch_order::{TouchMeasurement, TouchNews, TouchOrder, TouchRun, TouchStage};

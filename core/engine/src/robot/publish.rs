@@ -66,7 +66,7 @@ impl Worker {
     }
 
     fn motion(&self, state: &JointState) -> MotionState {
-        if let Some(what) = self.touching.title() {
+        if let Some(what) = self.touching.title().or_else(|| self.leading.moving_title()) {
             return MotionState::Moving { what, fraction: None, remaining: None };
         }
         match &state.motion {

@@ -81,7 +81,7 @@ fn run(worker: &mut Worker, controls: &Receiver<RobotControl>, wires: &Wires, pu
     let mut told = next;
     loop {
         let period = match () {
-            () if worker.is_lowering() => LOWERING,
+            () if worker.is_lowering() || worker.is_led() => LOWERING,
             () if worker.is_awake() => TICK,
             () => IDLE,
         };
@@ -103,7 +103,7 @@ fn run(worker: &mut Worker, controls: &Receiver<RobotControl>, wires: &Wires, pu
                 let now = Instant::now();
                 worker.tick(now);
                 // The window needs no news as often as the finger is looked after.
-                if now.saturating_duration_since(told) >= TICK || !worker.is_lowering() {
+                if now.saturating_duration_since(told) >= TICK || !(worker.is_lowering() || worker.is_led()) {
                     tell(worker, wires);
                     told = now;
                 }

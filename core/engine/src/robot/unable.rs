@@ -56,6 +56,9 @@ pub enum Unable {
     /// A touch is under way.
     #[error("The arm is busy ({0}). Pause the run of touches first.")]
     Busy(String),
+    /// Somebody leads it.
+    #[error("The arm is busy ({0}). End that first.")]
+    Led(String),
     /// The arm itself says no.
     #[error("{}", sentence(&.0.to_string()))]
     Arm(#[from] Refusal),

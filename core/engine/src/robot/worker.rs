@@ -22,6 +22,7 @@ use super::control::RobotControl;
 use super::destination::{Circumstances, Resolved, resolve};
 use super::history::Histories;
 use super::jog::joint_rates;
+use super::lead::Leading;
 use super::path::{Paths, duration};
 use super::poses::PoseLibrary;
 use super::touching::Touching;
@@ -96,6 +97,7 @@ pub struct Worker {
     pub(super) trail: VecDeque<(Instant, Point<Robot>)>,
     pub(super) twins_started: u64,
     pub(super) touching: Touching,
+    pub(super) leading: Leading,
     notes: Vec<(NoticeLevel, String)>,
     pub(super) told: Option<News>,
     pub(super) told_at: Option<Instant>,
@@ -136,6 +138,7 @@ impl Worker {
             trail: VecDeque::new(),
             twins_started: 0,
             touching: Touching::default(),
+            leading: Leading::default(),
             notes: problem.map(|text| (NoticeLevel::Warning, text)).into_iter().collect(),
             told: None,
             told_at: None,
@@ -186,7 +189,9 @@ impl Worker {
     pub fn control(&mut self, control: RobotControl) {
         let result = match control {
             control if self.touching.forbids(&control) => Err(self.touching.busy()),
+            control if self.leading.forbids(&control) => Err(self.leading.busy()),
             RobotControl::Robot(command) => self.robot(command),
+            RobotControl::Lead(led) => self.begin_lead(led),
             RobotControl::Twin(command) => self.desk.control(command, &self.rig).map_err(Unable::from),
             RobotControl::TurnHead { pan_rad, tilt_rad } => self.turn_head(pan_rad, tilt_rad),
             RobotControl::Touch(order) => {
@@ -336,6 +341,7 @@ impl Worker {
 
     fn disconnect(&mut self) {
         self.interrupt_touch("the robot was disconnected: connect it again");
+        self.interrupt_lead("the robot was disconnected: connect it again");
         if let Some(arm) = self.arm.take() {
             // If it cannot be told to hold it is gone already.
             let _ = arm.hold();
@@ -550,6 +556,7 @@ impl Worker {
         self.desk.tick(now, &self.rig);
         self.step_jog(now);
         self.step_touch(now);
+        self.step_lead(now);
         let Some(state) = self.arm.as_ref().and_then(|arm| arm.state()) else { return };
         if let Some(reason) = &state.gone {
             let Connection::Connected { to, .. } = self.connection.clone() else { return };

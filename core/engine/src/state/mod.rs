@@ -239,6 +239,7 @@ impl State {
         }
         self.shown_of = opened;
         self.rooms.eyes.of_mut(self.shown).set_image_size(frame.left.dimensions());
+        self.rooms.grasp.of(self.arm_of).saw(&frame);
         self.rooms.live.frame(frame, now);
     }
 
@@ -249,7 +250,7 @@ impl State {
             self.rooms.detect.clear();
         }
         self.shown = World::of(view.spec.as_ref());
-        let own_eyes = matches!(view.spec, Some(SourceSpec::Twin | SourceSpec::Cameras { .. }));
+        let own_eyes = is_of_this_robot(view.spec.as_ref());
         self.rooms.source.update(view);
         self.source_before_silence = None;
         self.use_models();
@@ -263,8 +264,7 @@ impl State {
 
     /// The robot or the twin has something new.
     pub fn robot_changed(&mut self, news: News) {
-        let eyes_of_this_robot =
-            matches!(self.rooms.source.view().spec, Some(SourceSpec::Twin | SourceSpec::Cameras { .. }));
+        let eyes_of_this_robot = self.shows_own_eyes();
         let head = |rig: &Rig| news.robot.known(&[rig.eyes.pan, rig.eyes.tilt]).cloned();
         // Where it is not known the view stays aimed as it was; the servos' lamp says which is silent.
         if let Some(rig) = &news.robot.rig
@@ -395,6 +395,11 @@ impl State {
         self.jobs.ended(id, state, elapsed);
     }
 
+    /// Whether the source shows what a robot or a twin sees now.
+    fn shows_own_eyes(&self) -> bool {
+        is_of_this_robot(self.rooms.source.view().spec.as_ref())
+    }
+
     fn world_of(&mut self, id: JobId) -> World {
         self.started_by.remove(&id).unwrap_or(self.shown)
     }
@@ -413,4 +418,8 @@ impl State {
     pub fn newest_seq(&self) -> Option<u64> {
         self.rooms.live.newest().map(|frame| frame.stamp.seq)
     }
+}
+
+fn is_of_this_robot(source: Option<&SourceSpec>) -> bool {
+    matches!(source, Some(SourceSpec::Twin | SourceSpec::Cameras { .. }))
 }

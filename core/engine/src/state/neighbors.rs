@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::time::Instant;
 
+use plumbline_correction::Method;
+use plumbline_grasp::Corrections;
 use plumbline_vision::detect::Provider;
 
 use super::State;
@@ -12,6 +14,7 @@ use crate::command::{Command, JobCommand, NoticeCommand};
 use crate::detect::{DetectAround, DetectWorkflow};
 use crate::eyes::{EyesAround, EyesWorkflow};
 use crate::gap::{GapAround, GapWorkflow};
+use crate::grasp::{GraspAround, GraspWorkflow};
 use crate::ground::jobs::JobId;
 use crate::ground::stage::Skipped;
 use crate::ground::{Moment, Workflow, World};
@@ -247,5 +250,27 @@ impl Neighbors<GapWorkflow> for State {
     fn after(&mut self, world: World) {
         self.use_models();
         self.with::<TouchWorkflow>(world, |touch, around, context| touch.refresh(around, context));
+    }
+}
+
+impl Neighbors<GraspWorkflow> for State {
+    fn around(&self, world: World) -> GraspAround {
+        let Rooms { eyes, mount, touch, models, detect, source, .. } = &self.rooms;
+        let usable = models.of(world).usable();
+        let model = |method| usable.iter().find(|model| model.method() == method).cloned();
+        let (detector, provider) = detect.chosen();
+        GraspAround {
+            described: self.rig.clone(),
+            model: self.models.of(world).clone(),
+            robot: self.robot.clone(),
+            calibration: eyes.of(world).in_use().cloned(),
+            has_mount: mount.of(world).in_use().is_some(),
+            has_screen: touch.of(world).screen().is_some(),
+            corrections: Corrections { m1: model(Method::M1), m2: model(Method::M2), m3: model(Method::M3) },
+            detector: (detector.clone(), provider),
+            own_eyes: self.shown == world && self.shows_own_eyes(),
+            source: source.view().clone(),
+            found: detect.found().cloned(),
+        }
     }
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::detect::DetectWorkflow;
 use crate::eyes::EyesWorkflow;
 use crate::gap::GapWorkflow;
+use crate::grasp::GraspWorkflow;
 use crate::ground::{PerWorld, Workflow, World};
 use crate::labels::LabelsWorkflow;
 use crate::live::LiveWorkflow;
@@ -31,6 +32,7 @@ macro_rules! all_rooms {
             touch: TouchWorkflow, Touch, arm_of;
             models: ModelsWorkflow, Models, arm_of;
             gap: GapWorkflow, Gap, arm_of;
+            grasp: GraspWorkflow, Grasp, arm_of;
         }
         without_work {
             live: LiveWorkflow, Live;

@@ -7,6 +7,7 @@ mod ready;
 mod rendered;
 
 use jiff::Timestamp;
+use nalgebra::Vector3;
 use plumbline_effects::RobotModel;
 use plumbline_model::robot::Posture;
 use plumbline_model::robot::Rig;
@@ -25,11 +26,11 @@ pub use choose::Chosen;
 pub use rendered::{NoHand, RenderedHand};
 
 /// Peak joint speed through the air, rad/s.
-const AIR_RAD_S: f64 = 0.8;
+pub const AIR_RAD_S: f64 = 0.8;
 /// Going down, rad/s.
-const DOWN_RAD_S: f64 = 0.5;
+pub const DOWN_RAD_S: f64 = 0.5;
 /// Up with something in the hand, rad/s.
-const LIFT_RAD_S: f64 = 0.4;
+pub const LIFT_RAD_S: f64 = 0.4;
 /// Thumb and fingers closing, rad/s.
 const CLOSE_RAD_S: f64 = 2.5;
 /// The eyes settle with the arm, s.
@@ -56,6 +57,9 @@ pub trait Watch {
     fn planned(&mut self, plan: &GraspPlan);
     /// The hand was looked at.
     fn aligned(&mut self, iteration: &Iteration);
+    /// All that is known so far, before a step is begun: `record.step` is that step. To be kept before
+    /// it goes on.
+    fn about_to(&mut self, _record: &Record) {}
 }
 
 /// Nobody watches.
@@ -70,6 +74,15 @@ impl Watch for () {
 enum End {
     Refused(String),
     Failed(Failure, String),
+}
+
+impl From<End> for Outcome {
+    fn from(end: End) -> Self {
+        match end {
+            End::Refused(why) => Self::Refused { why },
+            End::Failed(failure, why) => Self::Failed { failure, why },
+        }
+    }
 }
 
 impl From<Halt> for End {
@@ -132,6 +145,11 @@ impl Grasper {
         self.knowledge.model.rig()
     }
 
+    /// What it rests on.
+    pub fn knowledge(&self) -> &Knowledge {
+        &self.knowledge
+    }
+
     /// What plans for a method.
     pub fn planner(&self, method: Method) -> &GraspPlanner {
         if method.knows_effects() { &self.known } else { &self.described }
@@ -145,22 +163,58 @@ impl Grasper {
         began: Timestamp,
         watch: &mut dyn Watch,
     ) -> Record {
-        let model = if order.method.knows_effects() {
-            self.knowledge.model.title()
-        } else {
-            "as described".to_owned()
-        };
-        let mut record = Record::new(order.method, &order.object, began, model);
+        let mut record = self.record_of(order, began);
         let began_s = body.now_s();
         let mut running = Running { grasper: self, body, order, watch, record: &mut record, began_s };
-        let outcome = match running.run() {
+        record.outcome = Some(match running.run() {
             Ok(outcome) => outcome,
-            Err(End::Refused(why)) => Outcome::Refused { why },
-            Err(End::Failed(failure, why)) => Outcome::Failed { failure, why },
-        };
-        record.outcome = Some(outcome);
+            Err(end) => end.into(),
+        });
         record
     }
+
+    /// Looks and plans as an attempt does, and moves nothing: the plan, and what was seen. Where there
+    /// is no plan, the outcome of the record says why.
+    pub fn propose(
+        &mut self,
+        body: &mut dyn Body,
+        order: &Order,
+        began: Timestamp,
+        watch: &mut dyn Watch,
+    ) -> (Option<GraspPlan>, Record) {
+        let mut record = self.record_of(order, began);
+        let began_s = body.now_s();
+        let mut running = Running { grasper: self, body, order, watch, record: &mut record, began_s };
+        match running.prepare() {
+            Ok(prepared) => (Some(prepared.plan), record),
+            Err(end) => {
+                record.outcome = Some(end.into());
+                (None, record)
+            }
+        }
+    }
+
+    /// All things in a pair, the surest first.
+    ///
+    /// # Errors
+    /// When the detector fails.
+    pub fn see(&mut self, sight: &Sight) -> Result<Vec<Seen>, DetectError> {
+        self.looker.look(sight, &self.knowledge)
+    }
+
+    fn record_of(&self, order: &Order, began: Timestamp) -> Record {
+        let knows_effects = order.method.knows_effects();
+        let model = if knows_effects { self.knowledge.model.title() } else { "as described".to_owned() };
+        Record::new(order.method, &order.object, began, model)
+    }
+}
+
+/// What is known before anything moves.
+struct Prepared {
+    before: Sight,
+    chosen: Chosen,
+    shift_m: Vector3<f64>,
+    plan: GraspPlan,
 }
 
 /// An attempt that is under way.
@@ -174,7 +228,8 @@ struct Running<'a> {
 }
 
 impl Running<'_> {
-    fn run(&mut self) -> Result<Outcome, End> {
+    /// Looks, and plans what would be sent. Nothing moves.
+    fn prepare(&mut self) -> Result<Prepared, End> {
         self.begin(Step::Ready);
         self.ready()?;
         self.begin(Step::Look);
@@ -184,8 +239,14 @@ impl Running<'_> {
         let method = self.order.method;
         let (shift_m, _) = method::correction(method, &self.grasper.knowledge, &chosen.point)?;
         let from = self.body.commanded()?;
-        let mut plan = self.grasper.planner(method).plan(&chosen.standing, &shift_m, &from)?;
+        let plan = self.grasper.planner(method).plan(&chosen.standing, &shift_m, &from)?;
         self.planned(&plan);
+        Ok(Prepared { before, chosen, shift_m, plan })
+    }
+
+    fn run(&mut self) -> Result<Outcome, End> {
+        let Prepared { before, chosen, shift_m, mut plan } = self.prepare()?;
+        let method = self.order.method;
         self.begin(Step::Approach);
         self.follow(Step::Approach, &plan.approach.clone(), AIR_RAD_S)?;
         if method.aligns() {
@@ -205,6 +266,8 @@ impl Running<'_> {
     }
 
     fn begin(&mut self, step: Step) {
+        self.record.step = Some(step);
+        self.watch.about_to(self.record);
         self.watch.step(step);
     }
 

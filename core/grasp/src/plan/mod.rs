@@ -214,12 +214,17 @@ impl GraspPlanner {
 
     /// Straight up from where the hand closed, fingers as they are.
     pub fn lift(&self, plan: &GraspPlan, closed: &Posture, by_m: f64) -> Vec<Posture> {
-        let start = self.arm.palm(closed).coords;
-        let steps = (by_m / STEP_M).round().max(1.0) as usize;
+        self.vertical(plan.heading_rad, closed, by_m)
+    }
+
+    /// Straight up (down where `by_m` is negative) as far as the arm gets, fingers as they are.
+    pub fn vertical(&self, heading_rad: f64, from: &Posture, by_m: f64) -> Vec<Posture> {
+        let start = self.arm.palm(from).coords;
+        let steps = (by_m.abs() / STEP_M).round().max(1.0) as usize;
         let mut way: Vec<Posture> = vec![];
         for step in 1..=steps {
-            let up = Point::from(start + Vector3::z() * (by_m * step as f64 / steps as f64));
-            match self.arm.next_to(up, plan.heading_rad, way.last().unwrap_or(closed)) {
+            let next = Point::from(start + Vector3::z() * (by_m * step as f64 / steps as f64));
+            match self.arm.next_to(next, heading_rad, way.last().unwrap_or(from)) {
                 Some(next) => way.push(next),
                 None => break,
             }

@@ -114,6 +114,11 @@ impl DetectWorkflow {
         (&self.settings.detector, self.settings.provider)
     }
 
+    /// What was found last, while it is true of the newest pair's source.
+    pub fn found(&self) -> Option<&Arc<DetectionsView>> {
+        self.found.as_ref().map(|found| &found.view)
+    }
+
     /// How detectors are opened.
     pub fn opener(&self) -> &OpenDetector {
         &self.open

@@ -1,0 +1,144 @@
+//! What can be asked for by name of grasping.
+
+use std::borrow::Cow;
+
+use plumbline_engine::view::{GateState, GraspPhase};
+use plumbline_engine::{Command, GraspCommand, HandStep, View};
+use serde::Serialize;
+
+/// Of grasping.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum GraspAction {
+    /// Looks, and shows what would be sent. Moves nothing.
+    Plan,
+    /// Forgets what is shown.
+    Forget,
+    /// Grasps. The arm moves.
+    Grasp,
+    /// Holds wherever it is.
+    Pause,
+    /// Goes on where it was. The arm moves.
+    Resume,
+    /// Ends what is under way; the arm holds.
+    End,
+    /// One step of the hand by itself. The arm moves.
+    Hand(HandStep),
+    /// The operator saw that the object was held.
+    Held,
+    /// The operator saw that it was not.
+    NotHeld,
+}
+
+type Refusal = Option<Cow<'static, str>>;
+
+impl GraspAction {
+    /// All of them, in the palette's order.
+    pub const ALL: [Self; 14] = [
+        Self::Plan,
+        Self::Forget,
+        Self::Grasp,
+        Self::Pause,
+        Self::Resume,
+        Self::End,
+        Self::Hand(HandStep::Open),
+        Self::Hand(HandStep::Close),
+        Self::Hand(HandStep::Lift),
+        Self::Hand(HandStep::Place),
+        Self::Hand(HandStep::Give),
+        Self::Hand(HandStep::Home),
+        Self::Held,
+        Self::NotHeld,
+    ];
+
+    /// What it is called everywhere.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Plan => "Plan a grasp",
+            Self::Forget => "Forget the planned grasp",
+            Self::Grasp => "Grasp",
+            Self::Pause => "Pause the grasp",
+            Self::Resume => "Go on grasping",
+            Self::End => "End the grasp, hold the arm",
+            Self::Hand(HandStep::Open) => "Open the grasping hand",
+            Self::Hand(HandStep::Close) => "Close the grasping hand",
+            Self::Hand(HandStep::Lift) => "Lift the grasping hand",
+            Self::Hand(HandStep::Place) => "Put down what is held",
+            Self::Hand(HandStep::Give) => "Hand over what is held",
+            Self::Hand(HandStep::Home) => "Bring the grasping arm home",
+            Self::Held => "It was held",
+            Self::NotHeld => "It was not held",
+        }
+    }
+
+    /// Why it cannot be done now.
+    pub fn refusal(self, view: &View) -> Refusal {
+        let grasp = &view.grasp;
+        let under_way = grasp.phase != GraspPhase::Idle;
+        let when = |possible: bool, why: &'static str| (!possible).then_some(Cow::Borrowed(why));
+        match self {
+            Self::Hand(HandStep::Home) if under_way => None,
+            Self::Plan | Self::Grasp | Self::Hand(_) if under_way => Some("something is under way".into()),
+            Self::Plan | Self::Grasp => grasp.trouble().map(said),
+            Self::Hand(_) => arm_trouble(view),
+            Self::Forget => when(grasp.plan.is_some() && !under_way, "nothing is planned"),
+            Self::Pause => when(grasp.phase.moves() && !grasp.phase.is_paused(), "nothing moves"),
+            Self::Resume => when(grasp.phase.is_paused(), "nothing is paused"),
+            Self::End => when(under_way, "nothing is under way"),
+            Self::Held | Self::NotHeld => when(judged(view).is_some(), "no grasp has ended yet"),
+        }
+    }
+
+    /// The command that it stands for.
+    pub fn command(self, view: &View) -> Option<Command> {
+        let judge = |held| Some(GraspCommand::Judge { attempt: judged(view)?, held });
+        Some(
+            match self {
+                Self::Plan => GraspCommand::Plan,
+                Self::Forget => GraspCommand::Forget,
+                Self::Grasp => GraspCommand::Grasp,
+                Self::Pause => GraspCommand::Pause,
+                Self::Resume => GraspCommand::Resume,
+                Self::End => GraspCommand::End,
+                Self::Hand(step) => GraspCommand::Hand(step),
+                Self::Held => judge(true)?,
+                Self::NotHeld => judge(false)?,
+            }
+            .into(),
+        )
+    }
+}
+
+/// The attempt that waits for the operator's word, by name: the last one, once it has ended.
+fn judged(view: &View) -> Option<String> {
+    let run = view.grasp.run.as_ref().filter(|run| run.outcome.is_some() && !run.name.is_empty())?;
+    Some(run.name.clone())
+}
+
+/// The first gate of the arm that is shut.
+fn arm_trouble(view: &View) -> Refusal {
+    let of_arm = ["Robot", "STOP", "Arm"];
+    let mut gates = view.grasp.gates.iter();
+    let shut = gates.find(|gate| gate.state == GateState::Shut && of_arm.contains(&gate.name));
+    shut.map(|gate| said(&gate.text))
+}
+
+/// As the end of a sentence of somebody else.
+fn said(text: &str) -> Cow<'static, str> {
+    Cow::Owned(text.trim_end_matches('.').to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn before_anything_was_grasped_the_reasons_are_said() {
+        let view = View::default();
+        let why = |action: GraspAction| action.refusal(&view).expect("cannot be done");
+        assert_eq!(why(GraspAction::Pause), "nothing moves");
+        assert_eq!(why(GraspAction::End), "nothing is under way");
+        assert_eq!(why(GraspAction::Held), "no grasp has ended yet");
+        assert_eq!(GraspAction::Held.command(&view), None);
+    }
+}

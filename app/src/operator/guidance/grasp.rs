@@ -1,0 +1,73 @@
+//! What to do next with grasping: one button, named by what it does.
+
+use plumbline_engine::View;
+use plumbline_engine::view::{GraspOutcome, GraspPhase, GraspView, LampState};
+use plumbline_widgets::format;
+
+use super::robot;
+use super::sentence::{Guidance, say};
+use crate::operator::words::grasp::{closed, method, object_of};
+use crate::operator::{Action, GraspAction, RobotAction};
+
+pub(super) fn grasp(view: &View) -> Guidance {
+    let grasp = &view.grasp;
+    match &grasp.phase {
+        GraspPhase::Planning => say("Looks and plans. Nothing moves."),
+        GraspPhase::Grasping { ending: true, .. } => say("Ends; the arm holds where it is."),
+        phase if phase.is_paused() => {
+            say("Paused: the arm holds. Going on moves it.").then("Go on", Action::Grasp(GraspAction::Resume))
+        }
+        GraspPhase::Grasping { .. } => {
+            say(format!("{}. The arm moves; Esc or space stops.", under_way(grasp)))
+                .then("Pause", Action::Grasp(GraspAction::Pause))
+        }
+        GraspPhase::Hand { step, .. } => say(format!("{}. The arm moves; Esc or space stops.", step.title()))
+            .then("Pause", Action::Grasp(GraspAction::Pause)),
+        GraspPhase::Idle => idle(view),
+    }
+}
+
+fn idle(view: &View) -> Guidance {
+    let grasp = &view.grasp;
+    if let Some(trouble) = robot::trouble(&view.robot) {
+        return trouble;
+    }
+    if let Some(trouble) = grasp.trouble() {
+        let limp = trouble.contains("Hold all joints");
+        let guidance = say(trouble).warn();
+        return if limp {
+            guidance.then("Hold all joints", Action::Robot(RobotAction::TorqueOn))
+        } else {
+            guidance
+        };
+    }
+    let by = grasp.method.map(method).unwrap_or_default();
+    if let Some(plan) = &grasp.plan {
+        let most = plan.turns.first().map_or_else(String::new, |(joint, turn_rad)| {
+            format!(" {joint} turns most, {} in all.", format::degrees(*turn_rad))
+        });
+        let label = format!("Grasp {} with {by}", plan.object.to_lowercase());
+        return say(format!("Shown as a ghost.{most} It takes about {} s.", plan.duration.as_secs()))
+            .then(label, Action::Grasp(GraspAction::Grasp));
+    }
+    let waits = grasp.run.as_ref().filter(|run| run.outcome.is_some() && run.told.is_none());
+    let label = format!("Grasp {} with {by}", object_of(grasp));
+    match waits.and_then(|run| run.outcome.as_ref()) {
+        Some(GraspOutcome::Success) => say("Say whether it is held; then put it down, or hand it over.")
+            .then(label, Action::Grasp(GraspAction::Grasp)),
+        Some(GraspOutcome::Failed { why, .. } | GraspOutcome::Refused { why }) => {
+            say(closed(why)).warn().then(label, Action::Grasp(GraspAction::Grasp))
+        }
+        None => say("Plan shows what would be sent; Grasp plans and moves the arm at once.")
+            .then(label, Action::Grasp(GraspAction::Grasp)),
+    }
+}
+
+/// "Grasps the tomato with M5: approach".
+fn under_way(grasp: &GraspView) -> String {
+    let Some(run) = &grasp.run else { return "Grasps".to_owned() };
+    let step = run.lamps.iter().find(|(_, lamp)| *lamp == LampState::Lit);
+    let step = step.map_or("getting ready", |(step, _)| step.title()).to_lowercase();
+    let by = run.method.map(method).unwrap_or_default();
+    format!("Grasps {} with {by}: {step}", run.object.to_lowercase())
+}

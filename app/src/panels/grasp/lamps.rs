@@ -1,0 +1,56 @@
+//! The steps of an attempt as a row of lamps.
+
+use egui::{Align2, FontSelection, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
+use plumbline_engine::view::{GraspStep, LampState};
+use plumbline_widgets::theme::{self, Role};
+
+const HEIGHT: f32 = 42.0;
+const RADIUS: f32 = 6.5;
+
+/// All steps, those that are done filled, the one under way ringed, the one where it ended crossed.
+pub fn show(ui: &mut Ui, lamps: &[(GraspStep, LampState)]) {
+    let tokens = theme::tokens(ui);
+    let width = ui.available_width();
+    let (rect, _) = ui.allocate_exact_size(vec2(width, HEIGHT), Sense::hover());
+    let each = width / lamps.len().max(1) as f32;
+    let font = FontSelection::Style(TextStyle::Small).resolve(ui.style());
+    let y = rect.top() + 11.0;
+    for (i, (step, lamp)) in lamps.iter().enumerate() {
+        let x = rect.left() + (i as f32 + 0.5) * each;
+        let (at, painter) = (pos2(x, y), ui.painter());
+        if i > 0 {
+            let line = [pos2(x - each + RADIUS + 3.0, y), pos2(x - RADIUS - 3.0, y)];
+            let color = if *lamp == LampState::Dark { tokens.grid } else { Role::Accepted.color(tokens) };
+            painter.line_segment(line, Stroke::new(1.5, color));
+        }
+        let (color, words) = match lamp {
+            LampState::Dark => (tokens.text_weak, "to come"),
+            LampState::Lit => (tokens.text_strong, "under way"),
+            LampState::Done => (Role::Accepted.color(tokens), "done"),
+            LampState::Failed => (Role::Warning.color(tokens), "ended here"),
+        };
+        match lamp {
+            LampState::Dark => {
+                painter.circle_stroke(at, RADIUS - 1.5, Stroke::new(1.2, color));
+            }
+            LampState::Lit => {
+                painter.circle_stroke(at, RADIUS, Stroke::new(2.0, color));
+                painter.circle_filled(at, RADIUS - 3.5, color);
+            }
+            LampState::Done => {
+                painter.circle_filled(at, RADIUS, color);
+            }
+            LampState::Failed => {
+                let (out, stroke) = (RADIUS - 1.0, Stroke::new(2.2, color));
+                painter.line_segment([at - vec2(out, out), at + vec2(out, out)], stroke);
+                painter.line_segment([at - vec2(out, -out), at + vec2(out, -out)], stroke);
+            }
+        }
+        painter.text(pos2(x, rect.bottom() - 4.0), Align2::CENTER_BOTTOM, step.title(), font.clone(), color);
+        let area = egui::Rect::from_center_size(at, vec2(each, HEIGHT));
+        let response = ui.interact(area, ui.scope_id().with(("step", i)), Sense::hover());
+        let label = format!("{} {words}", step.title());
+        response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &label));
+        response.on_hover_text(label);
+    }
+}

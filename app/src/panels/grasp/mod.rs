@@ -1,0 +1,17 @@
+//! Grasping: what and how, the attempt as it goes on, its result, and earlier ones.
+
+mod aligned;
+mod attempts;
+mod choice;
+mod eyes;
+mod inspector;
+mod lamps;
+pub mod parts;
+mod result;
+mod run;
+pub mod state;
+
+pub use attempts::show as show_attempts;
+pub use eyes::{click, overlay, wants_detections};
+pub use inspector::show as show_inspector;
+pub use run::show as show_run;

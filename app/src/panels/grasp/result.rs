@@ -1,0 +1,56 @@
+//! What became of the attempt, large and plain, and what the operator saw of it.
+
+use egui::{RichText, TextStyle, Ui};
+use plumbline_engine::view::{GraspOutcome, GraspPhase, GraspRun};
+use plumbline_widgets::format;
+use plumbline_widgets::theme::{self, Role, space};
+
+use crate::operator::GraspAction;
+use crate::operator::words::grasp::closed;
+use crate::panels::PanelContext;
+use crate::panels::parts::action_button;
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, run: &GraspRun) {
+    let Some(outcome) = run.outcome.as_ref().filter(|_| cx.view.grasp.phase == GraspPhase::Idle) else {
+        return;
+    };
+    // A plan that could not be made is told below, and is no result of a grasp.
+    if run.name.is_empty() {
+        if let GraspOutcome::Failed { why, .. } | GraspOutcome::Refused { why } = outcome {
+            crate::panels::parts::warning(ui, &closed(why));
+        }
+        return;
+    }
+    let object = run.object.to_lowercase();
+    let (role, text, why) = match (run.told, outcome) {
+        (Some(true), _) => (Role::Accepted, format!("The {object} was held, as you said."), None),
+        (Some(false), _) => (Role::Warning, format!("The {object} was not held, as you said."), None),
+        (None, GraspOutcome::Success) => (Role::Accepted, format!("The {object} is held."), None),
+        (None, GraspOutcome::Failed { why, .. }) => (Role::Warning, "Not held.".to_owned(), Some(why)),
+        (None, GraspOutcome::Refused { why }) => (Role::Warning, "Not grasped.".to_owned(), Some(why)),
+    };
+    let color = role.color(theme::tokens(ui));
+    ui.label(RichText::new(text).text_style(TextStyle::Heading).color(color));
+    if let Some(why) = why {
+        ui.label(closed(why));
+    }
+    let mut facts = vec![];
+    if let Some(open_rad) = run.fingers_open_rad {
+        facts.push(format!("fingers kept open by {}", format::degrees(open_rad)));
+    }
+    if let Some(seconds) = run.seconds {
+        facts.push(format!("lifted after {} s", format::fixed(seconds, 0)));
+    }
+    if !facts.is_empty() {
+        ui.label(theme::small(ui, closed(&facts.join(", "))));
+    }
+    if matches!(outcome, GraspOutcome::Refused { .. }) {
+        return;
+    }
+    ui.add_space(space::XS);
+    ui.horizontal(|ui| {
+        ui.label(theme::weak(ui, "What did you see?"));
+        action_button(ui, cx, GraspAction::Held, "Held");
+        action_button(ui, cx, GraspAction::NotHeld, "Not held");
+    });
+}

@@ -1,0 +1,129 @@
+//! The pane of the work: what and how, gates, lamps, result, and every step by itself.
+
+use egui::{RichText, ScrollArea, Slider, Ui};
+use plumbline_engine::view::{GateState, GraspPhase, GraspView};
+use plumbline_engine::{HandStep, View};
+use plumbline_widgets::format;
+use plumbline_widgets::theme::{self, Role, space};
+
+use super::{aligned, choice, lamps, result};
+use crate::operator::GraspAction;
+use crate::panels::parts::action_button;
+use crate::panels::{PanelContext, padded};
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    padded(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            choice::show(ui, cx);
+            ui.add_space(space::S);
+            buttons(ui, cx);
+            ui.add_space(space::S);
+            if let Some(run) = cx.view.grasp.run.clone() {
+                lamps::show(ui, &run.lamps);
+                ui.add_space(space::XS);
+                result::show(ui, cx, &run);
+                if !run.iterations.is_empty() {
+                    ui.add_space(space::S);
+                    aligned::show(ui, &run.iterations);
+                }
+                ui.add_space(space::S);
+            }
+            planned(ui, cx);
+            gates(ui, &cx.view.grasp);
+            ui.add_space(space::S);
+            hand(ui, cx);
+        });
+    });
+}
+
+/// The attempt as a whole.
+fn buttons(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    ui.horizontal_wrapped(|ui| match &cx.view.grasp.phase {
+        GraspPhase::Idle => {
+            action_button(ui, cx, GraspAction::Plan, "Plan");
+            if cx.view.grasp.plan.is_some() {
+                action_button(ui, cx, GraspAction::Forget, "Forget the plan");
+            }
+        }
+        GraspPhase::Planning => {
+            ui.spinner();
+            ui.label(theme::weak(ui, doing(cx.view)));
+            action_button(ui, cx, GraspAction::End, "End");
+        }
+        phase if phase.is_paused() => {
+            action_button(ui, cx, GraspAction::Resume, "Go on");
+            action_button(ui, cx, GraspAction::End, "End");
+            ui.label(theme::weak(ui, "Paused: the arm holds."));
+        }
+        GraspPhase::Grasping { .. } | GraspPhase::Hand { .. } => {
+            action_button(ui, cx, GraspAction::Pause, "Pause");
+            action_button(ui, cx, GraspAction::End, "End");
+            ui.label(theme::weak(ui, doing(cx.view)));
+        }
+    });
+}
+
+/// What is done just now, in a few words.
+fn doing(view: &View) -> String {
+    let running = view.running_job().and_then(|job| match &job.state {
+        plumbline_engine::view::JobState::Running { doing, .. } => Some(doing.clone()),
+        _ => None,
+    });
+    crate::operator::words::capitalized(&running.unwrap_or_default())
+}
+
+/// What keeps anything from moving; when nothing does and nothing else is shown, one word. Notes stand in
+/// the inspector.
+fn gates(ui: &mut Ui, grasp: &GraspView) {
+    if grasp.phase != GraspPhase::Idle {
+        return;
+    }
+    let tokens = theme::tokens(ui);
+    if grasp.trouble().is_none() && grasp.run.is_none() {
+        ui.label(RichText::new("Ready.").color(Role::Accepted.color(tokens)));
+    }
+    for gate in grasp.gates.iter().filter(|gate| gate.state == GateState::Shut) {
+        let text = format!("{}, not ready: {}", gate.name, gate.text);
+        ui.label(RichText::new(text).color(Role::Warning.color(tokens)));
+    }
+}
+
+/// What would be sent, in words, and where along it the ghost stands.
+fn planned(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let Some(plan) = cx.view.grasp.plan.clone() else { return };
+    let [x_m, y_m] = plan.at_m;
+    let sigma =
+        plan.sigma_m.map_or_else(String::new, |sigma_m| format!(" (known to {})", format::mm(sigma_m)));
+    ui.label(theme::strong(
+        ui,
+        format!("{} at x {}, y {}{sigma}", plan.object, format::mm(x_m), format::mm(y_m)),
+    ));
+    let turns: Vec<String> = plan
+        .turns
+        .iter()
+        .take(4)
+        .map(|(joint, turn_rad)| format!("{joint} {}", format::degrees(*turn_rad)))
+        .collect();
+    ui.label(theme::weak(
+        ui,
+        format!(
+            "About {} s. Turns in all: {}; the head and the other arm stay.",
+            plan.duration.as_secs(),
+            turns.join(", ")
+        ),
+    ));
+    let slider =
+        Slider::new(&mut cx.state.grasp.along, 0.0..=1.0).show_value(false).text("ghost along the way");
+    ui.add(slider);
+    ui.add_space(space::S);
+}
+
+/// Every step by itself.
+fn hand(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    ui.label(theme::small(ui, "The hand by itself: each moves the arm at once"));
+    ui.horizontal_wrapped(|ui| {
+        for step in HandStep::ALL {
+            action_button(ui, cx, GraspAction::Hand(step), step.title());
+        }
+    });
+}

@@ -1,0 +1,54 @@
+//! What grasping can see of the rest.
+
+use std::sync::Arc;
+
+use plumbline_effects::RobotModel;
+use plumbline_grasp::Corrections;
+use plumbline_model::StereoCalibration;
+use plumbline_model::robot::Rig;
+use plumbline_vision::detect::Provider;
+
+use super::rests_on::RestsOn;
+use crate::detect::command::DetectorChoice;
+use crate::detect::view::DetectionsView;
+use crate::robot::view::RobotView;
+use crate::source::view::SourceView;
+
+/// What the workflow can see of the rest.
+pub struct GraspAround {
+    /// The robot as its description has it.
+    pub described: Arc<Rig>,
+    /// The robot as it is known in this world.
+    pub model: Arc<RobotModel>,
+    /// The robot now.
+    pub robot: Arc<RobotView>,
+    /// The calibration of the eyes; `None`: none was accepted.
+    pub calibration: Option<Arc<StereoCalibration>>,
+    /// Whether the mount of the eyes was calibrated.
+    pub has_mount: bool,
+    /// Whether it was measured where the screen lies.
+    pub has_screen: bool,
+    /// Models learned from touches.
+    pub corrections: Corrections,
+    /// Which detector, computed where.
+    pub detector: (DetectorChoice, Provider),
+    /// Where the images come from.
+    pub source: Arc<SourceView>,
+    /// Whether these are the eyes of the robot whose arm is connected.
+    pub own_eyes: bool,
+    /// What was detected last.
+    pub found: Option<Arc<DetectionsView>>,
+}
+
+impl GraspAround {
+    /// What an attempt rests on.
+    pub(super) fn rests_on(&self) -> RestsOn {
+        RestsOn {
+            model: self.model.clone(),
+            described: self.described.clone(),
+            calibration: self.calibration.clone(),
+            corrections: self.corrections.clone(),
+            detector: self.detector.clone(),
+        }
+    }
+}

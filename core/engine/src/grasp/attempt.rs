@@ -1,0 +1,206 @@
+//! An attempt, or only its plan, carried out on the thread of a job.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use jiff::Timestamp;
+use plumbline_grasp::attempt::{AIR_RAD_S, DOWN_RAD_S, LIFT_RAD_S};
+use plumbline_grasp::plan::{GraspPlan, GraspPlanner};
+use plumbline_grasp::see::Seen;
+use plumbline_grasp::things::Thing;
+use plumbline_grasp::{Body, Grasper, Method, Order, Outcome, Record};
+use plumbline_model::JobContext;
+use plumbline_model::robot::{Posture, Rig};
+
+use super::body::{LedBody, Ropes};
+use super::command::GraspTarget;
+use super::keeping::Keeping;
+use super::progress::{Progress, Watcher};
+use super::rests_on::RestsOn;
+use super::view::{AttemptView, PlannedGrasp};
+use crate::ground::jobs::JobError;
+use crate::robot::duration;
+
+/// Thumb and fingers close one after the other, each in about this time, s.
+const CLOSING_S: f64 = 2.6;
+/// Joints that turn by less are not named, rad.
+const NAMED_RAD: f64 = 0.02;
+
+/// What an attempt is made of.
+#[derive(Clone, Debug)]
+pub struct Attempt {
+    /// What it rests on.
+    pub rests_on: RestsOn,
+    /// With which arm.
+    pub arm: String,
+    /// How.
+    pub method: Method,
+    /// What.
+    pub target: GraspTarget,
+    /// Orders to the arm, pairs of the eyes, pause and end.
+    pub ropes: Ropes,
+    /// Where attempts are kept.
+    pub grasps: PathBuf,
+    /// When it was asked for.
+    pub at: Timestamp,
+    /// For the window.
+    pub progress: Progress,
+}
+
+/// What came of looking and planning.
+#[derive(Clone, Debug)]
+pub struct Proposed {
+    /// The plan, or a sentence that says why there is none.
+    pub plan: Result<Arc<PlannedGrasp>, String>,
+    /// What was seen.
+    pub seen: Vec<Seen>,
+    /// What was chosen of it.
+    pub chosen: Option<usize>,
+}
+
+impl Attempt {
+    /// Looks and plans. Nothing moves.
+    pub fn propose(&self, context: &dyn JobContext) -> Result<Proposed, JobError> {
+        context.report(0.0, "getting ready");
+        let mut grasper = self.rests_on.grasper(&self.arm, self.method)?;
+        let mut body = self.body(context);
+        context.report(0.3, "looking");
+        let order = match self.order(&mut grasper, &mut body) {
+            Ok(order) => order,
+            Err(why) => return Ok(Proposed { plan: Err(why), seen: vec![], chosen: None }),
+        };
+        let mut watcher = Watcher::new(
+            self.progress.clone(),
+            None,
+            context,
+            self.ropes.reins.clone(),
+            grasper.knowledge().clone(),
+        );
+        let (plan, record) = grasper.propose(&mut body, &order, self.at, &mut watcher);
+        let plan = match (plan, body.commanded()) {
+            (Some(plan), Ok(from)) => Ok(Arc::new(self.shown(&grasper, &from, &plan, &record))),
+            (Some(_), Err(halt)) => Err(halt.to_string()),
+            (None, _) => Err(why_of(&record)),
+        };
+        self.progress.ended(&record);
+        Ok(Proposed { plan, seen: record.seen, chosen: record.chosen })
+    }
+
+    /// Grasps once. Whatever happens, the record says it.
+    pub fn carry_out(&self, context: &dyn JobContext) -> Result<AttemptView, JobError> {
+        let keeping = Keeping::begin(&self.grasps, self.method, self.at).map_err(JobError::told)?;
+        self.progress.change(|run| run.name = keeping.name());
+        context.report(0.0, "getting ready");
+        let mut grasper = self.rests_on.grasper(&self.arm, self.method)?;
+        let mut body = self.body(context);
+        let ropes = &self.ropes;
+        let kept = Some(keeping.clone());
+        let mut watcher = Watcher::new(
+            self.progress.clone(),
+            kept,
+            context,
+            ropes.reins.clone(),
+            grasper.knowledge().clone(),
+        );
+        let mut record = match self.order(&mut grasper, &mut body) {
+            Ok(order) => {
+                self.progress.change(|run| run.object.clone_from(&order.object));
+                grasper.attempt(&mut body, &order, self.at, &mut watcher)
+            }
+            Err(why) => {
+                let object = self.target.class.as_deref().unwrap_or("thing");
+                let mut record = Record::new(self.method, object, self.at, String::new());
+                record.outcome = Some(Outcome::Refused { why });
+                record
+            }
+        };
+        if let Some(problem) = watcher.problem {
+            let why = format!("it could not be kept: {problem}");
+            record.outcome = Some(Outcome::Failed { failure: plumbline_grasp::Failure::Halted, why });
+        }
+        self.progress.ended(&record);
+        keeping.record(&record).map_err(JobError::told)?;
+        Ok(keeping.view(&record))
+    }
+
+    fn body<'a>(&self, context: &'a dyn JobContext) -> LedBody<'a> {
+        LedBody::new(self.rests_on.model.rig().clone(), &self.arm, self.ropes.clone(), context)
+    }
+
+    /// What is grasped: as the operator chose, else what can be held and is seen best.
+    fn order(&self, grasper: &mut Grasper, body: &mut LedBody<'_>) -> Result<Order, String> {
+        let order = |object: String| Order { method: self.method, object, near_m: self.target.near_m };
+        if let Some(class) = &self.target.class {
+            return Ok(order(class.clone()));
+        }
+        let sight = body.look().map_err(|halt| halt.to_string())?;
+        let seen = grasper.see(&sight).map_err(|error| error.to_string())?;
+        let can_be_held =
+            |thing: &&Seen| Thing::of_class(&thing.class).is_some_and(|known| known.can_be_held);
+        let best = seen.iter().filter(can_be_held).find(|thing| thing.place.is_ok());
+        best.map(|thing| order(thing.class.clone())).ok_or_else(|| {
+            let classes: Vec<String> = Thing::held().map(|thing| thing.class.to_lowercase()).collect();
+            format!(
+                "nothing is seen that can be held ({}): put it where both eyes see it",
+                classes.join(", ")
+            )
+        })
+    }
+
+    fn shown(&self, grasper: &Grasper, from: &Posture, plan: &GraspPlan, record: &Record) -> PlannedGrasp {
+        let planner = grasper.planner(self.method);
+        let closed = plan.closing().map(|open| planner.closed(open)).unwrap_or_else(|| from.clone());
+        let lift = planner.lift(plan, &closed, GraspPlanner::LIFT_M);
+        let mut postures = vec![from.clone()];
+        postures.extend(plan.approach.iter().chain(&plan.down).cloned());
+        postures.push(closed);
+        postures.extend(lift.iter().cloned());
+        let palm = |posture: &Posture| planner.arm().palm(posture).coords.coords.into();
+        let place = record.chosen.and_then(|index| record.seen.get(index)?.place.as_ref().ok());
+        PlannedGrasp {
+            method: self.method,
+            object: record.object.clone(),
+            at_m: plan.standing.xy_m,
+            sigma_m: place.map(plumbline_grasp::see::SeenPlace::sigma_on_table_m),
+            heading_rad: plan.heading_rad,
+            level: plan.level,
+            palm_way_m: postures.iter().map(palm).collect(),
+            turns: turns(self.rests_on.model.rig(), &postures).into(),
+            duration: whole(from, plan, &lift),
+            postures: postures.into(),
+        }
+    }
+}
+
+/// Why there is no plan.
+fn why_of(record: &Record) -> String {
+    match &record.outcome {
+        Some(Outcome::Failed { why, .. } | Outcome::Refused { why }) => why.clone(),
+        Some(Outcome::Success) | None => "there is no plan".to_owned(),
+    }
+}
+
+/// How far joints turn in all, most first.
+fn turns(rig: &Rig, postures: &[Posture]) -> Vec<(String, f64)> {
+    let turn = |joint| postures.windows(2).map(|pair| (pair[1][joint] - pair[0][joint]).abs()).sum::<f64>();
+    let mut turns: Vec<(String, f64)> =
+        rig.servos.iter().map(|servo| (servo.title.clone(), turn(servo.joint))).collect();
+    turns.retain(|(_, turn_rad)| *turn_rad > NAMED_RAD);
+    turns.sort_by(|a, b| b.1.total_cmp(&a.1));
+    turns
+}
+
+/// How long all of it takes, without looking.
+fn whole(from: &Posture, plan: &GraspPlan, lift: &[Posture]) -> Duration {
+    let along = |start: &Posture, way: &[Posture], speed_rad_s: f64| -> Duration {
+        let starts = std::iter::once(start).chain(way);
+        starts.zip(way).map(|(from, to)| duration(from.distance_rad(to), speed_rad_s)).sum()
+    };
+    let above = plan.above().unwrap_or(from);
+    let closing = plan.closing().unwrap_or(above);
+    along(from, &plan.approach, AIR_RAD_S)
+        + along(above, &plan.down, DOWN_RAD_S)
+        + Duration::from_secs_f64(2.0 * CLOSING_S)
+        + along(&lift.first().cloned().unwrap_or_else(|| closing.clone()), lift, LIFT_RAD_S)
+}

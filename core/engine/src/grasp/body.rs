@@ -1,0 +1,284 @@
+//! The connected robot, or the twin, as the body of a grasp: it leads the arm order by order and waits
+//! for pairs of the source.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use plumbline_grasp::{Body, Halt, ServoState, Sight};
+use plumbline_hardware::joints::JointState;
+use plumbline_model::JobContext;
+use plumbline_model::robot::collision::{Allowance, Body as Solid, CollisionModel};
+use plumbline_model::robot::{JointIndex, Posture, Rig};
+
+use super::sights::Sights;
+use crate::robot::{GivenUp, LeadAnswer, LeadOrder, Leader, Reins};
+
+/// Joints that differ by less are the same, rad.
+const SAME_RAD: f64 = 5e-4;
+/// An order is asked after this often, so that it can be ended.
+const ASKED_EVERY: Duration = Duration::from_millis(50);
+/// No order takes longer than this while it is not paused.
+const LONGEST: Duration = Duration::from_secs(60);
+/// A pair comes within this time, or the eyes are taken to be blind.
+const PAIR_WITHIN: Duration = Duration::from_secs(8);
+/// The angles of a moment have been read after this long.
+const READ_WITHIN: Duration = Duration::from_secs(1);
+/// Fingers around a thing may come so much nearer to what it stands on than their shapes say, m: they
+/// are softer and thinner than drawn.
+const AROUND_DEPTH_M: f64 = 0.012;
+
+/// What an attempt is led with.
+#[derive(Clone, Debug)]
+pub struct Ropes {
+    /// Orders to the arm.
+    pub leader: Leader,
+    /// Pairs of the source.
+    pub sights: Sights,
+    /// Pause and end.
+    pub reins: Reins,
+}
+
+/// The robot at the other end of the ropes.
+pub struct LedBody<'a> {
+    rig: Arc<Rig>,
+    ropes: Ropes,
+    context: &'a dyn JobContext,
+    began: Instant,
+    pairs: u64,
+    /// Joints of hands, and the links that they move.
+    hands: Vec<JointIndex>,
+    finger_allowances: Vec<Allowance>,
+    /// Fingers that met something before they were where they were sent, and where that was.
+    given_way: Vec<(JointIndex, f64)>,
+    /// Whether fingers may meet what things stand on.
+    may_touch: bool,
+}
+
+impl<'a> LedBody<'a> {
+    /// For one arm of the robot.
+    pub fn new(rig: Arc<Rig>, arm: &str, ropes: Ropes, context: &'a dyn JobContext) -> Self {
+        let hands: Vec<JointIndex> = rig.arms.iter().flat_map(|arm| arm.hand.iter().copied()).collect();
+        let bodies = CollisionModel::of_rig(&rig);
+        let own = rig.arm(arm).map(|arm| arm.hand.clone()).unwrap_or_default();
+        let mut links: Vec<_> = own.iter().flat_map(|joint| bodies.links_moved_by(*joint)).collect();
+        links.sort_unstable();
+        links.dedup();
+        let to = |body| Allowance { links: links.clone(), body, depth_m: AROUND_DEPTH_M };
+        let finger_allowances = vec![to(Solid::Table), to(Solid::Touchscreen)];
+        Self {
+            rig,
+            ropes,
+            context,
+            began: Instant::now(),
+            pairs: 0,
+            hands,
+            finger_allowances,
+            given_way: vec![],
+            may_touch: false,
+        }
+    }
+
+    /// How the joints are.
+    fn state(&mut self) -> Result<Arc<JointState>, Halt> {
+        match self.carry_out(LeadOrder::State)? {
+            LeadAnswer::State(state) => Ok(state),
+            _ => Err(Halt::Lost("the arm answered something else".to_owned())),
+        }
+    }
+
+    /// The same, unless it must not go on: STOP, or somebody wants it to end.
+    fn state_to_go_on(&mut self) -> Result<Arc<JointState>, Halt> {
+        self.may_go_on()?;
+        let state = self.state()?;
+        if state.stopped { Err(Halt::Stopped) } else { Ok(state) }
+    }
+
+    fn may_go_on(&self) -> Result<(), Halt> {
+        let cancelled = self.ropes.reins.is_ended() || self.context.checkpoint().is_err();
+        if cancelled { Err(Halt::Cancelled) } else { Ok(()) }
+    }
+
+    /// Hands an order over and waits for what becomes of it.
+    fn carry_out(&self, order: LeadOrder) -> Result<LeadAnswer, Halt> {
+        self.ropes.leader.order(order)?;
+        let mut left = LONGEST;
+        loop {
+            if let Some(answer) = self.ropes.leader.answer(ASKED_EVERY)? {
+                return Ok(answer);
+            }
+            if !self.ropes.reins.is_tight() {
+                left = left.saturating_sub(ASKED_EVERY);
+            }
+            if left.is_zero() {
+                return Err(self.call_off(Halt::Lost("the arm does not come to its goal".to_owned())));
+            }
+            if let Err(ended) = self.may_go_on() {
+                return Err(self.call_off(ended));
+            }
+        }
+    }
+
+    /// The arm holds; what becomes of the order under way is of no interest any more.
+    fn call_off(&self, why: Halt) -> Halt {
+        if self.ropes.leader.order(LeadOrder::Hold).is_ok() {
+            // Its own answer, or that of the order that it ended.
+            let _ = self.ropes.leader.answer(READ_WITHIN);
+        }
+        why
+    }
+
+    /// Joints of a posture that are elsewhere than they were sent before.
+    fn turning(&mut self, way: &[Posture]) -> Result<Vec<Vec<(JointIndex, f64)>>, Halt> {
+        let from = self.commanded()?;
+        let servos = self.rig.clone();
+        let turns = |joint: &JointIndex| way.iter().any(|to| (to[*joint] - from[*joint]).abs() > SAME_RAD);
+        let joints: Vec<JointIndex> = servos.servos.iter().map(|servo| servo.joint).filter(turns).collect();
+        Ok(way.iter().map(|to| joints.iter().map(|joint| (*joint, to[*joint])).collect()).collect())
+    }
+
+    fn let_touch(&mut self, may: bool) -> Result<(), Halt> {
+        if may != self.may_touch {
+            let allowed = if may { self.finger_allowances.clone() } else { vec![] };
+            self.carry_out(LeadOrder::MayTouch(allowed))?;
+            self.may_touch = may;
+        }
+        Ok(())
+    }
+
+    /// Fingers alone, each farther bent than it is: they close.
+    fn closes(&self, from: &Posture, goals: &[(JointIndex, f64)]) -> bool {
+        !goals.is_empty()
+            && goals
+                .iter()
+                .all(|(joint, to_rad)| self.hands.contains(joint) && to_rad.abs() > from[*joint].abs())
+    }
+}
+
+impl Body for LedBody<'_> {
+    fn rig(&self) -> &Arc<Rig> {
+        &self.rig
+    }
+
+    fn now_s(&self) -> f64 {
+        self.began.elapsed().as_secs_f64()
+    }
+
+    fn servos(&mut self) -> Result<Vec<ServoState>, Halt> {
+        let state = self.state()?;
+        let known = |reading: &plumbline_hardware::joints::JointReading| {
+            Some(ServoState {
+                joint: reading.joint,
+                angle_rad: reading.angle_rad?,
+                load: reading.load,
+                temperature_c: reading.temperature_c,
+            })
+        };
+        state.joints.iter().map(known).collect::<Option<Vec<_>>>().ok_or_else(|| unknown(&self.rig, &state))
+    }
+
+    fn commanded(&mut self) -> Result<Posture, Halt> {
+        let state = self.state()?;
+        let commanded = state.commanded.clone().ok_or_else(|| unknown(&self.rig, &state))?;
+        let (joints, angles_rad): (Vec<_>, Vec<_>) = self.given_way.iter().copied().unzip();
+        Ok(commanded.with(&joints, &angles_rad))
+    }
+
+    fn follow(&mut self, way: &[Posture], speed_rad_s: f64) -> Result<(), Halt> {
+        self.state_to_go_on()?;
+        let from = self.commanded()?;
+        let way = self.turning(way)?;
+        let goals = way.last().cloned().unwrap_or_default();
+        if goals.is_empty() {
+            return Ok(());
+        }
+        if self.closes(&from, &goals) {
+            self.let_touch(true)?;
+            self.carry_out(LeadOrder::Close { goals: goals.clone() })?;
+            self.given_way.retain(|(joint, _)| goals.iter().all(|(other, _)| other != joint));
+            self.given_way.extend(goals);
+            return Ok(());
+        }
+        let opens = goals.iter().any(|(joint, _)| self.hands.contains(joint));
+        if opens {
+            self.given_way.retain(|(joint, _)| goals.iter().all(|(other, _)| other != joint));
+        }
+        let arm_moves = goals.iter().any(|(joint, _)| !self.hands.contains(joint));
+        self.carry_out(LeadOrder::Follow { way, speed_rad_s })?;
+        // The hand has left what the thing stood on, or it never was there.
+        if arm_moves { self.let_touch(false) } else { Ok(()) }
+    }
+
+    fn wait(&mut self, duration_s: f64) -> Result<(), Halt> {
+        let mut left = plumbline_model::duration::seconds(duration_s).unwrap_or_default();
+        loop {
+            self.state_to_go_on()?;
+            let paused = self.ropes.reins.is_tight();
+            if left.is_zero() && !paused {
+                return Ok(());
+            }
+            let nap = if paused { ASKED_EVERY } else { left.min(ASKED_EVERY) };
+            std::thread::sleep(nap);
+            if !paused {
+                left = left.saturating_sub(nap);
+            }
+        }
+    }
+
+    fn look(&mut self) -> Result<Sight, Halt> {
+        self.wait(0.0)?;
+        let since = Instant::now();
+        let frame = loop {
+            self.state_to_go_on()?;
+            if let Some(frame) = self.ropes.sights.after(since, ASKED_EVERY) {
+                break frame;
+            }
+            if since.elapsed() > PAIR_WITHIN {
+                let why = format!("none came within {} s: look whether they are open", PAIR_WITHIN.as_secs());
+                return Err(Halt::Blind(why));
+            }
+        };
+        let posture = self.posture_at(frame.stamp.captured_at)?;
+        self.pairs += 1;
+        Ok(Sight { left: frame.left, right: frame.right, posture, at_s: self.now_s(), seq: self.pairs })
+    }
+}
+
+impl LedBody<'_> {
+    /// Until the arm has moved once more, fingers may meet what things stand on.
+    ///
+    /// # Errors
+    /// When there is nobody to tell.
+    pub fn let_fingers_touch(&mut self) -> Result<(), Halt> {
+        self.let_touch(true)
+    }
+
+    /// Where the joints were when a pair was captured.
+    fn posture_at(&mut self, when: Instant) -> Result<Posture, Halt> {
+        loop {
+            if let LeadAnswer::At(Some(posture)) = self.carry_out(LeadOrder::At(when))? {
+                return Ok(posture);
+            }
+            if when.elapsed() > READ_WITHIN {
+                let state = self.state()?;
+                return state.measured.clone().ok_or_else(|| unknown(&self.rig, &state));
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+}
+
+fn unknown(rig: &Rig, state: &JointState) -> Halt {
+    let silent = state.unknown.first().and_then(|joint| rig.servo_of(*joint));
+    let which = silent.map_or_else(|| "a joint".to_owned(), |servo| servo.title.to_lowercase());
+    Halt::Lost(format!("it is not known where {which} is: look at its cable and power"))
+}
+
+impl From<GivenUp> for Halt {
+    fn from(why: GivenUp) -> Self {
+        match why {
+            GivenUp::Stopped => Self::Stopped,
+            GivenUp::Lost(what) => Self::Lost(what),
+            GivenUp::Refused(what) => Self::Refused(what),
+        }
+    }
+}

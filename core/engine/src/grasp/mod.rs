@@ -1,0 +1,29 @@
+//! Grasping: what is grasped and how, the attempt as it goes on, single steps of a hand, and what
+//! became of attempts.
+//!
+//! An attempt is work on a thread of its own. Its body leads the arm order by order
+//! ([`crate::robot::Leader`]) and waits for pairs of the source; everything that moves passes the limits
+//! of the bus.
+
+mod around;
+mod attempt;
+mod body;
+pub mod command;
+mod gates;
+mod keeping;
+mod method;
+mod pointing;
+mod progress;
+mod refusal;
+mod rests_on;
+mod shown;
+mod sights;
+mod steps;
+#[cfg(test)]
+mod tests;
+pub mod view;
+pub mod work;
+mod workflow;
+
+pub use around::GraspAround;
+pub use workflow::GraspWorkflow;

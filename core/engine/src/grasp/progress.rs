@@ -1,0 +1,169 @@
+//! How an attempt goes on, for the window; and what is kept of it on the way.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use nalgebra::Point3;
+use plumbline_grasp::plan::GraspPlan;
+use plumbline_grasp::see::Seen;
+use plumbline_grasp::{Failure, Knowledge, Method, Outcome, Record, Sight, Step, Watch};
+use plumbline_model::robot::Posture;
+use plumbline_model::{Eye, JobContext};
+
+use super::keeping::{Keeping, KeepingError};
+use super::view::{GraspIteration, GraspRun, LampState};
+use crate::robot::Reins;
+
+/// What the window sees of an attempt while it goes on. Clones share it.
+#[derive(Clone, Debug, Default)]
+pub struct Progress(Arc<Mutex<GraspRun>>);
+
+impl Progress {
+    /// Of an attempt that begins.
+    pub fn new(method: Method, object: &str) -> Self {
+        let lamps = steps_of(method).map(|step| (step, LampState::Dark)).collect();
+        let run = GraspRun { method: Some(method), object: object.to_owned(), lamps, ..GraspRun::default() };
+        Self(Arc::new(Mutex::new(run)))
+    }
+
+    /// As it is now.
+    pub fn run(&self) -> GraspRun {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Changes it.
+    pub fn change(&self, change: impl FnOnce(&mut GraspRun)) {
+        change(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+
+    /// Everything that the record of its end says.
+    pub fn ended(&self, record: &Record) {
+        self.change(|run| {
+            run.outcome.clone_from(&record.outcome);
+            run.fingers_open_rad = record.fingers_open_rad;
+            run.seconds = record.seconds;
+            let last = match &record.outcome {
+                // Whether it holds was looked at: all steps were made.
+                Some(Outcome::Success) | None => LampState::Done,
+                Some(Outcome::Failed { failure: Failure::Slipped | Failure::ReachWrong, .. }) => {
+                    LampState::Done
+                }
+                _ => LampState::Failed,
+            };
+            run.lamps
+                .iter_mut()
+                .filter(|(_, lamp)| *lamp == LampState::Lit)
+                .for_each(|(_, lamp)| *lamp = last);
+        });
+    }
+}
+
+fn steps_of(method: Method) -> impl Iterator<Item = Step> {
+    Step::ALL.into_iter().filter(move |step| *step != Step::Align || method.aligns())
+}
+
+/// Watches an attempt: tells the window, and keeps what has to be on disk before it goes on.
+pub struct Watcher<'a> {
+    progress: Progress,
+    keeping: Option<Keeping>,
+    context: &'a dyn JobContext,
+    reins: Reins,
+    knowledge: Knowledge,
+    looks: usize,
+    /// Where the joints were at the last look.
+    looked_from: Option<Posture>,
+    /// The plan that was shown last.
+    pub plan: Option<GraspPlan>,
+    /// Why it could not be kept, so that it was ended.
+    pub problem: Option<KeepingError>,
+}
+
+impl<'a> Watcher<'a> {
+    /// `keeping`: where it is kept, if it is.
+    pub fn new(
+        progress: Progress,
+        keeping: Option<Keeping>,
+        context: &'a dyn JobContext,
+        reins: Reins,
+        knowledge: Knowledge,
+    ) -> Self {
+        let (plan, problem, looked_from) = (None, None, None);
+        Self { progress, keeping, context, reins, knowledge, looks: 0, looked_from, plan, problem }
+    }
+
+    /// Where a point (robot frame, m) is in both eyes at the last look, raw px.
+    fn in_eyes(&self, [x_m, y_m, z_m]: [f64; 3]) -> [Option<[f64; 2]>; 2] {
+        let Some(posture) = &self.looked_from else { return [None; 2] };
+        let cameras = &self.knowledge.calibration.cameras;
+        let left_from_robot = self.knowledge.robot_from_left(posture).isometry.inverse();
+        let in_left = left_from_robot * Point3::new(x_m, y_m, z_m);
+        let in_right = cameras.right_from_left.isometry * in_left;
+        let pixel = |eye: Eye, point: Point3<f64>| {
+            cameras.camera(eye).model.project(&point.coords).ok().map(|pixel| [pixel.u_px, pixel.v_px])
+        };
+        [pixel(Eye::Left, in_left), pixel(Eye::Right, in_right)]
+    }
+
+    /// Keeps something; what cannot be kept ends the attempt.
+    fn keep(&mut self, keep: impl FnOnce(&Keeping) -> Result<(), KeepingError>) {
+        if let Some(keeping) = &self.keeping
+            && let Err(problem) = keep(keeping)
+        {
+            log::error!("{problem}");
+            self.problem.get_or_insert(problem);
+            self.reins.end();
+        }
+    }
+}
+
+impl Watch for Watcher<'_> {
+    fn step(&mut self, step: Step) {
+        self.progress.change(|run| {
+            for (other, lamp) in &mut run.lamps {
+                if *other == step {
+                    *lamp = LampState::Lit;
+                } else if *lamp == LampState::Lit {
+                    *lamp = LampState::Done;
+                }
+            }
+        });
+        let place = Step::ALL.iter().position(|other| *other == step).unwrap_or_default();
+        self.context.report(place as f64 / Step::ALL.len() as f64, &step.title().to_lowercase());
+    }
+
+    fn saw(&mut self, step: Step, sight: &Sight, seen: &[Seen]) {
+        let name = match step {
+            Step::Align => {
+                self.looks += 1;
+                format!("aligned_{}", self.looks)
+            }
+            Step::Check => "after".to_owned(),
+            _ => "before".to_owned(),
+        };
+        self.keep(|keeping| keeping.images(&name, sight));
+        self.looked_from = Some(sight.posture.clone());
+        if !seen.is_empty() || step != Step::Align {
+            self.progress.change(|run| run.seen = seen.to_vec());
+        }
+        self.context.report(0.0, &step.title().to_lowercase());
+    }
+
+    fn planned(&mut self, plan: &GraspPlan) {
+        let wanted_px = self.in_eyes(plan.palm_m.into());
+        self.progress.change(|run| run.wanted_px = wanted_px);
+        self.plan = Some(plan.clone());
+    }
+
+    fn aligned(&mut self, iteration: &GraspIteration) {
+        let hand_px = iteration.hand_m.map_or([None; 2], |hand_m| self.in_eyes(hand_m));
+        self.progress.change(|run| {
+            run.hand_px = hand_px;
+            run.iterations.push(iteration.clone());
+        });
+        self.context.report(0.5, "align");
+    }
+
+    fn about_to(&mut self, record: &Record) {
+        self.keep(|keeping| keeping.record(record));
+        self.progress.change(|run| run.chosen = record.chosen);
+    }
+}

@@ -1,0 +1,84 @@
+//! What an attempt rests on: the robot with what was calibrated, and what finds things.
+
+use std::sync::Arc;
+
+use plumbline_effects::RobotModel;
+use plumbline_grasp::attempt::{HandFinder, RenderedHand};
+use plumbline_grasp::see::Looker;
+use plumbline_grasp::{Corrections, Grasper, Knowledge, Method};
+use plumbline_model::StereoCalibration;
+use plumbline_model::robot::Rig;
+use plumbline_vision::detect::{DetectSettings, Detector, DetectorOptions, Provider, shipped_detector};
+
+use crate::detect::command::DetectorChoice;
+use crate::ground::jobs::JobError;
+
+/// What an attempt rests on, as data.
+#[derive(Clone, Debug)]
+pub struct RestsOn {
+    /// The robot as it is known in this world: lenses, mount, place of the screen, effects.
+    pub model: Arc<RobotModel>,
+    /// The robot as described.
+    pub described: Arc<Rig>,
+    /// The calibration of the eyes; `None`: the lenses as described.
+    pub calibration: Option<Arc<StereoCalibration>>,
+    /// Models learned from touches.
+    pub corrections: Corrections,
+    /// Which detector, computed where.
+    pub detector: (DetectorChoice, Provider),
+}
+
+impl RestsOn {
+    /// All of it, for an arm.
+    pub fn grasper(&self, arm: &str, method: Method) -> Result<Grasper, JobError> {
+        let knowledge = self.knowledge();
+        let looker = Looker::new(self.detector()?, &knowledge, DetectSettings::default());
+        let finder = (method == Method::M5).then(|| self.finder(arm)).flatten();
+        Grasper::new(knowledge, looker, arm, finder).map_err(JobError::told)
+    }
+
+    /// What is known of the robot.
+    pub fn knowledge(&self) -> Knowledge {
+        let bare = || Arc::new(StereoCalibration::bare(self.described.eyes.cameras));
+        Knowledge {
+            model: (*self.model).clone(),
+            described: self.described.clone(),
+            calibration: self.calibration.clone().unwrap_or_else(bare),
+            corrections: self.corrections.clone(),
+        }
+    }
+
+    fn detector(&self) -> Result<Detector, JobError> {
+        let (choice, provider) = &self.detector;
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        let options = DetectorOptions {
+            provider: *provider,
+            threads: Some((cores / 2).max(1)),
+            shares_processor: true,
+            ..DetectorOptions::default()
+        };
+        let opened = match choice {
+            DetectorChoice::File(file) => Detector::open(file, &options),
+            // Switched off is the live view; a grasp cannot do without.
+            DetectorChoice::Shipped | DetectorChoice::Off => shipped_detector()
+                .ok_or_else(|| {
+                    JobError::failed("No detector comes with this version: choose an ONNX file in Detect.")
+                })?
+                .open(&options),
+        };
+        opened.map_err(JobError::told)
+    }
+
+    /// What finds the hand; without it the hand goes by the model alone.
+    fn finder(&self, arm: &str) -> Option<Box<dyn HandFinder>> {
+        let rig = self.model.rig();
+        let tip = &rig.arm(arm)?.tips.first()?.link;
+        match RenderedHand::of_rig(rig, tip) {
+            Ok(hand) => Some(Box::new(hand)),
+            Err(why) => {
+                log::warn!("the hand goes by the model alone: {why}");
+                None
+            }
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Single steps of a hand.
+
+use nalgebra::Vector3;
+use plumbline_grasp::plan::GraspPlanner;
+use plumbline_grasp::{Body, Halt, NoArm, PalmArm};
+use plumbline_model::robot::Posture;
+use plumbline_model::{JobContext, Point};
+
+use super::body::{LedBody, Ropes};
+use super::command::HandStep;
+use super::rests_on::RestsOn;
+use crate::ground::jobs::JobError;
+
+/// Through the air with something in the hand, rad/s.
+const SPEED_RAD_S: f64 = 0.5;
+/// Fingers that open, rad/s.
+const OPEN_RAD_S: f64 = 1.2;
+/// The palm is this high above the table before it goes anywhere, m.
+const CLEAR_M: f64 = 0.15;
+/// Where things are handed over: in front of the robot, to the side of the arm, above the table, m.
+const GIVE_M: [f64; 3] = [0.34, 0.16, 0.26];
+/// Headings in which they are, rad, of a right hand; the first that the arm reaches.
+const GIVE_HEADINGS_RAD: [f64; 5] = [0.0, 0.5, 1.0, -0.5, 1.5];
+/// Somebody has this long to take it, s.
+const GIVE_WAIT_S: f64 = 3.0;
+/// What is put down is let go this much above where it was taken, m.
+const ABOVE_SUPPORT_M: f64 = 0.002;
+
+/// Why a step was not made. Reads as a sentence.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoStep {
+    /// It ended on the way.
+    #[error(transparent)]
+    Halted(#[from] Halt),
+    /// There is no such arm.
+    #[error(transparent)]
+    Arm(#[from] NoArm),
+    /// It would lift.
+    #[error("the arm gets no higher here: open the hand, or go home")]
+    NoHigher,
+    /// It would put down.
+    #[error(
+        "nothing was grasped since the program began, so it is not known how far down: lower the hand in Robot"
+    )]
+    NotGrasped,
+    /// It would put down.
+    #[error("the arm does not get down to the table here: go home, and grasp nearer to the middle")]
+    NoLower,
+    /// It would hand over.
+    #[error("the arm does not reach where things are handed over")]
+    OutOfReach,
+}
+
+/// A step to be made.
+#[derive(Clone, Debug)]
+pub struct HandWork {
+    /// Which.
+    pub step: HandStep,
+    /// What the arm's model rests on.
+    pub rests_on: RestsOn,
+    /// Which arm.
+    pub arm: String,
+    /// Orders to the arm, pause and end.
+    pub ropes: Ropes,
+    /// Height of the palm when the hand closed last, robot frame, m.
+    pub closed_at_m: Option<f64>,
+}
+
+impl HandWork {
+    /// Makes the step; `Err` inside: why not, the arm holds.
+    pub fn carry_out(&self, context: &dyn JobContext) -> Result<Result<(), NoStep>, JobError> {
+        context.report(0.1, "moving");
+        let arm = PalmArm::new(&self.rests_on.model, &self.arm).map_err(JobError::told)?;
+        let planner = GraspPlanner::new(arm);
+        let body = LedBody::new(self.rests_on.model.rig().clone(), &self.arm, self.ropes.clone(), context);
+        let mut hand = Hand { planner: &planner, body, context };
+        Ok(match self.step {
+            HandStep::Open => hand.open(),
+            HandStep::Close => hand.close(),
+            HandStep::Lift => hand.lift(),
+            HandStep::Place => hand.place(self.closed_at_m),
+            HandStep::Give => hand.give(self.arm == "left"),
+            HandStep::Home => hand.home(),
+        })
+    }
+}
+
+struct Hand<'a> {
+    planner: &'a GraspPlanner,
+    body: LedBody<'a>,
+    context: &'a dyn JobContext,
+}
+
+impl Hand<'_> {
+    fn open(&mut self) -> Result<(), NoStep> {
+        let from = self.body.commanded()?;
+        Ok(self.body.follow(&[self.planner.open(&from)], OPEN_RAD_S)?)
+    }
+
+    fn close(&mut self) -> Result<(), NoStep> {
+        let from = self.body.commanded()?;
+        let closed = self.planner.closed(&from);
+        self.body.follow(&[self.planner.thumb_closed(&from)], SPEED_RAD_S)?;
+        Ok(self.body.follow(&[closed], SPEED_RAD_S)?)
+    }
+
+    fn lift(&mut self) -> Result<(), NoStep> {
+        let from = self.body.commanded()?;
+        let way = self.planner.vertical(self.heading_rad(&from), &from, GraspPlanner::LIFT_M);
+        if way.is_empty() {
+            return Err(NoStep::NoHigher);
+        }
+        self.body.let_fingers_touch()?;
+        Ok(self.body.follow(&way, SPEED_RAD_S)?)
+    }
+
+    fn place(&mut self, closed_at_m: Option<f64>) -> Result<(), NoStep> {
+        let from = self.body.commanded()?;
+        let heading_rad = self.heading_rad(&from);
+        let height_m = self.planner.arm().palm(&from).coords.z;
+        let down_m = closed_at_m.ok_or(NoStep::NotGrasped)? + ABOVE_SUPPORT_M - height_m;
+        let mut low = from.clone();
+        if down_m < 0.0 {
+            let way = self.planner.vertical(heading_rad, &from, down_m);
+            low = way.last().cloned().unwrap_or(from);
+            if (self.planner.arm().palm(&low).coords.z - (height_m + down_m)).abs() > 2.0 * ABOVE_SUPPORT_M {
+                return Err(NoStep::NoLower);
+            }
+            self.body.let_fingers_touch()?;
+            self.body.follow(&way, SPEED_RAD_S)?;
+        }
+        self.context.report(0.5, "letting go");
+        self.body.let_fingers_touch()?;
+        let open = self.planner.open(&low);
+        self.body.follow(std::slice::from_ref(&open), OPEN_RAD_S)?;
+        self.body.wait(0.3)?;
+        self.body.let_fingers_touch()?;
+        let up = self.planner.vertical(heading_rad, &open, GraspPlanner::LIFT_M);
+        Ok(self.body.follow(&up, SPEED_RAD_S)?)
+    }
+
+    fn give(&mut self, left: bool) -> Result<(), NoStep> {
+        self.clear_the_table()?;
+        let from = self.body.commanded()?;
+        let side = if left { 1.0 } else { -1.0 };
+        let table_m = self.planner.arm().rig().table.height_m;
+        let point = Point::new(GIVE_M[0], side * GIVE_M[1], table_m + GIVE_M[2]);
+        let arm = self.planner.arm();
+        let mut headings = GIVE_HEADINGS_RAD.iter().map(|heading_rad| -side * heading_rad);
+        let there = headings.find_map(|heading_rad| arm.sent_to(point, heading_rad, &from));
+        self.body.follow(&[there.ok_or(NoStep::OutOfReach)?], SPEED_RAD_S)?;
+        self.context.report(0.6, "waits for a hand that takes it");
+        self.body.wait(GIVE_WAIT_S)?;
+        self.context.report(0.8, "letting go");
+        self.open()
+    }
+
+    fn home(&mut self) -> Result<(), NoStep> {
+        self.clear_the_table()?;
+        let from = self.body.commanded()?;
+        let arm = self.planner.arm();
+        let home = from.with(arm.joints(), &arm.rig().home().of(arm.joints()));
+        Ok(self.body.follow(&[home], SPEED_RAD_S)?)
+    }
+
+    /// Up from between things, before it goes anywhere.
+    fn clear_the_table(&mut self) -> Result<(), NoStep> {
+        let from = self.body.commanded()?;
+        let height_m = self.planner.arm().palm(&from).coords.z;
+        let missing_m = self.planner.arm().rig().table.height_m + CLEAR_M - height_m;
+        if missing_m <= 0.0 {
+            return Ok(());
+        }
+        let up = self.planner.vertical(self.heading_rad(&from), &from, missing_m);
+        self.body.let_fingers_touch()?;
+        Ok(self.body.follow(&up, SPEED_RAD_S)?)
+    }
+
+    /// Azimuth of the fingers.
+    fn heading_rad(&self, posture: &Posture) -> f64 {
+        let fingers = self.planner.arm().robot_from_palm(posture).isometry.rotation * Vector3::x();
+        fingers.y.atan2(fingers.x)
+    }
+}

@@ -1,0 +1,7 @@
+//! Grasps on the live twin: the whole engine, its threads, the bus through the pseudo-terminal, the eyes
+//! as they are rendered.
+#![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
+
+mod bench;
+mod refusals;
+mod twin;

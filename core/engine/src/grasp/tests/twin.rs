@@ -1,0 +1,122 @@
+//! One grasp, and what may come between.
+
+use std::time::{Duration, Instant};
+
+use plumbline_grasp::{Failure, Record};
+use plumbline_twin::Toy;
+
+use super::bench::{Bench, words};
+use crate::command::{GraspCommand, HandStep, RobotCommand};
+use crate::view::{GraspOutcome, GraspStep, LampState, MotionState};
+
+const EASY_M: [f64; 2] = [0.32, -0.15];
+
+/// What was kept of the newest attempt.
+fn kept(bench: &Bench) -> Record {
+    let grasps = bench.folder.path().join("twin/grasps");
+    let mut folders: Vec<_> =
+        std::fs::read_dir(grasps).expect("attempts were kept").flatten().map(|entry| entry.path()).collect();
+    folders.sort();
+    let file = folders.last().expect("one at least").join("record.json");
+    serde_json::from_str(&std::fs::read_to_string(file).expect("readable")).expect("a record")
+}
+
+#[test]
+fn a_thing_is_grasped_put_down_and_grasped_again() {
+    let Some(bench) = Bench::start("perfect", Toy::Tomato, EASY_M) else { return };
+    bench.send(GraspCommand::Plan);
+    let view = bench.until("a plan", |view| view.grasp.plan.is_some());
+    let plan = view.grasp.plan.clone().expect("just seen");
+    println!("plan: {:?} {:.0?} mm, {:?}", plan.object, plan.at_m.map(|m| m * 1e3), plan.duration);
+    assert!((plan.at_m[0] - EASY_M[0]).hypot(plan.at_m[1] - EASY_M[1]) < 0.01, "{plan:?}");
+    assert!(!view.grasp.phase.moves());
+    bench.until_idle();
+    let began = Instant::now();
+    let run = bench.grasp();
+    println!(
+        "{} in {:.1?}: {:?} fingers {:?}",
+        words(run.outcome.as_ref()),
+        began.elapsed(),
+        run.lamps,
+        run.fingers_open_rad
+    );
+    assert_eq!(run.outcome, Some(GraspOutcome::Success), "{run:?}");
+    assert!(began.elapsed() < Duration::from_secs(60), "{:?}", began.elapsed());
+    assert!(run.lamps.iter().all(|(_, lamp)| *lamp == LampState::Done), "{:?}", run.lamps);
+    let record = kept(&bench);
+    assert_eq!(record.outcome, Some(GraspOutcome::Success));
+    bench.send(GraspCommand::Judge { attempt: run.name.clone(), held: false });
+    bench.until("the word of the operator", |view| {
+        view.grasp.attempts.first().is_some_and(|attempt| attempt.told == Some(false))
+    });
+    assert_eq!(kept(&bench).told_by_operator, Some(false));
+    bench.send(GraspCommand::Hand(HandStep::Place));
+    bench.until("it to begin", |view| view.grasp.phase.moves());
+    let view = bench.until_idle();
+    let said = view.notices.last().map(|notice| notice.text.clone());
+    assert!(!said.as_deref().is_some_and(|text| text.contains("Put down")), "{said:?}");
+    let run = bench.grasp();
+    assert_eq!(run.outcome, Some(GraspOutcome::Success), "{run:?}");
+}
+
+#[test]
+fn stop_ends_it_the_arm_holds_and_the_next_one_works() {
+    let Some(bench) = Bench::start("perfect", Toy::Tomato, EASY_M) else { return };
+    bench.send(GraspCommand::Grasp);
+    bench.until_step(GraspStep::Approach);
+    std::thread::sleep(Duration::from_millis(300));
+    bench.stop();
+    let view = bench.until_idle();
+    let run = view.grasp.run.clone().expect("there was one");
+    assert!(
+        matches!(&run.outcome, Some(GraspOutcome::Failed { failure: Failure::Halted, why }) if why.contains("STOP")),
+        "{}",
+        words(run.outcome.as_ref())
+    );
+    let view = bench.until("it holds", |view| matches!(view.robot.motion, MotionState::Holding { .. }));
+    assert!(view.robot.stopped);
+    assert_eq!(kept(&bench).step, Some(GraspStep::Approach));
+    bench.send(RobotCommand::ReleaseStop);
+    bench.until("STOP to be released", |view| !view.robot.stopped);
+    let run = bench.grasp();
+    assert_eq!(run.outcome, Some(GraspOutcome::Success), "{run:?}");
+}
+
+#[test]
+fn what_was_taken_away_is_not_taken_for_held() {
+    let Some(bench) = Bench::start("perfect", Toy::Tomato, EASY_M) else { return };
+    bench.send(GraspCommand::Grasp);
+    bench.until_step(GraspStep::Approach);
+    bench.remove(Toy::Tomato);
+    let view = bench.until_idle();
+    let run = view.grasp.run.clone().expect("there was one");
+    assert!(matches!(&run.outcome, Some(GraspOutcome::Failed { .. })), "{}", words(run.outcome.as_ref()));
+    assert!(!view.grasp.attempts[0].is_success());
+}
+
+#[test]
+fn pause_holds_within_a_step_and_the_bus_lost_in_the_air_is_told() {
+    let Some(bench) = Bench::start("perfect", Toy::Tomato, EASY_M) else { return };
+    bench.send(GraspCommand::Grasp);
+    bench.until_step(GraspStep::Approach);
+    std::thread::sleep(Duration::from_millis(400));
+    bench.send(GraspCommand::Pause);
+    bench.until("a pause", |view| view.grasp.phase.is_paused());
+    std::thread::sleep(Duration::from_millis(700));
+    let stood = bench.until("angles", |view| view.robot.measured.is_some()).robot.measured.clone();
+    std::thread::sleep(Duration::from_millis(700));
+    let stands = bench.until("angles", |view| view.robot.measured.is_some()).robot.measured.clone();
+    let (stood, stands) = (stood.expect("read"), stands.expect("read"));
+    assert!(stood.distance_rad(&stands) < 0.01, "it moved by {:.3} rad", stood.distance_rad(&stands));
+    bench.send(GraspCommand::Resume);
+    bench.until("it to go on", |view| !view.grasp.phase.is_paused());
+    std::thread::sleep(Duration::from_millis(200));
+    bench.send(RobotCommand::Disconnect);
+    let view = bench.until_idle();
+    let run = view.grasp.run.clone().expect("there was one");
+    assert!(
+        matches!(&run.outcome, Some(GraspOutcome::Failed { failure: Failure::Halted, why }) if why.contains("not known any more")),
+        "{}",
+        words(run.outcome.as_ref())
+    );
+}

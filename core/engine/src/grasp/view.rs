@@ -1,0 +1,223 @@
+//! Grasping: what can be grasped and how, the attempt under way, what became of others.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use jiff::Timestamp;
+pub use plumbline_grasp::Method as GraspMethod;
+pub use plumbline_grasp::record::{Iteration as GraspIteration, Outcome as GraspOutcome, Step as GraspStep};
+pub use plumbline_grasp::see::Seen as SeenThing;
+use plumbline_model::robot::Posture;
+
+use super::command::{GraspTarget, HandStep};
+use crate::ground::step::StepState;
+
+/// Grasping.
+#[derive(Clone, Debug, Default)]
+pub struct GraspView {
+    /// For the rail.
+    pub step: StepState,
+    /// Methods, and what some lack.
+    pub methods: Arc<[MethodView]>,
+    /// The chosen one.
+    pub method: Option<GraspMethod>,
+    /// Arms of the robot: name and title.
+    pub arms: Arc<[(String, String)]>,
+    /// Name of the chosen one.
+    pub arm: String,
+    /// Classes of things that can be held.
+    pub classes: Arc<[&'static str]>,
+    /// What is grasped.
+    pub target: GraspTarget,
+    /// What is looked at before anything moves.
+    pub gates: Arc<[Gate]>,
+    /// What is done just now.
+    pub phase: GraspPhase,
+    /// What would be sent; `None` before it was planned.
+    pub plan: Option<Arc<PlannedGrasp>>,
+    /// The attempt under way, else the last one of this run of the program.
+    pub run: Option<Arc<GraspRun>>,
+    /// What became of attempts, newest first.
+    pub attempts: Arc<[AttemptView]>,
+}
+
+impl GraspView {
+    /// Why nothing can be grasped now, and what to do: the first gate that is shut.
+    pub fn trouble(&self) -> Option<&str> {
+        self.gates.iter().find(|gate| gate.state == GateState::Shut).map(|gate| gate.text.as_str())
+    }
+}
+
+/// A method, and what it lacks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MethodView {
+    /// Which.
+    pub method: GraspMethod,
+    /// How it brings the hand to the object, in a few words.
+    pub about: &'static str,
+    /// What it lacks and how to get it, a sentence; `None`: nothing.
+    pub lacks: Option<String>,
+}
+
+/// Something that is looked at before anything moves.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Gate {
+    /// What, in a word.
+    pub name: &'static str,
+    /// Whether it lets pass.
+    pub state: GateState,
+    /// What is so, and what to do where it is shut. A sentence.
+    pub text: String,
+}
+
+/// Whether a gate lets pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GateState {
+    /// All is well.
+    Open,
+    /// It may go on, but the operator should know.
+    Doubtful,
+    /// Nothing moves.
+    Shut,
+}
+
+/// What is done just now.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum GraspPhase {
+    /// Nothing.
+    #[default]
+    Idle,
+    /// Looks and plans.
+    Planning,
+    /// Grasps.
+    Grasping {
+        /// Held by the operator.
+        paused: bool,
+        /// Asked to end.
+        ending: bool,
+    },
+    /// A step of the hand by itself.
+    Hand {
+        /// Which.
+        step: HandStep,
+        /// Held by the operator.
+        paused: bool,
+    },
+}
+
+impl GraspPhase {
+    /// Whether the arm moves, or may move, or was made to stand.
+    pub fn moves(&self) -> bool {
+        matches!(self, Self::Grasping { .. } | Self::Hand { .. })
+    }
+
+    /// Whether it was made to stand.
+    pub fn is_paused(&self) -> bool {
+        matches!(self, Self::Grasping { paused: true, .. } | Self::Hand { paused: true, .. })
+    }
+}
+
+/// What would be sent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedGrasp {
+    /// By which method.
+    pub method: GraspMethod,
+    /// What would be grasped.
+    pub object: String,
+    /// Where it stands, robot frame, m.
+    pub at_m: [f64; 2],
+    /// Standard deviation of that in the worst direction over the table, m.
+    pub sigma_m: Option<f64>,
+    /// Azimuth of the fingers, rad.
+    pub heading_rad: f64,
+    /// Cosine of the palm's inclination where it closes, 1 when it faces straight down.
+    pub level: f64,
+    /// The whole motion: where it begins, above the object, where it closes, lifted.
+    pub postures: Arc<[Posture]>,
+    /// Where the palm goes, robot frame, m.
+    pub palm_way_m: Arc<[[f64; 3]]>,
+    /// Joints that turn, for people, and by how much in all (rad), most first.
+    pub turns: Arc<[(String, f64)]>,
+    /// How long all of it takes, without looking.
+    pub duration: Duration,
+}
+
+/// How a step of an attempt is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LampState {
+    /// Not begun.
+    #[default]
+    Dark,
+    /// Under way.
+    Lit,
+    /// Done.
+    Done,
+    /// It ended here.
+    Failed,
+}
+
+/// An attempt under way, or the last one.
+#[derive(Clone, Debug, Default)]
+pub struct GraspRun {
+    /// Name of its folder.
+    pub name: String,
+    /// By which method.
+    pub method: Option<GraspMethod>,
+    /// What is grasped.
+    pub object: String,
+    /// Its steps in their order.
+    pub lamps: Vec<(GraspStep, LampState)>,
+    /// Looks at the hand.
+    pub iterations: Vec<GraspIteration>,
+    /// What was seen last, and at which step.
+    pub seen: Vec<SeenThing>,
+    /// The thing that was chosen, by its place in `seen`.
+    pub chosen: Option<usize>,
+    /// Where the palm was found at the last look, in the left and in the right eye, raw px.
+    pub hand_px: [Option<[f64; 2]>; 2],
+    /// Where it belongs when it closes, as `hand_px`.
+    pub wanted_px: [Option<[f64; 2]>; 2],
+    /// What became of it; `None` while it goes on.
+    pub outcome: Option<GraspOutcome>,
+    /// What the operator said of it.
+    pub told: Option<bool>,
+    /// How far the fingers were kept open after the lift, rad.
+    pub fingers_open_rad: Option<f64>,
+    /// From its beginning to the end of the lift, s.
+    pub seconds: Option<f64>,
+}
+
+/// What became of an attempt.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AttemptView {
+    /// Name of its folder.
+    pub name: String,
+    /// The folder.
+    pub folder: PathBuf,
+    /// When.
+    pub began: Timestamp,
+    /// By which method.
+    pub method: GraspMethod,
+    /// What was grasped.
+    pub object: String,
+    /// What it took itself for; `None`: the program ended before.
+    pub outcome: Option<GraspOutcome>,
+    /// The step that was begun last.
+    pub reached: Option<GraspStep>,
+    /// What the operator said.
+    pub told: Option<bool>,
+    /// Distance of the hand from where it belongs at the last look, m.
+    pub alignment_m: Option<f64>,
+    /// Height of the palm where the hand closes, robot frame, m.
+    pub closed_at_m: Option<f64>,
+    /// From its beginning to the end of the lift, s.
+    pub seconds: Option<f64>,
+}
+
+impl AttemptView {
+    /// Whether it was held: as the operator said, else as it took itself.
+    pub fn is_success(&self) -> bool {
+        self.told.unwrap_or(self.outcome == Some(GraspOutcome::Success))
+    }
+}

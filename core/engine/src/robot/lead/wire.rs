@@ -1,0 +1,156 @@
+//! What passes between who leads the arm and the robot's thread.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use crossbeam_channel::{Receiver, RecvTimeoutError, Sender};
+use plumbline_hardware::joints::JointState;
+use plumbline_model::robot::collision::Allowance;
+use plumbline_model::robot::{JointIndex, Posture};
+
+/// One order is under way at a time; a second place lets it be ended.
+const WAITING: usize = 4;
+
+/// What is to be done.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LeadOrder {
+    /// Through places one after another, each joints and their angles (rad), to rest at the last.
+    Follow {
+        /// Joints that are named nowhere stay.
+        way: Vec<Vec<(JointIndex, f64)>>,
+        /// Peak joint speed, rad/s.
+        speed_rad_s: f64,
+    },
+    /// Fingers bend until they are at these angles (rad) or meet something, each for itself.
+    Close {
+        /// Fingers and how far they bend around nothing.
+        goals: Vec<(JointIndex, f64)>,
+    },
+    /// From now on these may meet; empty: nothing may.
+    MayTouch(Vec<Allowance>),
+    /// Ends what is under way; the arm holds.
+    Hold,
+    /// How the joints are.
+    State,
+    /// Where the joints were.
+    At(Instant),
+}
+
+/// What became of it.
+#[derive(Clone, Debug)]
+pub enum LeadAnswer {
+    /// It was done.
+    Done,
+    /// How the joints are.
+    State(Arc<JointState>),
+    /// Where they were; `None`: that moment is not, or not yet, covered.
+    At(Option<Posture>),
+    /// It was not carried out to its end; the arm holds.
+    GivenUp(GivenUp),
+}
+
+/// Why an order ended early. Reads as a sentence.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GivenUp {
+    /// STOP.
+    #[error("STOP was pressed")]
+    Stopped,
+    /// The robot does not answer, or not all of it.
+    #[error("{0}")]
+    Lost(String),
+    /// What protects the robot refused.
+    #[error("{0}")]
+    Refused(String),
+}
+
+/// Held tight, the arm stands wherever it is, and goes on when they are let loose.
+#[derive(Clone, Debug, Default)]
+pub struct Reins {
+    tight: Arc<AtomicBool>,
+    ended: Arc<AtomicBool>,
+}
+
+impl Reins {
+    /// Pauses, or goes on.
+    pub fn hold_tight(&self, tight: bool) {
+        self.tight.store(tight, Ordering::Release);
+    }
+
+    /// Whether it pauses.
+    pub fn is_tight(&self) -> bool {
+        self.tight.load(Ordering::Acquire)
+    }
+
+    /// It shall end as soon as it can, for good.
+    pub fn end(&self) {
+        self.ended.store(true, Ordering::Release);
+    }
+
+    /// Whether it shall end.
+    pub fn is_ended(&self) -> bool {
+        self.ended.load(Ordering::Acquire)
+    }
+}
+
+/// The side of the robot's thread.
+#[derive(Clone, Debug)]
+pub struct Led {
+    /// What is being done, for people: "grasping".
+    pub title: String,
+    /// Whether the arm may move by it.
+    pub moves: bool,
+    pub(super) orders: Receiver<LeadOrder>,
+    answers: Sender<LeadAnswer>,
+    pub(super) reins: Reins,
+}
+
+impl Led {
+    /// An answer that nobody waits for is let go: whoever leads has ended.
+    pub(super) fn tell(&self, answer: LeadAnswer) {
+        if let Err(error) = self.answers.try_send(answer) {
+            log::debug!("an answer of the arm was not waited for: {error}");
+        }
+    }
+}
+
+/// The side of whoever leads. Dropped, the arm holds and is free for others.
+#[derive(Clone, Debug)]
+pub struct Leader {
+    orders: Sender<LeadOrder>,
+    answers: Receiver<LeadAnswer>,
+}
+
+impl Leader {
+    /// Both sides; `moves`: whether the arm may move by it.
+    pub fn pair(title: &str, moves: bool, reins: &Reins) -> (Self, Led) {
+        let (orders_in, orders) = crossbeam_channel::bounded(WAITING);
+        let (answers_in, answers) = crossbeam_channel::bounded(WAITING);
+        let led = Led { title: title.to_owned(), moves, orders, answers: answers_in, reins: reins.clone() };
+        (Self { orders: orders_in, answers }, led)
+    }
+
+    /// Hands an order over.
+    ///
+    /// # Errors
+    /// When there is nobody who could carry it out.
+    pub fn order(&self, order: LeadOrder) -> Result<(), GivenUp> {
+        let gone = |_| GivenUp::Lost("the connection to the arm ended: connect again".to_owned());
+        self.orders.send_timeout(order, Duration::from_secs(2)).map_err(gone)
+    }
+
+    /// What became of it; `None` when that is not known within this time.
+    ///
+    /// # Errors
+    /// When it was given up, or there is nobody who could.
+    pub fn answer(&self, patience: Duration) -> Result<Option<LeadAnswer>, GivenUp> {
+        match self.answers.recv_timeout(patience) {
+            Ok(LeadAnswer::GivenUp(why)) => Err(why),
+            Ok(answer) => Ok(Some(answer)),
+            Err(RecvTimeoutError::Timeout) => Ok(None),
+            Err(RecvTimeoutError::Disconnected) => {
+                Err(GivenUp::Lost("the connection to the arm ended: connect again".to_owned()))
+            }
+        }
+    }
+}
