@@ -79,7 +79,7 @@ fn lifted_m(toy: Toy, at_m: [f64; 2], off_m: [f64; 3]) -> Result<(f64, f64, f64)
     let joint = |name: &str| rig.description.find_joint(name).expect("a joint");
     let thumb = [joint("r_thumb_x"), joint("r_thumb_z")];
     twin.follow(&[closing.with(&thumb, &close.of(&thumb))], 2.0);
-    twin.follow(&[close.clone()], 2.5);
+    twin.follow(std::slice::from_ref(&close), 2.5);
     twin.wait(0.3);
     let up: Vec<Posture> = planner.lift(&plan, &close, GraspPlanner::LIFT_M);
     twin.follow(&up, 0.4);

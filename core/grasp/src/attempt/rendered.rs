@@ -46,7 +46,7 @@ impl HandFinder for RenderedHand {
         covariance_m2: &Matrix3<f64>,
     ) -> Result<FoundHand, HandMissing> {
         let eyes = EyesAt {
-            cameras: knowledge.calibration.cameras.clone(),
+            cameras: knowledge.calibration.cameras,
             robot_from_left: knowledge.robot_from_left(&now.posture),
         };
         let predicted =

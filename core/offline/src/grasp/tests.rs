@@ -19,7 +19,7 @@ fn bench(scenario: &str) -> Bench {
     let knowledge = Knowledge {
         model: RobotModel::nominal(rig.clone()),
         described: rig.clone(),
-        calibration: Arc::new(StereoCalibration::bare(rig.eyes.cameras.clone())),
+        calibration: Arc::new(StereoCalibration::bare(rig.eyes.cameras)),
         corrections: Corrections::default(),
     };
     let finder = Box::new(RenderedHand::of_rig(&rig, "right_palm_center").expect("a hand"));
