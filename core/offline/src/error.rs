@@ -29,9 +29,6 @@ pub enum OfflineError {
     /// The twin cannot be built.
     #[error(transparent)]
     Twin(#[from] plumbline_twin::TwinError),
-    /// The experiment cannot be run.
-    #[error(transparent)]
-    Trials(#[from] crate::grasp::TrialsError),
     /// The robot has no such hand.
     #[error(transparent)]
     Arm(#[from] plumbline_grasp::NoArm),
@@ -188,9 +185,9 @@ pub enum OfflineError {
         /// Size of the right image.
         right: String,
     },
-    /// A twin is not commissioned.
+    /// A twin is not commissioned, or an experiment not carried out, in the words of its own error.
     #[error("{0}")]
-    Commission(Box<super::CommissionError>),
+    OnTwin(Box<dyn std::error::Error + Send + Sync>),
     /// The detector cannot be opened.
     #[error(transparent)]
     Detect(#[from] DetectError),
@@ -236,12 +233,6 @@ pub enum OfflineError {
         /// What the system says.
         error: std::io::Error,
     },
-}
-
-impl From<super::CommissionError> for OfflineError {
-    fn from(error: super::CommissionError) -> Self {
-        Self::Commission(Box::new(error))
-    }
 }
 
 impl OfflineError {

@@ -17,6 +17,8 @@ use plumbline_vision::calibrate::SolveError;
 use plumbline_vision::detect::DetectError;
 use plumbline_vision::mount::{MountError, MountFileError};
 
+use crate::OfflineError;
+
 /// Why a twin is not commissioned, and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum CommissionError {
@@ -144,6 +146,15 @@ impl From<SearchError> for CommissionError {
         match error {
             SearchError::Gap(plumbline_gap::GapError::Cancelled(cancelled)) => Self::Cancelled(cancelled),
             other => Self::room(other),
+        }
+    }
+}
+
+impl From<CommissionError> for OfflineError {
+    fn from(error: CommissionError) -> Self {
+        match error {
+            CommissionError::Cancelled(cancelled) => cancelled.into(),
+            other => Self::OnTwin(Box::new(other)),
         }
     }
 }

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use plumbline_grasp::attempt::NoHand;
 use plumbline_model::files::FileError;
 
+use crate::OfflineError;
+
 /// Why an experiment cannot be run or put together, and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum TrialsError {
@@ -66,5 +68,11 @@ impl TrialsError {
 
     pub(super) fn disagree(folder: &Path, file: &str) -> Self {
         Self::Disagree { folder: folder.to_owned(), file: file.to_owned() }
+    }
+}
+
+impl From<TrialsError> for OfflineError {
+    fn from(error: TrialsError) -> Self {
+        Self::OnTwin(Box::new(error))
     }
 }
