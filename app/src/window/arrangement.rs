@@ -111,7 +111,7 @@ fn grasp(tiles: &mut Tiles<Pane>) -> TileId {
     let attempts = tabs(tiles, &[Pane::GraspAttempts]);
     let eyes = row(tiles, &[(left, 1.0), (right, 1.0)]);
     let seen = column(tiles, &[(eyes, 0.6), (scene, 1.0)]);
-    let work = column(tiles, &[(run, 3.4), (attempts, 1.0)]);
+    let work = column(tiles, &[(run, 4.8), (attempts, 1.0)]);
     row(tiles, &[(seen, 1.15), (work, 1.0)])
 }
 

@@ -187,6 +187,10 @@ impl Worker {
 
     /// Does what the operator asked.
     pub fn control(&mut self, control: RobotControl) {
+        if self.is_led() {
+            // Whoever led until just now may be gone.
+            self.step_lead(Instant::now());
+        }
         let result = match control {
             control if self.touching.forbids(&control) => Err(self.touching.busy()),
             control if self.leading.forbids(&control) => Err(self.leading.busy()),
