@@ -1,5 +1,7 @@
 //! Whether something is held: the fingers say, and the eyes.
 
+use plumbline_model::detection::PixelBox;
+
 use super::{Chosen, End, Running};
 use crate::record::{Failure, Outcome, Step};
 
@@ -7,6 +9,8 @@ use crate::record::{Failure, Outcome, Step};
 const HELD_RAD: f64 = 0.10;
 /// A thing that is seen this near to where it stood, and no higher than this over it, was left, m.
 const LEFT_M: f64 = 0.06;
+/// Boxes that overlap by more than this (intersection over union) are of the same thing at the same place.
+const SAME_IOU: f32 = 0.3;
 
 impl Running<'_> {
     pub(super) fn check(&mut self, chosen: &Chosen) -> Result<Outcome, End> {
@@ -19,11 +23,13 @@ impl Running<'_> {
         let seen = grasper.looker.look(&sight, &grasper.knowledge)?;
         self.watch.saw(Step::Check, &sight, &seen);
         let object = &self.order.object;
+        let before = self.record.chosen.and_then(|index| Some(self.record.seen.get(index)?.boxes_px));
         let left = seen.iter().filter(|thing| thing.class.eq_ignore_ascii_case(object)).any(|thing| {
-            thing.place.as_ref().is_ok_and(|place| {
+            let near = thing.place.as_ref().is_ok_and(|place| {
                 let off = place.point().coords - chosen.point.coords;
                 off.xy().norm() < LEFT_M && off.z.abs() < 0.5 * LEFT_M
-            })
+            });
+            near || before.is_some_and(|before| overlaps(&before, &thing.boxes_px))
         });
         self.record.seen_after = seen;
         let object = object.to_lowercase();
@@ -44,17 +50,26 @@ impl Running<'_> {
         })
     }
 
-    /// How far the fingers (without the thumb) are kept from where they were sent, the mean, rad.
+    /// How far the fingers (without the thumb) are kept from closing around nothing, the mean, rad. A body
+    /// may let them press less than it was asked, so it is not what was commanded last that counts.
     fn fingers_open_rad(&mut self) -> Result<f64, End> {
-        let commanded = self.body.commanded()?;
         let planner = self.grasper.planner(self.order.method);
+        let closed = planner.closed(&self.body.commanded()?);
         let fingers = planner.fingers();
         let servos = self.body.servos()?;
         let open: Vec<f64> = servos
             .iter()
             .filter(|servo| fingers.contains(&servo.joint))
-            .map(|servo| (servo.angle_rad - commanded[servo.joint]).abs())
+            .map(|servo| (servo.angle_rad - closed[servo.joint]).abs())
             .collect();
         Ok(open.iter().sum::<f64>() / open.len().max(1) as f64)
     }
+}
+
+/// Whether a box of one eye is about where it was: what was lifted is seen higher by more than its size.
+fn overlaps(before: &[Option<[f32; 4]>; 2], now: &[Option<[f32; 4]>; 2]) -> bool {
+    before.iter().zip(now).filter_map(|(before, now)| Some(((*before)?, (*now)?))).any(|(before, now)| {
+        let area = |[x0, y0, x1, y1]: [f32; 4]| PixelBox { x0_px: x0, y0_px: y0, x1_px: x1, y1_px: y1 };
+        area(before).iou(&area(now)) > SAME_IOU
+    })
 }
