@@ -34,6 +34,15 @@ pub trait Body {
     /// When it was not carried out to its end. The arm holds where it is.
     fn follow(&mut self, way: &[Posture], speed_rad_s: f64) -> Result<(), Halt>;
 
+    /// Fingers that were closed press anew: what they hold may have given way. A body whose fingers press
+    /// all the time has nothing to do.
+    ///
+    /// # Errors
+    /// When it was not carried out to its end.
+    fn grip(&mut self) -> Result<(), Halt> {
+        Ok(())
+    }
+
     /// Holds for a time (s).
     ///
     /// # Errors

@@ -208,6 +208,13 @@ impl Body for LedBody<'_> {
         if arm_moves { self.let_touch(false) } else { Ok(()) }
     }
 
+    fn grip(&mut self) -> Result<(), Halt> {
+        if self.given_way.is_empty() {
+            return Ok(());
+        }
+        self.carry_out(LeadOrder::Close { goals: self.given_way.clone() }).map(drop)
+    }
+
     fn wait(&mut self, duration_s: f64) -> Result<(), Halt> {
         let mut left = plumbline_model::duration::seconds(duration_s).unwrap_or_default();
         loop {

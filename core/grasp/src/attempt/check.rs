@@ -8,13 +8,15 @@ use crate::record::{Failure, Outcome, Step};
 /// Fingers that are kept open by more than this hold something, rad.
 const HELD_RAD: f64 = 0.10;
 /// A thing that is seen this near to where it stood, and no higher than this over it, was left, m.
-const LEFT_M: f64 = 0.06;
+const LEFT_M: f64 = 0.10;
+/// What is not held well has fallen after this time, s.
+const FALLEN_S: f64 = 1.5;
 /// Boxes that overlap by more than this (intersection over union) are of the same thing at the same place.
 const SAME_IOU: f32 = 0.3;
 
 impl Running<'_> {
     pub(super) fn check(&mut self, chosen: &Chosen) -> Result<Outcome, End> {
-        self.body.wait(super::STILL_S)?;
+        self.body.wait(FALLEN_S)?;
         self.keep(Step::Check)?;
         let open_rad = self.fingers_open_rad()?;
         self.record.fingers_open_rad = Some(open_rad);
@@ -27,7 +29,7 @@ impl Running<'_> {
         let left = seen.iter().filter(|thing| thing.class.eq_ignore_ascii_case(object)).any(|thing| {
             let near = thing.place.as_ref().is_ok_and(|place| {
                 let off = place.point().coords - chosen.point.coords;
-                off.xy().norm() < LEFT_M && off.z.abs() < 0.5 * LEFT_M
+                off.xy().norm() < LEFT_M && off.z.abs() < 0.3 * LEFT_M
             });
             near || before.is_some_and(|before| overlaps(&before, &thing.boxes_px))
         });

@@ -33,6 +33,8 @@ pub const DOWN_RAD_S: f64 = 0.5;
 pub const LIFT_RAD_S: f64 = 0.4;
 /// Thumb and fingers closing, rad/s.
 const CLOSE_RAD_S: f64 = 2.5;
+/// So often fingers press anew before the lift: what is soft or rolls gives way at first.
+const GRIPS: usize = 2;
 /// The eyes settle with the arm, s.
 const STILL_S: f64 = 0.3;
 
@@ -261,6 +263,7 @@ impl Running<'_> {
         let up = self.grasper.planner(method).lift(&plan, &closed, GraspPlanner::LIFT_M);
         self.follow(Step::Lift, &up, LIFT_RAD_S)?;
         self.record.seconds = Some(self.body.now_s() - self.began_s);
+        self.body.grip()?;
         self.begin(Step::Check);
         self.check(&chosen)
     }
@@ -306,7 +309,10 @@ impl Running<'_> {
         let thumb = planner.thumb_closed(&open);
         self.follow(Step::Close, &[thumb], CLOSE_RAD_S)?;
         self.follow(Step::Close, std::slice::from_ref(&closed), CLOSE_RAD_S)?;
-        self.body.wait(STILL_S)?;
+        for _ in 0..GRIPS {
+            self.body.wait(STILL_S)?;
+            self.body.grip()?;
+        }
         Ok(closed)
     }
 }

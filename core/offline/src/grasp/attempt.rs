@@ -139,6 +139,10 @@ impl Body for Watched<'_, '_> {
         Ok(())
     }
 
+    fn grip(&mut self) -> Result<(), Halt> {
+        self.body.grip()
+    }
+
     fn wait(&mut self, duration_s: f64) -> Result<(), Halt> {
         self.body.wait(duration_s)
     }
