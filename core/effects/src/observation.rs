@@ -134,7 +134,7 @@ pub struct Observation {
 
 impl Observation {
     /// A row that nobody measured, of which nothing is known.
-    pub(crate) fn imagined(what: What) -> Self {
+    pub fn imagined(what: What) -> Self {
         Self {
             session: 0,
             row: 0,

@@ -6,36 +6,10 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use plumbline_effects::RobotModel;
-use plumbline_grasp::PalmArm;
 use plumbline_grasp::plan::{GraspPlanner, Standing};
+use plumbline_grasp::{PLACES_M, PalmArm};
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_twin::{Lockstep, Scenario, Toy};
-
-/// The published positions within reach of the right arm: x and y, m.
-const PLACES_M: [[f64; 2]; 22] = [
-    [0.2, -0.4],
-    [0.3, -0.4],
-    [0.2, -0.3],
-    [0.3, -0.3],
-    [0.4, -0.3],
-    [0.2, -0.2],
-    [0.3, -0.2],
-    [0.4, -0.2],
-    [0.2, -0.1],
-    [0.3, -0.1],
-    [0.4, -0.1],
-    [0.2, 0.0],
-    [0.3, 0.0],
-    [0.4, 0.0],
-    [0.2, 0.1],
-    [0.3, 0.1],
-    [0.4, 0.1],
-    [0.2, 0.2],
-    [0.3, 0.2],
-    [0.4, 0.2],
-    [0.2, 0.3],
-    [0.3, 0.3],
-];
 
 fn planner(rig: &Arc<Rig>) -> GraspPlanner {
     GraspPlanner::new(PalmArm::new(&RobotModel::nominal(rig.clone()), "right").expect("an arm"))

@@ -255,28 +255,10 @@ fn measurements(rig: &Rig, arm: Arm, surface: Option<Surface>, rows: Vec<Observa
 
 fn row(what: What, encoder_rad: Vec<f64>, direction: Vec<f64>) -> Observation {
     Observation {
-        session: 0,
-        row: 0,
-        what,
-        measured: vec![0.0; what.len()],
         commanded_rad: Some(encoder_rad.clone()),
         encoder_rad: Some(encoder_rad),
         direction,
-        payload_kg: 0.0,
-        screen_height_m: 0.0,
-        t_secs: None,
-        move_secs: None,
-        hold_secs: None,
-        speed_rad_s: None,
-        torque_nm: None,
-        temperature_c: None,
-        neck_rad: vec![],
-        truth_m: None,
-        background_m: None,
-        object: None,
-        cell: 0,
-        set: None,
-        approach: None,
+        ..Observation::imagined(what)
     }
 }
 
