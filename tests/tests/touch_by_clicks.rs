@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-use plumbline_engine::correction::Method;
+use plumbline_engine::models::Method;
 use plumbline_engine::view::{StepState, TouchFigures, TouchPhase};
 use plumbline_model::session::Session;
 use plumbline_tests::{Window, click, click_containing, for_a_while, until, view, window};

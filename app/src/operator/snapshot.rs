@@ -3,23 +3,21 @@
 
 /// Of correction models, and of the tables of grasp height and yaw.
 pub mod models {
-    pub use plumbline_engine::correction::tables::{HeightTable, YawTable};
-    pub use plumbline_engine::correction::{
-        Comparison, CorrectionModel, Errors, LossPoint, Method, Recipe, Repeats, TouchData, spread_of_repeats,
+    pub use plumbline_engine::models::{
+        Comparison, CorrectionModel, Errors, HeightTable, LossPoint, Method, Recipe, Repeats, TouchData,
+        YawTable, spread_of_repeats,
     };
 }
 
 /// Of a plan of touches: what it would tell.
 pub mod touch {
-    pub use plumbline_engine::effects::observability::{EffectVisibility, PlanScore};
+    pub use plumbline_engine::touch::{EffectVisibility, PlanScore};
 }
 
 /// Of the gap between model and measurement.
 pub mod gap {
-    pub use plumbline_engine::effects::measurements::{Unit, What};
-    pub use plumbline_engine::gap::finding::{
+    pub use plumbline_engine::gap::{
         Candidate, Comparison, CoordinateComparison, Experiment, Finding, Knowledge, NamedEffect,
-        NextExperiment, Residual, Shown, ShownUnit, Unexplained,
+        NextExperiment, Residual, Shown, ShownUnit, Unexplained, Unit, Verdict, What, plan_for,
     };
-    pub use plumbline_engine::gap::{Verdict, plan_for};
 }

@@ -17,7 +17,7 @@ pub fn probe_readout(ui: &mut Ui, probe: Option<&ProbeView>) {
     match &probe.reading {
         Err(why) => {
             ui.label(RichText::new("Not measured").color(Role::Warning.color(theme::tokens(ui))));
-            ui.label(capitalized(why));
+            ui.label(capitalized(&why.to_string()));
         }
         Ok(reading) => {
             let range_m = reading.point_in_left.range_m();

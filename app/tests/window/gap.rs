@@ -3,7 +3,7 @@
 
 use egui_kittest::Harness;
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::report::sample;
+use plumbline_engine::gap::sample;
 use plumbline_engine::{Command, GapCommand, GapModel, View};
 
 use crate::fake::{Fake, click, says, shows};

@@ -151,7 +151,7 @@ fn the_table_says_what_has_to_be_known_and_a_cell_opens_its_images() {
     let (fake, mut window) = scores(judged());
     assert!(says(&window, "yolo12s: its classes have another order; they are matched by name."));
     assert!(says(&window, "does not know Onion"));
-    assert!(says(&window, "is no ONNX file"));
+    assert!(says(&window, "is not a usable ONNX file"));
     click(&mut window, "LeftHand taken for RightHand: 4");
     let cell = ConfusionCell { truth: Some(2), found: Some(6) };
     assert_eq!(asked_of_scores(&fake), [ScoresCommand::OpenCell { model: 0, cell }]);

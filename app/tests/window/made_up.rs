@@ -7,8 +7,8 @@ use jiff::Timestamp;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use plumbline_engine::View;
 use plumbline_engine::view::{
-    BusView, Connection, FaultView, HeadViewSummary, JointSample, JointView, MotionState, MountSummary,
-    MountView, PathCheck, PoseView, Preview, RobotView, StepState, TipPlace, ToyView, TwinView,
+    BusView, Connection, FaultView, HeadViewSummary, InTheWay, JointSample, JointView, MotionState,
+    MountSummary, MountView, PathCheck, PoseView, Preview, RobotView, StepState, TipPlace, ToyView, TwinView,
 };
 use plumbline_model::frame::{Point, Pose};
 use plumbline_model::robot::{JointIndex, Posture, Rig};
@@ -103,7 +103,7 @@ fn joint_view(rig: &Rig, i: usize, servo: &plumbline_model::robot::Servo, measur
 }
 
 /// A preview of the right arm reaching over the table.
-pub fn preview(path: Result<PathCheck, String>) -> Preview {
+pub fn preview(path: Result<PathCheck, InTheWay>) -> Preview {
     let measured = connected().measured.expect("read");
     let joints = ["r_shoulder_y", "r_arm_x", "r_elbow_y", "head_z"].map(joint);
     let end = measured.with(&joints, &[0.9, 0.35, 1.3, -0.4]);
@@ -119,7 +119,7 @@ pub fn preview(path: Result<PathCheck, String>) -> Preview {
 }
 
 /// A path that keeps its distance.
-pub fn free_path() -> Result<PathCheck, String> {
+pub fn free_path() -> Result<PathCheck, InTheWay> {
     Ok(PathCheck { smallest_m: 0.043, between: "right palm and table".to_owned() })
 }
 

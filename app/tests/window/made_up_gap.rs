@@ -3,9 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use plumbline_engine::gap::Finding;
-use plumbline_engine::gap::finding::ShownUnit;
-use plumbline_engine::report::sample;
+use plumbline_engine::gap::{Finding, ShownUnit, sample};
 use plumbline_engine::view::{
     AddedEffect, FindingEntry, GapModelView, GapSession, GapView, JobState, JobView, ModelStep, ShownFinding,
     StepState,

@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use image::{Rgb, RgbImage};
 use plumbline_engine::view::{
-    CellPicture, ImportView, LabelBox, LabelCounts, LabelImage, LabelProblem, LabelSetView, LabelState,
-    LabelsView, ModelScores, OpenedCell, ProposedBox, Score, ScoreRow, ScoreTable, ScoredModelFile,
-    ScoresView, ShownLabels,
+    CellPicture, DetectError, ImportView, LabelBox, LabelCounts, LabelImage, LabelProblem, LabelSetView,
+    LabelState, LabelsView, ModelScores, NotShown, OpenedCell, ProposedBox, Score, ScoreRow, ScoreTable,
+    ScoredModelFile, ScoresView, ShownLabels,
 };
 use plumbline_engine::{ConfusionCell, JobId, View};
 use plumbline_model::{ClassIndex, ClassNames, PixelBox};
@@ -117,7 +117,7 @@ pub fn unreadable() -> LabelsView {
     let mut labels = open();
     let why = "left_1767628307.140322.png cannot be read (unexpected end of file). Restore the file or take it out of the data set.".to_owned();
     if let Some(shown) = &mut labels.shown {
-        shown.pixels = Some(Err(why.clone()));
+        shown.pixels = Some(Err(NotShown::Unusable(why.clone())));
         shown.locked = Some(why);
     }
     labels
@@ -209,6 +209,8 @@ pub fn judged() -> ScoresView {
         unknown_to_set: vec!["Cup".to_owned()],
         ..scores(0.71)
     };
+    let (model, reason) = ("yolov3-spp.onnx".to_owned(), "it is a text".to_owned());
+    let no_onnx = DetectError::NotOnnx { model, reason };
     let row = |model: &str, scores| ScoreRow { model: model.to_owned(), scores };
     let table = ScoreTable {
         set: "lab/toys-november".into(),
@@ -219,7 +221,7 @@ pub fn judged() -> ScoresView {
         rows: vec![
             row("plumbline-detector", Ok(scores(0.81))),
             row("yolo12s", Ok(swapped)),
-            row("yolov3-spp", Err("yolov3-spp.onnx is no ONNX file: export it again.".to_owned())),
+            row("yolov3-spp", Err(Arc::new(no_onnx.into()))),
         ],
     };
     ScoresView { table: Some(Arc::new(table)), ..chosen() }

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
 use plumbline_engine::View;
-use plumbline_engine::correction::tables::{HeightPoint, HeightTable, YawPoint, YawTable};
-use plumbline_engine::correction::{
-    Comparison, CorrectionModel, LossPoint, Method, Touch, TouchData, TrainOptions, compare, train,
+use plumbline_engine::models::{
+    Comparison, CorrectionModel, HeightPoint, HeightTable, LossPoint, Method, Touch, TouchData, TrainOptions,
+    YawPoint, YawTable, compare, train,
 };
 use plumbline_engine::view::{
     EarlierModel, Field, MapTouch, ModelMap, ModelsView, StepState, TablesView, TouchSession,

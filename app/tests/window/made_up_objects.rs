@@ -8,10 +8,10 @@ use nalgebra::Matrix3;
 use plumbline_engine::View;
 use plumbline_engine::view::{
     ClassRates, DetectView, DetectionTiming, DetectionsView, DetectorFacts, DetectorState, LiveView,
-    ObjectPlaceView, ObjectView, SeenBox, SourceStatus, SourceView,
+    ObjectPlaceView, ObjectView, SeenBox, SourceStatus, SourceView, Unplaced,
 };
 use plumbline_model::detection::{ClassIndex, ClassNames, PixelBox};
-use plumbline_model::{Pixel, Point, Stamp, StereoFrame};
+use plumbline_model::{Eye, Pixel, Point, Stamp, StereoFrame};
 
 fn stamp() -> Stamp {
     Stamp { seq: 7, captured_at: Instant::now() }
@@ -83,7 +83,7 @@ pub fn banana() -> ObjectView {
         right: None,
         epipolar_px: None,
         alone_because: Some("The other eye has found nothing of this kind.".to_owned()),
-        place: Err("Only the left eye sees it: one eye alone tells no range.".to_owned()),
+        place: Err(Unplaced::OneEye(Eye::Left).into()),
         voted: Arc::default(),
         leak: None,
         doubts: Vec::new(),

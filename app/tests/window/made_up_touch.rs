@@ -6,7 +6,7 @@ use std::time::Duration;
 use jiff::Timestamp;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use plumbline_engine::View;
-use plumbline_engine::effects::observability::{Addition, Advice, EffectVisibility, PlanScore};
+use plumbline_engine::touch::{Addition, Advice, EffectVisibility, PlanScore};
 use plumbline_engine::view::{
     ContactSource, ContactView, PlanView, StepState, TouchCounts, TouchFigures, TouchOutcome, TouchPhase,
     TouchState, TouchView, UnfinishedRun,

@@ -6,8 +6,8 @@ use egui::{Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::correction::Method;
-use plumbline_engine::view::{JobState, JobView, ModelsView, StepState, TablesView};
+use plumbline_engine::models::Method;
+use plumbline_engine::view::{JobState, JobView, ModelError, ModelsView, StepState, TablesView};
 use plumbline_engine::{Command, GraspTable, JobId, ModelsCommand, TablesCommand, TouchCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
@@ -111,10 +111,10 @@ fn a_session_is_chosen_and_a_broken_one_says_why_not() {
 
 #[test]
 fn a_session_that_cannot_be_used_is_told_in_words() {
-    let why = "all 12 touches lie on a line: touch places to both sides of it".to_owned();
+    let why = Arc::new(ModelError::NoTip);
     let fake = Fake::over(with(ModelsView { data: Some(Err(why)), ..recorded() }));
     let window = fake.window_of_size(on_models(), TALL);
-    assert!(says(&window, "lie on a line"));
+    assert!(says(&window, "does not say which tip touched"));
     assert!(says(&window, "Choose another session."));
 }
 

@@ -6,7 +6,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::view::{BusView, Connection, MotionState, PortView, RobotView};
+use plumbline_engine::view::{BusView, Connection, InTheWay, MotionState, PortView, RobotView};
 use plumbline_engine::{Command, Destination, RobotCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
@@ -105,11 +105,12 @@ fn a_move_shown_on_another_screen_with_a_scene_runs_there_too() {
 #[test]
 fn a_refused_path_disables_the_button_and_says_why() {
     let mut robot = connected();
-    let why = "the right palm would come 12 mm into the table: lift the arm first";
-    robot.preview = Some(preview(Err(why.to_owned())));
+    let (a, b) = ("The right palm".to_owned(), "the table".to_owned());
+    let way = InTheWay::Collides { a, b, at_fraction: 0.4 };
+    robot.preview = Some(preview(Err(way)));
     let fake = Fake::over(with_robot(robot));
     let mut window = fake.window(on_robot());
-    assert!(says(&window, why));
+    assert!(says(&window, "The right palm would run into the table after 40 % of the way."));
     let button = window.get_by_label("Move there: right elbow to 92°, 1.4 s");
     assert!(button.accesskit_node().is_disabled());
     button.click();

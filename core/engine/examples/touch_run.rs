@@ -22,7 +22,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use plumbline_engine::correction::Method;
+use plumbline_engine::models::Method;
 use plumbline_engine::view::{MotionState, TouchOutcome, TouchPhase};
 use plumbline_engine::{
     Correction, Engine, EngineSettings, ModelsCommand, RobotCommand, SourceCommand, TouchCommand,

@@ -1,5 +1,6 @@
 //! What ARCHITECTURE.md says about the workspace is true.
 
+mod engine;
 mod files;
 mod markdown;
 mod modules;

@@ -101,7 +101,7 @@ impl ModelsAction {
             Self::TrainAll if models.training => Some("models are being trained".into()),
             Self::TrainAll => match &models.data {
                 None => Some("no session with touches is chosen".into()),
-                Some(Err(why)) => Some(why.clone().into()),
+                Some(Err(why)) => Some(why.to_string().into()),
                 Some(Ok(_)) => None,
             },
             Self::Accept(method) => when(is_proposed(view, method), "this model is not proposed"),

@@ -212,7 +212,7 @@ fn move_refusal(view: &View) -> Refusal {
     }
     match &robot.preview {
         None => Some("no move is shown: drag a joint or choose a pose".into()),
-        Some(preview) => preview.path.as_ref().err().map(|why| why.clone().into()),
+        Some(preview) => preview.path.as_ref().err().map(|why| why.to_string().into()),
     }
 }
 

@@ -36,7 +36,7 @@ pub fn standing(models: &ModelsView) -> Standing {
     }
     match &models.data {
         Some(Ok(data)) => Standing::Recorded(data.len()),
-        Some(Err(why)) => Standing::Unusable(why.clone()),
+        Some(Err(why)) => Standing::Unusable(why.to_string()),
         None if models.session.is_some() => Standing::NotChosen,
         None if models.sessions.iter().any(|session| session.problem.is_none()) => Standing::NotChosen,
         None => Standing::NothingTouched,

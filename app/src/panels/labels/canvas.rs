@@ -23,8 +23,8 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             return;
         }
         Some(Err(why)) => {
-            let message = Message::new("This image cannot be shown", why);
-            EmptyState::failed(message).show(ui);
+            let why = why.to_string();
+            EmptyState::failed(Message::new("This image cannot be shown", &why)).show(ui);
             return;
         }
         Some(Ok(pixels)) => pixels,

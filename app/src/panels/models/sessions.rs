@@ -52,7 +52,7 @@ pub(super) fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         }
         Some(Err(why)) => {
             let color = Role::Warning.color(theme::tokens(ui));
-            ui.label(RichText::new(why).color(color));
+            ui.label(RichText::new(why.to_string()).color(color));
         }
         None if cx.view.models.session.is_some() => {
             ui.horizontal(|ui| {

@@ -29,8 +29,9 @@ pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
             ui.label(
                 RichText::new(format!("{}: no place", object.name)).color(DOUBT.color(theme::tokens(ui))),
             );
-            ui.label(why);
-            if let Some(alone) = object.alone_because.as_ref().filter(|alone| *alone != why) {
+            let why = why.to_string();
+            ui.label(&why);
+            if let Some(alone) = object.alone_because.as_ref().filter(|alone| **alone != why) {
                 ui.label(theme::weak(ui, alone));
             }
         }

@@ -307,7 +307,7 @@ fn tip(scene: &mut Scene, view: &View) {
 mod tests {
     use std::sync::Arc;
 
-    use plumbline_engine::view::{Preview, RobotView};
+    use plumbline_engine::view::{PathCheck, Preview, RobotView};
 
     use super::*;
 
@@ -337,7 +337,7 @@ mod tests {
         let preview = Preview {
             title: "right elbow to 86°".to_owned(),
             end,
-            path: Err("test".to_owned()),
+            path: Ok(PathCheck { smallest_m: 0.1, between: String::new() }),
             duration: std::time::Duration::from_secs(1),
             largest_turn: None,
             model: "as described".into(),

@@ -86,7 +86,7 @@ fn shown_move(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
         }
         Err(why) => {
             key_value_grid(ui, "preview", &rows);
-            warning(ui, why);
+            warning(ui, &why.to_string());
         }
     }
     ui.add_space(space::XS);

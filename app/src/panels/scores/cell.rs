@@ -116,13 +116,13 @@ fn small(
     if response.hovered() || response.has_focus() {
         ui.painter().rect_stroke(rect, 3.0, Stroke::new(2.0, tokens.accent), StrokeKind::Outside);
     }
-    let hint = picture.pixels.as_ref().err().unwrap_or(&picture.name);
+    let hint = picture.pixels.as_ref().map_or_else(ToString::to_string, |_| picture.name.clone());
     response.on_hover_text(hint).clicked()
 }
 
 fn large(ui: &mut Ui, cx: &mut PanelContext<'_>, names: &ClassNames, place: usize, picture: &CellPicture) {
     if let Err(why) = &picture.pixels {
-        EmptyState::failed(Message::new("This image cannot be shown", why)).show(ui);
+        EmptyState::failed(Message::new("This image cannot be shown", &why.to_string())).show(ui);
         return;
     }
     let Some(shown) = texture(cx, place, picture) else { return };

@@ -97,7 +97,7 @@ fn notes(ui: &mut Ui, table: &ScoreTable) {
 /// What has to be known of a model to read its scores.
 pub fn said_of(row: &ScoreRow) -> Vec<String> {
     let scores = match &row.scores {
-        Err(why) => return vec![why.clone()],
+        Err(why) => return vec![why.to_string()],
         Ok(scores) => scores,
     };
     let mut said = Vec::new();

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use image::RgbImage;
 use plumbline_model::detection::Detection;
+use plumbline_vision::detect::DetectError;
 
 use super::command::{DetectorChoice, Provider};
 use super::view::{DetectionTiming, DetectorFacts};
@@ -13,6 +14,22 @@ use super::view::{DetectionTiming, DetectorFacts};
 /// Least confidence that is asked of a detector. Thresholds lie above it, so that moving one needs
 /// no new run of the network.
 pub const SHOWN_FROM: f32 = 0.05;
+
+/// Why a detector cannot be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DetectorError {
+    /// It is switched off.
+    #[error("no detector is chosen")]
+    NoneChosen,
+    /// This build has none of its own.
+    #[error(
+        "no detector comes with this version; choose an ONNX file, any export of a YOLO detector will do"
+    )]
+    NoneShipped,
+    /// It cannot be opened, or finds nothing on this image.
+    #[error(transparent)]
+    Detector(#[from] DetectError),
+}
 
 /// Finds things on an image.
 pub trait Detects: Send {
@@ -29,7 +46,7 @@ pub trait Detects: Send {
         image: &RgbImage,
         iou: f32,
         found: &mut Vec<Detection>,
-    ) -> Result<DetectionTiming, String>;
+    ) -> Result<DetectionTiming, DetectorError>;
 }
 
 /// A detector that is ready. Only the stage that runs it ever waits for it.
@@ -61,7 +78,8 @@ impl fmt::Debug for LoadedDetector {
     }
 }
 
-type Open = dyn Fn(&DetectorChoice, Provider) -> Result<Box<dyn Detects>, String> + Send + Sync;
+type Opened = Result<Box<dyn Detects>, DetectorError>;
+type Open = dyn Fn(&DetectorChoice, Provider) -> Opened + Send + Sync;
 
 /// Opens detectors; takes its time, so never on a thread that draws.
 #[derive(Clone)]
@@ -69,9 +87,7 @@ pub struct OpenDetector(Arc<Open>);
 
 impl OpenDetector {
     /// Opens them like this.
-    pub fn new(
-        open: impl Fn(&DetectorChoice, Provider) -> Result<Box<dyn Detects>, String> + Send + Sync + 'static,
-    ) -> Self {
+    pub fn new(open: impl Fn(&DetectorChoice, Provider) -> Opened + Send + Sync + 'static) -> Self {
         Self(Arc::new(open))
     }
 
@@ -79,7 +95,7 @@ impl OpenDetector {
     ///
     /// # Errors
     /// What is wrong and what to do.
-    pub fn open(&self, choice: &DetectorChoice, provider: Provider) -> Result<Box<dyn Detects>, String> {
+    pub fn open(&self, choice: &DetectorChoice, provider: Provider) -> Opened {
         (self.0)(choice, provider)
     }
 }

@@ -7,16 +7,12 @@ use plumbline_vision::detect::{
 };
 
 use super::command::DetectorChoice;
-use super::detector::{Detects, OpenDetector, SHOWN_FROM};
+use super::detector::{DetectorError, Detects, OpenDetector, SHOWN_FROM};
 use super::view::{DetectionTiming, DetectorFacts};
 use crate::ground::text::sentence;
 
 /// Boxes of one image that are kept at most.
 const MOST: usize = 300;
-
-/// What is said while no detector comes with the program.
-const NONE_SHIPPED: &str =
-    "no detector comes with this version; choose an ONNX file, any export of a YOLO detector will do";
 
 impl Default for OpenDetector {
     /// With ONNX Runtime.
@@ -26,19 +22,18 @@ impl Default for OpenDetector {
 }
 
 /// Opens a detector.
-fn open(choice: &DetectorChoice, provider: Provider) -> Result<Box<dyn Detects>, String> {
+fn open(choice: &DetectorChoice, provider: Provider) -> Result<Box<dyn Detects>, DetectorError> {
     let options = DetectorOptions {
         provider,
         threads: Some(threads()),
         shares_processor: true,
         ..DetectorOptions::default()
     };
-    let opened = match choice {
-        DetectorChoice::Off => return Err("no detector is chosen".to_owned()),
-        DetectorChoice::Shipped => shipped_detector().ok_or(NONE_SHIPPED)?.open(&options),
-        DetectorChoice::File(file) => Detector::open(file, &options),
+    let detector = match choice {
+        DetectorChoice::Off => return Err(DetectorError::NoneChosen),
+        DetectorChoice::Shipped => shipped_detector().ok_or(DetectorError::NoneShipped)?.open(&options)?,
+        DetectorChoice::File(file) => Detector::open(file, &options)?,
     };
-    let detector = opened.map_err(|error| error.to_string())?;
     let settings = DetectSettings {
         confidence: SHOWN_FROM,
         most: MOST,
@@ -70,9 +65,9 @@ impl Detects for FileDetector {
         image: &RgbImage,
         iou: f32,
         found: &mut Vec<Detection>,
-    ) -> Result<DetectionTiming, String> {
+    ) -> Result<DetectionTiming, DetectorError> {
         self.settings.iou = iou;
-        let timing = self.detector.detect(image, &self.settings, found).map_err(|error| error.to_string())?;
+        let timing = self.detector.detect(image, &self.settings, found)?;
         Ok(DetectionTiming {
             before: timing.before,
             network: timing.network,

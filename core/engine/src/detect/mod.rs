@@ -14,7 +14,7 @@ pub mod view;
 pub mod work;
 mod workflow;
 
-pub use detector::{Detects, LoadedDetector, OpenDetector, SHOWN_FROM};
+pub use detector::{DetectorError, Detects, LoadedDetector, OpenDetector, SHOWN_FROM};
 pub use objects::{Defect, FoundObjects, Objects};
 pub use stage::{DetectFailure, DetectInput, DetectOutput, DetectStage};
 pub use workflow::{DetectAround, DetectWorkflow};

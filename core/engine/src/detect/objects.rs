@@ -7,7 +7,7 @@ use plumbline_model::detection::{ClassIndex, ClassNames, Detection, PixelBox};
 use plumbline_model::{AimedPair, Eye, Pixel, Raw, Rectified, StereoCalibration, StereoFrame};
 use plumbline_vision::detect_places::{ObjectPlace, Place, PlaceFinder, PlaceOptions, RangeFrom, Seen};
 
-use super::view::{ObjectPlaceView, ObjectView, SeenBox};
+use super::view::{NoObjectPlace, ObjectPlaceView, ObjectView, SeenBox};
 use crate::ground::jobs::panic_message;
 use crate::ground::text::sentence;
 use crate::live::{LiveSetup, NoPlace, NoSetup, fitting};
@@ -52,23 +52,14 @@ impl Objects {
         names: &ClassNames,
         boxes: [&[Detection]; 2],
     ) -> Result<FoundObjects, Defect> {
-        let setup = setup.map_err(NoSetup::to_string).and_then(|setup| {
-            let fits = fitting(frame, &setup.pair.cameras);
-            fits.map(|()| setup).map_err(|error| error.to_string())
-        });
-        let work = AssertUnwindSafe(|| self.look(frame, setup.as_ref().ok().copied(), names, boxes));
+        let setup = usable(frame, setup);
+        let work = AssertUnwindSafe(|| self.look(frame, setup.as_ref().copied(), names, boxes));
         let mut objects = std::panic::catch_unwind(work).map_err(|panic| {
             // What it kept may be half changed.
             self.finder = None;
             Defect(panic_message(panic.as_ref()))
         })?;
-        let no_places_because = setup.err();
-        if let Some(why) = &no_places_because {
-            for object in &mut objects {
-                object.place = Err(why.clone());
-                object.alone_because = Some(why.clone());
-            }
-        }
+        let no_places_because = setup.err().map(|why| why.to_string());
         objects.sort_by(|a, b| b.confidence().total_cmp(&a.confidence()));
         Ok(FoundObjects { objects, places: self.places.clone(), no_places_because })
     }
@@ -76,11 +67,11 @@ impl Objects {
     fn look(
         &mut self,
         frame: &StereoFrame,
-        setup: Option<&Arc<LiveSetup>>,
+        setup: Result<&Arc<LiveSetup>, &NoObjectPlace>,
         names: &ClassNames,
         [left, right]: [&[Detection]; 2],
     ) -> Vec<ObjectView> {
-        let calibration = setup.map(|setup| &setup.calibration);
+        let calibration = setup.ok().map(|setup| &setup.calibration);
         let known = self.finder.take().filter(|(of, of_names, _)| {
             let same = match (of, calibration) {
                 (Some(of), Some(calibration)) => Arc::ptr_eq(of, calibration),
@@ -98,7 +89,7 @@ impl Objects {
         let curve = &mut self.curve;
         let mut seen_box = |eye: Eye, found: &Detection| {
             finder.epipolar_curve(eye, found.area.middle(), curve);
-            let rectified = setup.map(|setup| rectified_outline(&setup.pair, eye, &found.area));
+            let rectified = setup.ok().map(|setup| rectified_outline(&setup.pair, eye, &found.area));
             SeenBox {
                 confidence: found.confidence,
                 area: found.area,
@@ -117,23 +108,34 @@ impl Objects {
     }
 }
 
+/// What places rest on, where it is for images of this size.
+fn usable<'a>(
+    frame: &StereoFrame,
+    setup: Result<&'a Arc<LiveSetup>, &NoSetup>,
+) -> Result<&'a Arc<LiveSetup>, NoObjectPlace> {
+    let setup = setup.map_err(NoSetup::clone)?;
+    fitting(frame, &setup.pair.cameras)?;
+    Ok(setup)
+}
+
 fn object_view(
     object: &ObjectPlace,
     names: &ClassNames,
     left: Option<SeenBox>,
     right: Option<SeenBox>,
-    setup: Option<&Arc<LiveSetup>>,
+    setup: Result<&Arc<LiveSetup>, &NoObjectPlace>,
 ) -> ObjectView {
     let (epipolar_px, alone_because) = match &object.seen {
         Seen::Both { epipolar_px, .. } => (Some(*epipolar_px), None),
         Seen::One { why, .. } => (None, Some(sentence(&why.to_string()))),
     };
+    // Without a setup that is why, whatever the boxes say.
+    let alone_because = setup.err().map(ToString::to_string).or(alone_because);
     let place = object.place.as_ref();
     let in_robot = match (place, setup) {
-        (Err(why), _) => Err(sentence(&why.to_string())),
-        (Ok(place), Some(setup)) => place_view(place, setup).map_err(|why| sentence(&why.to_string())),
-        // The reason takes the place of this where there is no setup.
-        (Ok(_), None) => Err(String::new()),
+        (_, Err(why)) => Err(why.clone()),
+        (Err(why), _) => Err((*why).into()),
+        (Ok(place), Ok(setup)) => place_view(place, setup).map_err(NoObjectPlace::from),
     };
     ObjectView {
         class: object.class,

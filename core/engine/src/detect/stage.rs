@@ -9,7 +9,7 @@ use plumbline_model::{Stamp, StereoFrame};
 use plumbline_vision::detect_places::ObjectPlace;
 
 use super::view::{DetectionSettings, DetectionTiming, DetectionsView};
-use super::{LoadedDetector, Objects};
+use super::{DetectorError, LoadedDetector, Objects};
 use crate::ground::jobs::panic_message;
 use crate::ground::stage::Stage;
 use crate::ground::text::sentence;
@@ -157,11 +157,11 @@ impl DetectStage {
             let mut detector = input.detector.lock();
             let of_left = detector.detect(&input.frame.left, iou, left)?;
             let of_right = detector.detect(&input.frame.right, iou, right)?;
-            Ok::<_, String>(of_left.plus(&of_right))
+            Ok::<_, DetectorError>(of_left.plus(&of_right))
         }));
         let timing = match asked {
             Ok(Ok(timing)) => timing,
-            Ok(Err(why)) => return Err(DetectFailure { why: sentence(&why), broken: false }),
+            Ok(Err(why)) => return Err(DetectFailure { why: sentence(&why.to_string()), broken: false }),
             Err(panic) => {
                 let why = format!(
                     "The detector {} failed inside ({}). The pictures go on without it; choose another one, or read it again.",

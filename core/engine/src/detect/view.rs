@@ -8,10 +8,13 @@ use std::time::Duration;
 use plumbline_model::detection::{ClassIndex, ClassNames, PixelBox};
 use plumbline_model::frame::Robot;
 use plumbline_model::{Eye, Pixel, Point, Raw, Rectified, Stamp};
+pub use plumbline_vision::detect_places::NoPlace as Unplaced;
 use serde::{Deserialize, Serialize};
 
 use super::command::{DetectorChoice, Provider};
 use crate::ground::statistics::StageStatistics;
+use crate::ground::text::sentence;
+use crate::live::{NoPlace, NoSetup, OtherSize};
 
 /// Detection, live.
 #[derive(Clone, Debug, Default)]
@@ -170,8 +173,8 @@ pub struct ObjectView {
     pub epipolar_px: Option<f64>,
     /// Why the other eye has no box for it, a sentence.
     pub alone_because: Option<String>,
-    /// Where it is, or why that is not known, a sentence.
-    pub place: Result<ObjectPlaceView, String>,
+    /// Where it is, or why that is not known.
+    pub place: Result<ObjectPlaceView, NoObjectPlace>,
     /// Parts of the raw left image whose pixels decided its distance.
     pub voted: Arc<[PixelBox]>,
     /// What lies behind it would have got into its distance: a sentence.
@@ -200,6 +203,23 @@ impl ObjectView {
         let of = |seen: &Option<SeenBox>| seen.as_ref().map_or(0.0, |seen| seen.confidence);
         of(&self.left).max(of(&self.right))
     }
+}
+
+/// Why it is not known where an object is: a sentence.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoObjectPlace {
+    /// Nothing can be measured.
+    #[error(transparent)]
+    Setup(#[from] NoSetup),
+    /// Images of other eyes.
+    #[error(transparent)]
+    OtherSize(#[from] OtherSize),
+    /// Its boxes tell no place.
+    #[error("{}", sentence(&.0.to_string()))]
+    Boxes(#[from] Unplaced),
+    /// The model in use knows no place that looks so.
+    #[error("{}", sentence(&.0.to_string()))]
+    Model(#[from] NoPlace),
 }
 
 /// A box in one eye.

@@ -76,8 +76,9 @@ impl LongWork for DetectWork {
             Self::Open { open, choice, provider } => {
                 context.checkpoint()?;
                 context.report(0.1, "reading it and making it ready");
-                let detector =
-                    open.open(&choice, provider).map_err(|why| JobError::Failed(sentence(&why)))?;
+                let detector = open
+                    .open(&choice, provider)
+                    .map_err(|why| JobError::Failed(sentence(&why.to_string())))?;
                 context.checkpoint()?;
                 Ok(DetectResult::Opened(Arc::new(LoadedDetector::new(detector))))
             }

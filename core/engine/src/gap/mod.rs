@@ -16,6 +16,12 @@ pub mod work;
 mod workflow;
 
 pub use model::{name as model_name, report_history as history};
-pub use plumbline_gap::{Finding, Verdict, finding, plan_for};
+pub use plumbline_effects::measurements::{Unit, What};
+pub use plumbline_gap::finding::{
+    Candidate, Comparison, CoordinateComparison, Experiment, Finding, Knowledge, NamedEffect, NextExperiment,
+    Residual, Shown, ShownUnit, Unexplained,
+};
+pub use plumbline_gap::{Verdict, plan_for};
+pub use plumbline_report::sample;
 pub use search::same_rig;
 pub use workflow::{GapAround, GapWorkflow};

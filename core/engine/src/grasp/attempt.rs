@@ -9,9 +9,10 @@ use plumbline_grasp::attempt::{AIR_RAD_S, DOWN_RAD_S, LIFT_RAD_S};
 use plumbline_grasp::plan::{GraspPlan, GraspPlanner};
 use plumbline_grasp::see::Seen;
 use plumbline_grasp::things::Thing;
-use plumbline_grasp::{Body, Grasper, Method, Order, Outcome, Record};
+use plumbline_grasp::{Body, Grasper, Halt, Method, Order, Outcome, Record};
 use plumbline_model::JobContext;
 use plumbline_model::robot::{Posture, Rig};
+use plumbline_vision::detect::DetectError;
 
 use super::body::{LedBody, Ropes};
 use super::command::GraspTarget;
@@ -51,12 +52,46 @@ pub struct Attempt {
 /// What came of looking and planning.
 #[derive(Clone, Debug)]
 pub struct Proposed {
-    /// The plan, or a sentence that says why there is none.
-    pub plan: Result<Arc<PlannedGrasp>, String>,
+    /// The plan, or why there is none.
+    pub plan: Result<Arc<PlannedGrasp>, NoPlan>,
     /// What was seen.
     pub seen: Vec<Seen>,
     /// What was chosen of it.
     pub chosen: Option<usize>,
+}
+
+/// Why nothing is ordered. Reads as a sentence.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoOrder {
+    /// The eyes give no pair.
+    #[error(transparent)]
+    Halted(#[from] Halt),
+    /// Nobody can say what is there.
+    #[error(transparent)]
+    Detector(#[from] DetectError),
+    /// Nothing that fits into the hand.
+    #[error("nothing is seen that can be held ({}): put it where both eyes see it", .can_be_held.join(", "))]
+    NothingToHold {
+        /// What could be.
+        can_be_held: Vec<String>,
+    },
+}
+
+/// Why there is no plan. Reads as a sentence.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoPlan {
+    /// Nothing to grasp.
+    #[error(transparent)]
+    Order(#[from] NoOrder),
+    /// Nobody knows where the arm is.
+    #[error(transparent)]
+    Halted(#[from] Halt),
+    /// What the record of looking and planning says.
+    #[error("{0}")]
+    Told(String),
+    /// The record says nothing.
+    #[error("there is no plan")]
+    Nothing,
 }
 
 impl Attempt {
@@ -68,7 +103,7 @@ impl Attempt {
         context.report(0.3, "looking");
         let order = match self.order(&mut grasper, &mut body) {
             Ok(order) => order,
-            Err(why) => return Ok(Proposed { plan: Err(why), seen: vec![], chosen: None }),
+            Err(why) => return Ok(Proposed { plan: Err(why.into()), seen: vec![], chosen: None }),
         };
         let mut watcher = Watcher::new(
             self.progress.clone(),
@@ -80,7 +115,7 @@ impl Attempt {
         let (plan, record) = grasper.propose(&mut body, &order, self.at, &mut watcher);
         let plan = match (plan, body.commanded()) {
             (Some(plan), Ok(from)) => Ok(Arc::new(self.shown(&grasper, &from, &plan, &record))),
-            (Some(_), Err(halt)) => Err(halt.to_string()),
+            (Some(_), Err(halt)) => Err(halt.into()),
             (None, _) => Err(why_of(&record)),
         };
         self.progress.ended(&record);
@@ -111,7 +146,7 @@ impl Attempt {
             Err(why) => {
                 let object = self.target.class.as_deref().unwrap_or("thing");
                 let mut record = Record::new(self.method, object, self.at, String::new());
-                record.outcome = Some(Outcome::Refused { why });
+                record.outcome = Some(Outcome::Refused { why: why.to_string() });
                 record
             }
         };
@@ -129,22 +164,19 @@ impl Attempt {
     }
 
     /// What is grasped: as the operator chose, else what can be held and is seen best.
-    fn order(&self, grasper: &mut Grasper, body: &mut LedBody<'_>) -> Result<Order, String> {
+    fn order(&self, grasper: &mut Grasper, body: &mut LedBody<'_>) -> Result<Order, NoOrder> {
         let order = |object: String| Order { method: self.method, object, near_m: self.target.near_m };
         if let Some(class) = &self.target.class {
             return Ok(order(class.clone()));
         }
-        let sight = body.look().map_err(|halt| halt.to_string())?;
-        let seen = grasper.see(&sight).map_err(|error| error.to_string())?;
+        let sight = body.look()?;
+        let seen = grasper.see(&sight)?;
         let can_be_held =
             |thing: &&Seen| Thing::of_class(&thing.class).is_some_and(|known| known.can_be_held);
         let best = seen.iter().filter(can_be_held).find(|thing| thing.place.is_ok());
         best.map(|thing| order(thing.class.clone())).ok_or_else(|| {
-            let classes: Vec<String> = Thing::held().map(|thing| thing.class.to_lowercase()).collect();
-            format!(
-                "nothing is seen that can be held ({}): put it where both eyes see it",
-                classes.join(", ")
-            )
+            let can_be_held = Thing::held().map(|thing| thing.class.to_lowercase()).collect();
+            NoOrder::NothingToHold { can_be_held }
         })
     }
 
@@ -174,10 +206,10 @@ impl Attempt {
 }
 
 /// Why there is no plan.
-fn why_of(record: &Record) -> String {
+fn why_of(record: &Record) -> NoPlan {
     match &record.outcome {
-        Some(Outcome::Failed { why, .. } | Outcome::Refused { why }) => why.clone(),
-        Some(Outcome::Success) | None => "there is no plan".to_owned(),
+        Some(Outcome::Failed { why, .. } | Outcome::Refused { why }) => NoPlan::Told(why.clone()),
+        Some(Outcome::Success) | None => NoPlan::Nothing,
     }
 }
 

@@ -8,7 +8,7 @@ use plumbline_model::JobContext;
 use super::attempt::{Attempt, Proposed};
 use super::command::HandStep;
 use super::keeping::{self, Keeping};
-use super::steps::HandWork;
+use super::steps::{HandWork, NoStep};
 use super::view::AttemptView;
 use crate::ground::jobs::JobError;
 use crate::ground::{self, LongWork};
@@ -46,8 +46,8 @@ pub enum GraspResult {
     Planned(Box<Proposed>),
     /// What became of an attempt.
     Grasped(Box<AttemptView>),
-    /// A step was made, or a sentence that says why not.
-    HandDone(HandStep, Result<(), String>),
+    /// A step was made, or why not.
+    HandDone(HandStep, Result<(), NoStep>),
     /// What the operator saw is kept.
     Judged(Box<AttemptView>),
 }
@@ -81,10 +81,7 @@ impl LongWork for GraspWork {
             }
             Self::Plan(attempt) => Ok(GraspResult::Planned(Box::new(attempt.propose(context)?))),
             Self::Grasp(attempt) => Ok(GraspResult::Grasped(Box::new(attempt.carry_out(context)?))),
-            Self::Hand(work) => {
-                let done = work.carry_out(context)?;
-                Ok(GraspResult::HandDone(work.step, done.map_err(|why| why.to_string())))
-            }
+            Self::Hand(work) => Ok(GraspResult::HandDone(work.step, work.carry_out(context)?)),
             Self::Judge { folder, held } => {
                 let keeping = Keeping::of(folder);
                 let mut record = keeping.read().map_err(JobError::told)?;

@@ -16,6 +16,8 @@ pub mod view;
 pub mod work;
 mod workflow;
 
+pub use images::{Pixels, Unreadable};
+
 pub(crate) use images::read_image;
 pub(crate) use store::{data_yaml_of, failed as set_failed, write as write_text};
 pub use workflow::{LabelsAround, LabelsWorkflow};

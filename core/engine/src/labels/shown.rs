@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use super::seen::Seen;
-use super::view::{LabelCounts, LabelImage, LabelProblem, LabelSetView, LabelState, LabelsView, ShownLabels};
+use super::view::{
+    LabelCounts, LabelImage, LabelProblem, LabelSetView, LabelState, LabelsView, NotShown, ShownLabels,
+};
 use super::workflow::{LabelsWorkflow, Set};
 use crate::detect::command::DetectorChoice;
 
@@ -50,13 +52,11 @@ impl LabelsWorkflow {
         let index = set.shown?;
         let image = set.images.get(index)?;
         let entry = &image.entry;
-        let unusable = entry.unusable.clone().map(Err);
+        let unusable = entry.unusable.clone().map(|why| Err(NotShown::Unusable(why)));
         Some(ShownLabels {
             name: entry.name.clone(),
             index,
-            pixels: unusable.or_else(|| {
-                self.loaded.get(&entry.name).cloned().map(|read| read.map_err(|e| e.to_string()))
-            }),
+            pixels: unusable.or_else(|| Some(self.loaded.get(&entry.name)?.clone().map_err(NotShown::from))),
             boxes: image.history.boxes().into(),
             revision: image.revision,
             proposals: image.proposals.as_slice().into(),

@@ -12,7 +12,7 @@ use super::command::{BoxEdit, LabelsCommand};
 use super::view::LabelState;
 use crate::command::Command;
 use crate::detect::view::{DetectionTiming, DetectorFacts};
-use crate::detect::{Detects, OpenDetector};
+use crate::detect::{DetectorError, Detects, OpenDetector};
 use crate::state::{Action, State};
 use crate::view::View;
 
@@ -179,7 +179,7 @@ impl Detects for Finds {
         _: &RgbImage,
         _: f32,
         found: &mut Vec<Detection>,
-    ) -> Result<DetectionTiming, String> {
+    ) -> Result<DetectionTiming, DetectorError> {
         found.clear();
         for (class, confidence) in [(2, 0.9), (1, 0.8), (0, 0.1)] {
             let area = PixelBox::new(10.0, 10.0, 30.0, 30.0);
@@ -316,7 +316,7 @@ fn an_image_that_cannot_be_read_is_in_the_list_with_its_reason() {
     assert_eq!(bad, ["left_0", "left_1"]);
     let view = desk.send(LabelsCommand::Choose { image: "left_1".into() });
     assert!(
-        matches!(&view.labels.shown.as_ref().expect("shown").pixels, Some(Err(why)) if why.contains("left_1.png"))
+        matches!(&view.labels.shown.as_ref().expect("shown").pixels, Some(Err(why)) if why.to_string().contains("left_1.png"))
     );
     assert!(view.labels.problems.iter().any(|problem| problem.image == "left_0"));
 }

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use image::RgbImage;
 use plumbline_model::{ClassIndex, ClassNames, PixelBox};
 
+use super::images::Unreadable;
 use crate::ground::jobs::JobId;
 
 /// Labeling.
@@ -113,8 +114,8 @@ pub struct ShownLabels {
     pub name: String,
     /// Its place in the list.
     pub index: usize,
-    /// Its pixels; an error is a sentence.
-    pub pixels: Option<Result<Arc<RgbImage>, String>>,
+    /// Its pixels, as soon as they are read.
+    pub pixels: Option<Result<Arc<RgbImage>, NotShown>>,
     /// Its boxes.
     pub boxes: Arc<[LabelBox]>,
     /// Counts up with every change of the boxes.
@@ -133,6 +134,17 @@ pub struct ShownLabels {
     pub can_copy: bool,
     /// What should be looked at.
     pub problems: Arc<[LabelProblem]>,
+}
+
+/// Why an image cannot be shown: a sentence.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum NotShown {
+    /// What was found when the data set was opened.
+    #[error("{0}")]
+    Unusable(String),
+    /// Its file was there then.
+    #[error(transparent)]
+    Unreadable(#[from] Arc<Unreadable>),
 }
 
 /// Something wrong with a box.

@@ -201,7 +201,7 @@ impl LongWork for LabelsWork {
                     None => {
                         context.report(0.1, "reading the detector");
                         let opened = open.open(&choice, provider);
-                        let opened = opened.map_err(|why| JobError::failed(sentence(&why)))?;
+                        let opened = opened.map_err(|why| JobError::failed(sentence(&why.to_string())))?;
                         Arc::new(LoadedDetector::new(opened))
                     }
                 };
@@ -309,7 +309,7 @@ fn propose(
     let mapping = ClassMapping::known_only(&detector.facts.names, names);
     let mut found = Vec::new();
     let detected = detector.lock().detect(image, PROPOSED_IOU, &mut found);
-    detected.map_err(|why| JobError::failed(sentence(&why)))?;
+    detected.map_err(|why| JobError::failed(sentence(&why.to_string())))?;
     let sure = found.iter().filter(|detection| detection.confidence >= confidence);
     let boxes = sure.filter_map(|detection| {
         let class = mapping.target(detection.class)?;

@@ -11,7 +11,6 @@ use super::no_reading::NoView;
 use super::setup::LiveSetup;
 use super::view::{DisparityView, RectifiedView};
 use crate::ground::stage::Stage;
-use crate::ground::text::sentence;
 use crate::ground::watched::WatchedThread;
 
 /// A pair and what is wanted of it.
@@ -26,12 +25,12 @@ pub struct RectifyInput {
 }
 
 /// A rectified pair and perhaps its disparity.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct RectifyOutput {
     /// Of which setup.
     pub generation: u64,
-    /// The products, or a sentence that says why there are none.
-    pub products: Result<(RectifiedView, Option<DisparityView>), String>,
+    /// The products, or why there are none.
+    pub products: Result<(RectifiedView, Option<DisparityView>), NoView>,
 }
 
 /// Keeps maps and working memory from pair to pair.
@@ -56,8 +55,7 @@ impl Stage for RectifyStage {
     }
 
     fn process(&mut self, input: RectifyInput) -> RectifyOutput {
-        let products = self.compute(&input).map_err(|reason| sentence(&reason.to_string()));
-        RectifyOutput { generation: input.setup.generation, products }
+        RectifyOutput { generation: input.setup.generation, products: self.compute(&input) }
     }
 }
 

@@ -8,7 +8,9 @@ use plumbline_model::{Eye, Pixel, Point, Raw, Rectified, Stamp, StereoFrame};
 use plumbline_vision::disparity::DisparityMap;
 
 use super::command::{AimChoice, HeadPose, ProbePoint, Products};
+use super::no_reading::NoReading;
 use crate::ground::statistics::StageStatistics;
+use crate::ground::text::sentence;
 
 /// Live images. Each product carries its own stamp; those of one stamp belong together.
 #[derive(Clone, Debug, Default)]
@@ -118,8 +120,19 @@ pub struct ProbeView {
     pub asked: ProbePoint,
     /// Of the pair it was measured on; `None` before the first.
     pub stamp: Option<Stamp>,
-    /// Where it is, or a sentence that says why that is not known.
-    pub reading: Result<ProbeReading, String>,
+    /// Where it is, or why that is not known.
+    pub reading: Result<ProbeReading, NotMeasured>,
+}
+
+/// Why it is not known where a point is: a sentence.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum NotMeasured {
+    /// This point of this pair was not measured.
+    #[error("{}", sentence(&.0.to_string()))]
+    Reading(#[from] NoReading),
+    /// No point is at present, for the reason that the rectified pair or a thread gives.
+    #[error("{0}")]
+    Nothing(String),
 }
 
 /// Where a point of the image is.

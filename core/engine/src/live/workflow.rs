@@ -14,7 +14,9 @@ use super::command::{AimChoice, HeadPose, LiveCommand, ProbePoint, Products};
 use super::probe::{ProbeInput, ProbeOutput};
 use super::rectify::{RectifyInput, RectifyOutput};
 use super::setup::{LiveSetup, NoSetup, OtherSize, aimed, fitting, max_disparity_px};
-use super::view::{AimView, CornersView, DisparityView, LiveView, ProbeView, RectifiedView, Statistics};
+use super::view::{
+    AimView, CornersView, DisparityView, LiveView, NotMeasured, ProbeView, RectifiedView, Statistics,
+};
 use crate::eyes::Look;
 use crate::ground::jobs::JobId;
 use crate::ground::stage::{Skipped, Timed};
@@ -276,7 +278,7 @@ impl LiveWorkflow {
             }
             Err(reason) => {
                 (self.rectified, self.disparity) = (None, None);
-                self.failed = Some(reason);
+                self.failed = Some(sentence(&reason.to_string()));
             }
         }
     }
@@ -305,7 +307,11 @@ impl LiveWorkflow {
             WatchedThread::Corners => self.corners = None,
             WatchedThread::Probe => {
                 let asked = self.probe_asked;
-                let failed = |asked| ProbeView { asked, stamp: None, reading: Err(why.to_owned()) };
+                let failed = |asked| ProbeView {
+                    asked,
+                    stamp: None,
+                    reading: Err(NotMeasured::Nothing(why.to_owned())),
+                };
                 self.probe = asked.map(failed);
             }
             _ => {}
@@ -332,7 +338,7 @@ impl LiveWorkflow {
             return;
         }
         self.clocks.probe.note(now, output.stamp.captured_at, output.busy);
-        let reading = reading.map_err(|why| sentence(&why.to_string()));
+        let reading = reading.map_err(NotMeasured::from);
         self.probe = Some(ProbeView { asked: point, stamp: Some(output.stamp), reading });
     }
 
@@ -374,7 +380,10 @@ impl LiveWorkflow {
         let asked = self.probe_asked?;
         let nothing_because = self.down.get(&WatchedThread::Probe).map(String::as_str).or(nothing_because);
         match (nothing_because, &self.probe) {
-            (Some(reason), _) => Some(ProbeView { asked, stamp: None, reading: Err(reason.to_owned()) }),
+            (Some(reason), _) => {
+                let reading = Err(NotMeasured::Nothing(reason.to_owned()));
+                Some(ProbeView { asked, stamp: None, reading })
+            }
             (None, probe) => probe.clone(),
         }
     }

@@ -18,7 +18,7 @@ impl ModelsWorkflow {
             next: self.next(around),
             sessions: Arc::from(self.sessions.as_slice()),
             session: self.session.clone(),
-            data: self.data.clone().map(|read| read.map_err(|reason| reason.to_string())),
+            data: self.data.clone(),
             training: self.training.is_some(),
             losses: self.loss_points(),
             proposals: self.proposals.values().map(|proposal| proposal.model.clone()).collect(),

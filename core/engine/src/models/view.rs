@@ -7,6 +7,7 @@ use plumbline_correction::tables::{HeightTable, YawTable};
 use plumbline_correction::{Comparison, CorrectionModel, LossPoint, Method, TouchData};
 use plumbline_model::robot::Rig;
 
+pub use super::error::ModelError;
 use crate::ground::step::StepState;
 
 /// Training and using correction models.
@@ -21,7 +22,7 @@ pub struct ModelsView {
     /// The one that is learned from.
     pub session: Option<PathBuf>,
     /// What it has; an error is why nothing can be learned from it.
-    pub data: Option<Result<Arc<TouchData>, String>>,
+    pub data: Option<Result<Arc<TouchData>, Arc<ModelError>>>,
     /// Whether training runs.
     pub training: bool,
     /// Loss of every network, as it is (or was) trained, oldest first.

@@ -179,7 +179,7 @@ fn a_way_through_the_table_is_shown_as_refused_and_does_not_run() {
     bench.send(RobotCommand::Preview(Destination::Posture(down)));
     let news = bench.worker.take_news().expect("a preview");
     let path = news.robot.preview.as_ref().expect("it is shown").path.clone();
-    assert!(path.expect_err("the table is in the way").contains("would run into"));
+    assert!(path.expect_err("the table is in the way").to_string().contains("would run into"));
     bench.send(RobotCommand::RunPreview);
     assert_eq!(bench.asked(), vec![]);
     assert!(bench.refusal().is_some_and(|reason| reason.contains("would run into")));

@@ -1,7 +1,7 @@
 //! Why something is not done with the arm: sentences that say what to do.
 
 use plumbline_hardware::dynamixel::BusError;
-use plumbline_hardware::joints::{HoldReason, Refusal};
+use plumbline_hardware::joints::{HoldReason, Refusal, ScreenGone};
 use plumbline_model::robot::collision::CollisionError;
 use plumbline_model::robot::{DescriptionError, ReachError, Refusal as OutOfReach};
 
@@ -225,6 +225,9 @@ pub enum Interrupted {
     /// The arm holds, although it was told to follow.
     #[error("{}", sentence(&.0.to_string()))]
     Holds(#[from] HoldReason),
+    /// Nothing is felt any more.
+    #[error("{}", sentence(&.0.to_string()))]
+    Screen(#[from] ScreenGone),
     /// Whoever was asked says why.
     #[error("{}", sentence(.0))]
     Told(String),

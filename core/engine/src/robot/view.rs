@@ -6,6 +6,8 @@ use std::time::Duration;
 use plumbline_model::frame::{Point, Robot};
 use plumbline_model::robot::{JointIndex, Limits, Posture, Rig};
 
+pub use super::unable::InTheWay;
+
 /// The robot at one moment. Angles are those of the joints, in radians.
 #[derive(Clone, Debug, Default)]
 pub struct RobotView {
@@ -210,7 +212,7 @@ pub struct Preview {
     /// Where it would end.
     pub end: Posture,
     /// Whether it can run: how near it comes to something (m, and what), or why not.
-    pub path: Result<PathCheck, String>,
+    pub path: Result<PathCheck, InTheWay>,
     /// How long it would take.
     pub duration: Duration,
     /// The joint that turns most, for people, and by how much (rad).

@@ -407,7 +407,7 @@ impl Worker {
 
     fn preview_of(&mut self, resolved: Resolved) {
         let Some(present) = self.present() else { return };
-        let path = self.paths.check(&present, &resolved.end).map_err(|way| way.to_string());
+        let path = self.paths.check(&present, &resolved.end);
         let turn = |joint: &JointIndex| (*joint, (resolved.end[*joint] - present[*joint]).abs());
         let largest = resolved.joints.iter().map(turn).max_by(|a, b| a.1.total_cmp(&b.1));
         let title = |joint| self.rig.servo_of(joint).map_or_else(String::new, |servo| servo.title.clone());

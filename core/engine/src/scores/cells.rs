@@ -60,7 +60,7 @@ fn picture(judged: &ModelEvaluation, image: usize, in_cell: &InCell) -> Option<C
     });
     Some(CellPicture {
         name: labeled.path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
-        pixels: read_image(&labeled.path).map(Arc::new).map_err(|why| why.to_string()),
+        pixels: read_image(&labeled.path).map(Arc::new).map_err(Arc::new),
         truth: truth.collect(),
         found: proposed.collect(),
         in_cell: in_cell.iter().map(|(truth, found)| (*truth, anew(*found))).collect(),

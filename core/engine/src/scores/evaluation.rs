@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use plumbline_model::{ClassIndex, JobContext};
-use plumbline_vision::detect::{DetectError, Detector, DetectorOptions};
+use plumbline_vision::detect::{Detector, DetectorOptions};
 use plumbline_vision::detect_score::{
     Cell, EvaluateError, EvaluateOptions, Interval, Intervals, ModelEvaluation, PartOfJob, Summary, evaluate,
 };
 use plumbline_vision::yolo_set::{Split, YoloSet, YoloSurvey};
 
 use super::command::SetPart;
-use super::view::{ModelScores, Score, ScoreRow, ScoreTable};
+use super::view::{ModelScores, NotJudged, Score, ScoreRow, ScoreTable};
 use crate::detect::command::Provider;
 use crate::ground::jobs::JobError;
 use crate::ground::text::sentence;
@@ -46,7 +46,7 @@ pub fn judge(
         let name = name_of(file);
         rows.push(ScoreRow {
             model: name.clone(),
-            scores: judged.as_ref().map(scores_of).map_err(ToString::to_string),
+            scores: judged.as_ref().map(scores_of).map_err(Arc::clone),
         });
         evaluations.push(judged.ok().map(|evaluation| ModelEvaluation { model: name, ..evaluation }));
     }
@@ -85,24 +85,13 @@ fn read(set: &Path, part: SetPart, context: &dyn JobContext) -> Result<YoloSurve
     Ok(survey)
 }
 
-/// Why a detector has no scores.
-#[derive(Debug, thiserror::Error)]
-enum NotJudged {
-    /// It cannot be opened.
-    #[error("{}", sentence(&.0.to_string()))]
-    Detector(#[from] DetectError),
-    /// It cannot be judged on this data set.
-    #[error("{}", sentence(&.0.to_string()))]
-    Evaluate(EvaluateError),
-}
-
 /// One detector; the inner error is told in its row, and the others go on.
 fn one(
     file: &Path,
     set: &YoloSet,
     provider: Provider,
     context: &dyn JobContext,
-) -> Result<Result<ModelEvaluation, NotJudged>, JobError> {
+) -> Result<Result<ModelEvaluation, Arc<NotJudged>>, JobError> {
     context.checkpoint()?;
     // The window and what is live behind it go on meanwhile.
     let options = DetectorOptions {
@@ -113,12 +102,12 @@ fn one(
     };
     let mut detector = match Detector::open(file, &options) {
         Ok(detector) => detector,
-        Err(error) => return Ok(Err(error.into())),
+        Err(error) => return Ok(Err(Arc::new(error.into()))),
     };
     match evaluate(&mut detector, set, &EvaluateOptions::default(), context) {
         Ok(evaluation) => Ok(Ok(evaluation)),
         Err(EvaluateError::Cancelled(cancelled)) => Err(cancelled.into()),
-        Err(error) => Ok(Err(NotJudged::Evaluate(error))),
+        Err(error) => Ok(Err(Arc::new(error.into()))),
     }
 }
 

@@ -3,11 +3,14 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use image::RgbImage;
 use plumbline_model::ClassNames;
+pub use plumbline_vision::detect::DetectError;
+use plumbline_vision::detect_score::EvaluateError;
 
 use super::command::{ConfusionCell, SetPart};
 use crate::ground::jobs::JobId;
+use crate::ground::text::sentence;
+use crate::labels::Pixels;
 use crate::labels::view::{LabelBox, ProposedBox};
 
 /// Scores of detectors.
@@ -43,7 +46,7 @@ pub struct ScoredModelFile {
 }
 
 /// The table.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct ScoreTable {
     /// The data set.
     pub set: PathBuf,
@@ -60,12 +63,23 @@ pub struct ScoreTable {
 }
 
 /// A model in the table.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct ScoreRow {
     /// Its file name.
     pub model: String,
-    /// Its scores, or why there are none; a sentence.
-    pub scores: Result<ModelScores, String>,
+    /// Its scores, or why there are none.
+    pub scores: Result<ModelScores, Arc<NotJudged>>,
+}
+
+/// Why a detector has no scores: a sentence.
+#[derive(Debug, thiserror::Error)]
+pub enum NotJudged {
+    /// It cannot be opened.
+    #[error("{}", sentence(&.0.to_string()))]
+    Detector(#[from] DetectError),
+    /// It cannot be judged on this data set.
+    #[error("{}", sentence(&.0.to_string()))]
+    Evaluate(#[from] EvaluateError),
 }
 
 /// Scores of one model.
@@ -124,8 +138,8 @@ pub struct OpenedCell {
 pub struct CellPicture {
     /// Its name.
     pub name: String,
-    /// Its pixels; an error is a sentence.
-    pub pixels: Result<Arc<RgbImage>, String>,
+    /// Its pixels, or why they cannot be read.
+    pub pixels: Pixels,
     /// What is there, by the labels.
     pub truth: Vec<LabelBox>,
     /// What was found, in classes of the set.

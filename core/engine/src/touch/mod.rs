@@ -25,4 +25,5 @@ pub mod view;
 pub mod work;
 mod workflow;
 
+pub use plumbline_effects::observability::{Addition, Advice, EffectVisibility, PlanScore};
 pub use workflow::{TouchAround, TouchWorkflow};

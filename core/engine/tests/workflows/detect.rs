@@ -6,8 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use image::{Rgb, RgbImage};
-use plumbline_engine::detect::DetectStage;
-use plumbline_engine::detect::{Detects, OpenDetector};
+use plumbline_engine::detect::{DetectStage, DetectorError, Detects, OpenDetector};
 use plumbline_engine::ground::stage::{Stage, Timed};
 use plumbline_engine::state::State;
 use plumbline_engine::view::{DetectionTiming, DetectorFacts, DetectorState, SourceView};
@@ -18,6 +17,7 @@ use plumbline_engine::{
 use plumbline_model::detection::{ClassIndex, ClassNames, Detection, PixelBox};
 use plumbline_model::robot::Rig;
 use plumbline_model::{Eye, Stamp, StereoFrame, Unattended};
+use plumbline_vision::detect::DetectError;
 
 const SIZE_PX: (u32, u32) = (640, 480);
 
@@ -45,13 +45,15 @@ impl Detects for FakeDetector {
         _: &RgbImage,
         _: f32,
         found: &mut Vec<Detection>,
-    ) -> Result<DetectionTiming, String> {
+    ) -> Result<DetectionTiming, DetectorError> {
         found.clear();
         let plan = self.0.lock().expect("no test panics with the lock").clone();
         let run = plan.runs.fetch_add(1, Ordering::SeqCst);
         match plan.trouble {
             Some((words, true)) => panic!("{words}"),
-            Some((words, false)) => return Err(words),
+            Some((reason, false)) => {
+                return Err(DetectError::Run { model: "good.onnx".to_owned(), reason }.into());
+            }
             None => found.extend_from_slice(&plan.boxes[run % 2]),
         }
         Ok(DetectionTiming::default())
@@ -73,7 +75,8 @@ impl Desk {
         let mut state = State::new(folder);
         state.set_detector_opener(OpenDetector::new(move |choice, _| match choice {
             DetectorChoice::File(file) if !file.ends_with("good.onnx") => {
-                Err("it is no ONNX file: export it again".to_owned())
+                let (model, reason) = ("bad.onnx".to_owned(), "it is a text".to_owned());
+                Err(DetectError::NotOnnx { model, reason }.into())
             }
             _ => Ok(Box::new(fake.clone())),
         }));
@@ -236,7 +239,7 @@ fn an_object_of_both_eyes_has_a_place_and_one_of_a_single_eye_a_reason() {
     let seen = tomato.left.as_ref().expect("in both");
     assert!(!seen.line_in_other.is_empty());
     let why = banana.place.as_ref().expect_err("one eye tells no distance");
-    assert!(why.contains("left eye") && banana.alone_because.is_some(), "{why}");
+    assert!(why.to_string().contains("left eye") && banana.alone_because.is_some(), "{why}");
 }
 
 #[test]
@@ -266,7 +269,9 @@ fn a_detector_that_cannot_be_read_is_a_sentence_and_can_be_read_again() {
     desk.show();
     let view = desk.view();
     let DetectorState::Failed { name, why } = &view.detect.detector else { panic!("{:?}", view.detect) };
-    assert_eq!((name.as_str(), why.as_str()), ("bad.onnx", "It is no ONNX file: export it again."));
+    let told =
+        "bad.onnx is not a usable ONNX file (it is a text): export the detector again with format=onnx.";
+    assert_eq!((name.as_str(), why.as_str()), ("bad.onnx", told));
     assert!(view.live.raw.is_some() && desk.state.detect_input().is_none());
 
     desk.apply(DetectCommand::Use(DetectorChoice::Shipped));
@@ -276,7 +281,7 @@ fn a_detector_that_cannot_be_read_is_a_sentence_and_can_be_read_again() {
     let view = desk.view();
     assert!(matches!(view.detect.detector, DetectorState::Ready(_)));
     assert!(
-        view.detect.refused.as_ref().is_some_and(|why| why.contains("no ONNX file")),
+        view.detect.refused.as_ref().is_some_and(|why| why.contains("not a usable ONNX file")),
         "{:?}",
         view.detect
     );
@@ -287,11 +292,12 @@ fn a_detector_that_cannot_be_read_is_a_sentence_and_can_be_read_again() {
 fn a_detector_that_fails_on_a_pair_says_so_and_goes_on_with_the_next() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let mut desk = Desk::looking(folder.path(), vec![thing(0, 0.9, (100.0, 100.0))], vec![]);
-    desk.trouble(Some(("the image has one pixel", false)));
+    desk.trouble(Some(("one pixel", false)));
     desk.show();
     desk.detect();
     let view = desk.view();
-    assert_eq!(view.detect.failed.as_deref(), Some("The image has one pixel."));
+    let told = "good.onnx failed on this image (one pixel): try another file; if it goes on, export the detector again.";
+    assert_eq!(view.detect.failed.as_deref(), Some(told));
     assert!(view.detect.found.is_none() && matches!(view.detect.detector, DetectorState::Ready(_)));
     desk.trouble(None);
     desk.show();

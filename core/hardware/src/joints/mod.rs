@@ -53,4 +53,4 @@ pub use options::{ArmOptions, OnState};
 pub use reading::{BusStatistics, JointReading, JointState};
 pub use refusal::{HoldReason, Refusal};
 pub use stop::{Heartbeat, StopSwitch};
-pub use touch::{Touch, TouchSource};
+pub use touch::{ScreenGone, Touch, TouchSource};

@@ -15,11 +15,16 @@ pub struct Touch {
     pub is_down: bool,
 }
 
+/// Nothing is felt any more.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the touchscreen is gone: start the twin again, or plug the screen in")]
+pub struct ScreenGone;
+
 /// Something that is touched: the screen, the twin's glass, a recording.
 pub trait TouchSource: Send {
     /// The newest contact; `None` before the first.
     ///
     /// # Errors
-    /// When the screen is gone: why, and what to do.
-    fn newest(&mut self) -> Result<Option<Touch>, String>;
+    /// When the screen is gone.
+    fn newest(&mut self) -> Result<Option<Touch>, ScreenGone>;
 }

@@ -12,7 +12,7 @@ use std::sync::mpsc::{SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
-use plumbline_hardware::joints::{Touch, TouchSource};
+use plumbline_hardware::joints::{ScreenGone, Touch, TouchSource};
 use plumbline_model::robot::Rig;
 
 pub use command::{TwinCommand, TwinState};
@@ -101,9 +101,9 @@ impl TwinTouchscreen {
 }
 
 impl TouchSource for TwinTouchscreen {
-    fn newest(&mut self) -> Result<Option<Touch>, String> {
+    fn newest(&mut self) -> Result<Option<Touch>, ScreenGone> {
         if self.shared.end.load(Ordering::Relaxed) {
-            return Err("the twin has ended: start it again".to_owned());
+            return Err(ScreenGone);
         }
         Ok(lock(&self.shared.touches).newest)
     }

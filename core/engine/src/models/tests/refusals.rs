@@ -30,7 +30,7 @@ fn a_broken_session_is_listed_with_its_problem() {
     assert!(listed.problem.as_ref().is_some_and(|problem| problem.contains("session.toml")), "{listed:?}");
     let view = lab.tell(ModelsCommand::ChooseSession { session: broken });
     let Some(Err(reason)) = &view.data else { panic!("nothing to learn from") };
-    assert_eq!(&view.next, reason);
+    assert_eq!(view.next, reason.to_string());
     lab.tell(train(&[Method::M1]));
     assert!(lab.said().contains("session.toml"), "{}", lab.said());
     assert_eq!(lab.view().step, StepState::NotDone);

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use plumbline_hardware::joints::{Touch, TouchSource};
+use plumbline_hardware::joints::{ScreenGone, Touch, TouchSource};
 
 /// The newest contact of the touch window. Clones are the same window.
 #[derive(Clone, Debug, Default)]
@@ -22,7 +22,7 @@ impl WindowContacts {
 }
 
 impl TouchSource for WindowContacts {
-    fn newest(&mut self) -> Result<Option<Touch>, String> {
+    fn newest(&mut self) -> Result<Option<Touch>, ScreenGone> {
         Ok(*self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }

@@ -364,7 +364,7 @@ impl Run {
     }
 
     fn newest(&mut self) -> Result<Option<Touch>, Interrupted> {
-        self.source.newest().map_err(Interrupted::Told)
+        Ok(self.source.newest()?)
     }
 
     /// Encoders of the chain.

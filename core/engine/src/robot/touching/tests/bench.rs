@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use plumbline_hardware::joints::{
     BusStatistics, HoldReason, JointReading, JointState, Motion, Move, MoveId, MoveOutcome, Refusal,
-    Setpoint, Touch, TouchSource,
+    ScreenGone, Setpoint, Touch, TouchSource,
 };
 use plumbline_model::robot::{Chain, JointIndex, Posture, Rig};
 use plumbline_model::touch_plan::Side;
@@ -173,11 +173,11 @@ fn sagging(posture: &Posture, by_rad: f64) -> Posture {
 
 /// The made-up screen.
 #[derive(Clone)]
-pub struct FakeScreen(Arc<Mutex<Result<Option<Touch>, String>>>);
+pub struct FakeScreen(Arc<Mutex<Result<Option<Touch>, ScreenGone>>>);
 
 impl TouchSource for FakeScreen {
-    fn newest(&mut self) -> Result<Option<Touch>, String> {
-        self.0.lock().expect("no test panics in here").clone()
+    fn newest(&mut self) -> Result<Option<Touch>, ScreenGone> {
+        *self.0.lock().expect("no test panics in here")
     }
 }
 
@@ -253,7 +253,7 @@ impl Bench {
         Touch { u_px, v_px, at: self.now, is_down: true }
     }
 
-    pub fn show(&self, found: Result<Option<Touch>, String>) {
+    pub fn show(&self, found: Result<Option<Touch>, ScreenGone>) {
         *self.screen.0.lock().expect("no test panics in here") = found;
     }
 

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use plumbline_hardware::joints::{HoldReason, Motion, MoveOutcome, Refusal};
+use plumbline_hardware::joints::{HoldReason, Motion, MoveOutcome, Refusal, ScreenGone};
 use plumbline_model::robot::Posture;
 
 use super::bench::{Asked, Bench, TARGET};
@@ -160,9 +160,9 @@ fn an_old_refusal_does_not_end_a_new_touch() {
 #[test]
 fn a_screen_that_is_gone_ends_it() {
     let mut bench = bench_in(TouchStage::Lowering);
-    bench.show(Err("the touch monitor was unplugged: plug it in".to_owned()));
+    bench.show(Err(ScreenGone));
     let text = interrupted(bench.until_end(|_| {}));
-    assert!(text.contains("monitor was unplugged"), "{text}");
+    assert!(text.contains("The touchscreen is gone"), "{text}");
     stands(&mut bench);
 }
 
