@@ -13,6 +13,7 @@ mod disparity;
 mod doctor;
 mod gap;
 mod grasp;
+mod health;
 mod ik;
 mod locate;
 mod output;
@@ -74,6 +75,8 @@ enum Verb {
     Grasp(WithJson<grasp::Grasp>),
     /// Runs the grasping experiment on the twin: positions, attempts, methods; in shards if wanted.
     GraspTrials(WithJson<grasp::GraspTrials>),
+    /// Says from ordinary pairs, without a board, whether the calibration of the eyes still holds.
+    Health(WithJson<health::Health>),
     /// Computes the disparity of a pair.
     Disparity(WithJson<disparity::Disparity>),
     /// Says what works on this machine: libraries, graphics, cameras, serial ports, folders.
@@ -136,6 +139,7 @@ pub fn run() -> ExitCode {
                 Verb::DetectorSet(verb) => verb.run(detector_set::run),
                 Verb::Grasp(verb) => verb.run(grasp::grasp),
                 Verb::GraspTrials(verb) => verb.run(grasp::trials),
+                Verb::Health(verb) => verb.run(health::run),
                 Verb::Disparity(verb) => verb.run(disparity::run),
                 Verb::Doctor(verb) => verb.run(doctor::run),
                 Verb::Sample(verb) => verb.run(sample::run),

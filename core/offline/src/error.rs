@@ -15,6 +15,7 @@ use plumbline_vision::calibrate::SolveError;
 use plumbline_vision::detect::DetectError;
 use plumbline_vision::detect_score::EvaluateError;
 use plumbline_vision::disparity::DisparityError;
+use plumbline_vision::health::HealthError;
 use plumbline_vision::locate::NoBaseline;
 use plumbline_vision::mount::MountFileError;
 use plumbline_vision::rectify::RectifyError;
@@ -90,6 +91,15 @@ pub enum OfflineError {
         /// Size that was calibrated.
         calibrated: String,
     },
+    /// A session without pairs.
+    #[error("{0} has no pairs of images: they belong into stereo/left and stereo/right, by the same names")]
+    NoPairs(PathBuf),
+    /// The eyes cannot be judged.
+    #[error(transparent)]
+    Health(#[from] HealthError),
+    /// With this calibration the eyes do not see the table.
+    #[error("with {0} the eyes do not see the table at all: give the calibration of these eyes")]
+    TableNotSeen(PathBuf),
     /// A table cannot be read.
     #[error("{file}, line {line}: {reason}. The file needs {needs}")]
     Table {

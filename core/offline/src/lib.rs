@@ -18,6 +18,7 @@ pub mod doctor;
 mod error;
 mod gap;
 mod grasp;
+mod health;
 mod ik;
 mod locate;
 mod pairs;
@@ -47,6 +48,7 @@ pub use grasp::{
     GraspArgs, GraspMethod, GraspReport, Judged, MethodSummary, PositionSummary, Spread, Summary, TrialsArgs,
     TrialsError, grasp, grasp_trials, merge_trials,
 };
+pub use health::{CalibrationHealth, HealthArgs, HealthReport, health};
 pub use ik::{IkArgs, IkReport, IkSolution, ik};
 pub use locate::{LocateArgs, LocateReport, LocateRobot, LocatedPoint, PointInRobot, locate};
 pub use plumbline_twin::training_set::SetWorld;

@@ -11,8 +11,8 @@
 
 pub(crate) mod epipolar;
 mod refine;
-mod scene;
-mod search;
+pub(crate) mod scene;
+pub(crate) mod search;
 #[cfg(test)]
 mod tests;
 

@@ -9,7 +9,7 @@ use super::epipolar::{EpipolarGeometry, EpipolarRay};
 pub(super) const LEVELS: usize = 3;
 
 /// A pair of gray images ready for matching.
-pub(super) struct Scene {
+pub(crate) struct Scene {
     /// Per eye, from full size down.
     levels: [Vec<Level>; 2],
 }

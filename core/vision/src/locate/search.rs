@@ -24,7 +24,7 @@ const MOST_CANDIDATES: usize = 6;
 
 /// A place along the curve.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Candidate {
+pub(crate) struct Candidate {
     /// Along angle in the left eye minus along angle in the right, rad.
     pub disparity_rad: f64,
     /// Mean correlation over the patch sizes, −1..1.
@@ -51,7 +51,7 @@ struct Slant {
 
 /// Size of a step of one raw pixel, as an angle; and across planes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Step {
+pub(crate) struct Step {
     pub along_rad: f64,
     pub plane_rad: f64,
 }
@@ -65,7 +65,7 @@ impl Step {
 }
 
 /// Sign of a disparity seen from this eye: the other eye's along angle is `along + sign·disparity`.
-pub(super) fn sign(from: Eye) -> f64 {
+pub(crate) fn sign(from: Eye) -> f64 {
     match from {
         Eye::Left => -1.0,
         Eye::Right => 1.0,
@@ -73,7 +73,7 @@ pub(super) fn sign(from: Eye) -> f64 {
 }
 
 /// Candidates for `center` (a ray of the eye `from`) in the other eye, best first.
-pub(super) fn candidates(
+pub(crate) fn candidates(
     geometry: &EpipolarGeometry,
     scene: &Scene,
     from: Eye,

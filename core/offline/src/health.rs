@@ -1,0 +1,239 @@
+//! `plumbline health`: whether the calibration of the eyes still holds, from ordinary pairs.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use image::GrayImage;
+use nalgebra::Point3;
+use plumbline_engine::ground::text::sentence;
+use plumbline_model::robot::{Rig, RigPart};
+use plumbline_model::session::StereoImagePair;
+use plumbline_model::{JobContext, LeftCamera, Point, StereoCameras};
+use plumbline_vision::calibration_file;
+use plumbline_vision::health::{Match, cost, epipolar_px, find_matches, fit_turn, fits_better_by};
+use serde::Serialize;
+
+use super::OfflineError;
+use super::locate::read_image;
+use super::pairs::check_sizes;
+use super::session;
+
+/// Pairs that are looked at, spread over the session.
+const PAIRS: usize = 8;
+/// A calibration that puts places farther off than this is not good any more, m: what a hand that grasps
+/// bears.
+const BEARABLE_M: f64 = 0.008;
+/// A turn is believed when it is so many standard deviations away from none.
+const SURE: f64 = 3.0;
+/// One calibration beats another by so many standard deviations on the same places.
+const BETTER: f64 = 3.0;
+/// Places across the table, shares of its half width.
+const ACROSS: [f64; 3] = [-0.6, 0.0, 0.6];
+
+/// Whose health.
+#[derive(Clone, Debug)]
+pub struct HealthArgs {
+    /// Session with ordinary pairs under `stereo/`.
+    pub session: PathBuf,
+    /// The calibration in use; `None`: the `cameras.yaml` of the session.
+    pub cameras: Option<PathBuf>,
+    /// One that might take its place.
+    pub proposed: Option<PathBuf>,
+}
+
+/// How the eyes do.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HealthReport {
+    /// The calibration in use.
+    pub in_use: CalibrationHealth,
+    /// The proposed one; null when none was given.
+    pub proposed: Option<CalibrationHealth>,
+    /// `in_use`, `proposed` or `undecided`: which fits the images better, beyond doubt.
+    pub better: &'static str,
+    /// How long it took.
+    pub seconds: f64,
+    /// Pairs that were looked at.
+    pub pairs: usize,
+    /// Places that both eyes saw.
+    pub matches: usize,
+    /// One sentence for a person.
+    pub sentence: String,
+    /// What was noticed about the files.
+    pub notes: Vec<String>,
+}
+
+/// How one calibration does.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CalibrationHealth {
+    /// The file.
+    pub file: PathBuf,
+    /// Whether it is still good: nowhere on the table off by more than a grasp bears, as far as can be told.
+    pub ok: bool,
+    /// Error at the near end of the table.
+    pub near_mm: f64,
+    /// In its middle.
+    pub middle_mm: f64,
+    /// At its far end.
+    pub far_mm: f64,
+    /// One standard deviation of the error at the far end.
+    pub far_sigma_mm: f64,
+    /// How far the right eye has turned against the left one since.
+    pub turn_deg: f64,
+    /// About which axes: nod, pan, roll of the right eye.
+    pub turn_axes_deg: [f64; 3],
+    /// One standard deviation of each.
+    pub turn_sigma_deg: [f64; 3],
+    /// How far places leave the epipolar planes, rms.
+    pub epipolar_px: f64,
+}
+
+/// Looks at ordinary pairs with one or two calibrations.
+pub fn health(args: &HealthArgs, context: &dyn JobContext) -> Result<HealthReport, OfflineError> {
+    let began = Instant::now();
+    let (session, rig) = session::open(&args.session)?;
+    let pairs = spread(&session.stereo.pairs);
+    if pairs.is_empty() {
+        return Err(OfflineError::NoPairs(args.session.clone()));
+    }
+    let in_use = args.cameras.clone().unwrap_or_else(|| args.session.join("cameras.yaml"));
+    let cameras = calibration_file::load(std::slice::from_ref(&in_use))?.cameras;
+    let proposed = match &args.proposed {
+        Some(file) => Some((file.clone(), calibration_file::load(std::slice::from_ref(file))?.cameras)),
+        None => None,
+    };
+    let mut notes = vec![];
+    let mut images: Vec<(GrayImage, GrayImage)> = vec![];
+    for pair in &pairs {
+        context.checkpoint()?;
+        context.report(0.3 * images.len() as f64 / pairs.len() as f64, "reading images");
+        images.push(read_pair(pair, &mut notes)?);
+        let (left, right) = images.last().map_or(((0, 0), (0, 0)), |(l, r)| (l.dimensions(), r.dimensions()));
+        for cameras in std::iter::once(&cameras).chain(proposed.iter().map(|(_, cameras)| cameras)) {
+            check_sizes(cameras, [left, right])?;
+        }
+    }
+    context.report(0.3, "matching the eyes");
+    let (matches, _) = find_matches(&cameras, &images)?;
+    context.checkpoint()?;
+    context.report(0.9, "judging");
+    let table = Table::of(&rig, &cameras);
+    let in_use_health = judged(&in_use, &cameras, &matches, &table)?;
+    let mut better = "undecided";
+    let proposed_health = match &proposed {
+        None => None,
+        Some((file, other)) => {
+            let by = fits_better_by(&cameras, other, &matches)?;
+            better = if by > BETTER {
+                "proposed"
+            } else if by < -BETTER {
+                "in_use"
+            } else {
+                "undecided"
+            };
+            Some(judged(file, other, &matches, &table)?)
+        }
+    };
+    let said = words(&in_use_health, proposed_health.as_ref(), better);
+    Ok(HealthReport {
+        in_use: in_use_health,
+        proposed: proposed_health,
+        better,
+        seconds: began.elapsed().as_secs_f64(),
+        pairs: pairs.len(),
+        matches: matches.len(),
+        sentence: said,
+        notes: notes.iter().map(|note: &String| sentence(note)).collect(),
+    })
+}
+
+/// Pairs spread evenly over a session.
+fn spread(pairs: &[StereoImagePair]) -> Vec<StereoImagePair> {
+    let count = pairs.len().min(PAIRS);
+    (0..count).map(|k| pairs[k * pairs.len() / count].clone()).collect()
+}
+
+fn read_pair(
+    pair: &StereoImagePair,
+    notes: &mut Vec<String>,
+) -> Result<(GrayImage, GrayImage), OfflineError> {
+    let mut gray = |file: &Path| -> Result<GrayImage, OfflineError> {
+        Ok(image::imageops::grayscale(&read_image(file, notes)?))
+    };
+    Ok((gray(&pair.left)?, gray(&pair.right)?))
+}
+
+/// Places on the table, in the left eye: near, in the middle, far.
+struct Table {
+    rows: [Vec<Point<LeftCamera>>; 3],
+}
+
+impl Table {
+    /// The patch on which the robot works; straight ahead where the rig has no eyes.
+    fn of(rig: &Rig, cameras: &StereoCameras) -> Self {
+        if rig.need(RigPart::Eyes).is_err() {
+            let ahead = |z_m: f64| ACROSS.map(|share| Point::new(0.3 * share, 0.15, z_m)).to_vec();
+            let reach_m = cameras.baseline_m() * 10.0;
+            return Self { rows: [0.5, 0.75, 1.0].map(|share| ahead(share * reach_m)) };
+        }
+        let left_from_robot = rig.robot_from_left(&rig.home()).isometry.inverse();
+        let [near_m, far_m] = rig.work_patch.x_range_m;
+        let [right_m, left_m] = rig.work_patch.y_range_m;
+        let row = |x_m: f64| {
+            let at = |share: &f64| {
+                let y_m = 0.5 * (right_m + left_m) + share * 0.5 * (left_m - right_m);
+                Point::from(left_from_robot * Point3::new(x_m, y_m, rig.table.height_m))
+            };
+            ACROSS.iter().map(at).collect()
+        };
+        Self { rows: [near_m, 0.5 * (near_m + far_m), far_m].map(row) }
+    }
+}
+
+fn judged(
+    file: &Path,
+    cameras: &StereoCameras,
+    matches: &[Match],
+    table: &Table,
+) -> Result<CalibrationHealth, OfflineError> {
+    let turn = fit_turn(cameras, matches)?;
+    let mut errors = vec![];
+    for row in &table.rows {
+        errors.push(cost(cameras, &turn, row).ok_or_else(|| OfflineError::TableNotSeen(file.to_path_buf()))?);
+    }
+    let worst = errors.iter().any(|cost| cost.error_m > BEARABLE_M && cost.error_m > SURE * cost.sigma_m);
+    let [near_mm, middle_mm, far_mm] = [0, 1, 2].map(|k| errors[k].error_m * 1e3);
+    let degrees = |axis: usize| turn.covariance_rad2[(axis, axis)].max(0.0).sqrt().to_degrees();
+    Ok(CalibrationHealth {
+        file: file.to_path_buf(),
+        ok: !worst,
+        near_mm,
+        middle_mm,
+        far_mm,
+        far_sigma_mm: errors[2].sigma_m * 1e3,
+        turn_deg: turn.angle_rad().to_degrees(),
+        turn_axes_deg: turn.rotation_rad.map(f64::to_degrees).into(),
+        turn_sigma_deg: [0, 1, 2].map(degrees),
+        epipolar_px: epipolar_px(cameras, matches)?,
+    })
+}
+
+fn words(in_use: &CalibrationHealth, proposed: Option<&CalibrationHealth>, better: &str) -> String {
+    let first = if in_use.ok {
+        format!(
+            "The calibration in use is still good: {:.0} mm off at the far end of the table.",
+            in_use.far_mm
+        )
+    } else {
+        format!(
+            "The calibration in use is not good any more: the right eye has turned by {:.2}°, places are {:.0} mm off at \
+             the near end of the table, {:.0} in its middle, {:.0} at its far end. Calibrate the eyes again.",
+            in_use.turn_deg, in_use.near_mm, in_use.middle_mm, in_use.far_mm
+        )
+    };
+    match (proposed, better) {
+        (None, _) => first,
+        (Some(_), "proposed") => format!("{first} The proposed one fits these images better."),
+        (Some(_), "in_use") => format!("{first} The proposed one fits these images worse: do not accept it."),
+        (Some(_), _) => format!("{first} The proposed one cannot be told apart from it on these images."),
+    }
+}
