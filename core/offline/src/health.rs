@@ -10,7 +10,7 @@ use plumbline_model::robot::{Rig, RigPart};
 use plumbline_model::session::StereoImagePair;
 use plumbline_model::{JobContext, LeftCamera, Point, StereoCameras};
 use plumbline_vision::calibration_file;
-use plumbline_vision::health::{Match, cost, epipolar_px, find_matches, fit_turn, fits_better_by};
+use plumbline_vision::health::{Match, Turn, cost, epipolar_px, find_matches, fit_turn, fits_better_by};
 use serde::Serialize;
 
 use super::OfflineError;
@@ -25,7 +25,8 @@ const PAIRS: usize = 8;
 const BEARABLE_M: f64 = 0.008;
 /// A turn is believed when it is so many standard deviations away from none.
 const SURE: f64 = 3.0;
-/// One calibration beats another by so many standard deviations on the same places.
+/// One calibration beats another by so many standard deviations: those by which its right eye stands where the
+/// images say, or those by which it fits the same places.
 const BETTER: f64 = 3.0;
 /// Places across the table, shares of its half width.
 const ACROSS: [f64; 3] = [-0.6, 0.0, 0.6];
@@ -117,20 +118,15 @@ pub fn health(args: &HealthArgs, context: &dyn JobContext) -> Result<HealthRepor
     context.checkpoint()?;
     context.report(0.9, "judging");
     let table = Table::of(&rig, &cameras);
-    let in_use_health = judged(&in_use, &cameras, &matches, &table)?;
+    let (in_use_health, turn) = judged(&in_use, &cameras, &matches, &table)?;
     let mut better = "undecided";
     let proposed_health = match &proposed {
         None => None,
         Some((file, other)) => {
-            let by = fits_better_by(&cameras, other, &matches)?;
-            better = if by > BETTER {
-                "proposed"
-            } else if by < -BETTER {
-                "in_use"
-            } else {
-                "undecided"
-            };
-            Some(judged(file, other, &matches, &table)?)
+            let (judged, other_turn) = judged(file, other, &matches, &table)?;
+            let fits_by = fits_better_by(&cameras, other, &matches)?;
+            better = beats(fits_by, turn.sigmas().zip(other_turn.sigmas()));
+            Some(judged)
         }
     };
     let said = words(&in_use_health, proposed_health.as_ref(), better);
@@ -194,7 +190,7 @@ fn judged(
     cameras: &StereoCameras,
     matches: &[Match],
     table: &Table,
-) -> Result<CalibrationHealth, OfflineError> {
+) -> Result<(CalibrationHealth, Turn), OfflineError> {
     let turn = fit_turn(cameras, matches)?;
     let mut errors = vec![];
     for row in &table.rows {
@@ -203,7 +199,7 @@ fn judged(
     let worst = errors.iter().any(|cost| cost.error_m > BEARABLE_M && cost.error_m > SURE * cost.sigma_m);
     let [near_mm, middle_mm, far_mm] = [0, 1, 2].map(|k| errors[k].error_m * 1e3);
     let degrees = |axis: usize| turn.covariance_rad2[(axis, axis)].max(0.0).sqrt().to_degrees();
-    Ok(CalibrationHealth {
+    let health = CalibrationHealth {
         file: file.to_path_buf(),
         ok: !worst,
         near_mm,
@@ -214,7 +210,22 @@ fn judged(
         turn_axes_deg: turn.rotation_rad.map(f64::to_degrees).into(),
         turn_sigma_deg: [0, 1, 2].map(degrees),
         epipolar_px: epipolar_px(cameras, matches)?,
-    })
+    };
+    Ok((health, turn))
+}
+
+/// Which of two calibrations is better beyond doubt, from how much better the second fits and how far both
+/// are from where the images say that the eye stands.
+fn beats(second_fits_by: f64, turns_sigmas: Option<(f64, f64)>) -> &'static str {
+    let stands_by = turns_sigmas.map_or(0.0, |(first, second)| first - second);
+    let most = if second_fits_by.abs() > stands_by.abs() { second_fits_by } else { stands_by };
+    // Both have to point the same way.
+    let agree = second_fits_by * stands_by >= 0.0;
+    match most {
+        by if agree && by > BETTER => "proposed",
+        by if agree && by < -BETTER => "in_use",
+        _ => "undecided",
+    }
 }
 
 fn words(in_use: &CalibrationHealth, proposed: Option<&CalibrationHealth>, better: &str) -> String {

@@ -4,8 +4,13 @@
 use std::path::PathBuf;
 
 use plumbline_model::camera::ModelKind;
+use plumbline_model::formats::CalibrationFormat;
 use plumbline_model::{InnerCorners, Unattended, measured_data};
-use plumbline_offline::{CalibrateArgs, CheckArgs, calibrate_stereo, check};
+use plumbline_offline::{
+    CalibrateArgs, CheckArgs, HealthArgs, OfflineError, calibrate_stereo, check, health,
+};
+use plumbline_vision::calibration_file;
+use plumbline_vision::health::turned;
 
 fn args(exclude: Vec<PathBuf>, out: Option<PathBuf>) -> Option<CalibrateArgs> {
     let folder = measured_data::folder("nico-chessboard").map_err(|reason| println!("{reason}")).ok()?;
@@ -71,4 +76,56 @@ fn pairs_kept_aside_are_met_as_well() {
     println!("{} px, epipolar {} px on {} pairs", judged.reprojection_px, judged.epipolar_px, judged.pairs);
     assert_eq!(judged.pairs, 10);
     assert!(judged.reprojection_px <= 0.100 && judged.epipolar_px <= 0.118, "{judged:?}");
+}
+
+/// The measured pairs as a session of ordinary pairs.
+fn session_of_pairs(args: &CalibrateArgs, folder: &std::path::Path) -> HealthArgs {
+    for (eye, from) in [("left", &args.left), ("right", &args.right)] {
+        let to = folder.join("stereo").join(eye);
+        std::fs::create_dir_all(&to).expect("folder");
+        for entry in std::fs::read_dir(from).expect("there").flatten() {
+            std::fs::copy(entry.path(), to.join(entry.file_name())).expect("copied");
+        }
+    }
+    let manifest =
+        "format = 1\nrig = \"nico\"\nstarted = 2026-01-01T00:00:00Z\noperator = \"\"\nnotes = \"\"\n";
+    std::fs::write(folder.join("session.toml"), manifest).expect("written");
+    HealthArgs { session: folder.to_path_buf(), cameras: None, proposed: None }
+}
+
+#[test]
+fn the_same_day_says_that_the_calibration_is_good_and_a_turned_eye_is_seen() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let Some(args) = args(Vec::new(), Some(folder.path().join("cameras.yaml"))) else { return };
+    calibrate_stereo(&args, &Unattended).expect("solved");
+    let session = session_of_pairs(&args, folder.path());
+    let report = health(&session, &Unattended).expect("judged");
+    assert!(report.in_use.ok, "{report:?}");
+    assert!(report.in_use.turn_deg < 0.1, "{report:?}");
+
+    // A calibration of an eye that has turned by half a degree to the side, and the good one proposed.
+    let mut bad =
+        calibration_file::load(std::slice::from_ref(&folder.path().join("cameras.yaml"))).expect("read");
+    bad.cameras = turned(&bad.cameras, &nalgebra::Vector3::new(0.0, 0.5_f64.to_radians(), 0.0));
+    let file = folder.path().join("turned.yaml");
+    calibration_file::save(&bad, std::slice::from_ref(&file), CalibrationFormat::Native).expect("written");
+    let good = Some(folder.path().join("cameras.yaml"));
+    let report =
+        health(&HealthArgs { cameras: Some(file), proposed: good, ..session }, &Unattended).expect("judged");
+    assert!(!report.in_use.ok && report.in_use.far_mm > 20.0, "{report:?}");
+    assert!((report.in_use.turn_deg - 0.5).abs() < 0.1, "{report:?}");
+    assert!(report.proposed.is_some_and(|proposed| proposed.ok));
+    assert_eq!(report.better, "proposed");
+}
+
+#[test]
+fn a_session_without_pairs_is_told_where_they_belong() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let manifest = "format = 1\nrig = \"nico\"\nstarted = 2026-01-01T00:00:00Z\n";
+    std::fs::write(folder.path().join("session.toml"), manifest).expect("written");
+    let table = "true_x_m,true_y_m,true_z_m,est_x_m,est_y_m,est_z_m\n0.4,0,0.05,0.4,0,0.05\n";
+    std::fs::write(folder.path().join("localizations.csv"), table).expect("written");
+    let args = HealthArgs { session: folder.path().to_path_buf(), cameras: None, proposed: None };
+    let error = health(&args, &Unattended).expect_err("nothing to look at");
+    assert!(matches!(error, OfflineError::NoPairs(_)), "{error}");
 }

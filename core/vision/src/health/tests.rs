@@ -49,10 +49,6 @@ fn a_turned_eye_is_measured() {
         let (matches, count) = find_matches(&eyes, &pairs(&turned(&eyes, &truth), 2)).expect("matches");
         assert!(count.matched >= 300, "{count:?}");
         let turn = fit_turn(&eyes, &matches).expect("determined");
-            "{turn_deg:?} {count:?} {:?} {:?}",
-            turn.rotation_rad.map(f64::to_degrees),
-            turn.covariance_rad2.diagonal().map(|v| v.sqrt().to_degrees())
-        );
         let off_deg = (turn.rotation_rad - truth).map(f64::to_degrees);
         assert!(off_deg.norm() < 0.01, "{turn_deg:?}: off by {off_deg:?}");
         for axis in 0..3 {

@@ -35,6 +35,12 @@ impl Turn {
     pub fn angle_rad(&self) -> f64 {
         self.rotation_rad.norm()
     }
+
+    /// How far from none it is, in standard deviations (Mahalanobis 1936); `None`: they are not known.
+    pub fn sigmas(&self) -> Option<f64> {
+        let weighed = self.covariance_rad2.cholesky()?.solve(&self.rotation_rad);
+        Some(self.rotation_rad.dot(&weighed).max(0.0).sqrt())
+    }
 }
 
 /// The eyes after the right one has turned in its place.
