@@ -6,6 +6,8 @@ use crate::glyph::{self, Glyph};
 use crate::theme::{self, Tokens, space};
 
 const GLYPH_SIZE: f32 = 10.0;
+/// Between sign, name and value.
+const GAP: f32 = space::XS + 1.0;
 
 /// How something is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,18 +57,39 @@ pub struct Lamp<'a> {
     value: &'a str,
     health: Health,
     reason: Option<&'a str>,
+    folded: bool,
 }
 
 impl<'a> Lamp<'a> {
     /// `name` in a word ("eyes"), `value` with its unit ("30.0 Hz").
     pub fn new(name: &'a str, value: &'a str, health: Health) -> Self {
-        Self { name, value, health, reason: None }
+        Self { name, value, health, reason: None, folded: false }
     }
 
     /// Why it is not good and what to do, shown on hover.
     pub fn reason(mut self, reason: Option<&'a str>) -> Self {
         self.reason = reason;
         self
+    }
+
+    /// Only its sign; name and value are shown on hover.
+    #[must_use]
+    pub fn folded(mut self, folded: bool) -> Self {
+        self.folded = folded;
+        self
+    }
+
+    /// How wide it will be, points.
+    pub fn width(&self, ui: &Ui) -> f32 {
+        let sign = space::S + GLYPH_SIZE + space::S;
+        if self.folded {
+            return sign;
+        }
+        let body = theme::font(ui, &TextStyle::Body);
+        let wide = |text: &str| {
+            ui.painter().layout_no_wrap(text.to_owned(), body.clone(), egui::Color32::PLACEHOLDER).size().x
+        };
+        sign + GAP + 2.0 + wide(self.name) + GAP + wide(self.value)
     }
 
     /// Draws it. The label for tests is `"{name} {value}"`.
@@ -76,9 +99,7 @@ impl<'a> Lamp<'a> {
         let layout = |text: &str, color| ui.painter().layout_no_wrap(text.to_owned(), body.clone(), color);
         let name = layout(self.name, tokens.text_weak);
         let value = layout(self.value, tokens.text_strong);
-        let gap = space::XS + 1.0;
-        let width = space::S + GLYPH_SIZE + gap + 2.0 + name.size().x + gap + value.size().x + space::S;
-        let size = vec2(width, ui.spacing().interact_size.y);
+        let size = vec2(self.width(ui), ui.spacing().interact_size.y);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click());
         response.widget_info(|| {
             let mut info =
@@ -93,17 +114,18 @@ impl<'a> Lamp<'a> {
             let mut x = rect.left() + space::S;
             let (sign, color) = self.health.sign(tokens);
             glyph::paint(painter, egui::pos2(x + GLYPH_SIZE / 2.0, y), GLYPH_SIZE, sign, color);
-            x += GLYPH_SIZE + gap + 2.0;
-            for galley in [name, value] {
+            x += GLYPH_SIZE + GAP + 2.0;
+            for galley in [name, value].into_iter().filter(|_| !self.folded) {
                 let width = galley.size().x;
                 painter.galley(egui::pos2(x, y - galley.size().y / 2.0), galley, tokens.text);
-                x += width + gap;
+                x += width + GAP;
             }
         }
-        let hover = match self.reason {
-            Some(reason) => format!("{}: {}\n{reason}", self.name, self.health.word()),
-            None => format!("{}: {}", self.name, self.health.word()),
-        };
+        let shown = if self.folded { format!(" {}", self.value) } else { String::new() };
+        let mut hover = format!("{}{shown}: {}", self.name, self.health.word());
+        if let Some(reason) = self.reason {
+            hover.push_str(&format!("\n{reason}"));
+        }
         response.on_hover_text(hover)
     }
 }

@@ -1,11 +1,13 @@
 //! What has failed inside of the program: a lamp that says so, and the button that starts it again.
 
-use egui::{Popup, Ui};
+use egui::Ui;
 use plumbline_engine::view::ThreadFault;
 use plumbline_engine::{View, WatchedThread};
-use plumbline_widgets::lamp::{Health, Lamp};
+use plumbline_widgets::lamp::Health;
 use plumbline_widgets::{format, theme};
 
+use super::PlumblineWindow;
+use super::lamps::{Then, TopLamp};
 use crate::operator::{Action, Outbox};
 
 /// Whether a fault may leave people thinking that the arm is looked after.
@@ -14,24 +16,24 @@ fn is_dangerous(fault: &ThreadFault) -> bool {
 }
 
 /// Nothing stands here while all is well.
-pub(super) fn lamps(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
-    threads_lamp(view, ui, outbox);
-    data_lamp(view, ui);
+pub(super) fn lamps(view: &View) -> Vec<TopLamp> {
+    threads_lamp(view).into_iter().chain(data_lamps(view)).collect()
 }
 
-fn threads_lamp(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
-    let Some(first) = view.threads.first() else { return };
+fn threads_lamp(view: &View) -> Option<TopLamp> {
+    let first = view.threads.first()?;
     let word = if first.is_silent() { "silent" } else { "failed" };
     let value = match view.threads.len() {
         1 => format!("{} {word}", first.thread.name()),
         count => format!("{} {word}, {} more", first.thread.name(), count - 1),
     };
     let health = if view.threads.iter().any(is_dangerous) { Health::Danger } else { Health::Failed };
-    let lamp = Lamp::new("Program", &value, health).reason(Some(&first.meaning)).show(ui);
-    Popup::menu(&lamp).width(380.0).show(|ui| details(ui, view, outbox));
+    let reason = Some(first.meaning.to_string());
+    Some(TopLamp { name: "Program", value, health, reason, then: Then::Open(380.0, details) })
 }
 
-fn details(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
+fn details(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let view = &window.view;
     for fault in view.threads.iter() {
         ui.label(&*fault.meaning);
         let since = format::age(fault.since.elapsed());
@@ -49,10 +51,18 @@ fn details(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
 }
 
 /// Whether what is measured and done is kept.
-fn data_lamp(view: &View, ui: &mut Ui) {
+fn data_lamps(view: &View) -> Vec<TopLamp> {
     let kept = &view.kept;
+    let lamp = |name, value: String, health, reason: String| TopLamp {
+        name,
+        value,
+        health,
+        reason: Some(reason),
+        then: Then::Nothing,
+    };
+    let mut lamps = vec![];
     if let Some(problem) = &kept.problem {
-        Lamp::new("Data", "at risk", Health::Warning).reason(Some(problem)).show(ui);
+        lamps.push(lamp("Data", "at risk".to_owned(), Health::Warning, problem.to_string()));
     }
     let lost = kept.journal_lost;
     if lost > 0 {
@@ -60,12 +70,12 @@ fn data_lamp(view: &View, ui: &mut Ui) {
             "The journal lacks {} that you asked for, because the disk did not keep up or did not take them: a report of a mistake will lack them too. They were done all the same. Look at the disk.",
             format::count(usize::try_from(lost).unwrap_or(usize::MAX), "thing")
         );
-        let value = format!("{lost} lost");
-        Lamp::new("Journal", &value, Health::Warning).reason(Some(&reason)).show(ui);
+        lamps.push(lamp("Journal", format!("{lost} lost"), Health::Warning, reason));
     }
     if view.lost_commands > 0 {
         let value = format!("{} lost", view.lost_commands);
         let reason = "So many things were asked for at once that some were not taken, and are not done. The log names them; ask for them again.";
-        Lamp::new("Requests", &value, Health::Failed).reason(Some(reason)).show(ui);
+        lamps.push(lamp("Requests", value, Health::Failed, reason.to_owned()));
     }
+    lamps
 }

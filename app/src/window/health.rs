@@ -10,10 +10,11 @@ use plumbline_model::duration;
 use plumbline_widgets::buttons::{STOP_SIZE, stop_button, stop_pressed};
 use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
-use plumbline_widgets::lamp::{Health, Lamp};
+use plumbline_widgets::lamp::Health;
 use plumbline_widgets::theme::{self, space};
 
-use super::{PlumblineWindow, faults, robot_lamps, world_menu};
+use super::lamps::{Then, TopLamp};
+use super::{PlumblineWindow, faults, lamps, robot_lamps, world_menu};
 use crate::operator::{Action, Outbox, RobotAction, Screen, shortcut_text};
 use crate::panels::source_age;
 
@@ -62,13 +63,14 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
 }
 
 fn lamps(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
-    ui.spacing_mut().item_spacing.x = space::XS;
-    faults::lamps(&window.view, ui, outbox);
-    eyes_lamps(&window.view, ui, outbox);
-    robot_lamps::show(&window.view, ui, outbox);
-    calibration_lamp(&window.view, ui, outbox);
-    model_lamp(&window.view, ui, outbox);
-    clock_lamp(window, ui, outbox);
+    let view = &window.view;
+    let mut all = faults::lamps(view);
+    all.extend(eyes_lamps(view));
+    all.extend(robot_lamps::lamps(view));
+    all.push(calibration_lamp(view));
+    all.extend(model_lamp(view));
+    all.push(if view.twin.running { twin_clock_lamp(view) } else { clock_lamp(window) });
+    lamps::show(&all, window, ui, outbox);
 }
 
 fn commands_button(ui: &mut Ui, outbox: &mut Outbox) {
@@ -113,7 +115,7 @@ fn view_menu(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     });
 }
 
-fn eyes_lamps(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+fn eyes_lamps(view: &View) -> Vec<TopLamp> {
     let statistics = &view.live.statistics;
     let rate = statistics.source.per_second.map(format::hertz);
     let (value, health, reason): (String, Health, Option<String>) = match &view.source.status {
@@ -127,18 +129,19 @@ fn eyes_lamps(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
             ("lost".to_owned(), Health::Failed, Some(tried))
         }
     };
-    let lamp = Lamp::new("Eyes", &value, health).reason(reason.as_deref()).show(ui);
-    Popup::menu(&lamp).width(300.0).show(|ui| eyes_details(view, ui, outbox));
-
+    let then = Then::Open(300.0, eyes_details);
+    let mut lamps = vec![TopLamp { name: "Eyes", value, health, reason, then }];
     if let Some(age) = source_age(view).filter(|age| *age > OLD) {
         let value =
             if age < Duration::from_secs(10) { format::ms(age.as_secs_f64()) } else { format::age(age) };
-        let reason = Some("No new pair has come: look at the cameras and their cables.");
-        Lamp::new("Age", &value, Health::Warning).reason(reason).show(ui);
+        let reason = Some("No new pair has come: look at the cameras and their cables.".to_owned());
+        lamps.push(TopLamp { name: "Age", value, health: Health::Warning, reason, then: Then::Nothing });
     }
+    lamps
 }
 
-fn eyes_details(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+fn eyes_details(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let view = &window.view;
     let statistics = &view.live.statistics;
     ui.label(theme::strong(
         ui,
@@ -163,7 +166,8 @@ fn eyes_details(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
     }
 }
 
-fn calibration_lamp(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+fn calibration_lamp(view: &View) -> TopLamp {
+    let name = "Calibration";
     let Some(in_use) = &view.eyes.in_use else {
         let (value, health, reason) = if view.live.nominal_lenses {
             let reason = "Views, depth and measured points rest on the lens data of the rig file, not on these eyes: go to step 1, Eyes.";
@@ -171,91 +175,91 @@ fn calibration_lamp(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
         } else {
             ("none", Health::Off, "Nothing can be measured without one: go to step 1, Eyes.")
         };
-        if Lamp::new("Calibration", value, health).reason(Some(reason)).show(ui).clicked() {
-            outbox.act(Action::Go(Screen::Collect));
-        }
-        return;
+        let (value, reason, then) = (value.to_owned(), Some(reason.to_owned()), Then::Go(Screen::Collect));
+        return TopLamp { name, value, health, reason, then };
     };
     let made = in_use.calibration.evidence.as_ref().map_or(in_use.accepted, |evidence| evidence.created);
     let age = Timestamp::now().duration_since(made);
     let value = format::age(Duration::try_from(age).unwrap_or_default());
-    let (health, reason) = match &view.eyes.step {
-        StepState::Stale { why } => (Health::Warning, Some(why.as_str())),
+    let (health, reason) = standing(&view.eyes.step);
+    TopLamp { name, value, health, reason, then: Then::Go(Screen::Accept) }
+}
+
+/// How a step that was done stands.
+fn standing(step: &StepState) -> (Health, Option<String>) {
+    match step {
+        StepState::Stale { why } => (Health::Warning, Some(why.to_string())),
         _ => (Health::Good, None),
-    };
-    if Lamp::new("Calibration", &value, health).reason(reason).show(ui).clicked() {
-        outbox.act(Action::Go(Screen::Accept));
     }
 }
 
 /// With which effects the robot is predicted; nothing stands here while it is as described.
-fn model_lamp(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+fn model_lamp(view: &View) -> Option<TopLamp> {
     let gap = &view.gap;
     if gap.model.effects.is_empty() {
-        return;
+        return None;
     }
-    let (health, reason) = match &gap.step {
-        StepState::Stale { why } => (Health::Warning, Some(why.as_str())),
-        _ => (Health::Good, None),
-    };
-    if Lamp::new("Model", &gap.model.name, health).reason(reason).show(ui).clicked() {
-        outbox.act(Action::Go(Screen::Gap));
-    }
+    let (health, reason) = standing(&gap.step);
+    let value = gap.model.name.to_string();
+    Some(TopLamp { name: "Model", value, health, reason, then: Then::Go(Screen::Gap) })
 }
 
-fn clock_lamp(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
-    if window.view.twin.running {
-        return twin_clock_lamp(&window.view, ui, outbox);
-    }
-    let since_start = window.started.elapsed();
-    let minutes_on = window.view.eyes.minutes_since_on;
+/// How long the cameras have been on: as said, else since the program was started.
+fn minutes_on(window: &PlumblineWindow) -> f64 {
+    window.view.eyes.minutes_since_on.unwrap_or(window.started.elapsed().as_secs_f64() / 60.0)
+}
+
+fn clock_lamp(window: &PlumblineWindow) -> TopLamp {
     let live = window.view.source.replay.is_none() && window.view.source.status == SourceStatus::Running;
-    let minutes = minutes_on.unwrap_or(since_start.as_secs_f64() / 60.0);
+    let minutes = minutes_on(window);
     let warming = live && minutes < WARM_AFTER_MINUTES;
     let health = if warming { Health::Working((minutes / WARM_AFTER_MINUTES) as f32) } else { Health::Good };
-    let reason = warming.then_some(
-        "Lenses move while cameras get warm: calibrate after about 20 minutes, and again if unsure.",
-    );
-    let (name, value) = match minutes_on {
+    let reason = warming.then(|| {
+        "Lenses move while cameras get warm: calibrate after about 20 minutes, and again if unsure."
+            .to_owned()
+    });
+    let (name, value) = match window.view.eyes.minutes_since_on {
         Some(minutes) => {
             ("Cameras on", duration::seconds(minutes * 60.0).map_or(format::NONE.to_owned(), format::clock))
         }
-        None => ("Since start", format::clock(since_start)),
+        None => ("Since start", format::clock(window.started.elapsed())),
     };
-    let lamp = Lamp::new(name, &value, health).reason(reason).show(ui);
-    Popup::menu(&lamp).width(300.0).close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside).show(
-        |ui| {
-            ui.label("How long the cameras were on when the pairs were taken is kept with the calibration.");
-            ui.horizontal(|ui| {
-                let label = ui.label("Cameras on for");
-                let mut minutes = minutes_on.unwrap_or(0.0);
-                let drag = DragValue::new(&mut minutes).range(0.0..=10_000.0).max_decimals(0).suffix(" min");
-                if ui.add(drag).labelled_by(label.id).changed() {
-                    outbox.send(EyesCommand::MinutesSinceOn(Some(minutes)));
-                }
-                if minutes_on.is_some() && ui.button("Not known").clicked() {
-                    outbox.send(EyesCommand::MinutesSinceOn(None));
-                }
-            });
-        },
-    );
+    TopLamp { name, value, health, reason, then: Then::Open(300.0, clock_details) }
+}
+
+fn clock_details(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let minutes_on = window.view.eyes.minutes_since_on;
+    ui.label("How long the cameras were on when the pairs were taken is kept with the calibration.");
+    ui.horizontal(|ui| {
+        let label = ui.label("Cameras on for");
+        let mut minutes = minutes_on.unwrap_or(0.0);
+        let drag = DragValue::new(&mut minutes).range(0.0..=10_000.0).max_decimals(0).suffix(" min");
+        if ui.add(drag).labelled_by(label.id).changed() {
+            outbox.send(EyesCommand::MinutesSinceOn(Some(minutes)));
+        }
+        if minutes_on.is_some() && ui.button("Not known").clicked() {
+            outbox.send(EyesCommand::MinutesSinceOn(None));
+        }
+    });
 }
 
 /// The twin knows how long its eyes have been on.
-fn twin_clock_lamp(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+fn twin_clock_lamp(view: &View) -> TopLamp {
     let on = duration::seconds(view.twin.eyes_on_s).unwrap_or_default();
     let fraction = on.as_secs_f64() / 60.0 / WARM_AFTER_MINUTES;
     let warming = fraction < 1.0;
     let health = if warming { Health::Working(fraction as f32) } else { Health::Good };
-    let reason =
-        warming.then_some("The twin's eyes turn in their mounts while they warm up, as real ones do.");
-    let lamp = Lamp::new("Warm-up", &format::clock(on), health).reason(reason).show(ui);
-    Popup::menu(&lamp).width(240.0).show(|ui| {
-        for action in [RobotAction::WarmUp, RobotAction::CoolEyes] {
-            if ui.button(action.label()).clicked() {
-                outbox.act(Action::Robot(action));
-                ui.close();
-            }
+    let reason = warming
+        .then(|| "The twin's eyes turn in their mounts while they warm up, as real ones do.".to_owned());
+    let then = Then::Open(240.0, twin_clock_details);
+    TopLamp { name: "Warm-up", value: format::clock(on), health, reason, then }
+}
+
+fn twin_clock_details(_: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    for action in [RobotAction::WarmUp, RobotAction::CoolEyes] {
+        if ui.button(action.label()).clicked() {
+            outbox.act(Action::Robot(action));
+            ui.close();
         }
-    });
+    }
 }

@@ -21,6 +21,7 @@ mod health;
 mod icon;
 mod inspector;
 mod jogging;
+mod lamps;
 mod launch;
 mod log_lines;
 mod log_panel;

@@ -1,14 +1,16 @@
 //! The robot in the top line: the bus, the hottest servo, what STOP says, and releasing it.
 
-use egui::{Popup, RichText, Ui};
+use egui::{RichText, Ui};
 use plumbline_engine::View;
 use plumbline_engine::view::{Connection, MotionState, RobotView};
 use plumbline_widgets::buttons::ArmState;
 use plumbline_widgets::format;
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
-use plumbline_widgets::lamp::{Health, Lamp};
+use plumbline_widgets::lamp::Health;
 use plumbline_widgets::theme::{self, Role, space};
 
+use super::PlumblineWindow;
+use super::lamps::{Then, TopLamp};
 use crate::operator::{Action, Outbox, RobotAction, Screen};
 
 /// Fewer complete cycles per second than this make motion rough.
@@ -48,23 +50,20 @@ pub(super) fn release_button(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
 }
 
 /// Nothing where no robot is: the button that connects one is in the menu beside.
-pub(super) fn show(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
-    bus(view, ui, outbox);
-    servos(view, ui, outbox);
+pub(super) fn lamps(view: &View) -> Vec<TopLamp> {
+    bus(&view.robot).into_iter().chain(servos(&view.robot)).collect()
 }
 
-fn bus(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
-    let robot = &view.robot;
+fn bus(robot: &RobotView) -> Option<TopLamp> {
     let (value, health, reason) = match &robot.connection {
-        Connection::None => return,
+        Connection::None => return None,
         Connection::Connecting { doing, .. } => {
             ("connecting".to_owned(), Health::Working(0.5), Some(doing.clone()))
         }
         Connection::Lost { reason, .. } => ("lost".to_owned(), Health::Failed, Some(reason.clone())),
         Connection::Connected { .. } => connected(robot),
     };
-    let lamp = Lamp::new("Bus", &value, health).reason(reason.as_deref()).show(ui);
-    Popup::menu(&lamp).width(320.0).show(|ui| details(ui, view, outbox));
+    Some(TopLamp { name: "Bus", value, health, reason, then: Then::Open(320.0, details) })
 }
 
 fn connected(robot: &RobotView) -> (String, Health, Option<String>) {
@@ -93,7 +92,8 @@ fn connected(robot: &RobotView) -> (String, Health, Option<String>) {
     (value, Health::Good, None)
 }
 
-fn details(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
+fn details(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let view = &window.view;
     let bus = &view.robot.bus;
     let rate = bus.cycles_per_s.map_or(format::NONE.to_owned(), format::hertz);
     let mut rows = vec![
@@ -120,13 +120,12 @@ fn details(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
 }
 
 /// The hottest servo, because it is the one that ends the work.
-fn servos(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
-    let robot = &view.robot;
+fn servos(robot: &RobotView) -> Option<TopLamp> {
     if !robot.connection.is_connected() {
-        return;
+        return None;
     }
     let warm = robot.joints.iter().filter_map(|joint| Some((joint.temperature_c?, joint)));
-    let Some((hottest_c, joint)) = warm.max_by(|a, b| a.0.total_cmp(&b.0)) else { return };
+    let Some((hottest_c, joint)) = warm.max_by(|a, b| a.0.total_cmp(&b.0)) else { return None };
     let gate = robot.rig.as_ref().map(|rig| rig.gate);
     let (health, reason) = match gate {
         Some(gate) if hottest_c >= gate.hot_c => {
@@ -141,7 +140,5 @@ fn servos(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
         },
     };
     let value = format!("{} °C", format::fixed(hottest_c, 0));
-    if Lamp::new("Servos", &value, health).reason(reason.as_deref()).show(ui).clicked() {
-        outbox.act(Action::Go(Screen::Robot));
-    }
+    Some(TopLamp { name: "Servos", value, health, reason, then: Then::Go(Screen::Robot) })
 }

@@ -212,3 +212,46 @@ fn pictures_of_faults() {
             .expect("the folder can be written");
     }
 }
+
+/// A window in which every lamp of the top line has something to say, STOP latched.
+fn all_lamps() -> View {
+    let before = robot_failed(ended(WatchedThread::Robot, true));
+    let kept = KeptView { problem: Some("the disk is full".into()), journal_lost: 12, ..KeptView::default() };
+    View { kept: Arc::new(kept), lost_commands: 3, ..before }
+}
+
+#[test]
+fn nothing_in_the_top_line_covers_anything_else_at_any_width() {
+    for (size, zoom) in [
+        ([1440.0, 900.0], 1.0),
+        ([1280.0, 800.0], 1.0),
+        ([1024.0, 700.0], 1.0),
+        ([960.0, 600.0], 1.0),
+        ([1920.0, 1200.0], 2.0),
+    ] {
+        let fake = Fake::over(all_lamps());
+        let mut window = fake.window_of_size(on(Screen::Live), size);
+        window.ctx.set_zoom_factor(zoom);
+        window.run_steps(4);
+        let wide = size[0] / zoom;
+        let buttons = window.query_all_by_role(egui::accesskit::Role::Button);
+        let rects: Vec<_> = buttons
+            .map(|button| (button.accesskit_node().label().unwrap_or_default(), button.rect()))
+            .filter(|(_, rect)| rect.max.y < 100.0)
+            .collect();
+        assert!(rects.len() >= 10, "{size:?}: {rects:?}");
+        for label in ["STOP", "Release STOP", "Commands", "Program robot failed", "Requests 3 lost"] {
+            assert!(rects.iter().any(|(name, _)| name.starts_with(label)), "{label} of {size:?}: {rects:?}");
+        }
+        for (i, (name, rect)) in rects.iter().enumerate() {
+            assert!(rect.min.x >= 0.0 && rect.max.x <= wide, "{name} of {size:?} at {zoom}: {rect}");
+            for (other, covered) in &rects[i + 1..] {
+                let both = rect.shrink(0.5).intersect(covered.shrink(0.5));
+                assert!(
+                    !both.is_positive(),
+                    "{name} at {rect} and {other} at {covered} of {size:?} at {zoom}"
+                );
+            }
+        }
+    }
+}
