@@ -3,7 +3,7 @@
 use image::RgbImage;
 use plumbline_model::detection::Detection;
 use plumbline_vision::detect::{
-    ClassFilter, DetectSettings, Detector, DetectorInfo, DetectorOptions, Provider, shipped_detector,
+    ClassFilter, DetectSettings, Detector, DetectorInfo, DetectorOptions, Part, Provider, shipped_detector,
 };
 
 use super::command::DetectorChoice;
@@ -71,8 +71,19 @@ impl Detects for FileDetector {
         iou: f32,
         found: &mut Vec<Detection>,
     ) -> Result<DetectionTiming, String> {
+        self.detect_in(image, Part::default(), iou, found)
+    }
+
+    fn detect_in(
+        &mut self,
+        image: &RgbImage,
+        part: Part,
+        iou: f32,
+        found: &mut Vec<Detection>,
+    ) -> Result<DetectionTiming, String> {
         self.settings.iou = iou;
-        let timing = self.detector.detect(image, &self.settings, found).map_err(|error| error.to_string())?;
+        let timing = self.detector.detect_in(image, part, &self.settings, found);
+        let timing = timing.map_err(|error| error.to_string())?;
         Ok(DetectionTiming {
             before: timing.before,
             network: timing.network,
