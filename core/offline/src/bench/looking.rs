@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn a_toy_on_the_twins_table_is_a_target_of_the_arm() {
         let rig = Arc::new(Rig::built_in("nico").expect("comes with the program"));
-        let scenario = Scenario::built_in("nominal").expect("comes with the program");
+        let scenario = Scenario::built_in("perfect").expect("comes with the program");
         let twin =
             Twin::start(TwinSettings { rig: rig.clone(), scenario, seed: 1, pace: 1.0 }).expect("starts");
         let pair = match pair(&twin) {
