@@ -13,6 +13,7 @@ import numpy as np
 import onnx
 import torch
 
+from any_size import rewritten
 from augment import NAMES
 from network import STRIDES, Detector, Exported, fold
 
@@ -53,7 +54,7 @@ def export(weights, out, height, width):
     for key, value in known.items():
         entry = file.metadata_props.add()
         entry.key, entry.value = key, value
-    onnx.save(file, out)
+    onnx.save(rewritten(file), out)
     import onnxruntime
 
     session = onnxruntime.InferenceSession(out, providers=["CPUExecutionProvider"])

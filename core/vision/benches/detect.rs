@@ -2,7 +2,11 @@
 //! ultralytics on the same file with as many threads: `cargo bench -p plumbline-vision --bench detect`.
 //!
 //! Takes the detector that comes with the program, or the ONNX file that `PLUMBLINE_DETECTOR`
-//! names; a real pair if the measured data are at hand, else a made-up one. The comparison needs
+//! names; a real pair if the measured data are at hand, else a made-up one. Looks at all of the images,
+//! at what is lit of them, and where the workspace would be with the head as it stands at rest are
+//! taken in turn, so that another load of the machine counts for all of them. With
+//! `PLUMBLINE_DETECTOR_BEFORE`, another ONNX file, that one takes its turn too and is what the others
+//! are compared with. The comparison with the published way needs
 //! a Python with ultralytics and onnxruntime: `PLUMBLINE_PYTHON`, else `python3`. Medians are taken
 //! over `PLUMBLINE_ROUNDS`, else 40.
 
@@ -11,13 +15,16 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use image::RgbImage;
-use plumbline_model::{StereoCalibration, measured_data};
-use plumbline_vision::detect::{DetectSettings, Detector, DetectorOptions, shipped_detector};
+use plumbline_model::robot::Rig;
+use plumbline_model::{Eye, StereoCalibration, measured_data};
+use plumbline_vision::detect::{DetectSettings, Detector, DetectorOptions, Part, Region, shipped_detector};
 use plumbline_vision::detect_places::{PlaceFinder, PlaceOptions};
 use plumbline_vision::synthetic::nico_like_eyes;
 
 /// Both eyes may take so many times one bare run.
 const MOST_RUNS: f64 = 2.1;
+/// Both eyes with places may take so long on two idle cores, ms.
+const MOST_BOTH_MS: f64 = 75.0;
 /// The published way to run a detector.
 const PEER: &str = include_str!("detect_peer.py");
 
@@ -46,6 +53,7 @@ fn main() {
         made_up_pair()
     });
     let ours_ms = time(&mut detector, &pair);
+    turns(&file, &pair);
     match peer_ms(&file, &pair[0]) {
         Ok(peer_ms) => {
             // Once more, so that another load of the machine does not count for one of them.
@@ -57,6 +65,54 @@ fn main() {
             );
         }
         Err(reason) => eprintln!("skipped: comparison with ultralytics: {reason}"),
+    }
+}
+
+/// A way of looking that is timed: what it is called, by which detector, at what of both eyes.
+struct Way {
+    name: &'static str,
+    detector: Detector,
+    parts: [Part; 2],
+    times: Vec<Duration>,
+}
+
+/// Prints the time of both eyes with pairing and places, for all ways of looking in turn.
+fn turns(file: &Path, pair: &[RgbImage; 2]) {
+    let open = |file: &Path| Detector::open(file, &DetectorOptions::default()).expect("it opened before");
+    let rig = Rig::built_in("nico").expect("comes with the program");
+    let (cameras, workspace) = (rig.eyes.cameras, rig.workspace(&rig.home()));
+    let regions =
+        Eye::BOTH.map(|eye| Region::of_workspace(&cameras, &workspace, eye).map_or(Part::Lit, Part::Region));
+    let way = |name, file: &Path, parts| Way { name, detector: open(file), parts, times: Vec::new() };
+    let before = std::env::var_os("PLUMBLINE_DETECTOR_BEFORE").map(PathBuf::from);
+    let mut ways: Vec<Way> = before.iter().map(|file| way("before", file, [Part::Whole; 2])).collect();
+    ways.extend([
+        way("all of the image", file, [Part::Whole; 2]),
+        way("what is lit", file, [Part::Lit; 2]),
+        way("the workspace", file, regions),
+    ]);
+    let calibration = StereoCalibration::bare(cameras);
+    let mut finder = PlaceFinder::new(Some(&calibration), PlaceOptions::default());
+    let (settings, mut boxes, mut places) = (DetectSettings::default(), [Vec::new(), Vec::new()], Vec::new());
+    for round in 0..rounds() + 3 {
+        for Way { detector, parts, times, .. } in &mut ways {
+            let begun = Instant::now();
+            for ((image, part), found) in pair.iter().zip(parts).zip(&mut boxes) {
+                detector.detect_in(image, *part, &settings, found).expect("the network runs");
+            }
+            finder.find((&pair[0], &boxes[0]), (&pair[1], &boxes[1]), &mut places);
+            if round >= 3 {
+                times.push(begun.elapsed());
+            }
+        }
+    }
+    let of_first = median_ms(ways[0].times.clone());
+    for Way { name, times, .. } in ways {
+        let ms = median_ms(times);
+        eprintln!(
+            "both eyes with places, {name}: {ms:.1} ms, ratio {:.3} (at most {MOST_BOTH_MS} ms)",
+            ms / of_first
+        );
     }
 }
 

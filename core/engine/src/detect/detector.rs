@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use image::RgbImage;
 use plumbline_model::detection::Detection;
-use plumbline_vision::detect::DetectError;
+use plumbline_vision::detect::{DetectError, Part};
 
 use super::command::{DetectorChoice, Provider};
 use super::view::{DetectionTiming, DetectorFacts};
@@ -47,6 +47,23 @@ pub trait Detects: Send {
         iou: f32,
         found: &mut Vec<Detection>,
     ) -> Result<DetectionTiming, DetectorError>;
+
+    /// The same on a part of an image, for what can look at a part in less time. Things elsewhere may
+    /// be found too.
+    ///
+    /// # Errors
+    /// As [`Self::detect`].
+    fn detect_in(
+        &mut self,
+        image: &RgbImage,
+        part: Part,
+        iou: f32,
+        found: &mut Vec<Detection>,
+    ) -> Result<DetectionTiming, DetectorError> {
+        // Without parts of its own it sees everything.
+        let _ = part;
+        self.detect(image, iou, found)
+    }
 }
 
 /// A detector that is ready. Only the stage that runs it ever waits for it.

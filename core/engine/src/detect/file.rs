@@ -3,7 +3,7 @@
 use image::RgbImage;
 use plumbline_model::detection::Detection;
 use plumbline_vision::detect::{
-    ClassFilter, DetectSettings, Detector, DetectorInfo, DetectorOptions, Provider, shipped_detector,
+    ClassFilter, DetectSettings, Detector, DetectorInfo, DetectorOptions, Part, Provider, shipped_detector,
 };
 
 use super::command::DetectorChoice;
@@ -66,8 +66,18 @@ impl Detects for FileDetector {
         iou: f32,
         found: &mut Vec<Detection>,
     ) -> Result<DetectionTiming, DetectorError> {
+        self.detect_in(image, Part::default(), iou, found)
+    }
+
+    fn detect_in(
+        &mut self,
+        image: &RgbImage,
+        part: Part,
+        iou: f32,
+        found: &mut Vec<Detection>,
+    ) -> Result<DetectionTiming, DetectorError> {
         self.settings.iou = iou;
-        let timing = self.detector.detect(image, &self.settings, found)?;
+        let timing = self.detector.detect_in(image, part, &self.settings, found)?;
         Ok(DetectionTiming {
             before: timing.before,
             network: timing.network,

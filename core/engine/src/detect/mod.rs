@@ -4,6 +4,7 @@
 //! [`DetectWorkflow`] is driven by commands, by finished work and by the stage of the live pipeline;
 //! it owns no thread.
 
+mod attention;
 pub mod command;
 mod detector;
 mod file;

@@ -6,8 +6,10 @@ use std::time::Instant;
 
 use plumbline_model::detection::{ClassNames, Detection};
 use plumbline_model::{Stamp, StereoFrame};
+use plumbline_vision::detect::Part;
 use plumbline_vision::detect_places::ObjectPlace;
 
+use super::attention::{self, Attention};
 use super::view::{DetectionSettings, DetectionTiming, DetectionsView};
 use super::{DetectorError, LoadedDetector, Objects};
 use crate::ground::jobs::panic_message;
@@ -27,6 +29,8 @@ pub struct DetectInput {
     pub detector: Arc<LoadedDetector>,
     /// What is shown of what it finds.
     pub settings: Arc<DetectionSettings>,
+    /// Whether pairs are photographs that have nothing to do with each other.
+    pub photographs: bool,
     /// What places rest on, or why there are none.
     pub setup: Result<Arc<LiveSetup>, NoSetup>,
 }
@@ -64,6 +68,7 @@ pub struct DetectFailure {
 #[derive(Default)]
 pub struct DetectStage {
     said: Option<Said>,
+    attention: Attention,
     objects: Objects,
     left: Vec<Detection>,
     right: Vec<Detection>,
@@ -79,6 +84,7 @@ struct Said {
     captured_at: Instant,
     detector: u64,
     iou: f32,
+    parts: [Part; 2],
     timing: DetectionTiming,
 }
 
@@ -112,12 +118,20 @@ impl Stage for DetectStage {
 
 impl DetectStage {
     fn found(&mut self, input: &DetectInput) -> (bool, Found) {
-        let (is_new, mut timing) = match self.said.filter(|said| said.is_of(input)) {
-            Some(said) => (false, said.timing),
-            None => match self.ask(input) {
-                Ok(timing) => (true, timing),
-                Err(failure) => return (true, Err(failure)),
-            },
+        let workspace = input.setup.as_ref().ok().filter(|_| !input.photographs);
+        let workspace = workspace.and_then(|setup| attention::workspace(&input.frame, setup));
+        let (is_new, parts, mut timing) = match self.said.filter(|said| said.is_of(input)) {
+            Some(said) => (false, said.parts, said.timing),
+            None => {
+                let parts = self.attention.parts(input.opened, workspace);
+                match self.ask(input, parts) {
+                    Ok(timing) => (true, parts, timing),
+                    Err(failure) => {
+                        self.attention.forget();
+                        return (true, Err(failure));
+                    }
+                }
+            }
         };
         let begun = Instant::now();
         let names = &input.detector.facts.names;
@@ -128,6 +142,7 @@ impl DetectStage {
             left_out += all.len() - shown.len();
         }
         let boxes = [self.shown_left.as_slice(), self.shown_right.as_slice()];
+        self.attention.looked(parts, workspace, boxes);
         let found = self.objects.find(&input.frame, input.setup.as_ref(), names, boxes);
         let found = match found {
             Ok(found) => found,
@@ -148,15 +163,15 @@ impl DetectStage {
     }
 
     /// Runs the network on both eyes.
-    fn ask(&mut self, input: &DetectInput) -> Result<DetectionTiming, DetectFailure> {
+    fn ask(&mut self, input: &DetectInput, parts: [Part; 2]) -> Result<DetectionTiming, DetectFailure> {
         self.said = None;
         let (left, right) = (&mut self.left, &mut self.right);
         let iou = input.settings.iou;
         // A foreign file decides what is computed here: its faults end with a sentence.
         let asked = std::panic::catch_unwind(AssertUnwindSafe(|| {
             let mut detector = input.detector.lock();
-            let of_left = detector.detect(&input.frame.left, iou, left)?;
-            let of_right = detector.detect(&input.frame.right, iou, right)?;
+            let of_left = detector.detect_in(&input.frame.left, parts[0], iou, left)?;
+            let of_right = detector.detect_in(&input.frame.right, parts[1], iou, right)?;
             Ok::<_, DetectorError>(of_left.plus(&of_right))
         }));
         let timing = match asked {
@@ -177,6 +192,7 @@ impl DetectStage {
             captured_at: input.frame.stamp.captured_at,
             detector: input.detector.id,
             iou,
+            parts,
             timing,
         });
         Ok(timing)

@@ -3,6 +3,7 @@
 //! Data that are not at hand leave their figures out, with the reason.
 
 mod correction;
+mod looking;
 mod robot;
 
 use std::path::Path;
@@ -119,7 +120,7 @@ pub fn bench(context: &dyn JobContext) -> Result<BenchReport, OfflineError> {
     context.report(0.85, "correction models");
     figures.extend(correction::figures());
     context.checkpoint()?;
-    context.report(0.9, "kinematics, servo bus and the twin's eyes");
+    context.report(0.9, "kinematics, servo bus, the twin's eyes and what is seen with them");
     figures.extend(robot::figures());
     Ok(BenchReport { figures, threads: std::thread::available_parallelism().map_or(1, usize::from) })
 }

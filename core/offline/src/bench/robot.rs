@@ -10,7 +10,7 @@ use plumbline_model::robot::ik::{Options, Solver, Target};
 use plumbline_twin::eyes::{EyeOptions, EyeRenderer, Sensor};
 use plumbline_twin::{Scenario, Twin, TwinSettings};
 
-use super::Figure;
+use super::{Figure, looking};
 
 /// Targets of the inverse kinematics.
 const TARGETS: u32 = 10_000;
@@ -28,6 +28,7 @@ pub fn figures() -> Vec<Figure> {
         Ok(twin) => {
             figures.push(bus(&twin).unwrap_or_else(|why| Figure::missing("the servo bus", why)));
             figures.push(eyes(&twin).unwrap_or_else(|why| Figure::missing("the twin's eyes", why)));
+            figures.extend(looking::figures(&twin, &Arc::new(rig())));
         }
         Err(why) => figures.push(Figure::missing("the twin", why)),
     }

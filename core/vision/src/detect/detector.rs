@@ -17,7 +17,7 @@ use super::shape::{self, Metadata, Output};
 use super::suppress::{Candidate, suppress, surest_first};
 use super::{
     DetectError, DetectSettings, DetectTiming, DetectorInfo, DetectorOptions, Head, InputSize, NamesFrom,
-    Precision, Provider, Task,
+    Part, Precision, Provider, Region, Task,
 };
 
 /// Finds things on one image at a time. Belongs to one thread; it can be sent to another.
@@ -26,6 +26,7 @@ pub struct Detector {
     network: Network,
     reader: Reader,
     candidates: Vec<Candidate>,
+    columns: Vec<u8>,
 }
 
 impl std::fmt::Debug for Detector {
@@ -108,7 +109,8 @@ impl Detector {
             ..named(name.clone(), found.clone(), output)?
         };
         let network = Network::new(session, [input_precision, output.precision], output.steady);
-        Ok(Self { info, network, reader: Reader::default(), candidates: Vec::new() })
+        let (candidates, columns) = (Vec::new(), Vec::new());
+        Ok(Self { info, network, reader: Reader::default(), candidates, columns })
     }
 
     /// What is known of it.
@@ -116,16 +118,30 @@ impl Detector {
         &self.info
     }
 
-    /// Finds things on an image; `found` is cleared first and holds them by falling confidence,
-    /// with their boxes on the image and clipped to it. A box that has no part on the image is
-    /// left out.
+    /// Finds things on what is lit of an image; see [`Self::detect_in`].
+    ///
+    /// # Errors
+    /// As [`Self::detect_in`].
+    pub fn detect(
+        &mut self,
+        image: &RgbImage,
+        settings: &DetectSettings,
+        found: &mut Vec<Detection>,
+    ) -> Result<DetectTiming, DetectError> {
+        self.detect_in(image, Part::Lit, settings, found)
+    }
+
+    /// Finds things on a part of an image; `found` is cleared first and holds them by falling
+    /// confidence, with their boxes on the image and clipped to it. A box that has no part on the
+    /// image is left out. A network of fixed size always sees all of the image.
     ///
     /// # Errors
     /// An empty image, thresholds out of range, or a network that fails or answers nonsense.
     /// `found` is empty then, and the next image can be tried.
-    pub fn detect(
+    pub fn detect_in(
         &mut self,
         image: &RgbImage,
+        part: Part,
         settings: &DetectSettings,
         found: &mut Vec<Detection>,
     ) -> Result<DetectTiming, DetectError> {
@@ -133,7 +149,8 @@ impl Detector {
         settings.check()?;
         let begun = Instant::now();
         let (width_px, height_px) = image.dimensions();
-        let letterbox = Letterbox::new((width_px, height_px), self.info.input)
+        let lit = || Region::lit(image, &mut self.columns);
+        let letterbox = Letterbox::of_part((width_px, height_px), part, lit, self.info.input)
             .ok_or(DetectError::EmptyImage { width_px, height_px })?;
         self.fill(image, &letterbox)?;
         let filled = Instant::now();
@@ -160,7 +177,7 @@ impl Detector {
 
     /// Runs the network and reads its head; `ran` is set between the two.
     fn run(&mut self, settings: &DetectSettings, ran: &mut Instant) -> Result<(), DetectError> {
-        let Self { info, network, reader, candidates } = self;
+        let Self { info, network, reader, candidates, .. } = self;
         let classes = info.names.len();
         let read = network.run(|shape, values| {
             *ran = Instant::now();

@@ -7,28 +7,23 @@
 //! and pixels are resampled bilinearly as OpenCV's `resize` does. Checked against numbers of the
 //! reference in `tests/detect_reference.rs`.
 
-use image::RgbImage;
-use opencv::core::{Mat, Size, Vec3b};
-use opencv::imgproc;
 use plumbline_model::detection::PixelBox;
 
-use super::{DetectError, InputSize};
-use crate::mat;
-
-/// Brightness of the padding.
-const GRAY: u8 = 114;
+use super::{InputSize, Part, Region};
 
 /// Where an image lies in the input of a network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Letterbox {
     /// Size (width, height) of the image, px.
     pub image: (u32, u32),
-    /// Size (width, height) of the input, px.
+    /// Size (width, height) of the input that holds all of the image, px.
     pub input: (u32, u32),
     /// Size (width, height) of the image in it, px.
     pub scaled: (u32, u32),
     /// Column and row of the image's first pixel in the input.
     pub offset: (u32, u32),
+    /// What of this input the network is given, in its pixels.
+    pub given: Region,
 }
 
 impl Letterbox {
@@ -51,116 +46,86 @@ impl Letterbox {
             stride.map_or(spare, |stride| spare % stride.max(1))
         };
         let spare = (spare(within.0, scaled.0), spare(within.1, scaled.1));
-        let before = |spare: u32| (0.5 * f64::from(spare) - 0.1).round_ties_even() as u32;
-        Some(Self {
-            image,
-            input: (scaled.0 + spare.0, scaled.1 + spare.1),
-            scaled,
-            offset: (before(spare.0), before(spare.1)),
-        })
+        let input = (scaled.0 + spare.0, scaled.1 + spare.1);
+        let offset = (before(spare.0), before(spare.1));
+        Some(Self { image, input, scaled, offset, given: Region::whole(input) })
     }
 
-    /// A box of the input on the image, clipped to it.
-    pub fn on_image(&self, [x0, y0, x1, y1]: [f32; 4]) -> PixelBox {
-        let axis = |at: f32, offset: u32, scaled: u32, length: u32| {
-            let gain = (f64::from(scaled) / f64::from(length)) as f32;
-            ((at - offset as f32) / gain).clamp(0.0, length as f32)
-        };
-        let x = |at| axis(at, self.offset.0, self.scaled.0, self.image.0);
-        let y = |at| axis(at, self.offset.1, self.scaled.1, self.image.1);
-        PixelBox::new(x(x0), y(y0), x(x1), y(y1))
-    }
-}
-
-/// A number that a network takes as brightness, 0–1.
-pub(super) trait Brightness: Copy {
-    /// All 256, so that every pixel is exactly v / 255, rounded once.
-    fn table() -> [Self; 256];
-}
-
-impl Brightness for f32 {
-    fn table() -> [Self; 256] {
-        std::array::from_fn(|value| value as f32 / 255.0)
-    }
-}
-
-impl Brightness for half::f16 {
-    fn table() -> [Self; 256] {
-        std::array::from_fn(|value| half::f16::from_f32(value as f32 / 255.0))
-    }
-}
-
-/// Fills inputs; keeps what it needs between images.
-pub(super) struct Filler<T> {
-    table: Box<[T; 256]>,
-    scaled: RgbImage,
-    /// What the padding of the input was made for.
-    padded_for: Option<Letterbox>,
-}
-
-impl<T: Brightness> Filler<T> {
-    /// With nothing filled yet.
-    pub fn new() -> Self {
-        Self { table: Box::new(T::table()), scaled: RgbImage::new(0, 0), padded_for: None }
-    }
-
-    /// Writes an image into an input of three planes, red first.
+    /// For a part of an image: the input that all of it would have, but only the whole strides of it
+    /// in which the part lies. The network then sees the same pixels as in all of the image, in the
+    /// same places of its cells. An input of fixed size costs the same whatever it shows: it gets all
+    /// of the image, and so does a part that is not on the image.
     ///
-    /// `input` must hold 3 × width × height numbers of `letterbox.input`, and must be the same
-    /// memory, untouched, as long as the letterbox stays the same.
-    pub fn fill(
-        &mut self,
-        image: &RgbImage,
-        letterbox: &Letterbox,
-        input: &mut [T],
-    ) -> Result<(), DetectError> {
-        if self.padded_for != Some(*letterbox) {
-            input.fill(self.table[usize::from(GRAY)]);
-            self.padded_for = Some(*letterbox);
+    /// `None` if the image is empty.
+    pub fn of_region(image: (u32, u32), region: Region, input: InputSize) -> Option<Self> {
+        let whole = Self::new(image, input)?;
+        let (InputSize::Dynamic { stride_px, .. }, Some(region)) = (input, region.on_image(image)) else {
+            return Some(whole);
+        };
+        let stride = stride_px.max(1);
+        let along = |axis: Axis, first: u32, length: u32| {
+            let gain = f64::from(axis.scaled) / f64::from(axis.image);
+            let at = |px: u32| f64::from(axis.offset) + f64::from(px) * gain;
+            let begin = at(first) as u32 / stride * stride;
+            let end = (at(first + length).ceil() as u32).next_multiple_of(stride).min(axis.input);
+            (begin, end - begin)
+        };
+        let (x_px, width_px) = along(whole.axis(0), region.x_px, region.width_px);
+        let (y_px, height_px) = along(whole.axis(1), region.y_px, region.height_px);
+        Some(Self { given: Region { x_px, y_px, width_px, height_px }, ..whole })
+    }
+
+    /// For what of an image is looked at. `lit` is what is not black to the edge.
+    pub(super) fn of_part(
+        image: (u32, u32),
+        part: Part,
+        lit: impl FnOnce() -> Region,
+        input: InputSize,
+    ) -> Option<Self> {
+        match (part, input) {
+            (Part::Whole, _) | (_, InputSize::Fixed { .. }) => Self::new(image, input),
+            (Part::Lit, _) => Self::of_region(image, lit(), input),
+            (Part::Region(region), _) => Self::of_region(image, region, input),
         }
-        if letterbox.scaled == image.dimensions() {
-            planes(&self.table, image, letterbox, input);
-            return Ok(());
+    }
+
+    /// Along columns (0) or rows (1).
+    fn axis(&self, axis: usize) -> Axis {
+        let of = |(x, y): (u32, u32)| if axis == 0 { x } else { y };
+        Axis {
+            image: of(self.image),
+            input: of(self.input),
+            scaled: of(self.scaled),
+            offset: of(self.offset),
+            given: of((self.given.x_px, self.given.y_px)),
         }
-        if self.scaled.dimensions() != letterbox.scaled {
-            self.scaled = RgbImage::new(letterbox.scaled.0, letterbox.scaled.1);
-        }
-        let (width_px, height_px) = image.dimensions();
-        resize(image, &mut self.scaled).map_err(|error| DetectError::Resize {
-            width_px,
-            height_px,
-            reason: error.message,
-        })?;
-        planes(&self.table, &self.scaled, letterbox, input);
-        Ok(())
+    }
+
+    /// A box of what the network is given on the image, clipped to it.
+    pub fn on_image(&self, [x0, y0, x1, y1]: [f32; 4]) -> PixelBox {
+        let along = |at: f32, axis: Axis| {
+            let gain = (f64::from(axis.scaled) / f64::from(axis.image)) as f32;
+            ((at + axis.given as f32 - axis.offset as f32) / gain).clamp(0.0, axis.image as f32)
+        };
+        let (x, y) = (self.axis(0), self.axis(1));
+        PixelBox::new(along(x0, x), along(y0, y), along(x1, x), along(y1, y))
     }
 }
 
-/// Bilinear, as `cv2.resize` with `INTER_LINEAR`.
-fn resize(image: &RgbImage, scaled: &mut RgbImage) -> opencv::Result<()> {
-    let size = Size::new(scaled.width() as i32, scaled.height() as i32);
-    let from = mat::rgb(image)?;
-    let mut to = Mat::new_rows_cols_with_bytes_mut::<Vec3b>(size.height, size.width, scaled)?;
-    imgproc::resize(&from, &mut to, size, 0.0, 0.0, imgproc::INTER_LINEAR)
+/// A letterbox along columns or rows, px.
+#[derive(Clone, Copy)]
+struct Axis {
+    image: u32,
+    input: u32,
+    scaled: u32,
+    offset: u32,
+    /// First of what the network is given.
+    given: u32,
 }
 
-/// Pixels to planes at the letterbox's offset.
-fn planes<T: Brightness>(table: &[T; 256], image: &RgbImage, letterbox: &Letterbox, input: &mut [T]) {
-    let (width, height) = (letterbox.input.0 as usize, letterbox.input.1 as usize);
-    let (left, top) = (letterbox.offset.0 as usize, letterbox.offset.1 as usize);
-    let columns = image.width() as usize;
-    let (red, rest) = input.split_at_mut(width * height);
-    let (green, blue) = rest.split_at_mut(width * height);
-    for (row, pixels) in image.as_raw().chunks_exact(3 * columns).enumerate() {
-        let begin = (top + row) * width + left;
-        let part = begin..begin + columns;
-        let (red, green, blue) = (&mut red[part.clone()], &mut green[part.clone()], &mut blue[part]);
-        for (((pixel, red), green), blue) in pixels.chunks_exact(3).zip(red).zip(green).zip(blue) {
-            *red = table[usize::from(pixel[0])];
-            *green = table[usize::from(pixel[1])];
-            *blue = table[usize::from(pixel[2])];
-        }
-    }
+/// Padding on the left or above, of all padding.
+fn before(spare: u32) -> u32 {
+    (0.5 * f64::from(spare) - 0.1).round_ties_even() as u32
 }
 
 #[cfg(test)]
@@ -198,40 +163,53 @@ mod tests {
         }
     }
 
+    const ANY: InputSize = InputSize::Dynamic { width_px: 960, height_px: 704, stride_px: 32 };
+
     #[test]
-    fn an_empty_image_has_no_place() {
-        assert_eq!(Letterbox::new((0, 480), SQUARE), None);
-        assert_eq!(Letterbox::new((640, 0), SQUARE), None);
+    fn a_part_is_seen_at_the_scale_and_in_the_cells_of_the_whole() {
+        let whole = Letterbox::new((640, 480), ANY).expect("an image");
+        let region = Region { x_px: 120, y_px: 200, width_px: 300, height_px: 150 };
+        let part = Letterbox::of_region((640, 480), region, ANY).expect("an image");
+        assert_eq!(part.given, Region { x_px: 160, y_px: 288, width_px: 480, height_px: 256 });
+        assert_eq!(Letterbox { given: whole.given, ..part }, whole);
+        let in_whole = [200.0, 300.0, 260.0, 340.0];
+        let in_part = [200.0 - 160.0, 300.0 - 288.0, 260.0 - 160.0, 340.0 - 288.0];
+        assert_eq!(part.on_image(in_part), whole.on_image(in_whole));
     }
 
     #[test]
-    fn red_comes_first_and_the_rest_is_gray() {
-        let image = RgbImage::from_pixel(4, 2, image::Rgb([255, 51, 0]));
-        let input = InputSize::Fixed { width_px: 4, height_px: 4 };
-        let letterbox = Letterbox::new((4, 2), input).expect("an image");
-        let mut filler = Filler::<f32>::new();
-        let mut planes = vec![9.0; 3 * 16];
-        filler.fill(&image, &letterbox, &mut planes).expect("it fits");
-        let gray = 114.0 / 255.0;
-        for (plane, value) in planes.chunks(16).zip([1.0, 0.2, 0.0]) {
-            assert_eq!(&plane[..4], [gray; 4]);
-            assert_eq!(&plane[4..12], [value; 8]);
-            assert_eq!(&plane[12..], [gray; 4]);
+    fn parts_at_the_edges_and_of_any_size_stay_on_the_image() {
+        let image = (640, 480);
+        for (x_px, y_px) in [(0, 0), (639, 479), (600, 10), (13, 470)] {
+            for (width_px, height_px) in [(1, 1), (640, 480), (33, 400), (500, 21), (u32::MAX, 5)] {
+                let region = Region { x_px, y_px, width_px, height_px };
+                let letterbox = Letterbox::of_region(image, region, ANY).expect("an image");
+                let given = letterbox.given;
+                assert_eq!(given.on_image(letterbox.input), Some(given), "{region:?}");
+                assert!(given.width_px.is_multiple_of(32) && given.height_px.is_multiple_of(32));
+                let shown = letterbox.on_image([0.0, 0.0, given.width_px as f32, given.height_px as f32]);
+                let asked = region.on_image(image).expect("it begins on the image");
+                let (right, below) = (asked.x_px + asked.width_px, asked.y_px + asked.height_px);
+                assert!(shown.x0_px <= asked.x_px as f32 && shown.y0_px <= asked.y_px as f32, "{region:?}");
+                assert!(shown.x1_px >= right as f32 && shown.y1_px >= below as f32, "{region:?}");
+            }
         }
     }
 
     #[test]
-    fn another_size_leaves_nothing_of_the_image_before() {
-        let input = InputSize::Fixed { width_px: 8, height_px: 8 };
-        let mut filler = Filler::<f32>::new();
-        let mut planes = vec![0.0; 3 * 64];
-        let mut fill = |width, height| {
-            let image = RgbImage::from_pixel(width, height, image::Rgb([255, 255, 255]));
-            let letterbox = Letterbox::new((width, height), input).expect("an image");
-            filler.fill(&image, &letterbox, &mut planes).expect("it fits");
-            planes.iter().filter(|value| **value == 1.0).count()
-        };
-        assert_eq!(fill(8, 8), 3 * 64);
-        assert_eq!(fill(8, 4), 3 * 32);
+    fn where_a_part_saves_nothing_all_is_seen() {
+        let whole = |input| Letterbox::new((640, 480), input);
+        let outside = Region { x_px: 640, y_px: 0, width_px: 10, height_px: 10 };
+        assert_eq!(Letterbox::of_region((640, 480), outside, ANY), whole(ANY));
+        let inside = Region { x_px: 10, y_px: 0, width_px: 10, height_px: 10 };
+        assert_eq!(Letterbox::of_region((640, 480), inside, SQUARE), whole(SQUARE));
+        assert_eq!(Letterbox::of_region((640, 480), Region::whole((640, 480)), ANY), whole(ANY));
+        assert_eq!(Letterbox::of_region((0, 480), inside, ANY), None);
+    }
+
+    #[test]
+    fn an_empty_image_has_no_place() {
+        assert_eq!(Letterbox::new((0, 480), SQUARE), None);
+        assert_eq!(Letterbox::new((640, 0), SQUARE), None);
     }
 }

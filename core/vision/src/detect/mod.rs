@@ -14,6 +14,7 @@
 
 mod detector;
 mod error;
+mod filler;
 mod heads;
 mod info;
 mod letterbox;
@@ -22,6 +23,7 @@ mod names;
 mod network;
 #[cfg(test)]
 mod reference_tests;
+mod region;
 mod settings;
 mod shape;
 mod shipped;
@@ -32,6 +34,7 @@ pub use error::DetectError;
 pub use info::{DetectorInfo, Head, InputSize, NamesFrom, Precision, Task};
 pub use letterbox::Letterbox;
 pub use library::Library;
+pub use region::{Part, Region};
 pub use settings::{ClassFilter, DetectSettings, DetectTiming, DetectorOptions, Provider};
 pub use shipped::{ShippedDetector, shipped_detector};
 pub use suppress::{Candidate, suppress};

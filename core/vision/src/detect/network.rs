@@ -9,7 +9,8 @@ use ort::session::builder::SessionBuilder;
 use ort::session::{HasSelectedOutputs, OutputSelector, RunOptions, Session, SessionInputValue};
 use ort::value::{DynTensor, DynValue, PrimitiveTensorElementType, Tensor, TensorElementType};
 
-use super::letterbox::{Brightness, Filler, Letterbox};
+use super::Letterbox;
+use super::filler::{Brightness, Filler};
 use super::library::Library;
 use super::{DetectError, DetectorOptions, Precision, Provider};
 
@@ -94,17 +95,29 @@ pub(super) fn words(error: &ort::Error) -> String {
     }
 }
 
-/// Input and output of a network, in memory that stays.
+/// Inputs of so many sizes keep their memory: both eyes, looked at in part and whole.
+const MOST_SIZES: usize = 4;
+
+/// Inputs and outputs of a network, in memory that stays.
 pub(super) struct Network {
     session: Session,
-    input: Input,
+    /// One per size of input.
+    sizes: Vec<OfSize>,
+    /// Which of them was filled last, once one was.
+    filled: usize,
+    input_precision: Precision,
     /// The output as float32, where it is float16.
     wide: Vec<f32>,
     output_precision: Precision,
-    /// Runs into an output of the right shape; made after the first run, which tells the shape.
-    into_kept: Option<RunOptions<HasSelectedOutputs>>,
     /// Whether inputs of one shape have outputs of one shape.
     steady: bool,
+}
+
+/// Input and output of one size.
+struct OfSize {
+    input: Input,
+    /// Runs into an output of the right shape; made after the first run, which tells the shape.
+    into_kept: Option<RunOptions<HasSelectedOutputs>>,
 }
 
 enum Input {
@@ -114,8 +127,9 @@ enum Input {
 
 struct InputMemory<T: Number> {
     filler: Filler<T>,
-    /// With the size (width, height) that it was made for.
-    tensor: Option<((u32, u32), Tensor<T>)>,
+    /// Size (width, height), px.
+    size: (u32, u32),
+    tensor: Tensor<T>,
 }
 
 /// A number of a network's input.
@@ -133,12 +147,9 @@ pub(super) enum NotFilled {
 impl Network {
     /// Wraps a session whose input and output have been checked. `steady`: inputs of one shape
     /// have outputs of one shape.
-    pub fn new(session: Session, [input, output_precision]: [Precision; 2], steady: bool) -> Self {
-        let input = match input {
-            Precision::Float32 => Input::Float32(InputMemory::new()),
-            Precision::Float16 => Input::Float16(InputMemory::new()),
-        };
-        Self { session, input, wide: Vec::new(), output_precision, into_kept: None, steady }
+    pub fn new(session: Session, [input_precision, output_precision]: [Precision; 2], steady: bool) -> Self {
+        let (sizes, wide) = (Vec::with_capacity(MOST_SIZES), Vec::new());
+        Self { session, sizes, filled: 0, input_precision, wide, output_precision, steady }
     }
 
     /// The session alone.
@@ -146,28 +157,46 @@ impl Network {
         self.session
     }
 
-    /// Writes an image into the input.
+    /// Writes an image into the input of its size.
     pub fn fill(&mut self, image: &RgbImage, letterbox: &Letterbox) -> Result<(), NotFilled> {
-        let same = match &mut self.input {
-            Input::Float32(memory) => memory.fill(image, letterbox),
-            Input::Float16(memory) => memory.fill(image, letterbox),
-        }?;
-        if !same {
-            self.into_kept = None;
+        let given = (letterbox.given.width_px, letterbox.given.height_px);
+        self.filled = self.size(given).map_err(NotFilled::Runtime)?;
+        match self.sizes.get_mut(self.filled).map(|of_size| &mut of_size.input) {
+            Some(Input::Float32(memory)) => memory.fill(image, letterbox),
+            Some(Input::Float16(memory)) => memory.fill(image, letterbox),
+            None => Ok(()),
         }
-        Ok(())
+        .map_err(NotFilled::Image)
+    }
+
+    /// Which memory is that of a size, made if there is none; the oldest one goes for it.
+    fn size(&mut self, size: (u32, u32)) -> Result<usize, ort::Error> {
+        if let Some(known) = self.sizes.iter().position(|of_size| of_size.input.size() == size) {
+            return Ok(known);
+        }
+        if self.sizes.len() == MOST_SIZES {
+            self.sizes.remove(0);
+        }
+        let input = match self.input_precision {
+            Precision::Float32 => Input::Float32(InputMemory::new(size)?),
+            Precision::Float16 => Input::Float16(InputMemory::new(size)?),
+        };
+        self.sizes.push(OfSize { input, into_kept: None });
+        Ok(self.sizes.len() - 1)
     }
 
     /// Runs the network on what was filled in last and hands over shape and numbers of its
     /// first output.
     pub fn run<R>(&mut self, read: impl FnOnce(&[i64], &[f32]) -> R) -> Result<R, ort::Error> {
-        let input = match &self.input {
-            Input::Float32(InputMemory { tensor: Some((_, tensor)), .. }) => SessionInputValue::from(tensor),
-            Input::Float16(InputMemory { tensor: Some((_, tensor)), .. }) => SessionInputValue::from(tensor),
-            _ => return Err(ort::Error::new("no image was given")),
+        let Some(OfSize { input, into_kept }) = self.sizes.get_mut(self.filled) else {
+            return Err(ort::Error::new("no image was given"));
+        };
+        let input = match input {
+            Input::Float32(memory) => SessionInputValue::from(&memory.tensor),
+            Input::Float16(memory) => SessionInputValue::from(&memory.tensor),
         };
         let (precision, wide) = (self.output_precision, &mut self.wide);
-        if let Some(options) = &self.into_kept {
+        if let Some(options) = into_kept {
             let outputs = self.session.run_with_options([input], options)?;
             return with_values(&outputs[0], precision, wide, read);
         }
@@ -189,7 +218,7 @@ impl Network {
                 Precision::Float16 => TensorElementType::Float16,
             };
             let kept = DynTensor::new(&Allocator::default(), number, shape)?;
-            self.into_kept = Some(RunOptions::new()?.with_outputs(one().preallocate(&name, kept)));
+            *into_kept = Some(RunOptions::new()?.with_outputs(one().preallocate(&name, kept)));
         }
         Ok(result)
     }
@@ -216,27 +245,26 @@ fn with_values<R>(
     }
 }
 
+impl Input {
+    /// Size (width, height), px.
+    fn size(&self) -> (u32, u32) {
+        match self {
+            Self::Float32(memory) => memory.size,
+            Self::Float16(memory) => memory.size,
+        }
+    }
+}
+
 impl<T: Number> InputMemory<T> {
-    fn new() -> Self {
-        Self { filler: Filler::new(), tensor: None }
+    fn new(size: (u32, u32)) -> Result<Self, ort::Error> {
+        let shape = [1, 3, i64::from(size.1), i64::from(size.0)];
+        let tensor = Tensor::<T>::new(&Allocator::default(), shape)?;
+        Ok(Self { filler: Filler::new(), size, tensor })
     }
 
-    /// Says whether the memory is that of the image before.
-    fn fill(&mut self, image: &RgbImage, letterbox: &Letterbox) -> Result<bool, NotFilled> {
-        let size = letterbox.input;
-        if let Some((of, tensor)) = &mut self.tensor
-            && *of == size
-        {
-            let (_, numbers) = tensor.extract_tensor_mut();
-            return self.filler.fill(image, letterbox, numbers).map(|()| true).map_err(NotFilled::Image);
-        }
-        let shape = [1, 3, i64::from(size.1), i64::from(size.0)];
-        let mut tensor = Tensor::<T>::new(&Allocator::default(), shape).map_err(NotFilled::Runtime)?;
-        self.filler = Filler::new();
-        let (_, numbers) = tensor.extract_tensor_mut();
-        self.filler.fill(image, letterbox, numbers).map_err(NotFilled::Image)?;
-        self.tensor = Some((size, tensor));
-        Ok(false)
+    fn fill(&mut self, image: &RgbImage, letterbox: &Letterbox) -> Result<(), DetectError> {
+        let (_, numbers) = self.tensor.extract_tensor_mut();
+        self.filler.fill(image, letterbox, numbers)
     }
 }
 

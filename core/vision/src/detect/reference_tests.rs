@@ -5,8 +5,9 @@ use image::{Rgb, RgbImage};
 use plumbline_model::detection::ClassIndex;
 use serde::Deserialize;
 
+use super::Letterbox;
+use super::filler::Filler;
 use super::heads::Reader;
-use super::letterbox::{Filler, Letterbox};
 use super::suppress::suppress;
 use super::{ClassFilter, DetectSettings, Head, InputSize};
 

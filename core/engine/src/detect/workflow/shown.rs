@@ -26,6 +26,7 @@ impl DetectWorkflow {
             opened: around.opened,
             detector: in_use.detector.clone(),
             settings: self.settings.clone(),
+            photographs: around.photographs,
             setup: around.setup,
         })
     }

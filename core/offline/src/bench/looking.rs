@@ -1,0 +1,188 @@
+//! How long it takes from a pair of images to joint targets: a toy on the twin's table, seen by the
+//! detector that comes with the program.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use plumbline_effects::RobotModel;
+use plumbline_grasp::plan::{GraspPlanner, Standing};
+use plumbline_grasp::see::Looker;
+use plumbline_grasp::things::Thing;
+use plumbline_grasp::{Corrections, Knowledge, PalmArm, Sight};
+use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::{Eye, StereoCalibration};
+use plumbline_twin::eyes::{EyeOptions, EyeRenderer, RenderedPair, Sensor};
+use plumbline_twin::{Toy, Twin, TwinCommand};
+use plumbline_vision::detect::{DetectSettings, Detector, DetectorOptions, Part, Region, shipped_detector};
+use plumbline_vision::detect_places::{PlaceFinder, PlaceOptions};
+
+use super::Figure;
+
+/// Pairs that are looked at.
+const ROUNDS: usize = 15;
+/// Where the toy is put, robot frame, m.
+const PLACE_M: [f64; 2] = [0.36, -0.08];
+/// Both eyes with places may take so long, ms…
+const MOST_BOTH_MS: f64 = 75.0;
+/// …and all from the images to joint targets, ms.
+const MOST_TO_TARGETS_MS: f64 = 150.0;
+
+/// All of them; what cannot be measured here says why.
+pub fn figures(twin: &Twin, rig: &Arc<Rig>) -> Vec<Figure> {
+    measured(twin, rig).unwrap_or_else(|why| vec![Figure::missing("from images to joint targets", why)])
+}
+
+fn measured(twin: &Twin, rig: &Arc<Rig>) -> Result<Vec<Figure>, String> {
+    let pair = pair(twin)?;
+    let shipped = shipped_detector().ok_or("no detector comes with this version")?;
+    let open = || shipped.open(&DetectorOptions::default()).map_err(|error| error.to_string());
+    let mut figures = both_eyes(&mut open()?, rig, &pair)?;
+    figures.extend(to_targets(open()?, rig, &pair)?);
+    Ok(figures)
+}
+
+/// What the twin sees of a tomato on its table.
+fn pair(twin: &Twin) -> Result<RenderedPair, String> {
+    let [x_m, y_m] = PLACE_M;
+    twin.send(TwinCommand::PlaceObject { toy: Toy::Tomato, x_m, y_m });
+    // It falls a little, and comes to rest.
+    std::thread::sleep(Duration::from_secs(2));
+    let (scenery, snapshot) = twin.scene().newest();
+    let mut renderer = EyeRenderer::new(EyeOptions::default()).map_err(|error| error.to_string())?;
+    renderer.render(&scenery, &snapshot, &Sensor::default(), 0).map_err(|error| error.to_string())
+}
+
+/// Both eyes with pairing and places: all of the images, what is lit of them, and the workspace, in
+/// turn, so that another load of the machine counts for all.
+fn both_eyes(detector: &mut Detector, rig: &Rig, pair: &RenderedPair) -> Result<Vec<Figure>, String> {
+    let cameras = &rig.eyes.cameras;
+    let workspace = rig.workspace(&rig.home());
+    let region = |eye| Region::of_workspace(cameras, &workspace, eye).map(Part::Region);
+    let [left, right] = Eye::BOTH.map(region);
+    let regions = [left, right].map(|part| part.unwrap_or(Part::Lit));
+    let ways = [
+        ("all of the images", [Part::Whole; 2]),
+        ("what is lit", [Part::Lit; 2]),
+        ("the workspace", regions),
+    ];
+    let options = PlaceOptions::for_classes(&detector.info().names);
+    let mut finder = PlaceFinder::new(Some(&StereoCalibration::bare(*cameras)), options);
+    let (settings, mut boxes, mut places) = (DetectSettings::default(), [vec![], vec![]], vec![]);
+    let mut times: [Vec<Duration>; 3] = Default::default();
+    for round in 0..=ROUNDS {
+        for ((_, parts), times) in ways.iter().zip(&mut times) {
+            let begun = Instant::now();
+            for ((image, part), found) in [&pair.left, &pair.right].into_iter().zip(parts).zip(&mut boxes) {
+                detector.detect_in(image, *part, &settings, found).map_err(|error| error.to_string())?;
+            }
+            finder.find((&pair.left, &boxes[0]), (&pair.right, &boxes[1]), &mut places);
+            if round > 0 {
+                times.push(begun.elapsed());
+            }
+        }
+    }
+    let mut times = times.map(median_ms).into_iter();
+    let whole_ms = times.next().unwrap_or(f64::NAN);
+    let mut figures = vec![Figure::new("both eyes with places, all of the images", whole_ms, "ms")];
+    for ((name, _), ms) in ways.iter().skip(1).zip(times) {
+        let what = format!("both eyes with places, {name} ({:.2} of the time for all)", ms / whole_ms);
+        figures.push(Figure::new(what, ms, "ms").at_most(MOST_BOTH_MS));
+    }
+    Ok(figures)
+}
+
+/// From the images to the posture of the arm in which the palm is where it closes around the toy, and
+/// to a grasp whose ways were found free.
+fn to_targets(detector: Detector, rig: &Arc<Rig>, pair: &RenderedPair) -> Result<Vec<Figure>, String> {
+    let model = RobotModel::nominal(rig.clone());
+    let arm = rig.arms.first().ok_or("the rig has no arm")?;
+    let palm = PalmArm::new(&model, &arm.name).map_err(|error| error.to_string())?;
+    let knowledge = Knowledge {
+        model,
+        described: rig.clone(),
+        calibration: Arc::new(StereoCalibration::bare(rig.eyes.cameras)),
+        corrections: Corrections::default(),
+    };
+    let mut looker = Looker::new(detector, &knowledge, DetectSettings::default());
+    let posture = rig.home();
+    let (left, right) = (Arc::new(pair.left.clone()), Arc::new(pair.right.clone()));
+    let sight = Sight { left, right, posture: posture.clone(), at_s: 0.0, seq: 0 };
+    let planner = GraspPlanner::new(palm.clone());
+    let (mut to_target, mut planned) = (vec![], vec![]);
+    for round in 0..=ROUNDS {
+        let begun = Instant::now();
+        let standing = standing(&mut looker, &sight, &knowledge)?;
+        target(&palm, &standing, &posture).ok_or("the hand does not get to the toy")?;
+        let target_after = begun.elapsed();
+        let plan = planner.plan(&standing, &nalgebra::Vector3::zeros(), &posture);
+        let plan_after = begun.elapsed();
+        plan.map_err(|why| why.to_string())?;
+        if round > 0 {
+            to_target.push(target_after);
+            planned.push(plan_after);
+        }
+    }
+    Ok(vec![
+        Figure::new(
+            "from images to joint targets: detection, place, posture of the arm",
+            median_ms(to_target),
+            "ms",
+        )
+        .at_most(MOST_TO_TARGETS_MS),
+        Figure::new("from images to a grasp whose ways were found free", median_ms(planned), "ms"),
+    ])
+}
+
+fn standing(looker: &mut Looker, sight: &Sight, knowledge: &Knowledge) -> Result<Standing, String> {
+    let thing = Thing::of_class("Tomato").ok_or("nothing is known of tomatoes")?;
+    let seen = looker.look(sight, knowledge).map_err(|error| error.to_string())?;
+    let tomato = seen.into_iter().find(|seen| seen.class == thing.class).ok_or("no tomato is seen")?;
+    let point_m = tomato.place?.point_m;
+    let xy_m = [point_m[0], point_m[1]];
+    Ok(Standing { xy_m, support_m: knowledge.support_m(xy_m[0], xy_m[1]), height_m: thing.height_m })
+}
+
+/// The posture in which the palm is where it closes, for the first heading with which it gets there.
+fn target(palm: &PalmArm, standing: &Standing, from: &Posture) -> Option<Posture> {
+    let heading_rad = |step: i32| f64::from(step) * 0.2;
+    (0..16)
+        .flat_map(|step| [heading_rad(step), heading_rad(-step)])
+        .find_map(|heading_rad| palm.sent_to(standing.palm(heading_rad), heading_rad, from))
+}
+
+fn median_ms(mut times: Vec<Duration>) -> f64 {
+    times.sort_unstable();
+    times.get(times.len() / 2).map_or(f64::NAN, |time| time.as_secs_f64() * 1e3)
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_model::measured_data;
+    use plumbline_twin::{Scenario, TwinSettings};
+
+    use super::*;
+
+    #[test]
+    fn a_toy_on_the_twins_table_is_a_target_of_the_arm() {
+        let rig = Arc::new(Rig::built_in("nico").expect("comes with the program"));
+        let scenario = Scenario::built_in("perfect").expect("comes with the program");
+        let twin =
+            Twin::start(TwinSettings { rig: rig.clone(), scenario, seed: 1, pace: 1.0 }).expect("starts");
+        let pair = match pair(&twin) {
+            Ok(pair) => pair,
+            Err(why) => {
+                measured_data::left_out(why);
+                return;
+            }
+        };
+        let open = || shipped_detector().expect("comes with the program").open(&DetectorOptions::default());
+        let of_eyes = both_eyes(&mut open().expect("opens"), &rig, &pair).expect("it looks");
+        let ms: Vec<f64> = of_eyes.iter().filter_map(|figure| figure.value).collect();
+        assert!(ms.len() == 3 && ms[1] < 0.9 * ms[0] && ms[2] < 0.6 * ms[0], "{of_eyes:?}");
+        let to_targets = to_targets(open().expect("opens"), &rig, &pair).expect("it is reached");
+        assert!(to_targets.iter().all(|figure| figure.value.is_some()), "{to_targets:?}");
+        for figure in of_eyes.iter().chain(&to_targets) {
+            eprintln!("{}: {:.1} {}", figure.what, figure.value.unwrap_or(f64::NAN), figure.unit);
+        }
+    }
+}
