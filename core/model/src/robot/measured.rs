@@ -9,6 +9,7 @@ use serde::Deserialize;
 
 use super::description::{Description, JointIndex, LinkIndex};
 use super::error::RigError;
+use super::outlines::Outlines;
 use super::rig::{Bus, EyeMount, Gate, Rig, RigPart, TableTop, WorkPatch};
 use super::rig_file::{ArmPart, EyesPart, PosePart, Reader, ScreenPart, TablePart, WorkspacePart};
 use crate::camera::{Camera, CameraModel, Fisheye};
@@ -134,6 +135,7 @@ fn bare(file: &Path, urdf: &str, table: toml::Table) -> Result<Rig, RigError> {
             .map_or_else(|| Ok(no_screen()), |part| reader.screen(part))?,
         arms: parts.arm.iter().map(|part| reader.arm(part)).collect::<Result<_, _>>()?,
         poses: parts.pose.iter().map(|part| reader.pose(part)).collect::<Result<_, _>>()?,
+        outlines: Outlines::default(),
         gate: NOTHING_MOVES,
         name,
         title,

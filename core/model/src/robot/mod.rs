@@ -15,6 +15,7 @@ mod description;
 mod error;
 pub mod ik;
 mod measured;
+mod outlines;
 mod posture;
 mod reach;
 mod rig;
@@ -32,6 +33,7 @@ pub use description::{
     Visual,
 };
 pub use error::{DescriptionError, RigError};
+pub use outlines::{BodyEdges, Outlines, ScreenFrame};
 pub use posture::Posture;
 pub use reach::{Plan, Reach, ReachError, ReachOptions, Refusal};
 pub use rig::{

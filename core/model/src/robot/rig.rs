@@ -7,6 +7,7 @@ use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vect
 use super::chain::Chain;
 use super::description::{Description, JointIndex, Limits, LinkIndex};
 use super::error::{DescriptionError, RigError};
+use super::outlines::Outlines;
 use super::posture::Posture;
 use crate::frame::{Head, LeftCamera, Point, Pose, Robot};
 use crate::session::Touchscreen;
@@ -42,6 +43,8 @@ pub struct Rig {
     pub arms: Vec<Arm>,
     /// Poses with a name, in the order in which they are offered.
     pub poses: Vec<NamedPose>,
+    /// Straight edges that the eyes can measure by.
+    pub outlines: Outlines,
     /// What is too hot, too heavy, too fast, too low.
     pub gate: Gate,
     /// Parts that its file does not give ([`Rig::read_measured`]); harmless stand-ins are in their

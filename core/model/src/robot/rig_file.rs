@@ -9,6 +9,7 @@ use serde::Deserialize;
 
 use super::description::{Description, JointIndex, Limits};
 use super::error::{DescriptionError, RigError};
+use super::outlines::OutlinesPart;
 use super::rig::{
     Arm, Board, Bus, CoupledLimit, Direction, EyeMount, Gate, NamedPose, Rig, Servo, TableTop, TipName,
     WorkPatch,
@@ -51,6 +52,8 @@ struct File {
     arm: Vec<ArmPart>,
     #[serde(default)]
     pose: Vec<PosePart>,
+    #[serde(default)]
+    outlines: OutlinesPart,
     gate: GatePart,
 }
 
@@ -273,6 +276,7 @@ impl Reader<'_> {
             touchscreen: self.screen(&parts.touchscreen)?,
             arms: parts.arm.iter().map(|part| self.arm(part)).collect::<Result<_, _>>()?,
             poses: parts.pose.iter().map(|part| self.pose(part)).collect::<Result<_, _>>()?,
+            outlines: self.outlines(&parts.outlines)?,
             gate: self.gate(&parts.gate)?,
             name: parts.name,
             title: parts.title,
@@ -297,7 +301,7 @@ impl Reader<'_> {
         Ok(rig)
     }
 
-    fn value(&self, place: &str, what: String) -> RigError {
+    pub(super) fn value(&self, place: &str, what: String) -> RigError {
         RigError::Value { file: self.file.to_owned(), place: place.to_owned(), what: told(&what) }
     }
 
@@ -309,7 +313,7 @@ impl Reader<'_> {
     }
 
     /// Refuses numbers that cannot be what they are said to be.
-    fn plausible(&self, place: &str, quantity: Quantity, values: &[f64]) -> Result<(), RigError> {
+    pub(super) fn plausible(&self, place: &str, quantity: Quantity, values: &[f64]) -> Result<(), RigError> {
         self.finite(place, values)?;
         quantity.check_all(values).map_err(|what| self.value(place, what.to_string()))
     }

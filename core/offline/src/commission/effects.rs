@@ -2,6 +2,7 @@
 //! name is still there: all usual effects together, each drawn to zero, are fitted too. Of the nominal
 //! arm, the named effects and all together the one that errs least on touches held out is put in use.
 
+use nalgebra::Matrix6;
 use plumbline_effects::arm::Arm;
 use plumbline_effects::rig_model::{Addition, ModelEffect, PlacedScreen, StepGap};
 use plumbline_effects::{Effect, Kind, Measurements, Present, RigModel};
@@ -13,15 +14,20 @@ use plumbline_engine::rig_models;
 use plumbline_engine::touch::plan::TIP;
 use plumbline_engine::touch::store;
 use plumbline_gap::Options;
+use plumbline_model::files::{self, Size};
+use plumbline_model::robot::Rig;
 use plumbline_model::touchscreen::place_screen;
 use plumbline_model::{JobContext, Session};
+use serde::{Deserialize, Serialize};
 
+use super::body::SeenBody;
 use super::error::CommissionError;
-use super::estimate::{Fit, Known, fit, held_out_m};
+use super::estimate::{Fit, Known, NECK_SD_RAD, fit, held_out_m, is_first_zero};
 use super::glass::SeenScreen;
 use super::lab::Lab;
 use super::lag;
 use super::plan::effects_of;
+use super::seen_by_eyes::SeenHands;
 use super::steps::Step;
 use super::touches::session;
 
@@ -34,7 +40,7 @@ const SHARES: [f64; 5] = [0.03, 0.1, 0.25, 0.5, 1.0];
 pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, CommissionError> {
     let mut step = Step::new("effects", "touches held out, along the glass and in height, rms");
     let folder = session(lab);
-    let mut measurements = measured(std::slice::from_ref(&folder), &lab.rig)?;
+    let measurements = measured(std::slice::from_ref(&folder), &lab.rig)?;
     let options = Options { seed: lab.seed, show: true, advise: false, ..Options::default() };
     let nominal = RigModel::nominal(&lab.rig);
     let finding = search(&measurements, &nominal, &options, context)?;
@@ -44,12 +50,18 @@ pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, Commissio
     store.keep(KeptFinding::new(finding.clone(), kept, about)).map_err(CommissionError::room)?;
     step.notes.push(finding.sentence.clone());
 
-    directions(lab, &mut measurements)?;
+    let measurements = touches(lab)?;
     let arm = Arm::of_rig(&lab.rig, TIP)?;
-    let seen = SeenScreen::read(lab)?;
-    let mut known = Known { rig: &lab.rig, seen: seen.as_ref(), share: 1.0 };
-    let named = named_effects(&finding, &arm);
+    let seen = Seen::read(lab)?;
+    let mut known = seen.known(&lab.rig, 1.0);
     let all = effects_of(&arm);
+    let mut named = named_effects(&finding, &arm);
+    // Touches alone cannot name it: the screen that the eyes saw sizes it.
+    let first_zero = all.iter().find(|effect| is_first_zero(effect, &lab.rig));
+    let every_zero = named.iter().any(|effect| effect.kind == Kind::JointZero && effect.is_of_every_site());
+    if let Some(zero) = first_zero.filter(|zero| !named.is_empty() && !every_zero && !named.contains(zero)) {
+        named.push(zero.clone());
+    }
     context.checkpoint()?;
     let better =
         |new: Option<f64>, old: Option<f64>| matches!((new, old), (Some(n), Some(o)) if n < WORTH * o);
@@ -94,8 +106,120 @@ pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, Commissio
             sd_rad.to_degrees()
         ));
     }
-    accept(lab, &arm, &measurements, &fitted, &finding, (of_nothing, best))?;
+    Share(known.share).write(lab)?;
+    let mut effects = arm_effects(&fitted, &finding);
+    for (present, covariance) in lag::fit(&measurements, &arm) {
+        effects.push(model_effect(&present, covariance, &finding));
+    }
+    let gap = of_nothing.zip(best).map(|(before, after)| StepGap {
+        unit: "m".to_owned(),
+        rows: measurements.rows.len(),
+        before,
+        after,
+        floor: 0.0,
+        closure: None,
+        closure_range: None,
+    });
+    let said = (finding.sentence.clone(), finding.version.clone());
+    accept(lab, RigModel::nominal(&lab.rig), &measurements, &fitted, effects, said, gap)?;
     Ok(step)
+}
+
+/// Fits the effects in use again, with the hands that the eyes saw beside the touches.
+pub(super) fn again(lab: &Lab, hands: &SeenHands) -> Result<(), CommissionError> {
+    let (measurements, arm, model) = (touches(lab)?, Arm::of_rig(&lab.rig, TIP)?, lab.model()?);
+    let of_tip = |effect: &&ModelEffect| effect.tip.as_deref() == Some(TIP);
+    let library = model.effects().iter().filter(of_tip).filter_map(|effect| {
+        Effect::find(&effect.id, &effect.site, effect.shape, Some(&arm), None)
+            .filter(|found| !found.kind.is_seen_by_encoder())
+    });
+    let library: Vec<Effect> = library.collect();
+    let seen = Seen::read(lab)?;
+    let known = Known { hands: Some(hands), ..seen.known(&lab.rig, Share::read(lab)?.0) };
+    let rows: Vec<_> = measurements.rows.iter().collect();
+    let Some(fitted) = fit(&measurements, &rows, &library, &known) else { return Ok(()) };
+    let mut effects = model.effects().to_vec();
+    let mut at = 0;
+    for present in &fitted.assumed.effects {
+        let width = present.values.len();
+        let covariance = fitted.covariance.view((at, at), (width, width)).iter().copied().collect();
+        at += width;
+        let is_it = |effect: &&mut ModelEffect| {
+            effect.id == present.effect.id() && effect.site == present.effect.site
+        };
+        if let Some(effect) = effects.iter_mut().find(is_it) {
+            (effect.values, effect.covariance) = (present.values.clone(), covariance);
+        }
+    }
+    effects.retain(|effect| effect.id != Kind::HeadJoint.id());
+    let said = model.history.iter().rev().find(|step| !step.sentence.is_empty());
+    let said = said.map_or_else(Default::default, |step| (step.sentence.clone(), step.version.clone()));
+    accept(lab, model, &measurements, &fitted, effects, said, None)
+}
+
+/// What the eyes saw of body and screen, and how well they sit.
+struct Seen {
+    screen: Option<SeenScreen>,
+    neck_rad: (f64, f64),
+    mount: Matrix6<f64>,
+}
+
+impl Seen {
+    fn read(lab: &Lab) -> Result<Self, CommissionError> {
+        let body = SeenBody::read(lab)?;
+        Ok(Self {
+            screen: SeenScreen::read(lab)?,
+            neck_rad: body.map_or((0.0, NECK_SD_RAD), |body| (body.neck_rad, body.neck_sd_rad)),
+            mount: lab.mount()?.covariance,
+        })
+    }
+
+    fn known<'a>(&'a self, rig: &'a Rig, share: f64) -> Known<'a> {
+        let Self { screen, neck_rad, mount } = self;
+        Known { rig, screen: screen.as_ref(), hands: None, neck_rad: *neck_rad, mount, share }
+    }
+}
+
+/// Of the effects' usual sizes, the share that this robot has; in the lab's folder.
+#[derive(Serialize, Deserialize)]
+struct Share(f64);
+
+impl Share {
+    const FILE: &str = "share-of-usual.json";
+
+    fn write(&self, lab: &Lab) -> Result<(), CommissionError> {
+        let file = lab.folder.join(Self::FILE);
+        let text = serde_json::to_string(self)
+            .map_err(|error| CommissionError::Steps { file: file.clone(), reason: error.to_string() })?;
+        Ok(files::write(&file, text)?)
+    }
+
+    fn read(lab: &Lab) -> Result<Self, CommissionError> {
+        let file = lab.folder.join(Self::FILE);
+        let text = files::read_text(&file, Size::SHORT)?;
+        serde_json::from_str(&text)
+            .map_err(|error| CommissionError::Steps { file, reason: error.to_string() })
+    }
+}
+
+/// The touches with what the library needs of them.
+fn touches(lab: &Lab) -> Result<Measurements, CommissionError> {
+    let mut measurements = measured(std::slice::from_ref(&session(lab)), &lab.rig)?;
+    directions(lab, &mut measurements)?;
+    Ok(measurements)
+}
+
+/// Effects of a fit as the model's file holds them.
+fn arm_effects(fitted: &Fit, finding: &Finding) -> Vec<ModelEffect> {
+    let mut at = 0;
+    let mut effects = vec![];
+    for present in &fitted.assumed.effects {
+        let width = present.values.len();
+        let covariance = fitted.covariance.view((at, at), (width, width));
+        at += width;
+        effects.push(model_effect(present, covariance.iter().copied().collect(), finding));
+    }
+    effects
 }
 
 /// Effects of a finding that can be added, of the library.
@@ -139,30 +263,20 @@ fn model_effect(present: &Present, covariance: Vec<f64>, finding: &Finding) -> M
     }
 }
 
-/// Puts the fitted effects in use, and the screen where they place it.
+/// Puts effects in use with the fitted zero of the neck, and the screen where the fit places it.
 fn accept(
     lab: &Lab,
-    arm: &Arm,
+    mut model: RigModel,
     measurements: &Measurements,
     fitted: &Fit,
-    finding: &Finding,
-    (before, after): (Option<f64>, Option<f64>),
+    mut effects: Vec<ModelEffect>,
+    (sentence, version): (String, String),
+    gap: Option<StepGap>,
 ) -> Result<(), CommissionError> {
     let read = Session::read(&session(lab))?;
     let title = measurements.apparatuses[0].title.clone();
     let nominal = read.manifest.touchscreen.clone().unwrap_or_else(|| lab.rig.touchscreen.clone());
     let placed = PlacedScreen::moved(&title, &nominal, &fitted.assumed.placements[0]);
-    let mut at = 0;
-    let mut effects = vec![];
-    for present in &fitted.assumed.effects {
-        let width = present.values.len();
-        let covariance = fitted.covariance.view((at, at), (width, width));
-        at += width;
-        effects.push(model_effect(present, covariance.iter().copied().collect(), finding));
-    }
-    for (present, covariance) in lag::fit(measurements, arm) {
-        effects.push(model_effect(&present, covariance, finding));
-    }
     if let Some((zero_rad, sd_rad)) = fitted.neck_rad {
         let joint = lab.rig.description.joint(lab.rig.eyes.pan).name.clone();
         effects.push(ModelEffect {
@@ -180,27 +294,17 @@ fn accept(
     if effects.is_empty() {
         return Ok(());
     }
-    let gap = before.zip(after).map(|(before, after)| StepGap {
-        unit: "m".to_owned(),
-        rows: measurements.rows.len(),
-        before,
-        after,
-        floor: 0.0,
-        closure: None,
-        closure_range: None,
-    });
     let addition = Addition {
         effects,
         screens: vec![placed.clone()],
         externals: vec![],
         replaces: true,
         at: jiff::Timestamp::now(),
-        sentence: finding.sentence.clone(),
+        sentence,
         sessions: vec![title],
-        version: finding.version.clone(),
+        version,
         gap,
     };
-    let mut model = RigModel::nominal(&lab.rig);
     model.add(&lab.rig, addition).map_err(CommissionError::room)?;
     rig_models::save(&lab.world(), &model, &lab.rig).map_err(CommissionError::room)?;
 

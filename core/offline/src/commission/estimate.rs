@@ -5,22 +5,36 @@
 
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix6, Vector6};
 use plumbline_effects::measurements::Observation;
-use plumbline_effects::{Assumed, Effect, Measurements, Present};
-use plumbline_model::robot::Rig;
+use plumbline_effects::{Assumed, Effect, Kind, Measurements, Present};
+use plumbline_model::robot::{Arm, Rig};
 
 use super::glass::{SeenScreen, pose};
 use super::plan::{NOISE_M, SCREEN_SD, moves_palm};
+use super::seen_by_eyes::{Looked, SeenHands};
 
 /// What the neck's zero is off by, usually, rad: as the library of effects has it.
-const NECK_SD_RAD: f64 = 0.026;
-/// Unknowns before the effects: six of the screen, one of the neck.
-const FRAME: usize = 7;
+pub(super) const NECK_SD_RAD: f64 = 0.026;
+/// Unknowns before the effects: six of the screen, one of the neck, six of the eyes in the head (turn,
+/// then shift).
+const FRAME: usize = 13;
+/// Where those of neck and eyes begin.
+const NECK: usize = 6;
+/// Scale of the robust loss of hands, standard deviations: one may be mistaken for its shadow.
+const ROBUST: f64 = 2.5;
 
 /// What is known besides the touches.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'a> {
     pub rig: &'a Rig,
-    pub seen: Option<&'a SeenScreen>,
+    /// The screen, as the eyes see it.
+    pub screen: Option<&'a SeenScreen>,
+    /// Hands that the eyes saw.
+    pub hands: Option<&'a SeenHands>,
+    /// Zero of the neck's turn and its standard deviation, rad: by the body that the eyes saw, or as necks
+    /// usually are.
+    pub neck_rad: (f64, f64),
+    /// How well it is known how the eyes sit in the head: turn (rad), then shift (m), axes of the head.
+    pub mount: &'a Matrix6<f64>,
     /// This robot's arm is off by this share of what robots usually are. What is only between finger and
     /// screen counts in full.
     pub share: f64,
@@ -33,14 +47,21 @@ pub(super) struct Fit {
     /// Covariance of the values, in units of the parameters, effects in turn.
     pub covariance: DMatrix<f64>,
     /// Zero of the neck's turn (true less encoder, rad) and its standard deviation; `None` when the eyes
-    /// have not seen the screen.
+    /// have seen nothing that tells it.
     pub neck_rad: Option<(f64, f64)>,
+}
+
+/// Whether it is the zero of the joint that an arm begins with.
+pub(super) fn is_first_zero(effect: &Effect, rig: &Rig) -> bool {
+    let first = |arm: &Arm| arm.joints.first().is_some_and(|j| rig.description.joint(*j).name == effect.site);
+    effect.kind == Kind::JointZero && rig.arms.iter().any(first)
 }
 
 /// Rounds of linearizing.
 const ROUNDS: usize = 6;
 
-/// Fits effects to rows of one session of touches. `None` when the rows cannot be predicted.
+/// Fits effects to rows of one session of touches, and to what the eyes saw. `None` when the rows cannot be
+/// predicted.
 pub(super) fn fit(
     measurements: &Measurements,
     rows: &[&Observation],
@@ -50,18 +71,10 @@ pub(super) fn fit(
     let typical: Vec<f64> =
         effects.iter().flat_map(|effect| effect.parameters().iter().map(|p| p.typical)).collect();
     let count = FRAME + typical.len();
-    let shares: Vec<f64> = effects
-        .iter()
-        .flat_map(|effect| {
-            let share = if moves_palm(effect) { known.share } else { 1.0 };
-            vec![share; effect.parameters().len()]
-        })
-        .collect();
-    let sd = |k: usize| match k {
-        0..6 => SCREEN_SD[k / 3],
-        6 => NECK_SD_RAD,
-        _ => shares[k - FRAME],
-    };
+    let prior = information_before(effects, known)?;
+    let mut usual = DVector::<f64>::zeros(count);
+    usual[NECK] = known.neck_rad.0;
+    let looked = Looked::new(known.rig);
     let mut assumed = Assumed {
         effects: effects
             .iter()
@@ -73,14 +86,14 @@ pub(super) fn fit(
     let mut at = DVector::<f64>::zeros(count);
     let mut inverse = DMatrix::identity(count, count);
     for _ in 0..ROUNDS {
-        let mut normal = DMatrix::from_diagonal(&DVector::from_fn(count, |k, _| sd(k).powi(-2)));
-        let mut right = DVector::from_fn(count, |k, _| -at[k] / sd(k).powi(2));
+        let mut normal = prior.clone();
+        let mut right = &prior * (&usual - &at);
         for row in rows {
             let tangents = measurements.tangents(row, &assumed, effects)?;
             for (k, noise_m) in NOISE_M.into_iter().enumerate() {
                 let slope = DVector::from_fn(count, |i, _| match i {
-                    0..6 => tangents.gauge[(k, i)],
-                    6 => 0.0,
+                    0..NECK => tangents.gauge[(k, i)],
+                    NECK..FRAME => 0.0,
                     _ => tangents.effects[(k, i - FRAME)],
                 });
                 let weight = noise_m.powi(-2);
@@ -88,12 +101,21 @@ pub(super) fn fit(
                 right += slope * ((row.measured[k] - tangents.predicted[k]) * weight);
             }
         }
-        if let Some(seen) = known.seen {
-            let (slopes, off, information) = tie(known.rig, seen, &assumed.placements[0], at[6])?;
+        let eyes: [f64; 7] = std::array::from_fn(|k| at[NECK + k]);
+        if let Some(screen) = known.screen {
+            let (slopes, off) = tie(&looked, screen, known.rig, &assumed.placements[0], &eyes);
+            let information = screen.covariance.try_inverse()?;
             let mut frame = normal.view_mut((0, 0), (FRAME, FRAME));
             frame += slopes.transpose() * information * &slopes;
             let mut frame = right.rows_mut(0, FRAME);
             frame += slopes.transpose() * (information * off);
+        }
+        if let Some(hands) = known.hands {
+            for (slopes, off, information) in hands.against(&looked, &assumed, effects, NECK, &eyes)? {
+                let weight = 1.0 / (1.0 + (off.transpose() * information * off).x / ROBUST.powi(2));
+                normal += slopes.transpose() * information * &slopes * weight;
+                right += slopes.transpose() * (information * off) * weight;
+            }
         }
         let factor = normal.cholesky()?;
         let change = factor.solve(&right);
@@ -114,40 +136,58 @@ pub(super) fn fit(
     }
     let n = typical.len();
     let covariance = DMatrix::from_fn(n, n, |r, c| inverse[(FRAME + r, FRAME + c)] * typical[r] * typical[c]);
-    let neck_rad = known.seen.map(|_| (at[6], inverse[(6, 6)].max(0.0).sqrt()));
+    let is_told = known.screen.is_some() || known.neck_rad.1 < NECK_SD_RAD;
+    let neck_rad = is_told.then(|| (at[NECK], inverse[(NECK, NECK)].max(0.0).sqrt()));
     Some(Fit { assumed, covariance, neck_rad })
 }
 
-/// How far the screen as seen, the neck's zero off by `neck_rad`, lies from where `placement` has it (shift,
-/// turn), how that changes with the placement's twist and the zero, and its information.
+/// What is known of the unknowns before anything is measured: the inverse of their covariance, effects in
+/// their usual sizes.
+fn information_before(effects: &[Effect], known: &Known<'_>) -> Option<DMatrix<f64>> {
+    let shares = effects.iter().flat_map(|effect| {
+        // The zero of the first joint turns arm and screen together: touches cannot tell its size.
+        let told = moves_palm(effect) && !is_first_zero(effect, known.rig);
+        let share = if told { known.share } else { 1.0 };
+        vec![share; effect.parameters().len()]
+    });
+    let frame = (0..FRAME).map(|k| match k {
+        0..NECK => SCREEN_SD[k / 3],
+        NECK => known.neck_rad.1,
+        _ => 1.0,
+    });
+    let sd: Vec<f64> = frame.chain(shares).collect();
+    let mut prior = DMatrix::from_diagonal(&DVector::from_fn(sd.len(), |k, _| sd[k].powi(-2)));
+    prior.view_mut((NECK + 1, NECK + 1), (6, 6)).copy_from(&known.mount.try_inverse()?);
+    Some(prior)
+}
+
+/// How far the screen as seen lies from where `placement` has it (shift, turn), and how that changes with
+/// the placement's twist and with neck and eyes.
 fn tie(
-    rig: &Rig,
+    looked: &Looked<'_>,
     seen: &SeenScreen,
+    rig: &Rig,
     placement: &Isometry3<f64>,
-    neck_rad: f64,
-) -> Option<(DMatrix<f64>, Vector6<f64>, Matrix6<f64>)> {
-    let home = rig.home();
-    let eye = |turn_rad: f64| {
-        let pan = rig.eyes.pan;
-        rig.robot_from_left(&home.with(&[pan], &[home[pan] + turn_rad])).isometry
-    };
-    let by_eyes = |neck_rad: f64| eye(neck_rad) * eye(0.0).inverse() * seen.robot_from_screen;
+    eyes: &[f64; 7],
+) -> (DMatrix<f64>, Vector6<f64>) {
     let by_arm = placement.inverse() * pose(&rig.touchscreen);
-    let off = |neck_rad: f64| {
-        let by_eyes = by_eyes(neck_rad);
+    let off = |eyes: &[f64; 7]| {
+        let by_eyes = looked.moved(eyes) * seen.robot_from_screen;
         let shift = by_eyes.translation.vector - by_arm.translation.vector;
         let turn = (by_eyes.rotation * by_arm.rotation.inverse()).scaled_axis();
         Vector6::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z)
     };
-    const STEP: f64 = 1e-4;
-    let by_neck = (off(neck_rad + STEP) - off(neck_rad - STEP)) / (2.0 * STEP);
+    let mut slopes = DMatrix::zeros(6, FRAME);
     // The placement moves the robot's points: the screen goes the other way.
-    let slopes = DMatrix::from_fn(6, FRAME, |r, c| match c {
-        6 => -by_neck[r],
-        _ if r == c => -1.0,
-        _ => 0.0,
-    });
-    Some((slopes, off(neck_rad), seen.covariance.try_inverse()?))
+    slopes.view_mut((0, 0), (6, 6)).fill_diagonal(-1.0);
+    const STEP: f64 = 1e-4;
+    for k in 0..eyes.len() {
+        let (mut ahead, mut behind) = (*eyes, *eyes);
+        ahead[k] += STEP;
+        behind[k] -= STEP;
+        slopes.set_column(NECK + k, &((off(&behind) - off(&ahead)) / (2.0 * STEP)));
+    }
+    (slopes, off(eyes))
 }
 
 /// Error on rows that were not fitted, each group of repeats held out once: rms of the distance along

@@ -5,28 +5,22 @@ use image::GrayImage;
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix6, Point3, UnitQuaternion, Vector2, Vector3};
 use plumbline_engine::eyes::work::gray;
 use plumbline_model::files::{self, Size};
-use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::robot::{Posture, Rig, ScreenFrame};
 use plumbline_model::session::Touchscreen;
 use plumbline_model::{Eye, JobContext};
 use serde::{Deserialize, Serialize};
 
+use super::edges::{STEP_PX, profile};
 use super::error::CommissionError;
 use super::lab::Lab;
 use super::robot::{Robot, Sight};
 
-/// Width of the monitor's frame at the sides and at the near side, m. Nobody looks at the far one: the
-/// table ends there.
-const FRAME_M: [f64; 2] = [0.018, 0.032];
-/// The frame lies so far below the glass, m.
-const BELOW_M: f64 = 0.0005;
 /// Turns of the head from home from which it is looked at, rad.
 const LOOKS_RAD: [f64; 3] = [0.0, 0.2, -0.2];
 /// Places along each edge.
 const SAMPLES: usize = 48;
 /// Edges are looked for this far from where they should be, in the first round and in the others, px.
 const WINDOW_PX: [f64; 2] = [10.0, 5.0];
-/// Step along a profile, px.
-const STEP_PX: f64 = 0.2;
 /// The edge is where it gets brighter than this share of the way from frame to table.
 const SHARE: f64 = 0.4;
 /// Scale of the robust loss, px: the table is speckled.
@@ -66,7 +60,8 @@ struct Picture {
 }
 
 /// Looks at the screen from some head poses and fits its outline. `rig` has its eyes where they sit;
-/// `start` is about where the screen lies. `None` when its edges are not seen.
+/// `start` is about where the screen lies. `None` when the rig does not describe its frame, or its edges are
+/// not seen.
 pub(super) fn see(
     lab: &Lab,
     robot: &mut Robot,
@@ -74,6 +69,7 @@ pub(super) fn see(
     start: &Touchscreen,
     context: &dyn JobContext,
 ) -> Result<Option<SeenScreen>, CommissionError> {
+    let Some(frame) = &rig.outlines.screen_frame else { return Ok(None) };
     let mut pictures = vec![];
     for turn_rad in LOOKS_RAD {
         context.checkpoint()?;
@@ -85,7 +81,7 @@ pub(super) fn see(
         pictures.push(Picture { image: gray(&right), eye: Eye::Right, left_from_robot });
     }
     robot.go(&lab.rig.home());
-    Ok(fit(rig, start, &pictures))
+    Ok(fit(rig, frame, start, &pictures))
 }
 
 impl SeenScreen {
@@ -116,16 +112,17 @@ fn left_from_robot(rig: &Rig, posture: &Posture) -> Isometry3<f64> {
 
 /// Points on the three edges that are looked at and a direction out of the frame, screen axes from the
 /// middle of the image, m.
-fn outline(screen: &Touchscreen, scale: f64) -> Vec<(Vector3<f64>, Vector3<f64>)> {
+/// Nobody looks at the far one: the table ends there.
+fn outline(screen: &Touchscreen, frame: &ScreenFrame, scale: f64) -> Vec<(Vector3<f64>, Vector3<f64>)> {
     let (half_u, half_v) = (0.5 * screen.width_m * scale, 0.5 * screen.height_m);
     let share = |k: usize| 2.0 * (k as f64 + 0.5) / SAMPLES as f64 - 1.0;
-    let (side, near) = (half_u + FRAME_M[0], half_v + FRAME_M[1]);
+    let (side, near, below) = (half_u + frame.side_m, half_v + frame.near_m, frame.below_m);
     let mut points = vec![];
     for k in 0..SAMPLES {
         let along = 0.88 * share(k) * half_v;
-        points.push((Vector3::new(-side, along, BELOW_M), -Vector3::x()));
-        points.push((Vector3::new(side, along, BELOW_M), Vector3::x()));
-        points.push((Vector3::new(0.95 * share(k) * half_u, near, BELOW_M), Vector3::y()));
+        points.push((Vector3::new(-side, along, below), -Vector3::x()));
+        points.push((Vector3::new(side, along, below), Vector3::x()));
+        points.push((Vector3::new(0.95 * share(k) * half_u, near, below), Vector3::y()));
     }
     points
 }
@@ -140,7 +137,7 @@ pub(super) fn pose(screen: &Touchscreen) -> Isometry3<f64> {
     Isometry3::from_parts(screen.point_at(screen.middle()).coords.coords.into(), rotation)
 }
 
-fn fit(rig: &Rig, start: &Touchscreen, pictures: &[Picture]) -> Option<SeenScreen> {
+fn fit(rig: &Rig, frame: &ScreenFrame, start: &Touchscreen, pictures: &[Picture]) -> Option<SeenScreen> {
     let (mut at, mut scale) = (pose(start), 1.0);
     let mut last = None;
     for round in 0..ROUNDS {
@@ -148,12 +145,12 @@ fn fit(rig: &Rig, start: &Touchscreen, pictures: &[Picture]) -> Option<SeenScree
         let (mut normal, mut right) = (DMatrix::<f64>::zeros(UNKNOWNS, UNKNOWNS), DVector::zeros(UNKNOWNS));
         let (mut squares, mut weights, mut edges) = (0.0, 0.0, 0);
         for picture in pictures {
-            for (k, (point, out)) in outline(start, scale).into_iter().enumerate() {
+            for (k, (point, out)) in outline(start, frame, scale).into_iter().enumerate() {
                 let Some((pixel, toward)) = on_image(rig, picture, &at, &point, &out) else { continue };
                 let Some(off_px) = edge(&picture.image, &pixel, &toward, window_px) else { continue };
                 let slope = DVector::from_fn(UNKNOWNS, |i, _| {
                     let (moved, wider) = changed(&at, scale, i, 1e-4);
-                    let point = outline(start, wider)[k].0;
+                    let point = outline(start, frame, wider)[k].0;
                     on_image(rig, picture, &moved, &point, &out)
                         .map_or(0.0, |(there, _)| (there - pixel).dot(&toward) / 1e-4)
                 });
@@ -228,36 +225,16 @@ fn on_image(
 
 /// Where the dark frame ends along a line through `pixel` toward the table: distance from `pixel`, px.
 fn edge(image: &GrayImage, pixel: &Vector2<f64>, toward: &Vector2<f64>, window_px: f64) -> Option<f64> {
-    let across = Vector2::new(-toward.y, toward.x);
-    let steps = (2.0 * window_px / STEP_PX) as usize;
+    let profile = profile(image, pixel, toward, window_px, &[-0.8, 0.0, 0.8])?;
     let at = |step: usize| step as f64 * STEP_PX - window_px;
-    let profile: Vec<f64> = (0..=steps)
-        .map(|step| {
-            let middle = pixel + toward * at(step);
-            let beside = [-0.8, 0.0, 0.8].map(|off| sample(image, &(middle + across * off)));
-            beside.into_iter().sum::<Option<f64>>().map(|sum| sum / 3.0)
-        })
-        .collect::<Option<_>>()?;
     let (darkest, dark) = profile.iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let bright = profile[darkest..].iter().copied().fold(dark, f64::max);
     if bright - dark < 50.0 {
         return None;
     }
     let level = dark + SHARE * (bright - dark);
-    let crossing = (darkest..steps).find(|step| profile[*step] < level && profile[step + 1] >= level)?;
+    let crossing =
+        (darkest..profile.len() - 1).find(|step| profile[*step] < level && profile[step + 1] >= level)?;
     let part = (level - profile[crossing]) / (profile[crossing + 1] - profile[crossing]);
     Some(at(crossing) + part * STEP_PX)
-}
-
-/// Gray level between pixels.
-fn sample(image: &GrayImage, at: &Vector2<f64>) -> Option<f64> {
-    let (x, y) = (at.x.floor(), at.y.floor());
-    if x < 0.0 || y < 0.0 || x + 1.0 >= f64::from(image.width()) || y + 1.0 >= f64::from(image.height()) {
-        return None;
-    }
-    let (fx, fy) = (at.x - x, at.y - y);
-    let of = |dx: u32, dy: u32| f64::from(image.get_pixel(x as u32 + dx, y as u32 + dy).0[0]);
-    let upper = of(0, 0) * (1.0 - fx) + of(1, 0) * fx;
-    let lower = of(0, 1) * (1.0 - fx) + of(1, 1) * fx;
-    Some(upper * (1.0 - fy) + lower * fy)
 }

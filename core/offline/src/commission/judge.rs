@@ -47,6 +47,18 @@ pub struct PlaceError {
     pub plane_p95: Option<f64>,
     /// Mean error (found − true) along x, y, z.
     pub mean: Option<[f64; 3]>,
+    /// Mean of the stated standard deviations along x, y, z.
+    #[serde(default)]
+    pub sigma: Option<[f64; 3]>,
+    /// Share of the errors along x, y, z within the stated standard deviation, 0 to 1: honest at 0.68.
+    #[serde(default)]
+    pub within_sigma: Option<f64>,
+    /// The same within two of them: honest at 0.95.
+    #[serde(default)]
+    pub within_two_sigma: Option<f64>,
+    /// Mean of eᵀ C⁻¹ e over the places: honest at 3.
+    #[serde(default)]
+    pub chi2: Option<f64>,
     /// Places where the object was found.
     pub found: usize,
     /// Places where it stood.
@@ -58,6 +70,26 @@ pub struct PlaceError {
 pub(super) struct Judged {
     at_m: [f64; 2],
     error_m: nalgebra::Vector3<f64>,
+    /// As stated with the place.
+    covariance_m2: nalgebra::Matrix3<f64>,
+}
+
+impl Judged {
+    /// Errors along x, y and z in units of the stated standard deviations.
+    fn in_sigmas(&self) -> impl Iterator<Item = f64> {
+        (0..3).map(|k| self.error_m[k].abs() / self.covariance_m2[(k, k)].sqrt())
+    }
+
+    /// eᵀ C⁻¹ e: 3 on average where what is stated is honest.
+    fn chi2(&self) -> Option<f64> {
+        Some((self.error_m.transpose() * self.covariance_m2.try_inverse()? * self.error_m).x)
+    }
+}
+
+/// Share of numbers up to a bound.
+fn share_within(values: &[f64], bound: f64) -> Option<f64> {
+    let within = values.iter().filter(|value| **value <= bound).count();
+    (!values.is_empty()).then(|| within as f64 / values.len() as f64)
 }
 
 /// Errors of the palm, mm.
@@ -97,7 +129,7 @@ pub(super) fn places(
     robot: &mut Robot,
     context: &dyn JobContext,
 ) -> Result<(PlaceError, Vec<Judged>), CommissionError> {
-    let mut seer = Seer::new(&lab.calibration()?, lab.rig_with_eyes()?, &lab.model()?)?;
+    let mut seer = Seer::new(&lab.calibration()?, lab.known()?)?;
     robot.go(&lab.rig.home());
     let mut judged: Vec<Judged> = vec![];
     let all: Vec<(f64, f64)> = GRID_X_M.iter().flat_map(|x| GRID_Y_M.iter().map(move |y| (*x, *y))).collect();
@@ -110,8 +142,8 @@ pub(super) fn places(
         let truth = robot.lockstep().truth_for_judging();
         let stands = truth.toys.iter().find_map(|(toy, place)| place.filter(|_| *toy == Toy::Tomato));
         if let (Some(found), Some(stands)) = (found, stands) {
-            let error = found.coords.coords - stands.translation.vector;
-            judged.push(Judged { at_m: [*x_m, *y_m], error_m: error });
+            let error_m = found.point.coords.coords - stands.translation.vector;
+            judged.push(Judged { at_m: [*x_m, *y_m], error_m, covariance_m2: found.covariance_m2 });
         }
     }
     robot.lockstep().remove_toy(Toy::Tomato);
@@ -120,12 +152,19 @@ pub(super) fn places(
         |of: fn(&nalgebra::Vector3<f64>) -> f64| -> Vec<f64> { errors.iter().map(|e| 1e3 * of(e)).collect() };
     let (space, plane) = (mm(|e| e.norm()), mm(|e| e.xy().norm()));
     let mean = errors.iter().sum::<nalgebra::Vector3<f64>>() / errors.len().max(1) as f64 * 1e3;
+    let in_sigmas: Vec<f64> = judged.iter().flat_map(Judged::in_sigmas).collect();
+    let sigma = |k: usize| judged.iter().map(|j| 1e3 * j.covariance_m2[(k, k)].sqrt()).sum::<f64>();
+    let chi2: Vec<f64> = judged.iter().filter_map(Judged::chi2).collect();
     let error = PlaceError {
         median: quantile(&space, 0.5),
         p95: quantile(&space, 0.95),
         plane_median: quantile(&plane, 0.5),
         plane_p95: quantile(&plane, 0.95),
         mean: (!errors.is_empty()).then(|| mean.into()),
+        sigma: (!errors.is_empty()).then(|| [0, 1, 2].map(|k| sigma(k) / judged.len() as f64)),
+        within_sigma: share_within(&in_sigmas, 1.0),
+        within_two_sigma: share_within(&in_sigmas, 2.0),
+        chi2: (!chi2.is_empty()).then(|| chi2.iter().sum::<f64>() / chi2.len() as f64),
         found: errors.len(),
         places: all.len(),
     };

@@ -7,6 +7,8 @@
 //! miss (`effects`); correction models (`models`); the eyes look at the hand (`hand`); and a judge
 //! measures what came of it (`check`). The judge alone knows what the twin hides.
 
+mod body;
+mod edges;
 mod effects;
 mod error;
 mod estimate;
@@ -22,6 +24,7 @@ mod plan;
 pub(crate) mod published;
 mod robot;
 mod see;
+mod seen_by_eyes;
 mod steps;
 #[cfg(test)]
 mod tests;

@@ -242,7 +242,12 @@ fn palm_postures(rig: &Rig) -> Result<Vec<Vec<f64>>, CommissionError> {
     Ok(found)
 }
 
-fn measurements(rig: &Rig, arm: Arm, surface: Option<Surface>, rows: Vec<Observation>) -> Measurements {
+pub(super) fn measurements(
+    rig: &Rig,
+    arm: Arm,
+    surface: Option<Surface>,
+    rows: Vec<Observation>,
+) -> Measurements {
     let apparatus = Apparatus { title: String::new(), tip: None, arm: Some(arm), surface, eyes: None };
     Measurements {
         rig: rig.name.clone(),
@@ -253,7 +258,7 @@ fn measurements(rig: &Rig, arm: Arm, surface: Option<Surface>, rows: Vec<Observa
     }
 }
 
-fn row(what: What, encoder_rad: Vec<f64>, direction: Vec<f64>) -> Observation {
+pub(super) fn row(what: What, encoder_rad: Vec<f64>, direction: Vec<f64>) -> Observation {
     Observation {
         commanded_rad: Some(encoder_rad.clone()),
         encoder_rad: Some(encoder_rad),

@@ -16,6 +16,7 @@ use plumbline_model::touch_plan::{Pattern, PlanOptions, PlannedTouch, Purpose, S
 use plumbline_model::{JobContext, Pixel, Point, Robot as RobotFrame};
 use plumbline_twin::Touched;
 
+use super::body;
 use super::error::CommissionError;
 use super::glass::{pose, see};
 use super::lab::{Lab, TOUCH_SESSION};
@@ -180,7 +181,21 @@ pub(super) fn place(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> R
     step.after_mm = rms(&left_out);
     step.notes.extend(placed.remarks.iter().cloned());
     lab.accept_placement(&placed)?;
-    match see(lab, robot, &lab.rig_with_eyes()?, &placed.screen, context)? {
+    let rig = lab.rig_with_eyes()?;
+    match body::see(robot, &rig, &lab.mount()?, context)? {
+        Some(body) => {
+            step.notes.push(format!(
+                "By the robot's body the neck's turn is off by {:.2}° ± {:.2}° ({} edge points, {:.2} px).",
+                body.neck_rad.to_degrees(),
+                body.neck_sd_rad.to_degrees(),
+                body.points,
+                body.rms_px
+            ));
+            body.write(lab)?;
+        }
+        None => step.notes.push("The eyes do not see the edges of the robot's body.".to_owned()),
+    }
+    match see(lab, robot, &rig, &placed.screen, context)? {
         Some(seen) => {
             let off = seen.robot_from_screen * pose(&placed.screen).inverse();
             let middle = placed.screen.point_at(placed.screen.middle()).coords;

@@ -1,0 +1,319 @@
+//! How the head stands on the robot: its eyes look down at the robot's own body, whose edges the rig
+//! file describes.
+//!
+//! A board of unknown place tells how the eyes sit to the joints of the head; turned to the side about
+//! the neck's axis, everything would look the same. The body does not turn with the head, and it is near:
+//! a tenth of a degree moves its edges by as much as it moves an object on the table by half a millimeter.
+
+use image::GrayImage;
+use nalgebra::{
+    DMatrix, DVector, Isometry3, Matrix6, Point3, Translation3, UnitQuaternion, Vector2, Vector3,
+};
+use plumbline_engine::eyes::work::gray;
+use plumbline_model::files::{self, Size};
+use plumbline_model::robot::{BodyEdges, Posture, Rig};
+use plumbline_model::{Eye, JobContext};
+use plumbline_vision::mount::MountCalibration;
+use serde::{Deserialize, Serialize};
+
+use super::edges::{profile, steepest};
+use super::error::CommissionError;
+use super::estimate::NECK_SD_RAD;
+use super::lab::Lab;
+use super::robot::{Robot, Sight};
+
+/// Turns and nod of the head (rad) from which it looks down at the body: as low as its counterweights let it
+/// turn.
+const TURNS_RAD: [f64; 5] = [0.0, 0.15, 0.3, -0.3, -0.15];
+const NOD_RAD: f64 = -0.7;
+/// Places along each edge.
+const SAMPLES: usize = 40;
+/// Edges are looked for this far from where they should be, first and later, px.
+const WINDOW_PX: [f64; 3] = [9.0, 6.0, 4.0];
+/// Levels are taken over these places beside each other along the edge, px.
+const BESIDE_PX: [f64; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
+/// Scale of the robust loss, px.
+const ROBUST_PX: f64 = 0.5;
+const ROUNDS: usize = 9;
+/// Fewer edge points tell nothing.
+const FEWEST: usize = 100;
+/// An edge that is found at fewer of its places in an image is not seen there.
+const SEEN: usize = SAMPLES / 2;
+/// Neighboring places share their noise: so many of them count as one.
+const ALIKE: f64 = 4.0;
+/// Edges that fit worse than this are not those of the rig file, rms, px.
+const WORST_PX: f64 = 0.8;
+/// Lenses leave this much at the border of the image, px.
+const LENS_PX: f64 = 0.15;
+/// The neck, the eyes in the head (turn, shift), the body (turn, shift).
+const UNKNOWNS: usize = 13;
+
+/// What was seen, in the lab's folder.
+const FILE: &str = "seen-body.json";
+
+/// The head as it stands on the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct SeenBody {
+    /// Zero of the neck's turn: true less encoder, rad.
+    pub neck_rad: f64,
+    /// One standard deviation, rad.
+    pub neck_sd_rad: f64,
+    /// Rms of the edges, px.
+    pub rms_px: f64,
+    /// Edge points that were found.
+    pub points: usize,
+}
+
+impl SeenBody {
+    /// Keeps it for the steps that follow.
+    pub fn write(&self, lab: &Lab) -> Result<(), CommissionError> {
+        let file = lab.folder.join(FILE);
+        let text = serde_json::to_string(self)
+            .map_err(|error| CommissionError::Steps { file: file.clone(), reason: error.to_string() })?;
+        Ok(files::write(&file, text)?)
+    }
+
+    /// What was kept; `None` when the body was not seen.
+    pub fn read(lab: &Lab) -> Result<Option<Self>, CommissionError> {
+        let file = lab.folder.join(FILE);
+        if !files::present(&file)? {
+            return Ok(None);
+        }
+        let text = files::read_text(&file, Size::SHORT)?;
+        let seen = serde_json::from_str(&text)
+            .map_err(|error| CommissionError::Steps { file, reason: error.to_string() })?;
+        Ok(Some(seen))
+    }
+}
+
+/// An image of one eye, and where the head stood.
+struct Picture {
+    image: GrayImage,
+    eye: Eye,
+    posture: Posture,
+}
+
+/// Looks down at the body from some head poses. `rig` has its eyes as calibrated, `mount` says how well that
+/// is known. `None` when the rig describes no edges, they are not seen, or they do not fit.
+pub(super) fn see(
+    robot: &mut Robot,
+    rig: &Rig,
+    mount: &MountCalibration,
+    context: &dyn JobContext,
+) -> Result<Option<SeenBody>, CommissionError> {
+    let pictures = look(robot, rig, context)?;
+    Ok(fit(rig, &mount.covariance, mount.angle_sigma_rad[0], &pictures))
+}
+
+/// Images of both eyes from all head poses that look down and are allowed; none without edges to look at.
+fn look(robot: &mut Robot, rig: &Rig, context: &dyn JobContext) -> Result<Vec<Picture>, CommissionError> {
+    if rig.outlines.body.is_none() {
+        return Ok(vec![]);
+    }
+    let (home, head) = (rig.home(), [rig.eyes.pan, rig.eyes.tilt]);
+    let mut pictures = vec![];
+    for turn_rad in TURNS_RAD {
+        context.checkpoint()?;
+        let wanted = home.with(&head, &[turn_rad, NOD_RAD]);
+        if !head.iter().all(|joint| rig.limits_in(*joint, &wanted).contain(wanted[*joint])) {
+            continue;
+        }
+        robot.go(&wanted);
+        let Sight { left, right, posture } = robot.look()?;
+        for (image, eye) in [(gray(&left), Eye::Left), (gray(&right), Eye::Right)] {
+            pictures.push(Picture { image, eye, posture: posture.clone() });
+        }
+    }
+    robot.go(&home);
+    Ok(pictures)
+}
+
+/// Fits the head's zero to the edges of the body. The neck comes to rest to within `rest_sd_rad`.
+fn fit(
+    rig: &Rig,
+    mount_covariance: &Matrix6<f64>,
+    rest_sd_rad: f64,
+    pictures: &[Picture],
+) -> Option<SeenBody> {
+    let body = rig.outlines.body.as_ref()?;
+    let looking = Looking { rig, body };
+    let prior = prior_information(mount_covariance, body)?;
+    let mut at = DVector::<f64>::zeros(UNKNOWNS);
+    let mut last = None;
+    for round in 0..ROUNDS {
+        let window_px = WINDOW_PX[round.min(WINDOW_PX.len() - 1)];
+        let (mut normal, mut right) = (DMatrix::<f64>::zeros(UNKNOWNS, UNKNOWNS), DVector::zeros(UNKNOWNS));
+        let (mut squares, mut weights, mut points) = (0.0, 0.0, 0);
+        for picture in pictures {
+            for found in looking.found(picture, &at, window_px) {
+                let weight = 1.0 / (1.0 + (found.off_px / ROBUST_PX).powi(2));
+                normal += &found.slope * found.slope.transpose() * weight;
+                right += &found.slope * (found.off_px * weight);
+                squares += weight * found.off_px.powi(2);
+                weights += weight;
+                points += 1;
+            }
+        }
+        if points < FEWEST {
+            return None;
+        }
+        let rms_px = (squares / weights.max(1e-9)).sqrt();
+        let scale = 1.0 / ((rms_px.powi(2) + LENS_PX.powi(2)) * ALIKE);
+        let normal = normal * scale + &prior;
+        let right = right * scale - &prior * &at;
+        let factor = normal.cholesky()?;
+        at += factor.solve(&right);
+        last = Some((factor.inverse()[(0, 0)], rms_px, points));
+    }
+    let (variance, rms_px, points) = last?;
+    if rms_px > WORST_PX {
+        return None;
+    }
+    // The head comes to rest elsewhere each time.
+    let views = (pictures.len() / 2).max(1) as f64;
+    let rest_rad = rest_sd_rad / views.sqrt();
+    Some(SeenBody { neck_rad: at[0], neck_sd_rad: variance.sqrt().hypot(rest_rad), rms_px, points })
+}
+
+/// What is known before: the neck as necks usually are, the eyes by the board, the body as described.
+fn prior_information(mount: &Matrix6<f64>, body: &BodyEdges) -> Option<DMatrix<f64>> {
+    let mut covariance = DMatrix::<f64>::zeros(UNKNOWNS, UNKNOWNS);
+    covariance[(0, 0)] = NECK_SD_RAD.powi(2);
+    covariance.view_mut((1, 1), (6, 6)).copy_from(mount);
+    for k in 0..3 {
+        covariance[(7 + k, 7 + k)] = body.turn_sd_rad.powi(2);
+        covariance[(10 + k, 10 + k)] = body.shift_sd_m.powi(2);
+    }
+    Some(covariance.cholesky()?.inverse())
+}
+
+/// An edge point that was found: how far from where it should be, and how that place changes.
+struct Found {
+    off_px: f64,
+    slope: DVector<f64>,
+}
+
+struct Looking<'a> {
+    rig: &'a Rig,
+    body: &'a BodyEdges,
+}
+
+impl Looking<'_> {
+    /// The edges in one image. Whether an edge is a step to bright or to dark is the same all along it,
+    /// and what most of its places say.
+    fn found(&self, picture: &Picture, at: &DVector<f64>, window_px: f64) -> Vec<Found> {
+        let mut all = vec![];
+        for edge in &self.body.edges_m {
+            let of_sign = [1.0, -1.0].map(|sign| self.of_edge(picture, at, edge, sign, window_px));
+            let [brighter, darker] = of_sign;
+            let more = if brighter.len() >= darker.len() { brighter } else { darker };
+            if more.len() >= SEEN {
+                all.extend(more);
+            }
+        }
+        all
+    }
+
+    fn of_edge(
+        &self,
+        picture: &Picture,
+        at: &DVector<f64>,
+        [from, to]: &[Vector3<f64>; 2],
+        sign: f64,
+        window_px: f64,
+    ) -> Vec<Found> {
+        let along = (to - from).normalize() * 0.004;
+        let mut found = vec![];
+        for k in 0..SAMPLES {
+            let point = from + (to - from) * ((k as f64 + 0.5) / SAMPLES as f64);
+            let Some(pixel) = self.pixel(picture, at, &point) else { continue };
+            let Some(next) = self.pixel(picture, at, &(point + along)) else { continue };
+            let line = next - pixel;
+            let Some(toward) = Vector2::new(-line.y, line.x).try_normalize(1e-3) else { continue };
+            let levels = profile(&picture.image, &pixel, &toward, window_px, &BESIDE_PX);
+            let Some(off_px) = levels.and_then(|levels| steepest(&levels, sign)) else { continue };
+            let slope = DVector::from_fn(UNKNOWNS, |i, _| {
+                const STEP: f64 = 1e-4;
+                let mut moved = at.clone();
+                moved[i] += STEP;
+                self.pixel(picture, &moved, &point).map_or(0.0, |there| (there - pixel).dot(&toward) / STEP)
+            });
+            found.push(Found { off_px, slope });
+        }
+        found
+    }
+
+    /// Where a point of the body (robot frame, as described) is seen.
+    fn pixel(&self, picture: &Picture, at: &DVector<f64>, point: &Vector3<f64>) -> Option<Vector2<f64>> {
+        let motion = |from: usize| {
+            let turn = UnitQuaternion::from_scaled_axis(at.fixed_rows::<3>(from).into_owned());
+            Isometry3::from_parts(Translation3::from(at.fixed_rows::<3>(from + 3).into_owned()), turn)
+        };
+        let (eyes, pan) = (&self.rig.eyes, self.rig.eyes.pan);
+        let mut posture = picture.posture.clone();
+        posture[pan] += at[0];
+        let nominal = self.rig.robot_from_left(&posture).isometry;
+        let mount = eyes.head_from_left.isometry;
+        let left_from_robot = (nominal * mount.inverse() * motion(1) * mount).inverse();
+        // The body turns about its middle.
+        let middle =
+            self.body.edges_m.iter().flatten().sum::<Vector3<f64>>() / (2 * self.body.edges_m.len()) as f64;
+        let lies = middle + (motion(7) * Point3::from(point - middle)).coords;
+        let in_left = left_from_robot * Point3::from(lies);
+        let in_eye = match picture.eye {
+            Eye::Left => in_left,
+            Eye::Right => eyes.cameras.right_from_left.isometry * in_left,
+        };
+        Some(eyes.cameras.camera(picture.eye).project(&in_eye.coords).ok()?.vector())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use plumbline_model::Unattended;
+    use plumbline_twin::Scenario;
+
+    use super::*;
+
+    /// A twin with only this hidden: how far the head stands from where its encoder says, and how far that
+    /// is seen.
+    fn looked(rig: &Rig, zero_rad: f64) -> (f64, Option<SeenBody>) {
+        let text = format!(
+            "format = 1\nname = \"head\"\ntitle = \"Head\"\nabout = \"A head that is turned.\"\n\
+             [joint.head_z]\nencoder_zero_rad = {zero_rad}\n"
+        );
+        let scenario = Scenario::from_toml("head", &text).expect("a scenario");
+        let folder = std::env::temp_dir();
+        let lab = Lab { folder, rig: Arc::new(rig.clone()), scenario, seed: 1 };
+        let mut robot = Robot::new(&lab, 1200.0, None).expect("a twin");
+        let pictures = look(&mut robot, rig, &Unattended).expect("looked");
+        let encoder_rad = robot.lockstep().encoders()[rig.eyes.pan];
+        let truth = robot.lockstep().truth_for_judging();
+        let forward = truth.robot_from_link[rig.eyes.link.0].expect("a link") * Vector3::x();
+        let truly_rad = forward.y.atan2(forward.x);
+        let sd = nalgebra::Vector6::new(1e-3, 1e-3, 1e-3, 5e-4, 5e-4, 5e-4);
+        let mount = Matrix6::from_diagonal(&sd.map(|sd| sd * sd));
+        (truly_rad - encoder_rad, fit(rig, &mount, 1e-3, &pictures))
+    }
+
+    #[test]
+    fn the_body_tells_how_the_head_stands_to_a_fifth_of_a_degree() {
+        let rig = Rig::built_in("nico").expect("valid");
+        for zero_rad in [0.0, 0.02] {
+            let (truly_rad, seen) = looked(&rig, zero_rad);
+            let seen = seen.expect("the body is in sight");
+            assert!((truly_rad.abs() - zero_rad).abs() < 0.002, "{truly_rad}");
+            assert!((seen.neck_rad - truly_rad).abs() < 0.0035, "{seen:?} {truly_rad}");
+            assert!((0.0005..0.006).contains(&seen.neck_sd_rad), "{seen:?}");
+        }
+    }
+
+    #[test]
+    fn a_body_that_is_not_described_is_not_looked_at() {
+        let mut rig = Rig::built_in("nico").expect("valid");
+        rig.outlines.body = None;
+        assert_eq!(looked(&rig, 0.0).1, None);
+    }
+}
