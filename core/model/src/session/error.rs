@@ -158,7 +158,9 @@ pub enum SessionError {
         cell: Cell,
     },
     /// A vector or quaternion of another length than 1.
-    #[error("{cell}: the components have length {length:.3}, not 1: give a unit quaternion, in the order w, x, y, z")]
+    #[error(
+        "{cell}: the components have length {length:.3}, not 1: give a unit quaternion, in the order w, x, y, z"
+    )]
     NotUnit {
         /// Its cell.
         cell: Cell,

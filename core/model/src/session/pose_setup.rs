@@ -115,7 +115,9 @@ mod tests {
 
     #[test]
     fn other_words_are_refused() {
-        for wrong in ["tip_place = \"maybe\"", "encoders = \"both\"", "encoders = 3", "[external]\nframe = \" \""] {
+        for wrong in
+            ["tip_place = \"maybe\"", "encoders = \"both\"", "encoders = 3", "[external]\nframe = \" \""]
+        {
             assert!(manifest(wrong).is_err(), "{wrong}");
         }
     }

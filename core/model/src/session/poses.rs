@@ -81,7 +81,8 @@ impl PoseTable {
     pub fn read(file: &Path, joints: &[String]) -> Result<Self, SessionError> {
         let mut read = Table::read(file, |name| {
             let of_joint = OF_JOINTS.iter().any(|column| column.is_of(name, joints));
-            if of_joint || MEASURED.contains(&name) || ORIENTATION.contains(&name) || NUMBERS.contains(&name) {
+            if of_joint || MEASURED.contains(&name) || ORIENTATION.contains(&name) || NUMBERS.contains(&name)
+            {
                 Some(ColumnKind::Number)
             } else {
                 TEXTS.contains(&name).then_some(ColumnKind::Text)

@@ -318,7 +318,8 @@ impl ReadTable<'_> {
             }
             count += 1;
             first.get_or_insert((line, length));
-            let what = format!("line {line}, columns {}: their length is {length:.3}, not 1", names.join(", "));
+            let what =
+                format!("line {line}, columns {}: their length is {length:.3}, not 1", names.join(", "));
             self.table.implausible.entry(row).or_insert(what);
         }
         let too_many = count == rows || (count > 1 && 4 * count > rows);
