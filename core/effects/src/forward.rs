@@ -2,12 +2,12 @@
 
 use nalgebra::{DMatrix, Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 
-use crate::arm::Deviation;
+use crate::arm::{Arm, Deviation};
 use crate::eyes::{EyeSituation, EyesDeviation};
 use crate::library::{Effect, Present, Situation};
 use crate::measurements::Measurements;
 use crate::observation::{Observation, What};
-use crate::slopes::{ArmSlopes, EyesSlopes};
+use crate::slopes::{ArmSlopes, At, EyesSlopes};
 
 /// What predictions are made with.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -18,12 +18,28 @@ pub struct Assumed {
     /// is the screen that lies elsewhere (the other way), for poses it leads into the external
     /// frame. Identity: where the session says.
     pub placements: Vec<Isometry3<f64>>,
+    /// Per session: where the marker sits at the tip's frame, `tip_from_marker`. Sessions without an
+    /// entry have it where the description has it.
+    pub mounts: Vec<Isometry3<f64>>,
 }
 
 impl Assumed {
     /// The nominal model.
     pub fn nominal(measurements: &Measurements) -> Self {
-        Self { effects: vec![], placements: measurements.nominal_placements() }
+        Self { effects: vec![], placements: measurements.nominal_placements(), mounts: vec![] }
+    }
+
+    /// Where the marker of a session sits: `tip_from_marker`.
+    pub fn mount(&self, session: usize) -> Isometry3<f64> {
+        self.mounts.get(session).copied().unwrap_or_default()
+    }
+
+    /// Says where the marker of a session sits.
+    pub fn set_mount(&mut self, session: usize, tip_from_marker: Isometry3<f64>) {
+        if self.mounts.len() <= session {
+            self.mounts.resize(session + 1, Isometry3::identity());
+        }
+        self.mounts[session] = tip_from_marker;
     }
 }
 
@@ -35,6 +51,9 @@ pub struct Tangents {
     /// Per shift (m) along x, y, z and per turn (rad) about x, y, z of the session's frame; turns
     /// about [`Measurements::pivot`]. One row per coordinate. All zero where nothing is placed.
     pub gauge: DMatrix<f64>,
+    /// The same per shift (m) along x, y, z of the tip's frame and per turn (rad) about x, y, z of the
+    /// marker of the session's marker at its tip.
+    pub mount: DMatrix<f64>,
     /// Per parameter of every candidate in turn, per usual size of the parameter; one row per
     /// coordinate.
     pub effects: DMatrix<f64>,
@@ -48,7 +67,25 @@ impl Measurements {
         for present in &assumed.effects {
             scene.add(&present.effect, &present.values, &mut arm, &mut eyes);
         }
-        scene.predict(&arm, &eyes, &assumed.placements[row.session])
+        scene.predict(&arm, &eyes, &assumed.placements[row.session], &self.mount_of(row, assumed))
+    }
+
+    /// Where what a row measured sits at the frame of its marker or tip.
+    fn mount_of(&self, row: &Observation, assumed: &Assumed) -> Isometry3<f64> {
+        if self.feels_mount(row) { assumed.mount(row.session) } else { Isometry3::identity() }
+    }
+
+    /// Where a marker is, `external_from_marker` (for touches: in the robot's frame as the screen lies), at
+    /// what is assumed; `None` where nothing of the arm was measured.
+    pub fn external_from_tip(&self, row: &Observation, assumed: &Assumed) -> Option<Isometry3<f64>> {
+        let scene = Scene::of(self, row);
+        scene.situation.as_ref()?;
+        let (mut arm, mut eyes) = scene.begin();
+        for present in &assumed.effects {
+            scene.add(&present.effect, &present.values, &mut arm, &mut eyes);
+        }
+        let tip = scene.arm?.robot_from_tip(row.angles_rad(), &arm);
+        Some(assumed.placements[row.session] * tip * self.mount_of(row, assumed))
     }
 
     /// Place of the arm's tip at the angles of a row, with these effects; `None` without an arm.
@@ -71,7 +108,12 @@ impl Measurements {
         }
         let placement = &assumed.placements[row.session];
         if row.what.is_placed() {
-            scene.arm_tangents(&arm, placement, &self.pivot(row.session), candidates)
+            let placed = Placed {
+                placement,
+                mount: &self.mount_of(row, assumed),
+                pivot: &self.pivot(self.frame_of(row.session)),
+            };
+            scene.arm_tangents(&arm, &placed, candidates)
         } else {
             scene.eye_tangents(&eyes, candidates)
         }
@@ -106,6 +148,8 @@ struct Scene<'a> {
     /// Effects that the model already has.
     present: &'a [Present],
     apparatus: &'a crate::measurements::Apparatus,
+    /// The arm that ends in what was measured.
+    arm: Option<&'a Arm>,
     situation: Option<Situation<'a>>,
     eye_situation: Option<EyeSituation>,
 }
@@ -124,7 +168,8 @@ impl<'a> Scene<'a> {
             .zip(row.truth_m)
             .filter(|_| !row.what.is_placed())
             .map(|(eyes, truth_m)| eyes.situation(row, truth_m));
-        Self { row, present: &measurements.present, apparatus, situation, eye_situation }
+        let (present, arm) = (&measurements.present, measurements.arm_of(row));
+        Self { row, present, apparatus, arm, situation, eye_situation }
     }
 
     /// What the model already has; nothing for the nominal robot.
@@ -141,6 +186,10 @@ impl<'a> Scene<'a> {
     fn add(&self, effect: &Effect, values: &[f64], arm: &mut Deviation, eyes: &mut EyesDeviation) {
         if let Some(situation) = &self.situation {
             effect.deviate(situation, values, arm);
+            if self.row.marker > 0 {
+                // Where the chain's tip sits says nothing of another marker.
+                arm.tip_m = Vector3::zeros();
+            }
         }
         if let Some(situation) = &self.eye_situation {
             effect.deviate_eyes(situation, values, eyes);
@@ -150,33 +199,52 @@ impl<'a> Scene<'a> {
     fn arm_tangents(
         &self,
         deviation: &Deviation,
-        placement: &Isometry3<f64>,
-        pivot: &Point3<f64>,
+        placed: &Placed<'_>,
         candidates: &[Effect],
     ) -> Option<Tangents> {
-        let (arm, situation) = (self.apparatus.arm.as_ref()?, self.situation.as_ref()?);
+        let (arm, situation) = (self.arm?, self.situation.as_ref()?);
         let surface = match self.row.what {
             What::Touch => Some((self.apparatus.surface.as_ref()?, self.row.screen_height_m)),
             _ => None,
         };
-        let pivot = (placement * pivot).coords;
-        let slopes = ArmSlopes::of(arm, surface, self.row.angles_rad(), deviation, placement, &pivot);
-        let mut scratch = Deviation::none(arm.len());
-        let mut columns = Vec::with_capacity(candidates.len() * 6);
+        let pivot = (placed.placement * placed.pivot).coords;
+        let at = At { placement: placed.placement, mount: placed.mount, orientation: self.orientation() };
+        let slopes = ArmSlopes::of(arm, surface, self.row.angles_rad(), deviation, &at, &pivot);
+        let size = self.row.what.len();
+        let mut scratch = Deviation::none(deviation.joint_rad.len());
+        let mut columns = Vec::with_capacity(candidates.len() * 2 * size);
         for_each_parameter(candidates, |candidate, values| {
             if candidate.kind.is_of_eyes() {
-                columns.extend([0.0; 3]);
+                columns.extend(std::iter::repeat_n(0.0, size));
             } else {
                 scratch.clear();
                 candidate.deviate(situation, values, &mut scratch);
+                if self.row.marker > 0 {
+                    scratch.tip_m = Vector3::zeros();
+                }
                 columns.extend(slopes.along(&scratch).iter());
+                if let Some(turns) = &slopes.turned {
+                    columns.extend(turns.along(&scratch).iter());
+                }
             }
         });
-        let mut gauge = DMatrix::zeros(3, 6);
-        gauge.columns_mut(0, 3).copy_from(&slopes.shifts);
-        gauge.columns_mut(3, 3).copy_from(&slopes.turns);
-        let effects = DMatrix::from_vec(3, columns.len() / 3, columns);
-        Some(Tangents { predicted: slopes.predicted.iter().copied().collect(), gauge, effects })
+        let (mut gauge, mut mount) = (DMatrix::zeros(size, 6), DMatrix::zeros(size, 6));
+        gauge.view_mut((0, 0), (3, 3)).copy_from(&slopes.shifts);
+        gauge.view_mut((0, 3), (3, 3)).copy_from(&slopes.turns);
+        mount.view_mut((0, 0), (3, 3)).copy_from(&slopes.tip);
+        let mut predicted: Vec<f64> = slopes.predicted.iter().copied().collect();
+        if let Some(turns) = &slopes.turned {
+            predicted.extend(turns.predicted.iter());
+            gauge.view_mut((3, 3), (3, 3)).copy_from(&turns.frame);
+            mount.view_mut((3, 3), (3, 3)).copy_from(&turns.mount);
+        }
+        let effects = DMatrix::from_vec(size, columns.len() / size, columns);
+        Some(Tangents { predicted, gauge, mount, effects })
+    }
+
+    /// What an oriented pose measured.
+    fn orientation(&self) -> Option<UnitQuaternion<f64>> {
+        self.row.orientation.filter(|_| self.row.what == What::OrientedPose)
     }
 
     fn eye_tangents(&self, deviation: &EyesDeviation, candidates: &[Effect]) -> Option<Tangents> {
@@ -190,20 +258,33 @@ impl<'a> Scene<'a> {
             slopes.along(&scratch, &mut columns);
         });
         let effects = DMatrix::from_vec(size, columns.len() / size.max(1), columns);
-        Some(Tangents { predicted: slopes.predicted, gauge: DMatrix::zeros(size, 6), effects })
+        Some(Tangents {
+            predicted: slopes.predicted,
+            gauge: DMatrix::zeros(size, 6),
+            mount: DMatrix::zeros(size, 6),
+            effects,
+        })
     }
 
-    fn predict(&self, arm: &Deviation, eyes: &EyesDeviation, placement: &Isometry3<f64>) -> Option<Vec<f64>> {
+    fn predict(
+        &self,
+        arm: &Deviation,
+        eyes: &EyesDeviation,
+        placement: &Isometry3<f64>,
+        mount: &Isometry3<f64>,
+    ) -> Option<Vec<f64>> {
+        let tip = || Some(placement * self.arm?.robot_from_tip(self.row.angles_rad(), arm) * mount);
         match self.row.what {
             What::Touch => {
-                let tip = placement * self.apparatus.arm.as_ref()?.tip_m(self.row.angles_rad(), arm);
                 let surface = self.apparatus.surface.as_ref()?;
-                let touch = surface.touch_m(tip, self.row.screen_height_m, arm);
+                let touch = surface.touch_m(tip()?.translation.vector.into(), self.row.screen_height_m, arm);
                 Some(touch.iter().copied().collect())
             }
-            What::Pose => {
-                let tip = placement * self.apparatus.arm.as_ref()?.tip_m(self.row.angles_rad(), arm);
-                Some(tip.iter().copied().collect())
+            What::Pose => Some(tip()?.translation.vector.iter().copied().collect()),
+            What::OrientedPose => {
+                let tip = tip()?;
+                let turn = (tip.rotation * self.row.orientation?.inverse()).scaled_axis();
+                Some(tip.translation.vector.iter().chain(turn.iter()).copied().collect())
             }
             What::Place => {
                 self.apparatus.eyes.as_ref()?.estimate(self.row, self.eye_situation.as_ref()?, eyes)
@@ -211,6 +292,13 @@ impl<'a> Scene<'a> {
             What::EyePoints => self.apparatus.eyes.as_ref()?.image_points(self.eye_situation.as_ref()?, eyes),
         }
     }
+}
+
+/// Where things stand that are found along with the effects.
+struct Placed<'a> {
+    placement: &'a Isometry3<f64>,
+    mount: &'a Isometry3<f64>,
+    pivot: &'a Point3<f64>,
 }
 
 /// One parameter after the other at its usual size, the others of its effect at zero.

@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 use std::time::Instant;
 
-use nalgebra::{DMatrix, Isometry3, Point3};
+use nalgebra::{DMatrix, Isometry3, Point3, UnitQuaternion};
 use plumbline_model::robot::Rig;
 
 use crate::arm::Arm;
@@ -18,30 +18,7 @@ use crate::library::{Effect, Kind, Surface};
 use crate::measurements::{Apparatus, Measurements, Observation, What};
 
 fn row(session: usize, i: usize, what: What) -> Observation {
-    Observation {
-        session,
-        row: i,
-        what,
-        measured: vec![0.0; what.len()],
-        commanded_rad: None,
-        encoder_rad: None,
-        direction: vec![],
-        payload_kg: 0.0,
-        screen_height_m: 0.0,
-        t_secs: Some(40.0 * i as f64),
-        move_secs: None,
-        hold_secs: None,
-        speed_rad_s: None,
-        torque_nm: None,
-        temperature_c: None,
-        neck_rad: vec![],
-        truth_m: None,
-        background_m: None,
-        object: None,
-        cell: i,
-        set: None,
-        approach: None,
-    }
+    Observation { session, row: i, t_secs: Some(40.0 * i as f64), cell: i, ..Observation::imagined(what) }
 }
 
 /// A number of its own for every row and joint, −1 to 1.
@@ -61,9 +38,9 @@ fn everything(count: usize) -> Measurements {
         tip: None,
         arm: Some(arm.clone()),
         surface: Some(surface.clone()),
-        eyes: None,
+        ..Apparatus::default()
     };
-    let seen = Apparatus { title: "seen".to_owned(), tip: None, arm: None, surface: None, eyes: Some(eyes) };
+    let seen = Apparatus { title: "seen".to_owned(), eyes: Some(eyes), ..Apparatus::default() };
     let middle = [-0.2, 1.1, 0.5, 1.7, -0.3, 0.2];
     let mut rows = vec![];
     for i in 0..count {
@@ -228,7 +205,16 @@ fn what_gives_way_gives_way_downward() {
 
 #[test]
 fn tangents_are_the_slope_of_the_prediction() {
-    let measurements = everything(24);
+    let mut measurements = everything(24);
+    // Half of the poses have orientations, and the marker sits anywhere.
+    measurements.apparatuses[0].tip_is_unknown = true;
+    let arm = measurements.apparatuses[0].arm.clone().expect("an arm");
+    for row in measurements.rows.iter_mut().filter(|row| row.what == What::Pose && row.row % 8 == 7) {
+        let tip = arm.robot_from_tip(row.angles_rad(), &crate::arm::Deviation::none(arm.len()));
+        row.orientation = Some(UnitQuaternion::from_euler_angles(0.3, -0.2, 0.5) * tip.rotation);
+        row.what = What::OrientedPose;
+        row.measured = vec![0.0; 6];
+    }
     let candidates = Effect::candidates(&measurements);
     // Around a model in which several parts deviate already.
     let present = |id: &str, site: &str, values: &[f64]| {
@@ -237,6 +223,7 @@ fn tangents_are_the_slope_of_the_prediction() {
     };
     let mut assumed = Assumed::nominal(&measurements);
     assumed.placements[0] = Isometry3::new([0.01, -0.02, 0.005].into(), [0.02, -0.01, 0.05].into());
+    assumed.set_mount(0, Isometry3::new([0.02, -0.01, 0.03].into(), [0.2, -0.4, 0.1].into()));
     assumed.effects = vec![
         present("joint-zero", "r_elbow_y", &[0.05]),
         present("axis-skew", "r_shoulder_y", &[0.04, -0.03]),
@@ -286,6 +273,19 @@ fn tangents_are_the_slope_of_the_prediction() {
             for i in 0..predicted.len() {
                 let slope = placed * (ahead[i] - behind[i]) / 2e-4;
                 assert!((slope - tangents.gauge[(i, k)]).abs() < 1e-5, "twist {k}");
+            }
+        }
+        for nuisance in measurements.nuisances() {
+            let at = |side: f64| {
+                let mut other = assumed.clone();
+                measurements.move_nuisances(&mut other, &[nuisance], &[side * 1e-4], 1.0);
+                measurements.predict(row, &other).expect("in view")
+            };
+            let (ahead, behind) = (at(1.0), at(-1.0));
+            for i in 0..predicted.len() {
+                let slope = (ahead[i] - behind[i]) / 2e-4;
+                let tangent = measurements.nuisance_slope(row, &tangents, i, nuisance);
+                assert!((slope - tangent).abs() < 1e-5, "{nuisance:?} {i}: {slope} {tangent}");
             }
         }
     }

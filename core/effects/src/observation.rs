@@ -1,6 +1,6 @@
 //! One row of a session as predictions need it, and what it measured.
 
-use nalgebra::Point3;
+use nalgebra::{Point3, UnitQuaternion};
 use plumbline_model::predict::Angles;
 
 /// What a row measured.
@@ -11,6 +11,8 @@ pub enum What {
     Touch,
     /// A point of the robot was measured from outside.
     Pose,
+    /// The same with its orientation.
+    OrientedPose,
     /// The eyes estimated a known place.
     Place,
     /// A known place was seen at a pixel of each eye.
@@ -30,11 +32,16 @@ pub enum Unit {
 }
 
 impl What {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Touch, Self::Pose, Self::OrientedPose, Self::Place, Self::EyePoints];
+
     /// Names and units of what a row of this kind measures.
     ///
     /// - Touch: along u and v of the screen from the middle of the image, and the height of the
     ///   fingertip over the glass (measured: zero).
     /// - Pose: x, y, z in the external frame.
+    /// - Oriented pose: the same, and the turn that leads from the measured orientation to the
+    ///   predicted one, a rotation vector in the external frame (measured: zero).
     /// - Place: bearing to the right and down in the left eye (tangents), and the disparity angle
     ///   (baseline over depth), all nearly of the same noise.
     /// - Eye points: u and v in the left image, u and v in the right one.
@@ -44,6 +51,14 @@ impl What {
                 &[("along u", Unit::Meter), ("along v", Unit::Meter), ("height over the glass", Unit::Meter)]
             }
             Self::Pose => &[("x", Unit::Meter), ("y", Unit::Meter), ("z", Unit::Meter)],
+            Self::OrientedPose => &[
+                ("x", Unit::Meter),
+                ("y", Unit::Meter),
+                ("z", Unit::Meter),
+                ("turn about x", Unit::Radian),
+                ("turn about y", Unit::Radian),
+                ("turn about z", Unit::Radian),
+            ],
             Self::Place => &[
                 ("bearing right", Unit::Radian),
                 ("bearing down", Unit::Radian),
@@ -67,14 +82,19 @@ impl What {
     /// Whether the frame of the measurement is free against the robot: where the screen or the
     /// external device stands is not known better than by the rows themselves.
     pub fn is_placed(self) -> bool {
-        matches!(self, Self::Touch | Self::Pose)
+        matches!(self, Self::Touch | Self::Pose | Self::OrientedPose)
+    }
+
+    /// Whether an external device measured it.
+    pub fn is_pose(self) -> bool {
+        matches!(self, Self::Pose | Self::OrientedPose)
     }
 
     /// The table that it comes from.
     pub fn table(self) -> &'static str {
         match self {
             Self::Touch => "touches.csv",
-            Self::Pose => "poses.csv",
+            Self::Pose | Self::OrientedPose => "poses.csv",
             Self::Place | Self::EyePoints => "localizations.csv",
         }
     }
@@ -130,6 +150,20 @@ pub struct Observation {
     pub set: Option<String>,
     /// Label of the side of approach.
     pub approach: Option<String>,
+    /// Rows of one pose of the arm, whatever was measured of it, counted like [`Self::cell`]; `None`:
+    /// those of the cell.
+    pub pose: Option<usize>,
+    /// Measured orientation of an oriented pose: `external_from_tip`.
+    pub orientation: Option<UnitQuaternion<f64>>,
+    /// Standard deviation of the instrument along each axis, m, where it is known.
+    pub sigma_m: Option<f64>,
+    /// Which frame was measured: 0 the chain's tip, else one more than its place in
+    /// [`crate::measurements::Apparatus::markers`].
+    pub marker: usize,
+    /// Encoders are read behind the gears, and see their play.
+    pub encoder_behind_gear: bool,
+    /// Room temperature, °C.
+    pub ambient_c: Option<f64>,
 }
 
 impl Observation {
@@ -158,6 +192,12 @@ impl Observation {
             cell: 0,
             set: None,
             approach: None,
+            pose: None,
+            orientation: None,
+            sigma_m: None,
+            marker: 0,
+            encoder_behind_gear: false,
+            ambient_c: None,
         }
     }
 

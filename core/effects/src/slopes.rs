@@ -21,7 +21,10 @@ pub(crate) struct ArmSlopes {
     joints: Vec<Vector3<f64>>,
     skews: Vec<Matrix3<f64>>,
     places: Vec<Matrix3<f64>>,
-    tip: Matrix3<f64>,
+    /// By shifts along the axes of the tip's frame.
+    pub tip: Matrix3<f64>,
+    /// Of the turn against the measured orientation, where one was measured.
+    pub turned: Option<TurnSlopes>,
     base_turn: Matrix3<f64>,
     base: Matrix3<f64>,
     scale: Matrix3x2<f64>,
@@ -31,6 +34,79 @@ pub(crate) struct ArmSlopes {
     screen_turn: Matrix3<f64>,
 }
 
+/// Where the arm's points are measured, and which orientation was.
+pub(crate) struct At<'a> {
+    /// From the robot to where it is measured.
+    pub placement: &'a Isometry3<f64>,
+    /// `tip_from_marker`.
+    pub mount: &'a Isometry3<f64>,
+    /// `external_from_tip` as measured.
+    pub orientation: Option<UnitQuaternion<f64>>,
+}
+
+/// Of the turn from the measured orientation to the predicted one, by the parts of the arm's deviation.
+pub(crate) struct TurnSlopes {
+    /// The rotation vector itself, external frame, rad.
+    pub predicted: Vector3<f64>,
+    /// By turns of the external frame about x, y, z.
+    pub frame: Matrix3<f64>,
+    /// By turns about x, y, z of the marker.
+    pub mount: Matrix3<f64>,
+    joints: Vec<Vector3<f64>>,
+    skews: Vec<Matrix3<f64>>,
+    base_turn: Matrix3<f64>,
+}
+
+impl TurnSlopes {
+    /// `steps`: rotation of each joint once its axis is skewed; `marker`: of what was measured, robot
+    /// frame.
+    fn of(
+        arm: &Arm,
+        steps: &[UnitQuaternion<f64>],
+        deviation: &Deviation,
+        at: &At<'_>,
+        marker: UnitQuaternion<f64>,
+    ) -> Option<Self> {
+        let orientation = at.orientation?;
+        let predicted = (at.placement.rotation * marker * orientation.inverse()).scaled_axis();
+        let frame = inverse_left_jacobian(&predicted);
+        let from_robot = frame * at.placement.rotation.to_rotation_matrix().into_inner();
+        let left = right_jacobian(&-deviation.base_rad);
+        Some(Self {
+            predicted,
+            frame,
+            mount: from_robot * marker.to_rotation_matrix().into_inner(),
+            joints: steps
+                .iter()
+                .zip(&arm.parts)
+                .map(|(turned, part)| from_robot * (turned * *part.axis))
+                .collect(),
+            skews: steps
+                .iter()
+                .zip(&deviation.skew_rad)
+                .map(|(turned, skew)| {
+                    from_robot * turned.to_rotation_matrix().into_inner() * right_jacobian(skew)
+                })
+                .collect(),
+            base_turn: from_robot * left,
+        })
+    }
+
+    /// What a small further deviation changes.
+    pub fn along(&self, deviation: &Deviation) -> Vector3<f64> {
+        let mut sum = self.base_turn * deviation.base_rad;
+        for (slope, angle) in self.joints.iter().zip(&deviation.joint_rad).filter(|(_, a)| **a != 0.0) {
+            sum += slope * *angle;
+        }
+        for (slope, turn) in
+            self.skews.iter().zip(&deviation.skew_rad).filter(|(_, t)| **t != Vector3::zeros())
+        {
+            sum += slope * turn;
+        }
+        sum
+    }
+}
+
 impl ArmSlopes {
     /// Around a deviation; `pivot` as placed. Without a surface: of the tip's place itself.
     pub fn of(
@@ -38,9 +114,10 @@ impl ArmSlopes {
         surface: Option<(&Surface, f64)>,
         angles_rad: &[f64],
         deviation: &Deviation,
-        placement: &Isometry3<f64>,
+        measured: &At<'_>,
         pivot: &Vector3<f64>,
     ) -> Self {
+        let placement = measured.placement;
         // Down the chain, remembering what each part turns about.
         let mut place = Isometry3::from_parts(
             Translation3::from(deviation.base_m),
@@ -56,7 +133,9 @@ impl ArmSlopes {
             place.rotation *= UnitQuaternion::from_axis_angle(&part.axis, angle_rad + deviation.joint_rad[i]);
         }
         let last = place * arm.last_from_tip;
-        let free = (last * nalgebra::Point3::from(deviation.tip_m)).coords;
+        let marker = last * Translation3::from(deviation.tip_m) * measured.mount;
+        let free = marker.translation.vector;
+        let turns: Vec<UnitQuaternion<f64>> = steps.iter().map(|(_, _, turned)| *turned).collect();
         let tip = placement * nalgebra::Point3::from(free + deviation.contact_m);
         // From the placed tip to what is measured.
         let seen = |tip: nalgebra::Point3<f64>, deviation: &Deviation| match surface {
@@ -83,6 +162,7 @@ impl ArmSlopes {
         let lever = |about: &Vector3<f64>| free - about;
         let joints = steps.iter().zip(&arm.parts);
         Self {
+            turned: TurnSlopes::of(arm, &turns, deviation, measured, marker.rotation),
             predicted: seen(tip, deviation),
             shifts,
             turns: columns(|k| shifts * Vector3::ith(k, 1.0).cross(&(tip.coords - pivot))),
@@ -153,6 +233,19 @@ fn right_jacobian(turn: &Vector3<f64>) -> Matrix3<f64> {
     let square = angle * angle;
     Matrix3::identity() - cross * ((1.0 - angle.cos()) / square)
         + cross * cross * ((angle - angle.sin()) / (square * angle))
+}
+
+/// J with log(exp(δ) exp(ω)) = ω + J δ for small δ.
+fn inverse_left_jacobian(turn: &Vector3<f64>) -> Matrix3<f64> {
+    let angle = turn.norm();
+    let cross = turn.cross_matrix();
+    let second = if angle < 1e-4 {
+        1.0 / 12.0
+    } else {
+        let half = 0.5 * angle;
+        (1.0 - half * half.cos() / half.sin()) / (angle * angle)
+    };
+    Matrix3::identity() - cross * 0.5 + cross * cross * second
 }
 
 /// Of what the eyes see or estimate, by the parts of their deviation.

@@ -130,14 +130,11 @@ fn assemble(
         depends_on: vec![],
         share: 1.0,
     };
-    let (verdict, effects, candidates, unexplained, placements): (_, Vec<NamedEffect>, _, _, _) = match found
-    {
-        Some(found) => {
-            (found.verdict, found.effects, found.candidates, found.unexplained, found.assumed.placements)
-        }
+    let (verdict, effects, candidates, unexplained, assumed): (_, Vec<NamedEffect>, _, _, _) = match found {
+        Some(found) => (found.verdict, found.effects, found.candidates, found.unexplained, found.assumed),
         None => {
             let verdict = if unrelated { Verdict::NotInLibrary } else { Verdict::NoGap };
-            (verdict, vec![], vec![], unexplained, compared.assumed.placements)
+            (verdict, vec![], vec![], unexplained, compared.assumed)
         }
     };
     Finding {
@@ -154,7 +151,8 @@ fn assemble(
         shown,
         unexplained,
         next: None,
-        placements,
+        placements: assumed.placements,
+        mounts: assumed.mounts,
         left_out: measurements.left_out.clone(),
         warnings: compared.warnings,
         seconds: 0.0,

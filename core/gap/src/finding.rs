@@ -54,6 +54,10 @@ pub struct Finding {
     /// Per session: where its frame lies (screen, external device), fitted with the effects, as
     /// [`plumbline_effects::Assumed::placements`].
     pub placements: Vec<Isometry3<f64>>,
+    /// Per session: where the marker sits at the tip, as [`plumbline_effects::Assumed::mounts`]; empty
+    /// where every one sits where the description has it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mounts: Vec<Isometry3<f64>>,
     /// Rows that could not be used.
     pub left_out: Vec<LeftOut>,
     /// What is odd about the data, in words: a wrong unit, a constant joint, outliers.

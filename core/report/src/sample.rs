@@ -259,6 +259,7 @@ fn base() -> Finding {
         unexplained: Unexplained { p_value: 0.21, probability: 0.04, depends_on: vec![], share: 0.16 },
         next: None,
         placements: vec![Isometry3::identity()],
+        mounts: vec![],
         left_out: vec![],
         warnings: vec![],
         seconds: 2.7,

@@ -105,6 +105,7 @@ fn session(dice: &mut Dice) -> Session {
             group: Some(words(dice)),
             approach: Some("plus".to_owned()),
             set: Some(words(dice)),
+            ..PoseRow::default()
         })
         .collect();
     let seen: Vec<LocalizationRow> = (0..rows)

@@ -201,6 +201,7 @@ fn kind_words(what: What) -> &'static str {
     match what {
         What::Touch => "touches",
         What::Pose => "poses measured from outside",
+        What::OrientedPose => "poses measured with their orientation",
         What::Place => "places that the eyes estimated",
         What::EyePoints => "image points",
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-use super::{Apparatus, Observation, What};
+use super::{Apparatus, Observation};
 use crate::library::Situation;
 
 /// Less than this is no motion, rad.
@@ -16,12 +16,12 @@ pub(super) fn complete(rows: &mut [Observation], apparatuses: &[Apparatus]) {
     // Rows of one session and one kind stand in the order of their table.
     let mut tables: BTreeMap<_, Vec<usize>> = BTreeMap::new();
     for (i, row) in rows.iter().enumerate().filter(|(_, row)| row.what.is_placed()) {
-        tables.entry((row.session, row.what)).or_default().push(i);
+        tables.entry((row.session, row.what.table())).or_default().push(i);
     }
     for order in tables.values() {
         holds(rows, order);
         speeds(rows, order);
-        if rows[order[0]].what == What::Pose {
+        if rows[order[0]].what.is_pose() {
             directions(rows, order);
         }
         torques(rows, order, apparatuses);

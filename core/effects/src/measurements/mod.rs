@@ -2,6 +2,7 @@
 //! localizations of any number of sessions.
 
 mod derive;
+mod nuisance;
 mod read;
 #[cfg(test)]
 mod tests;
@@ -12,6 +13,8 @@ use plumbline_model::robot::{DescriptionError, RigError};
 use crate::arm::Arm;
 use crate::eyes::Eyes;
 use crate::library::{Present, Surface};
+pub use nuisance::Nuisance;
+
 pub use crate::observation::{Observation, Unit, What};
 
 /// All rows of one or several sessions of the same robot.
@@ -31,7 +34,7 @@ pub struct Measurements {
 }
 
 /// What a session was measured with, nominal.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Apparatus {
     /// Name of the session.
     pub title: String,
@@ -43,6 +46,22 @@ pub struct Apparatus {
     pub surface: Option<Surface>,
     /// The eyes.
     pub eyes: Option<Eyes>,
+    /// Other frames of the robot that were measured from outside; their joints are the first ones of
+    /// the arm's.
+    pub markers: Vec<Marker>,
+    /// Label of the external frame; sessions of one label share it.
+    pub external_frame: Option<String>,
+    /// Where the measured point sits at the tip's frame is not known.
+    pub tip_is_unknown: bool,
+}
+
+/// A frame of the robot beside the chain's tip.
+#[derive(Clone, Debug)]
+pub struct Marker {
+    /// Its name.
+    pub name: String,
+    /// The arm up to it.
+    pub arm: Arm,
 }
 
 /// A row that cannot be used.
@@ -142,6 +161,15 @@ impl Measurements {
     /// What is measured with, of a row.
     pub fn apparatus(&self, row: &Observation) -> &Apparatus {
         &self.apparatuses[row.session]
+    }
+
+    /// The arm that ends in what a row measured.
+    pub fn arm_of(&self, row: &Observation) -> Option<&Arm> {
+        let apparatus = self.apparatus(row);
+        match row.marker.checked_sub(1) {
+            None => apparatus.arm.as_ref(),
+            Some(marker) => apparatus.markers.get(marker).map(|marker| &marker.arm),
+        }
     }
 
     /// The same with only some rows, by place in [`Self::rows`]; cells keep their numbers.

@@ -6,10 +6,10 @@ use nalgebra::Point3;
 use plumbline_model::Session;
 use plumbline_model::robot::servo::TICK_RAD;
 use plumbline_model::robot::{DescriptionError, Rig, RigPart};
-use plumbline_model::session::{LocalizationRow, PoseRow, TouchRow};
+use plumbline_model::session::{EncoderSide, LocalizationRow, PoseRow, TouchRow};
 
 use super::derive;
-use super::{Apparatus, LeftOut, Measurements, MeasurementsError, Observation, What};
+use super::{Apparatus, LeftOut, Marker, Measurements, MeasurementsError, Observation, What};
 use crate::arm::Arm;
 use crate::eyes::Eyes;
 use crate::library::Surface;
@@ -85,8 +85,13 @@ impl Reader<'_> {
         let missing = |section| MeasurementsError::Missing { session: title.to_owned(), section };
         let misfit = |error| MeasurementsError::Rig { session: title.to_owned(), error };
         let moved = session.touches.is_some() || session.poses.is_some();
-        let mut apparatus =
-            Apparatus { title: title.to_owned(), tip: None, arm: None, surface: None, eyes: None };
+        let setup = session.manifest.pose_setup();
+        let mut apparatus = Apparatus {
+            title: title.to_owned(),
+            tip_is_unknown: setup.tip_is_unknown,
+            external_frame: setup.external_frame,
+            ..Apparatus::default()
+        };
         let mut columns = Columns { order: vec![] };
         if moved {
             let chain = session.manifest.chain.as_ref().ok_or_else(|| missing("chain"))?;
@@ -120,6 +125,7 @@ impl Reader<'_> {
             apparatus.eyes = Some(Eyes::of_rig(self.rig).map_err(misfit)?);
         }
         self.apparatuses.push(apparatus);
+        let first = self.rows.len();
         if let Some(table) = &session.touches {
             for (i, row) in table.rows().enumerate() {
                 let read = can_be(table.implausible(), i)
@@ -140,6 +146,9 @@ impl Reader<'_> {
                     can_be(table.implausible(), i).and_then(|()| self.localization(number, i, &row, &head));
                 self.take(number, What::Place, i, read);
             }
+        }
+        if setup.encoders == EncoderSide::Joint {
+            self.rows[first..].iter_mut().for_each(|row| row.encoder_behind_gear = true);
         }
         Ok(())
     }
@@ -210,19 +219,13 @@ impl Reader<'_> {
             screen_height_m: height,
             t_secs: touch.t_secs,
             move_secs: touch.move_secs,
-            hold_secs: None,
-            speed_rad_s: None,
-            torque_nm: None,
             temperature_c: columns.of(&touch.temperature_c),
-            neck_rad: vec![],
-            truth_m: None,
-            background_m: None,
-            object: None,
             cell,
             set: touch.set.clone(),
             approach: touch.approach.clone(),
             commanded_rad,
             encoder_rad,
+            ..Observation::imagined(What::Touch)
         })
     }
 
@@ -239,19 +242,26 @@ impl Reader<'_> {
         let angles = encoder_rad.as_ref().or(commanded_rad.as_ref()).ok_or("an angle is missing")?;
         let joints = angles.len();
         let payload = pose.payload_kg.unwrap_or(0.0);
-        let cell = self.cell(cell_key(
-            session,
-            pose.group.as_deref(),
-            commanded_rad.as_deref(),
-            pose.approach.as_deref(),
-            &[payload],
-            ("pose", row),
-        ));
+        let marker = self.marker(session, pose.tip.as_deref())?;
+        let mut cell = |marker: usize| {
+            self.cell(cell_key(
+                session,
+                pose.group.as_deref(),
+                commanded_rad.as_deref(),
+                pose.approach.as_deref(),
+                &[payload, marker as f64],
+                ("pose", row),
+            ))
+        };
+        // Markers of one pose are no repeats of each other, but are held out together.
+        let (whole, cell) = (cell(0), cell(marker));
+        let mut at: Vec<f64> = measured.coords.iter().copied().collect();
+        let what = if pose.orientation.is_some() { What::OrientedPose } else { What::Pose };
+        at.resize(what.len(), 0.0);
         Ok(Observation {
             session,
             row,
-            what: What::Pose,
-            measured: measured.coords.iter().copied().collect(),
+            measured: at,
             direction: direction(
                 pose.approach.as_deref(),
                 joints,
@@ -259,23 +269,39 @@ impl Reader<'_> {
                 encoder_rad.as_deref(),
             ),
             payload_kg: payload,
-            screen_height_m: 0.0,
             t_secs: pose.t_secs,
-            move_secs: None,
-            hold_secs: None,
-            speed_rad_s: None,
             torque_nm: columns.of(&pose.torque_nm),
-            temperature_c: None,
-            neck_rad: vec![],
-            truth_m: None,
-            background_m: None,
-            object: None,
             cell,
+            pose: Some(whole),
             set: pose.set.clone(),
             approach: pose.approach.clone(),
             commanded_rad,
             encoder_rad,
+            orientation: pose.orientation,
+            sigma_m: pose.sigma_m,
+            marker,
+            ambient_c: pose.ambient_c,
+            ..Observation::imagined(what)
         })
+    }
+
+    /// The number of what a row measured; the arm up to it is looked up once.
+    fn marker(&mut self, session: usize, tip: Option<&str>) -> Result<usize, String> {
+        let apparatus = &mut self.apparatuses[session];
+        let Some(name) = tip.filter(|name| apparatus.tip.as_deref() != Some(name)) else { return Ok(0) };
+        if let Some(known) = apparatus.markers.iter().position(|marker| marker.name == name) {
+            return Ok(known + 1);
+        }
+        let whole = apparatus.arm.as_ref().ok_or("no arm")?;
+        let arm = Arm::of_rig(self.rig, name).map_err(|error| error.to_string())?;
+        let mut joints = arm.parts.iter().zip(&whole.parts);
+        if arm.len() > whole.len() || joints.any(|(own, of_whole)| own.joint != of_whole.joint) {
+            return Err(format!(
+                "{name} does not hang on the joints of the chain: measure it in a session of its own"
+            ));
+        }
+        apparatus.markers.push(Marker { name: name.to_owned(), arm });
+        Ok(apparatus.markers.len())
     }
 
     fn localization(
@@ -326,24 +352,14 @@ impl Reader<'_> {
             row,
             what,
             measured,
-            commanded_rad: None,
-            encoder_rad: None,
-            direction: vec![],
-            payload_kg: 0.0,
-            screen_height_m: 0.0,
             t_secs: seen.t_secs,
-            move_secs: None,
-            hold_secs: None,
-            speed_rad_s: None,
-            torque_nm: None,
-            temperature_c: None,
             neck_rad,
             truth_m: Some(truth_m),
             background_m: seen.background_m,
             object: seen.object.clone(),
             cell,
             set: seen.set.clone(),
-            approach: None,
+            ..Observation::imagined(what)
         })
     }
 }

@@ -44,10 +44,12 @@ pub fn predict_session_with(
         apparatus.surface = Some(Surface::of(screen));
     }
     let effects = model.present(tip, apparatus.arm.as_ref(), apparatus.eyes.as_ref());
-    let on_screen = Assumed { effects: effects.clone(), placements: vec![Isometry3::identity()] };
+    let on_screen =
+        Assumed { effects: effects.clone(), placements: vec![Isometry3::identity()], ..Assumed::default() };
     let outside = Assumed {
         effects: in_the_air(&effects),
         placements: vec![model.external().copied().unwrap_or_default()],
+        ..Assumed::default()
     };
     let has_pixels = session.localizations.as_ref().is_some_and(|table| table.table().has("left_u_px"));
     let seen: Vec<_> = session.localizations.iter().flat_map(LocalizationTable::rows).collect();
@@ -61,7 +63,7 @@ pub fn predict_session_with(
                 touch.touch = pixel(screen, at[0], at[1]);
                 touch.above_glass_m = at[2];
             }
-            What::Pose => {
+            What::Pose | What::OrientedPose => {
                 let Some(at) = measurements.predict(row, &outside) else { continue };
                 prediction.poses[row.row].tip = Point::new(at[0], at[1], at[2]);
             }

@@ -91,8 +91,7 @@ impl RigModel {
 impl DeviatedArm {
     fn new(arm: Arm, surface: Surface, effects: Vec<Present>) -> Self {
         let joints = arm.len();
-        let apparatus =
-            Apparatus { title: String::new(), tip: None, arm: Some(arm), surface: Some(surface), eyes: None };
+        let apparatus = Apparatus { arm: Some(arm), surface: Some(surface), ..Apparatus::default() };
         Self {
             measurements: Measurements {
                 rig: String::new(),
@@ -101,8 +100,12 @@ impl DeviatedArm {
                 left_out: vec![],
                 present: vec![],
             },
-            free: Assumed { effects: in_the_air(&effects), placements: vec![Isometry3::identity()] },
-            touching: Assumed { effects, placements: vec![Isometry3::identity()] },
+            free: Assumed {
+                effects: in_the_air(&effects),
+                placements: vec![Isometry3::identity()],
+                ..Assumed::default()
+            },
+            touching: Assumed { effects, placements: vec![Isometry3::identity()], ..Assumed::default() },
             joints,
         }
     }

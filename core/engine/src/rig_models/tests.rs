@@ -104,6 +104,7 @@ fn finding(effects: Vec<NamedEffect>) -> Finding {
         unexplained: Unexplained { p_value: 0.2, probability: 0.02, depends_on: vec![], share: 0.1 },
         next: None,
         placements: vec![nalgebra::Isometry3::translation(0.004, -0.002, 0.001)],
+        mounts: vec![],
         left_out: vec![],
         warnings: vec![],
         seconds: 1.0,

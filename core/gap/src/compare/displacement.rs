@@ -12,7 +12,10 @@ pub fn at_m(measurements: &Measurements, row: &Observation, placement: &Isometry
             let [u, v, normal] = surface.axes();
             surface.middle_m() + u * row.measured[0] + v * row.measured[1] + normal * row.screen_height_m
         }),
-        What::Pose => Some(placement.inverse() * Point3::from_slice(&row.measured)),
+        What::Pose | What::OrientedPose => {
+            let [x, y, z] = row.measured.first_chunk().copied().unwrap_or_default();
+            Some(placement.inverse() * Point3::new(x, y, z))
+        }
         What::Place | What::EyePoints => row.truth_m,
     };
     place.map_or([0.0; 3], |place| place.coords.into())
@@ -32,7 +35,7 @@ pub fn of_arm(
             let [u, v, normal] = measurements.apparatus(row).surface.as_ref()?.axes();
             Some(u * residual.x + v * residual.y + normal * residual.z)
         }
-        What::Pose => Some(placement.rotation.inverse() * residual),
+        What::Pose | What::OrientedPose => Some(placement.rotation.inverse() * residual),
         What::Place | What::EyePoints => None,
     }
 }
@@ -46,7 +49,7 @@ pub fn nominal_place_m(measurements: &Measurements, row: &Observation) -> Option
             let [left_u, left_v, right_u, right_v] = *row.measured.first_chunk::<4>()?;
             eyes.cameras.triangulate(Pixel::new(left_u, left_v), Pixel::new(right_u, right_v))?.coords
         }
-        What::Touch | What::Pose => return None,
+        What::Touch | What::Pose | What::OrientedPose => return None,
     };
     Some(eyes.robot_from_left(&row.neck_rad, &EyesDeviation::none(eyes.neck.len())) * in_left)
 }

@@ -7,8 +7,8 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
-use plumbline_effects::Assumed;
 use plumbline_effects::measurements::{Measurements, What};
+use plumbline_effects::{Assumed, Tangents};
 use plumbline_model::JobContext;
 use plumbline_model::decompose;
 use rand::rngs::StdRng;
@@ -92,23 +92,24 @@ fn standardized(
     let mut residual = vec![];
     for &i in &rows {
         start.push(residual.len());
-        let sd = noise.floor.of(measurements.rows[i].what).map(|kind| &kind.sd);
+        let row = &measurements.rows[i];
+        let kind = noise.floor.of(row.what);
         for (c, value) in residuals[i].iter().flatten().enumerate() {
-            residual.push(value / sd.map_or(1.0, |sd| sd[c]));
+            residual.push(value / kind.map_or(1.0, |kind| kind.of_row(row, c)));
         }
     }
-    let tangents: Vec<Option<DMatrix<f64>>> = rows
-        .par_iter()
-        .map(|&i| Some(measurements.tangents(&measurements.rows[i], assumed, &[])?.gauge))
-        .collect();
-    let mut gauge = DMatrix::zeros(residual.len(), 6 * measurements.apparatuses.len());
+    let tangents: Vec<Option<Tangents>> =
+        rows.par_iter().map(|&i| measurements.tangents(&measurements.rows[i], assumed, &[])).collect();
+    let nuisances = measurements.nuisances();
+    let mut gauge = DMatrix::zeros(residual.len(), nuisances.len());
     for ((&i, &at), tangents) in rows.iter().zip(&start).zip(&tangents) {
         let row = &measurements.rows[i];
-        let sd = noise.floor.of(row.what).map(|kind| &kind.sd);
-        let Some(tangents) = tangents.as_ref().filter(|_| row.what.is_placed()) else { continue };
-        for c in 0..tangents.nrows() {
-            for k in 0..6 {
-                gauge[(at + c, 6 * row.session + k)] = tangents[(c, k)] / sd.map_or(1.0, |sd| sd[c]);
+        let kind = noise.floor.of(row.what);
+        let Some(tangents) = tangents else { continue };
+        for c in 0..row.measured.len() {
+            let sd = kind.map_or(1.0, |kind| kind.of_row(row, c));
+            for (k, nuisance) in nuisances.iter().enumerate() {
+                gauge[(at + c, k)] = measurements.nuisance_slope(row, tangents, c, *nuisance) / sd;
             }
         }
     }
@@ -310,7 +311,7 @@ struct Basis {
 }
 
 fn bases(measurements: &Measurements, all: &Standardized, covariates: &Covariates) -> Vec<Basis> {
-    [What::Touch, What::Pose, What::Place, What::EyePoints]
+    What::ALL
         .into_iter()
         .filter_map(|what| {
             let chosen: Vec<usize> =

@@ -194,7 +194,7 @@ fn warn_of_noise(floor: &Floor, warnings: &mut Vec<String>) {
 /// Whether measured places follow predicted ones.
 fn related(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> bool {
     let (mut left, mut whole) = (0.0, 0.0);
-    for what in [What::Touch, What::Pose, What::Place, What::EyePoints] {
+    for what in What::ALL {
         let kept: Vec<(&Vec<f64>, &Vec<f64>)> = measurements
             .rows
             .iter()
@@ -202,8 +202,13 @@ fn related(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> bool 
             .filter(|(row, _)| row.what == what)
             .filter_map(|(row, residual)| Some((&row.measured, residual.as_ref()?)))
             .collect();
-        // The height of a touch is always measured as zero.
-        for c in 0..if what == What::Touch { 2 } else { what.len() } {
+        // The height of a touch is always measured as zero, and so is a turn against what was measured.
+        let telling = match what {
+            What::Touch => 2,
+            What::OrientedPose => 3,
+            What::Pose | What::Place | What::EyePoints => what.len(),
+        };
+        for c in 0..telling {
             let Some(middle) = median(kept.iter().map(|(measured, _)| measured[c])) else { continue };
             let scatter = robust_sd(kept.iter().map(|(_, residual)| residual[c]));
             let spread = robust_sd(kept.iter().map(|(measured, _)| measured[c] - middle)).max(1e-9);

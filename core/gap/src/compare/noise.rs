@@ -12,7 +12,7 @@ use plumbline_model::decompose;
 
 use super::drift::{Deviation, Drift, drift};
 use super::neighbors::Points;
-use super::statistics::robust_sd;
+use super::statistics::{median, robust_sd};
 use crate::floor::{Floor, KindFloor};
 
 /// Fewer degrees of freedom than this say too little of the spread: 20 know it to a sixth. What
@@ -43,7 +43,7 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
     let mut repeated = vec![];
     let mut from_repeats = true;
     let mut changed: Option<Drift> = None;
-    for what in [What::Touch, What::Pose, What::Place, What::EyePoints] {
+    for what in What::ALL {
         if !measurements.has(what) {
             continue;
         }
@@ -57,8 +57,12 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
         let nearby = near_neighbors(measurements, residuals, what);
         let known: Vec<bool> = match &repeats {
             Some(repeats) => {
-                let widest = repeats.sd.iter().copied().fold(0.0, f64::max);
-                repeats.sd.iter().map(|sd| *sd > NOT_MEASURED * widest).collect()
+                let units = what.coordinates().iter().map(|(_, unit)| *unit);
+                let widest = |own: Unit| {
+                    let of_unit = repeats.sd.iter().zip(what.coordinates()).filter(|(_, c)| c.1 == own);
+                    of_unit.map(|(sd, _)| *sd).fold(0.0, f64::max)
+                };
+                repeats.sd.iter().zip(units).map(|(sd, unit)| *sd > NOT_MEASURED * widest(unit)).collect()
             }
             None => vec![false; what.len()],
         };
@@ -73,7 +77,7 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
             .zip(what.coordinates())
             .map(|(sd, (_, unit))| sd.max(finest(*unit)))
             .collect();
-        kinds.push(KindFloor { what, sd, degrees_of_freedom: free });
+        kinds.push(KindFloor { what, sd, degrees_of_freedom: free, sigma_m: instrument(measurements, what) });
         repeated.push(known);
     }
     Noise { floor: Floor { kinds, from_repeats }, repeated, drift: changed }
@@ -103,6 +107,13 @@ fn follows_command(
     let level = (0.5 * (measured.sd[0].powi(2) + measured.sd[1].powi(2))).sqrt();
     least[2] = HEIGHT_SHARE * level * (f64::from(rows) / cells.len() as f64).sqrt();
     least
+}
+
+/// Median of the instrument's own standard deviations, m; `None` where a row has none.
+fn instrument(measurements: &Measurements, what: What) -> Option<f64> {
+    let own = measurements.rows.iter().filter(|row| row.what == what).map(|row| row.sigma_m);
+    let all: Vec<f64> = own.collect::<Option<_>>()?;
+    median(all)
 }
 
 /// Nothing here is measured finer than this.
@@ -145,7 +156,7 @@ fn within_cells(
         })
         .collect();
     let course = drift(&deviations(measurements, residuals, what), free);
-    Some((KindFloor { what, sd, degrees_of_freedom: free }, course))
+    Some((KindFloor { what, sd, degrees_of_freedom: free, sigma_m: None }, course))
 }
 
 /// Rows of cells with repeats whose time is known, less the mean of their cell.
@@ -229,7 +240,7 @@ fn near_neighbors(measurements: &Measurements, residuals: &[Option<Vec<f64>>], w
             }
         })
         .collect();
-    KindFloor { what, sd, degrees_of_freedom: (0.5 * count as f64).max(1.0) }
+    KindFloor { what, sd, degrees_of_freedom: (0.5 * count as f64).max(1.0), sigma_m: None }
 }
 
 /// What a least-squares fit of these columns leaves, made as large as its degrees of freedom say.

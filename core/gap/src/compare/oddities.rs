@@ -37,6 +37,7 @@ pub fn stop_at_dead_columns(measurements: &Measurements) -> Result<(), GapError>
         for (what, columns) in [
             (What::Touch, &["touch_u_px", "touch_v_px"][..]),
             (What::Pose, &["meas_x_m", "meas_y_m", "meas_z_m"]),
+            (What::OrientedPose, &["meas_x_m", "meas_y_m", "meas_z_m"]),
             (What::EyePoints, &["left_u_px", "left_v_px", "right_u_px", "right_v_px"]),
         ] {
             let own: Vec<&&Observation> = rows.iter().filter(|row| row.what == what).collect();
@@ -214,7 +215,7 @@ fn duplicates(rows: &[&Observation], said: &mut Vec<String>) {
 }
 
 fn backwards(rows: &[&Observation], said: &mut Vec<String>) {
-    for what in [What::Touch, What::Pose, What::Place, What::EyePoints] {
+    for what in What::ALL {
         let times: Vec<f64> =
             rows.iter().filter(|row| row.what == what).filter_map(|row| row.t_secs).collect();
         let back = times.windows(2).filter(|pair| pair[1] < pair[0]).count();

@@ -16,7 +16,7 @@ const A_CONDITION: usize = 5;
 /// Per row, whether it is an outlier.
 pub fn outliers(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> Vec<bool> {
     let mut out = vec![false; measurements.rows.len()];
-    for what in [What::Touch, What::Pose, What::Place, What::EyePoints] {
+    for what in What::ALL {
         let chosen = (0..residuals.len()).filter(|&i| residuals[i].is_some());
         let points = Points::of(measurements, what, chosen);
         if points.rows.len() < NEIGHBORS + 3 {

@@ -183,6 +183,7 @@ fn lengths(measurements: &Measurements, session: usize, rows: &[&Observation]) -
     for (what, columns) in [
         (What::Touch, &["the touchscreen's width_m", "the touchscreen's height_m"][..]),
         (What::Pose, &["meas_x_m", "meas_y_m", "meas_z_m"][..]),
+        (What::OrientedPose, &["meas_x_m", "meas_y_m", "meas_z_m"][..]),
     ] {
         let assumed = Assumed::nominal(measurements);
         let (mut predicted, mut measured) = (vec![], vec![]);
@@ -294,7 +295,7 @@ fn typical_miss(measurements: &Measurements, context: &dyn JobContext) -> Result
     let assumed = frames::placed(measurements, &rows, context)?;
     let misses = measurements.rows.iter().filter_map(|row| {
         let predicted = measurements.predict(row, &assumed)?;
-        Some(row.measured.iter().zip(&predicted).map(|(m, p)| (m - p).powi(2)).sum::<f64>().sqrt())
+        Some(row.measured.iter().zip(&predicted).take(3).map(|(m, p)| (m - p).powi(2)).sum::<f64>().sqrt())
     });
     Ok(median(misses).unwrap_or(0.0))
 }

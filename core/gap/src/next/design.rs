@@ -96,6 +96,7 @@ fn scene<'a>(measurements: &Measurements, trial: &'a Trial) -> (Measurements, &'
 fn in_scene(assumed: &Assumed, trial: &Trial) -> Assumed {
     let mut assumed = assumed.clone();
     assumed.placements.push(assumed.placements[trial.like]);
+    assumed.set_mount(assumed.placements.len() - 1, assumed.mount(trial.like));
     assumed
 }
 

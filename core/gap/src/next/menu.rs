@@ -56,9 +56,11 @@ pub(super) fn of(measurements: &Measurements, found: &Found) -> Vec<Trial> {
         .map(|(_, row)| row)
         .collect();
     let mut trials = vec![];
-    for (whats, is_arm) in
-        [(&[What::Touch][..], true), (&[What::Pose], true), (&[What::Place, What::EyePoints], false)]
-    {
+    for (whats, is_arm) in [
+        (&[What::Touch][..], true),
+        (&[What::Pose, What::OrientedPose], true),
+        (&[What::Place, What::EyePoints], false),
+    ] {
         let rows: Vec<&Observation> =
             believed.iter().copied().filter(|row| whats.contains(&row.what)).collect();
         let Some(last) = rows.last() else { continue };
@@ -232,7 +234,7 @@ impl Menu<'_> {
         }
         let (verb, noun) = match self.base.first()?.what {
             What::Touch => ("touch", "places"),
-            What::Pose => ("measure", "poses"),
+            What::Pose | What::OrientedPose => ("measure", "poses"),
             What::Place | What::EyePoints => ("look at", "places"),
         };
         let rows: Vec<Observation> = made

@@ -14,6 +14,8 @@ use crate::search::{Found, Hypothesis};
 const MOST_ROWS: usize = 240;
 /// A frame is not known better than this beforehand, m and rad.
 pub(super) const FRAME_SD: f64 = 0.5;
+/// A frame turns no further in one step, rad.
+const FURTHEST_TURN_RAD: f64 = 0.3;
 /// Steps of the fit.
 const STEPS: usize = 2;
 
@@ -182,25 +184,23 @@ fn fit(
         let (normal, right) = normal_equations(measurements, floor, found, &assumed)?;
         let inverse = Cholesky::new(normal)?.inverse();
         let step = &inverse * right;
-        let sessions = measurements.apparatuses.len();
-        for session in 0..sessions {
-            let twist: [f64; 6] = std::array::from_fn(|k| step[6 * session + k].clamp(-0.3, 0.3));
-            assumed.placements[session] = measurements.moved(session, &assumed.placements[session], &twist);
-        }
-        let mut at = 6 * sessions;
+        let nuisances = measurements.nuisances();
+        let gauge = nuisances.len();
+        measurements.move_nuisances(&mut assumed, &nuisances, &step.as_slice()[..gauge], FURTHEST_TURN_RAD);
+        let mut at = gauge;
         for present in &mut assumed.effects {
             for (value, parameter) in present.values.iter_mut().zip(present.effect.parameters()) {
                 *value += step[at] * parameter.typical;
                 at += 1;
             }
         }
-        let count = at - 6 * sessions;
-        covariance = Some(inverse.view((6 * sessions, 6 * sessions), (count, count)).clone_owned());
+        let count = at - gauge;
+        covariance = Some(inverse.view((gauge, gauge), (count, count)).clone_owned());
     }
     Some((assumed, covariance?))
 }
 
-/// Six columns per session, then all parameters in usual sizes.
+/// A column per nuisance, then all parameters in usual sizes.
 fn normal_equations(
     measurements: &Measurements,
     floor: &Floor,
@@ -208,7 +208,8 @@ fn normal_equations(
     assumed: &Assumed,
 ) -> Option<(DMatrix<f64>, DVector<f64>)> {
     let effects: Vec<Effect> = assumed.effects.iter().map(|present| present.effect.clone()).collect();
-    let gauge = 6 * measurements.apparatuses.len();
+    let nuisances = measurements.nuisances();
+    let gauge = nuisances.len();
     let count: usize = effects.iter().map(|effect| effect.parameters().len()).sum();
     let mut normal = DMatrix::zeros(gauge + count, gauge + count);
     let mut right = DVector::zeros(gauge + count);
@@ -225,10 +226,10 @@ fn normal_equations(
         let dirt = found.doubt.dirt_sigmas.powi(2) * cells[row.cell];
         let weight = every as f64 * found.weights.get(i).copied().unwrap_or(1.0) / (1.0 + dirt);
         for c in 0..row.measured.len() {
-            let sd = floor.sd[c] * found.doubt.noise_scale;
+            let sd = floor.of_row(row, c) * found.doubt.noise_scale;
             let mut line = DVector::zeros(gauge + count);
-            for k in 0..6 {
-                line[6 * row.session + k] = tangents.gauge[(c, k)] / sd;
+            for (k, nuisance) in nuisances.iter().enumerate() {
+                line[k] = measurements.nuisance_slope(row, &tangents, c, *nuisance) / sd;
             }
             for k in 0..count {
                 line[gauge + k] = tangents.effects[(c, k)] / sd;
@@ -239,8 +240,10 @@ fn normal_equations(
         }
     }
     let mut at = gauge;
-    for k in 0..gauge {
-        normal[(k, k)] += FRAME_SD.powi(-2);
+    for (k, nuisance) in nuisances.iter().enumerate() {
+        let precision = nuisance.prior_sd().powi(-2);
+        normal[(k, k)] += precision;
+        right[k] -= nuisance.value(assumed) * precision;
     }
     for present in &assumed.effects {
         for (value, parameter) in present.values.iter().zip(present.effect.parameters()) {

@@ -21,7 +21,7 @@ const START: [f64; 6] = [-0.2, 1.1, 0.5, 1.7, -0.3, 0.2];
 const NOISE_M: [f64; 3] = [1.0e-3, 1.0e-3, 0.7e-3];
 
 fn floor() -> Floor {
-    let kind = KindFloor { what: What::Touch, sd: NOISE_M.to_vec(), degrees_of_freedom: 80.0 };
+    let kind = KindFloor { what: What::Touch, sd: NOISE_M.to_vec(), degrees_of_freedom: 80.0, sigma_m: None };
     Floor { kinds: vec![kind], from_repeats: true }
 }
 
@@ -35,8 +35,7 @@ fn touches(effects: &[Present], change: impl Fn(usize, &mut Observation)) -> Mea
     let rig = rig();
     let arm = Arm::of_rig(&rig, TIP).expect("a tip of the rig");
     let surface = Surface::of(&rig.touchscreen);
-    let apparatus =
-        Apparatus { title: "made".to_owned(), tip: None, arm: Some(arm), surface: Some(surface), eyes: None };
+    let apparatus = Apparatus { arm: Some(arm), surface: Some(surface), ..Apparatus::default() };
     let mut random = StdRng::seed_from_u64(3);
     let mut made = Measurements {
         rig: "nico".to_owned(),
@@ -52,28 +51,13 @@ fn touches(effects: &[Present], change: impl Fn(usize, &mut Observation)) -> Mea
         angles[0] += 0.25 * (0.9 * k).sin();
         angles[1] += 0.2 * (1.7 * k).cos();
         let mut row = Observation {
-            session: 0,
             row: i,
-            what: What::Touch,
-            measured: vec![0.0; 3],
             commanded_rad: Some(angles.to_vec()),
             encoder_rad: Some(angles.to_vec()),
             direction: vec![1.0; 6],
-            payload_kg: 0.0,
-            screen_height_m: 0.0,
-            t_secs: None,
-            move_secs: None,
-            hold_secs: None,
-            speed_rad_s: None,
-            torque_nm: None,
-            temperature_c: None,
-            neck_rad: vec![],
-            truth_m: None,
-            background_m: None,
-            object: None,
             cell: i / 2,
-            set: None,
             approach: Some("left".to_owned()),
+            ..Observation::imagined(What::Touch)
         };
         change(i, &mut row);
         made.rows.push(row);
@@ -113,6 +97,7 @@ fn found(measurements: &Measurements, verdict: Verdict, sets: &[(&[Present], f64
     let effects = assumed.effects.iter().map(|present| named(&present.effect, sets[0].1)).collect();
     Found {
         doubt: Doubt {
+            nuisances: measurements.nuisances(),
             effects: assumed.effects.iter().map(|present| present.effect.clone()).collect(),
             covariance: nalgebra::DMatrix::identity(1, 1),
             dirt_sigmas: 0.2,

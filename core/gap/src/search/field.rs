@@ -13,8 +13,6 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use super::library::Block;
 use super::linear::Sums;
 
-/// Standard deviation of a frame against where it was found, m and rad: wide.
-const FRAME: f64 = 0.5;
 /// Dirt is at most this share of a usual size.
 const LARGEST_DIRT: f64 = 0.1;
 
@@ -80,7 +78,8 @@ impl Framed {
         let back = effects * present;
         square += 2.0 * present.dot(&b.rows(g, k).column(0)) + present.dot(&back.rows(g, k).column(0));
         b += back;
-        let gauge = gram.view((0, 0), (g, g)) + DMatrix::from_diagonal_element(g, g, 1.0 / (FRAME * FRAME));
+        let priors = DVector::from_iterator(g, sums.nuisances.iter().map(|nuisance| nuisance.prior_sd()));
+        let gauge = gram.view((0, 0), (g, g)) + DMatrix::from_diagonal(&priors.map(|sd| 1.0 / (sd * sd)));
         let gauge = Cholesky::new(gauge)?;
         let mixed = gram.view((0, g), (g, k)).clone_owned();
         let solved = gauge.solve(&mixed);
@@ -89,7 +88,7 @@ impl Framed {
         let own = DVector::from_column_slice(b.rows(g, k).clone_owned().as_slice());
         let b_effects = own - mixed.tr_mul(&turned).column(0);
         square -= b.rows(0, g).column(0).dot(&turned.column(0));
-        let logs = log_det + gauge.ln_determinant() + g as f64 * (FRAME * FRAME).ln();
+        let logs = log_det + gauge.ln_determinant() + 2.0 * priors.map(f64::ln).sum();
         Some(Self {
             a: 0.5 * (&a + a.transpose()),
             b: b_effects,

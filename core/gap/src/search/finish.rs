@@ -23,8 +23,6 @@ const MOST_HYPOTHESES: usize = 8;
 const LEAST_HYPOTHESIS: f64 = 0.01;
 /// At most so many covariates that the rest depends on.
 const MOST_DEPENDENCES: usize = 3;
-/// A frame's standard deviation beforehand, m and rad.
-const FRAME: f64 = 0.5;
 
 /// All that the answer is made of.
 pub(super) struct Finish<'a> {
@@ -58,7 +56,7 @@ impl Finish<'_> {
             })
             .collect();
         let named_all = effects.len() == fitted.assumed.effects.len();
-        let start = Assumed { effects, placements: fitted.assumed.placements.clone() };
+        let start = Assumed { effects, ..fitted.assumed.clone() };
         // Values that were found beside effects that get no name are not theirs alone.
         let assumed = if named_all {
             frames(self.measurements, self.floor, &start, context)?
@@ -106,36 +104,27 @@ impl Finish<'_> {
     fn doubt(&self, assumed: &Assumed, weights: &[f64], context: &dyn JobContext) -> Result<Doubt, GapError> {
         let effects: Vec<Effect> = assumed.effects.iter().map(|present| present.effect.clone()).collect();
         let linear = Linear::of(self.measurements, self.floor, assumed, &effects, context)?;
-        let sessions = self.measurements.apparatuses.len();
         let variant = self.look.fields.get(self.look.likely(self.explored)).map(|field| field.variant);
         let (noise, cell, dirt) = variant.map_or((1.0, 0.0, 0.0), |v| (v.noise, v.cell, v.dirt));
         let (gram, _) = linear.sums(weights).gram(cell * cell);
         let own = gram.ncols() - 1;
         let mut normal = gram.view((0, 0), (own, own)) / (noise * noise);
         for k in 0..own {
-            normal[(k, k)] += if k < linear.gauge { 1.0 / (FRAME * FRAME) } else { 1.0 };
+            normal[(k, k)] += linear.nuisances.get(k).map_or(1.0, |nuisance| nuisance.prior_sd()).powi(-2);
         }
         let inverse =
             Cholesky::new(normal).map_or_else(|| DMatrix::identity(own, own), |normal| normal.inverse());
-        // From frames first, those of placed sessions only, to effects first and six per session.
+        // From nuisances first to effects first.
         let count = own - linear.gauge;
-        let place: Vec<usize> =
-            (0..own)
-                .map(|k| {
-                    if k < linear.gauge {
-                        count + 6 * linear.sessions[k / 6] + k % 6
-                    } else {
-                        k - linear.gauge
-                    }
-                })
-                .collect();
-        let mut covariance = DMatrix::zeros(count + 6 * sessions, count + 6 * sessions);
-        for r in 0..own {
-            for c in 0..own {
-                covariance[(place[r], place[c])] = inverse[(r, c)];
-            }
-        }
-        Ok(Doubt { effects, covariance, dirt_sigmas: cell.hypot(dirt), noise_scale: noise })
+        let place = |k: usize| if k < count { linear.gauge + k } else { k - count };
+        let covariance = DMatrix::from_fn(own, own, |r, c| inverse[(place(r), place(c))]);
+        Ok(Doubt {
+            effects,
+            nuisances: linear.nuisances,
+            covariance,
+            dirt_sigmas: cell.hypot(dirt),
+            noise_scale: noise,
+        })
     }
 
     fn hypotheses(&self, best: &Assumed, context: &dyn JobContext) -> Result<Vec<Hypothesis>, GapError> {
@@ -175,7 +164,7 @@ impl Finish<'_> {
                     })
                     .collect();
                 let names = set.iter().map(|&block| self.library.effects[block].name()).collect();
-                let start = Assumed { effects, placements: best.placements.clone() };
+                let start = Assumed { effects, ..best.clone() };
                 let assumed = frames(self.measurements, self.floor, &start, context)?;
                 Ok(Hypothesis { names, probability, assumed })
             })
@@ -239,7 +228,7 @@ fn floor_m(measurements: &Measurements, floor: &Floor) -> f64 {
     let length = |sd: &[f64]| sd.iter().map(|sd| sd * sd).sum::<f64>().sqrt();
     match kind.what {
         What::Touch => length(&kind.sd[..2]),
-        What::Pose => length(&kind.sd),
+        What::Pose | What::OrientedPose => length(&kind.sd[..3]),
         What::EyePoints => length(&kind.sd),
         What::Place => {
             let depths = measurements.rows.iter().filter(|row| row.what == What::Place).filter_map(|row| {

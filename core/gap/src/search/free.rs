@@ -88,6 +88,7 @@ pub(super) fn rivals(
     for (what, on) in [
         (What::Touch, &["along u", "along v", "time", "duration of the move"][..]),
         (What::Pose, &["time"]),
+        (What::OrientedPose, &["time"]),
         (What::Place, &EYES),
         (What::EyePoints, &EYES),
     ] {

@@ -1,7 +1,7 @@
 //! Residuals and tangents of all rows at the present model, and what they add up to.
 
 use nalgebra::{DMatrix, DVector};
-use plumbline_effects::measurements::{Measurements, What};
+use plumbline_effects::measurements::{Measurements, Nuisance, What};
 use plumbline_effects::{Assumed, Effect, Tangents};
 use plumbline_model::JobContext;
 use rayon::prelude::*;
@@ -17,10 +17,10 @@ const CONTACT_M: f64 = 0.45e-3;
 
 /// Whitened by the floor: one line per coordinate of every row that is predicted.
 pub(super) struct Linear {
-    /// Gauge columns, six per session with a frame to fit; they come first.
+    /// Number of gauge columns, one per nuisance; they come first.
     pub gauge: usize,
-    /// Session of each six of them.
-    pub sessions: Vec<usize>,
+    /// What is found along with the effects: frames, and markers that were mounted anew.
+    pub nuisances: Vec<Nuisance>,
     /// Gauge columns, effects, then free-form ones if any, then the residual as the last one.
     pub lines: DMatrix<f64>,
     /// Row of each line.
@@ -53,11 +53,8 @@ impl Linear {
                 chunk.par_iter().with_min_len(8).map(|row| measurements.tangents(row, assumed, effects)),
             );
         }
-        let mut sessions: Vec<usize> =
-            rows.iter().filter(|row| row.what.is_placed()).map(|row| row.session).collect();
-        sessions.sort_unstable();
-        sessions.dedup();
-        let gauge = 6 * sessions.len();
+        let nuisances = measurements.nuisances();
+        let gauge = nuisances.len();
         let columns: usize = effects.iter().map(|effect| effect.parameters().len()).sum();
         let used = |row: usize| Some((tangents[row].as_ref()?, floor.of(rows[row].what)?));
         let count: usize =
@@ -67,14 +64,11 @@ impl Linear {
         let mut cells = std::collections::HashMap::new();
         for (i, row) in rows.iter().enumerate() {
             let Some((tangents, floor)) = used(i) else { continue };
-            let place = sessions.iter().position(|session| *session == row.session);
             for c in 0..row.measured.len() {
                 let line = row_of.len();
-                let sd = standard(row.what, c, floor.sd[c]);
-                if let Some(place) = place.filter(|_| row.what.is_placed()) {
-                    for k in 0..6 {
-                        lines[(line, 6 * place + k)] = tangents.gauge[(c, k)] / sd;
-                    }
+                let sd = standard(row.what, c, floor.of_row(row, c));
+                for (k, nuisance) in nuisances.iter().enumerate() {
+                    lines[(line, k)] = measurements.nuisance_slope(row, tangents, c, *nuisance) / sd;
                 }
                 for k in 0..columns {
                     lines[(line, gauge + k)] = tangents.effects[(c, k)] / sd;
@@ -86,7 +80,7 @@ impl Linear {
                 coordinate.push(c);
             }
         }
-        Ok(Self { gauge, sessions, lines, row: row_of, coordinate, cell, cells: cells.len() })
+        Ok(Self { gauge, nuisances, lines, row: row_of, coordinate, cell, cells: cells.len() })
     }
 
     /// Number of columns without gauge and residual.
@@ -137,7 +131,7 @@ impl Linear {
         } else {
             None
         };
-        Sums { gauge: self.gauge, gram, means, counts, total }
+        Sums { gauge: self.gauge, nuisances: self.nuisances.clone(), gram, means, counts, total }
     }
 }
 
@@ -145,6 +139,8 @@ impl Linear {
 pub(super) struct Sums {
     /// Gauge columns.
     pub gauge: usize,
+    /// One per gauge column.
+    pub nuisances: Vec<Nuisance>,
     gram: DMatrix<f64>,
     /// Per cell, weighted sum of its lines; `None` when no cell has more than one.
     means: Option<DMatrix<f64>>,
@@ -192,6 +188,7 @@ impl Sums {
             (0..self.gauge).chain(columns.iter().map(|c| self.gauge + c)).chain([last]).collect();
         Self {
             gauge: self.gauge,
+            nuisances: self.nuisances.clone(),
             gram: DMatrix::from_fn(kept.len(), kept.len(), |r, c| self.gram[(kept[r], kept[c])]),
             means: self.means.as_ref().map(|means| means.select_columns(&kept)),
             counts: self.counts.clone(),

@@ -25,6 +25,7 @@ mod variants;
 mod weights;
 
 use nalgebra::DMatrix;
+use plumbline_effects::measurements::Nuisance;
 use plumbline_effects::{Assumed, Effect, Measurements};
 use plumbline_model::{JobContext, Unattended};
 
@@ -70,9 +71,10 @@ pub(crate) struct Found {
 /// What predictions may be off by, beside the noise of one measurement.
 #[derive(Clone, Debug)]
 pub(crate) struct Doubt {
-    /// Columns: parameters of these effects in turn, per usual size; then six per session as
-    /// [`plumbline_effects::Tangents::gauge`].
+    /// Columns: parameters of these effects in turn, per usual size …
     pub effects: Vec<Effect>,
+    /// … then these.
+    pub nuisances: Vec<Nuisance>,
     /// Their covariance.
     pub covariance: DMatrix<f64>,
     /// Standard deviation of small unmodelled effects per cell, in units of the floor.

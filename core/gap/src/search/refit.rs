@@ -14,9 +14,10 @@ use crate::floor::Floor;
 const ROUNDS: usize = 6;
 /// A step below this, in usual sizes and meters, is none.
 const STILL: f64 = 1e-4;
+/// A frame turns no further in one step: the tangent does not reach, rad.
+const FURTHEST_TURN_RAD: f64 = 0.3;
 /// Values beyond this many usual sizes are not followed.
 const FURTHEST: f64 = 6.0;
-const FRAME: f64 = 0.5;
 
 /// A model fitted to the rows.
 #[derive(Clone, Debug)]
@@ -49,9 +50,10 @@ pub(super) fn refit(
         let misses = linear.misses(rows, &now);
         let mut own = weights(&misses);
         let values = usual(&assumed);
+        let stands: Vec<f64> = linear.nuisances.iter().map(|nuisance| nuisance.value(&assumed)).collect();
         let mut step = DVector::zeros(columns);
         for _ in 0..4 {
-            let Some(next) = solve(&linear, &own, &values) else { break };
+            let Some(next) = solve(&linear, &own, &stands, &values) else { break };
             step = next;
             let left = &now - linear.lines.columns(0, columns) * &step;
             own = weights(&linear.misses(rows, &left));
@@ -80,7 +82,7 @@ pub(super) fn with(start: &Assumed, effects: &[Effect]) -> Assumed {
             old.map_or_else(|| vec![0.0; effect.parameters().len()], |present| present.values.clone());
         Present { effect: effect.clone(), values }
     });
-    Assumed { effects: present.collect(), placements: start.placements.clone() }
+    Assumed { effects: present.collect(), ..start.clone() }
 }
 
 /// Values of all effects in turn, in usual sizes.
@@ -95,7 +97,8 @@ pub(super) fn usual(assumed: &Assumed) -> DVector<f64> {
     DVector::from_vec(values.collect())
 }
 
-fn solve(linear: &Linear, weights: &[f64], values: &DVector<f64>) -> Option<DVector<f64>> {
+/// A step from where nuisances (m, rad) and values (usual sizes) stand.
+fn solve(linear: &Linear, weights: &[f64], stands: &[f64], values: &DVector<f64>) -> Option<DVector<f64>> {
     let sums = linear.sums(weights);
     let (gram, _) = sums.gram(0.05);
     let columns = gram.ncols() - 1;
@@ -103,11 +106,10 @@ fn solve(linear: &Linear, weights: &[f64], values: &DVector<f64>) -> Option<DVec
     let mut right =
         DVector::from_column_slice(gram.view((0, columns), (columns, 1)).clone_owned().as_slice());
     for k in 0..columns {
-        let sd = if k < linear.gauge { FRAME } else { 1.0 };
+        let sd = linear.nuisances.get(k).map_or(1.0, |nuisance| nuisance.prior_sd());
+        let stands = if k < linear.gauge { stands[k] } else { values[k - linear.gauge] };
         normal[(k, k)] += 1.0 / (sd * sd);
-        if k >= linear.gauge {
-            right[k] -= values[k - linear.gauge];
-        }
+        right[k] -= stands / (sd * sd);
     }
     Some(Cholesky::new(normal)?.solve(&right))
 }
@@ -119,15 +121,8 @@ pub(super) fn move_by(
     linear: &Linear,
     step: &DVector<f64>,
 ) {
-    for (place, &session) in linear.sessions.iter().enumerate() {
-        let mut twist = [0.0; 6];
-        let turn = step.rows(6 * place + 3, 3).norm();
-        let shrink = (0.3 / turn.max(1e-12)).min(1.0);
-        for (k, twist) in twist.iter_mut().enumerate() {
-            *twist = step[6 * place + k] * shrink;
-        }
-        assumed.placements[session] = measurements.moved(session, &assumed.placements[session], &twist);
-    }
+    let of_nuisances = &step.as_slice()[..linear.gauge];
+    measurements.move_nuisances(assumed, &linear.nuisances, of_nuisances, FURTHEST_TURN_RAD);
     let mut at = linear.gauge;
     for present in &mut assumed.effects {
         for (value, parameter) in present.values.iter_mut().zip(present.effect.parameters()) {
@@ -158,15 +153,16 @@ pub(super) fn frames(
         let now = linear.lines.column(linear.gauge).clone_owned();
         let mut own = weights(&linear.misses(rows, &now));
         let mut step = DVector::zeros(linear.gauge);
+        let stands: Vec<f64> = linear.nuisances.iter().map(|nuisance| nuisance.value(&assumed)).collect();
         for _ in 0..4 {
-            let Some(next) = solve(&linear, &own, &DVector::zeros(0)) else { break };
+            let Some(next) = solve(&linear, &own, &stands, &DVector::zeros(0)) else { break };
             step = next;
             let left = &now - linear.lines.columns(0, linear.gauge) * &step;
             own = weights(&linear.misses(rows, &left));
         }
-        let mut bare = Assumed { effects: vec![], placements: assumed.placements.clone() };
+        let mut bare = Assumed { effects: vec![], ..assumed.clone() };
         move_by(measurements, &mut bare, &linear, &step);
-        assumed.placements = bare.placements;
+        (assumed.placements, assumed.mounts) = (bare.placements, bare.mounts);
         if step.amax() < STILL {
             break;
         }

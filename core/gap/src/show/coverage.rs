@@ -17,21 +17,24 @@ pub(super) fn inside_95(
 ) -> Option<(usize, usize)> {
     let doubt = &found.doubt;
     let tangents = measurements.tangents(row, &found.assumed, &doubt.effects)?;
-    let sd = &floor.of(row.what)?.sd;
+    let floor = floor.of(row.what)?;
     let own = tangents.effects.ncols();
-    let gauge_at = own + 6 * row.session;
     let size = tangents.predicted.len();
     let mut spread = DMatrix::zeros(size, size);
-    if doubt.covariance.ncols() >= gauge_at + 6 {
+    if doubt.covariance.ncols() == own + doubt.nuisances.len() {
         let mut jacobian = DMatrix::zeros(size, doubt.covariance.ncols());
         jacobian.view_mut((0, 0), (size, own)).copy_from(&tangents.effects);
-        jacobian.view_mut((0, gauge_at), (size, 6)).copy_from(&tangents.gauge);
+        for (k, nuisance) in doubt.nuisances.iter().enumerate() {
+            for c in 0..size {
+                jacobian[(c, own + k)] = measurements.nuisance_slope(row, &tangents, c, *nuisance);
+            }
+        }
         spread = &jacobian * &doubt.covariance * jacobian.transpose();
     }
     let inside = (0..size)
         .filter(|&c| {
-            let noise = sd[c] * doubt.noise_scale;
-            let dirt = sd[c] * doubt.dirt_sigmas;
+            let noise = floor.of_row(row, c) * doubt.noise_scale;
+            let dirt = floor.of_row(row, c) * doubt.dirt_sigmas;
             let sigma = (spread[(c, c)] + noise * noise + dirt * dirt).sqrt();
             (row.measured[c] - tangents.predicted[c]).abs() <= NORMAL_95 * sigma
         })

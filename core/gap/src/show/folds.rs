@@ -29,7 +29,7 @@ pub(super) struct Folds {
 
 /// Folds of the chosen rows; `one_by_one` allows a fold per row where rows are few.
 pub(super) fn folds(measurements: &Measurements, chosen: &[usize], seed: u64, one_by_one: bool) -> Folds {
-    let cell = |i: usize| measurements.rows[i].cell;
+    let cell = |i: usize| measurements.rows[i].pose.unwrap_or(measurements.rows[i].cell);
     if chosen.len() < FEW_ROWS && one_by_one {
         let of_row = numbered(chosen.iter().map(|&i| cell(i)));
         let count = of_row.iter().max().map_or(0, |last| last + 1);

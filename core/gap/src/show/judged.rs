@@ -30,7 +30,7 @@ pub(crate) fn judged(measurements: &Measurements, row: &Observation, assumed: &A
         Some(row.measured.iter().zip(&predicted).map(|(m, p)| m - p).collect())
     };
     match row.what {
-        What::Touch | What::Pose => {
+        What::Touch | What::Pose | What::OrientedPose => {
             let residual = residual()?;
             let arrow_m = of_arm(measurements, row, &assumed.placements[row.session], &residual)?;
             let error = if row.what == What::Touch { residual[0].hypot(residual[1]) } else { arrow_m.norm() };
@@ -102,11 +102,12 @@ pub(crate) fn noise_of(
     floor: &Floor,
     scale: f64,
 ) -> Option<f64> {
-    let sd: Vec<f64> = floor.of(row.what)?.sd.iter().map(|sd| sd * scale).collect();
+    let floor = floor.of(row.what)?;
+    let sd: Vec<f64> = (0..row.what.len()).map(|c| floor.of_row(row, c) * scale).collect();
     match row.what {
         What::Touch => Some(mean_length_2d(Matrix2::from_diagonal(&[sd[0] * sd[0], sd[1] * sd[1]].into()))),
-        What::Pose => {
-            Some(mean_length_3d(Matrix3::from_diagonal(&Vector3::from_iterator(sd.iter().map(|s| s * s)))))
+        What::Pose | What::OrientedPose => {
+            Some(mean_length_3d(Matrix3::from_diagonal(&Vector3::from_fn(|c, _| sd[c] * sd[c]))))
         }
         What::EyePoints => {
             let eye = |a: f64, b: f64| mean_length_2d(Matrix2::from_diagonal(&[a * a, b * b].into()));

@@ -128,6 +128,7 @@ pub fn touches(plan: &Plan, hidden: &[Present], seed: u64) -> Measurements {
             Translation3::new(0.006, -0.004, 0.003),
             UnitQuaternion::from_scaled_axis(Vector3::new(0.008, -0.005, 0.01)),
         )],
+        ..Assumed::default()
     };
     let mut done: Vec<Observation> = vec![];
     for i in 0..measurements.rows.len() {
@@ -176,6 +177,7 @@ pub fn poses(plan: &Plan, hidden: &[Present], seed: u64) -> Measurements {
             Translation3::new(1.2, -0.7, 0.9),
             UnitQuaternion::from_scaled_axis(Vector3::new(0.4, -1.1, 2.0)),
         )],
+        ..Assumed::default()
     };
     for i in 0..measurements.rows.len() {
         let exact = measurements.predict(&measurements.rows[i], &truth).expect("predictable");

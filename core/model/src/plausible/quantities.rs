@@ -39,6 +39,9 @@ quantities! {
     /// A coordinate of a place that eyes estimated, robot frame. Failed estimates land on the wall.
     ESTIMATE_M = "a coordinate of a place that the eyes estimated", "m", -20.0 ..= 20.0,
         "eyes side by side measure nothing that far away", LENGTHS;
+    /// How far an instrument scatters.
+    SIGMA_M = "the standard deviation of an instrument", "m", 1e-9 ..= 1.0,
+        "an instrument that scatters by more measures no robot, and none measures exactly", &[MILLIMETERS];
     /// A coordinate in the frame of an external device.
     EXTERNAL_M = "a coordinate that a device measured from outside", "m", -200.0 ..= 200.0,
         "a laser tracker sees no farther", &[MILLIMETERS];

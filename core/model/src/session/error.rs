@@ -157,4 +157,14 @@ pub enum SessionError {
         /// The empty cell.
         cell: Cell,
     },
+    /// A vector or quaternion of another length than 1.
+    #[error(
+        "{cell}: the components have length {length:.3}, not 1: give a unit quaternion, in the order w, x, y, z"
+    )]
+    NotUnit {
+        /// Its cell.
+        cell: Cell,
+        /// Its length.
+        length: f64,
+    },
 }

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 
 use super::document;
 use super::error::SessionError;
+use super::pose_setup::PoseSetup;
 use crate::formats::node::Field;
 use crate::formats::{FormatError, text_file};
 use crate::frame::{Direction, Point, Robot};
@@ -106,6 +107,7 @@ impl Manifest {
         let text_or_empty = |key: &str| -> Result<String, FormatError> {
             Ok(root.find(key)?.map(|field| field.text()).transpose()?.unwrap_or_default())
         };
+        PoseSetup::read(&root)?;
         Ok(Self {
             rig: rig(&root)?,
             started: root.get("started")?.timestamp()?,

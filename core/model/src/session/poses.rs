@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use nalgebra::{Quaternion, UnitQuaternion};
+
 use super::error::SessionError;
 use super::joint_columns::{ColumnBuilder, JointColumn};
 use super::table::{ColumnKind, Table};
@@ -17,8 +19,11 @@ impl Frame for External {
 }
 
 const MEASURED: [&str; 3] = ["meas_x_m", "meas_y_m", "meas_z_m"];
-const NUMBERS: [&str; 2] = ["payload_kg", "t_secs"];
-const TEXTS: [&str; 3] = ["group", "approach", "set"];
+const ORIENTATION: [&str; 4] = ["meas_qw", "meas_qx", "meas_qy", "meas_qz"];
+const NUMBERS: [&str; 4] = ["payload_kg", "t_secs", "sigma_m", "ambient_c"];
+const TEXTS: [&str; 4] = ["group", "approach", "set", "tip"];
+/// The length of a measured quaternion may be rounded by this; further off it is no orientation.
+const ROUNDED: f64 = 0.01;
 const OF_JOINTS: [JointColumn; 3] = [JointColumn::COMMANDED, JointColumn::ENCODER, JointColumn::TORQUE];
 
 /// What a column of numbers holds.
@@ -27,6 +32,8 @@ fn quantity(column: &str) -> Option<Quantity> {
         _ if MEASURED.contains(&column) => Some(plausible::EXTERNAL_M),
         "payload_kg" => Some(plausible::PAYLOAD_KG),
         "t_secs" => Some(plausible::TIME_S),
+        "sigma_m" => Some(plausible::SIGMA_M),
+        "ambient_c" => Some(plausible::TEMPERATURE_C),
         _ => JointColumn::quantity(column),
     }
 }
@@ -40,6 +47,14 @@ pub struct PoseRow {
     pub encoder_rad: Vec<Option<f64>>,
     /// Measured place of the chain's tip.
     pub measured: Option<Point<External>>,
+    /// Measured orientation of the tip's frame: `external_from_tip`.
+    pub orientation: Option<UnitQuaternion<f64>>,
+    /// Standard deviation of the instrument along each axis, m, where it is known.
+    pub sigma_m: Option<f64>,
+    /// Frame of the rig that was measured in this row; `None`: the chain's tip.
+    pub tip: Option<String>,
+    /// Room temperature, °C.
+    pub ambient_c: Option<f64>,
     /// Measured joint torques (N·m), in the order of the chain's joints.
     pub torque_nm: Vec<Option<f64>>,
     /// Known mass at the palm, kg; nominally 0.
@@ -66,7 +81,8 @@ impl PoseTable {
     pub fn read(file: &Path, joints: &[String]) -> Result<Self, SessionError> {
         let mut read = Table::read(file, |name| {
             let of_joint = OF_JOINTS.iter().any(|column| column.is_of(name, joints));
-            if of_joint || MEASURED.contains(&name) || NUMBERS.contains(&name) {
+            if of_joint || MEASURED.contains(&name) || ORIENTATION.contains(&name) || NUMBERS.contains(&name)
+            {
                 Some(ColumnKind::Number)
             } else {
                 TEXTS.contains(&name).then_some(ColumnKind::Text)
@@ -85,7 +101,14 @@ impl PoseTable {
             read.require(name, "add the measured place of the chain's tip")?;
         }
         read.require_whole_points(&MEASURED)?;
+        if read.has_any(&ORIENTATION) {
+            for name in ORIENTATION {
+                read.require(name, "an orientation has four components: w, x, y, z")?;
+            }
+            read.require_whole_points(&ORIENTATION)?;
+        }
         read.set_implausible_aside(quantity)?;
+        read.set_other_lengths_aside(&ORIENTATION, ROUNDED)?;
         Ok(Self { joints: joints.to_vec(), table: read.table })
     }
 
@@ -107,6 +130,12 @@ impl PoseTable {
         for (i, name) in MEASURED.into_iter().enumerate() {
             columns.number(name, |row| row.measured.map(|point| point.coords[i]));
         }
+        for (i, name) in ORIENTATION.into_iter().enumerate() {
+            columns.number(name, |row| row.orientation.map(|turn| [turn.w, turn.i, turn.j, turn.k][i]));
+        }
+        columns.number("sigma_m", |row| row.sigma_m);
+        columns.text("tip", |row| row.tip.clone());
+        columns.number("ambient_c", |row| row.ambient_c);
         columns.joints(&joints, JointColumn::TORQUE, |row| &row.torque_nm);
         columns.number("payload_kg", |row| row.payload_kg);
         columns.number("t_secs", |row| row.t_secs);
@@ -140,6 +169,12 @@ impl PoseTable {
             commanded_rad: JointColumn::COMMANDED.row(table, joints, row),
             encoder_rad: JointColumn::ENCODER.row(table, joints, row),
             measured: table.tuple(MEASURED, row).map(|[x, y, z]| Point::new(x, y, z)),
+            orientation: table
+                .tuple(ORIENTATION, row)
+                .map(|[w, x, y, z]| UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z))),
+            sigma_m: table.number("sigma_m", row),
+            tip: table.text("tip", row),
+            ambient_c: table.number("ambient_c", row),
             torque_nm: JointColumn::TORQUE.row(table, joints, row),
             payload_kg: table.number("payload_kg", row),
             t_secs: table.number("t_secs", row),

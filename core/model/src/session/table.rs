@@ -297,6 +297,42 @@ impl ReadTable<'_> {
         }
     }
 
+    /// Sets rows aside in which the components of a unit vector or quaternion do not have length 1
+    /// within `tolerance`; more than a quarter of the rows like that are another thing.
+    ///
+    /// # Errors
+    /// [`SessionError::NotUnit`] with the first of them.
+    pub fn set_other_lengths_aside(&mut self, names: &[&str], tolerance: f64) -> Result<(), SessionError> {
+        let mut first = None;
+        let mut count = 0;
+        let mut rows = 0;
+        for (row, &line) in self.lines.iter().enumerate() {
+            let given: Vec<f64> = names.iter().filter_map(|name| self.table.number(name, row)).collect();
+            if given.len() < names.len() {
+                continue;
+            }
+            rows += 1;
+            let length = given.iter().map(|value| value * value).sum::<f64>().sqrt();
+            if (length - 1.0).abs() <= tolerance {
+                continue;
+            }
+            count += 1;
+            first.get_or_insert((line, length));
+            let what =
+                format!("line {line}, columns {}: their length is {length:.3}, not 1", names.join(", "));
+            self.table.implausible.entry(row).or_insert(what);
+        }
+        let too_many = count == rows || (count > 1 && 4 * count > rows);
+        match first.filter(|_| too_many) {
+            Some((line, length)) => {
+                let column = names.join(", ");
+                let cell = Cell { file: self.file.to_path_buf(), line, column };
+                Err(SessionError::NotUnit { cell, length })
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Requires that in each row the coordinates of a point are all given or all empty.
     pub fn require_whole_points(&self, names: &[&str]) -> Result<(), SessionError> {
         for (row, &line) in self.lines.iter().enumerate() {

@@ -81,6 +81,7 @@ pub(super) fn fit(
             .map(|effect| Present { effect: effect.clone(), values: vec![0.0; effect.parameters().len()] })
             .collect(),
         placements: vec![Isometry3::identity()],
+        ..Assumed::default()
     };
     // Where the fit stands, in the units of the tangents.
     let mut at = DVector::<f64>::zeros(count);

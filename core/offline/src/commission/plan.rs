@@ -160,7 +160,7 @@ fn touch_tangents(rig: &Rig, arm: &Arm, effects: &[Effect], candidates: &[Candid
         row(What::Touch, angles_rad, direction)
     });
     let measurements = measurements(rig, arm.clone(), surface, rows.collect());
-    let assumed = Assumed { effects: vec![], placements: vec![Isometry3::identity()] };
+    let assumed = Assumed { placements: vec![Isometry3::identity()], ..Assumed::default() };
     measurements
         .rows
         .iter()
@@ -183,7 +183,7 @@ fn palm_tangents(rig: &Rig, effects: &[Effect]) -> Result<DMatrix<f64>, Commissi
     let rows: Vec<Observation> =
         palm_postures(rig)?.into_iter().map(|angles_rad| row(What::Pose, angles_rad, vec![0.0; 6])).collect();
     let measurements = measurements(rig, arm, None, rows);
-    let assumed = Assumed { effects: vec![], placements: vec![Isometry3::identity()] };
+    let assumed = Assumed { placements: vec![Isometry3::identity()], ..Assumed::default() };
     let mut all: Vec<DMatrix<f64>> = vec![];
     for row in &measurements.rows {
         let tangents = measurements.tangents(row, &assumed, effects).expect("an arm is there");
@@ -248,7 +248,7 @@ pub(super) fn measurements(
     surface: Option<Surface>,
     rows: Vec<Observation>,
 ) -> Measurements {
-    let apparatus = Apparatus { title: String::new(), tip: None, arm: Some(arm), surface, eyes: None };
+    let apparatus = Apparatus { arm: Some(arm), surface, ..Apparatus::default() };
     Measurements {
         rig: rig.name.clone(),
         apparatuses: vec![apparatus],

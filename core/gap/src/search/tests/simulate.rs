@@ -129,7 +129,7 @@ impl Bench {
 
     fn made(&self, effects: Vec<Present>, random: &mut StdRng) -> Option<(Measurements, Floor)> {
         let mut made = self.nominal.clone();
-        let truth = Assumed { effects, placements: vec![random_place(random)] };
+        let truth = Assumed { effects, placements: vec![random_place(random)], mounts: vec![] };
         for i in 0..made.rows.len() {
             let mut row = made.rows[i].clone();
             let seen = touch(&made, &mut row, &truth, NOISE_M[2] * normal(random))?;
@@ -182,7 +182,8 @@ fn normal(random: &mut StdRng) -> f64 {
 }
 
 fn floor() -> Floor {
-    let kind = KindFloor { what: What::Touch, sd: NOISE_M.to_vec(), degrees_of_freedom: 120.0 };
+    let kind =
+        KindFloor { what: What::Touch, sd: NOISE_M.to_vec(), degrees_of_freedom: 120.0, sigma_m: None };
     Floor { kinds: vec![kind], from_repeats: true }
 }
 
@@ -204,7 +205,10 @@ fn repeats(made: &Measurements) -> Floor {
         }
     }
     let sd = sums.iter().map(|sum| (sum / free).sqrt()).collect();
-    Floor { kinds: vec![KindFloor { what: What::Touch, sd, degrees_of_freedom: free }], from_repeats: true }
+    Floor {
+        kinds: vec![KindFloor { what: What::Touch, sd, degrees_of_freedom: free, sigma_m: None }],
+        from_repeats: true,
+    }
 }
 
 /// Rows that touch where the nominal model says.
@@ -217,7 +221,7 @@ fn nominal(plan: Plan) -> Measurements {
         tip: None,
         arm: Some(arm.clone()),
         surface: Some(surface.clone()),
-        eyes: None,
+        ..Apparatus::default()
     };
     let mut random = StdRng::seed_from_u64(42);
     let (cells, repeats) = match plan {
@@ -240,28 +244,16 @@ fn nominal(plan: Plan) -> Measurements {
         };
         for _ in 0..repeats {
             rows.push(Observation {
-                session: 0,
                 row: rows.len(),
-                what: What::Touch,
-                measured: vec![0.0; 3],
                 commanded_rad: Some(angles.clone()),
                 encoder_rad: Some(angles.clone()),
                 direction: vec![side; 6],
                 payload_kg,
                 screen_height_m: height_m,
                 t_secs: None,
-                move_secs: None,
-                hold_secs: None,
-                speed_rad_s: None,
-                torque_nm: None,
-                temperature_c: None,
-                neck_rad: vec![],
-                truth_m: None,
-                background_m: None,
-                object: None,
                 cell,
-                set: None,
                 approach: Some(if side > 0.0 { "plus" } else { "minus" }.to_owned()),
+                ..Observation::imagined(What::Touch)
             });
         }
     }
