@@ -16,6 +16,7 @@ pub mod refusal;
 mod run;
 mod seen;
 mod shown;
+mod standing;
 pub mod store;
 #[cfg(test)]
 mod testing;
@@ -25,4 +26,5 @@ pub mod view;
 pub mod work;
 mod workflow;
 
+pub use standing::RunStanding;
 pub use workflow::{TouchAround, TouchWorkflow};
