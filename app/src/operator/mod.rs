@@ -13,13 +13,14 @@ mod touch_monitor;
 pub mod words;
 
 pub use actions::{
-    Action, DetectAction, GapAction, GraspAction, LabelsAction, ModelsAction, MountAction, Preset,
-    RobotAction, ScoresAction, TouchAction, default_scenario, format_name, gap_plan, is_under_way,
+    Action, CommissionAction, DetectAction, GapAction, GraspAction, LabelsAction, ModelsAction, MountAction,
+    Preset, RobotAction, ScoresAction, TouchAction, default_scenario, format_name, gap_plan, is_under_way,
     needs_window, screen_of, usual_area,
 };
 pub use gamepad::{GamepadState, STOP_BUTTONS};
 pub use guidance::{
-    Verdict, done_of, hint_text, is_of_choice, minutes, other_board, verdict, wanted, what_moves,
+    Course, Press, Verdict, course, done_of, hint_text, is_of_choice, minutes, other_board, verdict, wanted,
+    what_moves,
 };
 pub use outbox::Outbox;
 pub use screens::{Pane, Screen};

@@ -6,6 +6,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Screen {
+    /// The way from a robot that was just switched on to its first good grasp.
+    Commission,
     /// Looking at the eyes.
     #[default]
     Live,
@@ -35,7 +37,8 @@ pub enum Screen {
 
 impl Screen {
     /// All of them, in the order of work.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
+        Self::Commission,
         Self::Live,
         Self::Collect,
         Self::Judge,
@@ -65,6 +68,8 @@ impl Screen {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Pane {
+    /// The steps of commissioning.
+    CommissionSteps,
     /// The left eye as its camera delivers it.
     LeftEye,
     /// The right eye.
@@ -171,6 +176,7 @@ impl Pane {
     /// Its title.
     pub fn title(self) -> &'static str {
         match self {
+            Self::CommissionSteps => "Commissioning",
             Self::LeftEye => "Left eye",
             Self::RightEye => "Right eye",
             Self::Rectified => "Rectified pair",

@@ -5,6 +5,7 @@ pub mod arrows;
 mod blend;
 mod board;
 mod board_draft;
+mod commission;
 mod comparison;
 mod context;
 mod coverage;
@@ -35,6 +36,7 @@ mod touch;
 mod twin;
 mod verdict_line;
 
+pub(crate) use commission::show_inspector as show_commission_inspector;
 pub use context::{PanelContext, PanelState};
 pub(crate) use context::{padded, shown_calibration, shown_calibration_ref};
 pub(crate) use gap::show_inspector as show_gap_inspector;
@@ -61,6 +63,7 @@ use crate::operator::Pane;
 /// Draws one panel into the available space.
 pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
     match pane {
+        Pane::CommissionSteps => commission::show_steps(ui, cx),
         Pane::LeftEye => eye::show(ui, cx, Eye::Left),
         Pane::RightEye => eye::show(ui, cx, Eye::Right),
         Pane::Rectified => rectified::show(ui, cx),

@@ -16,8 +16,8 @@ use super::jogging::RENEW;
 use super::settings::ThemeChoice;
 use crate::operator::guidance::guidance;
 use crate::operator::{
-    Action, DetectAction, GapAction, LabelsAction, ModelsAction, Outbox, Preset, RobotAction, ScoresAction,
-    Screen, TouchAction, gap_plan,
+    Action, CommissionAction, DetectAction, GapAction, LabelsAction, ModelsAction, Outbox, Preset,
+    RobotAction, ScoresAction, Screen, TouchAction, gap_plan,
 };
 
 /// A message of the window itself.
@@ -86,6 +86,10 @@ impl PlumblineWindow {
             Action::Touch(TouchAction::ToggleWindow) => {
                 self.panels.touch.window_open = !self.panels.touch.window_open;
             }
+            Action::Commission(action) => self.act_on_commission(ctx, action),
+            Action::Next if self.view.commission.is_on => {
+                self.act_on_commission(ctx, CommissionAction::Next);
+            }
             Action::Next => {
                 if let Some(next) = guidance(&self.view, self.settings.screen).next {
                     self.act(ctx, next.action);
@@ -120,7 +124,10 @@ impl PlumblineWindow {
             Action::Scores(ScoresAction::AddModels) => self.ask_for(ctx, Question::ScoreModels),
             Action::Scores(ScoresAction::ChooseSet) => self.ask_for(ctx, Question::ScoreSet),
             Action::Scores(ScoresAction::ExportCsv) => self.ask_for(ctx, Question::ScoresCsv),
-            Action::Go(screen) => self.settings.screen = screen,
+            Action::Go(screen) => {
+                self.settings.screen = screen;
+                self.may_open_commissioning = false;
+            }
             Action::Palette => self.palette.toggle(),
             Action::ToggleInspector => self.settings.inspector_open = !self.settings.inspector_open,
             Action::ToggleLog => self.settings.log_open = !self.settings.log_open,

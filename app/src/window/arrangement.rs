@@ -8,6 +8,7 @@ use crate::operator::{Pane, Screen};
 pub fn default_arrangement(screen: Screen) -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let root = match screen {
+        Screen::Commission => commission(&mut tiles),
         Screen::Live => live(&mut tiles),
         Screen::Collect => collect(&mut tiles),
         Screen::Judge => judge(&mut tiles),
@@ -22,6 +23,12 @@ pub fn default_arrangement(screen: Screen) -> Tree<Pane> {
         Screen::Images => images(&mut tiles),
     };
     Tree::new(egui::Id::unique(("tiles", screen)), root, tiles)
+}
+
+fn commission(tiles: &mut Tiles<Pane>) -> TileId {
+    let steps = tabs(tiles, &[Pane::CommissionSteps]);
+    let scene = tabs(tiles, &[Pane::Scene]);
+    row(tiles, &[(steps, 1.25), (scene, 1.0)])
 }
 
 fn live(tiles: &mut Tiles<Pane>) -> TileId {

@@ -21,6 +21,7 @@ impl PlumblineWindow {
         {
             self.settings.remember_source(spec);
         }
+        self.open_commissioning();
         self.follow_the_models();
         self.follow_the_gap();
         self.follow_the_labels();

@@ -7,8 +7,8 @@ use plumbline_engine::view::MotionState;
 use plumbline_model::duration;
 
 use super::{
-    PlumblineWindow, apply, drop, frame_time, frame_times_overlay, health, inspector, jogging, rail,
-    status_line, tiles, transport,
+    PlumblineWindow, apply, commission, drop, frame_time, frame_times_overlay, health, inspector, jogging,
+    rail, status_line, tiles, transport,
 };
 use crate::operator::{Outbox, Screen, shortcuts};
 
@@ -101,6 +101,7 @@ impl PlumblineWindow {
 
     fn draw_frame(&mut self, ui: &mut egui::Ui, outbox: &mut Outbox) {
         health::show(self, ui, outbox);
+        commission::show(self, ui, outbox);
         status_line::show(self, ui, outbox);
         if self.settings.log_open {
             self.log.show(ui);

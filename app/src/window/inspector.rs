@@ -13,9 +13,9 @@ use plumbline_widgets::theme::{self, Role, group_heading, space};
 use super::PlumblineWindow;
 use crate::operator::{Outbox, Screen, hint_text};
 use crate::panels::{
-    PanelState, chosen_fit, probe_readout, show_gap_inspector, show_grasp_inspector, show_labels_inspector,
-    show_models_inspector, show_objects_inspector, show_robot_inspector, show_scores_inspector,
-    show_touch_inspector,
+    PanelState, chosen_fit, probe_readout, show_commission_inspector, show_gap_inspector,
+    show_grasp_inspector, show_labels_inspector, show_models_inspector, show_objects_inspector,
+    show_robot_inspector, show_scores_inspector, show_touch_inspector,
 };
 
 pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
@@ -26,6 +26,7 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
     let state = &mut window.panels;
     panel.show_separator_line(false).show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| match screen {
+            Screen::Commission => show_commission_inspector(ui, &view, outbox),
             Screen::Live => live(ui, &view, state, outbox),
             Screen::Collect => collecting(ui, &view, state, outbox),
             Screen::Judge => judged_pair(ui, &view, state, outbox),

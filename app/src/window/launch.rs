@@ -55,6 +55,7 @@ pub fn launch(options: LaunchOptions) -> anyhow::Result<()> {
     settings.screen = options.screen.unwrap_or(settings.screen);
     settings.size = options.size.unwrap_or(settings.size);
 
+    let nothing_else = options.paths.is_empty() && options.cameras.is_none();
     let news_may_wait = chosen.news_may_wait();
     let native = native_options(&settings, chosen.renderer);
     // The closure runs once, but eframe's type cannot say so.
@@ -75,6 +76,7 @@ pub fn launch(options: LaunchOptions) -> anyhow::Result<()> {
                 frame_report: options.frame_report.clone(),
                 renderer: chosen.reason,
                 gamepads: options.script.is_empty(),
+                opens_commissioning: options.screen.is_none() && options.script.is_empty() && nothing_else,
             };
             let engine = start_engine(&ctx, &options, news_may_wait);
             if let Some(trouble) = trouble {

@@ -8,6 +8,7 @@ mod apply;
 mod arrangement;
 mod ask;
 mod backend;
+mod commission;
 mod connect;
 mod dialogs;
 mod drop;
@@ -85,6 +86,8 @@ pub struct WindowOptions {
     pub renderer: String,
     /// Whether gamepads are looked for.
     pub gamepads: bool,
+    /// Whether commissioning is opened where nothing was ever commissioned.
+    pub opens_commissioning: bool,
 }
 
 impl Default for WindowOptions {
@@ -98,6 +101,7 @@ impl Default for WindowOptions {
             frame_report: None,
             renderer: "none".to_owned(),
             gamepads: false,
+            opens_commissioning: false,
         }
     }
 }
@@ -131,6 +135,10 @@ pub struct PlumblineWindow {
     jogging: Jogging,
     /// When a motion was asked for last.
     motion_asked: Option<Instant>,
+    /// When the one button of commissioning was pressed last.
+    commission_pressed: Option<Instant>,
+    /// Whether commissioning is still to be opened where nothing was ever commissioned.
+    may_open_commissioning: bool,
     touch_window: TouchWindow,
     /// When monitors were looked for last, by the clock of the window, s.
     monitors_found_s: f64,
@@ -173,6 +181,8 @@ impl PlumblineWindow {
             gamepads,
             jogging: Jogging::default(),
             motion_asked: None,
+            commission_pressed: None,
+            may_open_commissioning: options.opens_commissioning,
             touch_window: TouchWindow::default(),
             monitors_found_s: f64::NEG_INFINITY,
         }

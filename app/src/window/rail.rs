@@ -22,6 +22,10 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
         ui,
         |ui| {
             ui.spacing_mut().item_spacing.y = 2.0;
+            let commission = RailStep::new("Commission", commission_state(view));
+            if commission.selected(screen == Screen::Commission).show(ui).clicked() {
+                outbox.act(Action::Go(Screen::Commission));
+            }
             if RailStep::new("Live", StepState::Always).selected(screen == Screen::Live).show(ui).clicked() {
                 outbox.act(Action::Go(Screen::Live));
             }
@@ -200,6 +204,17 @@ fn touch_state(view: &View) -> StepState<'_> {
             StepState::Running((ended as f32 / wanted as f32).min(1.0))
         }
         _ => step_state(&view.touch.step),
+    }
+}
+
+/// How many of its steps are done.
+fn commission_state(view: &View) -> StepState<'_> {
+    let steps = &view.commission.steps;
+    let done = steps.iter().filter(|step| step.done().is_some()).count();
+    match (view.commission.is_on, view.commission.is_done()) {
+        (_, true) => StepState::Done,
+        (true, false) => StepState::Running(done as f32 / steps.len().max(1) as f32),
+        (false, false) => StepState::NotDone,
     }
 }
 

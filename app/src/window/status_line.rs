@@ -9,7 +9,7 @@ use plumbline_widgets::theme::space;
 
 use super::PlumblineWindow;
 use crate::operator::guidance::{Guidance, failed_inside, guidance};
-use crate::operator::{Action, Outbox, shortcut_text};
+use crate::operator::{Action, Course, GraspAction, Outbox, Screen, TouchAction, course, shortcut_text};
 
 const HEIGHT: f32 = 52.0;
 
@@ -30,8 +30,12 @@ fn contents(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     if let (Some(job), None) = (view.running_job(), &failed) {
         return running(job, ui, outbox);
     }
-    let guidance = failed.unwrap_or_else(|| guidance(view, screen));
-    next_button(view, &guidance, ui, outbox);
+    let (guidance, led) = match (failed, course(view)) {
+        (Some(failed), _) => (failed, false),
+        (None, Some(course)) => (of_course(view, screen, course), true),
+        (None, None) => (guidance(view, screen), false),
+    };
+    next_button(view, &guidance, led, ui, outbox);
     if let Some((job, reason)) = failed_job(view) {
         if ui.button("Dismiss").clicked() {
             outbox.send(JobCommand::Dismiss(job.id));
@@ -61,11 +65,30 @@ fn line(progress: ProgressLine<'_>, ui: &mut Ui, outbox: &mut Outbox) -> Option<
     action
 }
 
-fn next_button(view: &View, guidance: &Guidance, ui: &mut Ui, outbox: &mut Outbox) {
+/// While commissioning leads, its button is the primary one: here stands what it says, with nothing but a
+/// way to hold what moves. Where the operator looks elsewhere, that screen says its own.
+fn of_course(view: &View, screen: Screen, course: Course) -> Guidance {
+    let own = guidance(view, screen);
+    let of_eyes = course.screen.is_eyes() && screen.is_eyes();
+    if !of_eyes && screen != course.screen && screen != Screen::Commission {
+        return own;
+    }
+    let holds = |action: Action| {
+        matches!(action, Action::Touch(TouchAction::Pause) | Action::Grasp(GraspAction::Pause))
+    };
+    Guidance {
+        sentence: course.sentence,
+        warning: course.warning,
+        next: own.next.filter(|next| holds(next.action)),
+    }
+}
+
+fn next_button(view: &View, guidance: &Guidance, led: bool, ui: &mut Ui, outbox: &mut Outbox) {
     let Some(next) = &guidance.next else { return };
     let refusal = next.action.refusal(view);
     let keys = shortcut_text(ui.ctx(), Action::Next).unwrap_or_default();
-    let button = accent_button(ui, &next.label).min_size(egui::vec2(120.0, 36.0));
+    let button = if led { egui::Button::new(&next.label) } else { accent_button(ui, &next.label) };
+    let button = button.min_size(egui::vec2(120.0, 36.0));
     ui.spacing_mut().button_padding.x = space::M;
     let button = ui.add_enabled(refusal.is_none(), button);
     let button = button.on_hover_text(format!("{keys} does the same"));

@@ -1,5 +1,6 @@
 //! The window over made-up views: every state is drawn, and every click asks for the right thing.
 
+mod commission;
 mod fake;
 mod faults;
 mod gap;

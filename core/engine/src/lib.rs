@@ -6,6 +6,7 @@
 
 pub mod ground;
 
+pub mod commission;
 pub mod detect;
 pub mod eyes;
 pub mod gap;
@@ -30,12 +31,12 @@ pub mod work;
 pub mod engine;
 
 pub use command::{
-    AimChoice, BoxEdit, Command, ConfusionCell, ContactWith, Correction, Destination, DetectCommand,
-    DetectorChoice, ExportFormat, Exported, EyesCommand, FileLength, GapCommand, GapModel, GraspCommand,
-    GraspTable, GraspTarget, HandStep, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LabelsCommand,
-    LiveCommand, ModelsCommand, MountCommand, NoticeCommand, ProbePoint, Products, Provider, RobotCommand,
-    ScoresCommand, ScreenContact, ScreenWindow, SetPart, SourceCommand, TablesCommand, TouchCommand,
-    TwinCommand, WatchCommand,
+    AimChoice, BoxEdit, Command, CommissionCommand, ConfusionCell, ContactWith, Correction, Destination,
+    DetectCommand, DetectorChoice, ExportFormat, Exported, EyesCommand, FileLength, GapCommand, GapModel,
+    GraspCommand, GraspTable, GraspTarget, HandStep, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates,
+    LabelsCommand, LiveCommand, ModelsCommand, MountCommand, NoticeCommand, ProbePoint, Products, Provider,
+    RobotCommand, ScoresCommand, ScreenContact, ScreenWindow, SetPart, SourceCommand, TablesCommand,
+    TouchCommand, TwinCommand, WatchCommand,
 };
 pub use engine::settings::{self, EngineSettings};
 pub use engine::{Engine, Wake, journal};

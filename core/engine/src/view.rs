@@ -60,6 +60,8 @@ views! {
     gap: gap / GapView;
     /// Grasping.
     grasp: grasp / GraspView;
+    /// The way to the first good grasp.
+    commission: commission / CommissionView;
     /// The lab's own data sets.
     labels: labels / LabelsView;
     /// Scores of detectors.

@@ -74,6 +74,8 @@ works! {
     Gap(gap / GapWork);
     /// Part of grasping.
     Grasp(grasp / GraspWork);
+    /// Part of commissioning.
+    Commission(commission / CommissionWork);
     /// Part of the lab's own data sets.
     Labels(labels / LabelsWork);
     /// Part of judging detectors.

@@ -1,5 +1,6 @@
 //! Everything that can be asked for by name: by a button, a shortcut or the command palette.
 
+mod commission;
 mod detect;
 mod gap;
 mod grasp;
@@ -8,6 +9,7 @@ mod models;
 mod robot;
 mod touch;
 
+pub use commission::{CommissionAction, FIRST_CLASS, FIRST_PLACE_M};
 pub use detect::DetectAction;
 pub use gap::{GapAction, plan as gap_plan};
 pub use grasp::GraspAction;
@@ -96,6 +98,8 @@ pub enum Action {
     Gap(GapAction),
     /// Of grasping.
     Grasp(GraspAction),
+    /// Of commissioning.
+    Commission(CommissionAction),
     /// Of the lab's own data sets.
     Labels(LabelsAction),
     /// Of judging detectors.
@@ -139,7 +143,7 @@ macro_rules! into_action {
 }
 into_action!(
     Robot: RobotAction, Mount: MountAction, Touch: TouchAction, Models: ModelsAction, Gap: GapAction,
-    Grasp: GraspAction,    Labels: LabelsAction, Scores: ScoresAction, Detect: DetectAction
+    Grasp: GraspAction, Commission: CommissionAction, Labels: LabelsAction, Scores: ScoresAction, Detect: DetectAction
 );
 
 /// All actions with a place in the palette, in its order.
@@ -150,12 +154,20 @@ pub fn all() -> impl Iterator<Item = Action> {
     let models = ModelsAction::ALL.into_iter().map(Action::Models);
     let gap = GapAction::ALL.into_iter().map(Action::Gap);
     let grasp = GraspAction::ALL.into_iter().map(Action::Grasp);
+    let commission = CommissionAction::ALL.into_iter().map(Action::Commission);
     let detect = DetectAction::ALL.into_iter().map(Action::Detect);
     let labels = LabelsAction::ALL.into_iter().map(Action::Labels);
     let scores = ScoresAction::ALL.into_iter().map(Action::Scores);
     let steps = robot.chain(mount).chain(touch).chain(models).chain(gap).chain(grasp);
     let threads = WatchedThread::ALL.into_iter().map(Action::StartAgain);
-    ALL.iter().copied().chain(detect).chain(steps).chain(labels).chain(scores).chain(threads)
+    ALL.iter()
+        .copied()
+        .chain(commission)
+        .chain(detect)
+        .chain(steps)
+        .chain(labels)
+        .chain(scores)
+        .chain(threads)
 }
 
 const ALL: &[Action] = &[
@@ -172,6 +184,7 @@ const ALL: &[Action] = &[
     Action::StepForward,
     Action::StepBack,
     Action::ToggleLoop,
+    Action::Go(Screen::Commission),
     Action::Go(Screen::Live),
     Action::Go(Screen::Collect),
     Action::Go(Screen::Judge),
@@ -243,6 +256,7 @@ impl Action {
             Self::StepForward => "One pair forward",
             Self::StepBack => "One pair back",
             Self::ToggleLoop => "Loop the recording",
+            Self::Go(Screen::Commission) => "Go to Commission",
             Self::Go(Screen::Live) => "Go to Live",
             Self::Go(Screen::Collect) => "Go to Eyes: collect",
             Self::Go(Screen::Judge) => "Go to Eyes: judge",
@@ -261,6 +275,7 @@ impl Action {
             Self::Models(action) => action.label(),
             Self::Gap(action) => action.label(),
             Self::Grasp(action) => action.label(),
+            Self::Commission(action) => action.label(),
             Self::Labels(action) => action.label(),
             Self::Scores(action) => action.label(),
             Self::Detect(action) => action.label(),
@@ -324,6 +339,7 @@ impl Action {
             Self::Models(action) => action.refusal(view),
             Self::Gap(action) => action.refusal(view),
             Self::Grasp(action) => action.refusal(view),
+            Self::Commission(action) => action.refusal(view),
             Self::Labels(action) => action.refusal(view),
             Self::Scores(action) => action.refusal(view),
             Self::Detect(action) => action.refusal(view),

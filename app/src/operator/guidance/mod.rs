@@ -1,5 +1,6 @@
 //! What is happening and what to do next, in one sentence and one button.
 
+mod commission;
 mod detect;
 mod gap;
 mod grasp;
@@ -9,6 +10,7 @@ mod sentence;
 mod standing;
 mod touch;
 
+pub use commission::{Course, Press, course, done_in_words, name as commission_name, spent};
 pub use gap::is_of_choice;
 pub use sentence::Guidance;
 pub use touch::{done_of, minutes, wanted, what_moves};
@@ -17,7 +19,7 @@ use plumbline_engine::View;
 use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
 use plumbline_widgets::format;
 
-use super::{Action, RobotAction, Screen, faults};
+use super::{Action, CommissionAction, RobotAction, Screen, faults};
 use sentence::say;
 
 /// Fewest pairs that are worth solving without asking for more.
@@ -36,6 +38,7 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
         return guidance;
     }
     match screen {
+        Screen::Commission => commissioning(view),
         Screen::Live => live(view),
         Screen::Collect => collect(view),
         Screen::Judge => judge(&view.eyes),
@@ -85,6 +88,26 @@ fn source_trouble(view: &View) -> Option<Guidance> {
             Some(say(reason.clone()).warn().then("Try again", Action::RetrySource))
         }
         SourceStatus::Running | SourceStatus::Paused | SourceStatus::Ended => None,
+    }
+}
+
+/// Before the operator is led; then the course says what comes next.
+fn commissioning(view: &View) -> Guidance {
+    let commission = &view.commission;
+    if let Some(course) = course(view) {
+        let guidance = say(course.sentence);
+        return if course.warning { guidance.warn() } else { guidance };
+    }
+    if !commission.is_known {
+        return say("Looks how far commissioning is.");
+    }
+    let start = Action::Commission(CommissionAction::Start);
+    match commission.began {
+        _ if commission.is_done() => say("All steps are done.").then("Grasp", Action::Go(Screen::Grasp)),
+        Some(_) => say("Commissioning goes on where it was. Nothing moves yet.")
+            .then("Next: go on with commissioning", start),
+        None => say("Seven steps lead to the first good grasp, each with one button. Nothing moves yet.")
+            .then("Next: begin commissioning", start),
     }
 }
 

@@ -130,6 +130,11 @@ impl EyesWorkflow {
         self.in_use.as_ref().map(|in_use| &in_use.calibration)
     }
 
+    /// Pairs that are collected.
+    pub fn pair_count(&self) -> usize {
+        self.collection.pairs().len()
+    }
+
     /// Where the eyes are over the table, for the maps of the next assessment.
     pub fn set_workspace(&mut self, workspace: Workspace) {
         self.workspace = workspace;

@@ -8,6 +8,7 @@ mod model;
 pub mod search;
 pub mod sessions;
 mod shown;
+mod standing;
 pub mod store;
 #[cfg(test)]
 mod tests;

@@ -142,11 +142,20 @@ impl GapView {
 
     /// Effects of the shown finding that can be added and are not in the model yet, by place.
     pub fn addable(&self) -> Vec<usize> {
-        let Some(shown) = &self.shown else { return vec![] };
-        if shown.finding.verdict == Verdict::NotInLibrary || self.stale.is_some() {
+        match &self.shown {
+            Some(shown) if self.stale.is_none() => shown.addable(),
+            _ => vec![],
+        }
+    }
+}
+
+impl ShownFinding {
+    /// Effects that can be added and are not in the model yet, by place.
+    pub fn addable(&self) -> Vec<usize> {
+        if self.finding.verdict == Verdict::NotInLibrary {
             return vec![];
         }
-        let effects = shown.finding.effects.iter().zip(&shown.added).enumerate();
+        let effects = self.finding.effects.iter().zip(&self.added).enumerate();
         effects
             .filter(|(_, (effect, added))| effect.not_addable.is_none() && !**added)
             .map(|(i, _)| i)

@@ -18,6 +18,7 @@ mod refusal;
 mod rests_on;
 mod shown;
 mod sights;
+mod standing;
 mod steps;
 #[cfg(test)]
 mod tests;

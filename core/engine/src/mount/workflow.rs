@@ -98,6 +98,11 @@ impl MountWorkflow {
         self.in_use.as_ref()
     }
 
+    /// Views that are collected.
+    pub fn view_count(&self) -> usize {
+        self.views.len()
+    }
+
     /// Whether the board has to be looked for.
     pub fn wants_corners(&self) -> bool {
         self.tour.is_some() || self.waiting.is_some()

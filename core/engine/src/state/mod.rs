@@ -1,6 +1,7 @@
 //! Everything the engine knows, driven by commands and events; owns no thread.
 
 mod actions;
+mod commissioned;
 mod neighbors;
 mod rooms;
 mod stages;
@@ -21,6 +22,7 @@ use rooms::{Keeps, Neighbors, Rooms};
 pub use stages::Serves;
 
 use crate::command::{Command, HeadPose};
+use crate::commission::CommissionWorkflow;
 use crate::detect::{DetectInput, DetectOutput, DetectWorkflow, OpenDetector};
 use crate::eyes::{CornersInput, EyesWorkflow, Look};
 use crate::ground::data_folder::KeptView;
@@ -287,6 +289,7 @@ impl State {
         self.use_models();
         self.with::<MountWorkflow>(self.shown, |mount, around, context| mount.step(around, context));
         self.with::<TouchWorkflow>(self.arm_of, |touch, around, context| touch.step(around, context));
+        self.with::<CommissionWorkflow>(self.arm_of, |room, around, context| room.look(around, context));
     }
 
     /// The robot's thread tells how a touch is doing.

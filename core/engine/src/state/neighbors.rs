@@ -11,6 +11,7 @@ use super::State;
 use super::actions::Action;
 use super::rooms::{Neighbors, Rooms, all_rooms};
 use crate::command::{Command, JobCommand, NoticeCommand};
+use crate::commission::CommissionWorkflow;
 use crate::detect::{DetectAround, DetectWorkflow};
 use crate::eyes::{EyesAround, EyesWorkflow};
 use crate::gap::{GapAround, GapWorkflow};

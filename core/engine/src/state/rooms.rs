@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::commission::CommissionWorkflow;
 use crate::detect::DetectWorkflow;
 use crate::eyes::EyesWorkflow;
 use crate::gap::GapWorkflow;
@@ -33,6 +34,7 @@ macro_rules! all_rooms {
             models: ModelsWorkflow, Models, arm_of;
             gap: GapWorkflow, Gap, arm_of;
             grasp: GraspWorkflow, Grasp, arm_of;
+            commission: CommissionWorkflow, Commission, arm_of;
         }
         without_work {
             live: LiveWorkflow, Live;

@@ -16,6 +16,7 @@ pub mod refusal;
 mod run;
 mod seen;
 mod shown;
+mod standing;
 pub mod store;
 #[cfg(test)]
 mod testing;
@@ -26,4 +27,5 @@ pub mod work;
 mod workflow;
 
 pub use plumbline_effects::observability::{Addition, Advice, EffectVisibility, PlanScore};
+pub use standing::RunStanding;
 pub use workflow::{TouchAround, TouchWorkflow};

@@ -1,0 +1,99 @@
+//! The eyes on the way: the board is shown to them, solved, accepted.
+
+use plumbline_engine::View;
+use plumbline_engine::view::SourceStatus;
+
+use super::super::{ENOUGH_PAIRS, dropped, source_trouble, verdict};
+use super::Said;
+use crate::operator::{Action, RobotAction};
+
+/// Lenses move while cameras get warm; after so long they have settled, s.
+const WARM_AFTER_S: f64 = 20.0 * 60.0;
+
+pub(super) fn said(view: &View) -> Said {
+    if let Some(trouble) = source_trouble(view) {
+        return trouble.into();
+    }
+    if view.source.status != SourceStatus::Running {
+        return Said::wait("The eyes have to deliver: let the source go on.", None).warn();
+    }
+    if let Some(proposal) = view.eyes.proposal.as_ref().filter(|proposal| proposal.stale.is_none()) {
+        let verdict = verdict(proposal);
+        if verdict.good {
+            return Said::press(verdict.sentence, "Accept the calibration of the eyes", accepting(view));
+        }
+        return collecting(view, Some(verdict.sentence));
+    }
+    collecting(view, None)
+}
+
+/// Nothing is captured any more once the eyes are calibrated.
+fn accepting(view: &View) -> Vec<Action> {
+    let capture = view.eyes.auto_capture.then_some(Action::ToggleAutoCapture);
+    [Some(Action::Accept), capture].into_iter().flatten().collect()
+}
+
+fn collecting(view: &View, doubt: Option<String>) -> Said {
+    let said = if view.twin.running { twin(view, doubt.is_some()) } else { person(view, doubt.is_some()) };
+    match doubt {
+        Some(doubt) => Said { sentence: format!("{doubt} {}", said.sentence), warning: true, ..said },
+        None => said,
+    }
+}
+
+fn pairs(view: &View) -> usize {
+    view.eyes.collected.len() - dropped(&view.eyes)
+}
+
+fn solve(count: usize) -> Said {
+    let sentence = format!(
+        "{count} pairs are collected. Solving moves nothing, and nothing is used before you accept it."
+    );
+    Said::press(sentence, format!("Solve {count} pairs"), vec![Action::Solve])
+}
+
+/// Nobody is needed: an unseen hand shows the board.
+fn twin(view: &View, again: bool) -> Said {
+    let count = pairs(view);
+    if view.twin.board.is_some() && view.eyes.auto_capture {
+        let why =
+            format!("The board is shown to the eyes, pairs are captured by themselves: {count} so far.");
+        let fraction = count as f64 / view.twin.board_places.max(1) as f64;
+        return Said::wait(why, Some(fraction.min(1.0)));
+    }
+    if view.twin.eyes_on_s < WARM_AFTER_S && count == 0 {
+        return Said::press(
+            "The twin's eyes are cold, and turn in their mounts while they warm up, as real ones do. Nothing moves.",
+            "Warm the twin's eyes by 10 minutes",
+            vec![Action::Robot(RobotAction::WarmUp)],
+        );
+    }
+    if count >= ENOUGH_PAIRS && !again {
+        return solve(count);
+    }
+    let capture = (!view.eyes.auto_capture).then_some(Action::ToggleAutoCapture);
+    let actions = [capture, Some(Action::Robot(RobotAction::TourBoard))];
+    Said::press(
+        "An unseen hand shows the twin the board at all places; pairs are captured by themselves. The robot stays.",
+        "Show the board at all places",
+        actions.into_iter().flatten().collect(),
+    )
+}
+
+/// A person holds the board to the outline.
+fn person(view: &View, again: bool) -> Said {
+    let (count, eyes) = (pairs(view), &view.eyes);
+    if count >= ENOUGH_PAIRS && (eyes.ghost.is_none() || !eyes.auto_capture) && !again {
+        return solve(count);
+    }
+    if !eyes.auto_capture {
+        return Said::press(
+            "Take the printed board in your hands. It is captured by itself wherever you hold it still. The robot stays.",
+            "Capture the board while I hold it",
+            vec![Action::ToggleAutoCapture],
+        );
+    }
+    let wanted = eyes.ghost.as_ref().map_or_else(|| "another place".to_owned(), |ghost| ghost.reason.clone());
+    let why = format!("Hold the board still as the outline shows: {wanted}. {count} pairs so far.");
+    Said::wait(why, Some((count as f64 / ENOUGH_PAIRS as f64).min(1.0)))
+}

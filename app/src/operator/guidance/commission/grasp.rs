@@ -1,0 +1,84 @@
+//! The first grasp on the way.
+
+use plumbline_engine::view::{GraspOutcome, GraspPhase};
+use plumbline_engine::{HandStep, View};
+
+use super::super::{grasp, robot};
+use super::Said;
+use crate::operator::actions::{FIRST_CLASS, FIRST_PLACE_M};
+use crate::operator::words::grasp::closed;
+use crate::operator::{Action, CommissionAction, GraspAction, RobotAction};
+
+/// What lies farther from where it was laid out has rolled away, m.
+const ROLLED_M: f64 = 0.03;
+
+pub(super) fn said(view: &View) -> Said {
+    let of_view = &view.grasp;
+    match &of_view.phase {
+        GraspPhase::Idle => {}
+        phase if phase.is_paused() => return grasp::grasp(view).into(),
+        _ => return Said::wait("Grasps. The arm moves; Esc or space stops.", None),
+    }
+    if let Some(trouble) = robot::trouble(&view.robot) {
+        return trouble.into();
+    }
+    let run = of_view.run.as_ref().filter(|run| run.outcome.is_some());
+    let held = run.is_some_and(|run| run.outcome == Some(GraspOutcome::Success) && run.told.is_none());
+    if held {
+        return Said::press(
+            "The fingers meet something. Look: is it held? If not, say Not held in the pane Grasp.",
+            "Say that it is held",
+            vec![Action::Grasp(GraspAction::Held)],
+        );
+    }
+    if of_view.target.class.as_deref() != Some(FIRST_CLASS) || !is_laid_out(view) {
+        return lay_out(view, run.is_some());
+    }
+    if let Some(trouble) = of_view.trouble() {
+        if trouble.contains("Hold all joints") {
+            let hold = vec![Action::Robot(RobotAction::TorqueOn)];
+            return Said::press("All joints hold where they are.", "Hold all joints", hold);
+        }
+        return Said::wait(trouble, None).warn();
+    }
+    let grasps =
+        "Both eyes look for the tomato; then the right arm reaches for it, closes the hand and lifts it.";
+    let sentence = match run.and_then(|run| run.outcome.as_ref()) {
+        Some(GraspOutcome::Failed { why, .. } | GraspOutcome::Refused { why }) => {
+            format!("{} It is tried once more. {grasps}", closed(why))
+        }
+        _ => grasps.to_owned(),
+    };
+    Said::press(sentence, "Grasp the tomato", vec![Action::Grasp(GraspAction::Grasp)])
+}
+
+/// On the twin's table, where it was laid; on the robot's a person looks.
+fn is_laid_out(view: &View) -> bool {
+    if !view.twin.running {
+        return true;
+    }
+    let toy = view.twin.toys.iter().find(|toy| toy.name.eq_ignore_ascii_case(FIRST_CLASS));
+    let place = toy.and_then(|toy| toy.place.as_ref());
+    view.twin.board.is_none()
+        && place.is_some_and(|at| {
+            (at.coords.x - FIRST_PLACE_M[0]).hypot(at.coords.y - FIRST_PLACE_M[1]) < ROLLED_M
+        })
+}
+
+fn lay_out(view: &View, again: bool) -> Said {
+    let [x_m, y_m] = FIRST_PLACE_M.map(|place_m| (100.0 * place_m).round());
+    let place = format!("{x_m:.0} cm ahead of the robot and {:.0} cm to its right", -y_m);
+    let lay = Action::Commission(CommissionAction::LayOut);
+    if !view.twin.running {
+        let sentence = format!("Lay a tomato {place}, and take your hands away. Nothing moves yet.");
+        return Said::press(sentence, "The tomato lies there", vec![lay]);
+    }
+    if again {
+        // The hand may hold it, or stand where it is to lie.
+        let sentence = format!("The arm goes home with an open hand; the tomato is laid {place}.");
+        let home = Action::Grasp(GraspAction::Hand(HandStep::Home));
+        return Said::press(sentence, "Lay the tomato out again", vec![home, lay]);
+    }
+    let sentence = format!("An unseen hand lays the tomato {place}. The robot stays.");
+    Said::press(sentence, "Lay the tomato on the table", vec![lay])
+}

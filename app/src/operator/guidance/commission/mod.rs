@@ -1,0 +1,180 @@
+//! The way from a robot that was just switched on to its first good grasp: always one thing that comes
+//! next, in which screen, and what it will move.
+
+mod eyes;
+mod grasp;
+mod title;
+mod touch;
+
+pub use title::{done_in_words, name, spent};
+
+use plumbline_engine::View;
+use plumbline_engine::view::{CommissionStep, JobState};
+
+use super::sentence::Guidance;
+use super::{failed_inside, gap, robot};
+use crate::operator::{Action, CommissionAction, GapAction, MountAction, Screen};
+
+/// Where commissioning is, and what comes next.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Course {
+    /// "Commissioning 3 of 7: place the screen – 2 of 8 touches".
+    pub title: String,
+    /// Where it happens.
+    pub screen: Screen,
+    /// What is happening, or what pressing does and what will move.
+    pub sentence: String,
+    /// Whether that needs attention.
+    pub warning: bool,
+    /// The one button.
+    pub press: Press,
+}
+
+/// What the one button does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Press {
+    /// Goes to the screen and does this.
+    Do {
+        /// Named by what it does: "Show the board at all places".
+        label: String,
+        /// One after the other.
+        actions: Vec<Action>,
+    },
+    /// Nothing now: something runs, or a person has to do something first.
+    Wait {
+        /// What is waited for.
+        why: String,
+        /// How far that is, 0 to 1, where it is known.
+        fraction: Option<f64>,
+    },
+}
+
+/// What a step says: sentence, warning, button.
+struct Said {
+    sentence: String,
+    warning: bool,
+    press: Press,
+}
+
+impl Said {
+    fn press(sentence: impl Into<String>, label: impl Into<String>, actions: Vec<Action>) -> Self {
+        let press = Press::Do { label: label.into(), actions };
+        Self { sentence: sentence.into(), warning: false, press }
+    }
+
+    fn wait(why: impl Into<String>, fraction: Option<f64>) -> Self {
+        let why = why.into();
+        Self { sentence: why.clone(), warning: false, press: Press::Wait { why, fraction } }
+    }
+
+    fn warn(mut self) -> Self {
+        self.warning = true;
+        self
+    }
+}
+
+impl From<Guidance> for Said {
+    fn from(guidance: Guidance) -> Self {
+        let Guidance { sentence, warning, next } = guidance;
+        let press = match next {
+            Some(next) => Press::Do { label: next.label, actions: vec![next.action] },
+            None => Press::Wait { why: sentence.clone(), fraction: None },
+        };
+        Self { sentence, warning, press }
+    }
+}
+
+/// Where commissioning is, and what comes next; `None` while nobody is led.
+pub fn course(view: &View) -> Option<Course> {
+    if !view.commission.is_on {
+        return None;
+    }
+    let step = view.commission.now();
+    let screen = step.map_or(Screen::Commission, screen_of_step);
+    let Said { sentence, warning, press } = said(view, step, screen);
+    Some(Course { title: title::title(view, step), screen, sentence, warning, press })
+}
+
+fn screen_of_step(step: CommissionStep) -> Screen {
+    match step {
+        CommissionStep::Eyes => Screen::Collect,
+        CommissionStep::Mount => Screen::Mount,
+        CommissionStep::Screen | CommissionStep::Touches | CommissionStep::Check => Screen::Touch,
+        CommissionStep::Effects => Screen::Gap,
+        CommissionStep::Grasp => Screen::Grasp,
+    }
+}
+
+fn said(view: &View, step: Option<CommissionStep>, screen: Screen) -> Said {
+    if let Some(failed) = failed_inside(view, screen) {
+        return failed.into();
+    }
+    let Some(step) = step else { return all_done(view) };
+    if view.robot.stopped && view.robot.connection.is_connected() {
+        return Said::wait("Stopped: nothing moves until you press Release STOP, at the top right.", None)
+            .warn();
+    }
+    if let Some(running) = running(view) {
+        return running;
+    }
+    match step {
+        CommissionStep::Eyes => eyes::said(view),
+        CommissionStep::Mount => mount(view),
+        CommissionStep::Screen => touch::placing(view),
+        CommissionStep::Touches => touch::training(view),
+        CommissionStep::Effects => effects(view),
+        CommissionStep::Check => touch::checking(view),
+        CommissionStep::Grasp => grasp::said(view),
+    }
+}
+
+/// Whatever runs is waited for.
+fn running(view: &View) -> Option<Said> {
+    let job = view.running_job()?;
+    let JobState::Running { fraction, doing, .. } = &job.state else { return None };
+    let moves = if view.grasp.phase.moves() { " The arm moves; Esc or space stops." } else { "" };
+    let said = Said::wait(format!("{}: {doing}.{moves}", job.title), Some(*fraction));
+    Some(said)
+}
+
+fn all_done(view: &View) -> Said {
+    Said::press(
+        format!("The robot is commissioned: {}.", spent(&view.commission.spent)),
+        "Finish",
+        vec![Action::Commission(CommissionAction::Leave)],
+    )
+}
+
+fn mount(view: &View) -> Said {
+    // Where the board has to lie is known from the moment the head was turned there.
+    let accept = Action::Mount(MountAction::Accept);
+    let mut said: Said = robot::mount(view).into();
+    if let Press::Do { actions, .. } = &said.press
+        && *actions == [accept]
+    {
+        let error = view.mount.proposal.as_ref().map(|proposal| proposal.rms_px);
+        let error = error.map_or_else(String::new, |px| plumbline_widgets::format::px(px));
+        said.sentence = format!("Solved: {error} are left over in the images. Accepting puts it in use.");
+    }
+    said
+}
+
+/// What is found is added; the touches of the check tell whether that helped.
+fn effects(view: &View) -> Said {
+    let gap_view = &view.gap;
+    let find = Action::Gap(GapAction::Find);
+    if gap_view.searching.is_some() || gap_view.chosen.is_empty() || gap_view.failed.is_some() {
+        return gap::gap(view).into();
+    }
+    let addable = gap_view.addable();
+    if gap::is_of_choice(gap_view) && !addable.is_empty() {
+        let label = crate::operator::words::gap::add_label(view, &addable);
+        let sentence = gap_view.finding().map_or_else(String::new, |finding| finding.sentence.clone());
+        return Said::press(sentence, label, vec![Action::Gap(GapAction::Add)]);
+    }
+    Said::press(
+        "The touches are held against the robot's model: what makes the arm miss is looked for, by name. Nothing moves.",
+        "Find what makes the arm miss",
+        vec![find],
+    )
+}

@@ -1,0 +1,81 @@
+//! Commissioning in words: its steps, how far they are, what came of them, what all of it took.
+
+use plumbline_engine::View;
+use plumbline_engine::view::{CommissionFigure, CommissionSpent, CommissionStep, TouchPhase};
+use plumbline_widgets::format;
+
+use super::super::touch::{done_of, wanted};
+
+/// What a step does: "Place the screen".
+pub fn name(step: CommissionStep) -> &'static str {
+    match step {
+        CommissionStep::Eyes => "Calibrate the eyes",
+        CommissionStep::Mount => "Find how the eyes sit in the head",
+        CommissionStep::Screen => "Place the screen",
+        CommissionStep::Touches => "Touch the screen",
+        CommissionStep::Effects => "Find what makes the arm miss",
+        CommissionStep::Check => "Check with new touches",
+        CommissionStep::Grasp => "Grasp",
+    }
+}
+
+/// "Commissioning 3 of 7: place the screen – 2 of 8 touches".
+pub(super) fn title(view: &View, step: Option<CommissionStep>) -> String {
+    let Some(step) = step else { return "Commissioning: all 7 steps are done".to_owned() };
+    let name = name(step);
+    let (first, rest) = name.split_at(1);
+    let far = far(view, step).map_or_else(String::new, |far| format!(" – {far}"));
+    format!("Commissioning {} of 7: {}{rest}{far}", step.number(), first.to_lowercase())
+}
+
+/// How far a step is.
+fn far(view: &View, step: CommissionStep) -> Option<String> {
+    match step {
+        CommissionStep::Eyes => {
+            let pairs = view.eyes.collected.len();
+            (pairs > 0).then(|| format::count(pairs, "pair"))
+        }
+        CommissionStep::Mount => {
+            let (views, left) = (view.mount.views.len(), view.mount.planned.len());
+            (views > 0).then(|| format!("{views} of {} views", views.max(left)))
+        }
+        CommissionStep::Screen | CommissionStep::Touches | CommissionStep::Check => {
+            let running = matches!(
+                view.touch.phase,
+                TouchPhase::Running { .. } | TouchPhase::Waiting { .. } | TouchPhase::Paused { .. }
+            );
+            let (done, all) = (done_of(view.touch.counts), wanted(view.touch.counts));
+            running.then(|| format!("{done} of {all} touches"))
+        }
+        CommissionStep::Effects | CommissionStep::Grasp => None,
+    }
+}
+
+/// "9 min · 32 touches · 14 views".
+pub fn spent(spent: &CommissionSpent) -> String {
+    let minutes = spent.time.as_secs() / 60;
+    let touches = format::count(spent.touches, "touch");
+    format!("{minutes} min · {touches} · {}", format::count(spent.views, "view"))
+}
+
+/// What came of a step: "0.11 px left over in the images".
+pub fn done_in_words(figure: &CommissionFigure) -> String {
+    match figure {
+        CommissionFigure::Unknown => "done".to_owned(),
+        CommissionFigure::Pixels(px) => format!("{} left over in the images", format::px(*px)),
+        CommissionFigure::Placed { rms_m, touches } => {
+            format!("{touches} touches agree to {}", format::mm(*rms_m))
+        }
+        CommissionFigure::Touches(touches) => format::count(*touches, "touch"),
+        CommissionFigure::Effects(effects) if effects.is_empty() => {
+            "nothing is missing in the model".to_owned()
+        }
+        CommissionFigure::Effects(effects) => format!("in the model: {}", effects.join(", ")),
+        CommissionFigure::NotInLibrary => "something is missing that no known effect explains".to_owned(),
+        CommissionFigure::Missed { mean_m: Some(mean_m), touches } => {
+            format!("{touches} new touches miss by {}", format::mm(*mean_m))
+        }
+        CommissionFigure::Missed { mean_m: None, touches } => format::count(*touches, "new touch"),
+        CommissionFigure::Held(object) => format!("the {} was held", object.to_lowercase()),
+    }
+}

@@ -1,0 +1,93 @@
+//! Touches on the way: the screen is placed, touched to learn from, and touched to check.
+
+use plumbline_engine::View;
+use plumbline_engine::view::TouchPhase;
+use plumbline_model::touch_plan::Purpose;
+
+use super::super::robot;
+use super::super::touch::{done_of, minutes, touch, wanted};
+use super::Said;
+use crate::operator::{Action, CommissionAction, Preset, TouchAction, needs_window};
+
+pub(super) fn placing(view: &View) -> Said {
+    let touch = &view.touch;
+    if touch.placement_proposal.is_some() && !is_moving(view) {
+        return Said::press(
+            "The screen was measured. Look at how far it moved; accepting puts its place in use.",
+            "Use this place of the screen",
+            vec![Action::Touch(TouchAction::AcceptScreen)],
+        );
+    }
+    let plan = Said::press(
+        "The corners of the screen are touched to measure where it lies. Planning moves nothing.",
+        "Plan to touch the corners",
+        vec![Action::Touch(TouchAction::Plan(Preset::Corners))],
+    );
+    run(view, Purpose::PlaceScreen, plan)
+}
+
+pub(super) fn training(view: &View) -> Said {
+    let plan = Said::press(
+        "Places all over the screen are touched, to learn from what makes the arm miss. Planning moves nothing.",
+        "Plan touches to learn from",
+        vec![Action::Touch(TouchAction::Plan(Preset::Quick))],
+    );
+    run(view, Purpose::Train, plan)
+}
+
+pub(super) fn checking(view: &View) -> Said {
+    let with = match view.gap.model.effects.len() {
+        0 => "as the robot is described, for nothing was found to be missing",
+        _ => "with the model in use",
+    };
+    let plan = Said::press(
+        format!(
+            "New places are touched {with}, to see how far the finger misses now. Planning moves nothing."
+        ),
+        "Plan touches to check",
+        vec![Action::Commission(CommissionAction::PlanCheck)],
+    );
+    run(view, Purpose::Check, plan)
+}
+
+fn is_moving(view: &View) -> bool {
+    matches!(
+        view.touch.phase,
+        TouchPhase::Running { .. } | TouchPhase::Waiting { .. } | TouchPhase::Paused { .. }
+    )
+}
+
+/// A run for a purpose: planned, begun, waited for.
+fn run(view: &View, purpose: Purpose, plan: Said) -> Said {
+    let of_view = &view.touch;
+    match &of_view.phase {
+        TouchPhase::Running { doing, .. } => {
+            let (done, all) = (done_of(of_view.counts), wanted(of_view.counts));
+            let why = format!("{done} of {all} touches. The arm is {doing}. Esc or space stops.");
+            return Said::wait(why, (all > 0).then(|| done as f64 / all as f64));
+        }
+        TouchPhase::Waiting { .. } | TouchPhase::Paused { .. } => return touch(view).into(),
+        TouchPhase::Planning => {
+            return Said::wait("Looks which targets the arm reaches. Nothing moves.", None);
+        }
+        _ => {}
+    }
+    if let Some(trouble) = robot::trouble(&view.robot) {
+        return trouble.into();
+    }
+    let planned = of_view.plan.as_ref().filter(|plan| plan.options.purpose == purpose);
+    match (&of_view.phase, planned) {
+        (TouchPhase::Planned, Some(_)) if needs_window(view) => touch(view).into(),
+        (TouchPhase::Planned, Some(planned)) if planned.reachable > 0 => {
+            let sentence = format!(
+                "The right arm touches the glass {} times, about {}; the head and the left arm stay.",
+                planned.reachable,
+                minutes(planned.duration)
+            );
+            let label = super::super::touch::start_label(planned);
+            Said::press(sentence, label, vec![Action::Touch(TouchAction::Start)])
+        }
+        (TouchPhase::Planned, Some(_)) => touch(view).into(),
+        _ => plan,
+    }
+}

@@ -1,0 +1,242 @@
+//! Commissioning: from every state the one button leads to the right screen and asks for the right thing.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use plumbline::{PlumblineWindow, Screen, WindowSettings};
+use plumbline_engine::view::{
+    AcceptedCalibration, CommissionDone, CommissionFigure, CommissionSpent, CommissionState, CommissionStep,
+    CommissionStepView, CommissionView, EyesView, MountView, SourceStatus, SourceView, StepState, TouchPhase,
+};
+use plumbline_engine::{
+    Command, CommissionCommand, EyesCommand, GraspCommand, MountCommand, SourceSpec, TouchCommand,
+    TwinCommand, View,
+};
+use plumbline_model::StereoCalibration;
+use plumbline_model::touch_plan::{PlanOptions, Purpose};
+
+use crate::fake::{Fake, says, shows};
+use crate::made_up::{everything, lying_board, rig, twin};
+use crate::made_up_touch;
+
+/// The steps before this one are done.
+fn led_to(step: CommissionStep) -> Arc<CommissionView> {
+    let done = CommissionDone { at: Some(jiff::Timestamp::now()), figure: CommissionFigure::Pixels(0.12) };
+    let steps = CommissionStep::ALL.map(|one| {
+        let state = match one.cmp(&step) {
+            std::cmp::Ordering::Less => CommissionState::Done(done.clone()),
+            std::cmp::Ordering::Equal => CommissionState::Now,
+            std::cmp::Ordering::Greater => CommissionState::Waits(step),
+        };
+        CommissionStepView { step: one, state }
+    });
+    Arc::new(CommissionView {
+        is_known: true,
+        is_on: true,
+        began: Some(jiff::Timestamp::now()),
+        steps: Arc::from(steps),
+        spent: CommissionSpent { time: Duration::from_secs(550), touches: 8, views: 14 },
+    })
+}
+
+/// The twin is connected and looked through, its eyes warm.
+fn at(step: CommissionStep) -> View {
+    let source =
+        SourceView { spec: Some(SourceSpec::Twin), status: SourceStatus::Running, ..SourceView::default() };
+    let twin = plumbline_engine::view::TwinView { eyes_on_s: 1500.0, ..twin() };
+    View { commission: led_to(step), source: Arc::new(source), twin: Arc::new(twin), ..everything() }
+}
+
+fn eyes_in_use() -> EyesView {
+    let in_use = AcceptedCalibration {
+        id: "first".to_owned(),
+        calibration: Arc::new(StereoCalibration::bare(rig().eyes.cameras)),
+        accepted: jiff::Timestamp::now(),
+        uncertainty: None,
+        stated_at_m: 0.45,
+        depth_per_px_m: None,
+    };
+    EyesView { in_use: Some(Arc::new(in_use)), ..EyesView::default() }
+}
+
+fn on(screen: Screen) -> WindowSettings {
+    WindowSettings { screen, ..WindowSettings::default() }
+}
+
+/// Presses the one button; what it is called, where that led, what was asked for.
+fn press(view: View) -> (String, Harness<'static, PlumblineWindow>, Vec<Command>) {
+    let fake = Fake::over(view);
+    let mut window = fake.window(on(Screen::Commission));
+    let labels: Vec<String> = window
+        .query_all_by_label_contains("Next: ")
+        .filter_map(|node| node.accesskit_node().label())
+        .collect();
+    assert_eq!(labels.len(), 1, "one button leads on: {labels:?}");
+    window.get_by_label(&labels[0]).click();
+    window.run_steps(3);
+    (labels[0].clone(), window, fake.take_sent())
+}
+
+/// The screen that is open, by what its rail says.
+fn is_on(window: &Harness<'_, PlumblineWindow>, pane: &str) {
+    assert!(shows(window, pane), "the pane {pane} is open");
+}
+
+#[test]
+fn it_is_begun_by_one_button_and_moves_nothing() {
+    let view = CommissionView { is_known: true, ..CommissionView::default() };
+    let (label, window, sent) = press(View { commission: Arc::new(view), ..everything() });
+    assert_eq!(label, "Next: begin commissioning");
+    assert_eq!(sent, [Command::from(CommissionCommand::Start { anew: false })]);
+    assert!(says(&window, "From a robot just switched on"));
+}
+
+#[test]
+fn before_anything_is_known_nothing_can_be_begun() {
+    let fake = Fake::over(everything());
+    let window = fake.window(on(Screen::Commission));
+    assert!(says(&window, "Looks how far commissioning is"));
+    assert!(!says(&window, "Next: "));
+}
+
+#[test]
+fn cold_eyes_are_warmed_then_shown_the_board() {
+    let mut view = at(CommissionStep::Eyes);
+    Arc::make_mut(&mut view.twin).eyes_on_s = 10.0;
+    let (_, _, sent) = press(view);
+    assert_eq!(sent, [Command::from(TwinCommand::AdvanceWarmUp { minutes: 10.0 })]);
+
+    let (label, window, sent) = press(at(CommissionStep::Eyes));
+    assert_eq!(label, "Next: show the board at all places");
+    assert_eq!(
+        sent,
+        [Command::from(EyesCommand::AutoCapture(true)), Command::from(TwinCommand::TourBoard(true))]
+    );
+    is_on(&window, "Coverage");
+    assert!(says(&window, "Commissioning 1 of 7: calibrate the eyes"));
+    assert!(shows(&window, "9 min · 8 touches · 14 views"));
+}
+
+#[test]
+fn while_the_board_is_shown_there_is_nothing_to_press() {
+    let mut view = at(CommissionStep::Eyes);
+    Arc::make_mut(&mut view.twin).board = Some(lying_board());
+    view.eyes = Arc::new(EyesView { auto_capture: true, ..EyesView::default() });
+    let fake = Fake::over(view);
+    let window = fake.window(on(Screen::Collect));
+    assert!(!says(&window, "Next: ") && shows(&window, "Wait"));
+    assert!(says(&window, "The board is shown to the eyes"));
+}
+
+#[test]
+fn on_the_robot_a_person_is_told_how_to_hold_the_board() {
+    let mut view = at(CommissionStep::Eyes);
+    view.twin = Arc::default();
+    let cameras = SourceSpec::Cameras { left_index: 0, right_index: 1 };
+    view.source =
+        Arc::new(SourceView { spec: Some(cameras), status: SourceStatus::Running, ..SourceView::default() });
+    let (label, _, sent) = press(view.clone());
+    assert_eq!(label, "Next: capture the board while I hold it");
+    assert_eq!(sent, [Command::from(EyesCommand::AutoCapture(true))]);
+    view.eyes = Arc::new(EyesView { auto_capture: true, ..EyesView::default() });
+    let window = Fake::over(view).window(on(Screen::Collect));
+    assert!(says(&window, "Hold the board still as the outline shows"));
+}
+
+#[test]
+fn the_mount_is_planned_after_the_board_lies() {
+    let mut view = at(CommissionStep::Mount);
+    view.eyes = Arc::new(eyes_in_use());
+    let (_, window, sent) = press(view.clone());
+    assert!(matches!(sent[..], [Command::Twin(TwinCommand::LayBoard { .. })]), "{sent:?}");
+    is_on(&window, "Mount of the eyes");
+    Arc::make_mut(&mut view.twin).board = Some(lying_board());
+    assert_eq!(press(view.clone()).2, [Command::from(MountCommand::Plan)]);
+    view.mount = Arc::new(MountView { planned: Arc::from([(0.1, -0.4)]), ..MountView::default() });
+    let (label, _, sent) = press(view.clone());
+    assert_eq!(label, "Next: turn the head to 1 pose");
+    assert_eq!(sent, [Command::from(MountCommand::Tour)]);
+    view.mount = Arc::new(MountView { step: StepState::Running, ..MountView::default() });
+    assert!(!says(&Fake::over(view).window(on(Screen::Mount)), "Next: "));
+}
+
+#[test]
+fn touches_are_planned_begun_and_waited_for() {
+    let (label, window, sent) = press(at(CommissionStep::Screen));
+    assert_eq!(label, "Next: plan to touch the corners");
+    let [Command::Touch(TouchCommand::Plan(plan))] = &sent[..] else { panic!("{sent:?}") };
+    assert_eq!(plan.purpose, Purpose::PlaceScreen);
+    is_on(&window, "Place of the screen");
+
+    let mut view = at(CommissionStep::Touches);
+    let (_, _, sent) = press(view.clone());
+    let [Command::Touch(TouchCommand::Plan(plan))] = &sent[..] else { panic!("{sent:?}") };
+    assert_eq!(plan.purpose, Purpose::Train);
+    view.touch = Arc::new(made_up_touch::planned(PlanOptions::quick(made_up_touch::area())));
+    let (label, _, sent) = press(view.clone());
+    assert!(label.starts_with("Next: touch ") && label.ends_with(" targets"), "{label}");
+    assert_eq!(sent, [Command::from(TouchCommand::Start)]);
+    // Planned for something else: not begun.
+    let mut other = view.clone();
+    other.commission = led_to(CommissionStep::Check);
+    let (label, _, sent) = press(other);
+    assert_eq!(label, "Next: plan touches to check");
+    assert!(matches!(sent[..], [Command::Touch(TouchCommand::CorrectWith(None)), Command::Touch(_)]));
+
+    let touch = Arc::make_mut(&mut view.touch);
+    touch.phase = TouchPhase::Running { number: 3, doing: "above target 3".to_owned() };
+    touch.counts.touched = 2;
+    let mut window = Fake::over(view).window(on(Screen::Touch));
+    assert!(!says(&window, "Next: ") && says(&window, "2 of "));
+    assert!(shows(&window, "Pause"), "what moves can be held");
+    window.run_steps(1);
+}
+
+#[test]
+fn the_tomato_is_laid_out_then_grasped_then_judged_by_a_person() {
+    let mut view = at(CommissionStep::Grasp);
+    let (label, window, sent) = press(view.clone());
+    assert_eq!(label, "Next: lay the tomato on the table");
+    let [Command::Grasp(GraspCommand::Target(target)), Command::Twin(TwinCommand::PlaceToy { toy, .. })] =
+        &sent[..]
+    else {
+        panic!("{sent:?}")
+    };
+    assert_eq!((target.class.as_deref(), toy.as_str()), (Some("Tomato"), "tomato"));
+    is_on(&window, "Attempts");
+
+    let tomato = |view: &mut View| {
+        let toys = &mut Arc::make_mut(&mut view.twin).toys;
+        let place = plumbline_model::frame::Point::new(0.3, -0.1, 0.08);
+        toys.iter_mut().filter(|toy| toy.name == "tomato").for_each(|toy| toy.place = Some(place));
+        Arc::make_mut(&mut view.grasp).target.class = Some("Tomato".to_owned());
+    };
+    tomato(&mut view);
+    assert_eq!(press(view.clone()).2, [Command::from(GraspCommand::Grasp)]);
+    let run = plumbline_engine::view::GraspRun {
+        name: "run".to_owned(),
+        outcome: Some(plumbline_engine::view::GraspOutcome::Success),
+        ..Default::default()
+    };
+    Arc::make_mut(&mut view.grasp).run = Some(Arc::new(run));
+    let (label, _, sent) = press(view);
+    assert_eq!(label, "Next: say that it is held");
+    assert_eq!(sent, [Command::from(GraspCommand::Judge { attempt: "run".to_owned(), held: true })]);
+}
+
+#[test]
+fn stop_leaves_nothing_to_press() {
+    let mut view = at(CommissionStep::Touches);
+    Arc::make_mut(&mut view.robot).stopped = true;
+    let window = Fake::over(view).window(on(Screen::Touch));
+    assert!(!says(&window, "Next: ") && says(&window, "nothing moves until you press Release STOP"));
+}
+
+#[test]
+fn looking_elsewhere_that_screen_says_its_own() {
+    let window = Fake::over(at(CommissionStep::Screen)).window(on(Screen::Robot));
+    assert!(says(&window, "Commissioning 3 of 7: place the screen"));
+    assert!(says(&window, "Drag a joint or choose a pose"));
+}

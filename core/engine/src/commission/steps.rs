@@ -1,0 +1,83 @@
+//! Which steps are done, and which comes next.
+
+use super::around::{CommissionAround, Made};
+use super::kept::{Kept, KeptRun};
+use super::view::{CommissionDone, CommissionFigure, CommissionState, CommissionStep, CommissionStepView};
+use crate::touch::RunStanding;
+
+/// Fewer touches tell too little of what makes the arm miss.
+pub const LEAST_TOUCHES: usize = 12;
+/// Fewer touches check nothing.
+pub const LEAST_CHECKED: usize = 5;
+
+/// All steps in their order.
+pub fn steps(around: &CommissionAround, kept: Option<&Kept>) -> [CommissionStepView; 7] {
+    let mut first_open = None;
+    CommissionStep::ALL.map(|step| {
+        let state = match (done(step, around, kept), first_open) {
+            (Some(done), _) => CommissionState::Done(done),
+            (None, Some(earlier)) => CommissionState::Waits(earlier),
+            (None, None) => {
+                first_open = Some(step);
+                CommissionState::Now
+            }
+        };
+        CommissionStepView { step, state }
+    })
+}
+
+fn done(step: CommissionStep, around: &CommissionAround, kept: Option<&Kept>) -> Made {
+    match step {
+        CommissionStep::Eyes => counts(&around.eyes, kept),
+        CommissionStep::Mount => counts(&around.mount, kept),
+        CommissionStep::Screen => counts(&around.screen, kept),
+        CommissionStep::Touches => touched(around, kept),
+        CommissionStep::Effects => effects(around, kept),
+        CommissionStep::Check => checked(around, kept),
+        CommissionStep::Grasp => held(around, kept),
+    }
+}
+
+/// What is done once more counts only when it was done since.
+fn counts(made: &Made, kept: Option<&Kept>) -> Made {
+    let since = kept.filter(|kept| kept.is_anew).map(|kept| kept.began);
+    made.clone().filter(|made| since.is_none_or(|since| made.at.is_some_and(|at| at >= since)))
+}
+
+/// Touches that were seen to be finished; else those of an earlier search for effects.
+fn touched(around: &CommissionAround, kept: Option<&Kept>) -> Made {
+    if let Some(touched) = kept.and_then(|kept| kept.touched.as_ref()) {
+        let figure = CommissionFigure::Touches(touched.touched);
+        return Some(CommissionDone { at: Some(touched.at), figure });
+    }
+    let done = counts(&around.found.as_ref().map(|found| found.done.clone()), kept)?;
+    Some(CommissionDone { at: done.at, figure: CommissionFigure::Unknown })
+}
+
+fn effects(around: &CommissionAround, kept: Option<&Kept>) -> Made {
+    let found = around.found.as_ref().filter(|found| !found.is_open)?;
+    match kept.and_then(|kept| kept.touched.as_ref()) {
+        Some(touched) => found.sessions.contains(&touched.session).then(|| found.done.clone()),
+        None => counts(&Some(found.done.clone()), kept),
+    }
+}
+
+/// A check says something of the model only when it was made after the search for effects.
+fn checked(around: &CommissionAround, kept: Option<&Kept>) -> Made {
+    let checked = kept?.checked.as_ref()?;
+    let effects = effects(around, kept)?;
+    let after = effects.at.is_none_or(|found| checked.at >= found);
+    let figure = CommissionFigure::Missed { mean_m: checked.mean_m, touches: checked.touched };
+    after.then_some(CommissionDone { at: Some(checked.at), figure })
+}
+
+/// A grasp of before commissioning was begun is none of it.
+fn held(around: &CommissionAround, kept: Option<&Kept>) -> Made {
+    let since = kept.map(|kept| kept.began);
+    around.held.clone().filter(|held| since.is_none_or(|since| held.at.is_some_and(|at| at >= since)))
+}
+
+/// A run that has just been seen to be finished, for keeping.
+pub fn finished(run: &RunStanding, at: jiff::Timestamp) -> KeptRun {
+    KeptRun { session: run.session.clone(), touched: run.touched, mean_m: run.mean_m, at }
+}

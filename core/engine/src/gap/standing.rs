@@ -1,0 +1,20 @@
+//! How the search for effects stands, for who waits for it.
+
+use std::sync::Arc;
+
+use super::view::ShownFinding;
+use super::workflow::GapWorkflow;
+
+impl GapWorkflow {
+    /// The finding that is shown, with what was made of it, and whether it has effects that could be added
+    /// and were not; `None`: nothing was looked for, or what was found does not tell about now.
+    pub fn found(&self) -> Option<(&Arc<ShownFinding>, bool)> {
+        let shown = self.seen.shown.as_ref().filter(|_| self.stale().is_none())?;
+        Some((shown, !shown.addable().is_empty()))
+    }
+
+    /// Titles of the effects in the model in use.
+    pub fn effects_in_use(&self) -> Vec<String> {
+        self.seen.model.effects.iter().map(|effect| effect.title.clone()).collect()
+    }
+}

@@ -1,0 +1,65 @@
+//! What commissioning sees of the rest.
+
+use plumbline_gap::Verdict;
+use plumbline_model::StereoCalibration;
+use plumbline_model::touchscreen::ScreenPlacement;
+use plumbline_vision::mount::MountCalibration;
+
+use super::State;
+use super::rooms::{Neighbors, Rooms};
+use crate::commission::view::{CommissionDone, CommissionFigure};
+use crate::commission::{CommissionAround, CommissionWorkflow, Found};
+use crate::gap::GapWorkflow;
+use crate::grasp::view::AttemptView;
+use crate::ground::World;
+
+impl Neighbors<CommissionWorkflow> for State {
+    fn around(&self, world: World) -> CommissionAround {
+        let Rooms { eyes, mount, touch, gap, grasp, .. } = &self.rooms;
+        let (eyes, mount, touch) = (eyes.of(world), mount.of(world), touch.of(world));
+        CommissionAround {
+            eyes: eyes.in_use().map(|calibration| of_eyes(calibration)),
+            mount: mount.in_use().map(|calibration| of_mount(calibration)),
+            screen: touch.placement().map(of_screen),
+            run: touch.run_standing(),
+            found: of_gap(gap.of(world)),
+            held: grasp.of(world).held_last().map(of_grasp),
+            views: eyes.pair_count() + mount.view_count(),
+        }
+    }
+}
+
+fn of_eyes(calibration: &StereoCalibration) -> CommissionDone {
+    let figure = match &calibration.summary {
+        Some(summary) => {
+            CommissionFigure::Pixels(summary.cross_validated_px.unwrap_or(summary.rms_stereo_px))
+        }
+        None => CommissionFigure::Unknown,
+    };
+    CommissionDone { at: calibration.evidence.as_ref().map(|evidence| evidence.created), figure }
+}
+
+fn of_mount(calibration: &MountCalibration) -> CommissionDone {
+    let figure = CommissionFigure::Pixels(calibration.rms_px);
+    CommissionDone { at: Some(calibration.evidence.created), figure }
+}
+
+fn of_screen(placement: &ScreenPlacement) -> CommissionDone {
+    let figure = CommissionFigure::Placed { rms_m: placement.rms_m, touches: placement.touches };
+    CommissionDone { at: Some(placement.at), figure }
+}
+
+fn of_gap(gap: &GapWorkflow) -> Option<Found> {
+    let (shown, is_open) = gap.found()?;
+    let figure = match shown.finding.verdict {
+        Verdict::NotInLibrary => CommissionFigure::NotInLibrary,
+        _ => CommissionFigure::Effects(gap.effects_in_use()),
+    };
+    let done = CommissionDone { at: Some(shown.entry.made), figure };
+    Some(Found { sessions: shown.folders.clone(), is_open, done })
+}
+
+fn of_grasp(attempt: &AttemptView) -> CommissionDone {
+    let figure = CommissionFigure::Held(attempt.object.clone());
+    CommissionDone { at: Some(attempt.began), figure }
+}

@@ -1,0 +1,49 @@
+//! How the run that is under way or shown stands, for who counts touches.
+
+use std::path::PathBuf;
+
+use jiff::Timestamp;
+use plumbline_model::touch_plan::Purpose;
+
+use super::run::Phase;
+use super::workflow::TouchWorkflow;
+
+/// How a run of touches stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RunStanding {
+    /// Its session.
+    pub session: PathBuf,
+    /// When it was begun.
+    pub started: Timestamp,
+    /// What for.
+    pub purpose: Purpose,
+    /// Whether it is finished, and on disk.
+    pub is_finished: bool,
+    /// Touches that count.
+    pub touched: usize,
+    /// Contacts, also those that do not count.
+    pub contacts: usize,
+    /// How far they miss, mean, m; `None` before the second.
+    pub mean_m: Option<f64>,
+}
+
+impl TouchWorkflow {
+    /// How the run stands that is under way or shown; `None`: there is none.
+    pub fn run_standing(&self) -> Option<RunStanding> {
+        let run = self.run.as_ref()?;
+        Some(RunStanding {
+            session: run.session.clone(),
+            started: run.progress.started,
+            purpose: run.progress.purpose,
+            is_finished: run.phase == Phase::Finished && run.is_on_disk(),
+            touched: run.progress.counted().count(),
+            contacts: run.progress.records.len(),
+            mean_m: self.seen.figures.map(|figures| figures.mean_m),
+        })
+    }
+
+    /// The place of the screen in use; `None`: nominal.
+    pub fn placement(&self) -> Option<&plumbline_model::touchscreen::ScreenPlacement> {
+        self.placement.as_deref()
+    }
+}
