@@ -34,8 +34,8 @@ pub use bench::{BenchReport, Figure, Peer, bench};
 pub use calibrate::{CalibrateArgs, CalibrateReport, LeftOutCorner, PairErrors, Rejected, calibrate_stereo};
 pub use check::{CheckArgs, CheckReport, check};
 pub use commission::{
-    CommissionArgs, CommissionError, CommissionReport, PalmError, PlaceError, Step as CommissionStep,
-    TouchError, commission,
+    CommissionArgs, CommissionError, CommissionReport, PalmError, PlaceError, PlaceRow,
+    Step as CommissionStep, TouchError, commission,
 };
 pub use correct::{CorrectArgs, CorrectReport, CorrectedPoint, correct};
 pub use detect::{DetectArgs, DetectReport, FoundBox, LeftOutImage, detect};

@@ -171,12 +171,29 @@ fn a_broken_rig_is_refused_with_a_sentence() {
         ("u_axis = [0.0, -1.0, 0.0]", "u_axis = [0.0, -1e308, 0.0]", "cannot be a component of a direction"),
         ("m = [-0.0699274", "m = [-69.9274", "eyes: 69.9274 m cannot be a distance between the eyes"),
         ("fx_px = 150.68417", "fx_px = 150684.17", "eyes.left: 150684.17 px cannot be a focal length"),
+        ("side_m = 0.018", "side_m = -0.018", "a width is not negative"),
+        (
+            "turn_sd_rad = 0.003",
+            "turn_sd_rad = 0.0",
+            "outlines.body: shift_sd_m and turn_sd_rad say how well",
+        ),
+        ("[[0.055, 0.072, 0.235], [", "[[0.055, -0.072, 0.235], [", "each is at least 0.02 m long"),
         ("hot_c = 70.0", "hot_c = 70000.0", "gate: 70000 °C cannot be a temperature"),
         ("motor_upper_rad = 1.570796", "motor_upper_rad = 1e308", "cannot be a limit of a joint"),
     ] {
         let message = rig_with(from, to);
         assert!(message.contains(words), "{message}");
     }
+}
+
+#[test]
+fn a_rig_file_without_outlines_is_read_and_nothing_is_measured_by() {
+    let text = include_str!("../../../../assets/robots/nico/rig.toml");
+    let (before, rest) = text.split_once("[outlines.screen_frame]").expect("there");
+    let (_, after) = rest.split_once("# The left eye looks along").expect("there");
+    let rig = Rig::parse("rig.toml", &format!("{before}{after}"), |_| Ok(urdf().to_owned())).expect("valid");
+    assert_eq!(rig.outlines, Outlines::default());
+    assert_eq!(nico().outlines.body.expect("described").edges_m.len(), 5);
 }
 
 #[test]

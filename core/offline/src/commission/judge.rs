@@ -63,6 +63,20 @@ pub struct PlaceError {
     pub found: usize,
     /// Places where it stood.
     pub places: usize,
+    /// Each place where it was found.
+    #[serde(default)]
+    pub rows: Vec<PlaceRow>,
+}
+
+/// An object that was found at a place; robot frame, along x, y, z.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlaceRow {
+    /// Where it was put, x and y, m.
+    pub at_m: [f64; 2],
+    /// Found − true, mm.
+    pub error_mm: [f64; 3],
+    /// Stated standard deviation, mm.
+    pub sigma_mm: [f64; 3],
 }
 
 /// Where the object was found, less where it was, at one place; robot frame, m.
@@ -78,6 +92,12 @@ impl Judged {
     /// Errors along x, y and z in units of the stated standard deviations.
     fn in_sigmas(&self) -> impl Iterator<Item = f64> {
         (0..3).map(|k| self.error_m[k].abs() / self.covariance_m2[(k, k)].sqrt())
+    }
+
+    fn row(&self) -> PlaceRow {
+        let sigma_m = self.covariance_m2.diagonal().map(f64::sqrt);
+        let [error_mm, sigma_mm] = [self.error_m, sigma_m].map(|m| (m * 1e3).into());
+        PlaceRow { at_m: self.at_m, error_mm, sigma_mm }
     }
 
     /// eᵀ C⁻¹ e: 3 on average where what is stated is honest.
@@ -167,6 +187,7 @@ pub(super) fn places(
         chi2: (!chi2.is_empty()).then(|| chi2.iter().sum::<f64>() / chi2.len() as f64),
         found: errors.len(),
         places: all.len(),
+        rows: judged.iter().map(Judged::row).collect(),
     };
     Ok((error, judged))
 }

@@ -43,7 +43,7 @@ use plumbline_twin::eyes::EyeRenderer;
 use serde::Serialize;
 
 pub use error::CommissionError;
-pub use judge::{PalmError, PlaceError, TouchError};
+pub use judge::{PalmError, PlaceError, PlaceRow, TouchError};
 pub use steps::Step;
 
 use super::OfflineError;
