@@ -42,6 +42,24 @@ pub enum GapError {
         /// Median distance, m.
         off_m: f64,
     },
+    /// A joint turns otherwise than in the model.
+    #[error(
+        "{session}: joint {joint} {turns} than in the model: with that changed, what is left falls from {:.1} to {:.1} mm. Correct its \
+         column (cmd_{joint}_rad, enc_{joint}_rad), or the axis in the robot's description, and look again",
+        .off_m * 1e3, .with_m * 1e3
+    )]
+    OtherTurn {
+        /// Which session.
+        session: String,
+        /// Its joint.
+        joint: String,
+        /// How.
+        turns: Turns,
+        /// Typical distance of rows from the model, m.
+        off_m: f64,
+        /// The same with the joint changed.
+        with_m: f64,
+    },
     /// A column that should change has one value.
     #[error(
         "{session}: {column} has the same value in every row although the arm moved: it was not logged. Leave the \
@@ -70,6 +88,27 @@ pub enum GapError {
     /// Cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+/// How a joint turns otherwise than in the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turns {
+    /// Its axis or its sign is reversed.
+    TheOtherWay,
+    /// Its column holds twice what the joint turned, as on the motor's side of a gear.
+    HalfAsFar,
+    /// Its column holds half of what the joint turned.
+    TwiceAsFar,
+}
+
+impl std::fmt::Display for Turns {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str(match self {
+            Self::TheOtherWay => "turns the other way",
+            Self::HalfAsFar => "turns half as far",
+            Self::TwiceAsFar => "turns twice as far",
+        })
+    }
 }
 
 fn unit_words(seems: &str) -> String {

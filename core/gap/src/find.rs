@@ -7,7 +7,8 @@ use plumbline_model::{Cancelled, JobContext};
 
 use crate::compare::{Compared, compare};
 use crate::error::GapError;
-use crate::finding::{FORMAT, Finding, NamedEffect, Shown, Unexplained, Verdict};
+use crate::finding::{FORMAT, Finding, FloorSource, NamedEffect, Shown, Unexplained, Verdict};
+use crate::floor::Floor;
 use crate::next;
 use crate::options::Options;
 use crate::search::{self, Found};
@@ -54,6 +55,9 @@ pub fn find(
     }
     context.checkpoint()?;
     let mut compared = compared;
+    if found.floor.source == FloorSource::Fitted {
+        with_floor(&mut compared, &found.floor);
+    }
     let shown = if options.show && !found.assumed.effects.is_empty() {
         let one_by_one = search_s * kept.len() as f64 / 2.0 < PATIENCE_S;
         let stage = Stage::new(context, SEARCHED, SHOWN);
@@ -95,6 +99,21 @@ fn without_search(
     finding.seconds = start.elapsed().as_secs_f64();
     finding.sentence = sentence::of(&finding);
     finding
+}
+
+/// The comparison against the noise that was found along with the effects.
+fn with_floor(compared: &mut Compared, floor: &Floor) {
+    let (mut squares, mut count) = (0.0, 0.0);
+    for kind in &mut compared.comparison.kinds {
+        let Some(own) = floor.of(kind.what) else { continue };
+        for (coordinate, sd) in kind.coordinates.iter_mut().zip(&own.sd) {
+            coordinate.floor = *sd;
+            squares += (coordinate.rms / sd).powi(2);
+            count += 1.0;
+        }
+    }
+    compared.comparison.size_sigmas = (squares / f64::max(count, 1.0) - 1.0).max(0.0).sqrt();
+    compared.floor = floor.clone();
 }
 
 /// Says when named effects do not help on rows that were not used.

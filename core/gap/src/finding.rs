@@ -77,8 +77,11 @@ pub struct Comparison {
     pub cells: usize,
     /// Per kind of measurement.
     pub kinds: Vec<KindComparison>,
-    /// Whether the noise floor comes from repeats; else from near neighbors and is approximate.
+    /// Whether the noise floor comes from repeats; else it is approximate.
     pub floor_from_repeats: bool,
+    /// Where the noise floor comes from.
+    #[serde(default)]
+    pub floor_source: FloorSource,
     /// Probability of a lack of fit this large by noise alone, once frames are placed.
     pub p_value: f64,
     /// Residual beyond the floor, in units of the floor.
@@ -87,6 +90,33 @@ pub struct Comparison {
     pub is_gap: bool,
     /// Per row kept or not: place on the table and residual, for maps.
     pub residuals: Vec<Residual>,
+}
+
+/// Where a noise floor comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FloorSource {
+    /// Spread of repeats of the same measurement.
+    Repeats,
+    /// The instrument's own standard deviation, as the session gives it.
+    Instrument,
+    /// Rows that were measured nearly alike in everything.
+    #[default]
+    Neighbors,
+    /// Nothing tells it: it is what the best model leaves.
+    Fitted,
+}
+
+impl FloorSource {
+    /// In a word, as in JSON.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Repeats => "repeats",
+            Self::Instrument => "instrument",
+            Self::Neighbors => "neighbors",
+            Self::Fitted => "fitted",
+        }
+    }
 }
 
 /// One kind of measurement.

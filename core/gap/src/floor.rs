@@ -1,15 +1,28 @@
 //! The noise floor: how far repeats of the same measurement scatter.
 
+use plumbline_effects::measurements::Unit;
 use plumbline_effects::{Observation, What};
+
+use crate::compare::robust_sd;
+use crate::finding::FloorSource;
+
+/// Nothing here is measured finer than this.
+pub(crate) fn finest(unit: Unit) -> f64 {
+    match unit {
+        Unit::Meter => 2e-5,
+        Unit::Radian => 2e-5,
+        Unit::Pixel => 2e-3,
+    }
+}
 
 /// Noise of one measurement, per kind and natural coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Floor {
     /// Kinds that were measured.
     pub kinds: Vec<KindFloor>,
-    /// Whether it comes from repeats; else from near neighbors, or a guess, and its scale is
+    /// Where it comes from, of the kind that knows it worst. Unless it is repeats, its scale is
     /// estimated again along with the effects.
-    pub from_repeats: bool,
+    pub source: FloorSource,
 }
 
 /// Noise of one kind of measurement.
@@ -38,6 +51,41 @@ impl KindFloor {
 }
 
 impl Floor {
+    /// Whether repeats tell it.
+    pub fn from_repeats(&self) -> bool {
+        self.source == FloorSource::Repeats
+    }
+
+    /// What a model leaves, where nothing else tells the noise. `columns` were fitted to all rows;
+    /// never more than it was, since a better model leaves less.
+    pub fn refitted(&self, rows: &[Observation], residuals: &[Option<Vec<f64>>], columns: usize) -> Self {
+        let total: usize = residuals.iter().flatten().map(Vec::len).sum();
+        let free = (total as f64 - columns as f64).max(0.25 * total as f64);
+        let inflate = (total as f64 / free.max(1.0)).sqrt();
+        let mut next = self.clone();
+        for kind in &mut next.kinds {
+            let own = || {
+                rows.iter()
+                    .zip(residuals)
+                    .filter(|(row, _)| row.what == kind.what)
+                    .filter_map(|(_, r)| r.as_ref())
+            };
+            let fitted: Vec<f64> = (0..kind.what.len())
+                .map(|c| inflate * robust_sd(own().filter_map(|residual| residual.get(c).copied())))
+                .collect();
+            for ((sd, fitted), (_, unit)) in kind.sd.iter_mut().zip(fitted).zip(kind.what.coordinates()) {
+                *sd = sd.min(fitted.max(finest(*unit)));
+            }
+        }
+        next
+    }
+
+    /// Largest ratio of its standard deviations to those of another one.
+    pub fn shrunk_to(&self, other: &Self) -> f64 {
+        let sd = |floor: &Self| floor.kinds.iter().flat_map(|kind| kind.sd.clone()).collect::<Vec<f64>>();
+        sd(self).iter().zip(sd(other)).map(|(own, other)| own / other).fold(1.0, f64::min)
+    }
+
     /// Of a kind; `None` when it was not measured.
     pub fn of(&self, what: What) -> Option<&KindFloor> {
         self.kinds.iter().find(|kind| kind.what == what)

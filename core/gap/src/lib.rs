@@ -14,7 +14,7 @@ mod search;
 mod sentence;
 mod show;
 
-pub use error::GapError;
+pub use error::{GapError, Turns};
 pub use file::FindingFileError;
 pub use find::find;
 pub use finding::{Finding, Verdict};

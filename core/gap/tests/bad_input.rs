@@ -4,7 +4,7 @@ mod common;
 
 use common::{Plan, elbow_zero, places, poses, touches};
 use plumbline_effects::Measurements;
-use plumbline_gap::{Finding, GapError, Options, find};
+use plumbline_gap::{Finding, GapError, Options, Turns, find};
 use plumbline_model::Unattended;
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
@@ -236,4 +236,22 @@ fn rows_of_another_robot_are_refused() {
     }
     let said = looked_at(&measurements).expect_err("nothing fits").to_string();
     assert!(said.contains("check that the session names the right robot"), "{said}");
+}
+
+#[test]
+fn a_joint_that_turns_the_other_way_is_refused_by_name() {
+    for hidden in [vec![], vec![elbow_zero(0.03)]] {
+        for (j, joint) in common::JOINTS.iter().enumerate() {
+            let mut measurements = touches(&one_by_one(60), &hidden, 6);
+            for row in &mut measurements.rows {
+                row.commanded_rad.iter_mut().for_each(|angles| angles[j] = -angles[j]);
+            }
+            let error = looked_at(&measurements).expect_err("a joint is wrong");
+            let named = matches!(&error, GapError::OtherTurn { joint: named, turns: Turns::TheOtherWay, .. }
+                if named == joint);
+            assert!(named, "{joint}: {error}");
+            assert!(error.to_string().contains("turns the other way"), "{error}");
+        }
+        assert!(looked_at(&touches(&one_by_one(60), &hidden, 6)).is_ok(), "nothing is wrong with it");
+    }
 }

@@ -7,7 +7,7 @@ use std::time::Instant;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use plumbline_effects::measurements::What;
 use plumbline_effects::{Assumed, Effect, Measurements, Present};
-use plumbline_gap::{Finding, Options, find};
+use plumbline_gap::{Finding, GapError, Options, Turns, find};
 use plumbline_model::robot::Rig;
 use plumbline_model::{Session, Unattended, measured_data};
 
@@ -21,7 +21,7 @@ fn series(name: &str) -> Option<Measurements> {
         }
     };
     let session = Session::read(&folder).expect("a session");
-    let rig = Rig::read(&folder.join("../ur10.urdf")).expect("a description");
+    let rig = Rig::read_measured(&folder.join("../ur10.urdf")).expect("a description");
     let mut made = Measurements::of_sessions(&[(name.to_owned(), session)], &rig).expect("usable");
     // The target was mounted anew for each series.
     made.apparatuses[0].tip_is_unknown = true;
@@ -128,6 +128,32 @@ fn both_ways(change: impl Fn(Measurements) -> Measurements) -> Option<Vec<[[f64;
         all.push([nominal, with]);
     }
     Some(all)
+}
+
+#[test]
+fn a_joint_that_turns_otherwise_is_refused_by_name() {
+    let Some(all) = series("a").zip(series("c")).map(|(a, c)| [a, c]) else { return };
+    for made in all {
+        let joints: Vec<String> = made.apparatuses[0]
+            .arm
+            .iter()
+            .flat_map(|arm| &arm.parts)
+            .map(|part| part.joint.clone())
+            .collect();
+        for (j, joint) in joints.iter().enumerate() {
+            for (factor, turns) in [(-1.0, Turns::TheOtherWay), (2.0, Turns::HalfAsFar)] {
+                let mut wrong = made.clone();
+                for row in &mut wrong.rows {
+                    row.commanded_rad.iter_mut().for_each(|angles| angles[j] *= factor);
+                }
+                let options = Options { show: false, advise: false, ..Options::default() };
+                let error = find(&wrong, &options, &Unattended).expect_err("a joint is wrong");
+                let named = matches!(&error, GapError::OtherTurn { joint: named, turns: how, .. }
+                    if named == joint && *how == turns);
+                assert!(named, "{joint} times {factor}: {error}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -225,6 +225,7 @@ fn base() -> Finding {
                 ],
             }],
             floor_from_repeats: true,
+            floor_source: plumbline_gap::finding::FloorSource::Repeats,
             p_value: 1e-9,
             size_sigmas: 2.4,
             is_gap: true,

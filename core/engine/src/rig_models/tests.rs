@@ -79,6 +79,7 @@ fn finding(effects: Vec<NamedEffect>) -> Finding {
             cells: 80,
             kinds: vec![],
             floor_from_repeats: true,
+            floor_source: plumbline_gap::finding::FloorSource::Repeats,
             p_value: 1e-9,
             size_sigmas: 3.0,
             is_gap: true,

@@ -10,6 +10,7 @@ mod noise;
 mod oddities;
 mod outliers;
 mod statistics;
+mod turns;
 mod units;
 
 use plumbline_effects::Assumed;
@@ -23,7 +24,7 @@ pub(crate) use statistics::{NORMAL_95, f_tail, median, robust_sd};
 
 use crate::covariates::Covariates;
 use crate::error::GapError;
-use crate::finding::{Comparison, CoordinateComparison, KindComparison, Residual};
+use crate::finding::{Comparison, CoordinateComparison, FloorSource, KindComparison, Residual};
 use crate::floor::Floor;
 
 /// With fewer rows nothing can be told from noise.
@@ -128,10 +129,13 @@ pub(crate) fn compare(
         rows_kept: residuals.iter().flatten().count(),
         cells: cells(measurements, &outlier),
         kinds: kinds(measurements, &residuals, &noise.floor),
-        floor_from_repeats: noise.floor.from_repeats,
+        floor_from_repeats: noise.floor.from_repeats(),
+        floor_source: noise.floor.source,
         p_value: misfit.p_value,
         size_sigmas: misfit.size_sigmas,
-        is_gap: misfit.p_value < SIGNIFICANT && misfit.size_sigmas > MATTERS_SIGMAS,
+        // Without a floor nothing is small against it.
+        is_gap: misfit.p_value < SIGNIFICANT && misfit.size_sigmas > MATTERS_SIGMAS
+            || noise.floor.source == FloorSource::Fitted,
         residuals: in_sample(measurements, &assumed, &outlier, &covariates),
     };
     Ok(Compared { comparison, floor: noise.floor, assumed, outlier, covariates, is_related, warnings })
@@ -172,12 +176,20 @@ fn words_of_outliers(measurements: &Measurements, outlier: &[bool]) -> String {
 }
 
 fn warn_of_noise(floor: &Floor, warnings: &mut Vec<String>) {
-    if !floor.from_repeats {
-        warnings.push(
-            "there are too few repeats: the noise was estimated from near neighbors and is approximate. Repeat a few \
-             measurements from the same side"
-                .to_owned(),
-        );
+    let from = match floor.source {
+        FloorSource::Repeats => None,
+        FloorSource::Instrument => {
+            Some("taken from the instrument's own figure, and what the arm adds is fitted")
+        }
+        FloorSource::Neighbors => Some("estimated from near neighbors and is approximate"),
+        FloorSource::Fitted => Some(
+            "not known, since no row was measured nearly like another one: it is what the best model leaves",
+        ),
+    };
+    if let Some(from) = from {
+        warnings.push(format!(
+            "there are too few repeats: the noise was {from}. Repeat a few measurements from the same side"
+        ));
     }
     for kind in floor.kinds.iter().filter(|kind| kind.what.is_placed()) {
         let widest = kind.sd.iter().copied().fold(0.0, f64::max);

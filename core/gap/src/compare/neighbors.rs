@@ -11,6 +11,9 @@ const REACH_M: f64 = 0.3;
 const MOST_DIRECTIONS: usize = 3;
 /// Directions in which rows spread less than this share of the widest do not count.
 const THIN: f64 = 0.15;
+/// Neighbors that differ by more than this (a third of a radian) in directions that were left out are not
+/// near, m.
+const FAR_M: f64 = 0.09;
 
 /// Rows of one kind as points, alike where they are near.
 pub struct Points {
@@ -20,6 +23,8 @@ pub struct Points {
     pub at: DMatrix<f64>,
     /// Rows of different context (session, side, weight, height) are no neighbors.
     pub context: Vec<usize>,
+    /// Spread (root mean square) along the directions that [`Self::at`] leaves out, m.
+    hidden: f64,
 }
 
 impl Points {
@@ -44,7 +49,13 @@ impl Points {
                 })
             })
             .collect();
-        Self { rows, at: principal(at), context }
+        let (at, hidden) = principal(at);
+        Self { rows, at, context, hidden }
+    }
+
+    /// Whether neighbors are near in everything that was varied.
+    pub fn are_near(&self) -> bool {
+        self.hidden < FAR_M
     }
 
     /// Number of directions in which rows differ.
@@ -117,14 +128,15 @@ fn context_key(row: &Observation) -> Vec<i64> {
     key
 }
 
-/// The widest directions of a cloud of points.
-fn principal(centered: DMatrix<f64>) -> DMatrix<f64> {
+/// The widest directions of a cloud of points, and its spread (root mean square) along the
+/// others.
+fn principal(centered: DMatrix<f64>) -> (DMatrix<f64>, f64) {
     if centered.nrows() < 2 || centered.ncols() == 0 {
-        return DMatrix::zeros(centered.nrows(), 0);
+        return (DMatrix::zeros(centered.nrows(), 0), 0.0);
     }
     let spread = centered.transpose() * &centered / centered.nrows() as f64;
     let Some(eigen) = decompose::symmetric_eigen(spread) else {
-        return DMatrix::zeros(centered.nrows(), 0);
+        return (DMatrix::zeros(centered.nrows(), 0), 0.0);
     };
     let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
     order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
@@ -133,8 +145,9 @@ fn principal(centered: DMatrix<f64>) -> DMatrix<f64> {
     order.truncate(MOST_DIRECTIONS);
     let axes: Vec<DVector<f64>> = order.iter().map(|&k| eigen.eigenvectors.column(k).into_owned()).collect();
     if axes.is_empty() {
-        DMatrix::zeros(centered.nrows(), 0)
-    } else {
-        centered * DMatrix::from_columns(&axes)
+        return (DMatrix::zeros(centered.nrows(), 0), 0.0);
     }
+    let shown: f64 = order.iter().map(|&k| eigen.eigenvalues[k].max(0.0)).sum();
+    let whole: f64 = eigen.eigenvalues.iter().map(|value| value.max(0.0)).sum();
+    (centered * DMatrix::from_columns(&axes), (whole - shown).max(0.0).sqrt())
 }

@@ -13,7 +13,8 @@ use plumbline_model::decompose;
 use super::drift::{Deviation, Drift, drift};
 use super::neighbors::Points;
 use super::statistics::{median, robust_sd};
-use crate::floor::{Floor, KindFloor};
+use crate::finding::FloorSource;
+use crate::floor::{Floor, KindFloor, finest};
 
 /// Fewer degrees of freedom than this say too little of the spread: 20 know it to a sixth. What
 /// repeats say is taken as it is, what neighbors say with doubt.
@@ -41,7 +42,7 @@ pub struct Noise {
 pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> Noise {
     let mut kinds = vec![];
     let mut repeated = vec![];
-    let mut from_repeats = true;
+    let mut source = FloorSource::Repeats;
     let mut changed: Option<Drift> = None;
     for what in What::ALL {
         if !measurements.has(what) {
@@ -66,21 +67,29 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
             }
             None => vec![false; what.len()],
         };
-        from_repeats &= repeats.is_some();
+        let sigma_m = instrument(measurements, what);
+        if repeats.is_none() {
+            source = source.max(match sigma_m {
+                Some(_) => FloorSource::Instrument,
+                None if are_near(measurements, residuals, what) => FloorSource::Neighbors,
+                None => FloorSource::Fitted,
+            });
+        }
         let free = repeats.as_ref().map_or(nearby.degrees_of_freedom, |repeats| repeats.degrees_of_freedom);
         let least = follows_command(measurements, what, &known, repeats.as_ref().unwrap_or(&nearby));
         let sd = (0..what.len())
             .map(|c| match &repeats {
                 Some(repeats) if known[c] => repeats.sd[c],
+                None if c < 3 && sigma_m.is_some() => sigma_m.unwrap_or_default(),
                 _ => nearby.sd[c].max(least[c]),
             })
             .zip(what.coordinates())
             .map(|(sd, (_, unit))| sd.max(finest(*unit)))
             .collect();
-        kinds.push(KindFloor { what, sd, degrees_of_freedom: free, sigma_m: instrument(measurements, what) });
+        kinds.push(KindFloor { what, sd, degrees_of_freedom: free, sigma_m });
         repeated.push(known);
     }
-    Noise { floor: Floor { kinds, from_repeats }, repeated, drift: changed }
+    Noise { floor: Floor { kinds, source }, repeated, drift: changed }
 }
 
 /// The least noise of coordinates that follow from the command: the height of a touch whose
@@ -109,20 +118,18 @@ fn follows_command(
     least
 }
 
+/// Whether rows have others that were measured nearly alike. Where more than a few joints move by
+/// themselves, neighbors in the widest directions differ in all others.
+fn are_near(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: What) -> bool {
+    let chosen = (0..measurements.rows.len()).filter(|&i| residuals[i].is_some());
+    Points::of(measurements, what, chosen).are_near()
+}
+
 /// Median of the instrument's own standard deviations, m; `None` where a row has none.
 fn instrument(measurements: &Measurements, what: What) -> Option<f64> {
     let own = measurements.rows.iter().filter(|row| row.what == what).map(|row| row.sigma_m);
     let all: Vec<f64> = own.collect::<Option<_>>()?;
     median(all)
-}
-
-/// Nothing here is measured finer than this.
-fn finest(unit: Unit) -> f64 {
-    match unit {
-        Unit::Meter => 2e-5,
-        Unit::Radian => 2e-5,
-        Unit::Pixel => 2e-3,
-    }
 }
 
 fn within_cells(

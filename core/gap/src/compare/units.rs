@@ -7,8 +7,8 @@ use plumbline_effects::{Assumed, EyesDeviation};
 use plumbline_model::JobContext;
 use plumbline_model::decompose;
 
-use super::frames;
 use super::statistics::{median, robust_sd};
+use super::{frames, turns};
 use crate::error::GapError;
 
 /// Degrees in a radian.
@@ -257,7 +257,7 @@ fn angles_by_fit(
     }
     let off = typical_miss(&only, context)?;
     if off < GROSS_M {
-        return Ok(());
+        return turns::check(measurements, session, context);
     }
     for (j, part) in arm.parts.iter().enumerate() {
         for factor in [DEGREES, 1.0 / DEGREES] {
@@ -282,6 +282,7 @@ fn angles_by_fit(
             }
         }
     }
+    turns::check(measurements, session, context)?;
     if off > ANOTHER_ROBOT_M {
         let session = measurements.apparatuses[session].title.clone();
         return Err(GapError::AnotherRobot { session, off_m: off });

@@ -11,7 +11,9 @@ use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
 use super::{advise, menu, plan_for, split_by};
-use crate::finding::{ClassMember, Experiment, NamedEffect, NextExperiment, Unexplained, Verdict};
+use crate::finding::{
+    ClassMember, Experiment, FloorSource, NamedEffect, NextExperiment, Unexplained, Verdict,
+};
 use crate::floor::{Floor, KindFloor};
 use crate::options::Options;
 use crate::search::{Doubt, Found, Hypothesis};
@@ -22,7 +24,7 @@ const NOISE_M: [f64; 3] = [1.0e-3, 1.0e-3, 0.7e-3];
 
 fn floor() -> Floor {
     let kind = KindFloor { what: What::Touch, sd: NOISE_M.to_vec(), degrees_of_freedom: 80.0, sigma_m: None };
-    Floor { kinds: vec![kind], from_repeats: true }
+    Floor { kinds: vec![kind], source: FloorSource::Repeats }
 }
 
 fn rig() -> Rig {
@@ -96,6 +98,7 @@ fn found(measurements: &Measurements, verdict: Verdict, sets: &[(&[Present], f64
         hypotheses.first().map_or_else(|| Assumed::nominal(measurements), |first| first.assumed.clone());
     let effects = assumed.effects.iter().map(|present| named(&present.effect, sets[0].1)).collect();
     Found {
+        floor: floor(),
         doubt: Doubt {
             nuisances: measurements.nuisances(),
             effects: assumed.effects.iter().map(|present| present.effect.clone()).collect(),

@@ -9,7 +9,7 @@ use super::explore::{Explored, Model};
 use super::library::Library;
 use super::linear::Linear;
 use super::look::{Look, TEMPERATURE};
-use super::naming::{Evidence, Named, parameters};
+use super::naming::{Evidence, Named, WIDER, parameters};
 use super::refit::{Fitted, frames, refit};
 use super::{Doubt, Found, Hypothesis, knowledge};
 use crate::error::GapError;
@@ -55,23 +55,35 @@ impl Finish<'_> {
                 values: effect.values.clone(),
             })
             .collect();
-        let named_all = effects.len() == fitted.assumed.effects.len();
+        let families = effects.iter().any(|present| present.effect.is_of_every_site());
+        let named_all = effects.len() == fitted.assumed.effects.len() && !families;
         let start = Assumed { effects, ..fitted.assumed.clone() };
         // Values that were found beside effects that get no name are not theirs alone.
-        let assumed = if named_all {
-            frames(self.measurements, self.floor, &start, context)?
+        let (assumed, doubt) = if named_all {
+            let assumed = frames(self.measurements, self.floor, &start, context)?;
+            let doubt = self.doubt(&assumed, &fitted.weights, None, context)?;
+            (assumed, doubt)
         } else {
             let kept: Vec<Effect> = start.effects.iter().map(|present| present.effect.clone()).collect();
-            let assumed = refit(self.measurements, self.floor, &start, &kept, context)?.assumed;
-            for (effect, present) in named.effects.iter_mut().zip(&assumed.effects) {
+            let own = refit(self.measurements, self.floor, &start, &kept, context)?;
+            let doubt = self.doubt(&own.assumed, &fitted.weights, Some(&own.sds), context)?;
+            let mut at = 0;
+            for (effect, present) in named.effects.iter_mut().zip(&own.assumed.effects) {
+                let count = present.values.len();
                 effect.values.clone_from(&present.values);
-                let covariance =
-                    DMatrix::from_row_slice(effect.values.len(), effect.values.len(), &effect.covariance);
+                let covariance = if families {
+                    let typical = present.effect.parameters();
+                    let wider = |r: usize, c: usize| WIDER * WIDER * typical[r].typical * typical[c].typical;
+                    DMatrix::from_fn(count, count, |r, c| wider(r, c) * doubt.covariance[(at + r, at + c)])
+                } else {
+                    DMatrix::from_row_slice(count, count, &effect.covariance)
+                };
+                at += count;
+                effect.covariance = covariance.transpose().iter().copied().collect();
                 effect.parameters = parameters(&present.effect, &effect.values, &covariance);
             }
-            assumed
+            (own.assumed, doubt)
         };
-        let doubt = self.doubt(&assumed, &fitted.weights, context)?;
         let hypotheses = self.hypotheses(&assumed, context)?;
         let after = self.misses(&assumed, context)?;
         let share = share_left(&bare.misses, &after, &fitted.weights, doubt.noise_scale);
@@ -91,6 +103,7 @@ impl Finish<'_> {
             weights: fitted.weights.clone(),
             doubt,
             hypotheses,
+            floor: self.floor.clone(),
         })
     }
 
@@ -101,7 +114,14 @@ impl Finish<'_> {
     }
 
     /// Covariance of values and frames at the model that was found.
-    fn doubt(&self, assumed: &Assumed, weights: &[f64], context: &dyn JobContext) -> Result<Doubt, GapError> {
+    /// `sds`: of each value beforehand, in usual sizes; without them each is as large as usual.
+    fn doubt(
+        &self,
+        assumed: &Assumed,
+        weights: &[f64],
+        sds: Option<&[f64]>,
+        context: &dyn JobContext,
+    ) -> Result<Doubt, GapError> {
         let effects: Vec<Effect> = assumed.effects.iter().map(|present| present.effect.clone()).collect();
         let linear = Linear::of(self.measurements, self.floor, assumed, &effects, context)?;
         let variant = self.look.fields.get(self.look.likely(self.explored)).map(|field| field.variant);
@@ -110,7 +130,11 @@ impl Finish<'_> {
         let own = gram.ncols() - 1;
         let mut normal = gram.view((0, 0), (own, own)) / (noise * noise);
         for k in 0..own {
-            normal[(k, k)] += linear.nuisances.get(k).map_or(1.0, |nuisance| nuisance.prior_sd()).powi(-2);
+            let sd = linear.nuisances.get(k).map_or_else(
+                || sds.and_then(|sds| sds.get(k - linear.gauge)).copied().unwrap_or(1.0),
+                |nuisance| nuisance.prior_sd(),
+            );
+            normal[(k, k)] += sd.powi(-2);
         }
         let inverse =
             Cholesky::new(normal).map_or_else(|| DMatrix::identity(own, own), |normal| normal.inverse());

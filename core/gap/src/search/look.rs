@@ -113,7 +113,7 @@ impl Look {
         let mut fields: Vec<Field> = vec![];
         let mut framed: Option<(f64, Framed)> = None;
         let mut shared: Option<(Variant, Arc<Dirtied>)> = None;
-        for variant in variants(floor.from_repeats) {
+        for variant in variants(floor.source) {
             let like = |known: &Variant| {
                 Variant { size: variant.size, log_prior: variant.log_prior, ..*known } == variant
             };

@@ -32,7 +32,7 @@ use plumbline_model::{JobContext, Unattended};
 use crate::compare::placed;
 use crate::covariates::Covariates;
 use crate::error::GapError;
-use crate::finding::{Candidate, NamedEffect, Unexplained, Verdict};
+use crate::finding::{Candidate, FloorSource, NamedEffect, Unexplained, Verdict};
 use crate::floor::Floor;
 use crate::options::Options;
 use explore::Explored;
@@ -43,6 +43,10 @@ use refit::refit;
 
 /// Times that the model is linearized anew, at the effects found before.
 const ROUNDS: usize = 3;
+/// And so many more where the noise is found along with the effects.
+const MORE_ROUNDS: usize = 3;
+/// A noise that shrinks by less does not change what is seen.
+const QUIETER: f64 = 0.93;
 /// Fewer rows than this name nothing.
 const FEWEST_ROWS: usize = 8;
 
@@ -66,6 +70,8 @@ pub(crate) struct Found {
     /// Sets of effects that the data allow, the most probable first; probabilities sum to 1 or
     /// less.
     pub hypotheses: Vec<Hypothesis>,
+    /// The noise with which it was found: as given, or fitted.
+    pub floor: Floor,
 }
 
 /// What predictions may be off by, beside the noise of one measurement.
@@ -115,12 +121,14 @@ pub(crate) fn search(
     let start = placed(measurements, &all, context)?;
     let bare = refit(measurements, floor, &start, &[], context)?;
     let mut fitted = bare.clone();
+    let mut floor = floor.clone();
+    let rounds = if floor.source == FloorSource::Fitted { ROUNDS + MORE_ROUNDS } else { ROUNDS };
     let mut seeds = vec![vec![]];
     let mut last: Option<(Look, Explored)> = None;
-    for round in 0..ROUNDS {
-        context.report(0.1 + 0.8 * round as f64 / ROUNDS as f64, "looking through sets of effects");
+    for round in 0..rounds {
+        context.report(0.1 + 0.8 * round as f64 / rounds as f64, "looking through sets of effects");
         let look =
-            Look::at(measurements, floor, &fitted.assumed, &library, &covariates, &fitted.weights, context)?;
+            Look::at(measurements, &floor, &fitted.assumed, &library, &covariates, &fitted.weights, context)?;
         let explored = look.explore(&seeds, options.most_effects, context)?;
         let top = top(&look, &explored);
         let effects: Vec<Effect> = top.iter().map(|&block| library.effects[block].clone()).collect();
@@ -128,16 +136,30 @@ pub(crate) fn search(
         seeds.truncate(1);
         seeds.extend(explored.models.iter().take(2).map(|model| model.set.clone()));
         last = Some((look, explored));
-        if same {
+        let mut quieter = false;
+        if !same {
+            fitted = refit(measurements, &floor, &fitted.assumed, &effects, context)?;
+        }
+        if floor.source == FloorSource::Fitted && round + 1 < rounds {
+            let columns = measurements.nuisances().len()
+                + effects.iter().map(|effect| effect.parameters().len()).sum::<usize>();
+            let left = crate::compare::residuals(measurements, &fitted.assumed);
+            let next = floor.refitted(&measurements.rows, &left, columns);
+            quieter = next.shrunk_to(&floor) < QUIETER;
+            if quieter {
+                floor = next;
+            }
+        }
+        if same && !quieter {
             break;
         }
-        fitted = refit(measurements, floor, &fitted.assumed, &effects, context)?;
     }
     let Some((look, explored)) = last else {
         return Err(GapError::TooFew { rows, needed: FEWEST_ROWS });
     };
     context.report(0.9, "naming");
-    let finish = Finish { measurements, floor, options, library: &library, look: &look, explored: &explored };
+    let finish =
+        Finish { measurements, floor: &floor, options, library: &library, look: &look, explored: &explored };
     finish.found(&bare, &fitted, context)
 }
 

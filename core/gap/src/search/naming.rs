@@ -22,7 +22,7 @@ const SMALLEST: f64 = 0.5;
 const SMALLEST_FIRST: f64 = 0.4;
 /// Standard deviations of values are larger by this than the linear model says: what real joints do
 /// is not quite what the library says (seen on development cases of the blind test).
-const WIDER: f64 = 1.25;
+pub(super) const WIDER: f64 = 1.25;
 /// A rival counts as something unknown when it does this to the rows, and this share of all.
 const RIVAL_SIZE: f64 = 0.4;
 const RIVAL_SHARE: f64 = 0.15;

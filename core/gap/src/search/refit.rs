@@ -16,6 +16,12 @@ const ROUNDS: usize = 6;
 const STILL: f64 = 1e-4;
 /// A frame turns no further in one step: the tangent does not reach, rad.
 const FURTHEST_TURN_RAD: f64 = 0.3;
+/// A value tells how large others are when its variance has fallen to this share.
+const TOLD: f64 = 0.5;
+/// Rounds of learning how large a family is, in one linearization.
+const LEARNING_ROUNDS: usize = 8;
+/// No family is smaller than this share of the usual size.
+const SMALLEST_SHARE: f64 = 1e-3;
 /// Values beyond this many usual sizes are not followed.
 const FURTHEST: f64 = 6.0;
 
@@ -27,6 +33,48 @@ pub(super) struct Fitted {
     pub weights: Vec<f64>,
     /// Of each row, in floors.
     pub misses: Vec<Option<f64>>,
+    /// Standard deviation of each value beforehand, in usual sizes: see [`Priors`].
+    pub sds: Vec<f64>,
+}
+
+/// How large values are beforehand. An effect at one site is as large as usual. Where one sits at every
+/// site, parts of one make are alike: what most rows tell of some of them says how large the others are,
+/// those too that the poses hardly show (empirical Bayes, by expectation and maximization).
+#[derive(Clone, Debug)]
+struct Priors {
+    /// Per value.
+    sds: Vec<f64>,
+    /// Values of each effect at every site.
+    families: Vec<std::ops::Range<usize>>,
+}
+
+impl Priors {
+    fn of(effects: &[Effect]) -> Self {
+        let (mut families, mut at) = (vec![], 0);
+        for effect in effects {
+            let count = effect.parameters().len();
+            if effect.is_of_every_site() {
+                families.push(at..at + count);
+            }
+            at += count;
+        }
+        Self { sds: vec![1.0; at], families }
+    }
+
+    /// Learns from values and their variances.
+    fn learn(&mut self, value: impl Fn(usize) -> f64, variance: impl Fn(usize) -> f64) {
+        for family in &self.families {
+            // What nothing tells has the variance that it had beforehand, and says nothing of its own.
+            let told: Vec<usize> =
+                family.clone().filter(|&k| variance(k) < TOLD * self.sds[k] * self.sds[k]).collect();
+            if told.is_empty() {
+                continue;
+            }
+            let square: f64 = told.iter().map(|&k| value(k).powi(2) + variance(k)).sum();
+            let sd = (square / told.len() as f64).sqrt().clamp(SMALLEST_SHARE, 1.0);
+            self.sds[family.clone()].fill(sd);
+        }
+    }
 }
 
 /// Frames and values of `effects`, from `start` on; its values are kept where it has the effect.
@@ -43,6 +91,7 @@ pub(super) fn refit(
     let mut assumed = with(start, effects);
     let rows = measurements.rows.len();
     let mut fitted = None;
+    let mut priors = Priors::of(effects);
     for _ in 0..ROUNDS {
         let linear = Linear::of(measurements, floor, &assumed, effects, context)?;
         let columns = linear.lines.ncols() - 1;
@@ -53,20 +102,21 @@ pub(super) fn refit(
         let stands: Vec<f64> = linear.nuisances.iter().map(|nuisance| nuisance.value(&assumed)).collect();
         let mut step = DVector::zeros(columns);
         for _ in 0..4 {
-            let Some(next) = solve(&linear, &own, &stands, &values) else { break };
+            let Some(next) = solve(&linear, &own, &stands, &values, &mut priors) else { break };
             step = next;
             let left = &now - linear.lines.columns(0, columns) * &step;
             own = weights(&linear.misses(rows, &left));
         }
         move_by(measurements, &mut assumed, &linear, &step);
         let still = step.amax() < STILL;
-        fitted = Some(Fitted { assumed: assumed.clone(), weights: own, misses });
+        fitted = Some(Fitted { assumed: assumed.clone(), weights: own, misses, sds: priors.sds.clone() });
         if still {
             break;
         }
     }
     let Some(mut fitted) = fitted else {
-        return Ok(Fitted { assumed, weights: vec![1.0; rows], misses: vec![None; rows] });
+        let sds = priors.sds;
+        return Ok(Fitted { assumed, weights: vec![1.0; rows], misses: vec![None; rows], sds });
     };
     let linear = Linear::of(measurements, floor, &assumed, &[], context)?;
     fitted.misses = linear.misses(rows, &linear.lines.column(linear.lines.ncols() - 1).clone_owned());
@@ -98,20 +148,42 @@ pub(super) fn usual(assumed: &Assumed) -> DVector<f64> {
 }
 
 /// A step from where nuisances (m, rad) and values (usual sizes) stand.
-fn solve(linear: &Linear, weights: &[f64], stands: &[f64], values: &DVector<f64>) -> Option<DVector<f64>> {
+fn solve(
+    linear: &Linear,
+    weights: &[f64],
+    stands: &[f64],
+    values: &DVector<f64>,
+    priors: &mut Priors,
+) -> Option<DVector<f64>> {
     let sums = linear.sums(weights);
     let (gram, _) = sums.gram(0.05);
     let columns = gram.ncols() - 1;
     let mut normal = gram.view((0, 0), (columns, columns)).clone_owned();
     let mut right =
         DVector::from_column_slice(gram.view((0, columns), (columns, 1)).clone_owned().as_slice());
-    for k in 0..columns {
-        let sd = linear.nuisances.get(k).map_or(1.0, |nuisance| nuisance.prior_sd());
-        let stands = if k < linear.gauge { stands[k] } else { values[k - linear.gauge] };
-        normal[(k, k)] += 1.0 / (sd * sd);
-        right[k] -= stands / (sd * sd);
+    for (k, nuisance) in linear.nuisances.iter().enumerate() {
+        let precision = nuisance.prior_sd().powi(-2);
+        normal[(k, k)] += precision;
+        right[k] -= stands[k] * precision;
     }
-    Some(Cholesky::new(normal)?.solve(&right))
+    let gauge = linear.gauge;
+    let rounds = if priors.families.is_empty() { 1 } else { LEARNING_ROUNDS };
+    let mut step = None;
+    for _ in 0..rounds {
+        let (mut own, mut pull) = (normal.clone(), right.clone());
+        for (k, sd) in priors.sds.iter().enumerate().take(columns - gauge) {
+            own[(gauge + k, gauge + k)] += sd.powi(-2);
+            pull[gauge + k] -= values[k] * sd.powi(-2);
+        }
+        let cholesky = Cholesky::new(own)?;
+        let next = cholesky.solve(&pull);
+        if !priors.families.is_empty() {
+            let inverse = cholesky.inverse();
+            priors.learn(|k| values[k] + next[gauge + k], |k| inverse[(gauge + k, gauge + k)]);
+        }
+        step = Some(next);
+    }
+    step
 }
 
 /// Moves frames and values by a step of the columns of `linear`.
@@ -155,7 +227,9 @@ pub(super) fn frames(
         let mut step = DVector::zeros(linear.gauge);
         let stands: Vec<f64> = linear.nuisances.iter().map(|nuisance| nuisance.value(&assumed)).collect();
         for _ in 0..4 {
-            let Some(next) = solve(&linear, &own, &stands, &DVector::zeros(0)) else { break };
+            let Some(next) = solve(&linear, &own, &stands, &DVector::zeros(0), &mut Priors::of(&[])) else {
+                break;
+            };
             step = next;
             let left = &now - linear.lines.columns(0, linear.gauge) * &step;
             own = weights(&linear.misses(rows, &left));

@@ -1,6 +1,7 @@
 //! How noise and sizes may be: what is integrated over.
 
 use super::field::Variant;
+use crate::finding::FloorSource;
 
 /// How large an effect of these sessions is, in floors; each as probable as the others.
 const SIZES: [f64; 3] = [1.0, 3.0, 10.0];
@@ -21,12 +22,21 @@ const REPEATED: [(f64, f64, f64); 7] = [
 const APPROXIMATE: [(f64, f64); 7] =
     [(0.5, 0.1), (0.7, 0.2), (1.0, 0.25), (1.4, 0.2), (2.0, 0.15), (2.8, 0.07), (4.0, 0.03)];
 
+/// Where nothing tells it, it may be anything below what frames leave.
+const UNKNOWN: [(f64, f64); 8] =
+    [(0.02, 0.1), (0.05, 0.1), (0.1, 0.1), (0.2, 0.15), (0.4, 0.15), (0.7, 0.15), (1.0, 0.15), (1.4, 0.1)];
+
 /// All variants.
-pub(super) fn variants(from_repeats: bool) -> Vec<Variant> {
-    let base: Vec<(f64, f64, f64, f64)> = if from_repeats {
-        REPEATED.iter().map(|&(cell, dirt, share)| (1.0, cell, dirt, share)).collect()
-    } else {
-        APPROXIMATE.iter().map(|&(noise, share)| (noise, 0.05, 0.3 * noise, share)).collect()
+pub(super) fn variants(source: FloorSource) -> Vec<Variant> {
+    let scaled = |grid: &[(f64, f64)]| -> Vec<(f64, f64, f64, f64)> {
+        grid.iter().map(|&(noise, share)| (noise, 0.05, 0.3 * noise, share)).collect()
+    };
+    let base = match source {
+        FloorSource::Repeats => {
+            REPEATED.iter().map(|&(cell, dirt, share)| (1.0, cell, dirt, share)).collect()
+        }
+        FloorSource::Neighbors | FloorSource::Instrument => scaled(&APPROXIMATE),
+        FloorSource::Fitted => scaled(&UNKNOWN),
     };
     let shares = SIZES.len() as f64;
     base.into_iter()

@@ -9,6 +9,7 @@ use plumbline_model::robot::servo::TICK_RAD;
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
+use crate::finding::FloorSource;
 use crate::floor::{Floor, KindFloor};
 use crate::options::Options;
 use crate::search::field::Framed;
@@ -184,7 +185,7 @@ fn normal(random: &mut StdRng) -> f64 {
 fn floor() -> Floor {
     let kind =
         KindFloor { what: What::Touch, sd: NOISE_M.to_vec(), degrees_of_freedom: 120.0, sigma_m: None };
-    Floor { kinds: vec![kind], from_repeats: true }
+    Floor { kinds: vec![kind], source: FloorSource::Repeats }
 }
 
 /// Spread of residuals about the mean of their cell.
@@ -207,7 +208,7 @@ fn repeats(made: &Measurements) -> Floor {
     let sd = sums.iter().map(|sum| (sum / free).sqrt()).collect();
     Floor {
         kinds: vec![KindFloor { what: What::Touch, sd, degrees_of_freedom: free, sigma_m: None }],
-        from_repeats: true,
+        source: FloorSource::Repeats,
     }
 }
 
