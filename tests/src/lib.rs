@@ -3,6 +3,8 @@
 
 #![allow(clippy::print_stderr, reason = "says why a test was skipped")]
 
+mod replay;
+
 use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -13,6 +15,8 @@ use plumbline::{PlumblineWindow, WindowOptions};
 use plumbline_engine::watched::Trial;
 use plumbline_engine::{Engine, EngineSettings, View};
 use plumbline_twin::eyes::{EyeOptions, EyeRenderer, RenderError};
+
+pub use replay::Beginning;
 
 /// The window, drawn in memory.
 pub type Window = Harness<'static, PlumblineWindow>;

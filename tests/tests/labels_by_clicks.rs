@@ -4,12 +4,14 @@
 #![allow(clippy::print_stdout, reason = "says why a part was skipped")]
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use egui::{Key, Modifiers, Pos2, Rect};
 use egui_kittest::kittest::Queryable as _;
 use image::{Rgb, RgbImage};
+use plumbline_engine::View;
 use plumbline_engine::view::LabelState;
-use plumbline_tests::{Window, click, click_containing, type_over, until, view, window};
+use plumbline_tests::{Beginning, Window, click, click_containing, type_over, until, view, window};
 use plumbline_vision::detect::{DetectError, Detector, DetectorOptions};
 use plumbline_vision::yolo_set::{Split, YoloSet};
 
@@ -90,6 +92,7 @@ fn boxes_are_drawn_corrected_taken_back_copied_and_exported() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let set = folder.path().join("toys");
     make_set(&set);
+    let beginning = Beginning::of(folder.path());
     let mut window = window(&folder.path().join("data"), None);
     open(&mut window, &set);
 
@@ -161,6 +164,7 @@ fn boxes_are_drawn_corrected_taken_back_copied_and_exported() {
     assert_eq!(written.names.to_string(), "Banana, Duck, LeftHand");
     let of = |split| written.images.iter().filter(move |image| image.split == Some(split)).count();
     assert_eq!((of(Split::Train), of(Split::Val)), (6, 2), "whole scenes");
+    beginning.leads_to_what_is_shown(window, |_| {});
 }
 
 fn fixture(name: &str) -> PathBuf {
@@ -179,6 +183,15 @@ fn label(set: &Path, images: usize) {
     }
 }
 
+/// How long a network takes on this machine is measured anew each time.
+fn without_times(view: &mut View) {
+    let scores = Arc::make_mut(&mut view.scores);
+    let Some(table) = &mut scores.table else { return };
+    for scores in Arc::make_mut(table).rows.iter_mut().flat_map(|row| &mut row.scores) {
+        scores.times_ms = [0.0; 3];
+    }
+}
+
 #[test]
 fn a_detector_is_judged_and_a_cell_opens_its_images() {
     let model = fixture("raw.onnx");
@@ -189,6 +202,7 @@ fn a_detector_is_judged_and_a_cell_opens_its_images() {
     let set = folder.path().join("toys");
     make_set(&set);
     label(&set, 8);
+    let beginning = Beginning::of(folder.path());
     let mut window = window(&folder.path().join("data"), None);
     click(&mut window, "Detect");
     click(&mut window, "Scores");
@@ -228,4 +242,5 @@ fn a_detector_is_judged_and_a_cell_opens_its_images() {
     until(&mut window, "the table on disk", |_| csv.is_file());
     let text = std::fs::read_to_string(&csv).expect("written");
     assert!(text.lines().any(|line| line.starts_with("raw,Banana,")), "{text}");
+    beginning.leads_to_what_is_shown(window, without_times);
 }

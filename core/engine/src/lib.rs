@@ -39,7 +39,7 @@ pub use command::{
     TouchCommand, TwinCommand, WatchCommand,
 };
 pub use engine::settings::{self, EngineSettings};
-pub use engine::{Engine, Wake, journal};
+pub use engine::{Engine, Wake, journal, replay};
 pub use ground::notice::{Notice, NoticeLevel};
 pub use ground::stage::Skipped;
 pub use ground::watched::WatchedThread;

@@ -11,13 +11,13 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, select};
 
 use super::Shared;
-use super::journal::{Entry, Journal};
+use super::journal::{Entry, Event, Happened, Journal};
 use super::pipeline::{PROBE_EVERY, Pipeline};
 use super::settings::EngineSettings;
 use crate::command::Command;
 use crate::ground::bell::Bell;
 use crate::ground::data_folder::{DataFolder, KeptView};
-use crate::ground::jobs::{JobHandle, JobId, on_job_workers, panic_message};
+use crate::ground::jobs::{JobHandle, JobId, Outcome, on_job_workers, panic_message};
 use crate::ground::notice::NoticeLevel;
 use crate::ground::watched::{WatchCommand, WatchedThread};
 use crate::ground::{LongWork, Time};
@@ -168,7 +168,8 @@ impl<'a> Hub<'a> {
     fn apply(&mut self, command: Command) {
         let time = Time::now();
         let entry = Entry {
-            at_secs: time.instant.saturating_duration_since(self.started).as_secs_f64(),
+            at_secs: self.seconds_at(time),
+            day: Some(time.day),
             newest_seq: self.state.newest_seq(),
             command: command.clone(),
         };
@@ -182,15 +183,25 @@ impl<'a> Hub<'a> {
         }
     }
 
+    fn seconds_at(&self, time: Time) -> f64 {
+        time.instant.saturating_duration_since(self.started).as_secs_f64()
+    }
+
     /// Takes in what threads and jobs have brought.
     fn collect(&mut self) {
-        let now = Instant::now();
-        self.changed |= self.pipeline.collect(&mut self.state, now);
+        let time = Time::now();
+        let now = time.instant;
+        self.state.hold_time(Some(time));
+        let mut happened = Vec::new();
+        self.changed |= self.pipeline.collect(&mut self.state, now, &mut happened);
         self.changed |= !self.jobs.is_empty();
         let Self { jobs, state, .. } = self;
         jobs.retain(|id, job| match job.take_outcome() {
             Some(outcome) => {
-                state.work_ended(*id, outcome, job.elapsed(now));
+                let cancelled = matches!(outcome, Outcome::Cancelled);
+                let took = job.elapsed(now);
+                happened.push(Happened::WorkEnded { job: id.0, took_s: took.as_secs_f64(), cancelled });
+                state.work_ended(*id, outcome, took);
                 false
             }
             None => {
@@ -198,6 +209,13 @@ impl<'a> Hub<'a> {
                 true
             }
         });
+        state.hold_time(None);
+        let at_secs = self.seconds_at(time);
+        if let Some(journal) = &mut self.journal {
+            for happened in happened {
+                journal.note_event(Event { at_secs, day: time.day, happened });
+            }
+        }
     }
 
     /// Does what the state asks of the outer world.

@@ -1,7 +1,8 @@
 //! Every command, written down as it is applied, so that a bug report is a replay.
 //!
-//! One JSON object per line: a heading, then one entry per command with the number of the pair
-//! that was newest at that moment.
+//! One JSON object per line: a heading, then in the order in which the engine took them in: one entry
+//! per command, with the number of the pair that was newest at that moment, and one per event, which
+//! says when work came to its end. What a connected robot and a source bring is not in it.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, Write};
@@ -17,13 +18,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::command::Command;
 use crate::ground::bell::Bell;
+use crate::ground::notice::NoticeLevel;
 use crate::ground::watched::{self, Pulse, Trial, Watched, WatchedThread};
 use crate::live::command::LiveCommand;
 
 /// First line of a journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Heading {
-    /// Version of this format: 1.
+    /// Version of this format: 2. The first had no events and no time of day.
     pub journal: u32,
     /// Program and version.
     pub software: String,
@@ -36,12 +38,61 @@ pub struct Heading {
 pub struct Entry {
     /// Since the program was started, seconds.
     pub at_secs: f64,
+    /// The time of day, UTC; `None` in journals of the first version.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub day: Option<Timestamp>,
     /// Number of the newest pair when it was applied.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub newest_seq: Option<u64>,
     /// What was asked.
     #[serde(flatten)]
     pub command: Command,
+}
+
+/// Something that came from what works beside the engine, and when it was taken in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// Since the program was started, seconds.
+    pub at_secs: f64,
+    /// The time of day, UTC.
+    pub day: Timestamp,
+    /// What it was.
+    #[serde(flatten)]
+    pub happened: Happened,
+}
+
+/// What came from what works beside the engine.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "happened", rename_all = "snake_case")]
+pub enum Happened {
+    /// Work came to its end; what came of it follows from the work.
+    WorkEnded {
+        /// Number of the job, counted from 1 in the order in which work was asked for.
+        job: u64,
+        /// How long it took, seconds.
+        took_s: f64,
+        /// Whether it was cancelled.
+        cancelled: bool,
+    },
+    /// The robot's side, with nothing connected, told how it is.
+    RobotTold,
+    /// The robot's side or the source had a message for the operator.
+    Noted {
+        /// How it is meant.
+        level: NoticeLevel,
+        /// A sentence.
+        text: String,
+    },
+}
+
+/// A line of a journal after its heading.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Line {
+    /// Something happened beside the engine.
+    Event(Event),
+    /// The operator asked for something.
+    Command(Entry),
 }
 
 /// Why a journal cannot be written or read.
@@ -77,7 +128,7 @@ pub enum JournalError {
 /// Writes entries on a thread of its own, so that a slow disk holds nothing up.
 pub struct Journal {
     file: PathBuf,
-    entries: Option<Sender<Entry>>,
+    entries: Option<Sender<Line>>,
     /// Entries that were not taken, because too many waited or the writer has ended.
     refused: u64,
     handed_over: u64,
@@ -114,7 +165,7 @@ impl Journal {
             std::process::id()
         ));
         let mut file = BufWriter::new(File::create_new(&path).map_err(io(&path))?);
-        let heading = Heading { journal: 1, software: crate::ground::software(), started };
+        let heading = Heading { journal: 2, software: crate::ground::software(), started };
         write_line(&mut file, &heading).map_err(io(&path))?;
         Self::write_to(path, file, pulse).map_err(io(folder))
     }
@@ -158,9 +209,17 @@ impl Journal {
             return;
         }
         if let Some(probe) = self.waiting_probe.take() {
-            self.hand_over(probe);
+            self.hand_over(Line::Command(probe));
         }
-        self.hand_over(entry);
+        self.hand_over(Line::Command(entry));
+    }
+
+    /// Hands an event to the writer; never waits.
+    pub fn note_event(&mut self, event: Event) {
+        if let Some(probe) = self.waiting_probe.take() {
+            self.hand_over(Line::Command(probe));
+        }
+        self.hand_over(Line::Event(event));
     }
 
     /// Entries that were lost because the disk did not keep up, or does not take any more.
@@ -170,9 +229,9 @@ impl Journal {
         self.refused + if has_failed { unwritten } else { 0 }
     }
 
-    fn hand_over(&mut self, entry: Entry) {
+    fn hand_over(&mut self, line: Line) {
         let Some(entries) = &self.entries else { return };
-        match entries.try_send(entry) {
+        match entries.try_send(line) {
             Ok(()) => self.handed_over += 1,
             Err(_) => self.refused += 1,
         }
@@ -182,7 +241,7 @@ impl Journal {
 impl Drop for Journal {
     fn drop(&mut self) {
         if let Some(probe) = self.waiting_probe.take() {
-            self.hand_over(probe);
+            self.hand_over(Line::Command(probe));
         }
         self.writer.ask_to_end();
         // What waits is written before the writer, which is waited for, comes to its end.
@@ -190,8 +249,24 @@ impl Drop for Journal {
     }
 }
 
-/// Reads a journal. A last line without an end, as a crash leaves it, is left out.
+/// Reads the commands of a journal. A last line without an end, as a crash leaves it, is left out.
+///
+/// # Errors
+/// When it cannot be read, or is no journal.
 pub fn read(path: &Path) -> Result<(Heading, Vec<Entry>), JournalError> {
+    let (heading, lines) = read_lines(path)?;
+    let command = |line| match line {
+        Line::Command(entry) => Some(entry),
+        Line::Event(_) => None,
+    };
+    Ok((heading, lines.into_iter().filter_map(command).collect()))
+}
+
+/// Reads commands and events of a journal. A last line without an end is left out.
+///
+/// # Errors
+/// When it cannot be read, or is no journal.
+pub fn read_lines(path: &Path) -> Result<(Heading, Vec<Line>), JournalError> {
     let io = |error| JournalError::Io { path: path.to_owned(), error };
     let bad = |line: usize, reason: String| JournalError::Line { path: path.to_owned(), line, reason };
     // A pipe would never answer, a device never end.
@@ -219,7 +294,7 @@ fn write_line(file: &mut impl Write, value: &impl Serialize) -> std::io::Result<
 
 fn write_entries(
     file: &mut BufWriter<File>,
-    waiting: &Receiver<Entry>,
+    waiting: &Receiver<Line>,
     written: &AtomicU64,
     name: &str,
     pulse: &Pulse,
@@ -261,7 +336,7 @@ mod tests {
     use crate::source::command::SourceCommand;
 
     fn entry(at_secs: f64, command: impl Into<Command>) -> Entry {
-        Entry { at_secs, newest_seq: Some(3), command: command.into() }
+        Entry { at_secs, day: None, newest_seq: Some(3), command: command.into() }
     }
 
     fn only_file(folder: &Path) -> PathBuf {
@@ -294,7 +369,7 @@ mod tests {
         }
         drop(journal);
         let (heading, entries) = read(&only_file(folder.path())).expect("readable");
-        assert_eq!(heading.journal, 1);
+        assert_eq!(heading.journal, 2);
         assert_eq!(entries, commands);
     }
 

@@ -4,6 +4,7 @@ mod caring;
 mod hub;
 pub mod journal;
 mod pipeline;
+pub mod replay;
 pub mod settings;
 #[cfg(test)]
 mod tests;

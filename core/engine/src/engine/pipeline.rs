@@ -10,6 +10,7 @@ use plumbline_model::StereoFrame;
 use plumbline_model::robot::default_rig;
 
 use super::Shared;
+use super::journal::Happened;
 use crate::detect::DetectStage;
 use crate::eyes::CornersStage;
 use crate::ground::bell::Bell;
@@ -17,6 +18,7 @@ use crate::ground::slot::{Putter, Taker, newest_value_slot};
 use crate::ground::stage::{Skipped, Stage, StageThread, start_stage};
 use crate::ground::watched::{Pulse, Trial, Watched, WatchedThread};
 use crate::live::{ProbeStage, RectifyStage};
+use crate::robot::view::Connection;
 use crate::robot::{News, RobotControl, RobotThread, RobotWires, Switches, TouchNews, Worker};
 use crate::source::view::SourceView;
 use crate::source::{Control, Note, Player, SourceThread, Wires};
@@ -230,8 +232,9 @@ impl Pipeline {
         worker
     }
 
-    /// Gives the state what has come; whether there was anything.
-    pub(super) fn collect(&self, state: &mut State, now: Instant) -> bool {
+    /// Gives the state what has come; whether there was anything. What of it the journal keeps is added
+    /// to `happened`.
+    pub(super) fn collect(&self, state: &mut State, now: Instant, happened: &mut Vec<Happened>) -> bool {
         let mut any = false;
         // What a thread said before it failed is not true any more.
         let failed = |watched: &Watched| watched.pulse().has_failed();
@@ -241,11 +244,16 @@ impl Pipeline {
             any = true;
         }
         for note in self.notes.try_iter() {
+            happened.push(Happened::Noted { level: note.0, text: note.1.clone() });
             state.source_note(note);
             any = true;
         }
         let robot_failed = failed(self.robot.watched());
         if let Some(news) = self.news.try_take().filter(|_| !robot_failed) {
+            // What moves tells it many times a second, and nobody could make it move so again.
+            if news.robot.connection == Connection::None {
+                happened.push(Happened::RobotTold);
+            }
             state.robot_changed(news);
             any = true;
         }

@@ -95,13 +95,14 @@ pub struct Named {
 }
 
 impl KeptFinding {
-    /// A finding of now.
+    /// A finding, made at this time.
     pub fn new(
         finding: Finding,
         sessions: Vec<KeptSession>,
         (model, model_effects): (String, Vec<String>),
+        made: Timestamp,
     ) -> Self {
-        Self { format: FORMAT, made: Timestamp::now(), model, model_effects, sessions, finding }
+        Self { format: FORMAT, made, model, model_effects, sessions, finding }
     }
 }
 

@@ -48,7 +48,8 @@ impl Lab {
         finding.sessions = vec!["2026-05-01T10-00-00_touch".to_owned()];
         finding.placements.truncate(1);
         let kept = KeptSession { folder: session, tables };
-        let kept = KeptFinding::new(finding, vec![kept], ("nominal".to_owned(), vec![]));
+        let kept =
+            KeptFinding::new(finding, vec![kept], ("nominal".to_owned(), vec![]), jiff::Timestamp::now());
         Store::new(self.folder.path().join("gap")).keep(kept).expect("kept");
         Self::on(self.folder)
     }

@@ -51,6 +51,8 @@ pub enum GapWork {
         options: Options,
         /// Where findings are kept.
         store: Store,
+        /// When it was asked for.
+        at: jiff::Timestamp,
     },
     /// Deletes a finding.
     Delete {
@@ -176,7 +178,7 @@ impl LongWork for GapWork {
                 sessions.extend(elsewhere);
                 Ok(GapResult::Listed { sessions, changed: changed(&watched) })
             }
-            Self::Find { sessions, rig, model, options, store } => {
+            Self::Find { sessions, rig, model, options, store, at } => {
                 let kept: Vec<KeptSession> = sessions
                     .iter()
                     .map(|folder| KeptSession { folder: folder.clone(), tables: stamps(folder) })
@@ -185,7 +187,8 @@ impl LongWork for GapWork {
                 let measurements = measured(&sessions, &rig).map_err(failed)?;
                 let finding = search(&measurements, &model, &options, context).map_err(failed)?;
                 let about = (model::name(&model), model::parts(&model));
-                let named = store.keep(KeptFinding::new(finding, kept, about)).map_err(JobError::failed)?;
+                let named =
+                    store.keep(KeptFinding::new(finding, kept, about, at)).map_err(JobError::failed)?;
                 Ok(GapResult::Found(Arc::new(named)))
             }
             Self::Delete { store, id } => {

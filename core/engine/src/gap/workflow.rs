@@ -101,6 +101,7 @@ impl GapWorkflow {
             model,
             options: Options { seed, ..Options::default() },
             store: self.store.clone(),
+            at: context.time.day,
         };
         self.searching = Some(context.start(work));
     }

@@ -63,7 +63,7 @@ fn the_same_commands_on_the_same_pairs_give_the_same_state() {
             shown.push(pair);
         }
         let newest_seq = operator.state.newest_seq();
-        journal.note(Entry { at_secs: 0.0, newest_seq, command: command.clone() });
+        journal.note(Entry { at_secs: 0.0, day: None, newest_seq, command: command.clone() });
         operator.apply(command);
     }
     drop(journal);
@@ -152,7 +152,7 @@ fn a_replay_is_exact() {
             shown.push(pair);
         }
         let newest_seq = operator.state.newest_seq();
-        journal.note(Entry { at_secs, newest_seq, command: command.clone() });
+        journal.note(Entry { at_secs, day: None, newest_seq, command: command.clone() });
         operator.apply(command);
     }
     drop(journal);

@@ -47,7 +47,9 @@ pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, Commissio
     let kept = vec![KeptSession { folder: folder.clone(), tables: stamps(&folder) }];
     let about = (model_name(&nominal), vec![]);
     let store = Store::new(lab.world().join("gap"));
-    store.keep(KeptFinding::new(finding.clone(), kept, about)).map_err(CommissionError::room)?;
+    store
+        .keep(KeptFinding::new(finding.clone(), kept, about, jiff::Timestamp::now()))
+        .map_err(CommissionError::room)?;
     step.notes.push(finding.sentence.clone());
 
     let measurements = touches(lab)?;
