@@ -193,6 +193,7 @@ fn accept(
         effects,
         screens: vec![placed.clone()],
         externals: vec![],
+        eyes: vec![],
         replaces: true,
         at: jiff::Timestamp::now(),
         sentence: finding.sentence.clone(),
