@@ -192,6 +192,11 @@ impl Lockstep {
         self.world.advance_warm_up(duration_s);
     }
 
+    /// Switches the eyes off until they are cold, and on again.
+    pub fn cool_eyes(&mut self) {
+        self.world.cool_eyes();
+    }
+
     /// The renderer, so that another twin of this machine need not open the device again.
     pub fn take_eyes(&mut self) -> Option<EyeRenderer> {
         self.eyes.take()

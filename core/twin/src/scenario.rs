@@ -182,6 +182,8 @@ pub(crate) struct FingertipReality {
 pub(crate) struct ContactReality {
     /// Coefficient of friction of toys against hands and table.
     pub toy_friction: f64,
+    /// Mass of toys, times that of the usual ones.
+    pub toy_mass: f64,
     /// Coefficient of friction of the hand's skin on glass.
     pub glass_friction: f64,
     /// A touch is felt from this force on, N.
@@ -190,7 +192,7 @@ pub(crate) struct ContactReality {
 
 impl Default for ContactReality {
     fn default() -> Self {
-        Self { toy_friction: 1.0, glass_friction: 0.3, touch_threshold_n: 0.15 }
+        Self { toy_friction: 1.0, toy_mass: 1.0, glass_friction: 0.3, touch_threshold_n: 0.15 }
     }
 }
 
@@ -271,6 +273,7 @@ impl Scenario {
         }
         within("eyes.heat.power_w", heat.power_w, 0.0, 50.0)?;
         within("contact.toy_friction", self.contact.toy_friction, 0.0, 3.0)?;
+        within("contact.toy_mass", self.contact.toy_mass, 0.1, 20.0)?;
         within("contact.glass_friction", self.contact.glass_friction, 0.0, 3.0)?;
         within("contact.touch_threshold_n", self.contact.touch_threshold_n, 0.01, 10.0)
     }

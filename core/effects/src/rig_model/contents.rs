@@ -30,6 +30,9 @@ fn usable_screen(screen: &Touchscreen) -> Result<(), String> {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contents {
+    /// The eyes that effects on the eyes were found with ([`super::numbers_of_eyes`]); empty: not known.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub eyes: Vec<f64>,
     /// Effects, the oldest first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<ModelEffect>,
@@ -123,6 +126,8 @@ pub struct Addition {
     pub screens: Vec<PlacedScreen>,
     /// External frames, fitted together with them.
     pub externals: Vec<PlacedExternal>,
+    /// The eyes they were found with ([`super::numbers_of_eyes`]); empty: they are not of the eyes.
+    pub eyes: Vec<f64>,
     /// Whether the search began with the nominal robot: then what it found replaces all that is in
     /// force. Otherwise it began with this model and comes in addition.
     pub replaces: bool,

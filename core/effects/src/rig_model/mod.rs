@@ -6,6 +6,7 @@
 mod contents;
 mod error;
 mod export;
+mod eyes;
 mod file;
 mod predict;
 #[cfg(test)]
@@ -24,6 +25,7 @@ pub use contents::{
 };
 pub use error::RigModelError;
 pub use export::{ExportError, Exported};
+pub use eyes::numbers_of_eyes;
 pub use file::{FORMAT, is_rig_model};
 pub(crate) use predict::Measured;
 pub use predict::predict_session_with;
@@ -57,7 +59,8 @@ impl RigModel {
     }
 
     /// Adds effects that were found. The same effect may be added twice, when a later search has
-    /// found more of it: both parts are in force. Placements of the new sessions take the place of
+    /// found more of it: both parts are in force. Effects on the eyes that were found with other eyes go: what
+    /// comes was found without them. Placements of the new sessions take the place of
     /// older ones of the same screen or session.
     ///
     /// # Errors
@@ -71,6 +74,12 @@ impl RigModel {
         }
         let before = self.contents.clone();
         let mut contents = if addition.replaces { Contents::default() } else { before.clone() };
+        if !addition.eyes.is_empty() {
+            if !eyes::are_same(&contents.eyes, &addition.eyes) && !contents.eyes.is_empty() {
+                contents.effects.retain(|effect| !eyes::is_of_eyes(effect));
+            }
+            contents.eyes = addition.eyes;
+        }
         let names = addition.effects.iter().map(ModelEffect::name).collect();
         contents.effects.extend(addition.effects);
         for screen in addition.screens {

@@ -31,6 +31,7 @@ fn addition(effects: Vec<ModelEffect>) -> Addition {
         effects,
         screens: vec![],
         externals: vec![],
+        eyes: vec![],
         replaces: false,
         at: Timestamp::UNIX_EPOCH,
         sentence: "The elbow's zero is off.".to_owned(),

@@ -185,7 +185,8 @@ impl LongWork for GapWork {
                     .collect();
                 context.report(0.0, "reading the sessions");
                 let measurements = measured(&sessions, &rig).map_err(failed)?;
-                let finding = search(&measurements, &model, &options, context).map_err(failed)?;
+                let finding =
+                    search(&measurements, &model.for_eyes_of(&rig), &options, context).map_err(failed)?;
                 let about = (model::name(&model), model::parts(&model));
                 let named =
                     store.keep(KeptFinding::new(finding, kept, about, at)).map_err(JobError::failed)?;

@@ -24,6 +24,8 @@ pub struct GraspAround {
     pub robot: Arc<RobotView>,
     /// The calibration of the eyes; `None`: none was accepted.
     pub calibration: Option<Arc<StereoCalibration>>,
+    /// For how long the eyes have been on, min; `None`: nobody knows.
+    pub eyes_on_min: Option<f64>,
     /// Whether the mount of the eyes was calibrated.
     pub has_mount: bool,
     /// Whether it was measured where the screen lies.

@@ -1,10 +1,12 @@
 //! What is looked at before anything moves.
 
 use plumbline_grasp::Method;
+use plumbline_model::robot::JointIndex;
 
 use super::around::GraspAround;
 use super::method::lacks;
 use super::view::{Gate, GateState};
+use super::warmth::warmth;
 use crate::robot::view::{Connection, RobotView};
 use crate::source::view::SourceStatus;
 
@@ -13,9 +15,12 @@ pub fn gates(around: &GraspAround, arm: &str, method: Method) -> Vec<Gate> {
     let robot = &around.robot;
     let mut gates = vec![connected(robot)];
     if robot.connection.is_connected() {
-        gates.extend([stop(robot), joints(around, arm)]);
+        gates.extend([stop(robot), joints(around, arm), load(around, arm)]);
     }
-    gates.extend([eyes(around), places(around), method_gate(around, method)]);
+    gates.extend([eyes(around), places(around)]);
+    let evidence = around.calibration.as_ref().and_then(|calibration| calibration.evidence.as_ref());
+    gates.extend(warmth(around.eyes_on_min, evidence.and_then(|evidence| evidence.minutes_since_on)));
+    gates.push(method_gate(around, method));
     gates
 }
 
@@ -53,7 +58,7 @@ fn stop(robot: &RobotView) -> Gate {
     }
 }
 
-/// Every joint of the arm is known, holds, is not too hot and is not overloaded.
+/// Every joint of the arm is known, holds, is not too hot and has its force.
 fn joints(around: &GraspAround, arm: &str) -> Gate {
     let (robot, rig) = (&around.robot, &around.described);
     let Some(arm) = rig.arm(arm) else { return closed("Arm", "The robot has no such arm.") };
@@ -86,6 +91,25 @@ fn joints(around: &GraspAround, arm: &str) -> Gate {
         (Some(trouble), _) => closed("Arm", trouble),
         (None, Some(warm)) => doubtful("Arm", warm),
         (None, None) => open("Arm", format!("{} holds, all joints are known.", arm.title)),
+    }
+}
+
+/// No joint of the arm pushes against anything. A step of the hand may be what ends that.
+fn load(around: &GraspAround, arm: &str) -> Gate {
+    let (robot, rig) = (&around.robot, &around.described);
+    let of_arm = |joint: JointIndex| {
+        rig.arm(arm).is_some_and(|arm| arm.joints.contains(&joint) || arm.hand.contains(&joint))
+    };
+    let pushes = robot.joints.iter().filter(|joint| of_arm(joint.joint)).find(|joint| {
+        // NaN is no load.
+        joint.load.is_some_and(|load| load.abs() >= rig.gate.load)
+    });
+    match pushes {
+        Some(joint) => closed(
+            "Load",
+            format!("{} pushes against something: move the arm to where nothing is in its way.", joint.title),
+        ),
+        None => open("Load", "No joint pushes against anything."),
     }
 }
 
@@ -130,5 +154,88 @@ fn method_gate(around: &GraspAround, method: Method) -> Gate {
     match lacks(method, &around.corrections) {
         Some(lacks) => closed("Method", lacks),
         None => open("Method", format!("{name} has what it needs.")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use plumbline_effects::RobotModel;
+    use plumbline_grasp::Corrections;
+    use plumbline_model::robot::{Limits, Rig};
+    use plumbline_vision::detect::Provider;
+
+    use super::*;
+    use crate::detect::command::DetectorChoice;
+    use crate::robot::view::JointView;
+
+    /// A robot whose elbow gives this load, and is this warm.
+    fn around(load: f64, temperature_c: f64) -> GraspAround {
+        let rig = Arc::new(Rig::built_in("nico").expect("comes with the program"));
+        let joint = |servo: &plumbline_model::robot::Servo| {
+            let is_elbow = servo.joint_name == "r_elbow_y";
+            let limits = Limits { lower_rad: -3.0, upper_rad: 3.0 };
+            JointView {
+                joint: servo.joint,
+                name: servo.joint_name.clone(),
+                title: servo.title.clone(),
+                servo: servo.id,
+                model: servo.model.clone(),
+                limits,
+                limits_now: limits,
+                angle_rad: Some(0.0),
+                goal_rad: Some(0.0),
+                speed_rad_s: Some(0.0),
+                load: Some(if is_elbow { load } else { 0.1 }),
+                temperature_c: Some(if is_elbow { temperature_c } else { 31.0 }),
+                voltage_v: Some(12.0),
+                torque_on: Some(true),
+                let_go: false,
+                no_force: false,
+                age: None,
+                problem: None,
+                history: Arc::from([]),
+            }
+        };
+        let robot = RobotView {
+            joints: rig.servos.iter().map(joint).collect(),
+            measured: Some(rig.home()),
+            ..RobotView::default()
+        };
+        GraspAround {
+            model: Arc::new(RobotModel::nominal(rig.clone())),
+            described: rig,
+            robot: Arc::new(robot),
+            calibration: None,
+            eyes_on_min: None,
+            has_mount: false,
+            has_screen: false,
+            corrections: Corrections::default(),
+            detector: (DetectorChoice::Shipped, Provider::default()),
+            source: Arc::default(),
+            own_eyes: true,
+            found: None,
+        }
+    }
+
+    #[test]
+    fn what_is_hot_or_pushes_is_named_and_nothing_else_is() {
+        let of_arm = |load, temperature_c| joints(&around(load, temperature_c), "right");
+        assert_eq!(of_arm(0.0, 31.0).state, GateState::Open);
+        let warm = of_arm(0.0, 60.0);
+        assert_eq!(warm.state, GateState::Doubtful);
+        assert!(warm.text.contains("Right elbow has 60 °C"), "{}", warm.text);
+        let hot = of_arm(0.0, 72.0);
+        assert_eq!(hot.state, GateState::Shut);
+        assert!(hot.text.contains("Right elbow has 72 °C: let it cool down"), "{}", hot.text);
+        let pushes = |of, name| load(&around(of, 31.0), name);
+        assert_eq!(pushes(0.5, "right").state, GateState::Open);
+        for of in [0.9, -0.9] {
+            let shut = pushes(of, "right");
+            assert_eq!(shut.state, GateState::Shut);
+            assert!(shut.text.contains("Right elbow pushes against something"), "{}", shut.text);
+            assert_eq!(pushes(of, "left").state, GateState::Open, "the other arm is not used");
+        }
     }
 }

@@ -23,6 +23,7 @@ mod steps;
 #[cfg(test)]
 mod tests;
 pub mod view;
+mod warmth;
 pub mod work;
 mod workflow;
 

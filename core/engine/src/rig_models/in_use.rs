@@ -4,6 +4,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use plumbline_effects::rig_model::ModelEffect;
 use plumbline_effects::{RigModel, RigModelError, RobotModel};
 use plumbline_model::StereoCameras;
 use plumbline_model::frame::{Head, LeftCamera, Pose};
@@ -35,7 +36,10 @@ impl Accepted<'_> {
         let rig = model.rig();
         let same_effects = match self.effects {
             None => model.is_nominal(),
-            Some(effects) => Arc::ptr_eq(model.added(), effects),
+            Some(effects) if effects.effects_of_other_eyes(rig).is_empty() => {
+                Arc::ptr_eq(model.added(), effects)
+            }
+            Some(effects) => *model.added() == effects.for_eyes_of(rig),
         };
         same_effects
             && rig.eyes.cameras == *self.cameras.unwrap_or(&described.eyes.cameras)
@@ -43,7 +47,7 @@ impl Accepted<'_> {
             && rig.touchscreen == *self.screen.unwrap_or(&described.touchscreen)
     }
 
-    /// The description with it.
+    /// The description with it. Effects on the eyes that were found with other eyes are not in force.
     ///
     /// # Errors
     /// When the effects are of another robot, or have no place in this one.
@@ -61,9 +65,27 @@ impl Accepted<'_> {
         let rig = Arc::new(rig);
         match self.effects {
             None => Ok(RobotModel::nominal(rig)),
-            Some(effects) => RobotModel::new(rig, effects.clone()),
+            Some(effects) => {
+                let effects = effects.for_eyes_of(&rig);
+                RobotModel::new(rig, effects)
+            }
         }
     }
+}
+
+/// What the operator is told of effects that were found with other eyes; `None`: there are none.
+pub fn other_eyes(effects: &[&ModelEffect]) -> Option<String> {
+    let title = |effect: &&ModelEffect| {
+        if effect.title.is_empty() { effect.name() } else { effect.title.clone() }
+    };
+    let titles: Vec<String> = effects.iter().map(title).collect();
+    (!titles.is_empty()).then(|| {
+        format!(
+            "Not in force, for they were found with another mount or calibration of the eyes, which now holds what \
+             they explained: {}. Search in Gap again.",
+            titles.join("; ")
+        )
+    })
 }
 
 /// The robot with all that was accepted in the folder of a world: calibration and mount of the eyes,

@@ -22,6 +22,7 @@ pub fn model_with(rig: &Rig, effects: &[(&str, &str, &[f64])]) -> RigModel {
         effects: effects.collect(),
         screens: vec![],
         externals: vec![],
+        eyes: vec![],
         replaces: false,
         at: Timestamp::UNIX_EPOCH,
         sentence: String::new(),

@@ -4,10 +4,10 @@
 use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
-use plumbline_effects::RigModel;
 use plumbline_effects::rig_model::{
-    Addition, ModelEffect, PlacedExternal, PlacedScreen, ReportedParameter, Step, StepGap,
+    Addition, ModelEffect, PlacedExternal, PlacedScreen, ReportedParameter, Step, StepGap, numbers_of_eyes,
 };
+use plumbline_effects::{Kind, RigModel};
 use plumbline_gap::Finding;
 use plumbline_gap::finding::{NamedEffect, Shown, ShownUnit};
 use plumbline_model::Session;
@@ -23,7 +23,7 @@ pub(crate) mod made_up;
 mod tests;
 
 pub use error::ModelInUseError;
-pub use in_use::{Accepted, in_use, mount_in, screen_in};
+pub use in_use::{Accepted, in_use, mount_in, other_eyes, screen_in};
 
 /// The file, in the folder of a world.
 pub const FILE: &str = "rig-model.toml";
@@ -88,7 +88,7 @@ pub fn history(model: &RigModel) -> impl Iterator<Item = (&Step, &StepGap)> {
 
 /// A model with effects of a finding, by their places in it, and with where the finding places its
 /// sessions' frames. `replaces`: the search began with the nominal robot, so that what it found takes
-/// the place of all that is in the model. `at`: when it is done.
+/// the place of all that is in the model. `rig`: the robot with the eyes of the search. `at`: when it is done.
 ///
 /// # Errors
 /// A sentence: why they cannot be added.
@@ -121,10 +121,13 @@ pub fn with(
             externals.push(PlacedExternal { session: name.clone(), external_from_robot: *placement });
         }
     }
+    let is_of_eyes = |effect: &&NamedEffect| Kind::of_id(&effect.id).is_some_and(Kind::is_of_eyes);
+    let eyes = if chosen.iter().any(|effect| is_of_eyes(effect)) { numbers_of_eyes(rig) } else { vec![] };
     let addition = Addition {
         effects: chosen.into_iter().map(|effect| model_effect(effect, tip)).collect(),
         screens,
         externals,
+        eyes,
         replaces,
         at,
         sentence: finding.sentence.clone(),

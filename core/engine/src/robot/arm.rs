@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use plumbline_hardware::joints::{JointState, Move, MoveId, Refusal, Setpoint};
+use plumbline_hardware::joints::{Grip, JointState, Move, MoveId, Refusal, Setpoint};
 use plumbline_model::robot::{JointIndex, Posture};
 
 /// Who is on the bus.
@@ -31,6 +31,9 @@ pub trait Arm: Send {
 
     /// Follows a setpoint until it expires.
     fn follow(&self, setpoint: Setpoint) -> Result<(), Refusal>;
+
+    /// Fingers close and go on pressing, until they are moved otherwise.
+    fn grip(&self, grip: Grip) -> Result<(), Refusal>;
 
     /// Ends whatever runs; the arm stands.
     fn hold(&self) -> Result<(), Refusal>;

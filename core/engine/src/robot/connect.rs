@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use plumbline_hardware::dynamixel::{
     BusCounts, BusError, BusScan, BusTiming, FaultKind, latency_hint, list_ports, open_port,
 };
-use plumbline_hardware::joints::{ArmDriver, ArmOptions, JointState, Move, MoveId, Refusal, Setpoint};
+use plumbline_hardware::joints::{ArmDriver, ArmOptions, Grip, JointState, Move, MoveId, Refusal, Setpoint};
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 use super::Switches;
@@ -90,6 +90,12 @@ impl Arm for DrivenArm {
     fn follow(&self, setpoint: Setpoint) -> Result<(), Refusal> {
         self.driver.follow(setpoint);
         Ok(())
+    }
+
+    fn grip(&self, grip: Grip) -> Result<(), Refusal> {
+        // A setpoint that has not expired would take the fingers back.
+        self.driver.end_following();
+        self.driver.grip(grip)
     }
 
     fn hold(&self) -> Result<(), Refusal> {

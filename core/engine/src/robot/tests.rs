@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use plumbline_effects::RobotModel;
 use plumbline_effects::rig_model::Conditions;
 use plumbline_hardware::joints::{
-    BusStatistics, HoldReason, JointReading, JointState, Motion, Move, MoveId, Refusal, Setpoint,
+    BusStatistics, Grip, HoldReason, JointReading, JointState, Motion, Move, MoveId, Refusal, Setpoint,
 };
 use plumbline_model::Stamp;
 use plumbline_model::robot::{JointIndex, Posture, Rig};
@@ -25,6 +25,7 @@ use crate::twin::{TwinDesk, TwinEyesPlug};
 enum Asked {
     Move(Move),
     Follow(Setpoint),
+    Grip(Grip),
     Hold,
     Torque(usize, bool),
 }
@@ -77,6 +78,11 @@ impl Arm for FakeArm {
 
     fn follow(&self, setpoint: Setpoint) -> Result<(), Refusal> {
         self.note(Asked::Follow(setpoint));
+        Ok(())
+    }
+
+    fn grip(&self, grip: Grip) -> Result<(), Refusal> {
+        self.note(Asked::Grip(grip));
         Ok(())
     }
 

@@ -36,7 +36,7 @@ use crate::ground::{Asked, Clock, Context, Moment, PerWorld, Time, Workflow, Wor
 use crate::labels::work::LabelsWork;
 use crate::live::{ProbeInput, ProbeOutput, RectifyInput, RectifyOutput};
 use crate::mount::MountWorkflow;
-use crate::rig_models::Accepted;
+use crate::rig_models::{Accepted, other_eyes};
 use crate::robot::view::{Connection, RobotView};
 use crate::robot::{News, RobotControl, TouchNews};
 use crate::source::view::SourceView;
@@ -224,7 +224,13 @@ impl State {
             return;
         }
         match accepted.robot_model(&self.rig) {
-            Ok(model) => *known = Arc::new(model),
+            Ok(model) => {
+                let others = accepted.effects.map(|effects| effects.effects_of_other_eyes(model.rig()));
+                if let Some(words) = others.as_deref().and_then(other_eyes) {
+                    self.notices.add(NoticeLevel::Warning, words);
+                }
+                *known = Arc::new(model);
+            }
             Err(reason) => {
                 self.refused = accepted.effects.cloned();
                 self.notices.add(NoticeLevel::Error, sentence(&reason.to_string()));

@@ -265,6 +265,10 @@ impl Neighbors<GraspWorkflow> for State {
             model: self.models.of(world).clone(),
             robot: self.robot.clone(),
             calibration: eyes.of(world).in_use().cloned(),
+            eyes_on_min: match world {
+                World::Twin => self.twin.running.then(|| self.twin.eyes_on_s / 60.0),
+                World::Robot => eyes.of(world).minutes_since_on(),
+            },
             has_mount: mount.of(world).in_use().is_some(),
             has_screen: touch.of(world).screen().is_some(),
             corrections: Corrections { m1: model(Method::M1), m2: model(Method::M2), m3: model(Method::M3) },

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use jiff::Timestamp;
-use plumbline_effects::rig_model::{Conditions, ModelEffect};
+use plumbline_effects::rig_model::{Conditions, ModelEffect, numbers_of_eyes};
 use plumbline_effects::{RigModel, RobotModel};
 use plumbline_engine::eyes::store::Store;
 use plumbline_engine::robot::RobotControl;
@@ -103,6 +103,37 @@ fn from_the_moment_effects_are_accepted_everybody_uses_them() {
     assert!(known.is_nominal());
     assert_eq!(commanded_rad(&known, target), commanded_rad(&RobotModel::nominal(rig), target));
     assert_eq!(desk.view().touch.correct_with, None);
+}
+
+#[test]
+fn effects_on_the_eyes_found_with_another_calibration_are_not_in_force_and_it_is_said() {
+    let (rig, folder) = (default_rig(), tempfile::tempdir().expect("temporary folder"));
+    let store = Store::of_world(folder.path());
+    store.accept(&StereoCalibration::bare(eyes()), Timestamp::now()).expect("kept");
+    accept(folder.path(), &rig);
+    let mut seen_with = Rig::clone(&rig);
+    seen_with.eyes.cameras = eyes();
+    let mut model = rig_models::load(folder.path(), &rig).expect("readable");
+    model.contents.eyes = numbers_of_eyes(&seen_with);
+    rig_models::save(folder.path(), &model, &rig).expect("written");
+    assert_eq!(told(&Desk::new(folder.path())).title(), "with 2 effects");
+
+    let mut turned = eyes();
+    turned.right_from_left.isometry.translation.vector.x -= 0.001;
+    store.accept(&StereoCalibration::bare(turned), Timestamp::now()).expect("kept");
+    let mut desk = Desk::new(folder.path());
+    let known = told(&desk);
+    assert_eq!(known.title(), "with 1 effect");
+    assert_eq!(known.added().effects()[0].id, "joint-zero");
+    let notices = desk.view().notices.clone();
+    let said = notices.iter().filter(|notice| notice.text.contains("Search in Gap again")).count();
+    assert_eq!(said, 1, "{notices:?}");
+    let accepted = rig_models::in_use(folder.path(), &rig).expect("it can be used");
+    assert_eq!(accepted.added().effects(), known.added().effects());
+
+    // The calibration that they were found with comes back, and they with it.
+    store.accept(&StereoCalibration::bare(eyes()), Timestamp::now()).expect("kept");
+    assert_eq!(told(&Desk::new(folder.path())).title(), "with 2 effects");
 }
 
 /// What is commanded without effects.

@@ -1,9 +1,11 @@
 //! Whether something is held: the fingers say, and the eyes.
 
 use plumbline_model::detection::PixelBox;
+use plumbline_model::{Point, Robot};
 
 use super::{Chosen, End, Running};
 use crate::record::{Failure, Outcome, Step};
+use crate::see::Seen;
 
 /// Fingers that are kept open by more than this hold something, rad.
 const HELD_RAD: f64 = 0.10;
@@ -11,6 +13,8 @@ const HELD_RAD: f64 = 0.10;
 const LEFT_M: f64 = 0.10;
 /// What is not held well has fallen after this time, s.
 const FALLEN_S: f64 = 1.5;
+/// Another thing that nothing has met is seen again this near to where it stood, m.
+const STANDS_M: f64 = 0.03;
 /// Boxes that overlap by more than this (intersection over union) are of the same thing at the same place.
 const SAME_IOU: f32 = 0.3;
 
@@ -25,14 +29,15 @@ impl Running<'_> {
         let seen = grasper.looker.look(&sight, &grasper.knowledge)?;
         self.watch.saw(Step::Check, &sight, &seen);
         let object = &self.order.object;
-        let before = self.record.chosen.and_then(|index| Some(self.record.seen.get(index)?.boxes_px));
-        let left = seen.iter().filter(|thing| thing.class.eq_ignore_ascii_case(object)).any(|thing| {
-            let near = thing.place.as_ref().is_ok_and(|place| {
-                let off = place.point().coords - chosen.point.coords;
-                off.xy().norm() < LEFT_M && off.z.abs() < 0.3 * LEFT_M
-            });
-            near || before.is_some_and(|before| overlaps(&before, &thing.boxes_px))
-        });
+        let is_of_class = |thing: &&Seen| thing.class.eq_ignore_ascii_case(object);
+        let index = self.record.chosen;
+        let before = index.and_then(|index| self.record.seen.get(index));
+        let others = self.record.seen.iter().enumerate().filter(|(other, _)| Some(*other) != index);
+        let others: Vec<&Seen> = others.map(|(_, other)| other).filter(is_of_class).collect();
+        let left = seen
+            .iter()
+            .filter(is_of_class)
+            .any(|thing| is_where_it_was(thing, before, &chosen.point, &others));
         self.record.seen_after = seen;
         let object = object.to_lowercase();
         Ok(match (open_rad > HELD_RAD, left) {
@@ -68,10 +73,62 @@ impl Running<'_> {
     }
 }
 
-/// Whether a box of one eye is about where it was: what was lifted is seen higher by more than its size.
-fn overlaps(before: &[Option<[f32; 4]>; 2], now: &[Option<[f32; 4]>; 2]) -> bool {
-    before.iter().zip(now).filter_map(|(before, now)| Some(((*before)?, (*now)?))).any(|(before, now)| {
-        let area = |[x0, y0, x1, y1]: [f32; 4]| PixelBox { x0_px: x0, y0_px: y0, x1_px: x1, y1_px: y1 };
-        area(before).iou(&area(now)) > SAME_IOU
-    })
+/// Whether a thing is where the chosen one was, and not another one that stood beside it.
+fn is_where_it_was(thing: &Seen, before: Option<&Seen>, chosen: &Point<Robot>, others: &[&Seen]) -> bool {
+    let flat_m = |a: &Point<Robot>, b: &Point<Robot>| (a.coords - b.coords).xy().norm();
+    if let Ok(place) = &thing.place {
+        let here = place.point();
+        let is_low = (here.coords.z - chosen.coords.z).abs() < 0.3 * LEFT_M;
+        let off_m = flat_m(&here, chosen);
+        let is_another = others.iter().filter_map(|other| other.place.as_ref().ok()).any(|other| {
+            let other_m = flat_m(&here, &other.point());
+            other_m < off_m && other_m < STANDS_M
+        });
+        if is_another {
+            return false;
+        }
+        if is_low && off_m < LEFT_M {
+            return true;
+        }
+    }
+    let overlap = |other: &Seen| overlap(&other.boxes_px, &thing.boxes_px);
+    let of_chosen = before.map_or(0.0, overlap);
+    of_chosen > SAME_IOU && others.iter().all(|other| overlap(other) <= of_chosen)
+}
+
+/// How far a box of one eye is where it was (intersection over union, the larger one): what was lifted is seen higher by more than its size.
+fn overlap(before: &[Option<[f32; 4]>; 2], now: &[Option<[f32; 4]>; 2]) -> f32 {
+    let area = |[x0, y0, x1, y1]: [f32; 4]| PixelBox { x0_px: x0, y0_px: y0, x1_px: x1, y1_px: y1 };
+    let both = before.iter().zip(now).filter_map(|(before, now)| Some(((*before)?, (*now)?)));
+    both.map(|(before, now)| area(before).iou(&area(now))).fold(0.0, f32::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Matrix3;
+
+    use super::*;
+    use crate::see::SeenPlace;
+
+    fn tomato(point_m: [f64; 3], left_px: f32) -> Seen {
+        let area = Some([left_px, 100.0, left_px + 60.0, 160.0]);
+        let place = Ok(SeenPlace { point_m, covariance_m2: Matrix3::identity() * 1e-6 });
+        Seen { class: "Tomato".to_owned(), confidence: 0.9, boxes_px: [area, area], place }
+    }
+
+    #[test]
+    fn another_one_that_stood_beside_it_is_not_taken_for_the_one_that_was_lifted() {
+        let (first, second) = (tomato([0.3, -0.1, 0.08], 200.0), tomato([0.3, -0.02, 0.08], 280.0));
+        let chosen = Point::new(0.3, -0.1, 0.08);
+        let is_left = |thing: &Seen, others: &[&Seen]| is_where_it_was(thing, Some(&first), &chosen, others);
+        // The second one stands 8 cm beside: alone it could be the first, pushed aside.
+        let seen_again = tomato([0.302, -0.022, 0.081], 278.0);
+        assert!(is_left(&seen_again, &[]));
+        assert!(!is_left(&seen_again, &[&second]));
+        // The first one, left where it was or pushed a little, is found beside the second.
+        assert!(is_left(&tomato([0.301, -0.099, 0.08], 201.0), &[&second]));
+        assert!(is_left(&tomato([0.3, -0.13, 0.08], 170.0), &[&second]));
+        // In the hand it is high and elsewhere in the images.
+        assert!(!is_left(&tomato([0.3, -0.1, 0.18], 290.0), &[]));
+    }
 }

@@ -80,6 +80,13 @@ impl Running<'_> {
     }
 }
 
+fn one_eye_only(lower: &str, eye: &str, why: &str) -> String {
+    format!(
+        "the {lower} is seen by the {eye} eye only ({why}): look for what is in front of the other one, or put the \
+         {lower} nearer to the middle"
+    )
+}
+
 /// The thing of that class nearest to a place, else the one that is seen best.
 fn nearest(seen: &[Seen], class: &str, near_m: Option<[f64; 2]>) -> Result<usize, End> {
     let not_seen = |why: String| End::Failed(Failure::NotSeen, why);
@@ -98,7 +105,53 @@ fn nearest(seen: &[Seen], class: &str, near_m: Option<[f64; 2]>) -> Result<usize
     };
     chosen.ok_or_else(|| match of_class().next() {
         None => not_seen(format!("no {lower} is seen: put it where both eyes see it")),
-        Some((_, Seen { place: Err(why), .. })) => not_seen(format!("the {lower} has no place: {why}")),
+        Some((_, Seen { place: Err(why), boxes_px, .. })) => not_seen(match boxes_px {
+            [Some(_), None] => one_eye_only(&lower, "left", why),
+            [None, Some(_)] => one_eye_only(&lower, "right", why),
+            _ => format!("the {lower} has no place: {why}"),
+        }),
         Some(_) => not_seen(format!("no {lower} is seen near the place that was chosen")),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tomato(place: Result<[f64; 3], &str>, boxes_px: [Option<[f32; 4]>; 2]) -> Seen {
+        let place = place.map_err(str::to_owned);
+        let place = place.map(|point_m| SeenPlace { point_m, covariance_m2: Matrix3::identity() * 1e-6 });
+        Seen { class: "Tomato".to_owned(), confidence: 0.9, boxes_px, place }
+    }
+
+    const BOX: Option<[f32; 4]> = Some([10.0, 10.0, 50.0, 50.0]);
+
+    fn why(end: End) -> String {
+        match end {
+            End::Refused(why) | End::Failed(_, why) => why,
+        }
+    }
+
+    #[test]
+    fn of_two_the_one_that_was_pointed_at_is_taken_and_else_the_one_that_is_seen_best() {
+        let seen = [tomato(Ok([0.3, -0.1, 0.08]), [BOX; 2]), tomato(Ok([0.36, 0.0, 0.08]), [BOX; 2])];
+        let index = |near_m| nearest(&seen, "Tomato", near_m).map_err(why);
+        assert_eq!(index(Some([0.37, 0.01])), Ok(1));
+        assert_eq!(index(Some([0.29, -0.12])), Ok(0));
+        assert_eq!(index(None), Ok(0));
+        assert!(index(Some([0.2, 0.3])).is_err_and(|why| why.contains("near the place that was chosen")));
+    }
+
+    #[test]
+    fn what_one_eye_alone_sees_is_refused_with_the_name_of_that_eye() {
+        for (boxes_px, words) in [
+            ([BOX, None], "by the left eye only (hidden)"),
+            ([None, BOX], "by the right eye only (hidden)"),
+            ([BOX, BOX], "has no place: hidden"),
+        ] {
+            let seen = [tomato(Err("hidden"), boxes_px)];
+            let why = nearest(&seen, "tomato", None).map_err(why).expect_err("it has no place");
+            assert!(why.contains(words), "{why}");
+        }
+    }
 }

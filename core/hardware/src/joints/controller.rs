@@ -13,6 +13,7 @@ use plumbline_model::robot::{JointIndex, Posture, Rig};
 use super::chains::Chains;
 use super::command::{MoveId, MoveOutcome, Setpoint};
 use super::exchange::Exchange;
+use super::grip::Gripping;
 use super::guard::{FloorGuard, Guard};
 use super::limiter::Limiter;
 use super::options::ArmOptions;
@@ -47,6 +48,8 @@ pub(super) struct Controller {
     voiceless: Vec<JointIndex>,
     pub(super) options: ArmOptions,
     pub(super) mode: Mode,
+    /// Fingers that hold something, or close to.
+    pub(super) grips: Vec<Gripping>,
     /// Goals as commanded last; joints without a goal as measured.
     pub(super) commanded: Option<Posture>,
     stop_seen: bool,
@@ -79,6 +82,7 @@ impl Controller {
             limiter: Limiter { rig, guards },
             options,
             mode: Mode::Hold(HoldReason::Connected),
+            grips: vec![],
             commanded: None,
             stop_seen: false,
             behind_since: vec![None; n],
@@ -186,7 +190,9 @@ impl Controller {
         self.take_setpoint(setpoint());
         self.watch(now);
         self.advance(now, dt_s);
+        self.advance_grips(dt_s);
         self.send()?;
+        self.exchange.set_forces(self.options.write_window)?;
         self.rate.last_cycle = self.exchange.bus.wire().since(&wire_before);
         Ok(())
     }
@@ -199,6 +205,7 @@ impl Controller {
         // An answer on its way would collide with the hold, and tells where the joint is; one bulk
         // read lasts 4 ms.
         self.exchange.take_late(Duration::from_millis(5))?;
+        self.grips.clear();
         self.hold(HoldReason::Stop);
         self.send()
     }

@@ -14,6 +14,7 @@ use super::chains::Chains;
 use super::command::{Motion, Move, MoveId, MoveOutcome, Setpoint};
 use super::controller::Controller;
 use super::exchange::{Exchange, Silence};
+use super::grip::Grip;
 use super::limiter::Limiter;
 use super::options::ArmOptions;
 use super::reading::JointState;
@@ -203,6 +204,16 @@ impl ArmDriver {
         if let Some((_, setpoint)) = lock(&self.shared.setpoint).as_mut() {
             setpoint.valid_for = Duration::ZERO;
         }
+    }
+
+    /// Lets fingers close, and press on what they meet from then on, while the arm moves and while it
+    /// stands, until they are moved otherwise. STOP makes them press no farther than they do. That it is
+    /// refused stands in [`JointState::refusal`].
+    ///
+    /// # Errors
+    /// When too much waits, or the driver ended.
+    pub fn grip(&self, grip: Grip) -> Result<(), Refusal> {
+        self.request(Request::Grip(grip))
     }
 
     /// Lets the arm hold where it is. For emergencies use the stop, which does not queue.

@@ -101,6 +101,12 @@ impl Limiter {
         Ok(duration_s.max(SHORTEST_S))
     }
 
+    /// Checks the goal of a joint, with the others where they are.
+    pub fn goal(&self, joint: JointIndex, goal_rad: f64, others: &Posture) -> Result<(), Refusal> {
+        self.known(joint, goal_rad)?;
+        self.position(joint, &others.with(&[joint], &[goal_rad]))
+    }
+
     /// Checks the numbers of a setpoint.
     pub fn setpoint(&self, setpoint: &Setpoint) -> Result<(), Refusal> {
         let limit_rad_s = self.rig.gate.speed_rad_s;

@@ -14,6 +14,8 @@
 //! - [`Heartbeat`] and the deadline of a [`Setpoint`] make the arm hold when nobody is there.
 //! - A [`Refusal`] says which joint, which limit and by how much; nothing is clamped in silence.
 //!   Where a joint stays behind, the whole move waits for it.
+//! - What a [`Grip`] holds is pressed with a limited force, and goals of its fingers go on with them, within
+//!   the same step.
 //! - Holding means that what moved is told to stay at its present angle. A loaded joint hangs a
 //!   little below its goal, and settles by as much again; what stood keeps its goal.
 
@@ -23,6 +25,7 @@ mod controller;
 mod driver;
 mod exchange;
 mod goals;
+mod grip;
 mod guard;
 mod limiter;
 mod motion;
@@ -48,6 +51,7 @@ mod tests;
 pub use chains::Chains;
 pub use command::{Motion, Move, MoveId, MoveOutcome, Pace, Setpoint, SetpointKind};
 pub use driver::{ArmDriver, expected_servos};
+pub use grip::Grip;
 pub use guard::{FloorGuard, Guard};
 pub use options::{ArmOptions, OnState};
 pub use reading::{BusStatistics, JointReading, JointState};

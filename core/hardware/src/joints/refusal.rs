@@ -126,6 +126,16 @@ pub enum Refusal {
         /// Its name.
         unknown_name: String,
     },
+    /// It does not take a limit of its torque.
+    #[error("the servo of {name} does not take a limit of {:.0} % of its torque, so it does not grip: look at its cable, then take hold of it anew (torque off and on)", .share * 1e2)]
+    Force {
+        /// The joint.
+        joint: JointIndex,
+        /// Its name.
+        name: String,
+        /// Asked for.
+        share: f64,
+    },
     /// It is not who the rig says.
     #[error("the servo of {name} (id {servo}) is not used: {why}")]
     Barred {

@@ -46,6 +46,7 @@ impl Controller {
         let motion = match &self.mode {
             Mode::Hold(_) if all_silent && self.gone.is_none() => Motion::Unknown,
             Mode::Hold(_) if limp && self.gone.is_none() => Motion::Limp,
+            Mode::Hold(_) if self.is_closing() && self.gone.is_none() => Motion::Following,
             Mode::Hold(reason) => Motion::Holding(reason.clone()),
             Mode::Move { id, line, fraction, .. } => {
                 let remaining =

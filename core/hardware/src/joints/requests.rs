@@ -9,6 +9,7 @@ use plumbline_model::robot::{JointIndex, Posture};
 use super::command::{Move, MoveId, MoveOutcome, Setpoint};
 use super::controller::{Controller, Mode};
 use super::driver::expected_servos;
+use super::grip::Grip;
 use super::refusal::{HoldReason, Refusal};
 use super::slot::{Bar, Identity, Slot};
 use super::torque::{barred, unknown};
@@ -19,6 +20,7 @@ use crate::dynamixel::{BusError, BusScan, ScanRange};
 #[derive(Clone, Debug)]
 pub(super) enum Request {
     Move(MoveId, Move),
+    Grip(Grip),
     Hold,
     Torque { joints: Vec<JointIndex>, on: bool },
     Scan(ScanRange),
@@ -47,9 +49,15 @@ impl Controller {
                 self.exchange.shorten_return_delays(self.options.return_delay.as_secs_f64())?;
             }
             Request::Torque { joints, on } => self.switch_torque(&joints, on)?,
+            Request::Grip(grip) => {
+                if let Err(refusal) = self.begin_grip(&grip) {
+                    self.refuse(refusal);
+                }
+            }
             Request::Move(id, wanted) => match self.begin_move(&wanted) {
                 Ok(line) => {
                     self.stay(MoveOutcome::Replaced, HoldReason::Asked);
+                    self.end_grip(&line.joints);
                     self.mode = Mode::Move { id, line, fraction: 0.0, arrived_at: None };
                 }
                 Err(refusal) => self.refuse_request(&Request::Move(id, wanted), refusal),
@@ -61,6 +69,7 @@ impl Controller {
     fn switch_torque(&mut self, joints: &[JointIndex], on: bool) -> Result<(), BusError> {
         // A moving joint that goes limp, or a limp one that holds, ends the motion.
         self.stay(MoveOutcome::Replaced, HoldReason::Asked);
+        self.grips.retain(|grip| !(joints.is_empty() || joints.contains(&grip.joint)));
         let hot_c = self.limiter.rig.gate.hot_c;
         for i in 0..self.exchange.slots.len() {
             let slot = &self.exchange.slots[i];
@@ -106,7 +115,7 @@ impl Controller {
 
     /// Whether these joints may move at all; where they are commanded to be, and where they are. A
     /// joint that hangs farther from its goal than one step sets out from where it is.
-    fn may_move(&mut self, joints: &[JointIndex]) -> Result<(Posture, Posture), Refusal> {
+    pub(super) fn may_move(&mut self, joints: &[JointIndex]) -> Result<(Posture, Posture), Refusal> {
         if self.options.stop.is_pressed() {
             return Err(Refusal::Stopped);
         }
@@ -170,6 +179,7 @@ impl Controller {
                 if matches!(self.mode, Mode::Move { .. }) {
                     self.stay(MoveOutcome::Replaced, HoldReason::Asked);
                 }
+                self.end_grip(&joints);
                 self.mode = Mode::Follow { given_at, setpoint, speeds_rad_s };
             }
         }

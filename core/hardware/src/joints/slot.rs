@@ -39,6 +39,15 @@ pub(super) enum Bar {
     Doubled,
 }
 
+/// What a servo's limit of torque is to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Force {
+    /// This share of its stall torque.
+    Limited(f64),
+    /// What its own memory says.
+    Own,
+}
+
 /// A servo, what is known of it, and how it answers.
 #[derive(Clone, Debug)]
 pub(super) struct Slot {
@@ -71,6 +80,10 @@ pub(super) struct Slot {
     pub hold_pending: bool,
     /// Its goal is written though its register holds it already.
     pub insist: bool,
+    /// What its limit of torque is to be; `None`: as it is.
+    pub force: Option<Force>,
+    /// How often it was told so.
+    pub force_tries: u32,
     /// Wait before its answers, s, when it is longer than it needs to be.
     pub slow_answers_s: Option<f64>,
     pub reads_singly: bool,
@@ -102,6 +115,8 @@ impl Slot {
             goal: None,
             hold_pending: false,
             insist: false,
+            force: None,
+            force_tries: 0,
             slow_answers_s: None,
             reads_singly,
             no_bulk: 0,
@@ -189,6 +204,9 @@ impl Slot {
             self.torque_lost = true;
         }
         self.in_hand &= holds;
+        if !holds {
+            self.force = None;
+        }
         if std::mem::take(&mut self.found_at_start) && holds {
             self.in_hand = true;
             self.reading.goal_rad = self.goal_rad();
@@ -220,7 +238,7 @@ impl Slot {
         self.let_go |= self.in_hand;
         (self.silent, self.in_hand, self.verify) = (true, false, true);
         (self.torque_lost, self.alarm, self.hold_pending, self.insist) = (false, false, false, false);
-        (self.goal, self.ticks) = (None, None);
+        (self.goal, self.ticks, self.force) = (None, None, None);
         if self.identity == Identity::Right {
             self.identity = Identity::Unknown;
         }

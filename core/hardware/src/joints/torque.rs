@@ -15,6 +15,8 @@ const ATTEMPTS: u32 = 4;
 /// its own length: a late answer is never taken for one to another question.
 const RETURN_DELAY_BYTES: u16 = 4;
 const MAX_TORQUE_BYTES: u16 = 5;
+/// Who may use less than this share of its torque is given what its memory allows when it is taken hold of.
+const FULL_FORCE: f64 = 0.95;
 
 impl Exchange {
     /// Switches torque. Switched on, a servo holds where it is; one that shut down after an overload
@@ -72,7 +74,7 @@ impl Exchange {
             if self.try_take_hold(i)? {
                 let slot = &mut self.slots[i];
                 (slot.in_hand, slot.torque_lost, slot.let_go, slot.verify) = (true, false, false, false);
-                (slot.hold_pending, slot.insist) = (false, false);
+                (slot.hold_pending, slot.insist, slot.force) = (false, false, None);
                 slot.reading.goal_rad = slot.goal_rad();
                 return Ok(None);
             }
@@ -93,11 +95,11 @@ impl Exchange {
         };
         let Ok(goal) = slot.unit.goal_ticks(angle_rad) else { return Ok(false) };
         let bytes = slot.unit.goal_bytes(goal, self.speed_rad_s);
-        let had_no_force = slot.has_no_force();
+        let lacks_force = slot.reading.force.is_some_and(|share| share < FULL_FORCE);
         if !self.bus.write_once(id, address, &bytes)? || !self.bus.write_once(id, torque.address, &[1])? {
             return Ok(false);
         }
-        if had_no_force {
+        if lacks_force {
             self.restore_force(i)?;
         }
         self.read_block(i)?;
@@ -105,11 +107,12 @@ impl Exchange {
         Ok(slot.reading.torque_on == Some(true) && slot.goal == Some(goal) && !slot.has_no_force())
     }
 
-    /// After an overload shutdown a servo's torque limit is zero; its largest torque is what it had
-    /// before (MX-64 manual, "Torque Limit": the value after power-on is that of "Max Torque").
-    fn restore_force(&mut self, i: usize) -> Result<(), BusError> {
+    /// After an overload shutdown a servo's torque limit is zero, and after a grip it may be small; its
+    /// largest torque is what it had before (MX-64 manual, "Torque Limit": the value after power-on is
+    /// that of "Max Torque"). Returns whether the servo confirmed it.
+    pub(super) fn restore_force(&mut self, i: usize) -> Result<bool, BusError> {
         let table = self.slots[i].unit.table;
-        let Some(limit) = table.register(Item::TorqueLimit).copied() else { return Ok(()) };
+        let Some(limit) = table.register(Item::TorqueLimit).copied() else { return Ok(true) };
         let id = self.slots[i].unit.id();
         let raw = match table.register(Item::MaxTorque).copied() {
             Some(most) => {
@@ -119,10 +122,10 @@ impl Exchange {
             // A model without that register: all it can.
             None => limit.raw(1.0).or(Some(FULL)),
         };
-        if let Some(raw) = raw {
-            self.bus.write_once(id, limit.address, &limit.bytes(raw))?;
+        match raw {
+            Some(raw) => self.bus.write_once(id, limit.address, &limit.bytes(raw)),
+            None => Ok(true),
         }
-        Ok(())
     }
 
     /// Reads the cycle's block of one servo, with patience.

@@ -11,10 +11,12 @@ use super::refusal::{HoldReason, Refusal};
 impl Controller {
     /// Ends a motion that must not go on.
     pub(super) fn watch(&mut self, now: Instant) {
-        let moving = self.moving();
+        let mut moving = self.moving();
         if moving.is_empty() {
             return;
         }
+        // What is carried is as good as its fingers.
+        moving.extend(self.grips.iter().map(|grip| grip.joint));
         if let Some(age) = self.heartbeat_age().filter(|age| *age > self.options.heartbeat_timeout) {
             let reason = HoldReason::NoHeartbeat(age);
             return self.stay(MoveOutcome::Held(reason.clone()), reason);

@@ -3,6 +3,7 @@
 
 mod chain;
 mod faults;
+mod gripping;
 mod killed;
 mod limits;
 mod moving;

@@ -300,6 +300,7 @@ fn accept(
         effects,
         screens: vec![placed.clone()],
         externals: vec![],
+        eyes: vec![],
         replaces: true,
         at: jiff::Timestamp::now(),
         sentence,

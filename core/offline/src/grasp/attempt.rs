@@ -21,8 +21,30 @@ use crate::OfflineError;
 /// Since the eyes were switched on, s: they have warmed up, as in the published experiment.
 const WARM_S: f64 = 1800.0;
 
-/// Does something before a move, or ends it.
-pub(super) type Disturb<'a> = dyn FnMut(Step, &mut Lockstep) -> Result<(), Halt> + 'a;
+/// Somebody who interferes with an attempt.
+pub(super) trait Meddler {
+    /// The twin before it begins.
+    fn before(&mut self, _twin: &mut Lockstep) {}
+
+    /// Does something before a move, or ends it.
+    fn moves(&mut self, _step: Step, _twin: &mut Lockstep) -> Result<(), Halt> {
+        Ok(())
+    }
+
+    /// Changes what the eyes have seen.
+    fn sees(&mut self, _step: Step, _sight: &mut Sight) {}
+}
+
+/// Who does something before moves only.
+impl<F: FnMut(Step, &mut Lockstep) -> Result<(), Halt>> Meddler for F {
+    fn moves(&mut self, step: Step, twin: &mut Lockstep) -> Result<(), Halt> {
+        self(step, twin)
+    }
+}
+
+struct Nobody;
+
+impl Meddler for Nobody {}
 
 /// What attempts of one twin share.
 pub(super) struct Bench {
@@ -65,22 +87,23 @@ impl Bench {
     /// Carries out one attempt in a world of its own, whose clock begins in 1970: two runs of the same
     /// attempt are the same file.
     pub fn attempt(&mut self, task: &Task) -> Result<(Record, Judged), OfflineError> {
-        self.attempt_disturbed(task, &mut |_, _| Ok(()))
+        self.attempt_disturbed(task, &mut Nobody)
     }
 
-    /// The same, with somebody who may do something before each move, or end it.
+    /// The same, with somebody who interferes.
     pub fn attempt_disturbed(
         &mut self,
         task: &Task,
-        disturb: &mut Disturb<'_>,
+        meddler: &mut dyn Meddler,
     ) -> Result<(Record, Judged), OfflineError> {
         let mut twin =
             Lockstep::new(self.rig.clone(), &self.scenario, task.seed)?.with_eyes(self.eyes.take());
         twin.advance_warm_up(WARM_S);
         let mut body = TwinBody::new(twin, task.toy, task.at_m)?;
+        meddler.before(body.twin());
         let judge = Rc::new(RefCell::new(Judge::new(body.twin(), task.toy, &self.rig)));
         let step = Rc::new(RefCell::new(Step::Ready));
-        let mut watched = Watched { body: &mut body, judge: judge.clone(), step: step.clone(), disturb };
+        let mut watched = Watched { body: &mut body, judge: judge.clone(), step: step.clone(), meddler };
         let mut watch = Steps(step);
         let record = self.grasper.attempt(&mut watched, &task.order, jiff::Timestamp::UNIX_EPOCH, &mut watch);
         let judged = judge.borrow().judge(body.twin(), &record);
@@ -105,14 +128,14 @@ impl Watch for Steps {
 }
 
 /// A body with a judge at its side, who looks at it and is not seen.
-struct Watched<'a, 'b> {
+struct Watched<'a> {
     body: &'a mut TwinBody,
     judge: Rc<RefCell<Judge>>,
     step: Rc<RefCell<Step>>,
-    disturb: &'a mut Disturb<'b>,
+    meddler: &'a mut dyn Meddler,
 }
 
-impl Body for Watched<'_, '_> {
+impl Body for Watched<'_> {
     fn rig(&self) -> &Arc<Rig> {
         self.body.rig()
     }
@@ -131,7 +154,7 @@ impl Body for Watched<'_, '_> {
 
     fn follow(&mut self, way: &[Posture], speed_rad_s: f64) -> Result<(), Halt> {
         let step = *self.step.borrow();
-        (self.disturb)(step, self.body.twin())?;
+        self.meddler.moves(step, self.body.twin())?;
         self.body.follow(way, speed_rad_s)?;
         if *self.step.borrow() == Step::Lower {
             self.judge.borrow_mut().closing(self.body.twin());
@@ -148,9 +171,12 @@ impl Body for Watched<'_, '_> {
     }
 
     fn look(&mut self) -> Result<Sight, Halt> {
-        if *self.step.borrow() == Step::Align {
+        let step = *self.step.borrow();
+        if step == Step::Align {
             self.judge.borrow_mut().aligned(self.body.twin());
         }
-        self.body.look()
+        let mut sight = self.body.look()?;
+        self.meddler.sees(step, &mut sight);
+        Ok(sight)
     }
 }

@@ -1,6 +1,8 @@
 //! Grasps on the twin: one, and the whole experiment.
 
 mod attempt;
+#[cfg(test)]
+mod bad_inputs;
 mod body;
 mod judge;
 mod lab;

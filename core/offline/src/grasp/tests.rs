@@ -15,6 +15,11 @@ use super::attempt::{Bench, Task};
 use super::trials::{Experiment, begin, carry_out, conclude};
 
 fn bench(scenario: &str) -> Bench {
+    bench_of(Scenario::built_in(scenario).expect("valid"))
+}
+
+/// With nothing learned.
+pub(super) fn bench_of(scenario: Scenario) -> Bench {
     let rig = Arc::new(Rig::built_in("nico").expect("valid"));
     let knowledge = Knowledge {
         model: RobotModel::nominal(rig.clone()),
@@ -23,15 +28,15 @@ fn bench(scenario: &str) -> Bench {
         corrections: Corrections::default(),
     };
     let finder = Box::new(RenderedHand::of_rig(&rig, "right_palm_center").expect("a hand"));
-    Bench::new(rig, Scenario::built_in(scenario).expect("valid"), knowledge, Some(finder)).expect("a bench")
+    Bench::new(rig, scenario, knowledge, Some(finder)).expect("a bench")
 }
 
-fn task(method: Method, toy: Toy, at_m: [f64; 2]) -> Task {
+pub(super) fn task(method: Method, toy: Toy, at_m: [f64; 2]) -> Task {
     let order = Order { method, object: toy.name().to_owned(), near_m: None };
     Task { order, toy, at_m, seed: 1 }
 }
 
-fn failure(record: &Record) -> Option<Failure> {
+pub(super) fn failure(record: &Record) -> Option<Failure> {
     match record.outcome {
         Some(Outcome::Failed { failure, .. }) => Some(failure),
         _ => None,

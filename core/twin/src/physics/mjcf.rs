@@ -303,7 +303,7 @@ impl Writer<'_> {
                 self.text,
                 r#"    <body name="toy.{name}" pos="0 0 -1"><freejoint name="toy.{name}"/>"#
             );
-            let mass_kg = toy.mass_kg();
+            let mass_kg = toy.mass_kg() * self.scenario.contact.toy_mass;
             // A hollow ball of its size.
             let moment = 2.0 / 3.0 * mass_kg * toy.radius_m().powi(2);
             let low = if toy == Toy::Duck { -0.006 } else { 0.0 };

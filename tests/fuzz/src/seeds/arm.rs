@@ -162,6 +162,7 @@ fn rig_model(rig: &Rig, session: &Session) -> Result<RigModel, Problem> {
         effects: vec![effect("joint-zero", "r_elbow_y", vec![0.03])],
         screens: vec![PlacedScreen::moved("session", screen, &moved)],
         externals: vec![],
+        eyes: vec![],
         replaces: true,
         at: Timestamp::from_second(1_770_000_100)?,
         sentence: "made up".to_owned(),

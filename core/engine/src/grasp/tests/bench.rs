@@ -1,9 +1,11 @@
 //! An engine with a twin, driven as the window drives it.
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use plumbline_twin::Toy;
+use tempfile::TempDir;
 
 use crate::command::{Command, GraspCommand, RobotCommand, TwinCommand};
 use crate::engine::Engine;
@@ -12,23 +14,38 @@ use crate::view::{GraspOutcome, GraspPhase, GraspRun, GraspStep, LampState, Sour
 
 /// Beside other tests the physics of the twin is slower than its clock.
 const PATIENCE: Duration = Duration::from_secs(120);
+/// What is higher than this stands on no table and no screen, robot frame, m.
+const LIFTED_Z_M: f64 = 0.11;
 
 pub struct Bench {
     engine: Engine,
-    pub folder: tempfile::TempDir,
+    pub folder: PathBuf,
+    /// Goes after the engine has ended.
+    _temporary: Option<TempDir>,
 }
 
 impl Bench {
     /// A twin with one toy on its table, whose eyes are open and whose joints hold; `None` where eyes
     /// cannot be rendered.
     pub fn start(scenario: &str, toy: Toy, at_m: [f64; 2]) -> Option<Self> {
-        let folder = tempfile::tempdir().expect("a temporary folder");
+        Self::start_in(tempfile::tempdir().expect("a temporary folder"), scenario, toy, at_m)
+    }
+
+    /// The same with the data of a folder: what was calibrated in it is known.
+    pub fn start_in(folder: TempDir, scenario: &str, toy: Toy, at_m: [f64; 2]) -> Option<Self> {
+        let bench = Self::start_at(folder.path(), scenario, toy, at_m)?;
+        Some(Self { _temporary: Some(folder), ..bench })
+    }
+
+    /// The same with the data of a folder that stays.
+    pub fn start_at(folder: &Path, scenario: &str, toy: Toy, at_m: [f64; 2]) -> Option<Self> {
         let settings = EngineSettings {
-            data_dir: Some(folder.path().to_owned()),
+            data_dir: Some(folder.to_owned()),
             twin: Some(scenario.to_owned()),
             source: None,
         };
-        let bench = Self { engine: Engine::start(settings, Arc::new(|| {})), folder };
+        let engine = Engine::start(settings, Arc::new(|| {}));
+        let bench = Self { engine, folder: folder.to_owned(), _temporary: None };
         bench.until("the twin is connected", |view| view.robot.measured.is_some() && view.twin.running);
         // A busy machine starts it so slowly that STOP may have been pressed.
         bench.send(RobotCommand::ReleaseStop);
@@ -90,6 +107,12 @@ impl Bench {
         })
     }
 
+    /// Lets what was put somewhere come to rest.
+    pub fn settle(&self) {
+        let began = Instant::now();
+        self.until("rest", |_| began.elapsed() > Duration::from_millis(1500));
+    }
+
     /// Until nothing is under way.
     pub fn until_idle(&self) -> Arc<View> {
         self.until("the end", |view| view.grasp.phase == GraspPhase::Idle)
@@ -102,6 +125,17 @@ impl Bench {
         let view = self.until_idle();
         view.grasp.run.clone().expect("there was one")
     }
+}
+
+/// Where the middle of a toy really is, robot frame, m, for judging; `None`: put away.
+pub fn truly_at_m(view: &View, toy: Toy) -> Option<[f64; 3]> {
+    let known = view.twin.toys.iter().find(|known| known.name == toy.name())?;
+    known.place.map(|place| place.coords.coords.into())
+}
+
+/// Whether a toy is really off the table by more than its size: what stands on it does not get there.
+pub fn is_truly_lifted(view: &View, toy: Toy) -> bool {
+    truly_at_m(view, toy).is_some_and(|[.., z_m]| z_m > LIFTED_Z_M)
 }
 
 pub fn words(outcome: Option<&GraspOutcome>) -> String {

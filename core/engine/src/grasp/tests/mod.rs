@@ -2,6 +2,8 @@
 //! as they are rendered.
 #![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
 
+mod bad;
 mod bench;
+mod lab;
 mod refusals;
 mod twin;

@@ -13,7 +13,7 @@ const EASY_M: [f64; 2] = [0.32, -0.15];
 
 /// What was kept of the newest attempt.
 fn kept(bench: &Bench) -> Record {
-    let grasps = bench.folder.path().join("twin/grasps");
+    let grasps = bench.folder.join("twin/grasps");
     let mut folders: Vec<_> =
         std::fs::read_dir(grasps).expect("attempts were kept").flatten().map(|entry| entry.path()).collect();
     folders.sort();

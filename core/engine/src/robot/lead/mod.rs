@@ -122,7 +122,10 @@ impl Worker {
         match stepped {
             Ok(false) => self.leading.doing = Some(doing),
             Ok(true) => led.tell(LeadAnswer::Done),
-            Err(why) => self.give_up(why),
+            Err(why) => {
+                self.leading.doing = Some(doing);
+                self.give_up(why);
+            }
         }
     }
 
@@ -139,9 +142,7 @@ impl Worker {
                 led.tell(LeadAnswer::Done);
             }
             LeadOrder::Hold => {
-                if self.leading.doing.take().is_some() {
-                    let _ = self.arm().map(|arm| arm.hold());
-                }
+                self.break_off();
                 led.tell(LeadAnswer::Done);
             }
             LeadOrder::State => {
@@ -173,10 +174,22 @@ impl Worker {
         if is_stopped { Err(GivenUp::Stopped) } else { Ok(state) }
     }
 
+    /// What is done ends where it is: the arm holds, and fingers that close stand. Whether anything was.
+    fn break_off(&mut self) -> bool {
+        let Some(doing) = self.leading.doing.take() else { return false };
+        let state = self.state_that_may_move();
+        if let (Doing::Closing(closing), Ok(state)) = (&doing, &state) {
+            let _ = closing.stand(self, state);
+        }
+        let _ = self.arm().map(|arm| arm.hold());
+        true
+    }
+
     /// The order under way ends; the arm holds where it is.
     fn give_up(&mut self, why: GivenUp) {
-        self.leading.doing = None;
-        let _ = self.arm().map(|arm| arm.hold());
+        if !self.break_off() {
+            let _ = self.arm().map(|arm| arm.hold());
+        }
         if let Some(led) = &self.leading.led {
             led.tell(LeadAnswer::GivenUp(why));
         }
@@ -184,9 +197,7 @@ impl Worker {
 
     /// Nobody leads any more: by himself, or because he failed.
     fn leader_is_gone(&mut self) {
-        if self.leading.doing.take().is_some() {
-            let _ = self.arm().map(|arm| arm.hold());
-        }
+        self.break_off();
         self.leading.led = None;
         self.paths.allow(vec![]);
     }

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::joints::{
-    BusStatistics, HoldReason, JointReading, JointState, Motion, Move, MoveId, MoveOutcome, Refusal,
+    BusStatistics, Grip, HoldReason, JointReading, JointState, Motion, Move, MoveId, MoveOutcome, Refusal,
     ScreenGone, Setpoint, Touch, TouchSource,
 };
 use plumbline_model::robot::{Chain, JointIndex, Posture, Rig};
@@ -151,6 +151,10 @@ impl Arm for FakeArm {
         made.followed.push(posture);
         made.asked.push(Asked::Follow(setpoint));
         Ok(())
+    }
+
+    fn grip(&self, _grip: Grip) -> Result<(), Refusal> {
+        unreachable!("touches grip nothing")
     }
 
     fn hold(&self) -> Result<(), Refusal> {

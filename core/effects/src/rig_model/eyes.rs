@@ -1,0 +1,147 @@
+//! With which eyes effects on the eyes were found. A mount or lenses that are calibrated anew hold what
+//! such an effect had to explain: in force beside them, it would count twice.
+
+use std::sync::Arc;
+
+use plumbline_model::robot::Rig;
+
+use super::{ModelEffect, RigModel};
+use crate::library::Kind;
+
+/// Numbers of eyes that differ by less are the same, m, rad or px: a file keeps them to the last digits.
+const SAME: f64 = 1e-9;
+
+/// What tells eyes from others: how they sit in the head and to each other, and their lenses.
+pub fn numbers_of_eyes(rig: &Rig) -> Vec<f64> {
+    let eyes = &rig.eyes;
+    let pose = |at: &nalgebra::Isometry3<f64>| {
+        let (shift, turn) = (at.translation.vector, at.rotation.scaled_axis());
+        [shift.x, shift.y, shift.z, turn.x, turn.y, turn.z]
+    };
+    let cameras = &eyes.cameras;
+    let lenses = [&cameras.left, &cameras.right].into_iter().flat_map(|camera| camera.model.parameters());
+    let places = [pose(&eyes.head_from_left.isometry), pose(&cameras.right_from_left.isometry)];
+    places.into_iter().flatten().chain(lenses).collect()
+}
+
+pub(super) fn are_same(a: &[f64], b: &[f64]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= SAME)
+}
+
+/// Whether an effect concerns the eyes.
+pub(super) fn is_of_eyes(effect: &ModelEffect) -> bool {
+    Kind::of_id(&effect.id).is_some_and(Kind::is_of_eyes)
+}
+
+impl RigModel {
+    /// Effects on the eyes that were found with other eyes than those of `rig` (its lenses and mount).
+    /// Where it is not known with which eyes they were found, there are none.
+    pub fn effects_of_other_eyes(&self, rig: &Rig) -> Vec<&ModelEffect> {
+        let known = &self.contents.eyes;
+        if known.is_empty() || are_same(known, &numbers_of_eyes(rig)) {
+            return vec![];
+        }
+        self.effects().iter().filter(|effect| is_of_eyes(effect)).collect()
+    }
+
+    /// The model for these eyes: without effects that were found with others.
+    #[must_use]
+    pub fn for_eyes_of(self: &Arc<Self>, rig: &Rig) -> Arc<Self> {
+        if self.effects_of_other_eyes(rig).is_empty() {
+            return self.clone();
+        }
+        let mut model = Self::clone(self);
+        model.contents.effects.retain(|effect| !is_of_eyes(effect));
+        Arc::new(model)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rig_model::Addition;
+
+    fn nico() -> Rig {
+        Rig::built_in("nico").expect("comes with the program")
+    }
+
+    fn effect(id: &str, site: &str, values: &[f64]) -> ModelEffect {
+        ModelEffect {
+            id: id.to_owned(),
+            site: site.to_owned(),
+            title: String::new(),
+            tip: Some("right_index_tip".to_owned()),
+            shape: None,
+            values: values.to_vec(),
+            covariance: vec![],
+            probability: None,
+            parameters: vec![],
+        }
+    }
+
+    fn addition(effects: Vec<ModelEffect>, rig: &Rig) -> Addition {
+        Addition {
+            effects,
+            screens: vec![],
+            externals: vec![],
+            eyes: numbers_of_eyes(rig),
+            replaces: false,
+            at: jiff::Timestamp::UNIX_EPOCH,
+            sentence: String::new(),
+            sessions: vec![],
+            version: String::new(),
+            gap: None,
+        }
+    }
+
+    fn ids(model: &RigModel) -> Vec<&str> {
+        model.effects().iter().map(|effect| effect.id.as_str()).collect()
+    }
+
+    #[test]
+    fn an_effect_on_the_eyes_is_in_force_with_the_eyes_it_was_found_with_and_with_no_others() {
+        let rig = nico();
+        let mut model = RigModel::nominal(&rig);
+        let found = vec![effect("joint-zero", "r_elbow_y", &[0.02]), effect("eye-yaw", "right", &[0.004])];
+        model.add(&rig, addition(found, &rig)).expect("they fit");
+        let model = Arc::new(model);
+        assert!(Arc::ptr_eq(&model, &model.for_eyes_of(&rig)));
+        let mut mounted = rig.clone();
+        mounted.eyes.head_from_left.isometry.translation.vector.x += 0.002;
+        let stale: Vec<&str> =
+            model.effects_of_other_eyes(&mounted).into_iter().map(|effect| effect.id.as_str()).collect();
+        assert_eq!(stale, ["eye-yaw"]);
+        assert_eq!(ids(&model.for_eyes_of(&mounted)), ["joint-zero"]);
+        // The old mount comes back: so does what was found with it.
+        assert_eq!(ids(&model.for_eyes_of(&rig)), ["joint-zero", "eye-yaw"]);
+        // A search with the new eyes takes its place, and does not add to it.
+        let mut next = RigModel::clone(&model);
+        next.add(&mounted, addition(vec![effect("eye-yaw", "right", &[0.001])], &mounted)).expect("it fits");
+        assert_eq!(ids(&next), ["joint-zero", "eye-yaw"]);
+        assert_eq!(next.effects()[1].values, [0.001]);
+        assert!(next.effects_of_other_eyes(&mounted).is_empty());
+    }
+
+    #[test]
+    fn where_it_is_not_known_with_which_eyes_they_were_found_they_stay() {
+        let rig = nico();
+        let mut model = RigModel::nominal(&rig);
+        let unknown = Addition { eyes: vec![], ..addition(vec![effect("eye-yaw", "right", &[0.004])], &rig) };
+        model.add(&rig, unknown).expect("it fits");
+        let mut mounted = rig.clone();
+        mounted.eyes.head_from_left.isometry.translation.vector.x += 0.002;
+        assert!(model.effects_of_other_eyes(&mounted).is_empty());
+    }
+
+    #[test]
+    fn the_file_keeps_with_which_eyes_they_were_found() {
+        let (rig, folder) = (nico(), tempfile::tempdir().expect("a temporary folder"));
+        let mut model = RigModel::nominal(&rig);
+        model.add(&rig, addition(vec![effect("eye-yaw", "right", &[0.004])], &rig)).expect("it fits");
+        let file = folder.path().join("rig-model.toml");
+        model.write(&file, &rig).expect("written");
+        let read = RigModel::read(&file, &rig).expect("readable");
+        assert_eq!(read, model);
+        assert!(read.effects_of_other_eyes(&rig).is_empty());
+    }
+}

@@ -1,0 +1,97 @@
+//! How something gets under way, and what follows when it has ended.
+
+use super::{GraspWorkflow, Running, What};
+use crate::grasp::around::GraspAround;
+use crate::grasp::attempt::Attempt;
+use crate::grasp::body::Ropes;
+use crate::grasp::command::GraspTarget;
+use crate::grasp::gates::{gates, shut};
+use crate::grasp::keeping::grasps_in;
+use crate::grasp::progress::Progress;
+use crate::grasp::refusal::Refusal;
+use crate::grasp::steps::HandWork;
+use crate::grasp::work::{Context, GraspWork};
+use crate::ground::jobs::JobId;
+use crate::robot::{Leader, Reins, RobotControl};
+
+impl GraspWorkflow {
+    pub(super) fn begin(
+        &mut self,
+        what: What,
+        around: &GraspAround,
+        context: &mut Context<'_>,
+    ) -> Result<(), Refusal> {
+        self.idle()?;
+        let needed = gates(around, &self.arm, self.method);
+        // A step of the hand needs neither eyes nor a method.
+        let of_arm = ["Robot", "STOP", "Arm"];
+        let needed: Vec<_> = needed
+            .into_iter()
+            .filter(|gate| !matches!(what, What::Hand(_)) || of_arm.contains(&gate.name))
+            .collect();
+        if let Some(gate) = shut(&needed) {
+            return Err(Refusal::Shut(gate.text.clone()));
+        }
+        let reins = Reins::default();
+        let title = match what {
+            What::Plan => "planning a grasp",
+            What::Grasp => "grasping",
+            What::Hand(_) => "a step of the hand",
+        };
+        let (leader, led) = Leader::pair(title, what != What::Plan, &reins);
+        let ropes = Ropes { leader, sights: self.sights.clone(), reins: reins.clone() };
+        context.control(RobotControl::Lead(led));
+        let job = match what {
+            What::Hand(step) => context.start(GraspWork::Hand(Box::new(HandWork {
+                step,
+                rests_on: around.rests_on(),
+                arm: self.arm.clone(),
+                ropes,
+                closed_at_m: self.closed_at_m,
+            }))),
+            What::Plan | What::Grasp => {
+                let attempt = Box::new(self.attempt(ropes, around, context));
+                context.start(match what {
+                    What::Plan => GraspWork::Plan(attempt),
+                    _ => GraspWork::Grasp(attempt),
+                })
+            }
+        };
+        self.running = Some(Running { job, what, reins, ending: false });
+        Ok(())
+    }
+
+    /// As it was chosen; what was planned for is what is grasped.
+    fn attempt(&mut self, ropes: Ropes, around: &GraspAround, context: &Context<'_>) -> Attempt {
+        let target = match &self.plan {
+            Some(plan) => GraspTarget { class: Some(plan.object.clone()), near_m: Some(plan.at_m) },
+            None => self.target.clone(),
+        };
+        let object = target.class.clone().unwrap_or_else(|| "what is seen best".to_owned());
+        let progress = Progress::new(self.method, &object);
+        self.progress = Some(progress.clone());
+        Attempt {
+            rests_on: around.rests_on(),
+            arm: self.arm.clone(),
+            method: self.method,
+            target,
+            ropes,
+            grasps: grasps_in(&self.folder),
+            at: context.time.day,
+            progress,
+        }
+    }
+
+    /// What is under way has ended; what was to be done then begins.
+    pub(super) fn ended(&mut self, id: JobId, around: &GraspAround, context: &mut Context<'_>) {
+        if self.running.as_ref().is_none_or(|running| running.job != id) {
+            return;
+        }
+        self.running = None;
+        if let Some(step) = self.then.take()
+            && let Err(why) = self.begin(What::Hand(step), around, context)
+        {
+            context.refuse(why);
+        }
+    }
+}

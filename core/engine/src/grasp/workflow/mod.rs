@@ -1,0 +1,138 @@
+//! What is grasped and how, what is under way, what became of attempts.
+
+mod beginning;
+mod commands;
+mod results;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use plumbline_grasp::Method;
+use plumbline_model::StereoFrame;
+
+use super::around::GraspAround;
+use super::command::{GraspCommand, GraspTarget, HandStep};
+use super::keeping::grasps_in;
+use super::progress::Progress;
+use super::sights::Sights;
+use super::view::{AttemptView, GraspView, PlannedGrasp};
+use super::work::{Context, GraspResult, GraspWork};
+use crate::ground::jobs::JobId;
+use crate::ground::notice::NoticeLevel;
+use crate::ground::{Moment, Workflow};
+use crate::robot::{Reins, RobotControl};
+
+/// What is under way.
+#[derive(Clone, Debug)]
+pub(in crate::grasp) struct Running {
+    pub job: JobId,
+    pub what: What,
+    pub reins: Reins,
+    pub ending: bool,
+}
+
+/// Of which kind it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::grasp) enum What {
+    Plan,
+    Grasp,
+    Hand(HandStep),
+}
+
+/// The whole workflow, of one world.
+#[derive(Clone, Debug)]
+pub struct GraspWorkflow {
+    folder: PathBuf,
+    pub(in crate::grasp) method: Method,
+    pub(in crate::grasp) arm: String,
+    pub(in crate::grasp) target: GraspTarget,
+    pub(in crate::grasp) running: Option<Running>,
+    /// What is done when what is under way has ended.
+    then: Option<HandStep>,
+    pub(in crate::grasp) plan: Option<Arc<PlannedGrasp>>,
+    /// The attempt under way, or the last one.
+    pub(in crate::grasp) progress: Option<Progress>,
+    /// What the operator said of it.
+    pub(in crate::grasp) attempts: Vec<AttemptView>,
+    sights: Sights,
+    /// Height of the palm when the hand closed last, m.
+    closed_at_m: Option<f64>,
+}
+
+impl GraspWorkflow {
+    /// Nothing grasped. Attempts are kept in `folder/grasps`.
+    pub fn new(folder: &Path) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            method: Method::M5,
+            arm: "right".to_owned(),
+            target: GraspTarget::default(),
+            running: None,
+            then: None,
+            plan: None,
+            progress: None,
+            attempts: vec![],
+            sights: Sights::default(),
+            closed_at_m: None,
+        }
+    }
+
+    /// A pair has come from the eyes.
+    pub fn saw(&self, frame: &StereoFrame) {
+        if self.running.is_some() {
+            self.sights.put(frame);
+        }
+    }
+}
+
+impl Workflow for GraspWorkflow {
+    type Command = GraspCommand;
+    type Work = GraspWork;
+    type Control = RobotControl;
+    type Around = GraspAround;
+    type View = GraspView;
+
+    fn new(folder: &Path) -> Self {
+        Self::new(folder)
+    }
+
+    fn view(&mut self, around: &GraspAround, _moment: &Moment) -> Arc<GraspView> {
+        Arc::new(self.shown(around))
+    }
+
+    fn restore(&mut self, _around: &GraspAround, context: &mut Context<'_>) {
+        context.start(GraspWork::Restore { grasps: grasps_in(&self.folder) });
+    }
+
+    fn apply(&mut self, command: GraspCommand, around: &GraspAround, context: &mut Context<'_>) {
+        if let Err(why) = self.obey(command, around, context) {
+            context.refuse(why);
+        }
+    }
+
+    fn work_done(&mut self, id: JobId, result: GraspResult, around: &GraspAround, context: &mut Context<'_>) {
+        let summary = result.summary();
+        match result {
+            GraspResult::Restored(attempts, problems) => {
+                self.attempts.extend(attempts);
+                for problem in problems {
+                    context.notices.add(NoticeLevel::Warning, crate::ground::text::sentence(&problem));
+                }
+            }
+            GraspResult::Planned(proposed) => self.planned(*proposed, context),
+            GraspResult::Grasped(attempt) => self.grasped(*attempt, &summary, context),
+            GraspResult::HandDone(_, done) => {
+                self.plan = None;
+                if done.is_err() {
+                    context.notices.add(NoticeLevel::Warning, summary);
+                }
+            }
+            GraspResult::Judged(attempt) => self.judged(*attempt),
+        }
+        self.ended(id, around, context);
+    }
+
+    fn work_ended(&mut self, id: JobId, _why: Option<&str>, around: &GraspAround, context: &mut Context<'_>) {
+        self.ended(id, around, context);
+    }
+}
