@@ -148,8 +148,10 @@ impl Body for Watched<'_, '_> {
     }
 
     fn look(&mut self) -> Result<Sight, Halt> {
-        if *self.step.borrow() == Step::Align {
-            self.judge.borrow_mut().aligned(self.body.twin());
+        match *self.step.borrow() {
+            Step::Look => self.judge.borrow_mut().looked(self.body.twin()),
+            Step::Align => self.judge.borrow_mut().aligned(self.body.twin()),
+            _ => {}
         }
         self.body.look()
     }
