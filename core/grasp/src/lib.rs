@@ -8,6 +8,7 @@ mod body;
 pub mod hand;
 mod knowledge;
 pub mod method;
+mod outline;
 mod places;
 pub mod plan;
 pub mod record;

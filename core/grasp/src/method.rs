@@ -53,6 +53,11 @@ impl Method {
         matches!(self, Self::M4 | Self::M5)
     }
 
+    /// Whether it tries once more when the hand came up empty. The published ones do not.
+    pub fn tries_again(self) -> bool {
+        self == Self::M5
+    }
+
     /// Whether it uses the effects that were named.
     pub fn knows_effects(self) -> bool {
         self == Self::M5

@@ -31,10 +31,12 @@ pub enum Step {
     Lift,
     /// Whether it is held.
     Check,
+    /// Back to where the arm was at first, to try once more.
+    Again,
 }
 
 impl Step {
-    /// All, in their order.
+    /// All of a try, in their order.
     pub const ALL: [Self; 9] = [
         Self::Ready,
         Self::Look,
@@ -59,6 +61,7 @@ impl Step {
             Self::Close => "Close",
             Self::Lift => "Lift",
             Self::Check => "Check",
+            Self::Again => "Again",
         }
     }
 }
@@ -131,6 +134,19 @@ pub struct Moment {
     pub load: Vec<Option<f64>>,
 }
 
+/// A try of the same grasp before the last one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Earlier {
+    /// What became of it.
+    pub outcome: Outcome,
+    /// From the beginning to the end of its lift, s of the robot's clock.
+    pub seconds: Option<f64>,
+    /// Its looks at the hand.
+    pub iterations: Vec<Iteration>,
+    /// How far the fingers were kept from where they were sent after its lift, rad.
+    pub fingers_open_rad: Option<f64>,
+}
+
 /// A grasp as it is kept.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
@@ -147,6 +163,9 @@ pub struct Record {
     /// The step that was begun last: where it came to, if there is no outcome.
     #[serde(default)]
     pub step: Option<Step>,
+    /// Tries before the last one, of which all the rest is; the moments are of all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub earlier: Vec<Earlier>,
     /// What was seen at first.
     pub seen: Vec<Seen>,
     /// The object that was chosen, by its place in `seen`.
@@ -185,6 +204,7 @@ impl Record {
             began,
             model,
             step: None,
+            earlier: vec![],
             seen: vec![],
             chosen: None,
             standing_m: None,

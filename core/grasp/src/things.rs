@@ -7,6 +7,8 @@ pub struct Thing {
     pub class: &'static str,
     /// Twice the height of its middle over what it stands on, m.
     pub height_m: f64,
+    /// How wide it is, m.
+    pub width_m: f64,
     /// Whether a hand from above can hold it.
     pub can_be_held: bool,
 }
@@ -14,12 +16,12 @@ pub struct Thing {
 /// The things of the published data set, measured on the toys of the twin: a plush tomato and plastic
 /// fruit of about that size.
 const THINGS: [Thing; 6] = [
-    Thing { class: "Tomato", height_m: 0.054, can_be_held: true },
-    Thing { class: "Mushroom", height_m: 0.040, can_be_held: true },
-    Thing { class: "Onion", height_m: 0.040, can_be_held: true },
-    Thing { class: "Orange", height_m: 0.036, can_be_held: true },
-    Thing { class: "Duck", height_m: 0.038, can_be_held: false },
-    Thing { class: "Banana", height_m: 0.030, can_be_held: false },
+    Thing { class: "Tomato", height_m: 0.054, width_m: 0.062, can_be_held: true },
+    Thing { class: "Mushroom", height_m: 0.040, width_m: 0.044, can_be_held: true },
+    Thing { class: "Onion", height_m: 0.040, width_m: 0.040, can_be_held: true },
+    Thing { class: "Orange", height_m: 0.036, width_m: 0.036, can_be_held: true },
+    Thing { class: "Duck", height_m: 0.038, width_m: 0.046, can_be_held: false },
+    Thing { class: "Banana", height_m: 0.030, width_m: 0.080, can_be_held: false },
 ];
 
 impl Thing {

@@ -1,8 +1,5 @@
-//! The hand is brought over the object by what the eyes see.
-//!
-//! M4 as published: the hand is detected, and the target is shifted by a share of what is missing that
-//! halves with every iteration. M5: the measured offset of the rendered hand updates what is known of
-//! the arm's error, weighted by how sure each is.
+//! The hand is brought over the object by what the eyes see. M4 as published: the hand is detected, and
+//! the target is shifted by a share of what is missing that halves with every iteration.
 
 use nalgebra::{Matrix3, Vector3};
 use plumbline_model::frame::Tip;
@@ -20,21 +17,10 @@ use crate::record::{Failure, Iteration, Step};
 const PUBLISHED_NEAR_M: f64 = 0.01;
 /// Looks at the hand, at most.
 const PUBLISHED_LOOKS: usize = 8;
-/// Ours: nearer than this it is lowered, m.
-const NEAR_M: f64 = 0.002;
-/// Looks at the hand, at most.
-const LOOKS: usize = 4;
 /// A shift of the target beyond this is no correction any more, m.
-const FARTHEST_M: f64 = 0.08;
-/// Hand and object together may be this uncertain over the table, m: about how far off a hand may be and
-/// still hold what it closes around (`tests/tolerance.rs`).
-const MOST_SIGMA_M: f64 = 0.010;
-/// Standard deviation per axis of what the named effects leave of an arm's error, m.
-const ARM_SIGMA_M: f64 = 0.004;
-/// The arm's error changes by this much from posture to posture of the same grasp, m per axis.
-const DRIFT_SIGMA_M: f64 = 0.0007;
+pub(super) const FARTHEST_M: f64 = 0.08;
 /// Between looks, rad/s.
-const SPEED_RAD_S: f64 = 0.5;
+pub(super) const SPEED_RAD_S: f64 = 0.5;
 
 /// A hand that was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,7 +64,7 @@ impl Running<'_> {
         before: &Sight,
     ) -> Result<GraspPlan, End> {
         match self.order.method {
-            Method::M4 => self.align_as_published(plan, shift_m, chosen),
+            Method::M4 => self.align_as_published(plan, shift_m),
             _ => self.align_by_rendering(plan, chosen, before),
         }
     }
@@ -87,7 +73,6 @@ impl Running<'_> {
         &mut self,
         mut plan: GraspPlan,
         mut shift_m: Vector3<f64>,
-        chosen: &Chosen,
     ) -> Result<GraspPlan, End> {
         for k in 1..=PUBLISHED_LOOKS {
             let above = above(&plan)?;
@@ -114,7 +99,7 @@ impl Running<'_> {
             }
             let share = 0.5f64.powi(k as i32 - 1);
             shift_m += Vector3::new(missing.x, missing.y, 0.0) * share;
-            plan = self.again(&plan, shift_m, chosen)?;
+            plan = self.again(&plan, shift_m)?;
         }
         // Back with the palm down before it is lowered.
         let above = above(&plan)?;
@@ -132,95 +117,13 @@ impl Running<'_> {
         Ok(places.min_by(|a, b| (a - near).norm().total_cmp(&(b - near).norm())))
     }
 
-    fn align_by_rendering(
-        &mut self,
-        mut plan: GraspPlan,
-        chosen: &Chosen,
-        before: &Sight,
-    ) -> Result<GraspPlan, End> {
-        let Some(mut finder) = self.grasper.finder.take() else { return Ok(plan) };
-        let done = self.by_rendering(finder.as_mut(), &mut plan, chosen, before);
-        self.grasper.finder = Some(finder);
-        done.map(|()| plan)
-    }
-
-    fn by_rendering(
-        &mut self,
-        finder: &mut dyn HandFinder,
-        plan: &mut GraspPlan,
-        chosen: &Chosen,
-        before: &Sight,
-    ) -> Result<(), End> {
-        // What is known of the arm's error here: real palm less where the model has it.
-        let mut error_m = Vector3::zeros();
-        let commanded = self.body.commanded()?;
-        let mut covariance_m2 =
-            self.grasper.known.arm().covariance_m2(&commanded) + Matrix3::identity() * ARM_SIGMA_M.powi(2);
-        for look in 1..=LOOKS {
-            self.body.wait(STILL_S)?;
-            let sight = self.body.look()?;
-            let commanded = self.body.commanded()?;
-            let mut robot_from_palm = self.grasper.known.arm().robot_from_palm(&commanded);
-            let modeled = robot_from_palm.translation_m();
-            let sent = modeled + error_m;
-            robot_from_palm.isometry.translation.vector = sent;
-            let knowledge = &self.grasper.knowledge;
-            match finder.find(knowledge, before, &sight, &commanded, &robot_from_palm, &covariance_m2) {
-                Ok(found) => {
-                    error_m = found.palm.coords.coords - modeled;
-                    covariance_m2 = found.covariance_m2;
-                    self.watch.saw(Step::Align, &sight, &[]);
-                }
-                Err(HandMissing(why)) => {
-                    self.watch.saw(Step::Align, &sight, &[]);
-                    self.looked(sent, Err(why), None, Some(over_table_m(&covariance_m2)));
-                    return self.sure_enough(chosen, &covariance_m2);
-                }
-            }
-            let wanted = plan.palm_m;
-            let wanted_above = Vector3::new(wanted.x, wanted.y, modeled.z);
-            let missing_m = (wanted_above - (modeled + error_m)).xy().norm();
-            let sigma_m = over_table_m(&covariance_m2);
-            self.looked(sent, Ok(modeled + error_m), Some(missing_m), Some(sigma_m));
-            if error_m.norm() > FARTHEST_M {
-                let why = "the hand seems to be far from where the model has it: touch again in Touch";
-                return Err(End::Failed(Failure::HandWrong, why.to_owned()));
-            }
-            if missing_m < NEAR_M && look > 1 {
-                break;
-            }
-            *plan = self.again(plan, -error_m, chosen)?;
-            let above = above(plan)?;
-            self.follow(Step::Align, std::slice::from_ref(&above), SPEED_RAD_S)?;
-            covariance_m2 += Matrix3::identity() * DRIFT_SIGMA_M.powi(2);
-        }
-        self.sure_enough(chosen, &covariance_m2)
-    }
-
-    /// Refuses when hand and object together are not known well enough.
-    fn sure_enough(&self, chosen: &Chosen, hand_m2: &Matrix3<f64>) -> Result<(), End> {
-        let sigma_m = over_table_m(&(chosen.covariance_m2 + hand_m2));
-        if sigma_m <= MOST_SIGMA_M {
-            return Ok(());
-        }
-        Err(End::Refused(format!(
-            "hand and object are known to {:.0} mm only, {:.0} mm are needed: calibrate the mount of the eyes, or name the effects in Gap",
-            sigma_m * 1e3,
-            MOST_SIGMA_M * 1e3
-        )))
-    }
-
     /// The plan from above the same object, the palm sent elsewhere.
-    fn again(&mut self, plan: &GraspPlan, shift_m: Vector3<f64>, chosen: &Chosen) -> Result<GraspPlan, End> {
-        if shift_m.xy().norm() > FARTHEST_M {
-            let why = "the eyes want the hand far from where it was sent".to_owned();
-            return Err(End::Failed(Failure::HandWrong, why));
-        }
-        let _ = chosen;
+    fn again(&mut self, plan: &GraspPlan, shift_m: Vector3<f64>) -> Result<GraspPlan, End> {
+        near_enough(&shift_m)?;
         Ok(self.grasper.planner(self.order.method).again(plan, &shift_m)?)
     }
 
-    fn looked(
+    pub(super) fn looked(
         &mut self,
         sent: Vector3<f64>,
         hand: Result<Vector3<f64>, String>,
@@ -237,13 +140,15 @@ impl Running<'_> {
     }
 }
 
-fn above(plan: &GraspPlan) -> Result<Posture, End> {
-    plan.above().cloned().ok_or_else(|| End::Refused("there is no way to above the object".to_owned()))
+/// Refuses to send a hand far from where it belongs by the model.
+pub(super) fn near_enough(shift_m: &Vector3<f64>) -> Result<(), End> {
+    if shift_m.xy().norm() <= FARTHEST_M {
+        return Ok(());
+    }
+    let why = "the eyes want the hand far from where it was sent".to_owned();
+    Err(End::Failed(Failure::HandWrong, why))
 }
 
-/// Standard deviation in the worst direction over the table, m.
-fn over_table_m(covariance_m2: &Matrix3<f64>) -> f64 {
-    let (a, b, c) = (covariance_m2[(0, 0)], covariance_m2[(0, 1)], covariance_m2[(1, 1)]);
-    let (mean, half) = (0.5 * (a + c), 0.5 * (a - c));
-    (mean + half.hypot(b)).max(0.0).sqrt()
+pub(super) fn above(plan: &GraspPlan) -> Result<Posture, End> {
+    plan.above().cloned().ok_or_else(|| End::Refused("there is no way to above the object".to_owned()))
 }

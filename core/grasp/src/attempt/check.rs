@@ -7,8 +7,12 @@ use super::{Chosen, End, Running};
 use crate::record::{Failure, Outcome, Step};
 use crate::see::Seen;
 
-/// Fingers that are kept open by more than this hold something, rad.
+/// A finger that is kept open by more than this holds something, rad…
 const HELD_RAD: f64 = 0.10;
+/// …and one that presses with this share of its torque when it is kept open by this, rad: what is small
+/// lets fingers close nearly all the way.
+const PRESSES: f64 = 0.2;
+const PRESSING_RAD: f64 = 0.015;
 /// A thing that is seen this near to where it stood, and no higher than this over it, was left, m.
 const LEFT_M: f64 = 0.10;
 /// What is not held well has fallen after this time, s.
@@ -22,8 +26,7 @@ impl Running<'_> {
     pub(super) fn check(&mut self, chosen: &Chosen) -> Result<Outcome, End> {
         self.body.wait(FALLEN_S)?;
         self.keep(Step::Check)?;
-        let open_rad = self.fingers_open_rad()?;
-        self.record.fingers_open_rad = Some(open_rad);
+        let holds = self.fingers_hold()?;
         let sight = self.body.look()?;
         let grasper = &mut *self.grasper;
         let seen = grasper.looker.look(&sight, &grasper.knowledge)?;
@@ -40,7 +43,7 @@ impl Running<'_> {
             .any(|thing| is_where_it_was(thing, before, &chosen.point, &others));
         self.record.seen_after = seen;
         let object = object.to_lowercase();
-        Ok(match (open_rad > HELD_RAD, left) {
+        Ok(match (holds, left) {
             (true, false) => Outcome::Success,
             (false, true) => Outcome::Failed {
                 failure: Failure::ReachWrong,
@@ -57,19 +60,26 @@ impl Running<'_> {
         })
     }
 
-    /// How far the fingers (without the thumb) are kept from closing around nothing, the mean, rad. A body
-    /// may let them press less than it was asked, so it is not what was commanded last that counts.
-    fn fingers_open_rad(&mut self) -> Result<f64, End> {
+    /// Whether a finger (the thumb is none) is kept from closing around nothing. A body may let them press
+    /// less than it was asked, so it is not what was commanded last that counts. How far they are kept
+    /// open, the mean, goes into the record.
+    fn fingers_hold(&mut self) -> Result<bool, End> {
         let planner = self.grasper.planner(self.order.method);
         let closed = planner.closed(&self.body.commanded()?);
         let fingers = planner.fingers();
         let servos = self.body.servos()?;
-        let open: Vec<f64> = servos
+        let open: Vec<(f64, Option<f64>)> = servos
             .iter()
             .filter(|servo| fingers.contains(&servo.joint))
-            .map(|servo| (servo.angle_rad - closed[servo.joint]).abs())
+            .map(|servo| ((servo.angle_rad - closed[servo.joint]).abs(), servo.load))
             .collect();
-        Ok(open.iter().sum::<f64>() / open.len().max(1) as f64)
+        let sum_rad: f64 = open.iter().map(|(open_rad, _)| open_rad).sum();
+        self.record.fingers_open_rad = Some(sum_rad / open.len().max(1) as f64);
+        let presses = |load: Option<f64>| load.is_some_and(|load| load.abs() > PRESSES);
+        let holds = |(open_rad, load): &(f64, Option<f64>)| {
+            *open_rad > HELD_RAD || (*open_rad > PRESSING_RAD && presses(*load))
+        };
+        Ok(open.iter().any(holds))
     }
 }
 

@@ -1,19 +1,17 @@
 //! Which of the things that are seen is meant, and where it stands.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use plumbline_model::{Point, Robot};
 
 use super::{End, Running};
 use crate::body::Sight;
 use crate::method::Method;
+use crate::outline::{Boxes, HEIGHT_SIGMA_M};
 use crate::plan::Standing;
 use crate::record::{Failure, Step};
 use crate::see::{Seen, SeenPlace};
 use crate::things::Thing;
 
-/// Standard deviation of the height at which the middle of a thing on the table is, m: the table may
-/// be tilted, the thing may lean.
-const HEIGHT_SIGMA_M: f64 = 0.002;
 /// A thing whose middle seems to be this far from where the table says is somewhere else, m, beside
 /// three standard deviations.
 const NOT_ON_TABLE_M: f64 = 0.03;
@@ -41,18 +39,18 @@ impl Running<'_> {
         let object = &self.order.object;
         let thing = Thing::of_class(object)
             .ok_or_else(|| End::Refused(format!("nothing is known of a thing called {object}")))?;
-        let index = nearest(&self.record.seen, thing.class, self.order.near_m)?;
+        let index = nearest(&self.record.seen, thing.class, self.near_m)?;
         self.record.chosen = Some(index);
         let place = self.record.seen[index]
             .place
             .clone()
             .map_err(|why| End::Failed(Failure::NotSeen, format!("the {object} has no place: {why}")))?;
-        self.standing(&place, &thing)
+        let boxes = Boxes { boxes_px: &self.record.seen[index].boxes_px, posture: &sight.posture };
+        self.standing(&place, &thing, &boxes)
     }
 
-    /// Where it stands. A thing that stands on the table has its middle at a height that is known, which
-    /// tells more of its distance than two eyes so near to each other; ours uses that.
-    fn standing(&self, place: &SeenPlace, thing: &Thing) -> Result<Chosen, End> {
+    /// Where it stands; ours by its outline in both eyes.
+    fn standing(&self, place: &SeenPlace, thing: &Thing, boxes: &Boxes<'_>) -> Result<Chosen, End> {
         let knowledge = &self.grasper.knowledge;
         let (mut point, mut covariance_m2) = (place.point().coords.coords, place.covariance_m2);
         let support_m = knowledge.support_m(point.x, point.y);
@@ -67,11 +65,13 @@ impl Running<'_> {
                 if off_m > 0.0 { "over" } else { "under" }
             )));
         }
-        if self.order.method == Method::M5 {
-            let gain = covariance_m2.column(2) / (covariance_m2[(2, 2)] + HEIGHT_SIGMA_M.powi(2));
-            point -= gain * off_m;
-            let row = covariance_m2.row(2).into_owned();
-            covariance_m2 -= gain * row;
+        if self.order.method == Method::M5
+            && let Some(found) = boxes.on_table(knowledge, thing, point.xy())
+        {
+            let support_m = knowledge.support_m(found.xy_m.x, found.xy_m.y);
+            point = Vector3::new(found.xy_m.x, found.xy_m.y, support_m + 0.5 * thing.height_m);
+            covariance_m2 = Matrix3::identity() * HEIGHT_SIGMA_M.powi(2);
+            covariance_m2.fixed_view_mut::<2, 2>(0, 0).copy_from(&found.covariance_m2);
         }
         let xy_m = [point.x, point.y];
         let support_m = knowledge.support_m(point.x, point.y);

@@ -1,8 +1,10 @@
 //! One grasp, from the look at the table to the check of what is in the hand.
 
+mod again;
 mod align;
 mod check;
 mod choose;
+mod over;
 mod ready;
 mod rendered;
 
@@ -166,8 +168,7 @@ impl Grasper {
         watch: &mut dyn Watch,
     ) -> Record {
         let mut record = self.record_of(order, began);
-        let began_s = body.now_s();
-        let mut running = Running { grasper: self, body, order, watch, record: &mut record, began_s };
+        let mut running = Running::new(self, body, order, watch, &mut record);
         record.outcome = Some(match running.run() {
             Ok(outcome) => outcome,
             Err(end) => end.into(),
@@ -185,8 +186,7 @@ impl Grasper {
         watch: &mut dyn Watch,
     ) -> (Option<GraspPlan>, Record) {
         let mut record = self.record_of(order, began);
-        let began_s = body.now_s();
-        let mut running = Running { grasper: self, body, order, watch, record: &mut record, began_s };
+        let mut running = Running::new(self, body, order, watch, &mut record);
         match running.prepare() {
             Ok(prepared) => (Some(prepared.plan), record),
             Err(end) => {
@@ -227,6 +227,21 @@ struct Running<'a> {
     watch: &'a mut dyn Watch,
     record: &'a mut Record,
     began_s: f64,
+    /// The one nearest to this place is meant, m.
+    near_m: Option<[f64; 2]>,
+}
+
+impl<'a> Running<'a> {
+    fn new(
+        grasper: &'a mut Grasper,
+        body: &'a mut dyn Body,
+        order: &'a Order,
+        watch: &'a mut dyn Watch,
+        record: &'a mut Record,
+    ) -> Self {
+        let began_s = body.now_s();
+        Self { grasper, body, order, watch, record, began_s, near_m: order.near_m }
+    }
 }
 
 impl Running<'_> {
@@ -246,7 +261,20 @@ impl Running<'_> {
         Ok(Prepared { before, chosen, shift_m, plan })
     }
 
+    /// Grasps; what was tried once and is not in the hand is tried once more by ours: a robot may look
+    /// again. The record says what became of the first try.
     fn run(&mut self) -> Result<Outcome, End> {
+        let from = self.body.commanded()?;
+        let first = self.try_once()?;
+        match first {
+            Outcome::Failed { failure, why } if self.order.method.tries_again() => {
+                self.once_more(&from, failure, why)
+            }
+            other => Ok(other),
+        }
+    }
+
+    fn try_once(&mut self) -> Result<Outcome, End> {
         let Prepared { before, chosen, shift_m, mut plan } = self.prepare()?;
         let method = self.order.method;
         self.begin(Step::Approach);

@@ -36,7 +36,7 @@ const ROOM_M: f64 = 0.008;
 const CRAMPED_RAD: f64 = 2.0;
 /// Things belong so much nearer to the fingers than the middle of the palm, m, in the middle of how far
 /// off they may be and still be lifted (`tests/tolerance.rs`)…
-const INTO_FINGERS_M: f64 = 0.015;
+const INTO_FINGERS_M: f64 = 0.017;
 /// …and so much toward the right of the hand, m.
 const TO_THE_RIGHT_M: f64 = 0.004;
 /// The palm closes so much below the top of a thing, m…
@@ -120,6 +120,15 @@ impl GraspPlan {
     pub fn closing(&self) -> Option<&Posture> {
         self.down.last().or(self.above())
     }
+
+    /// The way from above the object down to so high (m) over where the hand closes, and the grasp from
+    /// there.
+    pub fn from_low(&self, over_m: f64) -> (Vec<Posture>, Self) {
+        let rest = ((over_m / STEP_M).round() as usize).min(self.down.len());
+        let (way, down) = self.down.split_at(self.down.len() - rest);
+        let approach = if way.is_empty() { self.approach.clone() } else { way.to_vec() };
+        (way.to_vec(), Self { approach, down: down.to_vec(), ..self.clone() })
+    }
 }
 
 /// Above what stands somewhere, and down.
@@ -180,7 +189,7 @@ impl GraspPlanner {
                 break;
             }
             let WayDown { palm_m, above, down, .. } = way;
-            let free = self.room(&above, &down).and_then(|room_m| Ok((room_m, self.approach(from, &above)?)));
+            let free = self.room(&above, &down).and_then(|room_m| Ok((room_m, self.free_way(from, &above)?)));
             match free {
                 Ok((room_m, approach)) => {
                     let cost = turn_rad(&above, &down) + CRAMPED_RAD * f64::from(room_m < ROOM_M);

@@ -11,9 +11,12 @@ const SAMPLES: usize = 16;
 const CLEARANCE_M: f64 = 0.11;
 
 impl GraspPlanner {
-    /// A free way from a posture to above the object: straight, else over the posture in which the arm
-    /// is at home, the hand opened on the way.
-    pub(super) fn approach(&self, from: &Posture, above: &Posture) -> Result<Vec<Posture>, NoPlan> {
+    /// A free way from a posture to another: straight, else over the posture in which the arm is at home,
+    /// the hand opened on the way.
+    ///
+    /// # Errors
+    /// What is in the way.
+    pub fn free_way(&self, from: &Posture, above: &Posture) -> Result<Vec<Posture>, NoPlan> {
         let mut barred = None;
         for way in self.ways(from, above) {
             match self.is_free(from, &way)? {

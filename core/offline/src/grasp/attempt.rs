@@ -172,8 +172,10 @@ impl Body for Watched<'_> {
 
     fn look(&mut self) -> Result<Sight, Halt> {
         let step = *self.step.borrow();
-        if step == Step::Align {
-            self.judge.borrow_mut().aligned(self.body.twin());
+        match step {
+            Step::Look => self.judge.borrow_mut().looked(self.body.twin()),
+            Step::Align => self.judge.borrow_mut().aligned(self.body.twin()),
+            _ => {}
         }
         let mut sight = self.body.look()?;
         self.meddler.sees(step, &mut sight);

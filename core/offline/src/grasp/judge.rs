@@ -18,6 +18,9 @@ const HAND_WRONG_M: f64 = 0.015;
 pub struct Judged {
     /// Whether it was lifted.
     pub lifted: bool,
+    /// Whether it was lifted by the first try.
+    #[serde(default)]
+    pub at_first: bool,
     /// Seen place less true place of the object over the table, m.
     pub camera_error_m: Option<f64>,
     /// Distance of the palm from where it was meant to be over the table, before the hand closed, by
@@ -41,6 +44,8 @@ pub struct Judged {
 #[derive(Debug)]
 pub(super) struct Judge {
     toy: Toy,
+    /// Where it stood at first, and when it was looked for last.
+    began_m: Vector3<f64>,
     object_m: Vector3<f64>,
     palm: Option<usize>,
     /// Palm when the hand was looked at last, and before it closed.
@@ -52,12 +57,18 @@ impl Judge {
     pub fn new(twin: &mut Lockstep, toy: Toy, rig: &Rig) -> Self {
         let palm = rig.arm("right").and_then(|arm| Some(arm.tips.first()?.link.clone()));
         let palm = palm.and_then(|tip| rig.description.find_link(&tip).ok()).map(|link| link.0);
-        Self { toy, object_m: place(twin, toy), palm, aligned_m: None, closing_m: None }
+        let began_m = place(twin, toy);
+        Self { toy, began_m, object_m: began_m, palm, aligned_m: None, closing_m: None }
     }
 
     fn palm_m(&self, twin: &mut Lockstep) -> Option<Vector3<f64>> {
         let places = twin.truth_for_judging().robot_from_link;
         Some(places.get(self.palm?)?.as_ref()?.translation.vector)
+    }
+
+    /// The object was looked for just now.
+    pub fn looked(&mut self, twin: &mut Lockstep) {
+        self.object_m = place(twin, self.toy);
     }
 
     /// The hand was looked at just now.
@@ -73,7 +84,7 @@ impl Judge {
     /// After the attempt.
     pub fn judge(&self, twin: &mut Lockstep, record: &Record) -> Judged {
         let after = place(twin, self.toy);
-        let lifted = after.z - self.object_m.z > LIFTED_M;
+        let lifted = after.z - self.began_m.z > LIFTED_M;
         let flat = |a: Vector3<f64>, b: Vector3<f64>| (a - b).xy().norm();
         let seen = record.chosen.and_then(|index| record.seen.get(index)?.place.as_ref().ok());
         let wanted = record.wanted_m.map(Vector3::from);
@@ -104,6 +115,7 @@ impl Judge {
         });
         Judged {
             lifted,
+            at_first: lifted && record.earlier.is_empty(),
             camera_error_m,
             reach_error_m: wanted.zip(self.closing_m).map(|(wanted, palm)| flat(wanted, palm)),
             alignment_m: truly_wanted.zip(self.closing_m).map(|(wanted, palm)| flat(wanted, palm)),

@@ -27,6 +27,8 @@ pub struct Summary {
 pub struct MethodSummary {
     /// Lifted.
     pub successes: usize,
+    /// Lifted by the first try of an attempt.
+    pub at_first: usize,
     /// Of these.
     pub attempts: usize,
     /// Lifted inside the area of the published networks.
@@ -122,6 +124,7 @@ fn of_method(experiment: &Experiment, method: Method, attempts: &[&Attempt]) -> 
     let seconds = attempts.iter().filter_map(|attempt| attempt.record.seconds).collect();
     MethodSummary {
         successes: attempts.iter().filter(lifted).count(),
+        at_first: attempts.iter().filter(|attempt| attempt.judged.at_first).count(),
         attempts: attempts.len(),
         inside: attempts.iter().filter(inside).filter(lifted).count(),
         inside_attempts: attempts.iter().filter(inside).count(),
@@ -158,14 +161,14 @@ fn name(failure: Failure) -> &'static str {
 /// One line per attempt, for a spreadsheet.
 pub(super) fn csv(experiment: &Experiment, attempts: &[Attempt]) -> String {
     let mut text = String::from(
-        "number,method,x_m,y_m,attempt,placed_x_m,placed_y_m,lifted,refused,failure,camera_error_m,reach_error_m,alignment_m,off_x_m,off_y_m,off_z_m,hand_error_m,looks,seconds\n",
+        "number,method,x_m,y_m,attempt,placed_x_m,placed_y_m,lifted,refused,failure,camera_error_m,reach_error_m,alignment_m,off_x_m,off_y_m,off_z_m,hand_error_m,looks,tries,seconds\n",
     );
     for Attempt { trial, placed_m, record, judged } in attempts {
         let [x_m, y_m] = experiment.positions_m[trial.position];
         let number = |value: Option<f64>| value.map(|value| format!("{value:.6}")).unwrap_or_default();
         let _ = writeln!(
             text,
-            "{},{},{x_m},{y_m},{},{:.6},{:.6},{},{},{},{},{},{},{},{},{},{},{},{}",
+            "{},{},{x_m},{y_m},{},{:.6},{:.6},{},{},{},{},{},{},{},{},{},{},{},{},{}",
             trial.number,
             trial.method.name(),
             trial.attempt + 1,
@@ -182,6 +185,7 @@ pub(super) fn csv(experiment: &Experiment, attempts: &[Attempt]) -> String {
             number(judged.palm_off_m.map(|off| off[2])),
             number(judged.hand_error_m),
             record.iterations.len(),
+            record.earlier.len() + 1,
             number(record.seconds),
         );
     }

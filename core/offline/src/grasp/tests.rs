@@ -112,8 +112,10 @@ fn what_is_taken_away_or_pushed_on_the_way_is_not_called_held() {
         }
         Ok(())
     };
-    let (record, _) = bench.attempt_disturbed(&task, &mut take).expect("done");
+    let (record, judged) = bench.attempt_disturbed(&task, &mut take).expect("done");
     assert_eq!(failure(&record), Some(Failure::Slipped), "{:?}", record.outcome);
+    // It was looked for once more, and not found.
+    assert!(record.earlier.len() == 1 && !judged.lifted, "{record:?}");
     let mut push = |now: Step, twin: &mut Lockstep| {
         if now == Step::Lower {
             twin.place_toy(Toy::Tomato, 0.3, 0.2).expect("on the table");
@@ -122,6 +124,29 @@ fn what_is_taken_away_or_pushed_on_the_way_is_not_called_held() {
     };
     let (record, judged) = bench.attempt_disturbed(&task, &mut push).expect("done");
     assert!(failure(&record).is_some() && !judged.lifted, "{:?}", record.outcome);
+}
+
+#[test]
+fn what_is_missed_is_looked_for_and_grasped_once_more() {
+    let mut bench = bench("perfect");
+    let mut pushes = |task: &Task| {
+        let mut times = 0;
+        let mut push = |now: Step, twin: &mut Lockstep| {
+            if now == Step::Lower && times == 0 {
+                times += 1;
+                twin.place_toy(Toy::Tomato, 0.35, -0.17).expect("on the table");
+            }
+            Ok(())
+        };
+        bench.attempt_disturbed(task, &mut push).expect("done")
+    };
+    let (record, judged) = pushes(&task(Method::M5, Toy::Tomato, [0.3, -0.1]));
+    assert_eq!(record.outcome, Some(Outcome::Success), "{:?}", record.earlier);
+    assert!(judged.lifted && !judged.at_first && record.earlier.len() == 1);
+    assert!(matches!(record.earlier[0].outcome, Outcome::Failed { .. }), "{:?}", record.earlier);
+    assert!(record.standing_m.is_some_and(|[x, y]| (x - 0.35).hypot(y + 0.17) < 0.02));
+    let kept: Record = serde_json::from_str(&serde_json::to_string(&record).expect("text")).expect("read");
+    assert_eq!(kept, record);
 }
 
 #[test]

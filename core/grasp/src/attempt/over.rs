@@ -1,0 +1,196 @@
+//! The hand is brought over the object by rendering it, as M5 does: high over the object and then low,
+//! where less of the way is left on which the arm's error changes. What is found updates what is known of
+//! that error, weighted by how sure each is.
+
+use nalgebra::{Matrix3, Vector3};
+use plumbline_model::robot::Posture;
+
+use super::align::{FARTHEST_M, FoundHand, HandFinder, HandMissing, SPEED_RAD_S, near_enough};
+use super::{Chosen, End, Running, STILL_S};
+use crate::body::Sight;
+use crate::plan::GraspPlan;
+use crate::record::{Failure, Step};
+
+/// Seen low and nearer than this, the hand is lowered, m; what is missing is corrected on the way.
+const NEAR_M: f64 = 0.002;
+/// A hand that is known less well than this over the table is looked at once more, m.
+const SURE_M: f64 = 0.002;
+/// The second look and those after it are so high over where the hand closes, m: no finger reaches the
+/// object yet.
+const LOW_M: f64 = 0.04;
+/// Looks at the hand, at most.
+const LOOKS: usize = 5;
+/// Hand and object together may be this uncertain over the table, m: about how far off a hand may be and
+/// still hold what it closes around (`tests/tolerance.rs`).
+const MOST_SIGMA_M: f64 = 0.010;
+/// Standard deviation per axis of what the named effects leave of an arm's error, m.
+const ARM_SIGMA_M: f64 = 0.004;
+/// Standard deviation of the height that its model has, m: it was taught by touching what things stand on.
+/// So the eyes, which see two directions of a hand better than its distance, are told its height.
+const ARM_HEIGHT_SIGMA_M: f64 = 0.001;
+/// It changes with the posture: standard deviation per axis, m, for moving at all (play of the gears), and
+/// for a joint that turns by a radian.
+const PLAY_SIGMA_M: f64 = 0.0005;
+const TURN_SIGMA_M: f64 = 0.008;
+
+/// What is known of an arm's error: real palm less where the model has it.
+struct ArmError {
+    m: Vector3<f64>,
+    covariance_m2: Matrix3<f64>,
+}
+
+/// Where the hand of an attempt is.
+struct Over {
+    plan: GraspPlan,
+    /// From above the object to where it is looked at from low, once it is there.
+    lowered: Option<Vec<Posture>>,
+}
+
+impl Running<'_> {
+    pub(super) fn align_by_rendering(
+        &mut self,
+        plan: GraspPlan,
+        chosen: &Chosen,
+        before: &Sight,
+    ) -> Result<GraspPlan, End> {
+        let Some(mut finder) = self.grasper.finder.take() else { return Ok(plan) };
+        let done = self.by_rendering(finder.as_mut(), plan, chosen, before);
+        self.grasper.finder = Some(finder);
+        done
+    }
+
+    fn by_rendering(
+        &mut self,
+        finder: &mut dyn HandFinder,
+        plan: GraspPlan,
+        chosen: &Chosen,
+        before: &Sight,
+    ) -> Result<GraspPlan, End> {
+        let commanded = self.body.commanded()?;
+        let effects_m2 = self.grasper.known.arm().covariance_m2(&commanded);
+        let covariance_m2 = effects_m2 + Matrix3::identity() * ARM_SIGMA_M.powi(2);
+        let mut error = ArmError { m: Vector3::zeros(), covariance_m2 };
+        let mut over = Over { plan, lowered: None };
+        for look in 1..=LOOKS {
+            let Some(missing_m) = self.look_at_hand(finder, &mut error, &over.plan, before)? else { break };
+            let sigma_m = over_table_m(&error.covariance_m2);
+            let there = missing_m < NEAR_M && (sigma_m < SURE_M || look == LOOKS);
+            let was_low = over.lowered.is_some();
+            over = self.corrected(over, &mut error)?;
+            if there && was_low && over.lowered.is_some() {
+                break;
+            }
+            over = self.go_over(over, &mut error)?;
+        }
+        self.sure_enough(chosen, &error.covariance_m2)?;
+        Ok(over.plan)
+    }
+
+    /// Looks at the hand: how far it is from where it belongs, over the table, m. `None`: it is not found.
+    fn look_at_hand(
+        &mut self,
+        finder: &mut dyn HandFinder,
+        error: &mut ArmError,
+        plan: &GraspPlan,
+        before: &Sight,
+    ) -> Result<Option<f64>, End> {
+        self.body.wait(STILL_S)?;
+        let sight = self.body.look()?;
+        let commanded = self.body.commanded()?;
+        let mut robot_from_palm = self.grasper.known.arm().robot_from_palm(&commanded);
+        let modeled = robot_from_palm.translation_m();
+        let sent = modeled + error.m;
+        robot_from_palm.isometry.translation.vector = sent;
+        let knowledge = &self.grasper.knowledge;
+        let covariance_m2 = &error.covariance_m2;
+        let found = finder.find(knowledge, before, &sight, &commanded, &robot_from_palm, covariance_m2);
+        self.watch.saw(Step::Align, &sight, &[]);
+        let found = match found {
+            Ok(found) => found,
+            Err(HandMissing(why)) => {
+                self.looked(sent, Err(why), None, Some(over_table_m(&error.covariance_m2)));
+                return Ok(None);
+            }
+        };
+        let (palm, covariance_m2) = at_height(&found, modeled.z);
+        *error = ArmError { m: palm - modeled, covariance_m2 };
+        let missing_m = (plan.palm_m - palm).xy().norm();
+        self.looked(sent, Ok(palm), Some(missing_m), Some(over_table_m(&error.covariance_m2)));
+        if error.m.norm() > FARTHEST_M {
+            let why = "the hand seems to be far from where the model has it: touch again in Touch";
+            return Err(End::Failed(Failure::HandWrong, why.to_owned()));
+        }
+        Ok(Some(missing_m))
+    }
+
+    /// The plan with the arm's error undone. Where the hand cannot be sent so with this heading, it goes up
+    /// again and another one is taken.
+    fn corrected(&mut self, over: Over, error: &mut ArmError) -> Result<Over, End> {
+        near_enough(&error.m)?;
+        let planner = self.grasper.planner(self.order.method);
+        if let Ok(plan) = planner.again(&over.plan, &-error.m) {
+            let Some(lowered) = over.lowered else { return Ok(Over { plan, lowered: None }) };
+            let (_, plan) = plan.from_low(LOW_M);
+            return Ok(Over { plan, lowered: Some(lowered) });
+        }
+        if let Some(lowered) = over.lowered {
+            let up: Vec<_> = lowered.into_iter().rev().collect();
+            self.moved(&up, error)?;
+        }
+        let from = self.body.commanded()?;
+        let plan = self.grasper.planner(self.order.method).plan(&over.plan.standing, &-error.m, &from)?;
+        self.planned(&plan);
+        self.moved(&plan.approach, error)?;
+        Ok(Over { plan, lowered: None })
+    }
+
+    /// To where the hand is looked at next: low over the object.
+    fn go_over(&mut self, over: Over, error: &mut ArmError) -> Result<Over, End> {
+        let Over { plan, lowered } = over;
+        if let Some(lowered) = lowered {
+            self.moved(plan.approach.last().map_or(&[], std::slice::from_ref), error)?;
+            return Ok(Over { plan, lowered: Some(lowered) });
+        }
+        let (lowered, plan) = plan.from_low(LOW_M);
+        self.moved(&lowered, error)?;
+        Ok(Over { plan, lowered: Some(lowered) })
+    }
+
+    /// Moves, which makes the arm's error a little less known.
+    fn moved(&mut self, way: &[Posture], error: &mut ArmError) -> Result<(), End> {
+        let from = self.body.commanded()?;
+        let turned_rad = way.last().map_or(0.0, |to| from.distance_rad(to));
+        self.follow(Step::Align, way, SPEED_RAD_S)?;
+        let drift_m2 = PLAY_SIGMA_M.powi(2) + (TURN_SIGMA_M * turned_rad).powi(2);
+        error.covariance_m2 += Matrix3::identity() * drift_m2;
+        Ok(())
+    }
+
+    /// Refuses when hand and object together are not known well enough.
+    fn sure_enough(&self, chosen: &Chosen, hand_m2: &Matrix3<f64>) -> Result<(), End> {
+        let sigma_m = over_table_m(&(chosen.covariance_m2 + hand_m2));
+        if sigma_m <= MOST_SIGMA_M {
+            return Ok(());
+        }
+        Err(End::Refused(format!(
+            "hand and object are known to {:.0} mm only, {:.0} mm are needed: calibrate the mount of the eyes, or name the effects in Gap",
+            sigma_m * 1e3,
+            MOST_SIGMA_M * 1e3
+        )))
+    }
+}
+
+/// The hand that was found, when it is at the height that the arm's model has.
+fn at_height(found: &FoundHand, height_m: f64) -> (Vector3<f64>, Matrix3<f64>) {
+    let (palm, covariance_m2) = (found.palm.coords.coords, found.covariance_m2);
+    let gain = covariance_m2.column(2) / (covariance_m2[(2, 2)] + ARM_HEIGHT_SIGMA_M.powi(2));
+    let row = covariance_m2.row(2).into_owned();
+    (palm - gain * (palm.z - height_m), covariance_m2 - gain * row)
+}
+
+/// Standard deviation in the worst direction over the table, m.
+fn over_table_m(covariance_m2: &Matrix3<f64>) -> f64 {
+    let (a, b, c) = (covariance_m2[(0, 0)], covariance_m2[(0, 1)], covariance_m2[(1, 1)]);
+    let (mean, half) = (0.5 * (a + c), 0.5 * (a - c));
+    (mean + half.hypot(b)).max(0.0).sqrt()
+}

@@ -1,0 +1,246 @@
+//! Where a thing on the table stands, by the boxes in which both eyes see it.
+//!
+//! A box is drawn around an outline, and the middle of an outline is not where the middle of the thing is
+//! seen: near the border of an image by a pixel or two. So the outline is what is compared: that of an
+//! ellipsoid of the thing's size which stands on the table. How high it stands there is known, which tells
+//! more of its distance than two eyes so near to each other.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{Matrix2, Point3, Vector2, Vector3};
+use plumbline_effects::robot_model::SeenUnder;
+use plumbline_model::robot::Posture;
+use plumbline_model::{Eye, Pixel, Point, Raw};
+
+use crate::knowledge::Knowledge;
+use crate::things::Thing;
+
+/// Points of an outline.
+const POINTS: usize = 24;
+/// Standard deviation of the middle of a box along rows and along columns, px: half of what its edges are
+/// off by.
+const BOX_SIGMA_PX: f64 = 0.7;
+/// Standard deviation of the height at which a thing on the table is, m: the table may be tilted, the thing
+/// may lean.
+pub const HEIGHT_SIGMA_M: f64 = 0.002;
+/// For differences, m.
+const STEP_M: f64 = 0.001;
+/// It is found when it moves by less, m, or never.
+const STILL_M: f64 = 1e-5;
+const TURNS: usize = 12;
+
+/// A place on the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OnTable {
+    /// x and y of its middle, robot frame, m.
+    pub xy_m: Vector2<f64>,
+    /// Covariance by boxes and height, m².
+    pub covariance_m2: Matrix2<f64>,
+}
+
+/// Boxes of a thing in both eyes, and the head as it was.
+#[derive(Clone, Copy, Debug)]
+pub struct Boxes<'a> {
+    /// x0, y0, x1, y1 in the left and in the right eye, raw px, counted from the corner of a pixel.
+    pub boxes_px: &'a [Option<[f32; 4]>; 2],
+    /// All joints by their encoders.
+    pub posture: &'a Posture,
+}
+
+impl Boxes<'_> {
+    /// Where the thing stands, from a place nearby (x and y, m). `None`: no eye sees it, or there is no such
+    /// place.
+    pub fn on_table(&self, knowledge: &Knowledge, thing: &Thing, near_m: Vector2<f64>) -> Option<OnTable> {
+        let mut xy_m = near_m;
+        for _ in 0..TURNS {
+            let (normal, right) = self.normal(knowledge, thing, xy_m)?;
+            let step = normal.try_inverse()? * right;
+            xy_m += step;
+            if step.norm() < STILL_M {
+                return self.found(knowledge, thing, xy_m, &normal);
+            }
+        }
+        None
+    }
+
+    fn found(
+        &self,
+        knowledge: &Knowledge,
+        thing: &Thing,
+        xy_m: Vector2<f64>,
+        normal: &Matrix2<f64>,
+    ) -> Option<OnTable> {
+        let inverse = normal.try_inverse()?;
+        // What a wrong height does.
+        let (low, high) =
+            (self.residuals(knowledge, thing, xy_m, 0.0)?, self.residuals(knowledge, thing, xy_m, STEP_M)?);
+        let slopes = self.slopes(knowledge, thing, xy_m)?;
+        let by_height: Vector2<f64> = low
+            .iter()
+            .zip(&high)
+            .zip(&slopes)
+            .map(|((low, high), [x, y])| {
+                Vector2::new(*x, *y) * ((high - low) / STEP_M / BOX_SIGMA_PX.powi(2))
+            })
+            .sum();
+        let shift = inverse * by_height * HEIGHT_SIGMA_M;
+        Some(OnTable { xy_m, covariance_m2: inverse + shift * shift.transpose() })
+    }
+
+    /// Normal equations at a place, weighted.
+    fn normal(
+        &self,
+        knowledge: &Knowledge,
+        thing: &Thing,
+        xy_m: Vector2<f64>,
+    ) -> Option<(Matrix2<f64>, Vector2<f64>)> {
+        let residuals = self.residuals(knowledge, thing, xy_m, 0.0)?;
+        let slopes = self.slopes(knowledge, thing, xy_m)?;
+        let weight = BOX_SIGMA_PX.powi(-2);
+        let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
+        for (residual, [x, y]) in residuals.iter().zip(&slopes) {
+            let slope = Vector2::new(*x, *y);
+            normal += slope * slope.transpose() * weight;
+            right += slope * (residual * weight);
+        }
+        Some((normal, right))
+    }
+
+    /// How each predicted number changes with x and with y, px/m.
+    fn slopes(&self, knowledge: &Knowledge, thing: &Thing, xy_m: Vector2<f64>) -> Option<Vec<[f64; 2]>> {
+        let at = |step: Vector2<f64>| self.residuals(knowledge, thing, xy_m + step, 0.0);
+        let (x0, x1) = (at(Vector2::new(-STEP_M, 0.0))?, at(Vector2::new(STEP_M, 0.0))?);
+        let (y0, y1) = (at(Vector2::new(0.0, -STEP_M))?, at(Vector2::new(0.0, STEP_M))?);
+        let slope = |low: f64, high: f64| (low - high) / (2.0 * STEP_M);
+        Some((0..x0.len()).map(|i| [slope(x0[i], x1[i]), slope(y0[i], y1[i])]).collect())
+    }
+
+    /// Middles of the boxes less those of the outlines of a thing that stands there, px.
+    fn residuals(
+        &self,
+        knowledge: &Knowledge,
+        thing: &Thing,
+        xy_m: Vector2<f64>,
+        higher_m: f64,
+    ) -> Option<Vec<f64>> {
+        let z_m = knowledge.support_m(xy_m.x, xy_m.y) + 0.5 * thing.height_m + higher_m;
+        let middle = Point3::new(xy_m.x, xy_m.y, z_m);
+        let robot_from_left = knowledge.robot_from_left(self.posture).isometry;
+        let right_from_left = knowledge.calibration.cameras.right_from_left.isometry;
+        let mut residuals = vec![];
+        for eye in Eye::BOTH {
+            let Some(seen_px) = self.boxes_px[eye.index()] else { continue };
+            let eye_at = match eye {
+                Eye::Left => robot_from_left * Point3::origin(),
+                Eye::Right => robot_from_left * right_from_left.inverse() * Point3::origin(),
+            };
+            let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+            for point in outline(&middle, thing, &eye_at)? {
+                let point = Point::new(point.x, point.y, point.z);
+                let (left, right) = knowledge.model.project(&point, self.posture, &SeenUnder::default())?;
+                let Pixel::<Raw> { u_px, v_px, .. } = if eye == Eye::Left { left } else { right };
+                for (k, at_px) in [u_px, v_px].into_iter().enumerate() {
+                    (low[k], high[k]) = (low[k].min(at_px), high[k].max(at_px));
+                }
+            }
+            for k in 0..2 {
+                // Edges of boxes count from the corner of a pixel.
+                let seen = 0.5 * (f64::from(seen_px[k]) + f64::from(seen_px[k + 2])) - 0.5;
+                residuals.push(seen - 0.5 * (low[k] + high[k]));
+            }
+        }
+        (!residuals.is_empty()).then_some(residuals)
+    }
+}
+
+/// Outline of an upright ellipsoid, seen from somewhere outside of it, m.
+fn outline(middle: &Point3<f64>, thing: &Thing, eye: &Point3<f64>) -> Option<Vec<Point3<f64>>> {
+    let half = Vector3::new(0.5 * thing.width_m, 0.5 * thing.width_m, 0.5 * thing.height_m);
+    // Where the ellipsoid is a ball of radius 1, its outline is a circle.
+    let toward = (eye - middle).component_div(&half);
+    let far = toward.norm();
+    if far <= 1.0 {
+        return None;
+    }
+    let axis = toward / far;
+    let side = axis.cross(&Vector3::z()).try_normalize(1e-9).unwrap_or_else(Vector3::x);
+    let up = side.cross(&axis);
+    let radius = (1.0 - far.powi(-2)).sqrt();
+    let point = |i: usize| {
+        let (sine, cosine) = (TAU * i as f64 / POINTS as f64).sin_cos();
+        middle + (axis / far + (side * cosine + up * sine) * radius).component_mul(&half)
+    };
+    Some((0..POINTS).map(point).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use plumbline_effects::RobotModel;
+    use plumbline_model::StereoCalibration;
+    use plumbline_model::robot::Rig;
+
+    use super::*;
+    use crate::knowledge::Corrections;
+
+    fn knowledge() -> Knowledge {
+        let rig = Arc::new(Rig::built_in("nico").expect("valid"));
+        Knowledge {
+            model: RobotModel::nominal(rig.clone()),
+            described: rig.clone(),
+            calibration: Arc::new(StereoCalibration::bare(rig.eyes.cameras)),
+            corrections: Corrections::default(),
+        }
+    }
+
+    fn boxes_of(knowledge: &Knowledge, thing: &Thing, xy_m: Vector2<f64>) -> [Option<[f32; 4]>; 2] {
+        let posture = knowledge.described.home();
+        let empty = Boxes { boxes_px: &[Some([0.0; 4]), Some([0.0; 4])], posture: &posture };
+        // What is left of a box around the origin is the middle of the outline, and its corner.
+        let middles = empty.residuals(knowledge, thing, xy_m, 0.0).expect("seen");
+        let around = |u: f64, v: f64| {
+            let (u, v) = (-u, -v);
+            Some([u - 12.0, v - 11.0, u + 12.0, v + 11.0].map(|at| at as f32))
+        };
+        [around(middles[0], middles[1]), around(middles[2], middles[3])]
+    }
+
+    #[test]
+    fn a_thing_is_found_where_its_outline_is_seen_with_both_eyes_and_with_one() {
+        let knowledge = knowledge();
+        let posture = knowledge.described.home();
+        let tomato = Thing::of_class("Tomato").expect("known");
+        for at_m in crate::PLACES_M {
+            let truly = Vector2::from(at_m);
+            let both = boxes_of(&knowledge, &tomato, truly);
+            let off = Vector2::new(0.02, -0.015);
+            for seen in [both, [both[0], None], [None, both[1]]] {
+                let boxes = Boxes { boxes_px: &seen, posture: &posture };
+                let found = boxes.on_table(&knowledge, &tomato, truly + off).expect("found");
+                assert!((found.xy_m - truly).norm() < 1e-4, "{at_m:?}: {found:?}");
+                let sigma_m = found.covariance_m2.trace().sqrt();
+                assert!((0.001..0.02).contains(&sigma_m), "{at_m:?}: {sigma_m}");
+            }
+        }
+        let unseen = Boxes { boxes_px: &[None, None], posture: &posture };
+        assert_eq!(unseen.on_table(&knowledge, &tomato, Vector2::new(0.3, 0.0)), None);
+    }
+
+    #[test]
+    fn a_box_that_is_off_by_a_pixel_moves_it_by_about_what_is_stated() {
+        let knowledge = knowledge();
+        let posture = knowledge.described.home();
+        let tomato = Thing::of_class("Tomato").expect("known");
+        let truly = Vector2::new(0.3, 0.1);
+        let mut seen = boxes_of(&knowledge, &tomato, truly);
+        for area in seen.iter_mut().flatten() {
+            *area = area.map(|at| at + BOX_SIGMA_PX as f32);
+        }
+        let boxes = Boxes { boxes_px: &seen, posture: &posture };
+        let found = boxes.on_table(&knowledge, &tomato, truly).expect("found");
+        let off_m = (found.xy_m - truly).norm();
+        let sigma_m = found.covariance_m2.trace().sqrt();
+        assert!(off_m > 0.0005 && off_m < 3.0 * sigma_m, "{off_m} m, stated {sigma_m} m");
+    }
+}
