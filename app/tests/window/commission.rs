@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
     AcceptedCalibration, CommissionDone, CommissionFigure, CommissionSpent, CommissionState, CommissionStep,
