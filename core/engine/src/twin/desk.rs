@@ -18,11 +18,35 @@ use crate::ground::notice::NoticeLevel;
 /// While the board is shown at all places it stays at each for this long: long enough to be
 /// found still, sharp and new.
 const AT_EACH_PLACE: Duration = Duration::from_millis(1600);
+/// Where the machine is slow, it stays until it was looked at so often: a few looks must agree.
+const LOOKS_AT_EACH_PLACE: u64 = 8;
+/// After this it goes on all the same: nobody looks.
+const LONGEST_AT_A_PLACE: Duration = Duration::from_secs(12);
 /// So much around the touchscreen is kept free of toys while it is touched: a hand is broad, m.
 const BESIDE_SCREEN_M: f64 = 0.06;
 const PHYSICS_FAILED: &str = "The twin's physics have failed inside, so the twin has ended. Nothing real is hurt: connect to the twin again, and report it with the log.";
 /// The same twin every time.
 const SEED: u64 = 1;
+
+/// The board on its way through all places.
+struct Tour {
+    /// The place that is next.
+    next: usize,
+    /// When it was held at the one before; `None`: at none yet.
+    held: Option<Instant>,
+    /// How often the eyes had looked then.
+    looks: u64,
+}
+
+impl Tour {
+    /// Whether the board was seen where it is.
+    fn is_seen(&self, now: Instant, looks: u64) -> bool {
+        let Some(held) = self.held else { return true };
+        let since = now.saturating_duration_since(held);
+        let looked = looks.saturating_sub(self.looks) >= LOOKS_AT_EACH_PLACE;
+        since >= AT_EACH_PLACE && (looked || since >= LONGEST_AT_A_PLACE)
+    }
+}
 
 /// The twin and what the operator does with it.
 pub struct TwinDesk {
@@ -31,7 +55,7 @@ pub struct TwinDesk {
     scenario: String,
     failed: Option<String>,
     board_places: Vec<Pose<Robot, Board>>,
-    tour: Option<(usize, Instant)>,
+    tour: Option<Tour>,
     notes: Vec<(NoticeLevel, String)>,
 }
 
@@ -124,7 +148,7 @@ impl TwinDesk {
                 Ok(())
             }
             TwinCommand::TourBoard(on) => {
-                self.tour = on.then(|| (0, Instant::now()));
+                self.tour = on.then_some(Tour { next: 0, held: None, looks: 0 });
                 Ok(())
             }
             TwinCommand::HideBoard => {
@@ -211,14 +235,15 @@ impl TwinDesk {
         if self.twin.as_ref().is_some_and(Twin::has_failed) {
             return self.let_go_of_the_failed();
         }
-        let (Some(twin), Some((next, at))) = (&self.twin, &mut self.tour) else { return };
-        if now < *at {
+        let looks = self.eyes.looks();
+        let (Some(twin), Some(tour)) = (&self.twin, &mut self.tour) else { return };
+        if !tour.is_seen(now, looks) {
             return;
         }
-        match self.board_places.get(*next) {
+        match self.board_places.get(tour.next) {
             Some(place) => {
                 twin.send(plumbline_twin::TwinCommand::PlaceBoard { robot_from_board: *place });
-                (*next, *at) = (*next + 1, now + AT_EACH_PLACE);
+                *tour = Tour { next: tour.next + 1, held: Some(now), looks };
             }
             None => {
                 twin.send(plumbline_twin::TwinCommand::HideBoard);
@@ -324,6 +349,17 @@ const BOARD_THICKNESS_M: f64 = 0.006;
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_board_stays_until_it_was_looked_at_often_enough() {
+        let held = Instant::now();
+        let tour = Tour { next: 1, held: Some(held), looks: 100 };
+        let seen = |after_ms: u64, looks: u64| tour.is_seen(held + Duration::from_millis(after_ms), looks);
+        assert!(!seen(500, 200), "not found still yet");
+        assert!(seen(1600, 108));
+        assert!(!seen(5000, 104), "a slow machine has looked four times");
+        assert!(seen(12_000, 100), "nobody looks");
+    }
 
     #[test]
     fn physics_that_fail_end_the_twin_and_are_said() {

@@ -1,5 +1,6 @@
 //! The way from the twin's world to the source thread that shows its eyes.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use plumbline_hardware::{
@@ -10,18 +11,31 @@ use plumbline_twin::eyes::{TwinEyes, TwinEyesOptions};
 
 /// Holds the running twin's world, if there is one.
 #[derive(Clone, Default)]
-pub struct TwinEyesPlug(Arc<Mutex<Option<SceneSource>>>);
+pub struct TwinEyesPlug {
+    scene: Arc<Mutex<Option<SceneSource>>>,
+    looks: Arc<AtomicU64>,
+}
 
 impl TwinEyesPlug {
     /// Another twin runs, or none.
     pub fn set(&self, scene: Option<SceneSource>) {
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = scene;
+        *self.scene.lock().unwrap_or_else(PoisonError::into_inner) = scene;
+    }
+
+    /// How often the world was looked at so far, to draw it.
+    pub fn looks(&self) -> u64 {
+        self.looks.load(Ordering::Relaxed)
     }
 
     fn open(&self) -> Result<Box<dyn StereoSource>, SourceError> {
-        let scene = self.0.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let scene = self.scene.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let scene = scene.ok_or(SourceError::TwinNotRunning)?;
-        let eyes = TwinEyes::open(Arc::new(move || scene.newest()), TwinEyesOptions::default());
+        let looks = self.looks.clone();
+        let look = move || {
+            looks.fetch_add(1, Ordering::Relaxed);
+            scene.newest()
+        };
+        let eyes = TwinEyes::open(Arc::new(look), TwinEyesOptions::default());
         Ok(Box::new(eyes.map_err(|error| SourceError::Lost { reason: error.to_string() })?))
     }
 

@@ -71,12 +71,11 @@ fn twin(view: &View, again: bool) -> Said {
     if count >= ENOUGH_PAIRS && !again {
         return solve(count);
     }
-    let capture = (!view.eyes.auto_capture).then_some(Action::ToggleAutoCapture);
-    let actions = [capture, Some(Action::Robot(RobotAction::TourBoard))];
     Said::press(
         "An unseen hand shows the twin the board at all places; pairs are captured by themselves. The robot stays.",
         "Show the board at all places",
-        actions.into_iter().flatten().collect(),
+        // On the screen of collecting, that captures too.
+        vec![Action::Robot(RobotAction::TourBoard)],
     )
 }
 
