@@ -125,6 +125,11 @@ impl EyesWorkflow {
         self.auto_capture
     }
 
+    /// Minutes since the cameras were switched on, where the operator said so.
+    pub fn minutes_since_on(&self) -> Option<f64> {
+        self.minutes_since_on
+    }
+
     /// The calibration in use.
     pub fn in_use(&self) -> Option<&Arc<StereoCalibration>> {
         self.in_use.as_ref().map(|in_use| &in_use.calibration)
