@@ -32,6 +32,8 @@ pub struct LiveSetup {
     pub title: Arc<str>,
     /// How the head stands, the rest of the robot as usual.
     pub posture: Posture,
+    /// For how long the eyes have been on, s, where somebody knows it: lenses move as they warm up.
+    pub eyes_on_s: Option<f64>,
 }
 
 impl LiveSetup {
@@ -45,7 +47,8 @@ impl LiveSetup {
         in_left: &Point<LeftCamera>,
         covariance_m2: &Matrix3<f64>,
     ) -> Result<PlaceInRobot, NoPlace> {
-        let place = self.model.place(in_left, covariance_m2, &self.posture, &SeenUnder::default());
+        let seen = SeenUnder { t_secs: self.eyes_on_s, ..SeenUnder::default() };
+        let place = self.model.place(in_left, covariance_m2, &self.posture, &seen);
         place.ok_or(NoPlace)
     }
 

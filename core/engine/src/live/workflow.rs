@@ -39,6 +39,8 @@ pub struct LiveWorkflow {
     head: HeadPose,
     /// The head angles that the present setup was aimed for.
     aimed_for: HeadPose,
+    /// For how long the eyes have been on, s.
+    eyes_on_s: Option<f64>,
     /// The robot as it is known.
     model: Arc<RobotModel>,
     calibration: Option<Arc<StereoCalibration>>,
@@ -74,6 +76,7 @@ impl Default for LiveWorkflow {
             aim: AimChoice::default(),
             head: HeadPose::default(),
             aimed_for: HeadPose::default(),
+            eyes_on_s: None,
             model: Arc::new(RobotModel::nominal(default_rig())),
             calibration: None,
             nominal: None,
@@ -163,6 +166,16 @@ impl LiveWorkflow {
         let posture = self.posture();
         if let Ok(setup) = &mut self.setup {
             Arc::make_mut(setup).posture = posture;
+        }
+    }
+
+    /// For how long the eyes have been on, s; `None`: nobody knows.
+    pub fn set_eyes_on(&mut self, eyes_on_s: Option<f64>) {
+        if eyes_on_s != self.eyes_on_s {
+            self.eyes_on_s = eyes_on_s;
+            if let Ok(setup) = &mut self.setup {
+                Arc::make_mut(setup).eyes_on_s = eyes_on_s;
+            }
         }
     }
 
@@ -414,6 +427,7 @@ impl LiveWorkflow {
                             model: self.model.clone(),
                             title: self.model.title().into(),
                             posture: self.posture(),
+                            eyes_on_s: self.eyes_on_s,
                         })
                     })
                     .map_err(NoSetup::from)
@@ -467,5 +481,44 @@ fn aim_view(choice: AimChoice, pair: &AimedPair) -> AimView {
         focal_px: pair.f_px,
         field_of_view_rad: (across(pair.width_px), across(pair.height_px)),
         baseline_m: pair.baseline_m,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Matrix3;
+    use plumbline_effects::rig_model::ModelEffect;
+    use plumbline_effects::{Effect, Kind, RigModel};
+    use plumbline_model::Point;
+
+    use super::*;
+
+    #[test]
+    fn eyes_that_turn_as_they_warm_up_are_undone_by_their_clock() {
+        let rig = default_rig();
+        let mut added = RigModel::nominal(&rig);
+        added.contents.effects.push(ModelEffect {
+            id: Kind::EyeYaw.id().to_owned(),
+            site: "right".to_owned(),
+            title: String::new(),
+            tip: None,
+            shape: Some(Effect::yaw_growth(240.0, 0.0)),
+            values: vec![0.01],
+            covariance: vec![],
+            probability: None,
+            parameters: vec![],
+        });
+        let model = RobotModel::new(rig, Arc::new(added)).expect("fits");
+        let mut live = LiveWorkflow::default();
+        live.set_model(&Arc::new(model));
+        live.use_nominal_lenses(true);
+        let mut place = |eyes_on_s: Option<f64>| {
+            live.set_eyes_on(eyes_on_s);
+            let setup = live.setup().expect("nominal lenses");
+            setup.place(&Point::new(0.0, 0.0, 0.5), &(Matrix3::identity() * 1e-8)).expect("a place").point
+        };
+        let [unknown, cold, warm] = [None, Some(0.0), Some(1200.0)].map(&mut place);
+        assert!(cold.distance_m(&unknown) < 1e-9);
+        assert!(warm.distance_m(&cold) > 0.01, "{warm:?} {cold:?}");
     }
 }

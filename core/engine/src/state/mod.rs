@@ -200,12 +200,20 @@ impl State {
         let shown = self.shown;
         self.rooms.live.set_model(self.models.of(shown));
         self.rooms.live.set_calibration(self.rooms.eyes.of(shown).in_use());
+        self.use_eyes_clock();
         self.use_workspace();
         let of_arm = self.model_of_the_arm();
         if !Arc::ptr_eq(&self.told_the_arm, &of_arm) {
             self.told_the_arm = of_arm.clone();
             self.actions.push(Action::Robot(RobotControl::UseModel(of_arm)));
         }
+    }
+
+    /// Tells how long the eyes that are shown have been on: a twin knows it, of other eyes the operator does.
+    fn use_eyes_clock(&mut self) {
+        let told = self.rooms.eyes.of(self.shown).minutes_since_on().map(|minutes| minutes * 60.0);
+        let by_twin = self.twin.running.then_some(self.twin.eyes_on_s);
+        self.rooms.live.set_eyes_on(if self.shown == World::Twin { by_twin } else { told });
     }
 
     fn put_together(&mut self, world: World) {
