@@ -79,7 +79,8 @@ fn journal() -> Result<String, Problem> {
     let heading = Heading { journal: 1, software: "plumbline".to_owned(), started: Timestamp::UNIX_EPOCH };
     let mut text = serde_json::to_string(&heading)? + "\n";
     for (k, command) in commands.into_iter().enumerate() {
-        let entry = Entry { at_secs: 0.5 * k as f64, newest_seq: Some(k as u64), command };
+        let (at_secs, newest_seq) = (0.5 * k as f64, Some(k as u64));
+        let entry = Entry { at_secs, day: Some(Timestamp::UNIX_EPOCH), newest_seq, command };
         text += &(serde_json::to_string(&entry)? + "\n");
     }
     Ok(text)
