@@ -6,9 +6,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use jiff::{SignedDuration, Timestamp};
+use plumbline_engine::View;
+use plumbline_engine::journal::{self, Heading, Line};
 use plumbline_engine::replay::Replay;
 use plumbline_engine::view::KeptView;
-use plumbline_engine::{View, journal};
 use tempfile::TempDir;
 
 use crate::{Window, until, view};
@@ -42,7 +44,7 @@ impl Beginning {
     ///
     /// # Panics
     /// When a replay ends otherwise.
-    pub fn leads_to_what_is_shown(self, mut window: Window, forget: impl Fn(&mut View)) {
+    pub fn leads_to_what_is_shown(self, mut window: Window, forget: impl Fn(&mut View)) -> Recorded {
         settle(&mut window);
         let shown = View::clone(&view(&window));
         drop(window);
@@ -52,18 +54,50 @@ impl Beginning {
         assert!(lines.len() > 10, "{} lines", lines.len());
         let in_the_end = text(shown, &forget);
         for _ in 0..2 {
-            self.restore();
-            let mut replay = Replay::new(&self.folder.join("data"), &heading);
-            for line in &lines {
-                replay.take(line.clone());
-            }
-            is_the_same(&text(replay.view(), &forget), &in_the_end);
+            is_the_same(&text(self.replayed(&heading, &lines), &forget), &in_the_end);
         }
+        Recorded { beginning: self, heading, lines, in_the_end }
+    }
+
+    fn replayed(&self, heading: &Heading, lines: &[Line]) -> View {
+        self.restore();
+        let mut replay = Replay::new(&self.folder.join("data"), heading);
+        for line in lines {
+            replay.take(line.clone());
+        }
+        replay.view()
     }
 
     fn restore(&self) {
         fs::remove_dir_all(&self.folder).expect("removed");
         copy(self.kept.path(), &self.folder);
+    }
+}
+
+/// What was done, and how it ended.
+pub struct Recorded {
+    beginning: Beginning,
+    heading: Heading,
+    lines: Vec<Line>,
+    in_the_end: String,
+}
+
+impl Recorded {
+    /// Does it all once more an hour later by the journal's time of day: it has to end otherwise, or the
+    /// comparison would not see a workflow that reads a clock.
+    ///
+    /// # Panics
+    /// When it ends in the same.
+    pub fn ends_otherwise_an_hour_later(mut self) {
+        let later = |day: &mut Timestamp| *day += SignedDuration::from_hours(1);
+        for line in &mut self.lines {
+            match line {
+                Line::Event(event) => later(&mut event.day),
+                Line::Command(entry) => entry.day.iter_mut().for_each(later),
+            }
+        }
+        let otherwise = text(self.beginning.replayed(&self.heading, &self.lines), |_| {});
+        assert_ne!(otherwise, self.in_the_end, "the time of day is seen in the view");
     }
 }
 

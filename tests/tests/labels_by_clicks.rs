@@ -164,7 +164,7 @@ fn boxes_are_drawn_corrected_taken_back_copied_and_exported() {
     assert_eq!(written.names.to_string(), "Banana, Duck, LeftHand");
     let of = |split| written.images.iter().filter(move |image| image.split == Some(split)).count();
     assert_eq!((of(Split::Train), of(Split::Val)), (6, 2), "whole scenes");
-    beginning.leads_to_what_is_shown(window, |_| {});
+    beginning.leads_to_what_is_shown(window, |_| {}).ends_otherwise_an_hour_later();
 }
 
 fn fixture(name: &str) -> PathBuf {
