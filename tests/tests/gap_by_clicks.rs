@@ -53,6 +53,7 @@ fn a_hidden_effect_is_found_named_added_and_the_gap_shrinks() {
         view(window).gap.sessions.iter().any(|listed| listed.folder == session && listed.problem.is_none())
     });
     assert_eq!(view(&window).gap.step, StepState::NotDone);
+    until(&mut window, "what is read at the start", |window| view(window).running_job().is_none());
 
     click(&mut window, "Find what is missing");
     searched(&mut window, "the finding", 1);

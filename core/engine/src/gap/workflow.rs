@@ -89,7 +89,7 @@ impl GapWorkflow {
                 Some(model) => model.clone(),
                 None => {
                     return context.refuse(
-                        "The model in use cannot be read. See the log, or compare with the robot's description alone.",
+                        "The model in use is not read yet: press again in a moment. If it stays so, its file cannot be used: see the log, or compare with the robot's description alone.",
                     );
                 }
             },
