@@ -15,6 +15,10 @@ use crate::record::{Failure, Step};
 const NEAR_M: f64 = 0.002;
 /// A hand that is known less well than this over the table is looked at once more, m.
 const SURE_M: f64 = 0.002;
+/// At the end of its reach the hand may stay so far from where it belongs, m; it is sent there with the
+/// largest of these shares of what is missing that it reaches.
+const SHORT_M: f64 = 0.004;
+const SHARES: [f64; 5] = [1.0, 0.75, 0.5, 0.25, 0.0];
 /// The second look and those after it are so high over where the hand closes, m: no finger reaches the
 /// object yet.
 const LOW_M: f64 = 0.04;
@@ -123,25 +127,39 @@ impl Running<'_> {
         Ok(Some(missing_m))
     }
 
-    /// The plan with the arm's error undone. Where the hand cannot be sent so with this heading, it goes up
-    /// again and another one is taken.
+    /// The plan with the arm's error undone. Where the hand cannot be sent so with this heading, nearly
+    /// there is good enough, else it goes up again and another heading is taken.
     fn corrected(&mut self, over: Over, error: &mut ArmError) -> Result<Over, End> {
         near_enough(&error.m)?;
-        let planner = self.grasper.planner(self.order.method);
-        if let Ok(plan) = planner.again(&over.plan, &-error.m) {
+        let error_m = error.m;
+        let nearly = |running: &Self, plan: &GraspPlan, short_m: f64| {
+            let planner = running.grasper.planner(running.order.method);
+            SHARES
+                .into_iter()
+                .filter(|share| (1.0 - share) * error_m.xy().norm() <= short_m)
+                .find_map(|share| planner.again(plan, &(-share * error_m)).ok())
+        };
+        if let Some(plan) = nearly(self, &over.plan, NEAR_M) {
             let Some(lowered) = over.lowered else { return Ok(Over { plan, lowered: None }) };
-            let (_, plan) = plan.from_low(LOW_M);
-            return Ok(Over { plan, lowered: Some(lowered) });
+            return Ok(Over { plan: plan.from_low(LOW_M).1, lowered: Some(lowered) });
         }
         if let Some(lowered) = over.lowered {
             let up: Vec<_> = lowered.into_iter().rev().collect();
             self.moved(&up, error)?;
         }
         let from = self.body.commanded()?;
-        let plan = self.grasper.planner(self.order.method).plan(&over.plan.standing, &-error.m, &from)?;
-        self.planned(&plan);
-        self.moved(&plan.approach, error)?;
-        Ok(Over { plan, lowered: None })
+        let standing = over.plan.standing;
+        match self.grasper.planner(self.order.method).plan(&standing, &-error.m, &from) {
+            Ok(plan) => {
+                self.planned(&plan);
+                self.moved(&plan.approach, error)?;
+                Ok(Over { plan, lowered: None })
+            }
+            Err(barred) => {
+                let plan = nearly(self, &over.plan, SHORT_M).ok_or(barred)?;
+                Ok(Over { plan, lowered: None })
+            }
+        }
     }
 
     /// To where the hand is looked at next: low over the object.

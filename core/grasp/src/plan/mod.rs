@@ -1,19 +1,23 @@
 //! From the place of an object to the postures that grasp it: how the hand comes, where it closes,
 //! and free ways there and up again.
 
+mod fingers;
+mod standing;
 mod ways;
 
 use std::f64::consts::PI;
 
-use nalgebra::{Point3, UnitQuaternion, Vector3};
+use nalgebra::Vector3;
+use plumbline_model::robot::Posture;
 use plumbline_model::robot::collision::{CollisionError, CollisionModel};
-use plumbline_model::robot::{JointIndex, Posture};
 use plumbline_model::{Point, Robot};
 
 use crate::arm::PalmArm;
 
-/// The palm waits this high above where it closes, m.
-const ABOVE_M: f64 = 0.09;
+pub use standing::Standing;
+
+/// The palm waits this high above where it closes, m; lower where the arm does not get so high.
+const ABOVE_M: [f64; 3] = [0.09, 0.07, 0.05];
 /// It lifts this high, m.
 const LIFT_M: f64 = 0.10;
 /// Postures on the way down are this far apart, m.
@@ -29,49 +33,9 @@ const LEVEL_ENOUGH: f64 = 0.97;
 /// How a palm is turned and where it belongs depend on each other: so many times, until it is this near, m.
 const TURNS: usize = 6;
 const TURNED_M: f64 = 0.0005;
-/// Fingers and thumb bend this far around nothing, rad.
-const CLOSED_RAD: f64 = 1.8;
 /// A way with less room than this between any two bodies, m, counts as this much more turning, rad.
 const ROOM_M: f64 = 0.008;
 const CRAMPED_RAD: f64 = 2.0;
-/// Things belong so much nearer to the fingers than the middle of the palm, m, in the middle of how far
-/// off they may be and still be lifted (`tests/tolerance.rs`)…
-const INTO_FINGERS_M: f64 = 0.017;
-/// …and so much toward the right of the hand, m.
-const TO_THE_RIGHT_M: f64 = 0.004;
-/// The palm closes so much below the top of a thing, m…
-const BELOW_TOP_M: f64 = 0.017;
-
-/// What is to be grasped, on what it stands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Standing {
-    /// Middle of the object over its support: x and y, m.
-    pub xy_m: [f64; 2],
-    /// Height of what it stands on, m.
-    pub support_m: f64,
-    /// Height of the object, m.
-    pub height_m: f64,
-}
-
-impl Standing {
-    /// Height of its middle, m.
-    pub fn middle_m(&self) -> f64 {
-        self.support_m + 0.5 * self.height_m
-    }
-
-    /// Where a palm that faces straight down belongs when the fingers close, for a heading of the hand.
-    pub fn palm(&self, heading_rad: f64) -> Point<Robot> {
-        self.palm_turned(&UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading_rad))
-    }
-
-    /// The same for a palm that is turned somehow: x along the fingers, z out of the back of the hand.
-    pub fn palm_turned(&self, robot_from_palm: &UnitQuaternion<f64>) -> Point<Robot> {
-        let middle = Vector3::new(self.xy_m[0], self.xy_m[1], self.middle_m());
-        let over_m = 0.5 * self.height_m - BELOW_TOP_M;
-        let in_hand = Vector3::new(INTO_FINGERS_M, -TO_THE_RIGHT_M, -over_m);
-        Point::from(Point3::from(middle - robot_from_palm * in_hand))
-    }
-}
 
 /// Why a grasp cannot be made. Reads as a sentence.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -169,12 +133,30 @@ impl GraspPlanner {
         shift_m: &Vector3<f64>,
         from: &Posture,
     ) -> Result<GraspPlan, NoPlan> {
+        let mut barred = None;
+        for above_m in ABOVE_M {
+            match self.plan_from(above_m, standing, shift_m, from) {
+                Ok(plan) => return Ok(plan),
+                Err(why) => barred = barred.or(Some(why)),
+            }
+        }
+        Err(barred.unwrap_or(NoPlan::OutOfReach { xy_m: standing.xy_m }))
+    }
+
+    /// The same for a palm that waits so high above where it closes.
+    fn plan_from(
+        &self,
+        above_m: f64,
+        standing: &Standing,
+        shift_m: &Vector3<f64>,
+        from: &Posture,
+    ) -> Result<GraspPlan, NoPlan> {
         let open = self.open(from);
         let mut ways: Vec<(f64, f64, WayDown)> = vec![];
         let steps = ((HEADINGS_RAD[1] - HEADINGS_RAD[0]) / HEADING_STEP_RAD).round() as usize;
         for step in 0..=steps {
             let heading_rad = HEADINGS_RAD[0] + step as f64 * HEADING_STEP_RAD;
-            if let Some(way) = self.way_to(standing, heading_rad, shift_m, &open) {
+            if let Some(way) = self.way_to(above_m, standing, heading_rad, shift_m, &open) {
                 ways.push((way.level, heading_rad, way));
             }
         }
@@ -215,10 +197,18 @@ impl GraspPlanner {
     pub fn again(&self, plan: &GraspPlan, shift_m: &Vector3<f64>) -> Result<GraspPlan, NoPlan> {
         let out_of_reach = NoPlan::OutOfReach { xy_m: plan.standing.xy_m };
         let start = plan.above().ok_or_else(|| out_of_reach.clone())?;
-        let way = self.way_to(&plan.standing, plan.heading_rad, shift_m, start).ok_or(out_of_reach)?;
-        let WayDown { palm_m, above, down, level } = way;
-        self.room(&above, &down)?;
-        Ok(GraspPlan { level, palm_m, approach: vec![above], down, ..plan.clone() })
+        let mut why = None;
+        for above_m in ABOVE_M {
+            let Some(way) = self.way_to(above_m, &plan.standing, plan.heading_rad, shift_m, start) else {
+                continue;
+            };
+            let WayDown { palm_m, above, down, level } = way;
+            match self.room(&above, &down) {
+                Ok(_) => return Ok(GraspPlan { level, palm_m, approach: vec![above], down, ..plan.clone() }),
+                Err(barred) => why = why.or(Some(barred)),
+            }
+        }
+        Err(why.unwrap_or(out_of_reach))
     }
 
     /// Straight up from where the hand closed, fingers as they are.
@@ -244,65 +234,11 @@ impl GraspPlanner {
     /// How high things are usually lifted, m.
     pub const LIFT_M: f64 = LIFT_M;
 
-    /// The hand open, the rest as in `from`.
-    pub fn open(&self, from: &Posture) -> Posture {
-        from.with(self.arm.hand(), &vec![0.0; self.arm.hand().len()])
-    }
-
-    /// Joints of the fingers without the thumb.
-    pub fn fingers(&self) -> Vec<JointIndex> {
-        let is_finger = |joint: &&JointIndex| !self.is_thumb(**joint);
-        self.arm.hand().iter().filter(is_finger).copied().collect()
-    }
-
-    /// The hand closed, the rest as in `from`.
-    pub fn closed(&self, from: &Posture) -> Posture {
-        let angles: Vec<f64> = self.arm.hand().iter().map(|joint| self.closed_rad(*joint)).collect();
-        from.with(self.arm.hand(), &angles)
-    }
-
-    /// The thumb closed, the rest as in `from`.
-    pub fn thumb_closed(&self, from: &Posture) -> Posture {
-        let thumb: Vec<JointIndex> =
-            self.arm.hand().iter().filter(|joint| self.is_thumb(**joint)).copied().collect();
-        let angles: Vec<f64> = thumb.iter().map(|joint| self.closed_rad(*joint)).collect();
-        from.with(&thumb, &angles)
-    }
-
-    /// The palm turned to the eyes as published: the wrist bends by 45° where the arm is stretched and
-    /// turns by 60° where it is bent, as far as its limits let it; the thumb out of the way.
-    pub fn palm_to_eyes(&self, above: &Posture) -> Posture {
-        let rig = self.arm.rig();
-        let joints = self.arm.joints();
-        let [.., elbow, turn, bend] = *joints else { return above.clone() };
-        let stretched = ((above[elbow].to_degrees() - 60.0) / 100.0).clamp(0.0, 1.0);
-        let within = |joint: JointIndex, angle_rad: f64| {
-            let limits = rig.limits(joint);
-            angle_rad.clamp(limits.lower_rad, limits.upper_rad)
-        };
-        let bent = within(bend, above[bend] - 0.25 * PI * stretched);
-        let turned = within(turn, above[turn] + PI / 3.0 * (1.0 - stretched));
-        above.with(&[turn, bend], &[turned, bent])
-    }
-
-    fn is_thumb(&self, joint: JointIndex) -> bool {
-        self.arm.rig().description.joint(joint).name.contains("thumb")
-    }
-
-    /// Bent inward, as far as the fingers of the pose "close-hand" are.
-    fn closed_rad(&self, joint: JointIndex) -> f64 {
-        if self.arm.rig().description.joint(joint).name.contains("thumb_z") {
-            return 0.0;
-        }
-        let limits = self.arm.rig().limits(joint);
-        let inward = if limits.upper_rad > -limits.lower_rad { 1.0 } else { -1.0 };
-        inward * CLOSED_RAD
-    }
-
     /// The way down onto what stands somewhere; a palm that cannot be level comes from where it is
     /// turned to.
     fn way_to(
         &self,
+        above_m: f64,
         standing: &Standing,
         heading_rad: f64,
         shift_m: &Vector3<f64>,
@@ -310,7 +246,8 @@ impl GraspPlanner {
     ) -> Option<WayDown> {
         let mut palm = standing.palm(heading_rad);
         for _ in 0..TURNS {
-            let (above, down) = self.way_down(Point::from(palm.coords + shift_m), heading_rad, open)?;
+            let (above, down) =
+                self.way_down(above_m, Point::from(palm.coords + shift_m), heading_rad, open)?;
             let turn = self.arm.robot_from_palm(down.last()?).isometry.rotation;
             let turned = standing.palm_turned(&turn);
             if turned.distance_m(&palm) < TURNED_M {
@@ -324,17 +261,18 @@ impl GraspPlanner {
 
     fn way_down(
         &self,
+        above_m: f64,
         palm: Point<Robot>,
         heading_rad: f64,
         open: &Posture,
     ) -> Option<(Posture, Vec<Posture>)> {
         let at = |height_m: f64| Point::from(palm.coords + Vector3::z() * height_m);
-        let above = self.arm.sent_to(at(ABOVE_M), heading_rad, open)?;
-        let steps = (ABOVE_M / STEP_M).round() as usize;
+        let above = self.arm.sent_to(at(above_m), heading_rad, open)?;
+        let steps = (above_m / STEP_M).round() as usize;
         let mut down: Vec<Posture> = vec![];
         for step in (0..steps).rev() {
             let next = self.arm.next_to(
-                at(ABOVE_M * step as f64 / steps as f64),
+                at(above_m * step as f64 / steps as f64),
                 heading_rad,
                 down.last().unwrap_or(&above),
             )?;

@@ -1,0 +1,43 @@
+//! Where things stand, and where a palm belongs over them.
+
+use nalgebra::{Point3, UnitQuaternion, Vector3};
+use plumbline_model::{Point, Robot};
+
+/// Things belong so much nearer to the fingers than the middle of the palm, m, in the middle of how far
+/// off they may be and still be lifted (`tests/tolerance.rs`)…
+const INTO_FINGERS_M: f64 = 0.017;
+/// …and so much toward the right of the hand, m.
+const TO_THE_RIGHT_M: f64 = 0.004;
+/// The palm closes so much below the top of a thing, m…
+const BELOW_TOP_M: f64 = 0.017;
+
+/// What is to be grasped, on what it stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Standing {
+    /// Middle of the object over its support: x and y, m.
+    pub xy_m: [f64; 2],
+    /// Height of what it stands on, m.
+    pub support_m: f64,
+    /// Height of the object, m.
+    pub height_m: f64,
+}
+
+impl Standing {
+    /// Height of its middle, m.
+    pub fn middle_m(&self) -> f64 {
+        self.support_m + 0.5 * self.height_m
+    }
+
+    /// Where a palm that faces straight down belongs when the fingers close, for a heading of the hand.
+    pub fn palm(&self, heading_rad: f64) -> Point<Robot> {
+        self.palm_turned(&UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading_rad))
+    }
+
+    /// The same for a palm that is turned somehow: x along the fingers, z out of the back of the hand.
+    pub fn palm_turned(&self, robot_from_palm: &UnitQuaternion<f64>) -> Point<Robot> {
+        let middle = Vector3::new(self.xy_m[0], self.xy_m[1], self.middle_m());
+        let over_m = 0.5 * self.height_m - BELOW_TOP_M;
+        let in_hand = Vector3::new(INTO_FINGERS_M, -TO_THE_RIGHT_M, -over_m);
+        Point::from(Point3::from(middle - robot_from_palm * in_hand))
+    }
+}
