@@ -12,7 +12,9 @@ use plumbline_model::{StereoCalibration, Unattended};
 use plumbline_twin::{Lockstep, Scenario, Toy};
 
 use super::attempt::{Bench, Task};
-use super::trials::{Experiment, begin, carry_out, conclude};
+use super::trials::{carry_out, conclude};
+use plumbline_engine::trials::Experiment;
+use plumbline_engine::trials::store::begin;
 
 fn bench(scenario: &str) -> Bench {
     let rig = Arc::new(Rig::built_in("nico").expect("valid"));
