@@ -152,6 +152,8 @@ pub enum Pane {
     GraspRun,
     /// What became of attempts.
     GraspAttempts,
+    /// The experiment with grasps.
+    GraspExperiment,
     /// Which detectors are judged on what.
     ScoreChoice,
     /// Detectors compared.
@@ -218,6 +220,7 @@ impl Pane {
             Self::GapHistory => "History",
             Self::GraspRun => "Grasp",
             Self::GraspAttempts => "Attempts",
+            Self::GraspExperiment => "Experiment",
             Self::ScoreChoice => "Detectors and data set",
             Self::ScoreTable => "Detectors compared",
             Self::ScoreClasses => "Per class",

@@ -14,6 +14,13 @@ pub mod touch {
     pub use plumbline_engine::touch::{EffectVisibility, PlanScore};
 }
 
+/// Of the experiment with grasps.
+pub mod trials {
+    pub use plumbline_engine::report::experiment::{
+        Experiment as Page, Method as PageMethod, Position as PagePosition, TABLE as HEADINGS,
+    };
+}
+
 /// Of the gap between model and measurement.
 pub mod gap {
     pub use plumbline_engine::gap::{

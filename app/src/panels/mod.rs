@@ -104,6 +104,7 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
         | Pane::GapHistory => gap::show(ui, pane, cx),
         Pane::GraspRun => grasp::show_run(ui, cx),
         Pane::GraspAttempts => grasp::show_attempts(ui, cx),
+        Pane::GraspExperiment => grasp::show_experiment(ui, cx),
         Pane::ScoreChoice
         | Pane::ScoreTable
         | Pane::ScoreClasses

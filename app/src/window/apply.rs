@@ -17,7 +17,7 @@ use super::settings::ThemeChoice;
 use crate::operator::guidance::guidance;
 use crate::operator::{
     Action, CommissionAction, DetectAction, GapAction, LabelsAction, ModelsAction, Outbox, Preset,
-    RobotAction, ScoresAction, Screen, TouchAction, gap_plan,
+    RobotAction, ScoresAction, Screen, TouchAction, TrialsAction, gap_plan,
 };
 
 /// A message of the window itself.
@@ -86,6 +86,7 @@ impl PlumblineWindow {
             Action::Touch(TouchAction::ToggleWindow) => {
                 self.panels.touch.window_open = !self.panels.touch.window_open;
             }
+            Action::Trials(TrialsAction::Export(format)) => self.ask_for(ctx, Question::Trials(format)),
             Action::Commission(action) => self.act_on_commission(ctx, action),
             Action::Next if self.view.commission.is_on => {
                 self.act_on_commission(ctx, CommissionAction::Next);
@@ -230,6 +231,7 @@ impl PlumblineWindow {
             Action::Models(action) => return action.command(&self.view),
             Action::Gap(action) => return action.command(&self.view),
             Action::Grasp(action) => return action.command(&self.view),
+            Action::Trials(action) => return action.command(),
             Action::Labels(action) => return action.command(&self.view),
             Action::Scores(action) => return action.command(&self.view),
             Action::Detect(action) => return action.command(),

@@ -113,7 +113,7 @@ fn gap(tiles: &mut Tiles<Pane>) -> TileId {
 fn grasp(tiles: &mut Tiles<Pane>) -> TileId {
     let left = tabs(tiles, &[Pane::LeftEye]);
     let right = tabs(tiles, &[Pane::RightEye]);
-    let scene = tabs(tiles, &[Pane::Scene, Pane::Twin]);
+    let scene = tabs(tiles, &[Pane::Scene, Pane::Twin, Pane::GraspExperiment]);
     let run = tabs(tiles, &[Pane::GraspRun]);
     let attempts = tabs(tiles, &[Pane::GraspAttempts]);
     let eyes = row(tiles, &[(left, 1.0), (right, 1.0)]);

@@ -6,7 +6,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Sender, bounded};
-use plumbline_engine::{ExportFormat, Exported, GraspTable};
+use plumbline_engine::{ExportFormat, Exported, GraspTable, TrialsFormat};
 
 use crate::operator::snapshot::models::Method;
 
@@ -54,6 +54,8 @@ pub enum Question {
     ScoreSet,
     /// Where the table of scores is written.
     ScoresCsv,
+    /// Where an experiment with grasps is written.
+    Trials(TrialsFormat),
     /// Where a picture of the window is saved.
     SaveWindow,
     /// Where a picture of one view is saved.
@@ -99,6 +101,7 @@ impl Question {
             Self::ScoreModels => "Add a detector to judge",
             Self::ScoreSet => "Choose the data set to judge on",
             Self::ScoresCsv => "Export the scores",
+            Self::Trials(_) => "Export the experiment",
             Self::SaveWindow => "Save a picture of the window",
             Self::SaveView => "Save a picture of the view",
         }
@@ -152,6 +155,9 @@ impl Question {
             Self::GapReport { pdf: false } => "gap.html",
             Self::GapReport { pdf: true } => "gap.pdf",
             Self::ScoresCsv => "scores.csv",
+            Self::Trials(TrialsFormat::Csv) => "experiment.csv",
+            Self::Trials(TrialsFormat::Html) => "experiment.html",
+            Self::Trials(TrialsFormat::Pdf) => "experiment.pdf",
             Self::SaveWindow => "plumbline.png",
             Self::SaveView => "view.png",
             _ => "",
@@ -168,6 +174,7 @@ impl Question {
                 | Self::ExportLabels
                 | Self::GapReport { .. }
                 | Self::ScoresCsv
+                | Self::Trials(_)
                 | Self::SaveWindow
                 | Self::SaveView
         )

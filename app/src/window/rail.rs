@@ -13,6 +13,11 @@ use crate::operator::{Action, Outbox, Screen};
 use crate::panels::shown_calibration;
 
 const WIDTH: f32 = 176.0;
+/// Height of all steps with the parts of "Eyes"; where there is less, the parts stand only on their own
+/// screens.
+const ALL_ROWS: f32 = 498.0;
+/// Height of what belongs to "Detect".
+const DETECT_ROWS: f32 = 52.0;
 
 pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let screen = window.settings.screen;
@@ -22,6 +27,8 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
         ui,
         |ui| {
             ui.spacing_mut().item_spacing.y = 2.0;
+            let wanted = if screen.is_detect() { ALL_ROWS + DETECT_ROWS } else { ALL_ROWS };
+            let parts = screen.is_eyes() || ui.available_height() >= wanted;
             let commission = RailStep::new("Commission", commission_state(view));
             if commission.selected(screen == Screen::Commission).show(ui).clicked() {
                 outbox.act(Action::Go(Screen::Commission));
@@ -33,7 +40,7 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
             if step.clicked() {
                 outbox.act(Action::Go(eyes_screen(&view.eyes)));
             }
-            for part in Part::ALL {
+            for part in Part::ALL.into_iter().filter(|_| parts) {
                 part_row(ui, view, part, screen, outbox);
             }
             let mount = RailStep::new("Mount", step_state(&view.mount.step)).number(2);

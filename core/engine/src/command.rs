@@ -61,6 +61,8 @@ commands! {
     Gap(gap / GapCommand);
     /// Grasping.
     Grasp(grasp / GraspCommand);
+    /// The experiment with grasps.
+    Trials(trials / TrialsCommand);
     /// The way from a robot that was just switched on to its first good grasp.
     Commission(commission / CommissionCommand);
     /// The lab's own data sets: images with boxes.

@@ -21,6 +21,7 @@ pub mod robot;
 mod scores;
 mod source;
 pub mod touch;
+pub mod trials;
 mod twin;
 
 pub mod command;
@@ -36,7 +37,7 @@ pub use command::{
     GraspCommand, GraspTable, GraspTarget, HandStep, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates,
     LabelsCommand, LiveCommand, ModelsCommand, MountCommand, NoticeCommand, ProbePoint, Products, Provider,
     RobotCommand, ScoresCommand, ScreenContact, ScreenWindow, SetPart, SourceCommand, TablesCommand,
-    TouchCommand, TwinCommand, WatchCommand,
+    TouchCommand, TrialsCommand, TrialsFormat, TwinCommand, WatchCommand,
 };
 pub use engine::settings::{self, EngineSettings};
 pub use engine::{Engine, Wake, journal, replay};

@@ -60,6 +60,8 @@ views! {
     gap: gap / GapView;
     /// Grasping.
     grasp: grasp / GraspView;
+    /// The experiment with grasps.
+    trials: trials / TrialsView;
     /// The way to the first good grasp.
     commission: commission / CommissionView;
     /// The lab's own data sets.

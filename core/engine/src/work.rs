@@ -74,6 +74,8 @@ works! {
     Gap(gap / GapWork);
     /// Part of grasping.
     Grasp(grasp / GraspWork);
+    /// Part of the experiment with grasps.
+    Trials(trials / TrialsWork);
     /// Part of commissioning.
     Commission(commission / CommissionWork);
     /// Part of the lab's own data sets.

@@ -33,6 +33,18 @@ pub enum OfflineError {
     /// The robot has no such hand.
     #[error(transparent)]
     Arm(#[from] plumbline_grasp::NoArm),
+    /// A hand has no shape.
+    #[error(transparent)]
+    Hand(#[from] plumbline_grasp::attempt::NoHand),
+    /// An experiment with grasps.
+    #[error(transparent)]
+    Trials(#[from] plumbline_engine::trials::TrialsError),
+    /// Nothing is known of such a thing.
+    #[error("nothing is known of a thing called {object}: choose one of tomato, mushroom, onion, orange")]
+    UnknownThing {
+        /// Its name.
+        object: String,
+    },
     /// The board cannot be used.
     #[error(transparent)]
     Board(#[from] BoardError),
@@ -246,6 +258,10 @@ pub enum OfflineError {
 }
 
 impl OfflineError {
+    pub(super) fn unknown_thing(object: &str) -> Self {
+        Self::UnknownThing { object: object.to_owned() }
+    }
+
     /// For `map_err` of file operations.
     pub(super) fn io(path: &Path) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.to_owned();

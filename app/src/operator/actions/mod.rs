@@ -8,6 +8,7 @@ mod labels;
 mod models;
 mod robot;
 mod touch;
+mod trials;
 
 pub use commission::{CommissionAction, FIRST_CLASS, FIRST_PLACE_M};
 pub use detect::DetectAction;
@@ -17,6 +18,7 @@ pub use labels::{LabelsAction, ScoresAction};
 pub use models::ModelsAction;
 pub use robot::{MountAction, RobotAction, default_scenario};
 pub use touch::{Preset, TouchAction, is_under_way, needs_window, screen_of, usual_area};
+pub use trials::TrialsAction;
 
 use std::borrow::Cow;
 
@@ -98,6 +100,8 @@ pub enum Action {
     Gap(GapAction),
     /// Of grasping.
     Grasp(GraspAction),
+    /// Of the experiment with grasps.
+    Trials(TrialsAction),
     /// Of commissioning.
     Commission(CommissionAction),
     /// Of the lab's own data sets.
@@ -143,7 +147,7 @@ macro_rules! into_action {
 }
 into_action!(
     Robot: RobotAction, Mount: MountAction, Touch: TouchAction, Models: ModelsAction, Gap: GapAction,
-    Grasp: GraspAction, Commission: CommissionAction, Labels: LabelsAction, Scores: ScoresAction, Detect: DetectAction
+    Grasp: GraspAction, Trials: TrialsAction, Commission: CommissionAction, Labels: LabelsAction, Scores: ScoresAction, Detect: DetectAction
 );
 
 /// All actions with a place in the palette, in its order.
@@ -154,11 +158,12 @@ pub fn all() -> impl Iterator<Item = Action> {
     let models = ModelsAction::ALL.into_iter().map(Action::Models);
     let gap = GapAction::ALL.into_iter().map(Action::Gap);
     let grasp = GraspAction::ALL.into_iter().map(Action::Grasp);
+    let trials = TrialsAction::ALL.into_iter().map(Action::Trials);
     let commission = CommissionAction::ALL.into_iter().map(Action::Commission);
     let detect = DetectAction::ALL.into_iter().map(Action::Detect);
     let labels = LabelsAction::ALL.into_iter().map(Action::Labels);
     let scores = ScoresAction::ALL.into_iter().map(Action::Scores);
-    let steps = robot.chain(mount).chain(touch).chain(models).chain(gap).chain(grasp);
+    let steps = robot.chain(mount).chain(touch).chain(models).chain(gap).chain(grasp).chain(trials);
     let threads = WatchedThread::ALL.into_iter().map(Action::StartAgain);
     ALL.iter()
         .copied()
@@ -275,6 +280,7 @@ impl Action {
             Self::Models(action) => action.label(),
             Self::Gap(action) => action.label(),
             Self::Grasp(action) => action.label(),
+            Self::Trials(action) => action.label(),
             Self::Commission(action) => action.label(),
             Self::Labels(action) => action.label(),
             Self::Scores(action) => action.label(),
@@ -339,6 +345,7 @@ impl Action {
             Self::Models(action) => action.refusal(view),
             Self::Gap(action) => action.refusal(view),
             Self::Grasp(action) => action.refusal(view),
+            Self::Trials(action) => action.refusal(view),
             Self::Commission(action) => action.refusal(view),
             Self::Labels(action) => action.refusal(view),
             Self::Scores(action) => action.refusal(view),

@@ -1,13 +1,14 @@
 //! What to do next with grasping: one button, named by what it does.
 
 use plumbline_engine::View;
-use plumbline_engine::view::{GraspOutcome, GraspPhase, GraspView, LampState};
+use plumbline_engine::view::{GraspOutcome, GraspPhase, GraspView, LampState, TrialsPhase};
 use plumbline_widgets::format;
 
 use super::robot;
 use super::sentence::{Guidance, say};
 use crate::operator::words::grasp::{closed, method, object_of};
-use crate::operator::{Action, GraspAction, RobotAction};
+use crate::operator::words::trials::ask;
+use crate::operator::{Action, GraspAction, RobotAction, TrialsAction};
 
 pub(super) fn grasp(view: &View) -> Guidance {
     let grasp = &view.grasp;
@@ -29,6 +30,9 @@ pub(super) fn grasp(view: &View) -> Guidance {
 
 fn idle(view: &View) -> Guidance {
     let grasp = &view.grasp;
+    if let Some(guidance) = experiment(view) {
+        return guidance;
+    }
     if let Some(trouble) = robot::trouble(&view.robot) {
         return trouble;
     }
@@ -70,4 +74,25 @@ fn under_way(grasp: &GraspView) -> String {
     let step = step.map_or("getting ready", |(step, _)| step.title()).to_lowercase();
     let by = run.method.map(method).unwrap_or_default();
     format!("Grasps {} with {by}: {step}", run.object.to_lowercase())
+}
+
+/// What a person has to do for the experiment.
+fn experiment(view: &View) -> Option<Guidance> {
+    let shown = view.trials.shown.as_ref()?;
+    match &view.trials.phase {
+        TrialsPhase::Asks { at_m, .. } => Some(
+            say(ask(&shown.experiment.object, *at_m)).then("Placed", Action::Trials(TrialsAction::Placed)),
+        ),
+        TrialsPhase::WaitsForWord { .. } => {
+            Some(say("Look: is it held? Say Held or Not held; the experiment goes on by itself."))
+        }
+        TrialsPhase::Running { .. } => Some(
+            say(format!(
+                "The experiment goes on: {} of {} attempts. The arm moves; Esc or space stops.",
+                shown.made, shown.all
+            ))
+            .then("Pause after this attempt", Action::Trials(TrialsAction::Pause)),
+        ),
+        TrialsPhase::Idle | TrialsPhase::Paused { .. } => None,
+    }
 }

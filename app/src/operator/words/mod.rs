@@ -3,6 +3,7 @@
 pub mod gap;
 pub mod grasp;
 pub mod robot;
+pub mod trials;
 
 use std::path::Path;
 

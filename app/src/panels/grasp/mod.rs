@@ -3,6 +3,7 @@
 mod aligned;
 mod attempts;
 mod choice;
+mod experiment;
 mod eyes;
 mod inspector;
 mod lamps;
@@ -12,6 +13,7 @@ mod run;
 pub mod state;
 
 pub use attempts::show as show_attempts;
+pub use experiment::show as show_experiment;
 pub use eyes::{click, overlay, wants_detections};
 pub use inspector::show as show_inspector;
 pub use run::show as show_run;

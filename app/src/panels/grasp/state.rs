@@ -1,5 +1,7 @@
 //! How grasping is looked at.
 
+use super::experiment::Drafted;
+
 /// How grasping is looked at: kept from frame to frame, never saved.
 #[derive(Clone, Debug)]
 pub struct GraspPanels {
@@ -7,11 +9,15 @@ pub struct GraspPanels {
     pub along: f64,
     /// The attempt that the inspector speaks of, by name; `None`: the newest.
     pub chosen: Option<String>,
+    /// The experiment that is being put together.
+    pub experiment: Drafted,
+    /// The method on its map, by place.
+    pub experiment_method: usize,
 }
 
 impl Default for GraspPanels {
     /// The ghost stands at the end of the way.
     fn default() -> Self {
-        Self { along: 0.7, chosen: None }
+        Self { along: 0.7, chosen: None, experiment: Drafted::default(), experiment_method: 0 }
     }
 }

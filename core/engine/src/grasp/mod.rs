@@ -28,4 +28,6 @@ pub mod work;
 mod workflow;
 
 pub use around::GraspAround;
+pub use keeping::KeepingError;
+pub use standing::read_record;
 pub use workflow::GraspWorkflow;

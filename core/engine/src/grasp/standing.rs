@@ -1,5 +1,10 @@
-//! How far grasping has come, for who waits for the first good grasp.
+//! How far grasping has come, for who waits for it.
 
+use std::path::Path;
+
+use plumbline_grasp::Record;
+
+use super::keeping::{Keeping, KeepingError};
 use super::view::AttemptView;
 use super::workflow::GraspWorkflow;
 
@@ -8,4 +13,22 @@ impl GraspWorkflow {
     pub fn held_last(&self) -> Option<&AttemptView> {
         self.attempts.iter().find(|attempt| attempt.told == Some(true))
     }
+
+    /// The newest attempt that has ended.
+    pub fn newest(&self) -> Option<&AttemptView> {
+        self.attempts.first()
+    }
+
+    /// Whether nothing is under way.
+    pub fn is_idle(&self) -> bool {
+        self.running.is_none()
+    }
+}
+
+/// What is kept of an attempt.
+///
+/// # Errors
+/// When its folder holds no record that can be read.
+pub fn read_record(folder: &Path) -> Result<Record, KeepingError> {
+    Keeping::of(folder.to_owned()).read()
 }

@@ -6,6 +6,7 @@ mod neighbors;
 mod rooms;
 mod stages;
 mod threads;
+mod tried;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -42,6 +43,7 @@ use crate::robot::{News, RobotControl, TouchNews};
 use crate::source::view::SourceView;
 use crate::source::{Control, Note};
 use crate::touch::TouchWorkflow;
+use crate::trials::TrialsWorkflow;
 use crate::twin::view::TwinView;
 use crate::work::{Work, WorkResult};
 
@@ -303,6 +305,7 @@ impl State {
         self.use_models();
         self.with::<MountWorkflow>(self.shown, |mount, around, context| mount.step(around, context));
         self.with::<TouchWorkflow>(self.arm_of, |touch, around, context| touch.step(around, context));
+        self.with::<TrialsWorkflow>(self.arm_of, |trials, around, context| trials.step(around, context));
         self.with::<CommissionWorkflow>(self.arm_of, |room, around, context| room.look(around, context));
     }
 

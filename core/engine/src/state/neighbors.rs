@@ -26,6 +26,7 @@ use crate::mount::{MountAround, MountWorkflow};
 use crate::scores::ScoresWorkflow;
 use crate::source::SourceWorkflow;
 use crate::touch::{TouchAround, TouchWorkflow};
+use crate::trials::TrialsWorkflow;
 use crate::view::View;
 use crate::work::WorkResult;
 

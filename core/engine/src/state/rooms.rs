@@ -15,6 +15,7 @@ use crate::mount::MountWorkflow;
 use crate::scores::ScoresWorkflow;
 use crate::source::SourceWorkflow;
 use crate::touch::TouchWorkflow;
+use crate::trials::TrialsWorkflow;
 
 /// All workflows, in the order in which they are restored and told: field, type, name in the sums,
 /// and for those that there are once per world whose the operator speaks to.
@@ -34,6 +35,7 @@ macro_rules! all_rooms {
             models: ModelsWorkflow, Models, arm_of;
             gap: GapWorkflow, Gap, arm_of;
             grasp: GraspWorkflow, Grasp, arm_of;
+            trials: TrialsWorkflow, Trials, arm_of;
             commission: CommissionWorkflow, Commission, arm_of;
         }
         without_work {

@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
 
+use plumbline_engine::trials::Judged;
 use plumbline_grasp::attempt::HandFinder;
 use plumbline_grasp::plan::GraspPlan;
 use plumbline_grasp::record::Iteration;
@@ -15,7 +16,7 @@ use plumbline_twin::{Lockstep, Scenario, Toy};
 use plumbline_vision::detect::{DetectSettings, DetectorOptions, shipped_detector};
 
 use super::body::TwinBody;
-use super::judge::{Judge, Judged};
+use super::judge::Judge;
 use crate::OfflineError;
 
 /// Since the eyes were switched on, s: they have warmed up, as in the published experiment.

@@ -5,11 +5,11 @@
 use std::sync::Arc;
 
 use image::{Rgb, RgbImage, imageops};
+use plumbline_engine::trials::Judged;
 use plumbline_grasp::{Failure, Method, Outcome, Record, Sight, Step};
 use plumbline_twin::{Lockstep, Scenario, Toy};
 
 use super::attempt::Meddler;
-use super::judge::Judged;
 use super::tests::{bench_of, failure, task};
 
 const EASY_M: [f64; 2] = [0.3, -0.1];

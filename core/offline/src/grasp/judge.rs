@@ -1,10 +1,10 @@
 //! Judges attempts: the only part that reads what is really so.
 
 use nalgebra::Vector3;
+use plumbline_engine::trials::Judged;
 use plumbline_grasp::{Failure, Record};
 use plumbline_model::robot::Rig;
 use plumbline_twin::{Lockstep, Toy};
-use serde::{Deserialize, Serialize};
 
 /// A thing that is this much higher than before is lifted, m.
 const LIFTED_M: f64 = 0.04;
@@ -12,33 +12,6 @@ const LIFTED_M: f64 = 0.04;
 const PLACE_WRONG_M: f64 = 0.015;
 /// A hand that was seen farther off than this was wrong, m.
 const HAND_WRONG_M: f64 = 0.015;
-
-/// What really happened.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Judged {
-    /// Whether it was lifted.
-    pub lifted: bool,
-    /// Whether it was lifted by the first try.
-    #[serde(default)]
-    pub at_first: bool,
-    /// Seen place less true place of the object over the table, m.
-    pub camera_error_m: Option<f64>,
-    /// Distance of the palm from where it was meant to be over the table, before the hand closed, by
-    /// the place of the object that was seen, m.
-    pub reach_error_m: Option<f64>,
-    /// Distance of the palm from where it belongs, by the true place of the object, m.
-    pub alignment_m: Option<f64>,
-    /// The palm before the hand closed, less where it belongs by the true place of the object, robot
-    /// axes, m.
-    pub palm_off_m: Option<[f64; 3]>,
-    /// Distance of the hand that was seen at last from where it truly was, over the table, seen from the
-    /// object, m.
-    pub hand_error_m: Option<f64>,
-    /// Why it failed, by what really happened; `None`: it did not.
-    pub failure: Option<Failure>,
-    /// Refused, nothing moved at last.
-    pub refused: bool,
-}
 
 /// Watches one attempt from outside.
 #[derive(Debug)]

@@ -7,16 +7,11 @@ mod body;
 mod judge;
 mod lab;
 mod one;
-mod page;
-mod summary;
 #[cfg(test)]
 mod tests;
-mod trial_error;
 mod trials;
 
-pub use judge::Judged;
 pub use one::{GraspArgs, GraspReport, grasp};
+pub use plumbline_engine::trials::{Judged, MethodSummary, PositionSummary, Spread, Summary, TrialsError};
 pub use plumbline_grasp::{Method as GraspMethod, PLACES_M};
-pub use summary::{MethodSummary, PositionSummary, Spread, Summary};
-pub use trial_error::TrialsError;
 pub use trials::{TrialsArgs, grasp_trials, merge_trials};

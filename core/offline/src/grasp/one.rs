@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use plumbline_engine::trials::Judged;
 use plumbline_grasp::things::Thing;
 use plumbline_grasp::{Method, Order, Outcome};
 use plumbline_model::JobContext;
@@ -9,8 +10,6 @@ use plumbline_twin::Toy;
 use serde::Serialize;
 
 use super::attempt::Task;
-use super::judge::Judged;
-use super::trial_error::TrialsError;
 use super::trials::bench;
 use crate::OfflineError;
 
@@ -56,7 +55,7 @@ pub struct GraspReport {
 /// When the lab is not ready.
 pub fn grasp(args: &GraspArgs, context: &dyn JobContext) -> Result<GraspReport, OfflineError> {
     let scenario = crate::commission::scenario(&args.twin)?;
-    let unknown = || TrialsError::unknown(&args.object);
+    let unknown = || OfflineError::unknown_thing(&args.object);
     let thing = Thing::of_class(&args.object).ok_or_else(unknown)?;
     let toy = Toy::from_name(&thing.class.to_lowercase()).ok_or_else(unknown)?;
     let mut bench = bench(&args.lab, scenario, &[args.method], context)?;

@@ -12,7 +12,9 @@ use plumbline_model::{StereoCalibration, Unattended};
 use plumbline_twin::{Lockstep, Scenario, Toy};
 
 use super::attempt::{Bench, Task};
-use super::trials::{Experiment, begin, carry_out, conclude};
+use super::trials::{carry_out, conclude};
+use plumbline_engine::trials::Experiment;
+use plumbline_engine::trials::store::begin;
 
 fn bench(scenario: &str) -> Bench {
     bench_of(Scenario::built_in(scenario).expect("valid"))
@@ -153,7 +155,7 @@ fn what_is_missed_is_looked_for_and_grasped_once_more() {
 fn two_shards_put_together_are_one_run_byte_for_byte() {
     let folder = tempfile::tempdir().expect("a folder");
     let experiment = Experiment {
-        format: super::trials::FORMAT,
+        format: plumbline_engine::trials::FORMAT,
         twin: "perfect".to_owned(),
         methods: vec![Method::M5],
         attempts: 1,

@@ -2,20 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use plumbline_grasp::attempt::NoHand;
 use plumbline_model::files::FileError;
-
-use crate::OfflineError;
+use plumbline_report::ReportError;
 
 /// Why an experiment cannot be run or put together, and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum TrialsError {
-    /// Nothing is known of such a thing.
-    #[error("nothing is known of a thing called {object}: choose one of tomato, mushroom, onion, orange")]
-    Unknown {
-        /// Its name.
-        object: String,
-    },
     /// The folder cannot be used.
     #[error("{} cannot be used: {error}. Choose another folder", .folder.display())]
     Folder {
@@ -52,27 +44,25 @@ pub enum TrialsError {
     /// Nothing was given.
     #[error("name the folders to be merged")]
     NothingToMerge,
-    /// The hand has no shape.
+    /// It is of a newer program.
+    #[error("{} has format {format}: read it with a newer program", .file.display())]
+    Newer {
+        /// Which.
+        file: PathBuf,
+        /// Its format.
+        format: u32,
+    },
+    /// The page cannot be made.
     #[error(transparent)]
-    Hand(#[from] NoHand),
+    Report(#[from] ReportError),
 }
 
 impl TrialsError {
-    pub(super) fn unknown(object: &str) -> Self {
-        Self::Unknown { object: object.to_owned() }
-    }
-
     pub(super) fn other(folder: &Path) -> Self {
         Self::OtherExperiment { folder: folder.to_owned() }
     }
 
     pub(super) fn disagree(folder: &Path, file: &str) -> Self {
         Self::Disagree { folder: folder.to_owned(), file: file.to_owned() }
-    }
-}
-
-impl From<TrialsError> for OfflineError {
-    fn from(error: TrialsError) -> Self {
-        Self::OnTwin(Box::new(error))
     }
 }

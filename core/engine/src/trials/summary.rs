@@ -6,7 +6,8 @@ use std::fmt::Write as _;
 use plumbline_grasp::{Failure, Method};
 use serde::Serialize;
 
-use super::trials::{Attempt, Experiment};
+use super::judged::Attempt;
+use super::plan::Experiment;
 
 /// A hand that was seen no farther than this from where it truly was is located, m.
 const LOCATED_M: f64 = 0.015;
@@ -80,7 +81,7 @@ pub struct PositionSummary {
 }
 
 /// Adds up what was attempted so far.
-pub(super) fn summary(experiment: &Experiment, attempts: &[Attempt]) -> Summary {
+pub fn summary(experiment: &Experiment, attempts: &[Attempt]) -> Summary {
     let of_method = |method: Method| {
         let mine: Vec<&Attempt> = attempts.iter().filter(|attempt| attempt.trial.method == method).collect();
         (method.name().to_owned(), of_method(experiment, method, &mine))
@@ -159,7 +160,7 @@ fn name(failure: Failure) -> &'static str {
 }
 
 /// One line per attempt, for a spreadsheet.
-pub(super) fn csv(experiment: &Experiment, attempts: &[Attempt]) -> String {
+pub fn csv(experiment: &Experiment, attempts: &[Attempt]) -> String {
     let mut text = String::from(
         "number,method,x_m,y_m,attempt,placed_x_m,placed_y_m,lifted,refused,failure,camera_error_m,reach_error_m,alignment_m,off_x_m,off_y_m,off_z_m,hand_error_m,looks,tries,seconds\n",
     );

@@ -1,12 +1,11 @@
 //! The page of an experiment, beside what was published of the robot.
 
-use plumbline_grasp::Method;
+use plumbline_grasp::{Method, PLACES_M};
 use plumbline_model::robot::Rig;
 use plumbline_report::experiment::{self as page, Position};
 
-use super::PLACES_M;
+use super::plan::Experiment;
 use super::summary::{AREA_M, MethodSummary, Summary};
-use super::trials::Experiment;
 
 /// Lifted, of three attempts, at the positions of [`PLACES_M`] by M1 to M4 on the real robot, a plush tomato
 /// on the table. M4 made no attempt where the hand was not located. Source: J. Gavura, I. Farkaš,
@@ -21,7 +20,7 @@ const PUBLISHED: [[usize; 22]; 4] = [
 const SAME_M: f64 = 1e-6;
 
 /// What stands on the page.
-pub(super) fn page(experiment: &Experiment, summary: &Summary, rig: &Rig) -> page::Experiment {
+pub fn page(experiment: &Experiment, summary: &Summary, rig: &Rig) -> page::Experiment {
     let attempts: usize = summary.methods.values().map(|of| of.attempts).sum();
     let mut sentences = vec![
         format!(
@@ -49,7 +48,7 @@ pub(super) fn page(experiment: &Experiment, summary: &Summary, rig: &Rig) -> pag
             .iter()
             .filter_map(|method| Some(of_method(*method, summary.methods.get(method.name())?)))
             .collect(),
-        version: plumbline_engine::software(),
+        version: crate::ground::software(),
     }
 }
 

@@ -1,0 +1,87 @@
+//! What an experiment is, and the attempts it has.
+
+use plumbline_grasp::Method;
+use serde::{Deserialize, Serialize};
+
+/// Version of the files.
+pub const FORMAT: u32 = 1;
+/// A person puts a thing this near to where it belongs, m per axis (standard deviation).
+const PLACING_M: f64 = 0.002;
+
+/// What the experiment is; the same in every shard of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Experiment {
+    /// Version of the format.
+    pub format: u32,
+    /// Name of the twin's scenario; of the real robot its name.
+    pub twin: String,
+    /// Methods to compare.
+    pub methods: Vec<Method>,
+    /// Attempts per position and method.
+    pub attempts: usize,
+    /// x and y, robot frame, m.
+    pub positions_m: Vec<[f64; 2]>,
+    /// Class of the object.
+    pub object: String,
+    /// Of all that is drawn by chance.
+    pub seed: u64,
+}
+
+/// One attempt of an experiment.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// Its number, from 0.
+    pub number: usize,
+    /// Place in the list of positions.
+    pub position: usize,
+    /// Of those at this position, from 0.
+    pub attempt: usize,
+    /// How.
+    pub method: Method,
+}
+
+impl Experiment {
+    /// All attempts, in their order: every method at a position before the next attempt there.
+    pub fn trials(&self) -> impl Iterator<Item = Trial> + '_ {
+        let of_position = move |position: usize| {
+            (0..self.attempts).flat_map(move |attempt| {
+                self.methods.iter().enumerate().map(move |(k, method)| Trial {
+                    number: (position * self.attempts + attempt) * self.methods.len() + k,
+                    position,
+                    attempt,
+                    method: *method,
+                })
+            })
+        };
+        (0..self.positions_m.len()).flat_map(of_position)
+    }
+
+    /// Where the thing is put for an attempt (x and y, robot frame, m), off its position as by a person's
+    /// hand, and a seed of the attempt's own. Both depend on the experiment's seed and the number alone, so
+    /// that parts of an experiment can be made anywhere; all methods get the same.
+    pub fn placed(&self, trial: &Trial) -> ([f64; 2], u64) {
+        let number = (trial.position * self.attempts + trial.attempt) as u64;
+        let mut dice = Dice(self.seed ^ number.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        let [x_m, y_m] = self.positions_m[trial.position];
+        let at_m = [x_m + PLACING_M * dice.normal(), y_m + PLACING_M * dice.normal()];
+        (at_m, dice.next())
+    }
+}
+
+/// Numbers from a seed (SplitMix64), the same on every machine.
+struct Dice(u64);
+
+impl Dice {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Of mean 0 and standard deviation 1: twelve even numbers added up, so never beyond 6.
+    fn normal(&mut self) -> f64 {
+        (0..12).map(|_| (self.next() >> 11) as f64 / (1u64 << 53) as f64).sum::<f64>() - 6.0
+    }
+}
