@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 use image::RgbImage;
 use plumbline_model::robot::Rig;
 use plumbline_model::{Eye, StereoCalibration, measured_data};
-use plumbline_vision::detect::{DetectSettings, Detector, DetectorOptions, Part, Region, shipped_detector};
+use plumbline_vision::detect::{DetectSettings, Detector, DetectorOptions, Part, shipped_detector};
 use plumbline_vision::detect_places::{PlaceFinder, PlaceOptions};
 use plumbline_vision::synthetic::nico_like_eyes;
 
@@ -81,8 +81,8 @@ fn turns(file: &Path, pair: &[RgbImage; 2]) {
     let open = |file: &Path| Detector::open(file, &DetectorOptions::default()).expect("it opened before");
     let rig = Rig::built_in("nico").expect("comes with the program");
     let (cameras, workspace) = (rig.eyes.cameras, rig.workspace(&rig.home()));
-    let regions =
-        Eye::BOTH.map(|eye| Region::of_workspace(&cameras, &workspace, eye).map_or(Part::Lit, Part::Region));
+    let size = pair[0].dimensions();
+    let regions = Eye::BOTH.map(|eye| Part::of_workspace(&cameras, &workspace, eye, size));
     let way = |name, file: &Path, parts| Way { name, detector: open(file), parts, times: Vec::new() };
     let before = std::env::var_os("PLUMBLINE_DETECTOR_BEFORE").map(PathBuf::from);
     let mut ways: Vec<Way> = before.iter().map(|file| way("before", file, [Part::Whole; 2])).collect();

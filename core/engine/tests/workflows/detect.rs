@@ -17,7 +17,7 @@ use plumbline_engine::{
 use plumbline_model::detection::{ClassIndex, ClassNames, Detection, PixelBox};
 use plumbline_model::robot::Rig;
 use plumbline_model::{Eye, Stamp, StereoFrame, Unattended};
-use plumbline_vision::detect::DetectError;
+use plumbline_vision::detect::{DetectError, Part};
 
 const SIZE_PX: (u32, u32) = (640, 480);
 
@@ -30,6 +30,8 @@ struct Plan {
     runs: Arc<AtomicUsize>,
     /// Fails with these words, or panics.
     trouble: Option<(String, bool)>,
+    /// What was looked at, eye by eye.
+    parts: Arc<Mutex<Vec<Part>>>,
 }
 
 #[derive(Clone, Default)]
@@ -57,6 +59,17 @@ impl Detects for FakeDetector {
             None => found.extend_from_slice(&plan.boxes[run % 2]),
         }
         Ok(DetectionTiming::default())
+    }
+
+    fn detect_in(
+        &mut self,
+        image: &RgbImage,
+        part: Part,
+        iou: f32,
+        found: &mut Vec<Detection>,
+    ) -> Result<DetectionTiming, DetectorError> {
+        self.0.lock().expect("no test panics with the lock").parts.lock().expect("likewise").push(part);
+        self.detect(image, iou, found)
     }
 }
 
@@ -240,6 +253,31 @@ fn an_object_of_both_eyes_has_a_place_and_one_of_a_single_eye_a_reason() {
     assert!(!seen.line_in_other.is_empty());
     let why = banana.place.as_ref().expect_err("one eye tells no distance");
     assert!(why.to_string().contains("left eye") && banana.alone_because.is_some(), "{why}");
+}
+
+#[test]
+fn the_workspace_is_looked_at_while_nothing_is_beyond_it() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut desk = Desk::looking(folder.path(), vec![], vec![]);
+    let mut looked = |ceiling: &[Detection]| {
+        desk.plan.lock().expect("no panic").boxes[1] = ceiling.to_vec();
+        desk.show();
+        desk.detect();
+        let parts = desk.plan.lock().expect("no panic").parts.clone();
+        std::mem::take(&mut *parts.lock().expect("no panic"))
+    };
+    assert_eq!(looked(&[]), [Part::Lit; 2], "first everything");
+    let part = looked(&[]);
+    let [Part::Region(left), Part::Region(right)] = part[..] else { panic!("{part:?}") };
+    for region in [left, right] {
+        let share = f64::from(region.width_px * region.height_px) / f64::from(SIZE_PX.0 * SIZE_PX.1);
+        assert!(share > 0.02 && share < 0.5 && region.on_image(SIZE_PX) == Some(region), "{region:?}");
+    }
+    let beyond = [thing(6, 0.9, (320.0, 40.0))];
+    let found = (0..8).find(|_| looked(&beyond) == [Part::Lit; 2]);
+    assert!(found.is_some(), "what is beyond is found after some pairs");
+    assert_eq!([looked(&beyond), looked(&[])], [[Part::Lit; 2], [Part::Lit; 2]], "and kept in view");
+    assert_eq!(looked(&[]), part);
 }
 
 #[test]

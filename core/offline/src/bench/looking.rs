@@ -13,7 +13,7 @@ use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::{Eye, StereoCalibration};
 use plumbline_twin::eyes::{EyeOptions, EyeRenderer, RenderedPair, Sensor};
 use plumbline_twin::{Toy, Twin, TwinCommand};
-use plumbline_vision::detect::{DetectSettings, Detector, DetectorOptions, Part, Region, shipped_detector};
+use plumbline_vision::detect::{DetectSettings, Detector, DetectorOptions, Part, shipped_detector};
 use plumbline_vision::detect_places::{PlaceFinder, PlaceOptions};
 
 use super::Figure;
@@ -57,9 +57,8 @@ fn pair(twin: &Twin) -> Result<RenderedPair, String> {
 fn both_eyes(detector: &mut Detector, rig: &Rig, pair: &RenderedPair) -> Result<Vec<Figure>, String> {
     let cameras = &rig.eyes.cameras;
     let workspace = rig.workspace(&rig.home());
-    let region = |eye| Region::of_workspace(cameras, &workspace, eye).map(Part::Region);
-    let [left, right] = Eye::BOTH.map(region);
-    let regions = [left, right].map(|part| part.unwrap_or(Part::Lit));
+    let size = pair.left.dimensions();
+    let regions = Eye::BOTH.map(|eye| Part::of_workspace(cameras, &workspace, eye, size));
     let ways = [
         ("all of the images", [Part::Whole; 2]),
         ("what is lit", [Part::Lit; 2]),

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use image::RgbImage;
 use ort::session::Session;
-use plumbline_model::detection::{Detection, PixelBox};
+use plumbline_model::detection::Detection;
 use plumbline_model::files::{self, FileError, Size};
 
 use super::heads::{Reader, Unusable};
@@ -218,12 +218,10 @@ impl Detector {
             confidence: candidate.confidence,
             area: letterbox.on_image(candidate.edges),
         });
-        found.extend(on_image.filter(|detection| has_extent(&detection.area)));
+        found.extend(
+            on_image.filter(|Detection { area, .. }| area.x1_px > area.x0_px && area.y1_px > area.y0_px),
+        );
     }
-}
-
-fn has_extent(area: &PixelBox) -> bool {
-    area.x1_px > area.x0_px && area.y1_px > area.y0_px
 }
 
 fn not_filled(model: &str, problem: NotFilled) -> DetectError {

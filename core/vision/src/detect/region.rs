@@ -50,6 +50,16 @@ pub enum Part {
     Region(Region),
 }
 
+impl Part {
+    /// Where the workspace is on an eye's image of a size (width, height); what is lit of it where the
+    /// head looks elsewhere, or the image is not one of these cameras.
+    pub fn of_workspace(cameras: &StereoCameras, workspace: &Workspace, eye: Eye, image: (u32, u32)) -> Self {
+        let of_these = cameras.camera(eye).size_px() == image;
+        let region = of_these.then(|| Region::of_workspace(cameras, workspace, eye)).flatten();
+        region.map_or(Self::Lit, Self::Region)
+    }
+}
+
 impl Region {
     /// All of an image of a size (width, height).
     pub fn whole((width_px, height_px): (u32, u32)) -> Self {
@@ -226,8 +236,17 @@ mod tests {
 
     #[test]
     fn a_head_that_looks_away_from_the_table_has_no_region() {
-        let up = workspace(-2.2);
-        assert_eq!(Region::of_workspace(&nico_like_eyes(), &up, Eye::Left), None);
+        let (cameras, up) = (nico_like_eyes(), workspace(-2.2));
+        assert_eq!(Region::of_workspace(&cameras, &up, Eye::Left), None);
+        assert_eq!(Part::of_workspace(&cameras, &up, Eye::Left, (640, 480)), Part::Lit);
+    }
+
+    #[test]
+    fn images_of_other_cameras_have_no_workspace() {
+        let (cameras, workspace) = (nico_like_eyes(), workspace(0.4));
+        let part = |image| Part::of_workspace(&cameras, &workspace, Eye::Right, image);
+        assert!(matches!(part((640, 480)), Part::Region(_)));
+        assert_eq!(part((1280, 960)), Part::Lit);
     }
 
     #[test]
