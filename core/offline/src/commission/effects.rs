@@ -2,7 +2,6 @@
 //! name is still there: all usual effects together, each drawn to zero, are fitted too. Of the nominal
 //! arm, the named effects and all together the one that errs least on touches held out is put in use.
 
-use nalgebra::Matrix6;
 use plumbline_effects::arm::Arm;
 use plumbline_effects::rig_model::{Addition, ModelEffect, PlacedScreen, StepGap};
 use plumbline_effects::{Effect, Kind, Measurements, Present, RigModel};
@@ -14,16 +13,12 @@ use plumbline_engine::rig_models;
 use plumbline_engine::touch::plan::TIP;
 use plumbline_engine::touch::store;
 use plumbline_gap::Options;
-use plumbline_model::files::{self, Size};
-use plumbline_model::robot::Rig;
 use plumbline_model::touchscreen::place_screen;
 use plumbline_model::{JobContext, Session};
-use serde::{Deserialize, Serialize};
 
-use super::body::SeenBody;
 use super::error::CommissionError;
-use super::estimate::{Fit, Known, NECK_SD_RAD, fit, held_out_m, is_first_zero};
-use super::glass::SeenScreen;
+use super::estimate::{Fit, Known, fit, held_out_m, is_first_zero};
+use super::known::{Seen, Share};
 use super::lab::Lab;
 use super::lag;
 use super::plan::effects_of;
@@ -157,51 +152,6 @@ pub(super) fn again(lab: &Lab, hands: &SeenHands) -> Result<(), CommissionError>
     let said = model.history.iter().rev().find(|step| !step.sentence.is_empty());
     let said = said.map_or_else(Default::default, |step| (step.sentence.clone(), step.version.clone()));
     accept(lab, model, &measurements, &fitted, effects, said, None)
-}
-
-/// What the eyes saw of body and screen, and how well they sit.
-struct Seen {
-    screen: Option<SeenScreen>,
-    neck_rad: (f64, f64),
-    mount: Matrix6<f64>,
-}
-
-impl Seen {
-    fn read(lab: &Lab) -> Result<Self, CommissionError> {
-        let body = SeenBody::read(lab)?;
-        Ok(Self {
-            screen: SeenScreen::read(lab)?,
-            neck_rad: body.map_or((0.0, NECK_SD_RAD), |body| (body.neck_rad, body.neck_sd_rad)),
-            mount: lab.mount()?.covariance,
-        })
-    }
-
-    fn known<'a>(&'a self, rig: &'a Rig, share: f64) -> Known<'a> {
-        let Self { screen, neck_rad, mount } = self;
-        Known { rig, screen: screen.as_ref(), hands: None, neck_rad: *neck_rad, mount, share }
-    }
-}
-
-/// Of the effects' usual sizes, the share that this robot has; in the lab's folder.
-#[derive(Serialize, Deserialize)]
-struct Share(f64);
-
-impl Share {
-    const FILE: &str = "share-of-usual.json";
-
-    fn write(&self, lab: &Lab) -> Result<(), CommissionError> {
-        let file = lab.folder.join(Self::FILE);
-        let text = serde_json::to_string(self)
-            .map_err(|error| CommissionError::Steps { file: file.clone(), reason: error.to_string() })?;
-        Ok(files::write(&file, text)?)
-    }
-
-    fn read(lab: &Lab) -> Result<Self, CommissionError> {
-        let file = lab.folder.join(Self::FILE);
-        let text = files::read_text(&file, Size::SHORT)?;
-        serde_json::from_str(&text)
-            .map_err(|error| CommissionError::Steps { file, reason: error.to_string() })
-    }
 }
 
 /// The touches with what the library needs of them.

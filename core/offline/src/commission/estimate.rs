@@ -207,3 +207,103 @@ pub(super) fn held_out_m(measurements: &Measurements, effects: &[Effect], known:
     let rows = measurements.rows.len();
     (rows > 0).then(|| (squares / rows as f64).sqrt())
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+    use plumbline_effects::Surface;
+    use plumbline_effects::arm::Arm;
+    use plumbline_effects::measurements::What;
+    use plumbline_model::Pixel;
+    use plumbline_model::robot::ik::{Options, Solver, Target};
+
+    use super::super::plan::{PALM, measurements, row};
+    use super::super::seen_by_eyes::SeenHand;
+    use super::*;
+
+    const TIP: &str = "right_index_tip";
+    const ZERO_RAD: f64 = 0.03;
+
+    /// Angles with which a tip comes to points.
+    fn postures(rig: &Rig, tip: &str, points: &[Vector3<f64>]) -> Vec<Vec<f64>> {
+        let solver = Solver::of_rig(rig, tip).expect("a tip");
+        let solved = points.iter().filter_map(|point| {
+            let target = Target::Position(nalgebra::Point3::from(*point).into());
+            let answer = solver.solve_from(&target, &rig.home(), &Options::default()).ok()?;
+            answer.is_reached().then(|| answer.best().joints.to_vec())
+        });
+        solved.collect()
+    }
+
+    /// Touches on a grid and hands over the table of a robot whose first joint alone is off, and what the
+    /// eyes see of its screen, without noise.
+    fn measured(rig: &Rig) -> (Measurements, SeenScreen, SeenHands) {
+        let screen = &rig.touchscreen;
+        let pixels =
+            (0..12).map(|i| Pixel::new(900.0 + 250.0 * f64::from(i % 4), 300.0 + 350.0 * f64::from(i / 4)));
+        let on_glass: Vec<_> = pixels.map(|pixel| screen.point_at(pixel).coords.coords).collect();
+        let arm = Arm::of_rig(rig, TIP).expect("an arm");
+        let zero = Effect::find("joint-zero", "r_shoulder_z", None, Some(&arm), None).expect("known");
+        let truth = Assumed {
+            effects: vec![Present { effect: zero, values: vec![ZERO_RAD] }],
+            placements: vec![Isometry3::identity()],
+        };
+        let rows =
+            postures(rig, TIP, &on_glass).into_iter().map(|angles| row(What::Touch, angles, vec![1.0; 6]));
+        let mut touches = measurements(rig, arm, Some(Surface::of(screen)), rows.collect());
+        for k in 0..touches.rows.len() {
+            let felt = touches.predict(&touches.rows[k], &truth).expect("predicted");
+            touches.rows[k].measured = felt;
+        }
+        let over = [[0.25, -0.3], [0.35, -0.2], [0.3, -0.05], [0.25, 0.1]];
+        let over = over.map(|[x, y]| Vector3::new(x, y, 0.15));
+        let rows = postures(rig, PALM, &over).into_iter().map(|angles| row(What::Pose, angles, vec![1.0; 6]));
+        let arm = measurements(rig, Arm::of_rig(rig, PALM).expect("an arm"), None, rows.collect());
+        let seen = arm.rows.iter().map(|row| SeenHand {
+            palm_m: Vector3::from_column_slice(&arm.predict(row, &truth).expect("predicted")),
+            information: nalgebra::Matrix3::identity() / 2e-3f64.powi(2),
+        });
+        let seen = seen.collect();
+        let covariance = Matrix6::from_diagonal(&Vector6::new(1e-6, 1e-6, 1e-6, 6e-6, 6e-6, 6e-6));
+        let screen = SeenScreen { robot_from_screen: pose(screen), covariance, rms_px: 0.2, edges: 800 };
+        (touches, screen, SeenHands { arm, seen })
+    }
+
+    #[test]
+    fn the_turn_that_arm_screen_and_head_share_is_told_by_the_body_and_by_nothing_else() {
+        let rig = Rig::built_in("nico").expect("valid");
+        let (touches, screen, hands) = measured(&rig);
+        assert!(
+            touches.rows.len() >= 8 && hands.seen.len() >= 3,
+            "{} {}",
+            touches.rows.len(),
+            hands.seen.len()
+        );
+        let mount = Matrix6::from_diagonal(&Vector6::new(1e-6, 1e-6, 1e-6, 3e-7, 3e-7, 3e-7));
+        let rows: Vec<&Observation> = touches.rows.iter().collect();
+        let arm = touches.apparatuses[0].arm.as_ref().expect("an arm");
+        let zeros: Vec<Effect> = Effect::sites(Kind::JointZero, Some(arm), None)
+            .into_iter()
+            .filter(|effect| !effect.site.is_empty())
+            .collect();
+        let fitted = |neck_rad: (f64, f64), share: f64| {
+            let known = Known {
+                rig: &rig,
+                screen: Some(&screen),
+                hands: Some(&hands),
+                neck_rad,
+                mount: &mount,
+                share,
+            };
+            let fitted = fit(&touches, &rows, &zeros, &known).expect("predicted");
+            (fitted.assumed.effects[0].values[0], fitted.covariance[(0, 0)].sqrt(), fitted.neck_rad)
+        };
+        for share in [0.03, 1.0] {
+            let (zero_rad, sd_rad, neck) = fitted((0.0, 0.003), share);
+            assert!((zero_rad - ZERO_RAD).abs() < 0.004, "{zero_rad} ± {sd_rad}");
+            assert!(sd_rad < 0.006 && neck.expect("told").1 <= 0.003, "{sd_rad} {neck:?}");
+            let (_, without_rad, _) = fitted((0.0, NECK_SD_RAD), share);
+            assert!(without_rad > 2.0 * sd_rad, "{without_rad} against {sd_rad}");
+        }
+    }
+}

@@ -13,9 +13,9 @@ use plumbline_model::session::Screen;
 use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose, Sides, TouchArea};
 use plumbline_model::{JobContext, Pixel, Point};
 use plumbline_twin::Toy;
-use serde::{Deserialize, Serialize};
 
 use super::error::CommissionError;
+use super::judged::{PalmError, PlaceError, PlaceRow, TouchError};
 use super::lab::Lab;
 use super::plan::{PALM, area};
 use super::robot::Robot;
@@ -33,51 +33,6 @@ const DRAWN: usize = 48;
 const PALM_HEIGHT_M: f64 = 0.1;
 /// A toy that was put down comes to rest, s.
 const REST_S: f64 = 0.8;
-
-/// Median and 95 % of errors, mm.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct PlaceError {
-    /// Median of the distance in space.
-    pub median: Option<f64>,
-    /// 95 % of them lie below.
-    pub p95: Option<f64>,
-    /// Median of the distance along the table.
-    pub plane_median: Option<f64>,
-    /// 95 % of those lie below.
-    pub plane_p95: Option<f64>,
-    /// Mean error (found − true) along x, y, z.
-    pub mean: Option<[f64; 3]>,
-    /// Mean of the stated standard deviations along x, y, z.
-    #[serde(default)]
-    pub sigma: Option<[f64; 3]>,
-    /// Share of the errors along x, y, z within the stated standard deviation, 0 to 1: honest at 0.68.
-    #[serde(default)]
-    pub within_sigma: Option<f64>,
-    /// The same within two of them: honest at 0.95.
-    #[serde(default)]
-    pub within_two_sigma: Option<f64>,
-    /// Mean of eᵀ C⁻¹ e over the places: honest at 3.
-    #[serde(default)]
-    pub chi2: Option<f64>,
-    /// Places where the object was found.
-    pub found: usize,
-    /// Places where it stood.
-    pub places: usize,
-    /// Each place where it was found.
-    #[serde(default)]
-    pub rows: Vec<PlaceRow>,
-}
-
-/// An object that was found at a place; robot frame, along x, y, z.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct PlaceRow {
-    /// Where it was put, x and y, m.
-    pub at_m: [f64; 2],
-    /// Found − true, mm.
-    pub error_mm: [f64; 3],
-    /// Stated standard deviation, mm.
-    pub sigma_mm: [f64; 3],
-}
 
 /// Where the object was found, less where it was, at one place; robot frame, m.
 #[derive(Clone, Copy, Debug)]
@@ -110,37 +65,6 @@ impl Judged {
 fn share_within(values: &[f64], bound: f64) -> Option<f64> {
     let within = values.iter().filter(|value| **value <= bound).count();
     (!values.is_empty()).then(|| within as f64 / values.len() as f64)
-}
-
-/// Errors of the palm, mm.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct PalmError {
-    /// Median of its distance in space from where it was sent, robot frame.
-    pub median: Option<f64>,
-    /// 95 % of them lie below.
-    pub p95: Option<f64>,
-    /// Median of its distance along the table from an object that it was sent to where the eyes found it:
-    /// errors that arm and eyes share do not count.
-    pub to_object_median: Option<f64>,
-    /// 95 % of those lie below.
-    pub to_object_p95: Option<f64>,
-    /// Places that it was sent to.
-    pub places: usize,
-}
-
-/// Errors of new touches, touched − aimed along the glass, rms, mm.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct TouchError {
-    /// Inside of the touched area.
-    pub inside: Option<f64>,
-    /// Outside of it.
-    pub outside: Option<f64>,
-    /// Touches inside.
-    pub inside_touches: usize,
-    /// Touches outside.
-    pub outside_touches: usize,
-    /// The same touches without any effect and with the nominal screen would have missed by, rms.
-    pub uncorrected: Option<f64>,
 }
 
 /// Puts the tomato on the 36 places and compares where it is found with where it is.

@@ -16,6 +16,8 @@ mod eyes;
 mod glass;
 mod hand;
 mod judge;
+mod judged;
+mod known;
 pub(crate) mod lab;
 mod lag;
 mod models;
@@ -43,7 +45,7 @@ use plumbline_twin::eyes::EyeRenderer;
 use serde::Serialize;
 
 pub use error::CommissionError;
-pub use judge::{PalmError, PlaceError, PlaceRow, TouchError};
+pub use judged::{PalmError, PlaceError, PlaceRow, TouchError};
 pub use steps::Step;
 
 use super::OfflineError;

@@ -94,3 +94,25 @@ impl SeenHands {
         Some(all)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_neck_whose_zero_is_off_moves_what_is_seen_as_the_head_does() {
+        let rig = Rig::built_in("nico").expect("valid");
+        let (home, pan) = (rig.home(), rig.eyes.pan);
+        let in_left = Point3::new(0.05, 0.1, 0.4);
+        let at = |turn_rad: f64| {
+            rig.robot_from_left(&home.with(&[pan], &[home[pan] + turn_rad])).isometry * in_left
+        };
+        let looked = Looked::new(&rig);
+        let moved = looked.moved(&[0.03, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]) * at(0.0);
+        assert!((moved - at(0.03)).norm() < 1e-12);
+        let shifted = looked.moved(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.002, 0.0]) * at(0.0);
+        assert!(((shifted - at(0.0)).norm() - 0.002).abs() < 1e-12);
+        let none = looked.moved(&[0.0; 7]) * at(0.0);
+        assert!((none - at(0.0)).norm() < 1e-12);
+    }
+}
