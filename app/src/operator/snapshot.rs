@@ -16,9 +16,7 @@ pub mod touch {
 
 /// Of the experiment with grasps.
 pub mod trials {
-    pub use plumbline_engine::report::experiment::{
-        Experiment as Page, Method as PageMethod, Position as PagePosition, TABLE as HEADINGS,
-    };
+    pub use plumbline_engine::trials::{HEADINGS, Page, PageMethod, PagePosition};
 }
 
 /// Of the gap between model and measurement.

@@ -20,5 +20,8 @@ mod workflow;
 pub use error::TrialsError;
 pub use judged::{Attempt, Judged};
 pub use plan::{Experiment, FORMAT, Trial};
+pub use plumbline_report::experiment::{
+    Experiment as Page, Method as PageMethod, Position as PagePosition, TABLE as HEADINGS,
+};
 pub use summary::{MethodSummary, PositionSummary, Spread, Summary};
 pub use workflow::{GraspNow, TrialsAround, TrialsWorkflow};
