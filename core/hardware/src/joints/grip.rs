@@ -221,9 +221,8 @@ impl Exchange {
                 }
             }
             Some(Force::Own) => {
-                if self.restore_force(i)? {
-                    self.slots[i].force = None;
-                }
+                let is_restored = self.restore_force(i)?;
+                self.slots[i].force = (!is_restored).then_some(Force::Own);
             }
             None => {}
         }

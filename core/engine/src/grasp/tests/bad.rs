@@ -8,7 +8,7 @@ use plumbline_grasp::{Failure, Record, Step};
 use plumbline_twin::Toy;
 
 use super::bench::{Bench, words};
-use crate::command::{GraspCommand, TwinCommand};
+use crate::command::{GraspCommand, HandStep, TwinCommand};
 use crate::view::{GateState, GraspOutcome, GraspStep, MotionState};
 
 const EASY_M: [f64; 2] = [0.32, -0.15];
@@ -146,6 +146,12 @@ fn ended_while_fingers_close_they_stand_and_the_next_one_works() {
     let stands = bench.until("angles", |view| view.robot.measured.is_some()).robot.measured.clone();
     let (stood, stands) = (stood.expect("read"), stands.expect("read"));
     assert!(stood.distance_rad(&stands) < 0.02, "it moved by {:.3} rad", stood.distance_rad(&stands));
+    // The hand is before the thing.
+    for step in [HandStep::Open, HandStep::Home] {
+        bench.send(GraspCommand::Hand(step));
+        bench.until("it to begin", |view| view.grasp.phase.moves());
+        bench.until_idle();
+    }
     let run = bench.grasp();
     assert_eq!(run.outcome, Some(GraspOutcome::Success), "{run:?}");
 }
