@@ -133,7 +133,9 @@ impl Arm {
                 JointKind::Revolute { axis, index, .. } => {
                     let before =
                         std::mem::replace(&mut rest, Isometry3::identity()) * joint.parent_from_joint;
-                    let title = rig.servo_of(*index).map_or(&joint.name, |servo| &servo.title).clone();
+                    let title = rig
+                        .servo_of(*index)
+                        .map_or_else(|| joint.name.replace('_', " "), |servo| servo.title.clone());
                     let link = description.links()[joint.child.0].name.clone();
                     let (joint, mass_kg, center_m) = (joint.name.clone(), 0.0, Point3::origin());
                     parts.push(Part {

@@ -79,6 +79,7 @@ pub fn find(
     if let Some(words) = no_help(&found, &shown, options) {
         compared.warnings.push(words);
     }
+    bound_by_held_out(&mut found, &shown, &mut compared.warnings);
     let mut finding = assemble(measurements, compared, Some(found), shown, options);
     finding.next = next;
     finding.seconds = start.elapsed().as_secs_f64();
@@ -99,6 +100,23 @@ fn without_search(
     finding.seconds = start.elapsed().as_secs_f64();
     finding.sentence = sentence::of(&finding);
     finding
+}
+
+/// What makes rows that were not used worse has no name, whatever speaks for it on those that were; and
+/// a closure beyond one says that the floor was not the floor.
+fn bound_by_held_out(found: &mut Found, shown: &Shown, warnings: &mut Vec<String>) {
+    let named = matches!(found.verdict, Verdict::Named | Verdict::Class);
+    if shown.closure.is_some() && named && shown.after >= shown.before {
+        found.verdict = Verdict::NotInLibrary;
+        found.unexplained.probability = found.unexplained.probability.max(0.5);
+    }
+    if shown.closure.is_some_and(|closure| closure > 1.0) {
+        warnings.push(
+            "more of the gap closes than the noise leaves open: the noise was taken too large. Repeat a few measurements \
+             from the same side"
+                .to_owned(),
+        );
+    }
 }
 
 /// The comparison against the noise that was found along with the effects.
@@ -143,6 +161,7 @@ fn assemble(
     options: &Options,
 ) -> Finding {
     let unrelated = !compared.is_related;
+    let undetermined = found.as_ref().map_or_else(Vec::new, |found| found.undetermined.clone());
     let unexplained = Unexplained {
         p_value: compared.comparison.p_value,
         probability: if unrelated { 1.0 } else { 0.0 },
@@ -172,6 +191,7 @@ fn assemble(
         next: None,
         placements: assumed.placements,
         mounts: assumed.mounts,
+        undetermined,
         left_out: measurements.left_out.clone(),
         warnings: compared.warnings,
         seconds: 0.0,

@@ -49,6 +49,9 @@ pub struct Finding {
     pub shown: Shown,
     /// What stays unexplained.
     pub unexplained: Unexplained,
+    /// What of the effects these rows do not tell.
+    #[serde(default)]
+    pub undetermined: Vec<Undetermined>,
     /// What to measure next; `None` when nothing is left to tell apart.
     pub next: Option<NextExperiment>,
     /// Per session: where its frame lies (screen, external device), fitted with the effects, as
@@ -204,6 +207,16 @@ pub struct NamedEffect {
     pub runner_up: Option<(String, f64)>,
     /// Why it cannot be added although it was found, if so (its fit sits at a bound, say).
     pub not_addable: Option<String>,
+}
+
+/// Parameters that the rows do not tell apart, or do not show at all. Their values stay near what is
+/// expected beforehand, and their intervals are as wide as that.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Undetermined {
+    /// `id@site.parameter` of each. Of several only some combination is told.
+    pub parameters: Vec<String>,
+    /// In words, with what would tell.
+    pub words: String,
 }
 
 /// A name that the data cannot rule out.

@@ -52,7 +52,7 @@ impl KindFloor {
 
 impl Floor {
     /// Whether repeats tell it.
-    pub fn from_repeats(&self) -> bool {
+    pub fn is_from_repeats(&self) -> bool {
         self.source == FloorSource::Repeats
     }
 

@@ -1,22 +1,51 @@
 //! The answer in a sentence or two, for someone in the lab.
 
-use crate::finding::{Finding, FoundParameter, NamedEffect, Shown, ShownUnit, Verdict};
+use crate::finding::{Finding, FloorSource, FoundParameter, NamedEffect, Shown, ShownUnit, Verdict};
 
 /// What was found, in words.
 pub(crate) fn of(finding: &Finding) -> String {
     match finding.verdict {
         Verdict::NoGap => no_gap(finding),
         Verdict::Named | Verdict::Class => {
-            let found: Vec<String> = finding.effects.iter().map(effect).collect();
-            format!("{} {}", found.join(" "), shrink(&finding.shown))
+            let mut said: Vec<String> = finding.effects.iter().take(MOST_EFFECTS).map(effect).collect();
+            said.extend(more(&finding.effects));
+            said.extend(
+                finding
+                    .undetermined
+                    .iter()
+                    .skip_while(|one| one.parameters.len() == 1)
+                    .take(1)
+                    .map(|one| one.words.clone()),
+            );
+            said.push(shrink(&finding.shown));
+            said.join(" ")
         }
         Verdict::NotInLibrary => not_in_library(finding),
     }
 }
 
+/// So many effects are told, the others counted.
+const MOST_EFFECTS: usize = 3;
+/// An effect with more parameters tells only those that are not zero.
+const ALL_PARAMETERS: usize = 2;
+
+/// The effects that are not told one by one.
+fn more(effects: &[NamedEffect]) -> Option<String> {
+    let rest: Vec<&str> = effects.iter().skip(MOST_EFFECTS).map(|effect| effect.title.as_str()).collect();
+    (!rest.is_empty()).then(|| format!("And {} more, smaller: {}.", rest.len(), rest.join("; ")))
+}
+
 fn no_gap(finding: &Finding) -> String {
     let (shown, comparison) = (&finding.shown, &finding.comparison);
-    let approximate = if comparison.floor_from_repeats { "" } else { " (estimated from near neighbors)" };
+    if comparison.floor_source == FloorSource::Fitted {
+        return format!(
+            "Nothing in what model and measurement differ by has a name, but the noise is not known: no measurement was \
+             repeated. Once the frame is placed, the mean error is {}. Repeat a few measurements to see whether that is \
+             noise.",
+            size(shown.before, shown.unit)
+        );
+    }
+    let approximate = if comparison.floor_from_repeats { "" } else { approximate(comparison.floor_source) };
     let first = if comparison.is_gap {
         "Model and measurement differ by less than the noise, and nothing in that has a name."
     } else {
@@ -27,6 +56,15 @@ fn no_gap(finding: &Finding) -> String {
         size(shown.before, shown.unit),
         size(shown.floor, shown.unit)
     )
+}
+
+fn approximate(source: FloorSource) -> &'static str {
+    match source {
+        FloorSource::Repeats => "",
+        FloorSource::Instrument => " (by the instrument's own figure)",
+        FloorSource::Neighbors => " (estimated from near neighbors)",
+        FloorSource::Fitted => " (fitted: no measurement was repeated)",
+    }
 }
 
 fn not_in_library(finding: &Finding) -> String {
@@ -52,7 +90,18 @@ fn not_in_library(finding: &Finding) -> String {
 }
 
 fn effect(effect: &NamedEffect) -> String {
-    let parameters: Vec<String> = effect.parameters.iter().filter_map(parameter).collect();
+    let many = effect.parameters.iter().filter(|one| one.text.is_none()).count() > ALL_PARAMETERS;
+    let (told, zero): (Vec<&FoundParameter>, Vec<&FoundParameter>) =
+        effect.parameters.iter().partition(|one| !many || one.text.is_some() || one.low * one.high > 0.0);
+    let mut parameters: Vec<String> = told.into_iter().filter_map(parameter).collect();
+    if !zero.is_empty() {
+        let rest = match (parameters.is_empty(), zero.len()) {
+            (true, count) => format!("none of its {count} values is told from zero"),
+            (false, 1) => "one more is not told from zero".to_owned(),
+            (false, count) => format!("{count} more are not told from zero"),
+        };
+        parameters.push(rest);
+    }
     let sized = if parameters.is_empty() { String::new() } else { format!(": {}", parameters.join(", ")) };
     let others: Vec<&str> = effect.class.iter().skip(1).map(|member| member.title.as_str()).take(3).collect();
     let title = capital(&effect.title);
@@ -92,14 +141,35 @@ fn parameter(parameter: &FoundParameter) -> Option<String> {
     };
     let (low, high) = (low * scale, high * scale);
     let digits = digits(high - low);
-    let number = |value: f64| format!("{value:.digits$}");
-    Some(format!(
-        "{} {}{unit} ({} to {})",
-        what.replace('_', " "),
-        number(value * scale),
-        number(low),
-        number(high)
-    ))
+    let number = |value: f64| {
+        let text = format!("{value:.digits$}");
+        // What rounds to zero has no sign.
+        if text.trim_matches(['-', '0', '.']).is_empty() {
+            text.trim_start_matches('-').to_owned()
+        } else {
+            text
+        }
+    };
+    Some(format!("{} {}{unit} ({} to {})", quantity(what), number(value * scale), number(low), number(high)))
+}
+
+/// The name of a parameter without its unit, in words.
+pub(crate) fn quantity(name: &str) -> String {
+    let units = [
+        "_rad_per_nm",
+        "_nm_per_rad",
+        "_m_per_n",
+        "_per_m",
+        "_rad",
+        "_kg",
+        "_px",
+        "_secs",
+        "_nm",
+        "_m",
+        "_s",
+    ];
+    let bare = units.iter().find_map(|unit| name.strip_suffix(unit)).unwrap_or(name);
+    bare.replace('_', " ")
 }
 
 /// Decimals that show two digits of an interval.

@@ -9,7 +9,7 @@ use plumbline_effects::{Measurements, RigModel};
 use plumbline_engine::gap::same_rig;
 use plumbline_engine::ground::sessions::{rig_of, title_of};
 use plumbline_engine::rig_models;
-use plumbline_gap::finding::{Dependence, NamedEffect, NextExperiment, Shown, ShownUnit};
+use plumbline_gap::finding::{Dependence, NamedEffect, NextExperiment, ShownUnit};
 use plumbline_gap::{Finding, Options, Verdict, find};
 use plumbline_model::robot::Rig;
 use plumbline_model::{JobContext, Session, files};
@@ -48,6 +48,8 @@ pub struct GapReport {
     pub held_out: Map<String, Value>,
     /// What stays.
     pub unexplained: UnexplainedReport,
+    /// What of the effects the rows do not tell.
+    pub undetermined: Vec<UndeterminedReport>,
     /// What to measure next; null where nothing is left to tell apart.
     pub next_experiment: Option<NextReport>,
     /// What is odd about the data, in words.
@@ -112,6 +114,15 @@ pub struct UnexplainedReport {
     pub depends_on: Vec<String>,
     /// Probability of something that is not in the library.
     pub probability: f64,
+}
+
+/// Parameters that the rows do not tell apart, or do not show at all.
+#[derive(Clone, Debug, Serialize)]
+pub struct UndeterminedReport {
+    /// `id@site.parameter` of each.
+    pub parameters: Vec<String>,
+    /// In words.
+    pub words: String,
 }
 
 /// What to measure next.
@@ -258,12 +269,20 @@ impl GapReport {
             verdict: finding.verdict,
             sentence: finding.sentence.clone(),
             effects: finding.effects.iter().map(EffectReport::of).collect(),
-            held_out: held_out(&finding.shown),
+            held_out: held_out(&finding),
             unexplained: UnexplainedReport {
                 p_value: finding.unexplained.p_value,
                 depends_on: finding.unexplained.depends_on.iter().map(dependence).collect(),
                 probability: finding.unexplained.probability,
             },
+            undetermined: finding
+                .undetermined
+                .iter()
+                .map(|one| UndeterminedReport {
+                    parameters: one.parameters.clone(),
+                    words: one.words.clone(),
+                })
+                .collect(),
             next_experiment: finding.next.as_ref().map(NextReport::of),
             warnings: finding.warnings.clone(),
             left_out: finding.left_out.len(),
@@ -319,7 +338,8 @@ fn dependence(on: &Dependence) -> String {
 }
 
 /// The numbers with the unit in their keys.
-fn held_out(shown: &Shown) -> Map<String, Value> {
+fn held_out(finding: &Finding) -> Map<String, Value> {
+    let shown = &finding.shown;
     let (unit, scale) = match shown.unit {
         ShownUnit::Meter => ("mm", 1e3),
         ShownUnit::Pixel => ("px", 1.0),
@@ -329,6 +349,7 @@ fn held_out(shown: &Shown) -> Map<String, Value> {
     for (name, value) in [("before", shown.before), ("after", shown.after), ("floor", shown.floor)] {
         keys.insert(format!("{name}_{unit}"), (value * scale).into());
     }
+    keys.insert("floor_from".to_owned(), finding.comparison.floor_source.word().into());
     keys.insert("closure".to_owned(), shown.closure.into());
     keys.insert("closure_range".to_owned(), shown.closure_range.map(Vec::from).into());
     keys.insert("blocks".to_owned(), shown.blocks.clone().into());

@@ -129,7 +129,7 @@ pub(crate) fn compare(
         rows_kept: residuals.iter().flatten().count(),
         cells: cells(measurements, &outlier),
         kinds: kinds(measurements, &residuals, &noise.floor),
-        floor_from_repeats: noise.floor.from_repeats(),
+        floor_from_repeats: noise.floor.is_from_repeats(),
         floor_source: noise.floor.source,
         p_value: misfit.p_value,
         size_sigmas: misfit.size_sigmas,

@@ -11,7 +11,6 @@ use plumbline_effects::{Assumed, Effect, Kind, Present};
 use plumbline_model::JobContext;
 
 use super::frames;
-use super::statistics::median;
 use crate::error::{GapError, Turns};
 
 /// At most so many rows of a session take part: a joint that turns the other way shows everywhere.
@@ -24,6 +23,8 @@ const FITS_M: f64 = 2e-3;
 const LEVER_M: f64 = 0.2;
 /// What is left has to shrink to this share.
 const CLEARLY: f64 = 0.7;
+/// Share of the rows that count, the nearest ones.
+const KEPT: f64 = 0.95;
 /// How far zeros may be off, rad.
 const ZERO_SD_RAD: f64 = 0.1;
 /// Standard deviation of a row, m, for weighing it against what zeros may be.
@@ -79,7 +80,7 @@ pub fn check(measurements: &Measurements, session: usize, context: &dyn JobConte
     }
 }
 
-/// Median length of what is left with frames and zeros fitted, m.
+/// Mean length of what is left with frames and zeros fitted, m.
 fn left_m(measurements: &Measurements, session: usize, context: &dyn JobContext) -> Result<f64, GapError> {
     let rows: Vec<usize> = (0..measurements.rows.len()).collect();
     let mut assumed = frames::placed(measurements, &rows, context)?;
@@ -107,7 +108,11 @@ fn miss_m(measurements: &Measurements, assumed: &Assumed) -> f64 {
         let predicted = measurements.predict(row, assumed)?;
         Some(length_m(row.measured.iter().zip(&predicted).map(|(m, p)| m - p)))
     });
-    median(misses).unwrap_or(0.0)
+    let mut misses: Vec<f64> = misses.collect();
+    misses.sort_by(f64::total_cmp);
+    // A joint may stand still in most rows; a few rows may be nonsense.
+    misses.truncate((KEPT * misses.len() as f64).ceil() as usize);
+    misses.iter().sum::<f64>() / misses.len().max(1) as f64
 }
 
 /// Turns count with their lever.

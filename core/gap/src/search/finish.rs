@@ -11,6 +11,7 @@ use super::linear::Linear;
 use super::look::{Look, TEMPERATURE};
 use super::naming::{Evidence, Named, WIDER, parameters};
 use super::refit::{Fitted, frames, refit};
+use super::undetermined::undetermined;
 use super::{Doubt, Found, Hypothesis, knowledge};
 use crate::error::GapError;
 use crate::finding::{Dependence, Unexplained, Verdict};
@@ -59,10 +60,11 @@ impl Finish<'_> {
         let named_all = effects.len() == fitted.assumed.effects.len() && !families;
         let start = Assumed { effects, ..fitted.assumed.clone() };
         // Values that were found beside effects that get no name are not theirs alone.
-        let (assumed, doubt) = if named_all {
+        let (assumed, doubt, sds) = if named_all {
             let assumed = frames(self.measurements, self.floor, &start, context)?;
             let doubt = self.doubt(&assumed, &fitted.weights, None, context)?;
-            (assumed, doubt)
+            let sds = vec![1.0; doubt.covariance.nrows() - doubt.nuisances.len()];
+            (assumed, doubt, sds)
         } else {
             let kept: Vec<Effect> = start.effects.iter().map(|present| present.effect.clone()).collect();
             let own = refit(self.measurements, self.floor, &start, &kept, context)?;
@@ -82,8 +84,9 @@ impl Finish<'_> {
                 effect.covariance = covariance.transpose().iter().copied().collect();
                 effect.parameters = parameters(&present.effect, &effect.values, &covariance);
             }
-            (own.assumed, doubt)
+            (own.assumed, doubt, own.sds)
         };
+        let undetermined = undetermined(self.measurements, &assumed.effects, &doubt.covariance, &sds);
         let hypotheses = self.hypotheses(&assumed, context)?;
         let after = self.misses(&assumed, context)?;
         let share = share_left(&bare.misses, &after, &fitted.weights, doubt.noise_scale);
@@ -103,6 +106,7 @@ impl Finish<'_> {
             weights: fitted.weights.clone(),
             doubt,
             hypotheses,
+            undetermined,
             floor: self.floor.clone(),
         })
     }

@@ -1,8 +1,10 @@
 //! Candidates and free-form rivals as blocks of columns.
 
-use plumbline_effects::Effect;
 use plumbline_effects::measurements::Measurements;
+use plumbline_effects::{Effect, Kind};
 
+use crate::finding::FloorSource;
+use crate::floor::Floor;
 use crate::options::Options;
 
 /// A block of columns that is in the model or not, as a whole.
@@ -43,9 +45,12 @@ pub(super) struct Library {
 
 impl Library {
     /// What the rows could show and the lab does not rule out.
-    pub fn of(measurements: &Measurements, options: &Options) -> Self {
+    pub fn of(measurements: &Measurements, floor: &Floor, options: &Options) -> Self {
+        // A ripple looks like noise: where nothing tells the noise, it would explain anything.
+        let noise_is_known = floor.source != FloorSource::Fitted;
         let ruled_out = |effect: &Effect| {
             options.ruled_out.iter().any(|out| *out == effect.id() || *out == effect.name())
+                || (effect.kind == Kind::ToothRipple && !noise_is_known)
         };
         Self::with(Effect::candidates(measurements).into_iter().filter(|effect| !ruled_out(effect)).collect())
     }

@@ -21,6 +21,7 @@ mod naming;
 mod refit;
 #[cfg(test)]
 mod tests;
+mod undetermined;
 mod variants;
 mod weights;
 
@@ -32,7 +33,7 @@ use plumbline_model::{JobContext, Unattended};
 use crate::compare::placed;
 use crate::covariates::Covariates;
 use crate::error::GapError;
-use crate::finding::{Candidate, FloorSource, NamedEffect, Unexplained, Verdict};
+use crate::finding::{Candidate, FloorSource, NamedEffect, Undetermined, Unexplained, Verdict};
 use crate::floor::Floor;
 use crate::options::Options;
 use explore::Explored;
@@ -70,6 +71,8 @@ pub(crate) struct Found {
     /// Sets of effects that the data allow, the most probable first; probabilities sum to 1 or
     /// less.
     pub hypotheses: Vec<Hypothesis>,
+    /// What of the effects the rows do not tell.
+    pub undetermined: Vec<Undetermined>,
     /// The noise with which it was found: as given, or fitted.
     pub floor: Floor,
 }
@@ -115,7 +118,7 @@ pub(crate) fn search(
         return Err(GapError::TooFew { rows, needed: FEWEST_ROWS });
     }
     context.report(0.0, "placing frames");
-    let library = Library::of(measurements, options);
+    let library = Library::of(measurements, floor, options);
     let covariates = Covariates::of(measurements);
     let all: Vec<usize> = (0..rows).collect();
     let start = placed(measurements, &all, context)?;

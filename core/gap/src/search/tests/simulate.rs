@@ -41,7 +41,7 @@ pub struct Bench {
 impl Bench {
     pub fn new(plan: Plan) -> Self {
         let nominal = nominal(plan);
-        let library = Library::of(&nominal, &Options::default());
+        let library = Library::of(&nominal, &floor(), &Options::default());
         let linear =
             Linear::of(&nominal, &floor(), &Assumed::nominal(&nominal), &library.effects, &Unattended)
                 .expect("never cancelled");
