@@ -12,7 +12,7 @@ const INTO_FINGERS_M: f64 = 0.017;
 /// …and so much toward the right of the hand, m.
 const TO_THE_RIGHT_M: f64 = 0.004;
 /// …and the palm closes so much below the top of a thing, m.
-const BELOW_TOP_M: f64 = 0.016;
+const BELOW_TOP_M: f64 = 0.017;
 
 /// What is to be grasped, on what it stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
