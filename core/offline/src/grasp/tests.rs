@@ -125,7 +125,7 @@ fn what_is_taken_away_or_pushed_on_the_way_is_not_called_held() {
 fn two_shards_put_together_are_one_run_byte_for_byte() {
     let folder = tempfile::tempdir().expect("a folder");
     let experiment = Experiment {
-        format: super::trials::FORMAT,
+        format: plumbline_engine::trials::FORMAT,
         twin: "perfect".to_owned(),
         methods: vec![Method::M5],
         attempts: 1,
