@@ -64,7 +64,7 @@ impl CommissionAction {
             Self::StartAnew => when(commission.began.is_some(), "it was never begun"),
             Self::Next => match course(view).map(|course| course.press) {
                 None => Some("commissioning is not under way".into()),
-                Some(Press::Wait { why, .. }) => Some(why.into()),
+                Some(Press::Wait { why, .. }) => Some(why.trim_end_matches('.').to_owned().into()),
                 Some(Press::Do { .. }) => None,
             },
             Self::Leave => when(commission.is_on, "it is not under way"),

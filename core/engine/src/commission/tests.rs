@@ -48,9 +48,10 @@ impl Lab {
         lab
     }
 
-    fn again(self) -> Self {
+    /// The program ends, and is started again so much later.
+    fn again(self, later: Duration) -> Self {
         let around = self.around.clone();
-        let mut lab = Self::on(self.folder, self.time);
+        let mut lab = Self::on(self.folder, self.time.after(later));
         lab.around = around;
         lab
     }
@@ -166,9 +167,7 @@ fn time_touches_and_views_are_counted_while_the_program_is_open() {
     let view = lab.after_s(65);
     assert_eq!((view.spent.time.as_secs(), view.spent.touches, view.spent.views), (125, 4, 7));
 
-    // The program ends, and is started again a day later.
-    let mut lab = lab.again();
-    lab.time = lab.time.after(Duration::from_secs(86_400));
+    let mut lab = lab.again(Duration::from_secs(86_400));
     let view = lab.view();
     assert!(view.is_on && view.began.is_some());
     lab.around.views = 0;

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use plumbline_effects::RobotModel;
+use plumbline_engine::trials::Experiment;
+use plumbline_engine::trials::store::begin;
 use plumbline_grasp::attempt::RenderedHand;
 use plumbline_grasp::{Corrections, Failure, Halt, Knowledge, Method, Order, Outcome, Record, Step};
 use plumbline_model::robot::Rig;
@@ -13,8 +15,6 @@ use plumbline_twin::{Lockstep, Scenario, Toy};
 
 use super::attempt::{Bench, Task};
 use super::trials::{carry_out, conclude};
-use plumbline_engine::trials::Experiment;
-use plumbline_engine::trials::store::begin;
 
 fn bench(scenario: &str) -> Bench {
     bench_of(Scenario::built_in(scenario).expect("valid"))

@@ -3,7 +3,7 @@
 use egui::{Button, DragValue, Ui};
 use plumbline_engine::view::GraspMethod;
 use plumbline_engine::{TrialsCommand, View};
-use plumbline_widgets::buttons::{accent_button, choice};
+use plumbline_widgets::buttons::choice;
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
@@ -112,7 +112,8 @@ fn start(ui: &mut Ui, cx: &mut PanelContext<'_>, draft: &Drafted) {
     let count = draft.methods.len() * draft.attempts * draft.places.count();
     let trouble = trouble(cx.view, draft);
     let label = format!("Begin: {}", format::count(count, "attempt"));
-    let button = accent_button(ui, label).min_size(egui::vec2(120.0, 32.0));
+    // The bottom line has the one primary button.
+    let button = Button::new(label).min_size(egui::vec2(120.0, 32.0));
     let button = ui.add_enabled(trouble.is_none(), button);
     if button.clicked() {
         cx.outbox.send(TrialsCommand::Begin {
