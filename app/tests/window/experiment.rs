@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use egui_kittest::Harness;
 use plumbline::{PlumblineWindow, Screen, ScriptStep, WindowSettings};
+use plumbline_engine::trials as page;
 use plumbline_engine::trials::{Experiment, FORMAT, Trial};
 use plumbline_engine::view::{
     GraspMethod, GraspView, MethodView, ShownTrials, TrialStage, TrialsPhase, TrialsView,
 };
-use plumbline_engine::{Command, TrialsCommand, View, report::experiment as page};
+use plumbline_engine::{Command, TrialsCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
 use crate::made_up::{everything, rig};
@@ -23,19 +24,19 @@ fn shown(made: usize) -> ShownTrials {
         object: "Tomato".to_owned(),
         seed: 1,
     };
-    let position = page::Position {
+    let position = page::PagePosition {
         at_m: [0.3, -0.2],
         successes: 1,
         attempts: 1,
         published: Some(0),
         hand_found: Some(true),
     };
-    let method = page::Method {
+    let method = page::PageMethod {
         name: "M5".to_owned(),
-        cells: page::TABLE.iter().map(|_| "100 %".to_owned()).collect(),
+        cells: page::HEADINGS.iter().map(|_| "100 %".to_owned()).collect(),
         positions: vec![position],
     };
-    let page = page::Experiment {
+    let page = page::Page {
         title: "Grasps of the tomato".to_owned(),
         sentences: vec![],
         screen_m: rig().touchscreen.corners().map(|corner| [corner.coords.x, corner.coords.y]),
