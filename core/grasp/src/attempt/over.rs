@@ -5,7 +5,7 @@
 use nalgebra::{Matrix3, Vector3};
 use plumbline_model::robot::Posture;
 
-use super::align::{FARTHEST_M, HandFinder, HandMissing, SPEED_RAD_S, near_enough};
+use super::align::{FARTHEST_M, FoundHand, HandFinder, HandMissing, SPEED_RAD_S, near_enough};
 use super::{Chosen, End, Running, STILL_S};
 use crate::body::Sight;
 use crate::plan::GraspPlan;
@@ -29,6 +29,9 @@ const LOOKS: usize = 5;
 const MOST_SIGMA_M: f64 = 0.010;
 /// Standard deviation per axis of what the named effects leave of an arm's error, m.
 const ARM_SIGMA_M: f64 = 0.004;
+/// Standard deviation of the height that its model has, m: it was taught by touching what things stand on.
+/// The eyes see two directions of a hand better than its distance, so its height is told by both.
+const ARM_HEIGHT_SIGMA_M: f64 = 0.002;
 /// It changes with the posture: standard deviation per axis, m, for moving at all (play of the gears), and
 /// for a joint that turns by a radian.
 const PLAY_SIGMA_M: f64 = 0.0005;
@@ -113,8 +116,8 @@ impl Running<'_> {
                 return Ok(None);
             }
         };
-        let palm = found.palm.coords.coords;
-        *error = ArmError { m: palm - modeled, covariance_m2: found.covariance_m2 };
+        let (palm, covariance_m2) = at_height(&found, modeled.z);
+        *error = ArmError { m: palm - modeled, covariance_m2 };
         let missing_m = (plan.palm_m - palm).xy().norm();
         self.looked(sent, Ok(palm), Some(missing_m), Some(over_table_m(&error.covariance_m2)));
         if error.m.norm() > FARTHEST_M {
@@ -193,6 +196,14 @@ impl Running<'_> {
             MOST_SIGMA_M * 1e3
         )))
     }
+}
+
+/// The hand that was found, with what the arm's model says of its height.
+fn at_height(found: &FoundHand, height_m: f64) -> (Vector3<f64>, Matrix3<f64>) {
+    let (palm, covariance_m2) = (found.palm.coords.coords, found.covariance_m2);
+    let gain = covariance_m2.column(2) / (covariance_m2[(2, 2)] + ARM_HEIGHT_SIGMA_M.powi(2));
+    let row = covariance_m2.row(2).into_owned();
+    (palm - gain * (palm.z - height_m), covariance_m2 - gain * row)
 }
 
 /// Standard deviation in the worst direction over the table, m.

@@ -6,8 +6,8 @@ use plumbline_grasp::{Body, Halt, ServoState, Sight};
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 use plumbline_twin::{Lockstep, Toy};
 
-/// Fingers press with this share of their stall torque, as those on a bus do.
-const PRESS: f64 = 0.2;
+/// Fingers press with this share of their stall torque.
+const PRESS: f64 = 1.0;
 /// A joint that is sent less far than this stands, rad.
 const STANDS_RAD: f64 = 1e-6;
 
@@ -38,8 +38,8 @@ impl TwinBody {
 }
 
 impl TwinBody {
-    /// Fingers that close press with as little as those on a bus do; whatever else fingers do, they may do
-    /// with all they have.
+    /// Fingers that close press with a share of what they have; whatever else fingers do, they may do with
+    /// all of it.
     fn limit_fingers(&mut self, way: &[Posture]) {
         let Some(end) = way.last() else { return };
         let (from, rig) = (self.twin.commanded().clone(), self.twin.rig().clone());
