@@ -53,9 +53,9 @@ impl Method {
         matches!(self, Self::M4 | Self::M5)
     }
 
-    /// Whether it tries once more when the hand came up empty. The published ones do not.
-    pub fn tries_again(self) -> bool {
-        self == Self::M5
+    /// How often it tries in all when the hand comes up empty. The published ones try once.
+    pub fn tries(self) -> usize {
+        if self == Self::M5 { 3 } else { 1 }
     }
 
     /// Whether it uses the effects that were named.

@@ -61,8 +61,6 @@ pub struct Touched {
 pub struct Lockstep {
     world: World,
     commanded: Posture,
-    /// Share of its torque that each servo may use, in the order of the rig.
-    force: Vec<f64>,
     eyes: Option<EyeRenderer>,
     sensor: Sensor,
     scenery: Scenery,
@@ -83,8 +81,7 @@ impl Lockstep {
         let scenery = scenery(&world, default_board(), 0);
         let out = visible(&world);
         let sensor = Sensor::default();
-        let force = vec![1.0; world.rig().servos.len()];
-        Ok(Self { world, commanded, force, eyes: None, sensor, scenery, out, seed, pairs: 0 })
+        Ok(Self { world, commanded, eyes: None, sensor, scenery, out, seed, pairs: 0 })
     }
 
     /// The robot as described.
@@ -115,16 +112,6 @@ impl Lockstep {
             ServoState { joint, angle_rad: encoders[joint], load, temperature_c }
         };
         self.rig().servos.iter().map(|servo| servo.joint).enumerate().map(state).collect()
-    }
-
-    /// Lets the servos of some joints use no more than a share of their torque, from what is sent next.
-    pub fn limit_force(&mut self, joints: &[JointIndex], share: f64) {
-        let rig = self.world.rig().clone();
-        for (servo, force) in rig.servos.iter().zip(&mut self.force) {
-            if joints.contains(&servo.joint) {
-                *force = share;
-            }
-        }
     }
 
     /// Moves through postures one after another with this peak speed (rad/s), each in a straight line in
@@ -246,7 +233,7 @@ impl Lockstep {
 
     fn command(&mut self, posture: Posture) {
         let goals = self.in_ticks(&posture);
-        self.world.send_with(&goals, &self.force);
+        self.world.send(&goals, None);
         self.commanded = posture;
     }
 

@@ -1,4 +1,4 @@
-//! Once more, when the hand came up without the object.
+//! Again, when the hand came up without the object.
 
 use plumbline_model::robot::Posture;
 
@@ -7,7 +7,7 @@ use crate::record::{Earlier, Failure, Outcome, Step};
 
 impl Running<'_> {
     /// Opens the hand, goes back to where the arm was at first, so that the eyes see the table as they did
-    /// then, and grasps what is seen there once more. Where that cannot be, the first try counts.
+    /// then, and grasps what is seen there once more. Where that cannot be, the last try counts.
     pub(super) fn once_more(
         &mut self,
         from: &Posture,

@@ -261,17 +261,18 @@ impl Running<'_> {
         Ok(Prepared { before, chosen, shift_m, plan })
     }
 
-    /// Grasps; what was tried once and is not in the hand is tried once more by ours: a robot may look
-    /// again. The record says what became of the first try.
+    /// Grasps; what is not in the hand then is tried again by ours: a robot may look again. The record says
+    /// what became of the tries before.
     fn run(&mut self) -> Result<Outcome, End> {
         let from = self.body.commanded()?;
-        let first = self.try_once()?;
-        match first {
-            Outcome::Failed { failure, why } if self.order.method.tries_again() => {
-                self.once_more(&from, failure, why)
-            }
-            other => Ok(other),
+        let mut last = self.try_once()?;
+        for _ in 1..self.order.method.tries() {
+            last = match last {
+                Outcome::Failed { failure, why } => self.once_more(&from, failure, why)?,
+                other => return Ok(other),
+            };
         }
+        Ok(last)
     }
 
     fn try_once(&mut self) -> Result<Outcome, End> {

@@ -3,13 +3,8 @@
 use std::sync::Arc;
 
 use plumbline_grasp::{Body, Halt, ServoState, Sight};
-use plumbline_model::robot::{JointIndex, Posture, Rig};
+use plumbline_model::robot::{Posture, Rig};
 use plumbline_twin::{Lockstep, Toy};
-
-/// Fingers press with this share of their stall torque.
-const PRESS: f64 = 1.0;
-/// A joint that is sent less far than this stands, rad.
-const STANDS_RAD: f64 = 1e-6;
 
 /// The twin, and what it lacks to be told from a robot.
 pub(super) struct TwinBody {
@@ -37,24 +32,6 @@ impl TwinBody {
     }
 }
 
-impl TwinBody {
-    /// Fingers that close press with a share of what they have; whatever else fingers do, they may do with
-    /// all of it.
-    fn limit_fingers(&mut self, way: &[Posture]) {
-        let Some(end) = way.last() else { return };
-        let (from, rig) = (self.twin.commanded().clone(), self.twin.rig().clone());
-        let moves = |joint: &JointIndex| (end[*joint] - from[*joint]).abs() > STANDS_RAD;
-        let moving: Vec<JointIndex> =
-            rig.servos.iter().map(|servo| servo.joint).filter(|joint| moves(joint)).collect();
-        let hands: Vec<JointIndex> = rig.arms.iter().flat_map(|arm| arm.hand.iter().copied()).collect();
-        let closes = |joint: &JointIndex| hands.contains(joint) && end[*joint].abs() > from[*joint].abs();
-        let press = std::env::var("PRESS").ok().and_then(|p| p.parse().ok()).unwrap_or(PRESS);
-        let share = if moving.iter().all(closes) { press } else { 1.0 };
-        let fingers: Vec<JointIndex> = moving.into_iter().filter(|joint| hands.contains(joint)).collect();
-        self.twin.limit_force(&fingers, share);
-    }
-}
-
 impl Body for TwinBody {
     fn rig(&self) -> &Arc<Rig> {
         self.twin.rig()
@@ -79,7 +56,6 @@ impl Body for TwinBody {
     }
 
     fn follow(&mut self, way: &[Posture], speed_rad_s: f64) -> Result<(), Halt> {
-        self.limit_fingers(way);
         self.twin.follow(way, speed_rad_s);
         Ok(())
     }

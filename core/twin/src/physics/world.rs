@@ -253,15 +253,6 @@ impl World {
         }
     }
 
-    /// Sends all joints to a posture as fast as they can, each with no more than a share of its torque, in the
-    /// order of the rig's servos.
-    pub fn send_with(&mut self, posture: &Posture, force: &[f64]) {
-        self.send(posture, None);
-        for (motor, force) in self.servos.iter_mut().zip(force) {
-            motor.drive.torque_limit = *force;
-        }
-    }
-
     /// What a servo reads.
     pub fn reading(&self, servo: usize) -> Reading {
         self.servos[servo].reading(self.data.actuator_length()[servo], self.data.actuator_velocity()[servo])
