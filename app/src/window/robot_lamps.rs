@@ -125,7 +125,7 @@ fn servos(robot: &RobotView) -> Option<TopLamp> {
         return None;
     }
     let warm = robot.joints.iter().filter_map(|joint| Some((joint.temperature_c?, joint)));
-    let Some((hottest_c, joint)) = warm.max_by(|a, b| a.0.total_cmp(&b.0)) else { return None };
+    let (hottest_c, joint) = warm.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let gate = robot.rig.as_ref().map(|rig| rig.gate);
     let (health, reason) = match gate {
         Some(gate) if hottest_c >= gate.hot_c => {

@@ -21,8 +21,6 @@ const FEWEST_ROWS: usize = 12;
 const FITS_M: f64 = 2e-3;
 /// A turn of a radian counts like so many meters.
 const LEVER_M: f64 = 0.2;
-/// What is left has to shrink to this share.
-const CLEARLY: f64 = 0.7;
 /// Share of the rows that count, the nearest ones.
 const KEPT: f64 = 0.95;
 /// How far zeros may be off, rad.
@@ -31,9 +29,10 @@ const ZERO_SD_RAD: f64 = 0.1;
 const ROW_SD_M: f64 = 3e-3;
 /// Steps of the fit.
 const STEPS: usize = 3;
-/// What is tried, and what it means.
-const TRIED: [(f64, Turns); 3] =
-    [(-1.0, Turns::TheOtherWay), (0.5, Turns::HalfAsFar), (2.0, Turns::TwiceAsFar)];
+/// What is tried, to which share of it what is left has to shrink, and what it means. A factor also takes up
+/// what other effects leave, so it has to explain more.
+const TRIED: [(f64, f64, Turns); 3] =
+    [(-1.0, 0.6, Turns::TheOtherWay), (0.5, 0.35, Turns::HalfAsFar), (2.0, 0.35, Turns::TwiceAsFar)];
 
 /// Stops where a joint turns otherwise than in the model.
 ///
@@ -55,7 +54,7 @@ pub fn check(measurements: &Measurements, session: usize, context: &dyn JobConte
     }
     let mut best: Option<(f64, usize, Turns)> = None;
     for j in 0..arm.len() {
-        for (factor, turns) in TRIED {
+        for (factor, clearly, turns) in TRIED {
             let mut other = only.clone();
             for row in &mut other.rows {
                 for angles in [&mut row.commanded_rad, &mut row.encoder_rad].into_iter().flatten() {
@@ -63,7 +62,7 @@ pub fn check(measurements: &Measurements, session: usize, context: &dyn JobConte
                 }
             }
             let with_m = self::left_m(&other, session, context)?;
-            if with_m < CLEARLY * left_m && best.is_none_or(|(best_m, ..)| with_m < best_m) {
+            if with_m < clearly * left_m && best.is_none_or(|(best_m, ..)| with_m < best_m) {
                 best = Some((with_m, j, turns));
             }
         }

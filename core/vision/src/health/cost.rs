@@ -1,7 +1,7 @@
 //! What a turn of an eye costs where the robot works.
 
 use nalgebra::Vector3;
-use plumbline_model::{LeftCamera, Point, StereoCameras};
+use plumbline_model::{LeftCamera, Point, StereoCameras, decompose};
 
 use super::turn::{Turn, turned};
 
@@ -19,7 +19,7 @@ pub struct Cost {
 pub fn cost(cameras: &StereoCameras, turn: &Turn, places: &[Point<LeftCamera>]) -> Option<Cost> {
     let error_m = mean_error_m(cameras, &turn.rotation_rad, places)?;
     // The turn's uncertainty carried along its three main directions.
-    let axes = turn.covariance_rad2.symmetric_eigen();
+    let axes = decompose::symmetric_eigen(turn.covariance_rad2)?;
     let mut variance_m2 = 0.0;
     for (k, variance_rad2) in axes.eigenvalues.iter().enumerate() {
         let axis: Vector3<f64> = axes.eigenvectors.column(k).into();

@@ -153,7 +153,7 @@ fn mount(view: &View) -> Said {
         && *actions == [accept]
     {
         let error = view.mount.proposal.as_ref().map(|proposal| proposal.rms_px);
-        let error = error.map_or_else(String::new, |px| plumbline_widgets::format::px(px));
+        let error = error.map_or_else(String::new, plumbline_widgets::format::px);
         said.sentence = format!("Solved: {error} are left over in the images. Accepting puts it in use.");
     }
     said
