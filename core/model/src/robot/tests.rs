@@ -191,7 +191,10 @@ fn a_rig_file_without_outlines_is_read_and_nothing_is_measured_by() {
     let text = include_str!("../../../../assets/robots/nico/rig.toml");
     let (before, rest) = text.split_once("[outlines.screen_frame]").expect("there");
     let (_, after) = rest.split_once("# The left eye looks along").expect("there");
-    let rig = Rig::parse("rig.toml", &format!("{before}{after}"), |_| Ok(urdf().to_owned())).expect("valid");
+    let rig = Rig::parse("rig.toml", &format!("{before}# The left eye looks along{after}"), |_| {
+        Ok(urdf().to_owned())
+    })
+    .expect("valid");
     assert_eq!(rig.outlines, Outlines::default());
     assert_eq!(nico().outlines.body.expect("described").edges_m.len(), 5);
 }
