@@ -24,6 +24,7 @@ mod laws_other_robots;
 pub mod library;
 mod looking;
 pub mod measurements;
+mod nuisance;
 pub mod observability;
 mod observation;
 pub mod rig_model;
@@ -35,6 +36,7 @@ pub use eyes::EyesDeviation;
 pub use forward::{Assumed, Tangents};
 pub use library::{Effect, Kind, Parameter, Present, Reported, Situation, Surface};
 pub use measurements::{Measurements, MeasurementsError};
+pub use nuisance::Nuisance;
 pub use observability::{
     Addition, Advice, EffectVisibility, Noise, PlanScore, PlannedContact, ScoreError, score,
 };

@@ -3,8 +3,8 @@
 use plumbline_effects::measurements::Unit;
 use plumbline_effects::{Observation, What};
 
-use crate::compare::robust_sd;
 use crate::finding::FloorSource;
+use crate::statistics::robust_sd;
 
 /// Nothing here is measured finer than this.
 pub(crate) fn finest(unit: Unit) -> f64 {

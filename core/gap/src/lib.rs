@@ -13,6 +13,7 @@ mod options;
 mod search;
 mod sentence;
 mod show;
+mod statistics;
 
 pub use error::{GapError, Turns};
 pub use file::FindingFileError;

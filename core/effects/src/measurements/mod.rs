@@ -2,7 +2,6 @@
 //! localizations of any number of sessions.
 
 mod derive;
-mod nuisance;
 mod read;
 #[cfg(test)]
 mod tests;
@@ -13,7 +12,6 @@ use plumbline_model::robot::{DescriptionError, RigError};
 use crate::arm::Arm;
 use crate::eyes::Eyes;
 use crate::library::{Present, Surface};
-pub use nuisance::Nuisance;
 
 pub use crate::observation::{Observation, Unit, What};
 

@@ -6,7 +6,7 @@
 
 use nalgebra::{Cholesky, DMatrix};
 
-use super::statistics::f_tail;
+use crate::statistics::f_tail;
 
 /// Slow courses: cosines over the whole time.
 const COURSES: usize = 3;

@@ -8,13 +8,14 @@ use nalgebra::{
     DMatrix, DVector, Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3,
 };
 use plumbline_effects::Assumed;
-use plumbline_effects::measurements::{Measurements, Nuisance};
+use plumbline_effects::Nuisance;
+use plumbline_effects::measurements::Measurements;
 use plumbline_model::JobContext;
 use plumbline_model::decompose;
 use rayon::prelude::*;
 
-use super::statistics::robust_sd;
 use crate::error::GapError;
+use crate::statistics::robust_sd;
 
 /// Relinearizations at most; a frame that lies near its nominal place needs two.
 const ROUNDS: usize = 12;

@@ -17,9 +17,9 @@ use rand::{Rng, SeedableRng};
 use rayon::prelude::*;
 
 use super::noise::Noise;
-use super::statistics::f_tail;
 use crate::covariates::Covariates;
 use crate::error::GapError;
+use crate::statistics::f_tail;
 
 /// Permutations: the smallest probability that they can show is one over one more.
 const PERMUTATIONS: usize = 399;

@@ -9,7 +9,6 @@ mod neighbors;
 mod noise;
 mod oddities;
 mod outliers;
-mod statistics;
 mod turns;
 mod units;
 
@@ -18,9 +17,9 @@ use plumbline_effects::measurements::{Measurements, What};
 use plumbline_model::JobContext;
 use rayon::prelude::*;
 
+pub(crate) use crate::statistics::{NORMAL_95, f_tail, median, robust_sd};
 pub(crate) use displacement::{at_m, nominal_place_m, of_arm};
 pub(crate) use frames::placed;
-pub(crate) use statistics::{NORMAL_95, f_tail, median, robust_sd};
 
 use crate::covariates::Covariates;
 use crate::error::GapError;

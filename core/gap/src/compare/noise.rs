@@ -12,9 +12,9 @@ use plumbline_model::decompose;
 
 use super::drift::{Deviation, Drift, drift};
 use super::neighbors::Points;
-use super::statistics::{median, robust_sd};
 use crate::finding::FloorSource;
 use crate::floor::{Floor, KindFloor, finest};
+use crate::statistics::{median, robust_sd};
 
 /// Fewer degrees of freedom than this say too little of the spread: 20 know it to a sixth. What
 /// repeats say is taken as it is, what neighbors say with doubt.

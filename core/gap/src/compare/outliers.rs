@@ -3,7 +3,7 @@
 use plumbline_effects::measurements::{Measurements, What};
 
 use super::neighbors::Points;
-use super::statistics::{median, robust_sd};
+use crate::statistics::{median, robust_sd};
 
 /// A row this many robust standard deviations away from its neighbors is an outlier. Far: an
 /// effect that few rows show must not be thrown away.

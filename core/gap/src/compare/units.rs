@@ -7,9 +7,9 @@ use plumbline_effects::{Assumed, EyesDeviation};
 use plumbline_model::JobContext;
 use plumbline_model::decompose;
 
-use super::statistics::{median, robust_sd};
 use super::{frames, turns};
 use crate::error::GapError;
+use crate::statistics::{median, robust_sd};
 
 /// Degrees in a radian.
 const DEGREES: f64 = 57.295_779_513_082_32;

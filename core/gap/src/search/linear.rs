@@ -1,7 +1,8 @@
 //! Residuals and tangents of all rows at the present model, and what they add up to.
 
 use nalgebra::{DMatrix, DVector};
-use plumbline_effects::measurements::{Measurements, Nuisance, What};
+use plumbline_effects::Nuisance;
+use plumbline_effects::measurements::{Measurements, What};
 use plumbline_effects::{Assumed, Effect, Tangents};
 use plumbline_model::JobContext;
 use rayon::prelude::*;

@@ -26,7 +26,7 @@ mod variants;
 mod weights;
 
 use nalgebra::DMatrix;
-use plumbline_effects::measurements::Nuisance;
+use plumbline_effects::Nuisance;
 use plumbline_effects::{Assumed, Effect, Measurements};
 use plumbline_model::{JobContext, Unattended};
 

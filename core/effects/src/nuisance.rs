@@ -3,8 +3,8 @@
 
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
 
-use super::Measurements;
 use crate::forward::{Assumed, Tangents};
+use crate::measurements::Measurements;
 use crate::observation::{Observation, What};
 
 /// A frame is known no better than this beforehand, m and rad.
