@@ -180,7 +180,11 @@ fn device_text(devices: &[&CameraDevice], number: u32) -> String {
 }
 
 fn delete_all(ui: &mut Ui, count: usize) -> Asked {
-    title(ui, &format!("Delete all {count} pairs?"), "You can take it back with Undo.");
+    title(
+        ui,
+        &format!("Delete {}?", if count == 1 { "the pair".to_owned() } else { format!("all {count} pairs") }),
+        "You can take it back with Undo.",
+    );
     match buttons(ui, "Delete all pairs", true) {
         Some(true) => Asked::Command(EyesCommand::DeleteAll.into()),
         Some(false) => Asked::Closed,
