@@ -12,6 +12,7 @@ use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOp
 
 use crate::error::RecordingError;
 use crate::topic::Topic;
+use crate::whose::Whose;
 use crate::writer::Attached;
 
 /// A record longer than this is no record of a recording, bytes.
@@ -47,7 +48,9 @@ pub(crate) struct ChunkPlace {
 #[derive(Debug, Default)]
 pub(crate) struct Index {
     pub software: String,
-    pub rig: Option<String>,
+    pub whose: Whose,
+    /// Whether this program has written it.
+    pub is_ours: bool,
     pub chunks: Vec<ChunkPlace>,
     pub messages: BTreeMap<Topic, Vec<Place>>,
     pub attached: Vec<Attached>,
@@ -112,7 +115,7 @@ impl Scan {
             Record::Header(header) => self.index.software = header.library,
             Record::Channel(channel) => self.channel(&channel),
             Record::Metadata(metadata) if metadata.name == "plumbline" => {
-                self.index.rig = metadata.metadata.get("rig").cloned();
+                (self.index.whose, self.index.is_ours) = (Whose::of(&metadata), true);
             }
             Record::Attachment { header, data, .. } => self.index.attached.push(Attached {
                 name: header.name,

@@ -14,12 +14,14 @@ mod index;
 mod messages;
 mod reader;
 mod topic;
+mod whose;
 mod writer;
 
 pub use error::RecordingError;
 pub use messages::{JointReading, Level, Note};
 pub use reader::{RecordedPair, Recording, Told};
 pub use topic::Topic;
+pub use whose::Whose;
 pub use writer::{About, Attached, Counts, Jpeg, RecordingWriter};
 
 /// The name of the file in a session's folder.

@@ -16,6 +16,7 @@ use crate::error::RecordingError;
 use crate::index::{Index, Place};
 use crate::messages::{self, JointReading, Note};
 use crate::topic::Topic;
+use crate::whose::Whose;
 use crate::writer::{Attached, Jpeg};
 
 /// A pair of images as it was recorded.
@@ -60,7 +61,7 @@ impl Recording {
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let index = Index::of(path)?;
         let file = File::open(path).map_err(RecordingError::io(path))?;
-        if index.messages.is_empty() && index.attached.is_empty() {
+        if !index.is_ours && index.messages.is_empty() {
             let what = "there is nothing in it that this program has recorded".to_owned();
             return Err(RecordingError::NotARecording { file: path.to_owned(), what });
         }
@@ -73,9 +74,9 @@ impl Recording {
         &self.index.software
     }
 
-    /// The robot's name; `None`: it does not say.
-    pub fn rig(&self) -> Option<&str> {
-        self.index.rig.as_deref()
+    /// Whose it is.
+    pub fn whose(&self) -> &Whose {
+        &self.index.whose
     }
 
     /// Whether it was finished; otherwise it was cut, and what is missing at its end is not known.

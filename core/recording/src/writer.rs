@@ -44,6 +44,8 @@ pub struct About {
     pub software: String,
     /// The robot's name.
     pub rig: String,
+    /// Whether it is of the simulated robot.
+    pub of_twin: bool,
     /// The calibration of the eyes in use.
     pub cameras: Option<StereoCameras>,
     /// Files that belong to it.
@@ -98,12 +100,11 @@ impl RecordingWriter {
     }
 
     fn begin(&mut self, at: Timestamp, about: &About) -> Result<(), RecordingError> {
-        for topic in Topic::ALL {
-            let channel = self.channel(topic).map_err(RecordingError::mcap(&self.file))?;
-            self.channels.insert(topic, channel);
-        }
-        let rig = BTreeMap::from([("rig".to_owned(), about.rig.clone())]);
-        let metadata = mcap::records::Metadata { name: "plumbline".to_owned(), metadata: rig };
+        let of = if about.of_twin { "twin" } else { "robot" };
+        let whose = [("rig", about.rig.as_str()), ("of", of)];
+        let whose = whose.map(|(key, value)| (key.to_owned(), value.to_owned()));
+        let metadata = mcap::records::Metadata { name: "plumbline".to_owned(), metadata: whose.into() };
+        // First of all: whose it is, is known without reading the rest.
         self.mcap.write_metadata(&metadata).map_err(RecordingError::mcap(&self.file))?;
         for attached in &about.attached {
             let time = messages::nanoseconds(at);
@@ -115,6 +116,10 @@ impl RecordingWriter {
                 data: Cow::Borrowed(&attached.bytes),
             };
             self.mcap.attach(&attachment).map_err(RecordingError::mcap(&self.file))?;
+        }
+        for topic in Topic::ALL {
+            let channel = self.channel(topic).map_err(RecordingError::mcap(&self.file))?;
+            self.channels.insert(topic, channel);
         }
         if let Some(cameras) = &about.cameras {
             let [left, right] = [(Eye::Left, &cameras.left), (Eye::Right, &cameras.right)]

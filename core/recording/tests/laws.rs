@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use jiff::{SignedDuration, Timestamp};
 use plumbline_recording::{
     About, Attached, JointReading, Jpeg, Level, Note, Recording, RecordingError, RecordingWriter, Topic,
+    Whose,
 };
 use serde_json::json;
 
@@ -30,6 +31,7 @@ fn about() -> About {
     About {
         software: "plumbline test".to_owned(),
         rig: "nico".to_owned(),
+        of_twin: true,
         attached: vec![rig],
         cameras: None,
     }
@@ -98,9 +100,12 @@ fn check(recording: &mut Recording) -> usize {
 #[test]
 fn what_was_written_is_read_in_any_order() {
     let folder = folder();
-    let mut recording = Recording::open(&written(folder.path(), 5)).expect("a recording");
+    let file = written(folder.path(), 5);
+    let mut recording = Recording::open(&file).expect("a recording");
+    assert_eq!(&Whose::read(&file).expect("a recording"), recording.whose());
     assert!(recording.is_whole());
-    assert_eq!((recording.software(), recording.rig()), ("plumbline test", Some("nico")));
+    assert_eq!(recording.software(), "plumbline test");
+    assert_eq!((recording.whose().rig.as_deref(), recording.whose().of_twin), (Some("nico"), true));
     assert_eq!(recording.attached(), about().attached);
     assert_eq!(check(&mut recording), 50);
     for index in [49, 0, 31, 30, 12] {

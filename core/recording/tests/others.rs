@@ -73,6 +73,7 @@ fn the_python_package_reads_what_was_written() {
     let about = About {
         software: "plumbline".to_owned(),
         rig: "nico".to_owned(),
+        of_twin: true,
         cameras: Some(cameras.clone()),
         attached: vec![rig],
     };
