@@ -38,7 +38,7 @@ impl PlumblineWindow {
         let asked = ctx.show_viewport_immediate(id, builder, |ui, class| {
             let window = window_of(ui, class);
             let commands = touch_surface(ui, &view.touch, screen.as_ref(), &window, surface);
-            let stop = class != ViewportClass::EmbeddedWindow && shortcuts::stop_asked(ui.ctx());
+            let stop = class != ViewportClass::EmbeddedWindow && shortcuts::stop_asked(ui.ctx(), true);
             keys(ui, class, window.full_screen);
             let close = ui.input(|input| input.viewport().close_requested());
             Asked {
