@@ -9,6 +9,8 @@ use plumbline_effects::robot_model::{PlaceInRobot, SeenUnder};
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::{LeftCamera, Point, Pose, Robot, StereoCalibration};
 
+use crate::published::HandHeights;
+
 /// The touchscreen's glass lies so much higher than the table on which it stands, m.
 const GLASS_OVER_TABLE_M: f64 = 0.002;
 
@@ -25,7 +27,7 @@ pub struct Knowledge {
     pub corrections: Corrections,
 }
 
-/// Models learned from touches.
+/// What was learned from touches, for the published methods.
 #[derive(Clone, Debug, Default)]
 pub struct Corrections {
     /// Placement and heights.
@@ -34,6 +36,8 @@ pub struct Corrections {
     pub m2: Option<Arc<CorrectionModel>>,
     /// Network.
     pub m3: Option<Arc<CorrectionModel>>,
+    /// Heights at which the open hand met the table, where it was lowered.
+    pub hand: Option<Arc<HandHeights>>,
 }
 
 impl Knowledge {

@@ -104,9 +104,9 @@ impl From<NoPlan> for End {
     }
 }
 
-impl From<method::NotTrained> for End {
-    fn from(not_trained: method::NotTrained) -> Self {
-        Self::Refused(not_trained.to_string())
+impl From<method::NotKnown> for End {
+    fn from(not_known: method::NotKnown) -> Self {
+        Self::Refused(not_known.to_string())
     }
 }
 
@@ -254,9 +254,12 @@ impl Running<'_> {
         let chosen = self.find(&before)?;
         self.begin(Step::Plan);
         let method = self.order.method;
-        let (shift_m, _) = method::correction(method, &self.grasper.knowledge, &chosen.point)?;
         let from = self.body.commanded()?;
-        let plan = self.grasper.planner(method).plan(&chosen.standing, &shift_m, &from)?;
+        let planner = self.grasper.planner(method);
+        let (shift_m, plan) = match method::published(method, &self.grasper.knowledge, &chosen.point)? {
+            Some(headed) => (headed.shift_m, planner.plan_headed(&chosen.standing, &headed, &from)?),
+            None => (Vector3::zeros(), planner.plan(&chosen.standing, &Vector3::zeros(), &from)?),
+        };
         self.planned(&plan);
         Ok(Prepared { before, chosen, shift_m, plan })
     }
