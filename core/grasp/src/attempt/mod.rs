@@ -61,6 +61,9 @@ pub trait Watch {
     fn planned(&mut self, plan: &GraspPlan);
     /// The hand was looked at.
     fn aligned(&mut self, iteration: &Iteration);
+    /// The try before came up without the object: it will be tried again, with the arm's way back to where it
+    /// began. `number` of `tries` counts from 1; `why` the try before failed.
+    fn again(&mut self, _number: usize, _tries: usize, _why: &str) {}
     /// All that is known so far, before a step is begun: `record.step` is that step. To be kept before
     /// it goes on.
     fn about_to(&mut self, _record: &Record) {}
@@ -269,9 +272,9 @@ impl Running<'_> {
     fn run(&mut self) -> Result<Outcome, End> {
         let from = self.body.commanded()?;
         let mut last = self.try_once()?;
-        for _ in 1..self.order.method.tries() {
+        for number in 2..=self.order.method.tries() {
             last = match last {
-                Outcome::Failed { failure, why } => self.once_more(&from, failure, why)?,
+                Outcome::Failed { failure, why } => self.once_more(&from, number, failure, why)?,
                 other => return Ok(other),
             };
         }
