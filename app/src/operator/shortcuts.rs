@@ -32,6 +32,7 @@ impl Action {
             Self::Go(Screen::Grasp) => command(Key::Num0),
             Self::Go(Screen::Images) => command(Key::D),
             Self::Go(Screen::Scores) => shift(Key::D),
+            Self::ToggleRecording => plain(Key::R),
             Self::Capture => plain(Key::C),
             Self::Detect(DetectAction::ToggleBoxes) => plain(Key::B),
             Self::DeleteLast => plain(Key::Backspace),

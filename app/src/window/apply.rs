@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_engine::{
-    Command, EyesCommand, JobCommand, LiveCommand, MountCommand, NoticeCommand, NoticeLevel, RobotCommand,
-    SourceCommand, TouchCommand, TwinCommand, WatchCommand,
+    Command, EyesCommand, JobCommand, LiveCommand, MountCommand, NoticeCommand, NoticeLevel,
+    RecordingCommand, RobotCommand, SourceCommand, TouchCommand, TwinCommand, WatchCommand,
 };
 
 use super::PlumblineWindow;
@@ -212,6 +212,11 @@ impl PlumblineWindow {
             Action::StepForward => SourceCommand::Step(1).into(),
             Action::StepBack => SourceCommand::Step(-1).into(),
             Action::ToggleLoop => SourceCommand::Loop(!replay?.looping).into(),
+            Action::ToggleRecording if self.view.recording.is_on() => RecordingCommand::Stop.into(),
+            Action::ToggleRecording => RecordingCommand::Start.into(),
+            Action::PlayLastRecording => {
+                SourceCommand::OpenPaths(vec![self.view.recording.last.as_ref()?.session.clone()]).into()
+            }
             Action::RecognizeBoard => EyesCommand::RecognizeBoard.into(),
             Action::UseSeenBoard => {
                 let eyes = &self.view.eyes;

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use egui::{Align, Button, DragValue, Layout, Panel, Popup, Ui};
 use jiff::Timestamp;
-use plumbline_engine::view::{SourceStatus, StepState};
+use plumbline_engine::view::{RecordingState, SourceStatus, StepState};
 use plumbline_engine::{EyesCommand, View};
 use plumbline_model::duration;
 use plumbline_widgets::buttons::{STOP_SIZE, stop_button, stop_pressed};
@@ -65,6 +65,7 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
 fn lamps(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let view = &window.view;
     let mut all = faults::lamps(view);
+    all.extend(recording_lamp(view));
     all.extend(eyes_lamps(view));
     all.extend(robot_lamps::lamps(view));
     all.push(calibration_lamp(view));
@@ -113,6 +114,32 @@ fn view_menu(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
         entry(ui, "Frame times", Action::ToggleFrameTimes);
         entry(ui, "Quit", Action::Quit);
     });
+}
+
+/// While it records.
+fn recording_lamp(view: &View) -> Option<TopLamp> {
+    let RecordingState::On { so_far, .. } = &view.recording.state else { return None };
+    let seconds = so_far.time.as_secs();
+    let mut value = format!("{}:{:02}", seconds / 60, seconds % 60);
+    let (health, reason) = match so_far.dropped {
+        0 => (Health::Working(0.0), None),
+        n => {
+            value += &format!(", {n} lost");
+            (Health::Warning, Some("Disk or processor did not keep up: these pairs and messages are not in the recording. Stop other work, or record to a faster disk.".to_owned()))
+        }
+    };
+    Some(TopLamp { name: "Recording", value, health, reason, then: Then::Open(240.0, recording_details) })
+}
+
+fn recording_details(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let RecordingState::On { session, so_far } = &window.view.recording.state else { return };
+    let pairs = usize::try_from(so_far.pairs).unwrap_or(usize::MAX);
+    ui.label(format!("{}, {:.1} MB", format::count(pairs, "pair"), so_far.bytes as f64 * 1e-6));
+    ui.label(theme::small(ui, session.display().to_string()));
+    if ui.button("Stop recording").clicked() {
+        outbox.act(Action::ToggleRecording);
+        ui.close();
+    }
 }
 
 fn eyes_lamps(view: &View) -> Vec<TopLamp> {

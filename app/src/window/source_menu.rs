@@ -29,6 +29,19 @@ pub(super) fn entries(view: &View, recent: &VecDeque<SourceSpec>, ui: &mut Ui, o
             ui.close();
         }
     }
+    ui.separator();
+    let record = if view.recording.is_on() { "Stop recording" } else { "Record" };
+    let recording =
+        [(record, Action::ToggleRecording), ("Play the last recording", Action::PlayLastRecording)];
+    for (text, action) in recording {
+        let refusal = action.refusal(view);
+        let button = Button::new(text).shortcut_text(shortcut_text(ui.ctx(), action).unwrap_or_default());
+        let button = ui.add_enabled(refusal.is_none(), button);
+        if button.on_disabled_hover_text(refusal.unwrap_or_default()).clicked() {
+            outbox.act(action);
+            ui.close();
+        }
+    }
     if !recent.is_empty() {
         ui.separator();
         ui.label(theme::small(ui, "Opened before"));

@@ -41,6 +41,8 @@ macro_rules! into_command {
 commands! {
     /// Where the images come from.
     Source(source / SourceCommand);
+    /// Recording what works live.
+    Recording(recording / RecordingCommand);
     /// What is computed from them, live.
     Live(live / LiveCommand);
     /// Detecting objects in those images, live.

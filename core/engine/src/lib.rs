@@ -16,6 +16,7 @@ pub mod live;
 pub mod models;
 pub mod motion;
 pub mod mount;
+mod recording;
 pub mod rig_models;
 pub mod robot;
 mod scores;
@@ -36,8 +37,8 @@ pub use command::{
     DetectCommand, DetectorChoice, ExportFormat, Exported, EyesCommand, FileLength, GapCommand, GapModel,
     GraspCommand, GraspTable, GraspTarget, HandStep, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates,
     LabelsCommand, LiveCommand, ModelsCommand, MountCommand, NoticeCommand, ProbePoint, Products, Provider,
-    RobotCommand, ScoresCommand, ScreenContact, ScreenWindow, SetPart, SourceCommand, TablesCommand,
-    TouchCommand, TrialsCommand, TrialsFormat, TwinCommand, WatchCommand,
+    RecordingCommand, RobotCommand, ScoresCommand, ScreenContact, ScreenWindow, SetPart, SourceCommand,
+    TablesCommand, TouchCommand, TrialsCommand, TrialsFormat, TwinCommand, WatchCommand,
 };
 pub use engine::settings::{self, EngineSettings};
 pub use engine::{Engine, Wake, journal, replay};

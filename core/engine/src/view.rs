@@ -40,6 +40,8 @@ macro_rules! views {
 views! {
     /// Where the images come from.
     source: source / SourceView;
+    /// Recording what works live.
+    recording: recording / RecordingView;
     /// The newest images and what was computed from them.
     live: live / LiveView;
     /// What the detector sees live.

@@ -60,6 +60,8 @@ macro_rules! works {
 works! {
     /// Of the source.
     Source(source / SourceWork);
+    /// Part of recording.
+    Recording(recording / RecordingWork);
     /// Part of detection.
     Detect(detect / DetectWork);
     /// Part of calibrating the eyes.

@@ -22,7 +22,7 @@ pub use trials::TrialsAction;
 
 use std::borrow::Cow;
 
-use plumbline_engine::view::SourceStatus;
+use plumbline_engine::view::{RecordingState, SourceStatus};
 use plumbline_engine::{ExportFormat, Exported, View, WatchedThread};
 use serde::Serialize;
 use serde_json::Value;
@@ -60,6 +60,10 @@ pub enum Action {
     StepBack,
     /// Starts over at the end, or not.
     ToggleLoop,
+    /// Records what works live, or stops that.
+    ToggleRecording,
+    /// Plays the recording that was made last.
+    PlayLastRecording,
     /// Opens a screen.
     Go(Screen),
     /// Says which board the newest pair shows.
@@ -189,6 +193,8 @@ const ALL: &[Action] = &[
     Action::StepForward,
     Action::StepBack,
     Action::ToggleLoop,
+    Action::ToggleRecording,
+    Action::PlayLastRecording,
     Action::Go(Screen::Commission),
     Action::Go(Screen::Live),
     Action::Go(Screen::Collect),
@@ -285,6 +291,8 @@ impl Action {
             Self::Labels(action) => action.label(),
             Self::Scores(action) => action.label(),
             Self::Detect(action) => action.label(),
+            Self::ToggleRecording => "Record, or stop recording",
+            Self::PlayLastRecording => "Play the last recording",
             Self::RecognizeBoard => "Recognize the board",
             Self::UseSeenBoard => "Use the recognized board",
             Self::Capture => "Capture pair",
@@ -344,6 +352,15 @@ impl Action {
                 eyes.board_seen.as_ref().is_some_and(|s| s.inner_corners.is_some()),
                 "no board was recognized",
             ),
+            Self::ToggleRecording if view.recording.is_on() => match view.recording.state {
+                RecordingState::On { .. } => None,
+                _ => Some("the file is being written".into()),
+            },
+            Self::ToggleRecording => when(
+                view.source.replay.is_none() && view.source.status == SourceStatus::Running,
+                "no eyes are live",
+            ),
+            Self::PlayLastRecording => when(view.recording.last.is_some(), "nothing was recorded yet"),
             Self::CollectRecording => when(view.source.replay.is_some(), "no recording is open"),
             Self::DeleteLast | Self::DeleteAll => when(!eyes.collected.is_empty(), "no pair is collected"),
             Self::Undo => when(eyes.can_undo, "nothing was changed"),

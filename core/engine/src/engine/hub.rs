@@ -308,7 +308,7 @@ impl<'a> Hub<'a> {
     }
 
     /// Lets jobs come to an end; one that writes a file is not torn away from it.
-    fn close(&self) {
+    fn close(&mut self) {
         self.shared.pulse.promise(CLOSING + SILENT);
         for job in self.jobs.values() {
             job.cancel();
@@ -318,6 +318,11 @@ impl<'a> Hub<'a> {
             if job.wait_at_most(deadline.saturating_duration_since(Instant::now())).is_none() {
                 log::warn!("{} did not end in time", job.title);
             }
+        }
+        if let Some(recorder) = self.state.last_recording()
+            && let Err(error) = recorder.finish()
+        {
+            log::error!("{error}");
         }
         if let Some(work) = self.state.last_write()
             && let Err(error) = work.run(&plumbline_model::Unattended)

@@ -44,3 +44,20 @@ pub fn title_of(folder: &Path) -> String {
     let folder = full.as_deref().unwrap_or(folder);
     folder.file_name().unwrap_or(folder.as_os_str()).to_string_lossy().into_owned()
 }
+
+/// Makes a folder of this name among sessions, with a number behind it where the name is taken.
+///
+/// # Errors
+/// What the system says.
+pub fn free_folder(sessions: &Path, name: &str) -> std::io::Result<PathBuf> {
+    std::fs::create_dir_all(sessions)?;
+    for count in 1.. {
+        let name = if count == 1 { name.to_owned() } else { format!("{name}-{count}") };
+        let folder = sessions.join(name);
+        match std::fs::create_dir(&folder) {
+            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
+            other => return other.map(|()| folder),
+        }
+    }
+    Err(std::io::ErrorKind::AlreadyExists.into())
+}

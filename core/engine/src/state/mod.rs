@@ -37,6 +37,7 @@ use crate::ground::{Asked, Clock, Context, Moment, PerWorld, Time, Workflow, Wor
 use crate::labels::work::LabelsWork;
 use crate::live::{ProbeInput, ProbeOutput, RectifyInput, RectifyOutput};
 use crate::mount::MountWorkflow;
+use crate::recording::{Recorder, RecordingWorkflow};
 use crate::rig_models::{Accepted, other_eyes};
 use crate::robot::view::{Connection, RobotView};
 use crate::robot::{News, RobotControl, TouchNews};
@@ -155,6 +156,7 @@ impl State {
     /// Applies a command of the operator that was given at this time.
     pub fn apply_at(&mut self, command: Command, time: Time) {
         self.hold_time(Some(time));
+        self.rooms.recording.asked(&command, time);
         self.apply(command);
         self.hold_time(None);
     }
@@ -172,6 +174,24 @@ impl State {
     /// Opens detectors in another way (tests, fake detectors).
     pub fn set_detector_opener(&mut self, open: OpenDetector) {
         self.rooms.detect.set_opener(open);
+    }
+
+    /// Hands something to the recording, with the messages that came before it.
+    fn record(&mut self, what: impl FnOnce(&RecordingWorkflow, Time)) {
+        if !self.rooms.recording.is_on() {
+            return;
+        }
+        let time = self.clock.time();
+        self.rooms.recording.told(&self.notices.view());
+        what(&self.rooms.recording, time);
+        self.with::<RecordingWorkflow>(World::default(), |recording, _, context| {
+            recording.look_after(context);
+        });
+    }
+
+    /// The recording under way, to be finished before the program ends.
+    pub fn last_recording(&mut self) -> Option<Recorder> {
+        self.rooms.recording.take()
     }
 
     /// What the operator drew and is not on disk yet, to be written before the program ends.
@@ -258,6 +278,7 @@ impl State {
         self.shown_of = opened;
         self.rooms.eyes.of_mut(self.shown).set_image_size(frame.left.dimensions());
         self.rooms.grasp.of(self.arm_of).saw(&frame);
+        self.record(|recording, time| recording.saw(&frame, time));
         self.rooms.live.frame(frame, now);
     }
 
@@ -297,6 +318,8 @@ impl State {
             self.actions.push(Action::Source(Control::Open(SourceSpec::Twin)));
         }
         (self.robot, self.twin) = (news.robot, news.twin);
+        let robot = self.robot.clone();
+        self.record(|recording, time| recording.read(&robot, time));
         self.before_silence = None;
         self.arm_of = match &self.robot.connection {
             Connection::Connected { twin, .. } => World::of_robot(*twin),
@@ -340,6 +363,9 @@ impl State {
     /// The detector has something.
     pub fn detected(&mut self, output: Timed<DetectOutput>, now: Instant) {
         self.rooms.detect.detected(output, self.shown_of, now);
+        if let Some(found) = self.rooms.detect.found().cloned() {
+            self.record(|recording, time| recording.found(&found, time));
+        }
     }
 
     /// What the detector is to do with the newest pair, if anything.

@@ -23,8 +23,10 @@ use crate::labels::{LabelsAround, LabelsWorkflow};
 use crate::live::LiveWorkflow;
 use crate::models::{ModelsAround, ModelsWorkflow};
 use crate::mount::{MountAround, MountWorkflow};
+use crate::recording::{RecordingAround, RecordingWorkflow};
 use crate::scores::ScoresWorkflow;
 use crate::source::SourceWorkflow;
+use crate::source::view::SourceStatus;
 use crate::touch::{TouchAround, TouchWorkflow};
 use crate::trials::TrialsWorkflow;
 use crate::view::View;
@@ -130,6 +132,19 @@ all_rooms!(dispatched);
 
 impl Neighbors<SourceWorkflow> for State {
     fn around(&self, _world: World) {}
+}
+
+impl Neighbors<RecordingWorkflow> for State {
+    fn around(&self, _world: World) -> RecordingAround {
+        let source = self.rooms.source.view();
+        let cameras = self.rooms.eyes.of(self.shown).in_use().map(|calibration| calibration.cameras.clone());
+        RecordingAround {
+            world: self.shown,
+            is_live: source.replay.is_none() && source.status == SourceStatus::Running,
+            rig: self.rig.name.clone(),
+            cameras,
+        }
+    }
 }
 
 impl Neighbors<DetectWorkflow> for State {

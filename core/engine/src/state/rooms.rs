@@ -12,6 +12,7 @@ use crate::labels::LabelsWorkflow;
 use crate::live::LiveWorkflow;
 use crate::models::ModelsWorkflow;
 use crate::mount::MountWorkflow;
+use crate::recording::RecordingWorkflow;
 use crate::scores::ScoresWorkflow;
 use crate::source::SourceWorkflow;
 use crate::touch::TouchWorkflow;
@@ -27,6 +28,7 @@ macro_rules! all_rooms {
             detect: DetectWorkflow, Detect;
             scores: ScoresWorkflow, Scores;
             source: SourceWorkflow, Source;
+            recording: RecordingWorkflow, Recording;
         }
         per_world {
             eyes: EyesWorkflow, Eyes, shown;

@@ -17,6 +17,7 @@ use super::plan::{self, RunPlan, TIP};
 use super::record::{self, Progress, Standing, TouchRecord};
 use super::refusal::RunError;
 use super::view::UnfinishedRun;
+use crate::ground::sessions::free_folder;
 use crate::ground::shelf::InUse;
 
 /// The plan, in a session's folder.
@@ -215,19 +216,6 @@ fn trained(session: &Path, progress: &Progress) -> Option<TrainedRun> {
         screen: manifest.touchscreen?,
         gave_placement: progress.gave_placement,
     })
-}
-
-fn free_folder(sessions: &Path, name: &str) -> std::io::Result<PathBuf> {
-    std::fs::create_dir_all(sessions)?;
-    for count in 1.. {
-        let name = if count == 1 { name.to_owned() } else { format!("{name}-{count}") };
-        let folder = sessions.join(name);
-        match std::fs::create_dir(&folder) {
-            Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
-            other => return other.map(|()| folder),
-        }
-    }
-    Err(std::io::ErrorKind::AlreadyExists.into())
 }
 
 fn write_json(file: &Path, value: &impl Serialize) -> Result<(), RunError> {

@@ -221,6 +221,12 @@ impl Rig {
         Self::parse(&format!("{name}/rig.toml"), rig, |_| Ok((*description).to_owned()))
     }
 
+    /// The files of a rig that comes with the program: the rig and its description; `None`: there is none of
+    /// that name.
+    pub fn built_in_files(name: &str) -> Option<[&'static str; 2]> {
+        BUILT_IN.iter().find(|(known, ..)| *known == name).map(|(_, rig, description)| [*rig, *description])
+    }
+
     /// Reads a rig file; the description it names lies beside it.
     pub fn read(file: &Path) -> Result<Self, RigError> {
         let read = |path: &Path| Ok(files::read_text(path, Size::TEXT)?);

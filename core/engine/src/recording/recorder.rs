@@ -1,0 +1,151 @@
+//! The thread that compresses and writes, so that nobody waits for a disk.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+use crossbeam_channel::{Receiver, Sender, TrySendError};
+use image::RgbImage;
+use jiff::Timestamp;
+use plumbline_hardware::{QUALITY, encode_jpeg};
+use plumbline_recording::{Counts, JointReading, Jpeg, Note, RecordingError, RecordingWriter, Topic};
+use serde_json::Value;
+
+/// What may wait for the disk: three seconds of pairs.
+const WAITING: usize = 90;
+
+/// Something to be written.
+pub enum Item {
+    /// A pair.
+    Pair {
+        /// When it was captured.
+        at: Timestamp,
+        /// Its number.
+        number: u64,
+        /// Left, right.
+        images: [Arc<RgbImage>; 2],
+        /// The right image after the left one, s.
+        right_later_s: Option<f64>,
+    },
+    /// Angles of joints.
+    Joints(Timestamp, Vec<JointReading>),
+    /// A message for the operator.
+    Note(Timestamp, Note),
+    /// What only this program knows.
+    Told(Topic, Timestamp, Value),
+}
+
+/// A recording under way; all copies are of the same one, which ends when the last of them is dropped.
+#[derive(Clone, Debug)]
+pub struct Recorder {
+    session: PathBuf,
+    items: Option<Sender<Item>>,
+    told: Arc<Told>,
+}
+
+/// What the thread tells.
+#[derive(Debug, Default)]
+struct Told {
+    pairs: AtomicU64,
+    bytes: AtomicU64,
+    dropped: AtomicU64,
+    thread: Mutex<Option<JoinHandle<Result<Counts, RecordingError>>>>,
+}
+
+/// Why a recording ended otherwise than asked.
+#[derive(Debug, thiserror::Error)]
+pub enum Broken {
+    /// It could not be written.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// The system gave no thread.
+    #[error("the system gives no thread for the recording ({0}): close other programs")]
+    NoThread(std::io::Error),
+    /// A defect of this program.
+    #[error("the recording ended by a mistake of this program; what was written is there")]
+    Panicked,
+}
+
+impl Recorder {
+    /// Begins to write.
+    ///
+    /// # Errors
+    /// When the system gives no thread.
+    pub fn start(session: PathBuf, writer: RecordingWriter) -> Result<Self, Broken> {
+        let (items, waiting) = crossbeam_channel::bounded(WAITING);
+        let told = Arc::new(Told::default());
+        let tells = told.clone();
+        let thread = std::thread::Builder::new().name("recorder".to_owned());
+        let thread = thread.spawn(move || write(writer, &waiting, &tells)).map_err(Broken::NoThread)?;
+        *told.thread.lock().unwrap_or_else(PoisonError::into_inner) = Some(thread);
+        Ok(Self { session, items: Some(items), told })
+    }
+
+    /// The folder of its session.
+    pub fn session(&self) -> &Path {
+        &self.session
+    }
+
+    /// Hands something over; never waits. What does not fit is counted.
+    pub fn put(&self, item: Item) {
+        let sent = self.items.as_ref().map(|items| items.try_send(item));
+        if let Some(Err(TrySendError::Full(_) | TrySendError::Disconnected(_))) = sent {
+            self.told.dropped.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+
+    /// Pairs, bytes, and what was dropped.
+    pub fn so_far(&self) -> (u64, u64, u64) {
+        let read = |number: &AtomicU64| number.load(Ordering::Relaxed);
+        (read(&self.told.pairs), read(&self.told.bytes), read(&self.told.dropped))
+    }
+
+    /// Whether its thread has ended by itself.
+    pub fn is_broken(&self) -> bool {
+        let thread = self.told.thread.lock().unwrap_or_else(PoisonError::into_inner);
+        thread.as_ref().is_some_and(JoinHandle::is_finished)
+    }
+
+    /// Takes nothing more; what waits is still written.
+    pub fn close(&mut self) {
+        self.items = None;
+    }
+
+    /// Waits until everything is written. All other copies must be closed.
+    ///
+    /// # Errors
+    /// Why it is not.
+    pub fn finish(mut self) -> Result<Counts, Broken> {
+        self.close();
+        let thread = self.told.thread.lock().unwrap_or_else(PoisonError::into_inner).take();
+        match thread.map(JoinHandle::join) {
+            Some(Ok(written)) => Ok(written?),
+            Some(Err(_)) | None => Err(Broken::Panicked),
+        }
+    }
+}
+
+fn write(mut writer: RecordingWriter, items: &Receiver<Item>, told: &Told) -> Result<Counts, RecordingError> {
+    for item in items {
+        match item {
+            Item::Pair { at, number, images, right_later_s } => {
+                let [left, right] = images.map(|image| encode_jpeg(&image, QUALITY));
+                match (left, right) {
+                    (Ok(left), Ok(right)) => {
+                        writer.pair(at, number, [Jpeg(left), Jpeg(right)], right_later_s)?;
+                    }
+                    // Only an image beyond what a JPEG can be; the next ones may be others.
+                    _ => _ = told.dropped.fetch_add(1, Ordering::Relaxed),
+                }
+            }
+            Item::Joints(at, readings) => writer.joints(at, &readings)?,
+            Item::Note(at, note) => writer.note(at, &note)?,
+            Item::Told(topic, at, value) => writer.told(topic, at, &value)?,
+        }
+        let counts = writer.counts();
+        told.pairs.store(counts.pairs, Ordering::Relaxed);
+        told.bytes.store(counts.bytes, Ordering::Relaxed);
+    }
+    writer.finish()
+}

@@ -1,0 +1,171 @@
+//! From the press to a file that is read again.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use image::{Rgb, RgbImage};
+use plumbline_model::robot::default_rig;
+use plumbline_model::session::Session;
+use plumbline_model::{Stamp, StereoFrame, Unattended};
+use plumbline_recording::{FILE, Recording, Topic};
+use serde_json::json;
+
+use super::command::RecordingCommand;
+use super::view::{RecordingState, RecordingView};
+use super::work::RecordingWork;
+use super::{RecordingAround, RecordingWorkflow};
+use crate::ground::jobs::list::JobList;
+use crate::ground::notice::{NoticeLevel, Notices};
+use crate::ground::stage::Skipped;
+use crate::ground::{Asked, Context, LongWork as _, Moment, Time, Workflow as _, World};
+use crate::robot::view::RobotView;
+
+struct Desk {
+    room: RecordingWorkflow,
+    around: RecordingAround,
+    notices: Notices,
+    jobs: JobList,
+}
+
+impl Desk {
+    fn new(folder: &Path, is_live: bool) -> Self {
+        let around = RecordingAround {
+            world: World::Twin,
+            is_live,
+            rig: "nico".to_owned(),
+            cameras: Some(default_rig().eyes.cameras.clone()),
+        };
+        let room = RecordingWorkflow::new(folder);
+        Self { room, around, notices: Notices::default(), jobs: JobList::default() }
+    }
+
+    fn apply(&mut self, command: RecordingCommand) {
+        let mut asked = Vec::new();
+        let Self { room, around, notices, jobs } = self;
+        let mut context = Context::new(notices, jobs, Time::now(), &mut asked);
+        room.apply(command, around, &mut context);
+        for asked in asked {
+            let Asked::Start(id, work) = asked else { continue };
+            self.finish(id, work);
+        }
+    }
+
+    fn finish(&mut self, id: crate::ground::jobs::JobId, work: RecordingWork) {
+        let result = work.run(&Unattended);
+        let mut asked = Vec::new();
+        let Self { room, around, notices, jobs } = self;
+        let mut context = Context::new(notices, jobs, Time::now(), &mut asked);
+        match result {
+            Ok(result) => room.work_done(id, result, around, &mut context),
+            Err(error) => {
+                context.notices.add(NoticeLevel::Error, error.to_string());
+                room.work_ended(id, Some("failed"), around, &mut context);
+            }
+        }
+    }
+
+    fn view(&mut self) -> Arc<RecordingView> {
+        let moment = Moment { now: Instant::now(), skipped: Skipped::default() };
+        self.room.view(&self.around, &moment)
+    }
+
+    fn said(&mut self) -> String {
+        self.notices.view().last().map(|notice| notice.text.clone()).unwrap_or_default()
+    }
+}
+
+fn frame(number: u64) -> StereoFrame {
+    let image = |eye: u8| Arc::new(RgbImage::from_pixel(64, 48, Rgb([10 * number as u8 + eye; 3])));
+    StereoFrame {
+        stamp: Stamp { seq: number, captured_at: Instant::now() },
+        left: image(0),
+        right: image(100),
+        time_difference_s: Some(0.001),
+        name: None,
+    }
+}
+
+#[test]
+fn what_came_while_it_was_on_is_in_the_file_and_nothing_else() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut desk = Desk::new(folder.path(), true);
+    desk.room.saw(&frame(0), Time::now());
+    desk.notices.add(NoticeLevel::Warning, "before");
+    assert_eq!(desk.view().state, RecordingState::Off);
+    desk.apply(RecordingCommand::Start);
+    let RecordingState::On { session, .. } = desk.view().state.clone() else { panic!("{:?}", desk.view()) };
+    for number in 1..=6 {
+        desk.room.saw(&frame(number), Time::now());
+    }
+    desk.room.asked(&json!({ "workflow": "grasp" }), Time::now());
+    desk.notices.add(NoticeLevel::Error, "after");
+    let notices = desk.notices.view();
+    desk.room.told(&notices);
+    desk.room.told(&notices);
+    desk.room.read(&RobotView::default(), Time::now());
+    desk.apply(RecordingCommand::Start);
+    assert!(desk.said().contains("stop it first"), "{}", desk.said());
+    desk.apply(RecordingCommand::Stop);
+    let view = desk.view();
+    assert_eq!(view.state, RecordingState::Off);
+    let last = view.last.clone().expect("finished");
+    assert_eq!((&last.session, last.so_far.pairs, last.so_far.dropped), (&session, 6, 0));
+    desk.room.saw(&frame(7), Time::now());
+
+    assert!(session.starts_with(folder.path().join("twin")), "of the twin, beside its other sessions");
+    Session::read(&session).expect("a session");
+    let mut recording = Recording::open(&session.join(FILE)).expect("a recording");
+    assert!(recording.is_whole() && recording.whose().of_twin);
+    let numbers: Vec<u32> =
+        (0..recording.pair_count()).map(|index| recording.pair(index).expect("readable").number).collect();
+    assert_eq!(numbers, [1, 2, 3, 4, 5, 6]);
+    let notes: Vec<String> =
+        recording.notes().expect("readable").into_iter().map(|told| told.what.text).collect();
+    assert_eq!(notes, ["before", "after"]);
+    assert_eq!(recording.told(Topic::Commands).expect("readable")[0].what, json!({ "workflow": "grasp" }));
+    assert!(recording.joints().expect("readable").is_empty(), "no joint was read");
+    let attached: Vec<&str> = recording.attached().iter().map(|file| file.name.as_str()).collect();
+    assert_eq!(attached, ["rig.toml", "robot.urdf", "camchain.yaml"]);
+}
+
+#[test]
+fn where_nothing_is_live_nothing_is_recorded() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut desk = Desk::new(folder.path(), false);
+    desk.apply(RecordingCommand::Start);
+    assert!(desk.said().contains("nothing live to record"), "{}", desk.said());
+    desk.apply(RecordingCommand::Stop);
+    assert!(desk.said().contains("Nothing is being recorded"), "{}", desk.said());
+    assert_eq!(std::fs::read_dir(folder.path()).expect("there").count(), 0);
+}
+
+#[test]
+fn without_room_it_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A file lies where the folder of sessions would be.
+    std::fs::create_dir_all(folder.path().join("twin")).expect("made");
+    std::fs::write(folder.path().join("twin/sessions"), "").expect("written");
+    let mut desk = Desk::new(folder.path(), true);
+    desk.apply(RecordingCommand::Start);
+    assert!(desk.said().contains("sessions"), "{}", desk.said());
+    assert_eq!(desk.view().state, RecordingState::Off);
+}
+
+#[test]
+fn a_recorder_that_does_not_keep_up_counts_what_it_drops() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut desk = Desk::new(folder.path(), true);
+    desk.apply(RecordingCommand::Start);
+    let large = Arc::new(RgbImage::from_fn(1600, 1200, |x, y| Rgb([(x * y) as u8, x as u8, y as u8])));
+    let pairs = 400;
+    for number in 0..pairs {
+        let frame = StereoFrame { left: large.clone(), right: large.clone(), ..frame(number) };
+        desk.room.saw(&frame, Time::now());
+    }
+    std::thread::sleep(Duration::from_millis(50));
+    desk.apply(RecordingCommand::Stop);
+    let so_far = desk.view().last.as_ref().expect("finished").so_far;
+    assert!(so_far.dropped > 0, "{so_far:?}");
+    assert_eq!(so_far.pairs + so_far.dropped, pairs, "none is lost without being counted");
+}

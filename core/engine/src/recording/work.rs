@@ -1,0 +1,133 @@
+//! What takes long: making the file, and waiting until all of it is written.
+
+use std::path::{Path, PathBuf};
+
+use jiff::Timestamp;
+use plumbline_model::formats::kalibr;
+use plumbline_model::robot::Rig;
+use plumbline_model::session::{Manifest, RigReference, names};
+use plumbline_model::{JobContext, StereoCameras, counted};
+use plumbline_recording::{About, Attached, Counts, FILE, RecordingWriter};
+
+use super::recorder::Recorder;
+use crate::ground::jobs::JobError;
+use crate::ground::sessions::free_folder;
+use crate::ground::{self, LongWork, software};
+
+/// Work of this workflow.
+#[derive(Clone, Debug)]
+pub enum RecordingWork {
+    /// Makes a session with a recording.
+    Begin {
+        /// Where sessions are kept.
+        sessions: PathBuf,
+        /// When it was asked for.
+        started: Timestamp,
+        /// Name of the rig.
+        rig: String,
+        /// Whether it is of the twin.
+        of_twin: bool,
+        /// The calibration in use.
+        cameras: Option<Box<StereoCameras>>,
+    },
+    /// Waits until everything is written.
+    End(Recorder),
+}
+
+/// What came out.
+#[derive(Clone, Debug)]
+pub enum RecordingResult {
+    /// It records.
+    Begun(Recorder),
+    /// It is on disk.
+    Ended(Counts),
+}
+
+/// What the handlers of this room may reach besides their own workflow.
+pub type Context<'a> = ground::Context<'a, RecordingWork>;
+
+impl LongWork for RecordingWork {
+    type Result = RecordingResult;
+
+    fn title(&self) -> String {
+        match self {
+            Self::Begin { .. } => "Begin a recording".to_owned(),
+            Self::End(_) => "Finish the recording".to_owned(),
+        }
+    }
+
+    fn is_quiet(&self) -> bool {
+        matches!(self, Self::Begin { .. })
+    }
+
+    fn run(self, _: &dyn JobContext) -> Result<RecordingResult, JobError> {
+        match self {
+            Self::Begin { sessions, started, rig, of_twin, cameras } => {
+                let name = format!("{}_recording", started.strftime("%Y-%m-%dT%H-%M-%S"));
+                let session = free_folder(&sessions, &name)
+                    .map_err(|error| JobError::failed(format!("{}: {error}", sessions.display())))?;
+                let about = About {
+                    software: software(),
+                    attached: attached(&session, &rig, cameras.as_deref())?,
+                    rig: rig.clone(),
+                    of_twin,
+                    cameras: cameras.map(|cameras| *cameras),
+                };
+                manifest(&rig, started).write(&session.join(names::MANIFEST)).map_err(JobError::failed)?;
+                let writer = RecordingWriter::create(&session.join(FILE), started, &about);
+                let writer = writer.map_err(JobError::failed)?;
+                Recorder::start(session, writer).map(RecordingResult::Begun).map_err(JobError::failed)
+            }
+            Self::End(recorder) => recorder.finish().map(RecordingResult::Ended).map_err(JobError::failed),
+        }
+    }
+}
+
+/// Files that make a recording whole by itself; those of the eyes lie beside it, too.
+fn attached(session: &Path, rig: &str, cameras: Option<&StereoCameras>) -> Result<Vec<Attached>, JobError> {
+    let file = |name: &str, media_type: &str, bytes: Vec<u8>| Attached {
+        name: name.to_owned(),
+        media_type: media_type.to_owned(),
+        bytes,
+    };
+    let mut files = Vec::new();
+    if let Some([rig, description]) = Rig::built_in_files(rig) {
+        files.push(file("rig.toml", "application/toml", rig.into()));
+        files.push(file("robot.urdf", "application/xml", description.into()));
+    }
+    if let Some(cameras) = cameras {
+        let camchain = session.join("camchain.yaml");
+        kalibr::write(cameras, &camchain).map_err(JobError::failed)?;
+        let bytes = plumbline_model::files::read(&camchain, plumbline_model::files::Size::SHORT);
+        files.push(file("camchain.yaml", "application/yaml", bytes.map_err(JobError::failed)?));
+    }
+    Ok(files)
+}
+
+fn manifest(rig: &str, started: Timestamp) -> Manifest {
+    let mut extra = toml::Table::new();
+    extra.insert("software".to_owned(), software().into());
+    Manifest {
+        rig: RigReference::Named(rig.to_owned()),
+        started,
+        operator: String::new(),
+        notes: String::new(),
+        touchscreen: None,
+        chain: None,
+        extra,
+    }
+}
+
+impl RecordingResult {
+    /// The result in a sentence.
+    pub fn summary(&self) -> String {
+        match self {
+            Self::Begun(_) => "It records.".to_owned(),
+            Self::Ended(counts) => format!(
+                "Recorded {}, {:.1} MB.",
+                counted(usize::try_from(counts.pairs).unwrap_or(usize::MAX), "pair"),
+                counts.bytes as f64 * 1e-6
+            ),
+        }
+    }
+}

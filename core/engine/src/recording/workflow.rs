@@ -1,0 +1,256 @@
+//! Whether it records, and what is handed to the recorder.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use jiff::Timestamp;
+use plumbline_model::{PixelBox, StereoCameras, StereoFrame};
+use plumbline_recording::{JointReading, Level, Note, Topic};
+use serde_json::{Value, json};
+
+use super::command::RecordingCommand;
+use super::recorder::{Item, Recorder};
+use super::view::{Recorded, RecordedSoFar, RecordingState, RecordingView};
+use super::work::{Context, RecordingResult, RecordingWork};
+use crate::detect::view::{DetectionsView, SeenBox};
+use crate::ground::jobs::JobId;
+use crate::ground::notice::{Notice, NoticeLevel};
+use crate::ground::{Moment, Nothing, Time, Workflow, World};
+use crate::robot::view::{JointView, RobotView};
+
+/// What the workflow can see of the rest.
+pub struct RecordingAround {
+    /// Whose eyes the source shows.
+    pub world: World,
+    /// Whether a source delivers, and nothing that was recorded before.
+    pub is_live: bool,
+    /// Name of the rig.
+    pub rig: String,
+    /// The calibration of the eyes in use.
+    pub cameras: Option<StereoCameras>,
+}
+
+/// Recording. There is one at a time, of what is shown.
+#[derive(Clone, Debug, Default)]
+pub struct RecordingWorkflow {
+    data_dir: PathBuf,
+    phase: Phase,
+    /// When it was begun.
+    since: Option<Time>,
+    /// Number of the newest message that is in it.
+    noted: u64,
+    last: Option<Arc<Recorded>>,
+}
+
+#[derive(Clone, Debug, Default)]
+enum Phase {
+    #[default]
+    Off,
+    Begins(JobId),
+    On(Recorder),
+    Ends(JobId, Recorded),
+}
+
+impl RecordingWorkflow {
+    fn recorder(&self) -> Option<&Recorder> {
+        match &self.phase {
+            Phase::On(recorder) => Some(recorder),
+            _ => None,
+        }
+    }
+
+    /// Takes the recorder away: nothing more is recorded.
+    pub fn take(&mut self) -> Option<Recorder> {
+        match std::mem::take(&mut self.phase) {
+            Phase::On(recorder) => Some(recorder),
+            _ => None,
+        }
+    }
+
+    /// Whether something is to be handed over.
+    pub fn is_on(&self) -> bool {
+        self.recorder().is_some()
+    }
+
+    /// A pair has come.
+    pub fn saw(&self, frame: &StereoFrame, time: Time) {
+        let Some(recorder) = self.recorder() else { return };
+        let ago = time.instant.saturating_duration_since(frame.stamp.captured_at);
+        let at = time.day.checked_sub(ago).unwrap_or(time.day);
+        recorder.put(Item::Pair {
+            at,
+            number: frame.stamp.seq,
+            images: [frame.left.clone(), frame.right.clone()],
+            right_later_s: frame.time_difference_s,
+        });
+    }
+
+    /// Joints were read.
+    pub fn read(&self, robot: &RobotView, time: Time) {
+        let Some(recorder) = self.recorder() else { return };
+        let reading = |joint: &JointView| {
+            Some(JointReading {
+                name: joint.name.clone(),
+                angle_rad: joint.angle_rad?,
+                speed_rad_s: joint.speed_rad_s,
+            })
+        };
+        let readings: Vec<JointReading> = robot.joints.iter().filter_map(reading).collect();
+        if !readings.is_empty() {
+            recorder.put(Item::Joints(time.day, readings));
+        }
+    }
+
+    /// Something was asked for.
+    pub fn asked(&self, command: &impl serde::Serialize, time: Time) {
+        let Some(recorder) = self.recorder() else { return };
+        if let Ok(value) = serde_json::to_value(command) {
+            recorder.put(Item::Told(Topic::Commands, time.day, value));
+        }
+    }
+
+    /// Things were found in a pair.
+    pub fn found(&self, found: &DetectionsView, time: Time) {
+        let Some(recorder) = self.recorder() else { return };
+        let ago = time.instant.saturating_duration_since(found.stamp.captured_at);
+        let at = time.day.checked_sub(ago).unwrap_or(time.day);
+        recorder.put(Item::Told(Topic::Detections, at, detections(found)));
+    }
+
+    /// Messages that are not in it yet.
+    pub fn told(&mut self, notices: &[Notice]) {
+        let Some(recorder) = self.recorder() else { return };
+        for notice in notices.iter().filter(|notice| notice.number > self.noted) {
+            let level = match notice.level {
+                NoticeLevel::Info | NoticeLevel::Success => Level::Info,
+                NoticeLevel::Warning => Level::Warning,
+                NoticeLevel::Error => Level::Error,
+            };
+            recorder.put(Item::Note(notice.at, Note { level, text: notice.text.clone() }));
+        }
+        self.noted = notices.last().map_or(self.noted, |newest| newest.number.max(self.noted));
+    }
+
+    /// A recorder that broke is ended, which says why.
+    pub fn look_after(&mut self, context: &mut Context<'_>) {
+        if self.recorder().is_some_and(Recorder::is_broken) {
+            self.stop(context);
+        }
+    }
+
+    fn start(&mut self, around: &RecordingAround, context: &mut Context<'_>) {
+        if !matches!(self.phase, Phase::Off) {
+            return context.refuse("A recording is under way: stop it first.");
+        }
+        if !around.is_live {
+            return context.refuse("There is nothing live to record: connect the eyes, or the twin's.");
+        }
+        let work = RecordingWork::Begin {
+            sessions: around.world.folder(&self.data_dir).join("sessions"),
+            started: context.time.day,
+            rig: around.rig.clone(),
+            of_twin: around.world == World::Twin,
+            cameras: around.cameras.clone().map(Box::new),
+        };
+        self.since = Some(context.time);
+        self.phase = Phase::Begins(context.start(work));
+    }
+
+    fn stop(&mut self, context: &mut Context<'_>) {
+        let Phase::On(mut recorder) = std::mem::take(&mut self.phase) else {
+            return context.refuse("Nothing is being recorded.");
+        };
+        recorder.close();
+        let so_far = self.so_far(&recorder, context.time);
+        let recorded = Recorded { session: recorder.session().to_owned(), so_far };
+        self.phase = Phase::Ends(context.start(RecordingWork::End(recorder)), recorded);
+    }
+
+    fn so_far(&self, recorder: &Recorder, now: Time) -> RecordedSoFar {
+        let (pairs, bytes, dropped) = recorder.so_far();
+        let since = self.since.map(|since| now.instant.saturating_duration_since(since.instant));
+        RecordedSoFar { time: since.unwrap_or_default(), pairs, dropped, bytes }
+    }
+}
+
+/// Boxes in px, places and deviations in m in the frame of the robot.
+fn detections(found: &DetectionsView) -> Value {
+    let objects: Vec<Value> = found
+        .objects
+        .iter()
+        .map(|object| {
+            let seen = |seen: &Option<SeenBox>| {
+                seen.as_ref().map(|seen| {
+                    let PixelBox { x0_px, y0_px, x1_px, y1_px } = seen.area;
+                    json!({ "box_px": [x0_px, y0_px, x1_px, y1_px], "confidence": seen.confidence })
+                })
+            };
+            let place = object.place.as_ref().ok().map(|place| {
+                let point: [f64; 3] = place.point_in_robot.coords.into();
+                json!({ "point_m": point, "sigma_m": place.sigma_m })
+            });
+            json!({ "name": object.name, "left": seen(&object.left), "right": seen(&object.right), "place": place })
+        })
+        .collect();
+    json!({ "pair": found.stamp.seq, "objects": objects })
+}
+
+impl Workflow for RecordingWorkflow {
+    type Command = RecordingCommand;
+    type Work = RecordingWork;
+    type Control = Nothing;
+    type Around = RecordingAround;
+    type View = RecordingView;
+
+    fn new(data_dir: &Path) -> Self {
+        Self { data_dir: data_dir.to_owned(), ..Self::default() }
+    }
+
+    fn view(&mut self, _: &RecordingAround, moment: &Moment) -> Arc<RecordingView> {
+        let state = match &self.phase {
+            Phase::Off => RecordingState::Off,
+            Phase::Begins(_) => RecordingState::Begins,
+            Phase::On(recorder) => RecordingState::On {
+                session: recorder.session().to_owned(),
+                so_far: self.so_far(recorder, Time { instant: moment.now, day: Timestamp::UNIX_EPOCH }),
+            },
+            Phase::Ends(..) => RecordingState::Ends,
+        };
+        Arc::new(RecordingView { state, last: self.last.clone() })
+    }
+
+    fn apply(&mut self, command: RecordingCommand, around: &RecordingAround, context: &mut Context<'_>) {
+        match command {
+            RecordingCommand::Start => self.start(around, context),
+            RecordingCommand::Stop => self.stop(context),
+        }
+    }
+
+    fn work_done(
+        &mut self,
+        id: JobId,
+        result: RecordingResult,
+        _: &RecordingAround,
+        context: &mut Context<'_>,
+    ) {
+        match (result, std::mem::take(&mut self.phase)) {
+            (RecordingResult::Begun(recorder), Phase::Begins(begun)) if begun == id => {
+                self.since = Some(context.time);
+                self.phase = Phase::On(recorder);
+            }
+            (RecordingResult::Ended(counts), Phase::Ends(ended, mut recorded)) if ended == id => {
+                (recorded.so_far.pairs, recorded.so_far.bytes) = (counts.pairs, counts.bytes);
+                self.last = Some(Arc::new(recorded));
+            }
+            (_, phase) => self.phase = phase,
+        }
+    }
+
+    fn work_ended(&mut self, id: JobId, _: Option<&str>, _: &RecordingAround, _: &mut Context<'_>) {
+        if let Phase::Begins(own) | Phase::Ends(own, _) = self.phase
+            && own == id
+        {
+            self.phase = Phase::Off;
+        }
+    }
+}
