@@ -289,6 +289,7 @@ fn a_scatter_depends_on_seed_and_number_alone() {
         methods: vec![Method::M1, Method::M5],
         attempts: 2,
         positions_m: vec![[0.3, 0.0], [0.2, 0.1]],
+        hand: plumbline_grasp::HandChoice::Auto,
         object: "Tomato".to_owned(),
         seed,
     };
@@ -310,6 +311,7 @@ fn parts_are_put_together_unless_they_disagree() {
         methods: vec![Method::M5],
         attempts: 2,
         positions_m: vec![[0.3, 0.0]],
+        hand: plumbline_grasp::HandChoice::Auto,
         object: "Tomato".to_owned(),
         seed: 1,
     };
