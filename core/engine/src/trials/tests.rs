@@ -132,6 +132,7 @@ impl Lab {
             folder,
             began: Timestamp::UNIX_EPOCH,
             method: Method::M5,
+            hand: plumbline_grasp::Hand::Right,
             object: "Tomato".to_owned(),
             outcome: Some(outcome),
             reached: None,

@@ -24,7 +24,17 @@ fn bench(scenario: &str) -> Bench {
 
 /// With nothing learned.
 pub(super) fn bench_of(scenario: Scenario) -> Bench {
-    let rig = Arc::new(Rig::built_in("nico").expect("valid"));
+    bench_with(scenario, Rig::built_in("nico").expect("valid"))
+}
+
+pub(super) fn task(method: Method, toy: Toy, at_m: [f64; 2]) -> Task {
+    let order = Order { method, hand: HandChoice::Right, object: toy.name().to_owned(), near_m: None };
+    Task { order, toy, at_m, seed: 1 }
+}
+
+/// With nothing learned, on a robot with these arms.
+fn bench_with(scenario: Scenario, rig: Rig) -> Bench {
+    let rig = Arc::new(rig);
     let knowledge = Knowledge {
         model: RobotModel::nominal(rig.clone()),
         described: rig.clone(),
@@ -38,16 +48,47 @@ pub(super) fn bench_of(scenario: Scenario) -> Bench {
     Bench::new(rig, scenario, knowledge, &mut finder).expect("a bench")
 }
 
-pub(super) fn task(method: Method, toy: Toy, at_m: [f64; 2]) -> Task {
-    let order = Order { method, hand: HandChoice::Right, object: toy.name().to_owned(), near_m: None };
-    Task { order, toy, at_m, seed: 1 }
-}
-
 pub(super) fn failure(record: &Record) -> Option<Failure> {
     match record.outcome {
         Some(Outcome::Failed { failure, .. }) => Some(failure),
         _ => None,
     }
+}
+
+#[test]
+fn the_left_hand_lifts_what_the_right_one_does_not_reach_well() {
+    let mut bench = bench("perfect");
+    let with = |hand, at_m| Task {
+        order: Order { hand, ..task(Method::M5, Toy::Tomato, at_m).order },
+        ..task(Method::M5, Toy::Tomato, at_m)
+    };
+    for (hand, at_m, used) in [
+        (HandChoice::Left, [0.3, 0.1], Hand::Left),
+        (HandChoice::Auto, [0.3, 0.3], Hand::Left),
+        (HandChoice::Auto, [0.3, -0.2], Hand::Right),
+    ] {
+        let (record, judged) = bench.attempt(&with(hand, at_m)).expect("done");
+        assert_eq!(record.hand, used, "{at_m:?}");
+        assert_eq!(record.outcome, Some(Outcome::Success), "{at_m:?}");
+        assert!(judged.lifted && judged.alignment_m.is_some_and(|m| m < 0.005), "{judged:?}");
+    }
+    let refused = Order { hand: HandChoice::Left, ..task(Method::M4, Toy::Tomato, [0.3, 0.1]).order };
+    let (record, _) =
+        bench.attempt(&Task { order: refused, ..with(HandChoice::Left, [0.3, 0.1]) }).expect("done");
+    let Some(Outcome::Refused { why }) = &record.outcome else { panic!("{:?}", record.outcome) };
+    assert!(why.contains("right hand only") && record.moments.is_empty(), "{why}");
+}
+
+#[test]
+fn a_hand_that_the_robot_lacks_is_refused_by_name() {
+    let mut rig = Rig::built_in("nico").expect("valid");
+    rig.arms.retain(|arm| arm.name == "right");
+    let mut bench = bench_with(Scenario::built_in("perfect").expect("valid"), rig);
+    let mut left = task(Method::M5, Toy::Tomato, [0.3, -0.1]);
+    left.order.hand = HandChoice::Left;
+    let (record, judged) = bench.attempt(&left).expect("done");
+    let Some(Outcome::Refused { why }) = &record.outcome else { panic!("{:?}", record.outcome) };
+    assert!(why.contains("no arm called left") && !judged.lifted, "{why}");
 }
 
 #[test]
