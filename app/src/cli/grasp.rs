@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::Args;
-use plumbline_offline::{self as offline, GraspArgs, GraspMethod, GraspReport, Summary, TrialsArgs};
+use plumbline_offline::{
+    self as offline, GraspArgs, GraspMethod, GraspReport, HandChoice, Summary, TrialsArgs,
+};
 use plumbline_widgets::format;
 
 use super::output::Output;
@@ -21,6 +23,9 @@ pub struct Grasp {
     /// How: m1, m2, m3, m4 as published, m5 ours.
     #[arg(long, value_name = "METHOD", default_value = "m5", value_parser = method)]
     method: GraspMethod,
+    /// With which hand: right, left, or auto, the one whose plan is best. M1 to M4 know the right one.
+    #[arg(long, value_name = "HAND", default_value = "auto", value_parser = hand)]
+    hand: HandChoice,
     /// What: tomato, mushroom, onion, orange.
     #[arg(long, value_name = "NAME", default_value = "tomato")]
     object: String,
@@ -50,6 +55,9 @@ pub struct GraspTrials {
     /// Table with the columns `x_m` and `y_m`; the 22 published positions without.
     #[arg(long, value_name = "CSV")]
     positions: Option<PathBuf>,
+    /// With which hand: right, left, or auto, the one whose plan is best. M1 to M4 know the right one.
+    #[arg(long, value_name = "HAND", default_value = "auto", value_parser = hand)]
+    hand: HandChoice,
     /// What: tomato, mushroom, onion, orange.
     #[arg(long, value_name = "NAME", default_value = "tomato")]
     object: String,
@@ -69,17 +77,18 @@ pub struct GraspTrials {
 
 /// Grasps once.
 pub fn grasp(arguments: Grasp, output: &Output) -> anyhow::Result<()> {
-    let Grasp { lab, twin, method, object, at, seed } = arguments;
-    let report = offline::grasp(&GraspArgs { twin, lab, method, object, at_m: at, seed }, output)?;
+    let Grasp { lab, twin, method, hand, object, at, seed } = arguments;
+    let report = offline::grasp(&GraspArgs { twin, lab, method, hand, object, at_m: at, seed }, output)?;
     output.result(&report, told)
 }
 
 /// Runs the experiment, or puts shards of it together.
 pub fn trials(arguments: GraspTrials, output: &Output) -> anyhow::Result<()> {
-    let GraspTrials { twin, lab, methods, attempts, positions, object, seed, shard, merge, out } = arguments;
+    let GraspTrials { twin, lab, methods, attempts, positions, hand, object, seed, shard, merge, out } =
+        arguments;
     let summary = match lab {
         Some(lab) => {
-            let args = TrialsArgs { twin, lab, methods, attempts, positions, object, seed, shard, out };
+            let args = TrialsArgs { twin, lab, methods, attempts, positions, hand, object, seed, shard, out };
             offline::grasp_trials(&args, output)?
         }
         None if merge.is_empty() => bail!("name the lab with --lab, or the folders of shards with --merge"),
@@ -94,7 +103,7 @@ fn told(report: &GraspReport) -> String {
         text.push_str(": ");
         text.push_str(why);
     }
-    text.push('\n');
+    text.push_str(&format!("\n  with the {} hand\n", report.hand.name()));
     if let Some(seconds) = report.seconds {
         text.push_str(&format!("  {seconds:.1} s from the button to the end of the lift\n"));
     }
@@ -135,6 +144,10 @@ fn table(summary: &Summary) -> String {
 
 fn method(name: &str) -> Result<GraspMethod, String> {
     GraspMethod::from_name(name).ok_or_else(|| "give m1, m2, m3, m4 or m5".to_owned())
+}
+
+fn hand(name: &str) -> Result<HandChoice, String> {
+    HandChoice::from_name(name).ok_or_else(|| "give auto, right or left".to_owned())
 }
 
 fn place(text: &str) -> Result<[f64; 2], String> {

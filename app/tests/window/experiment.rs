@@ -21,6 +21,7 @@ fn shown(made: usize) -> ShownTrials {
         methods: vec![GraspMethod::M5],
         attempts: 1,
         positions_m: vec![[0.3, -0.2], [0.3, 0.1]],
+        hand: plumbline_engine::view::HandChoice::Auto,
         object: "Tomato".to_owned(),
         seed: 1,
     };

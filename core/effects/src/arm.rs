@@ -13,6 +13,8 @@ pub struct Arm {
     pub parts: Vec<Part>,
     /// From the last joint's turned frame to the tip.
     pub last_from_tip: Isometry3<f64>,
+    /// Names of all links that its first joint carries: what ends in one of them is the same arm.
+    pub links: Vec<String>,
     /// Where a weight is held, in the last joint's turned frame, m; the tip where the rig names
     /// no palm.
     pub palm_m: Point3<f64>,
@@ -166,7 +168,13 @@ impl Arm {
         let palm_m = palm(rig, tip, &carriers).unwrap_or_else(|| Point3::from(tip_m));
         let finger_m = tip_m - knuckle(rig, tip, &carriers, tip_m).unwrap_or_default();
         let finger = Unit::try_new(finger_m, 1e-9).unwrap_or(-Vector3::z_axis());
-        Ok(Self { parts, last_from_tip: rest, palm_m, finger, masses_made_up })
+        let links = carried(description, carriers.first().copied());
+        Ok(Self { parts, last_from_tip: rest, links, palm_m, finger, masses_made_up })
+    }
+
+    /// Whether a tip of the robot is one of this arm.
+    pub fn has_tip(&self, tip: &str) -> bool {
+        self.links.iter().any(|link| link == tip)
     }
 
     /// Number of joints.
@@ -255,6 +263,18 @@ impl Arm {
 
 fn weight_n(mass_kg: f64) -> Vector3<f64> {
     Vector3::new(0.0, 0.0, GRAVITY_M_S2 * mass_kg)
+}
+
+/// Names of a link and of all that hang on it.
+fn carried(description: &Description, first: Option<LinkIndex>) -> Vec<String> {
+    let mut links: Vec<LinkIndex> = first.into_iter().collect();
+    // Parents stand before their children.
+    for joint in description.joints() {
+        if links.contains(&joint.parent) {
+            links.push(joint.child);
+        }
+    }
+    links.into_iter().map(|link| description.links()[link.0].name.clone()).collect()
 }
 
 fn path_to<'a>(description: &'a Description, tip: &str) -> Result<Vec<&'a Joint>, DescriptionError> {

@@ -11,6 +11,8 @@ use plumbline_model::robot::ik::{Options, SolverError, Target};
 use plumbline_model::robot::{Arm, JointIndex, LinkIndex, Posture, Rig, Shape};
 use plumbline_model::{Point, Pose, Robot};
 
+use crate::hands::Hand;
+
 /// A step of the solution that turns a joint by more is another way to hold the arm, rad.
 const JUMP_RAD: f64 = 0.5;
 
@@ -39,6 +41,7 @@ pub struct PalmArm {
     hand: Vec<JointIndex>,
     /// Middle of the palm's body on the palm, m.
     palm_from_body_m: Vector3<f64>,
+    is_left: bool,
 }
 
 impl PalmArm {
@@ -52,7 +55,8 @@ impl PalmArm {
         let arm = rig.arm(arm).ok_or_else(no_arm)?;
         let tip = &arm.tips.first().ok_or_else(no_arm)?.link;
         let palm_from_body_m = body_of_palm(rig, arm, tip).unwrap_or_default();
-        Ok(Self { arm: model.arm(tip)?, hand: arm.hand.clone(), palm_from_body_m, rig: rig.clone() })
+        let is_left = is_left(rig, arm);
+        Ok(Self { arm: model.arm(tip)?, hand: arm.hand.clone(), palm_from_body_m, is_left, rig: rig.clone() })
     }
 
     /// The robot.
@@ -68,6 +72,17 @@ impl PalmArm {
     /// Joints of the fingers.
     pub fn hand(&self) -> &[JointIndex] {
         &self.hand
+    }
+
+    /// Whether it hangs on the left side of the robot: its hand is the mirror image of a right one, and so
+    /// is all that it does.
+    pub fn is_left(&self) -> bool {
+        self.is_left
+    }
+
+    /// Which hand it is.
+    pub fn which(&self) -> Hand {
+        if self.is_left { Hand::Left } else { Hand::Right }
     }
 
     /// Where the palm is, by the model, when a posture is commanded.
@@ -153,6 +168,13 @@ fn below_m(shape: &Shape, robot_from_shape: &UnitQuaternion<f64>) -> f64 {
             radius_m * down.xy().norm() + half_length_m * down.z.abs()
         }
     }
+}
+
+/// Whether an arm begins on the left side of the robot, by the description.
+fn is_left(rig: &Rig, arm: &Arm) -> bool {
+    let description = &rig.description;
+    let shoulder = arm.joints.first().map(|joint| description.joint(*joint).child);
+    shoulder.is_some_and(|link| description.forward(&rig.home()).of(link).isometry.translation.y > 0.0)
 }
 
 /// Middle of what is drawn of the palm, frame of the tip, m; `None`: nothing is.

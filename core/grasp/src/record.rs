@@ -3,6 +3,7 @@
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 
+use crate::hands::Hand;
 use crate::method::Method;
 use crate::see::Seen;
 
@@ -137,6 +138,9 @@ pub struct Moment {
 /// A try of the same grasp before the last one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Earlier {
+    /// With which hand.
+    #[serde(default)]
+    pub hand: Hand,
     /// What became of it.
     pub outcome: Outcome,
     /// From the beginning to the end of its lift, s of the robot's clock.
@@ -154,6 +158,9 @@ pub struct Record {
     pub format: u32,
     /// How.
     pub method: Method,
+    /// With which hand; before one was chosen, the one that is usual.
+    #[serde(default)]
+    pub hand: Hand,
     /// Class of the object.
     pub object: String,
     /// When it began.
@@ -200,6 +207,7 @@ impl Record {
         Self {
             format: FORMAT,
             method,
+            hand: Hand::default(),
             object: object.to_owned(),
             began,
             model,

@@ -45,8 +45,8 @@ pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};
 pub use error::OfflineError;
 pub use gap::{EffectReport, GapArgs, GapReport, gap};
 pub use grasp::{
-    GraspArgs, GraspMethod, GraspReport, Judged, MethodSummary, PositionSummary, Spread, Summary, TrialsArgs,
-    TrialsError, grasp, grasp_trials, merge_trials,
+    GraspArgs, GraspMethod, GraspReport, HandChoice, Judged, MethodSummary, PositionSummary, Spread, Summary,
+    TrialsArgs, TrialsError, grasp, grasp_trials, merge_trials,
 };
 pub use health::{CalibrationHealth, HealthArgs, HealthReport, health};
 pub use ik::{IkArgs, IkReport, IkSolution, ik};

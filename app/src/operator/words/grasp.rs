@@ -1,10 +1,31 @@
 //! A grasp in words.
 
-use plumbline_engine::view::{AttemptView, GraspMethod, GraspOutcome, GraspRun, GraspView};
+use plumbline_engine::view::{
+    AttemptView, GraspHand, GraspMethod, GraspOutcome, GraspRun, GraspView, HandChoice,
+};
 
 /// "M5".
 pub fn method(method: GraspMethod) -> String {
     method.name().to_uppercase()
+}
+
+/// "right hand".
+pub fn hand(hand: GraspHand) -> String {
+    format!("{} hand", hand.name())
+}
+
+/// "Auto".
+pub fn hand_choice(choice: HandChoice) -> String {
+    super::capitalized(choice.name())
+}
+
+/// What a choice of the hand means.
+pub fn about_hand(choice: HandChoice) -> &'static str {
+    match choice {
+        HandChoice::Auto => "The hand whose plan is best: level palm, short way, well known place",
+        HandChoice::Right => "The right hand, always",
+        HandChoice::Left => "The left hand, always",
+    }
 }
 
 /// What is grasped: "tomato", or "what is seen best".

@@ -1,4 +1,4 @@
-//! What is grasped, how, and with which arm.
+//! What is grasped, how, and with which hand.
 
 use egui::Ui;
 use plumbline_engine::view::GraspPhase;
@@ -6,7 +6,7 @@ use plumbline_engine::{GraspCommand, GraspTarget};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
-use crate::operator::words::grasp::method;
+use crate::operator::words::grasp::{about_hand, hand_choice, method};
 use crate::panels::PanelContext;
 
 /// Three rows of chips.
@@ -15,7 +15,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.add_enabled_ui(idle, |ui| {
         objects(ui, cx);
         methods(ui, cx);
-        arms(ui, cx);
+        hands(ui, cx);
     });
 }
 
@@ -64,15 +64,20 @@ fn methods(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     });
 }
 
-fn arms(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+fn hands(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let grasp = &cx.view.grasp;
-    if grasp.arms.len() < 2 {
+    if grasp.hands.len() < 2 {
         return;
     }
-    row(ui, "Arm", |ui| {
-        for (name, title) in grasp.arms.iter() {
-            if ui.selectable_label(grasp.arm == *name, title).clicked() {
-                cx.outbox.send(GraspCommand::Arm(name.clone()));
+    row(ui, "Hand", |ui| {
+        for choice in grasp.hands.iter().copied() {
+            // The published methods know the right hand only.
+            let known = grasp.method.is_none_or(|method| choice.hands(method).is_ok());
+            let chosen = grasp.hand == choice;
+            let chip = egui::Button::selectable(chosen, hand_choice(choice));
+            let chip = ui.add_enabled(known || chosen, chip).on_hover_text(about_hand(choice));
+            if chip.on_disabled_hover_text("The published methods grasp with the right hand").clicked() {
+                cx.outbox.send(GraspCommand::Arm(choice));
             }
         }
     });

@@ -45,6 +45,7 @@ fn rows(attempt: &AttemptView) -> Vec<KeyValue> {
     let mut rows = vec![
         KeyValue::text("When", clock(attempt.began)),
         KeyValue::text("Method", method(attempt.method)),
+        KeyValue::text("Hand", attempt.hand.name()),
         KeyValue::text("Object", attempt.object.to_lowercase()),
         KeyValue::text("Result", result(attempt)),
     ];

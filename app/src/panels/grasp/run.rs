@@ -9,7 +9,7 @@ use plumbline_widgets::theme::{self, Role, space};
 use super::{aligned, choice, lamps, result};
 use crate::operator::GraspAction;
 use crate::operator::words::capitalized;
-use crate::operator::words::grasp::{again, try_of};
+use crate::operator::words::grasp::{again, hand as hand_words, try_of};
 use crate::panels::parts::action_button;
 use crate::panels::{PanelContext, padded};
 
@@ -115,7 +115,8 @@ fn planned(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.label(theme::weak(
         ui,
         format!(
-            "About {} s. Turns in all: {}; the head and the other arm stay.",
+            "With the {}, about {} s. Turns in all: {}; the head and the other arm stay.",
+            hand_words(plan.hand),
             plan.duration.as_secs(),
             turns.join(", ")
         ),

@@ -110,8 +110,11 @@ impl RigModel {
         arm: Option<&Arm>,
         eyes: Option<&Eyes>,
     ) -> Vec<Measured> {
+        // What was found on one arm says nothing of another one, whatever its site is called.
+        let of_arm = |own: &str| arm.is_none_or(|arm| arm.has_tip(own));
         let here = |effect: &&super::ModelEffect| {
-            !effect.is_of_the_tip() || effect.tip.as_deref().is_none_or(|own| Some(own) == tip)
+            let same = |own: &str| if effect.is_of_the_tip() { Some(own) == tip } else { of_arm(own) };
+            effect.tip.as_deref().is_none_or(same)
         };
         let measured = |effect: &super::ModelEffect| {
             let covariance = effect.covariance_of_values();

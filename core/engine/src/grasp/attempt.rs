@@ -9,7 +9,7 @@ use plumbline_grasp::attempt::{AIR_RAD_S, DOWN_RAD_S, LIFT_RAD_S};
 use plumbline_grasp::plan::{GraspPlan, GraspPlanner};
 use plumbline_grasp::see::Seen;
 use plumbline_grasp::things::Thing;
-use plumbline_grasp::{Body, Grasper, Halt, Method, Order, Outcome, Record};
+use plumbline_grasp::{Body, Grasper, Halt, HandChoice, Method, Order, Outcome, Record};
 use plumbline_model::JobContext;
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_vision::detect::DetectError;
@@ -33,8 +33,8 @@ const NAMED_RAD: f64 = 0.02;
 pub struct Attempt {
     /// What it rests on.
     pub rests_on: RestsOn,
-    /// With which arm.
-    pub arm: String,
+    /// With which hand.
+    pub hand: HandChoice,
     /// How.
     pub method: Method,
     /// What.
@@ -98,7 +98,7 @@ impl Attempt {
     /// Looks and plans. Nothing moves.
     pub fn propose(&self, context: &dyn JobContext) -> Result<Proposed, JobError> {
         context.report(0.0, "getting ready");
-        let mut grasper = self.rests_on.grasper(&self.arm, self.method)?;
+        let mut grasper = self.rests_on.grasper(self.method)?;
         let mut body = self.body(context);
         context.report(0.3, "looking");
         let order = match self.order(&mut grasper, &mut body) {
@@ -127,7 +127,7 @@ impl Attempt {
         let keeping = Keeping::begin(&self.grasps, self.method, self.at).map_err(JobError::told)?;
         self.progress.change(|run| run.name = keeping.name());
         context.report(0.0, "getting ready");
-        let mut grasper = self.rests_on.grasper(&self.arm, self.method)?;
+        let mut grasper = self.rests_on.grasper(self.method)?;
         let mut body = self.body(context);
         let ropes = &self.ropes;
         let kept = Some(keeping.clone());
@@ -160,12 +160,13 @@ impl Attempt {
     }
 
     fn body<'a>(&self, context: &'a dyn JobContext) -> LedBody<'a> {
-        LedBody::new(self.rests_on.model.rig().clone(), &self.arm, self.ropes.clone(), context)
+        LedBody::new(self.rests_on.model.rig().clone(), self.ropes.clone(), context)
     }
 
     /// What is grasped: as the operator chose, else what can be held and is seen best.
     fn order(&self, grasper: &mut Grasper, body: &mut LedBody<'_>) -> Result<Order, NoOrder> {
-        let order = |object: String| Order { method: self.method, object, near_m: self.target.near_m };
+        let (method, hand) = (self.method, self.hand);
+        let order = |object: String| Order { method, hand, object, near_m: self.target.near_m };
         if let Some(class) = &self.target.class {
             return Ok(order(class.clone()));
         }
@@ -192,6 +193,7 @@ impl Attempt {
         let place = record.chosen.and_then(|index| record.seen.get(index)?.place.as_ref().ok());
         PlannedGrasp {
             method: self.method,
+            hand: plan.hand,
             object: record.object.clone(),
             at_m: plan.standing.xy_m,
             sigma_m: place.map(plumbline_grasp::see::SeenPlace::sigma_on_table_m),

@@ -74,12 +74,11 @@ pub struct LedBody<'a> {
 }
 
 impl<'a> LedBody<'a> {
-    /// For one arm of the robot.
-    pub fn new(rig: Arc<Rig>, arm: &str, ropes: Ropes, context: &'a dyn JobContext) -> Self {
+    /// For the arms of the robot.
+    pub fn new(rig: Arc<Rig>, ropes: Ropes, context: &'a dyn JobContext) -> Self {
         let hands: Vec<JointIndex> = rig.arms.iter().flat_map(|arm| arm.hand.iter().copied()).collect();
         let bodies = CollisionModel::of_rig(&rig);
-        let own = rig.arm(arm).map(|arm| arm.hand.clone()).unwrap_or_default();
-        let mut links: Vec<_> = own.iter().flat_map(|joint| bodies.links_moved_by(*joint)).collect();
+        let mut links: Vec<_> = hands.iter().flat_map(|joint| bodies.links_moved_by(*joint)).collect();
         links.sort_unstable();
         links.dedup();
         let to = |body| Allowance { links: links.clone(), body, depth_m: AROUND_DEPTH_M };

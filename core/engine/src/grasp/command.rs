@@ -1,6 +1,6 @@
 //! Commands about grasping.
 
-use plumbline_grasp::Method;
+use plumbline_grasp::{HandChoice, Method};
 use plumbline_model::Eye;
 use serde::{Deserialize, Serialize};
 
@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 pub enum GraspCommand {
     /// How the hand is brought to the object.
     Method(Method),
-    /// With which arm, by its name in the rig.
-    Arm(String),
+    /// With which hand.
+    Arm(HandChoice),
     /// What is grasped.
     Target(GraspTarget),
     /// What an image shows there is grasped: the nearest thing that was detected and can be held.

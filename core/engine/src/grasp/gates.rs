@@ -1,27 +1,49 @@
 //! What is looked at before anything moves.
 
-use plumbline_grasp::Method;
+use plumbline_grasp::{Hand, HandChoice, Method};
 use plumbline_model::robot::JointIndex;
 
 use super::around::GraspAround;
 use super::method::lacks;
 use super::view::{Gate, GateState};
 use super::warmth::warmth;
+use crate::ground::text::sentence;
 use crate::robot::view::{Connection, RobotView};
 use crate::source::view::SourceStatus;
 
 /// All gates, in the order in which they are passed.
-pub fn gates(around: &GraspAround, arm: &str, method: Method) -> Vec<Gate> {
+pub fn gates(around: &GraspAround, choice: HandChoice, method: Method) -> Vec<Gate> {
     let robot = &around.robot;
+    let hands = choice.hands(method);
     let mut gates = vec![connected(robot)];
     if robot.connection.is_connected() {
-        gates.extend([stop(robot), joints(around, arm), load(around, arm)]);
+        // A step of a hand needs no method: published ones are refused below.
+        let hands = hands.unwrap_or(&[Hand::Left]);
+        gates.push(stop(robot));
+        gates.push(of_any(hands, |hand| joints(around, hand.name())));
+        gates.push(of_any(hands, |hand| load(around, hand.name())));
     }
     gates.extend([eyes(around), places(around)]);
     let evidence = around.calibration.as_ref().and_then(|calibration| calibration.evidence.as_ref());
     gates.extend(warmth(around.eyes_on_min, evidence.and_then(|evidence| evidence.minutes_since_on)));
-    gates.push(method_gate(around, method));
+    gates.push(match hands {
+        Ok(_) => method_gate(around, method),
+        Err(why) => closed("Method", sentence(&why.to_string())),
+    });
     gates
+}
+
+/// What lets any of the hands pass; where not all of them pass, the reason is said.
+fn of_any(hands: &[Hand], gate: impl Fn(Hand) -> Gate) -> Gate {
+    let mut gates: Vec<Gate> = hands.iter().map(|hand| gate(*hand)).collect();
+    gates.sort_by_key(|gate| gate.state == GateState::Shut);
+    let first = gates.remove(0);
+    match gates.into_iter().find(|gate| gate.state == GateState::Shut) {
+        Some(shut) if first.state != GateState::Shut => {
+            doubtful(first.name, format!("{} The other hand grasps.", shut.text))
+        }
+        _ => first,
+    }
 }
 
 /// The first reason why nothing may move.

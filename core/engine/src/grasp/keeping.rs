@@ -132,6 +132,7 @@ impl Keeping {
             folder: self.folder.clone(),
             began: record.began,
             method: record.method,
+            hand: record.hand,
             object: record.object.clone(),
             outcome: record.outcome.clone(),
             reached: record.step,

@@ -164,7 +164,7 @@ impl Watch for Watcher<'_> {
 
     fn planned(&mut self, plan: &GraspPlan) {
         let wanted_px = self.in_eyes(plan.palm_m.into());
-        self.progress.change(|run| run.wanted_px = wanted_px);
+        self.progress.change(|run| (run.hand, run.wanted_px) = (Some(plan.hand), wanted_px));
         self.plan = Some(plan.clone());
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use plumbline_effects::RobotModel;
 use plumbline_grasp::attempt::{HandFinder, RenderedHand};
 use plumbline_grasp::see::Looker;
-use plumbline_grasp::{Corrections, Grasper, Knowledge, Method};
+use plumbline_grasp::{Corrections, Grasper, Hand, Knowledge, Method};
 use plumbline_model::StereoCalibration;
 use plumbline_model::robot::Rig;
 use plumbline_vision::detect::{DetectSettings, Detector, DetectorOptions, Provider, shipped_detector};
@@ -29,12 +29,12 @@ pub struct RestsOn {
 }
 
 impl RestsOn {
-    /// All of it, for an arm.
-    pub fn grasper(&self, arm: &str, method: Method) -> Result<Grasper, JobError> {
+    /// All of it, for both hands.
+    pub fn grasper(&self, method: Method) -> Result<Grasper, JobError> {
         let knowledge = self.knowledge();
         let looker = Looker::new(self.detector()?, &knowledge, DetectSettings::default());
-        let finder = (method == Method::M5).then(|| self.finder(arm)).flatten();
-        Grasper::new(knowledge, looker, arm, finder).map_err(JobError::told)
+        let mut finder = |hand: Hand| (method == Method::M5).then(|| self.finder(hand)).flatten();
+        Grasper::new(knowledge, looker, &mut finder).map_err(JobError::told)
     }
 
     /// What is known of the robot.
@@ -70,10 +70,8 @@ impl RestsOn {
     }
 
     /// What finds the hand; without it the hand goes by the model alone.
-    fn finder(&self, arm: &str) -> Option<Box<dyn HandFinder>> {
-        let rig = self.model.rig();
-        let tip = &rig.arm(arm)?.tips.first()?.link;
-        match RenderedHand::of_rig(rig, tip) {
+    fn finder(&self, hand: Hand) -> Option<Box<dyn HandFinder>> {
+        match RenderedHand::of_rig(self.model.rig(), hand.palm()) {
             Ok(hand) => Some(Box::new(hand)),
             Err(why) => {
                 log::warn!("the hand goes by the model alone: {why}");

@@ -2,18 +2,18 @@
 
 use std::sync::Arc;
 
+use plumbline_grasp::Hand;
 use plumbline_grasp::things::Thing;
 
 use super::around::GraspAround;
 use super::gates::gates;
 use super::method::methods;
-use super::view::{GraspPhase, GraspView};
+use super::view::{GraspPhase, GraspView, HandChoice};
 use super::workflow::{GraspWorkflow, What};
 use crate::ground::step::StepState;
 
 impl GraspWorkflow {
     pub(super) fn shown(&self, around: &GraspAround) -> GraspView {
-        let arms = around.described.arms.iter().map(|arm| (arm.name.clone(), arm.title.clone()));
         let phase = self.phase();
         let step = match &phase {
             phase if phase.moves() => StepState::Running,
@@ -24,11 +24,11 @@ impl GraspWorkflow {
             step,
             methods: methods(&around.corrections).into(),
             method: Some(self.method),
-            arms: arms.collect(),
-            arm: self.arm.clone(),
+            hands: hands(around).into(),
+            hand: self.choice,
             classes: Thing::held().map(|thing| thing.class).collect(),
             target: self.target.clone(),
-            gates: gates(around, &self.arm, self.method).into(),
+            gates: gates(around, self.choice, self.method).into(),
             phase,
             plan: self.plan.clone(),
             run: self.progress.as_ref().map(|progress| Arc::new(progress.run())),
@@ -45,4 +45,11 @@ impl GraspWorkflow {
             What::Hand(step) => GraspPhase::Hand { step, paused },
         }
     }
+}
+
+/// With which hands this robot may grasp; with both there is a choice.
+fn hands(around: &GraspAround) -> Vec<HandChoice> {
+    let has = |hand: &Hand| around.described.arm(hand.name()).is_some_and(|arm| !arm.tips.is_empty());
+    let there: Vec<HandChoice> = Hand::BOTH.into_iter().filter(has).map(HandChoice::from).collect();
+    if there.len() > 1 { HandChoice::ALL.to_vec() } else { there }
 }

@@ -72,7 +72,7 @@ impl HandWork {
         context.report(0.1, "moving");
         let arm = PalmArm::new(&self.rests_on.model, &self.arm).map_err(JobError::told)?;
         let planner = GraspPlanner::new(arm);
-        let body = LedBody::new(self.rests_on.model.rig().clone(), &self.arm, self.ropes.clone(), context);
+        let body = LedBody::new(self.rests_on.model.rig().clone(), self.ropes.clone(), context);
         let mut hand = Hand { planner: &planner, body, context };
         Ok(match self.step {
             HandStep::Open => hand.open(),

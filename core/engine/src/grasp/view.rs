@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use jiff::Timestamp;
-pub use plumbline_grasp::Method as GraspMethod;
 pub use plumbline_grasp::record::{Iteration as GraspIteration, Outcome as GraspOutcome, Step as GraspStep};
 pub use plumbline_grasp::see::Seen as SeenThing;
+pub use plumbline_grasp::{Hand as GraspHand, HandChoice, Method as GraspMethod};
 use plumbline_model::robot::Posture;
 
 use super::command::{GraspTarget, HandStep};
@@ -22,10 +22,10 @@ pub struct GraspView {
     pub methods: Arc<[MethodView]>,
     /// The chosen one.
     pub method: Option<GraspMethod>,
-    /// Arms of the robot: name and title.
-    pub arms: Arc<[(String, String)]>,
-    /// Name of the chosen one.
-    pub arm: String,
+    /// With which hands may be grasped.
+    pub hands: Arc<[HandChoice]>,
+    /// The chosen one.
+    pub hand: HandChoice,
     /// Classes of things that can be held.
     pub classes: Arc<[&'static str]>,
     /// What is grasped.
@@ -123,6 +123,8 @@ impl GraspPhase {
 pub struct PlannedGrasp {
     /// By which method.
     pub method: GraspMethod,
+    /// With which hand.
+    pub hand: GraspHand,
     /// What would be grasped.
     pub object: String,
     /// Where it stands, robot frame, m.
@@ -164,6 +166,8 @@ pub struct GraspRun {
     pub name: String,
     /// By which method.
     pub method: Option<GraspMethod>,
+    /// With which hand; `None` before that is planned.
+    pub hand: Option<GraspHand>,
     /// What is grasped.
     pub object: String,
     /// Its steps in their order.
@@ -203,6 +207,8 @@ pub struct AttemptView {
     pub began: Timestamp,
     /// By which method.
     pub method: GraspMethod,
+    /// With which hand.
+    pub hand: GraspHand,
     /// What was grasped.
     pub object: String,
     /// What it took itself for; `None`: the program ended before.

@@ -222,7 +222,9 @@ impl Planner {
     pub fn new(rig: &Arc<Rig>, tip: &str, place: ScreenPlace) -> Result<Self, NoWay> {
         let arm = rig.arms.iter().find(|arm| arm.tips.iter().any(|known| known.link == tip));
         let arm = arm.ok_or_else(|| NoWay::NoTip { tip: tip.to_owned() })?;
-        let pose = rig.pose("touch-ready").ok_or(NoWay::NoReadyPose)?;
+        // An arm may have a pose of its own.
+        let own = rig.pose(&format!("touch-ready-{}", arm.name));
+        let pose = own.or_else(|| rig.pose("touch-ready")).ok_or(NoWay::NoReadyPose)?;
         let solver = Solver::of_rig(rig, tip)?;
         let chain = rig.chain(tip)?;
         let model = Arc::new(CollisionModel::of_rig(rig));

@@ -76,7 +76,7 @@ impl Desk {
 }
 
 fn frame(number: u64) -> StereoFrame {
-    let image = |eye: u8| Arc::new(RgbImage::from_pixel(64, 48, Rgb([10 * number as u8 + eye; 3])));
+    let image = |eye: u8| Arc::new(RgbImage::from_pixel(64, 48, Rgb([(number % 10) as u8 + eye; 3])));
     StereoFrame {
         stamp: Stamp { seq: number, captured_at: Instant::now() },
         left: image(0),
@@ -126,7 +126,7 @@ fn what_came_while_it_was_on_is_in_the_file_and_nothing_else() {
     assert_eq!(recording.told(Topic::Commands).expect("readable")[0].what, json!({ "workflow": "grasp" }));
     assert!(recording.joints().expect("readable").is_empty(), "no joint was read");
     let attached: Vec<&str> = recording.attached().iter().map(|file| file.name.as_str()).collect();
-    assert_eq!(attached, ["rig.toml", "robot.urdf", "camchain.yaml"]);
+    assert_eq!(attached, ["rig.toml", "robot.urdf", "rig-cameras.yaml"]);
 }
 
 #[test]

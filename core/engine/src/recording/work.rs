@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
-use plumbline_model::formats::kalibr;
+use plumbline_model::files::{self, Size};
+use plumbline_model::formats::native;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::{Manifest, RigReference, names};
-use plumbline_model::{JobContext, StereoCameras, counted};
+use plumbline_model::{JobContext, StereoCalibration, StereoCameras, counted};
 use plumbline_recording::{About, Attached, Counts, FILE, RecordingWriter};
 
 use super::recorder::Recorder;
@@ -90,18 +91,18 @@ fn attached(session: &Path, rig: &str, cameras: Option<&StereoCameras>) -> Resul
         media_type: media_type.to_owned(),
         bytes,
     };
-    let mut files = Vec::new();
+    let mut attached = Vec::new();
     if let Some([rig, description]) = Rig::built_in_files(rig) {
-        files.push(file("rig.toml", "application/toml", rig.into()));
-        files.push(file("robot.urdf", "application/xml", description.into()));
+        attached.push(file("rig.toml", "application/toml", rig.into()));
+        attached.push(file("robot.urdf", "application/xml", description.into()));
     }
     if let Some(cameras) = cameras {
-        let camchain = session.join("camchain.yaml");
-        kalibr::write(cameras, &camchain).map_err(JobError::failed)?;
-        let bytes = plumbline_model::files::read(&camchain, plumbline_model::files::Size::SHORT);
-        files.push(file("camchain.yaml", "application/yaml", bytes.map_err(JobError::failed)?));
+        let beside = session.join("rig-cameras.yaml");
+        native::write(&StereoCalibration::bare(cameras.clone()), &beside).map_err(JobError::failed)?;
+        let bytes = files::read(&beside, Size::SHORT).map_err(JobError::failed)?;
+        attached.push(file("rig-cameras.yaml", "application/yaml", bytes));
     }
-    Ok(files)
+    Ok(attached)
 }
 
 fn manifest(rig: &str, started: Timestamp) -> Manifest {

@@ -1,6 +1,6 @@
 //! What an experiment is, and the attempts it has.
 
-use plumbline_grasp::Method;
+use plumbline_grasp::{HandChoice, Method};
 use serde::{Deserialize, Serialize};
 
 /// Version of the files.
@@ -25,10 +25,17 @@ pub struct Experiment {
     pub attempts: usize,
     /// x and y, robot frame, m.
     pub positions_m: Vec<[f64; 2]>,
+    /// With which hand; experiments of before there was a choice were made with the right one.
+    #[serde(default = "right")]
+    pub hand: HandChoice,
     /// Class of the object.
     pub object: String,
     /// Of all that is drawn by chance.
     pub seed: u64,
+}
+
+fn right() -> HandChoice {
+    HandChoice::Right
 }
 
 /// One attempt of an experiment.

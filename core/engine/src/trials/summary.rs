@@ -162,16 +162,17 @@ fn name(failure: Failure) -> &'static str {
 /// One line per attempt, for a spreadsheet.
 pub fn csv(experiment: &Experiment, attempts: &[Attempt]) -> String {
     let mut text = String::from(
-        "number,method,x_m,y_m,attempt,placed_x_m,placed_y_m,lifted,refused,failure,camera_error_m,reach_error_m,alignment_m,off_x_m,off_y_m,off_z_m,hand_error_m,looks,tries,seconds\n",
+        "number,method,hand,x_m,y_m,attempt,placed_x_m,placed_y_m,lifted,refused,failure,camera_error_m,reach_error_m,alignment_m,off_x_m,off_y_m,off_z_m,hand_error_m,looks,tries,seconds\n",
     );
     for Attempt { trial, placed_m, record, judged } in attempts {
         let [x_m, y_m] = experiment.positions_m[trial.position];
         let number = |value: Option<f64>| value.map(|value| format!("{value:.6}")).unwrap_or_default();
         let _ = writeln!(
             text,
-            "{},{},{x_m},{y_m},{},{:.6},{:.6},{},{},{},{},{},{},{},{},{},{},{},{},{}",
+            "{},{},{},{x_m},{y_m},{},{:.6},{:.6},{},{},{},{},{},{},{},{},{},{},{},{},{}",
             trial.number,
             trial.method.name(),
+            record.hand.name(),
             trial.attempt + 1,
             placed_m[0],
             placed_m[1],

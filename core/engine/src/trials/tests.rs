@@ -151,6 +151,7 @@ impl Lab {
             folder,
             began: Timestamp::UNIX_EPOCH,
             method: Method::M5,
+            hand: plumbline_grasp::Hand::Right,
             object: "Tomato".to_owned(),
             outcome: Some(outcome),
             reached: None,
@@ -336,6 +337,7 @@ fn a_scatter_depends_on_seed_and_number_alone() {
         methods: vec![Method::M1, Method::M5],
         attempts: 2,
         positions_m: vec![[0.3, 0.0], [0.2, 0.1]],
+        hand: plumbline_grasp::HandChoice::Auto,
         object: "Tomato".to_owned(),
         seed,
     };
@@ -357,6 +359,7 @@ fn parts_are_put_together_unless_they_disagree() {
         methods: vec![Method::M5],
         attempts: 2,
         positions_m: vec![[0.3, 0.0]],
+        hand: plumbline_grasp::HandChoice::Auto,
         object: "Tomato".to_owned(),
         seed: 1,
     };

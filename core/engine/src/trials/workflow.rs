@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use plumbline_grasp::things::Thing;
-use plumbline_grasp::{Failure, Outcome, PLACES_M};
+use plumbline_grasp::{Failure, HandChoice, Outcome, PLACES_M};
 use plumbline_model::robot::Rig;
 use plumbline_model::{Point, Robot};
 
@@ -181,8 +181,9 @@ impl TrialsWorkflow {
                 let object = Thing::of_class(&object).ok_or(Refusal::NoThing(object))?.class.to_owned();
                 let positions_m = positions_m.unwrap_or_else(|| PLACES_M.to_vec());
                 let twin = around.who();
+                let (format, hand) = (FORMAT, HandChoice::Auto);
                 let experiment =
-                    Experiment { format: FORMAT, twin, methods, attempts, positions_m, object, seed };
+                    Experiment { format, twin, methods, attempts, positions_m, hand, object, seed };
                 self.begin(experiment, around, context)?;
             }
             TrialsCommand::Open { folder } => {
@@ -292,6 +293,7 @@ impl TrialsWorkflow {
                 let target = GraspTarget { class: Some(object.clone()), near_m: Some(attempt.placed_m) };
                 self.wishes = vec![
                     GraspCommand::Method(attempt.trial.method),
+                    GraspCommand::Arm(shown.experiment.hand),
                     GraspCommand::Target(target),
                     GraspCommand::Grasp,
                 ];

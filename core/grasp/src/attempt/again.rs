@@ -32,6 +32,7 @@ impl Running<'_> {
         self.near_m = self.record.standing_m.or(self.near_m);
         let first = Outcome::Failed { failure, why: why.clone() };
         self.record.earlier.push(Earlier {
+            hand: self.record.hand,
             outcome: first,
             seconds: self.record.seconds.take(),
             iterations: std::mem::take(&mut self.record.iterations),

@@ -76,11 +76,11 @@ impl Running<'_> {
     ) -> Result<GraspPlan, End> {
         for k in 1..=PUBLISHED_LOOKS {
             let above = above(&plan)?;
-            let shown = self.grasper.described.palm_to_eyes(&above);
+            let shown = self.grasper.arm.described.palm_to_eyes(&above);
             self.follow(Step::Align, std::slice::from_ref(&shown), SPEED_RAD_S)?;
             self.body.wait(STILL_S)?;
             let sight = self.body.look()?;
-            let arm = self.grasper.described.arm();
+            let arm = self.grasper.arm.described.arm();
             let (sent, turned) = (arm.palm(&above).coords.coords, arm.body(&shown));
             let hand = self.detected_hand(&sight, turned)?;
             let Some(hand) = hand else {

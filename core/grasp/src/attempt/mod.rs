@@ -2,6 +2,7 @@
 
 mod again;
 mod align;
+mod arms;
 mod check;
 mod choose;
 mod over;
@@ -10,18 +11,20 @@ mod rendered;
 
 use jiff::Timestamp;
 use nalgebra::Vector3;
-use plumbline_effects::RobotModel;
 use plumbline_model::robot::Posture;
 use plumbline_model::robot::Rig;
 use plumbline_vision::detect::DetectError;
 
-use crate::arm::{NoArm, PalmArm};
+use crate::arm::NoArm;
 use crate::body::{Body, Halt, Sight};
+use crate::hands::{Hand, HandChoice, PublishedWithRight};
 use crate::knowledge::Knowledge;
 use crate::method::{self, Method};
 use crate::plan::{GraspPlan, GraspPlanner, NoPlan};
 use crate::record::{Failure, Iteration, Moment, Outcome, Record, Step};
 use crate::see::{Looker, Seen};
+
+use arms::OneArm;
 
 pub use align::{FoundHand, HandFinder, HandMissing};
 pub use choose::Chosen;
@@ -45,6 +48,8 @@ const STILL_S: f64 = 0.3;
 pub struct Order {
     /// How.
     pub method: Method,
+    /// With which hand.
+    pub hand: HandChoice,
     /// Class of the object.
     pub object: String,
     /// The one nearest to this place of the table, robot frame, m; `None`: the one that is seen best.
@@ -113,38 +118,50 @@ impl From<method::NotKnown> for End {
     }
 }
 
+impl From<PublishedWithRight> for End {
+    fn from(why: PublishedWithRight) -> Self {
+        Self::Refused(why.to_string())
+    }
+}
+
 impl From<DetectError> for End {
     fn from(error: DetectError) -> Self {
         Self::Failed(Failure::NotSeen, error.to_string())
     }
 }
 
-/// Grasps with one hand. Made once, used for many attempts.
+/// Grasps with the hands of a robot. Made once, used for many attempts.
 pub struct Grasper {
     knowledge: Knowledge,
     looker: Looker,
-    /// The arm as described.
-    described: GraspPlanner,
-    /// The arm with its effects.
-    known: GraspPlanner,
-    finder: Option<Box<dyn HandFinder>>,
+    /// The hand in use.
+    arm: OneArm,
+    others: Vec<OneArm>,
 }
 
 impl Grasper {
-    /// For an arm of the robot; `finder` finds the hand for M5.
+    /// For every hand that the robot has; `finder` makes what finds a hand for M5.
     ///
     /// # Errors
-    /// When the robot has no such arm.
+    /// When the robot has none.
     pub fn new(
         knowledge: Knowledge,
         looker: Looker,
-        arm: &str,
-        finder: Option<Box<dyn HandFinder>>,
+        finder: &mut dyn FnMut(Hand) -> Option<Box<dyn HandFinder>>,
     ) -> Result<Self, NoArm> {
-        let nominal = RobotModel::nominal(knowledge.described.clone());
-        let described = GraspPlanner::new(PalmArm::new(&nominal, arm)?);
-        let known = GraspPlanner::new(PalmArm::new(&knowledge.model, arm)?);
-        Ok(Self { knowledge, looker, described, known, finder })
+        let (mut arms, mut why) = (vec![], None);
+        for hand in Hand::BOTH {
+            match OneArm::new(&knowledge, hand) {
+                Ok(arm) => arms.push(OneArm { finder: finder(hand), ..arm }),
+                Err(no_arm) => why = why.or(Some(no_arm)),
+            }
+        }
+        if arms.is_empty() {
+            let none = || NoArm::NoArm { rig: knowledge.described.name.clone(), arm: "right".to_owned() };
+            return Err(why.unwrap_or_else(none));
+        }
+        let arm = arms.remove(0);
+        Ok(Self { knowledge, looker, arm, others: arms })
     }
 
     /// The robot as it is known.
@@ -157,9 +174,9 @@ impl Grasper {
         &self.knowledge
     }
 
-    /// What plans for a method.
+    /// What plans for a method with the hand in use.
     pub fn planner(&self, method: Method) -> &GraspPlanner {
-        if method.knows_effects() { &self.known } else { &self.described }
+        self.arm.planner(method)
     }
 
     /// Grasps once, beginning now. Whatever happens, the record says it, and the arm holds where it is.
@@ -251,17 +268,23 @@ impl Running<'_> {
     /// Looks, and plans what would be sent. Nothing moves.
     fn prepare(&mut self) -> Result<Prepared, End> {
         self.begin(Step::Ready);
-        self.ready()?;
+        let hands = self.fit_hands()?;
         self.begin(Step::Look);
         let before = self.body.look()?;
         let chosen = self.find(&before)?;
         self.begin(Step::Plan);
         let method = self.order.method;
         let from = self.body.commanded()?;
-        let planner = self.grasper.planner(method);
         let (shift_m, plan) = match method::published(method, &self.grasper.knowledge, &chosen.point)? {
-            Some(headed) => (headed.shift_m, planner.plan_headed(&chosen.standing, &headed, &from)?),
-            None => (Vector3::zeros(), planner.plan(&chosen.standing, &Vector3::zeros(), &from)?),
+            // The published ones know one hand.
+            Some(headed) => {
+                let hand = hands.first().copied().unwrap_or(Hand::Right);
+                self.take(hand)?;
+                self.record.hand = hand;
+                let planner = self.grasper.planner(method);
+                (headed.shift_m, planner.plan_headed(&chosen.standing, &headed, &from)?)
+            }
+            None => (Vector3::zeros(), self.best_plan(&hands, &chosen, &Vector3::zeros(), &from)?),
         };
         self.planned(&plan);
         Ok(Prepared { before, chosen, shift_m, plan })

@@ -57,9 +57,9 @@ impl Running<'_> {
         chosen: &Chosen,
         before: &Sight,
     ) -> Result<GraspPlan, End> {
-        let Some(mut finder) = self.grasper.finder.take() else { return Ok(plan) };
+        let Some(mut finder) = self.grasper.arm.finder.take() else { return Ok(plan) };
         let done = self.by_rendering(finder.as_mut(), plan, chosen, before);
-        self.grasper.finder = Some(finder);
+        self.grasper.arm.finder = Some(finder);
         done
     }
 
@@ -71,7 +71,7 @@ impl Running<'_> {
         before: &Sight,
     ) -> Result<GraspPlan, End> {
         let commanded = self.body.commanded()?;
-        let effects_m2 = self.grasper.known.arm().covariance_m2(&commanded);
+        let effects_m2 = self.grasper.arm.known.arm().covariance_m2(&commanded);
         let covariance_m2 = effects_m2 + Matrix3::identity() * ARM_SIGMA_M.powi(2);
         let mut error = ArmError { m: Vector3::zeros(), covariance_m2 };
         let mut over = Over { plan, lowered: None };
@@ -101,7 +101,7 @@ impl Running<'_> {
         self.body.wait(STILL_S)?;
         let sight = self.body.look()?;
         let commanded = self.body.commanded()?;
-        let mut robot_from_palm = self.grasper.known.arm().robot_from_palm(&commanded);
+        let mut robot_from_palm = self.grasper.arm.known.arm().robot_from_palm(&commanded);
         let modeled = robot_from_palm.translation_m();
         let sent = modeled + error.m;
         robot_from_palm.isometry.translation.vector = sent;

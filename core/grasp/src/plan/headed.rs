@@ -21,11 +21,11 @@ pub struct Headed {
 }
 
 impl Headed {
-    /// What is added for a heading, m.
-    pub fn shift_m(&self, standing: &Standing, heading_rad: f64) -> Vector3<f64> {
+    /// What is added for a heading of a hand, m.
+    pub fn shift_m(&self, standing: &Standing, heading_rad: f64, is_left: bool) -> Vector3<f64> {
         let level = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading_rad);
         let beside = Vector3::new(standing.xy_m[0], standing.xy_m[1], 0.0)
-            - standing.palm_turned(&level).coords.coords;
+            - standing.palm_turned(&level, is_left).coords.coords;
         let beside = if self.centered { Vector3::new(beside.x, beside.y, 0.0) } else { Vector3::zeros() };
         self.shift_m + beside
     }
@@ -66,7 +66,7 @@ impl GraspPlanner {
         from: &Posture,
     ) -> Result<Option<GraspPlan>, NoPlan> {
         let open = self.open(from);
-        let shift_m = headed.shift_m(standing, heading_rad);
+        let shift_m = headed.shift_m(standing, heading_rad, self.arm().is_left());
         let Some(way) = self.way_to(above_m, standing, heading_rad, &shift_m, &open) else { return Ok(None) };
         let WayDown { palm_m, above, down, level } = way;
         if level < LEAST_LEVEL {
@@ -74,6 +74,15 @@ impl GraspPlanner {
         }
         self.room(&above, &down)?;
         let approach = self.free_way(from, &above)?;
-        Ok(Some(GraspPlan { standing: *standing, heading_rad, level, palm_m, approach, down }))
+        Ok(Some(GraspPlan {
+            hand: self.arm().which(),
+            standing: *standing,
+            heading_rad,
+            level,
+            palm_m,
+            effort_rad: super::turn_rad(&above, &down),
+            approach,
+            down,
+        }))
     }
 }

@@ -14,6 +14,7 @@ use plumbline_model::robot::collision::{CollisionError, CollisionModel};
 use plumbline_model::{Point, Robot};
 
 use crate::arm::PalmArm;
+use crate::hands::Hand;
 
 pub use headed::Headed;
 pub use standing::Standing;
@@ -26,7 +27,8 @@ const LIFT_M: f64 = 0.10;
 const STEP_M: f64 = 0.01;
 /// Headings that are tried, rad apart.
 const HEADING_STEP_RAD: f64 = PI / 18.0;
-/// Headings of a right hand over a table: from pointing to the right to pointing left and back.
+/// Headings of a right hand over a table: from pointing to the right to pointing left and back; those of a
+/// left hand are their mirror images.
 const HEADINGS_RAD: [f64; 2] = [-0.6 * PI, 0.9 * PI];
 /// A palm inclined farther than this (cosine) does not close around things.
 const LEAST_LEVEL: f64 = 0.6;
@@ -62,6 +64,8 @@ pub enum NoPlan {
 /// A grasp that was looked at before anything moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GraspPlan {
+    /// With which hand.
+    pub hand: Hand,
     /// What is to be grasped.
     pub standing: Standing,
     /// Azimuth of the fingers, rad.
@@ -74,9 +78,16 @@ pub struct GraspPlan {
     pub approach: Vec<Posture>,
     /// From above down to where the hand closes, the first a step below `above`.
     pub down: Vec<Posture>,
+    /// How far joints turn on the way down and up, rad; a cramped way counts as turning more.
+    pub effort_rad: f64,
 }
 
 impl GraspPlan {
+    /// How level the palm is where it closes, where more makes no difference the least that does not.
+    pub fn capped_level(&self) -> f64 {
+        self.level.min(LEVEL_ENOUGH)
+    }
+
     /// The posture above the object.
     pub fn above(&self) -> Option<&Posture> {
         self.approach.last()
@@ -158,6 +169,7 @@ impl GraspPlanner {
         let steps = ((HEADINGS_RAD[1] - HEADINGS_RAD[0]) / HEADING_STEP_RAD).round() as usize;
         for step in 0..=steps {
             let heading_rad = HEADINGS_RAD[0] + step as f64 * HEADING_STEP_RAD;
+            let heading_rad = if self.arm.is_left() { -heading_rad } else { heading_rad };
             if let Some(way) = self.way_to(above_m, standing, heading_rad, shift_m, &open) {
                 ways.push((way.level, heading_rad, way));
             }
@@ -179,8 +191,19 @@ impl GraspPlanner {
                     let cost = turn_rad(&above, &down) + CRAMPED_RAD * f64::from(room_m < ROOM_M);
                     if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                         let standing = *standing;
-                        best =
-                            Some((cost, GraspPlan { standing, heading_rad, level, palm_m, approach, down }));
+                        best = Some((
+                            cost,
+                            GraspPlan {
+                                hand: self.arm.which(),
+                                standing,
+                                heading_rad,
+                                level,
+                                palm_m,
+                                approach,
+                                down,
+                                effort_rad: cost,
+                            },
+                        ));
                     }
                 }
                 Err(barred) => why = why.or(Some(barred)),
@@ -246,12 +269,12 @@ impl GraspPlanner {
         shift_m: &Vector3<f64>,
         open: &Posture,
     ) -> Option<WayDown> {
-        let mut palm = standing.palm(heading_rad);
+        let mut palm = standing.palm(heading_rad, self.arm.is_left());
         for _ in 0..TURNS {
             let (above, down) =
                 self.way_down(above_m, Point::from(palm.coords + shift_m), heading_rad, open)?;
             let turn = self.arm.robot_from_palm(down.last()?).isometry.rotation;
-            let turned = standing.palm_turned(&turn);
+            let turned = standing.palm_turned(&turn, self.arm.is_left());
             if turned.distance_m(&palm) < TURNED_M {
                 let level = self.arm.level(down.last()?);
                 return Some(WayDown { palm_m: palm.coords.coords, above, down, level });

@@ -9,8 +9,8 @@ use plumbline_model::{Point, Robot};
 
 /// Things belong so much nearer to the fingers than the middle of the palm, m…
 const INTO_FINGERS_M: f64 = 0.017;
-/// …and so much toward the right of the hand, m.
-const TO_THE_RIGHT_M: f64 = 0.004;
+/// …and so much away from the thumb: toward the right of a right hand, m.
+const FROM_THUMB_M: f64 = 0.004;
 /// …and the palm closes so much below the top of a thing, m.
 const BELOW_TOP_M: f64 = 0.017;
 
@@ -31,16 +31,18 @@ impl Standing {
         self.support_m + 0.5 * self.height_m
     }
 
-    /// Where a palm that faces straight down belongs when the fingers close, for a heading of the hand.
-    pub fn palm(&self, heading_rad: f64) -> Point<Robot> {
-        self.palm_turned(&UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading_rad))
+    /// Where the palm of a right (or a left) hand that faces straight down belongs when the fingers close,
+    /// for a heading of the hand.
+    pub fn palm(&self, heading_rad: f64, is_left: bool) -> Point<Robot> {
+        self.palm_turned(&UnitQuaternion::from_axis_angle(&Vector3::z_axis(), heading_rad), is_left)
     }
 
     /// The same for a palm that is turned somehow: x along the fingers, z out of the back of the hand.
-    pub fn palm_turned(&self, robot_from_palm: &UnitQuaternion<f64>) -> Point<Robot> {
+    pub fn palm_turned(&self, robot_from_palm: &UnitQuaternion<f64>, is_left: bool) -> Point<Robot> {
         let middle = Vector3::new(self.xy_m[0], self.xy_m[1], self.middle_m());
         let over_m = 0.5 * self.height_m - BELOW_TOP_M;
-        let in_hand = Vector3::new(INTO_FINGERS_M, -TO_THE_RIGHT_M, -over_m);
+        let from_thumb_m = if is_left { FROM_THUMB_M } else { -FROM_THUMB_M };
+        let in_hand = Vector3::new(INTO_FINGERS_M, from_thumb_m, -over_m);
         Point::from(Point3::from(middle - robot_from_palm * in_hand))
     }
 }

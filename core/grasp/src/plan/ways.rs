@@ -1,5 +1,6 @@
 //! Free ways to above an object.
 
+use nalgebra::Vector3;
 use plumbline_model::robot::Posture;
 use plumbline_model::robot::collision::PathCheck;
 
@@ -9,6 +10,8 @@ use super::{GraspPlanner, NoPlan};
 const SAMPLES: usize = 16;
 /// On its way the palm keeps this high above the table, m, or as high as its lower end.
 const CLEARANCE_M: f64 = 0.11;
+/// An arm no farther from its home than this is there, rad.
+const AT_HOME_RAD: f64 = 0.05;
 
 impl GraspPlanner {
     /// A free way from a posture to another: straight, else over the posture in which the arm is at home,
@@ -21,6 +24,30 @@ impl GraspPlanner {
         for way in self.ways(from, above) {
             match self.is_free(from, &way)? {
                 None => return Ok(way),
+                Some(why) => barred = barred.or(Some(why)),
+            }
+        }
+        Err(NoPlan::NotFree(barred.unwrap_or_else(|| "there is none".to_owned())))
+    }
+
+    /// A free way on which the arm goes home out of another one's way, fingers as they are; `None`: it is at
+    /// home.
+    ///
+    /// # Errors
+    /// What is in the way.
+    pub fn parked(&self, from: &Posture) -> Result<Option<Vec<Posture>>, NoPlan> {
+        let arm = self.arm();
+        let home = from.with(arm.joints(), &arm.rig().home().of(arm.joints()));
+        if home.distance_rad(from) < AT_HOME_RAD {
+            return Ok(None);
+        }
+        let heading = arm.robot_from_palm(from).isometry.rotation * Vector3::x();
+        let mut up = self.vertical(heading.y.atan2(heading.x), from, CLEARANCE_M);
+        up.push(home.clone());
+        let mut barred = None;
+        for way in [vec![home], up] {
+            match self.is_free(from, &way)? {
+                None => return Ok(Some(way)),
                 Some(why) => barred = barred.or(Some(why)),
             }
         }

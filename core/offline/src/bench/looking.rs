@@ -146,7 +146,7 @@ fn target(palm: &PalmArm, standing: &Standing, from: &Posture) -> Option<Posture
     let heading_rad = |step: i32| f64::from(step) * 0.2;
     (0..16)
         .flat_map(|step| [heading_rad(step), heading_rad(-step)])
-        .find_map(|heading_rad| palm.sent_to(standing.palm(heading_rad), heading_rad, from))
+        .find_map(|heading_rad| palm.sent_to(standing.palm(heading_rad, palm.is_left()), heading_rad, from))
 }
 
 fn median_ms(mut times: Vec<Duration>) -> f64 {

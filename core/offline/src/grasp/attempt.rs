@@ -9,7 +9,7 @@ use plumbline_grasp::attempt::HandFinder;
 use plumbline_grasp::plan::GraspPlan;
 use plumbline_grasp::record::Iteration;
 use plumbline_grasp::see::{Looker, Seen};
-use plumbline_grasp::{Body, Grasper, Halt, Knowledge, Order, Record, ServoState, Sight, Step, Watch};
+use plumbline_grasp::{Body, Grasper, Halt, Hand, Knowledge, Order, Record, ServoState, Sight, Step, Watch};
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_twin::eyes::EyeRenderer;
 use plumbline_twin::{Lockstep, Scenario, Toy};
@@ -69,13 +69,13 @@ impl Bench {
         rig: Arc<Rig>,
         scenario: Scenario,
         knowledge: Knowledge,
-        finder: Option<Box<dyn HandFinder>>,
+        finder: &mut dyn FnMut(Hand) -> Option<Box<dyn HandFinder>>,
     ) -> Result<Self, OfflineError> {
         let shipped = shipped_detector().ok_or(OfflineError::NoDetector)?;
         // One thread, so that a sum of numbers is the same on every machine.
         let options = DetectorOptions { threads: Some(1), ..DetectorOptions::default() };
         let looker = Looker::new(shipped.open(&options)?, &knowledge, DetectSettings::default());
-        let grasper = Grasper::new(knowledge, looker, "right", finder)?;
+        let grasper = Grasper::new(knowledge, looker, finder)?;
         Ok(Self { rig, scenario, grasper, eyes: None })
     }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use plumbline_engine::trials::Judged;
-use plumbline_grasp::{Failure, Record};
+use plumbline_grasp::{Failure, Hand, Record};
 use plumbline_model::robot::Rig;
 use plumbline_twin::{Lockstep, Toy};
 
@@ -13,6 +13,9 @@ const PLACE_WRONG_M: f64 = 0.015;
 /// A hand that was seen farther off than this was wrong, m.
 const HAND_WRONG_M: f64 = 0.015;
 
+/// Where palms are, m.
+type Palms = Vec<(Hand, Vector3<f64>)>;
+
 /// Watches one attempt from outside.
 #[derive(Debug)]
 pub(super) struct Judge {
@@ -20,23 +23,25 @@ pub(super) struct Judge {
     /// Where it stood at first, and when it was looked for last.
     began_m: Vector3<f64>,
     object_m: Vector3<f64>,
-    palm: Option<usize>,
-    /// Palm when the hand was looked at last, and before it closed.
-    aligned_m: Option<Vector3<f64>>,
-    closing_m: Option<Vector3<f64>>,
+    palms: Vec<(Hand, usize)>,
+    /// Palms when the hand was looked at last, and before it closed.
+    aligned_m: Palms,
+    closing_m: Palms,
 }
 
 impl Judge {
     pub fn new(twin: &mut Lockstep, toy: Toy, rig: &Rig) -> Self {
-        let palm = rig.arm("right").and_then(|arm| Some(arm.tips.first()?.link.clone()));
-        let palm = palm.and_then(|tip| rig.description.find_link(&tip).ok()).map(|link| link.0);
+        let palm = |hand: Hand| Some((hand, rig.description.find_link(hand.palm()).ok()?.0));
+        let palms = Hand::BOTH.into_iter().filter_map(palm).collect();
         let began_m = place(twin, toy);
-        Self { toy, began_m, object_m: began_m, palm, aligned_m: None, closing_m: None }
+        Self { toy, began_m, object_m: began_m, palms, aligned_m: vec![], closing_m: vec![] }
     }
 
-    fn palm_m(&self, twin: &mut Lockstep) -> Option<Vector3<f64>> {
+    fn palms_m(&self, twin: &mut Lockstep) -> Palms {
         let places = twin.truth_for_judging().robot_from_link;
-        Some(places.get(self.palm?)?.as_ref()?.translation.vector)
+        let at =
+            |(hand, link): &(Hand, usize)| Some((*hand, places.get(*link)?.as_ref()?.translation.vector));
+        self.palms.iter().filter_map(at).collect()
     }
 
     /// The object was looked for just now.
@@ -46,17 +51,19 @@ impl Judge {
 
     /// The hand was looked at just now.
     pub fn aligned(&mut self, twin: &mut Lockstep) {
-        self.aligned_m = self.palm_m(twin);
+        self.aligned_m = self.palms_m(twin);
     }
 
     /// The hand is about to close.
     pub fn closing(&mut self, twin: &mut Lockstep) {
-        self.closing_m = self.palm_m(twin);
+        self.closing_m = self.palms_m(twin);
     }
 
     /// After the attempt.
     pub fn judge(&self, twin: &mut Lockstep, record: &Record) -> Judged {
         let after = place(twin, self.toy);
+        let of_hand = |palms: &Palms| palms.iter().find(|(hand, _)| *hand == record.hand).map(|(_, at)| *at);
+        let (aligned_m, closing_m) = (of_hand(&self.aligned_m), of_hand(&self.closing_m));
         let lifted = after.z - self.began_m.z > LIFTED_M;
         let flat = |a: Vector3<f64>, b: Vector3<f64>| (a - b).xy().norm();
         let seen = record.chosen.and_then(|index| record.seen.get(index)?.place.as_ref().ok());
@@ -73,7 +80,7 @@ impl Judge {
         let camera_error_m = seen_m.map(|seen| flat(seen, self.object_m));
         // Hand and object are seen by the same eyes: what matters is how they are seen to each other.
         let eyes_off = seen_m.map(|seen| seen - self.object_m).unwrap_or_default();
-        let hand_error_m = hand_m.zip(self.aligned_m).map(|(seen, truly)| flat(seen - eyes_off, truly));
+        let hand_error_m = hand_m.zip(aligned_m).map(|(seen, truly)| flat(seen - eyes_off, truly));
         let refused = matches!(record.outcome, Some(plumbline_grasp::Outcome::Refused { .. }));
         let failure = (!lifted && !refused).then(|| match &record.outcome {
             Some(plumbline_grasp::Outcome::Failed { failure: Failure::NotSeen, .. }) => Failure::NotSeen,
@@ -90,9 +97,9 @@ impl Judge {
             lifted,
             at_first: lifted && record.earlier.is_empty(),
             camera_error_m,
-            reach_error_m: wanted.zip(self.closing_m).map(|(wanted, palm)| flat(wanted, palm)),
-            alignment_m: truly_wanted.zip(self.closing_m).map(|(wanted, palm)| flat(wanted, palm)),
-            palm_off_m: truly_wanted.zip(self.closing_m).map(|(wanted, palm)| (palm - wanted).into()),
+            reach_error_m: wanted.zip(closing_m).map(|(wanted, palm)| flat(wanted, palm)),
+            alignment_m: truly_wanted.zip(closing_m).map(|(wanted, palm)| flat(wanted, palm)),
+            palm_off_m: truly_wanted.zip(closing_m).map(|(wanted, palm)| (palm - wanted).into()),
             hand_error_m,
             failure,
             refused,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use plumbline_engine::trials::Judged;
 use plumbline_grasp::things::Thing;
-use plumbline_grasp::{Method, Order, Outcome};
+use plumbline_grasp::{Hand, HandChoice, Method, Order, Outcome};
 use plumbline_model::JobContext;
 use plumbline_twin::Toy;
 use serde::Serialize;
@@ -22,6 +22,8 @@ pub struct GraspArgs {
     pub lab: PathBuf,
     /// How.
     pub method: Method,
+    /// With which hand.
+    pub hand: HandChoice,
     /// Class of the object.
     pub object: String,
     /// Where it is put, robot frame, m.
@@ -39,6 +41,8 @@ pub struct GraspReport {
     pub failure: Option<String>,
     /// Why, and what to do.
     pub why: Option<String>,
+    /// With which hand.
+    pub hand: Hand,
     /// Looks at the hand.
     pub iterations: usize,
     /// Distance of the hand from where it belongs, at the last look, as the eyes had it.
@@ -60,7 +64,8 @@ pub fn grasp(args: &GraspArgs, context: &dyn JobContext) -> Result<GraspReport, 
     let toy = Toy::from_name(&thing.class.to_lowercase()).ok_or_else(unknown)?;
     let mut bench = bench(&args.lab, scenario, &[args.method], context)?;
     context.report(0.5, "grasping");
-    let order = Order { method: args.method, object: thing.class.to_owned(), near_m: None };
+    let (method, hand) = (args.method, args.hand);
+    let order = Order { method, hand, object: thing.class.to_owned(), near_m: None };
     let (record, judged) = bench.attempt(&Task { order, toy, at_m: args.at_m, seed: args.seed })?;
     let (result, failure, why) = match record.outcome.clone() {
         Some(Outcome::Success) => ("success", None, None),
@@ -76,6 +81,7 @@ pub fn grasp(args: &GraspArgs, context: &dyn JobContext) -> Result<GraspReport, 
         result,
         failure,
         why,
+        hand: record.hand,
         iterations: record.iterations.len(),
         alignment_mm: record.alignment_m().map(|m| m * 1e3),
         seconds: record.seconds,

@@ -7,8 +7,10 @@ use std::sync::Arc;
 use plumbline_effects::RobotModel;
 use plumbline_engine::trials::Experiment;
 use plumbline_engine::trials::store::begin;
-use plumbline_grasp::attempt::RenderedHand;
-use plumbline_grasp::{Corrections, Failure, Halt, Knowledge, Method, Order, Outcome, Record, Step};
+use plumbline_grasp::attempt::{HandFinder, RenderedHand};
+use plumbline_grasp::{
+    Corrections, Failure, Halt, Hand, HandChoice, Knowledge, Method, Order, Outcome, Record, Step,
+};
 use plumbline_model::robot::Rig;
 use plumbline_model::{StereoCalibration, Unattended};
 use plumbline_twin::{Lockstep, Scenario, Toy};
@@ -22,20 +24,28 @@ fn bench(scenario: &str) -> Bench {
 
 /// With nothing learned.
 pub(super) fn bench_of(scenario: Scenario) -> Bench {
-    let rig = Arc::new(Rig::built_in("nico").expect("valid"));
+    bench_with(scenario, Rig::built_in("nico").expect("valid"))
+}
+
+pub(super) fn task(method: Method, toy: Toy, at_m: [f64; 2]) -> Task {
+    let order = Order { method, hand: HandChoice::Right, object: toy.name().to_owned(), near_m: None };
+    Task { order, toy, at_m, seed: 1 }
+}
+
+/// With nothing learned, on a robot with these arms.
+fn bench_with(scenario: Scenario, rig: Rig) -> Bench {
+    let rig = Arc::new(rig);
     let knowledge = Knowledge {
         model: RobotModel::nominal(rig.clone()),
         described: rig.clone(),
         calibration: Arc::new(StereoCalibration::bare(rig.eyes.cameras)),
         corrections: Corrections::default(),
     };
-    let finder = Box::new(RenderedHand::of_rig(&rig, "right_palm_center").expect("a hand"));
-    Bench::new(rig, scenario, knowledge, Some(finder)).expect("a bench")
-}
-
-pub(super) fn task(method: Method, toy: Toy, at_m: [f64; 2]) -> Task {
-    let order = Order { method, object: toy.name().to_owned(), near_m: None };
-    Task { order, toy, at_m, seed: 1 }
+    let shown = rig.clone();
+    let mut finder = move |hand: Hand| -> Option<Box<dyn HandFinder>> {
+        Some(Box::new(RenderedHand::of_rig(&shown, hand.palm()).expect("a hand")))
+    };
+    Bench::new(rig, scenario, knowledge, &mut finder).expect("a bench")
 }
 
 pub(super) fn failure(record: &Record) -> Option<Failure> {
@@ -43,6 +53,42 @@ pub(super) fn failure(record: &Record) -> Option<Failure> {
         Some(Outcome::Failed { failure, .. }) => Some(failure),
         _ => None,
     }
+}
+
+#[test]
+fn the_left_hand_lifts_what_the_right_one_does_not_reach_well() {
+    let mut bench = bench("perfect");
+    let with = |hand, at_m| Task {
+        order: Order { hand, ..task(Method::M5, Toy::Tomato, at_m).order },
+        ..task(Method::M5, Toy::Tomato, at_m)
+    };
+    for (hand, at_m, used) in [
+        (HandChoice::Left, [0.3, 0.1], Hand::Left),
+        (HandChoice::Auto, [0.3, 0.3], Hand::Left),
+        (HandChoice::Auto, [0.3, -0.2], Hand::Right),
+    ] {
+        let (record, judged) = bench.attempt(&with(hand, at_m)).expect("done");
+        assert_eq!(record.hand, used, "{at_m:?}");
+        assert_eq!(record.outcome, Some(Outcome::Success), "{at_m:?}");
+        assert!(judged.lifted && judged.alignment_m.is_some_and(|m| m < 0.005), "{judged:?}");
+    }
+    let refused = Order { hand: HandChoice::Left, ..task(Method::M4, Toy::Tomato, [0.3, 0.1]).order };
+    let (record, _) =
+        bench.attempt(&Task { order: refused, ..with(HandChoice::Left, [0.3, 0.1]) }).expect("done");
+    let Some(Outcome::Refused { why }) = &record.outcome else { panic!("{:?}", record.outcome) };
+    assert!(why.contains("right hand only") && record.moments.is_empty(), "{why}");
+}
+
+#[test]
+fn a_hand_that_the_robot_lacks_is_refused_by_name() {
+    let mut rig = Rig::built_in("nico").expect("valid");
+    rig.arms.retain(|arm| arm.name == "right");
+    let mut bench = bench_with(Scenario::built_in("perfect").expect("valid"), rig);
+    let mut left = task(Method::M5, Toy::Tomato, [0.3, -0.1]);
+    left.order.hand = HandChoice::Left;
+    let (record, judged) = bench.attempt(&left).expect("done");
+    let Some(Outcome::Refused { why }) = &record.outcome else { panic!("{:?}", record.outcome) };
+    assert!(why.contains("no arm called left") && !judged.lifted, "{why}");
 }
 
 #[test]
@@ -160,6 +206,7 @@ fn two_shards_put_together_are_one_run_byte_for_byte() {
         methods: vec![Method::M5],
         attempts: 1,
         positions_m: vec![[0.3, -0.2], [0.3, 0.1], [0.4, 0.0]],
+        hand: HandChoice::Auto,
         object: "Tomato".to_owned(),
         seed: 7,
     };
@@ -202,7 +249,7 @@ fn everywhere() {
     for scenario in ["perfect", "lab"] {
         let mut bench = bench(scenario);
         for at_m in super::PLACES_M {
-            let order = Order { method: Method::M5, object: "tomato".to_owned(), near_m: None };
+            let order = Order { hand: HandChoice::Auto, ..task(Method::M5, Toy::Tomato, at_m).order };
             let began = std::time::Instant::now();
             let task = Task { order, toy: Toy::Tomato, at_m, seed: 1 };
             let (record, judged) = bench.attempt(&task).expect("carried out");
@@ -221,6 +268,12 @@ fn everywhere() {
             );
         }
     }
+}
+
+/// With which hand: `PLUMBLINE_HAND`.
+fn hand_told() -> HandChoice {
+    let told = std::env::var("PLUMBLINE_HAND").unwrap_or_else(|_| "auto".to_owned());
+    HandChoice::from_name(&told).expect("auto, right or left")
 }
 
 /// Figures of a lab that is commissioned in the folder `PLUMBLINE_LAB` (or was), of the twin
@@ -254,6 +307,7 @@ fn in_a_lab() {
         methods,
         attempts,
         positions: None,
+        hand: hand_told(),
         object: told("PLUMBLINE_OBJECT", "tomato"),
         seed,
         shard: None,
@@ -291,7 +345,7 @@ fn one_in_a_lab() {
     let lab = told("PLUMBLINE_LAB", "target/lab");
     let mut bench = super::trials::bench(lab.as_ref(), scenario, &[method], &Unattended).expect("a lab");
     for seed in 1..4 {
-        let order = Order { method, object: "Tomato".to_owned(), near_m: None };
+        let order = Order { hand: hand_told(), ..task(method, Toy::Tomato, [at_m[0], at_m[1]]).order };
         let task = Task { order, toy: Toy::Tomato, at_m: [at_m[0], at_m[1]], seed };
         let (mut record, judged) = bench.attempt(&task).expect("carried out");
         record.seen.clear();
@@ -305,9 +359,9 @@ fn one_in_a_lab() {
                 .load
                 .iter()
                 .zip(&bench.rig().servos)
-                .filter(|(_, s)| s.joint_name.starts_with("r_"))
+                .filter(|(_, s)| s.joint_name.starts_with(&record.hand.name()[..1]))
                 .map(|(load, s)| {
-                    format!("{}:{:.2}", s.joint_name.trim_start_matches("r_"), load.unwrap_or_default())
+                    format!("{}:{:.2}", s.joint_name.trim_start_matches(["r", "l"]), load.unwrap_or_default())
                 })
                 .collect();
             println!("{:?} {:.1} {}", moment.after, moment.at_s, off.join(" "));

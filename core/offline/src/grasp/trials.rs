@@ -9,7 +9,7 @@ use std::sync::Arc;
 use plumbline_engine::trials::{Attempt, Experiment, FORMAT, Summary, Trial, store};
 use plumbline_grasp::attempt::{HandFinder, RenderedHand};
 use plumbline_grasp::things::Thing;
-use plumbline_grasp::{Method, Order};
+use plumbline_grasp::{Hand, HandChoice, Method, Order};
 use plumbline_model::JobContext;
 use plumbline_model::robot::Rig;
 use plumbline_twin::{Scenario, Toy};
@@ -32,6 +32,8 @@ pub struct TrialsArgs {
     pub attempts: usize,
     /// Positions (`x_m`, `y_m`); `None`: the published ones.
     pub positions: Option<PathBuf>,
+    /// With which hand.
+    pub hand: HandChoice,
     /// Class of the object.
     pub object: String,
     /// Of all that is drawn by chance.
@@ -61,6 +63,7 @@ pub fn grasp_trials(args: &TrialsArgs, context: &dyn JobContext) -> Result<Summa
         methods: args.methods.clone(),
         attempts: args.attempts,
         positions_m,
+        hand: args.hand,
         object: thing.class.to_owned(),
         seed: args.seed,
     };
@@ -113,9 +116,15 @@ pub(super) fn bench(
 ) -> Result<Bench, OfflineError> {
     let rig = Arc::new(Rig::built_in("nico")?);
     let knowledge = lab::knowledge(lab, &rig, &scenario, methods, context)?;
-    let finder = RenderedHand::of_rig(knowledge.model.rig(), "right_palm_center")?;
-    let finder: Box<dyn HandFinder> = Box::new(finder);
-    Bench::new(rig, scenario, knowledge, Some(finder))
+    let mut found: Vec<(Hand, Box<dyn HandFinder>)> = vec![];
+    for hand in Hand::BOTH {
+        found.push((hand, Box::new(RenderedHand::of_rig(knowledge.model.rig(), hand.palm())?)));
+    }
+    let mut finder = |hand: Hand| {
+        let at = found.iter().position(|(of, _)| *of == hand)?;
+        Some(found.swap_remove(at).1)
+    };
+    Bench::new(rig, scenario, knowledge, &mut finder)
 }
 
 fn is_mine(trial: &Trial, shard: Option<(usize, usize)>) -> bool {
@@ -129,7 +138,8 @@ pub(super) fn conclude(out: &Path, experiment: &Experiment) -> Result<Summary, O
 /// An attempt as it is carried out.
 fn task(experiment: &Experiment, trial: &Trial, toy: Toy) -> Task {
     let (at_m, seed) = experiment.placed(trial);
-    let order = Order { method: trial.method, object: experiment.object.clone(), near_m: None };
+    let (method, hand) = (trial.method, experiment.hand);
+    let order = Order { method, hand, object: experiment.object.clone(), near_m: None };
     Task { order, toy, at_m, seed }
 }
 

@@ -1,8 +1,9 @@
 //! What cannot be done is said, and nothing is asked of the arm.
 
-use plumbline_grasp::Method;
+use plumbline_grasp::{HandChoice, Method};
 
 use crate::command::{Command, GraspCommand, GraspTarget, HandStep};
+use crate::grasp::view::GateState;
 use crate::robot::RobotControl;
 use crate::state::{Action, State};
 
@@ -34,7 +35,6 @@ fn what_is_not_there_is_named() {
     let target = GraspTarget { class: Some("Anvil".to_owned()), near_m: None };
     for (command, words) in [
         (GraspCommand::Target(target), "a thing called Anvil"),
-        (GraspCommand::Arm("third".to_owned()), "no arm called third"),
         (GraspCommand::Pause, "Nothing is under way"),
         (GraspCommand::End, "Nothing is under way"),
         (GraspCommand::Judge { attempt: "yesterday".to_owned(), held: true }, "no attempt called yesterday"),
@@ -43,6 +43,23 @@ fn what_is_not_there_is_named() {
         assert!(text.contains(words), "{text}");
         assert!(!led);
     }
+}
+
+#[test]
+fn a_published_method_with_the_left_hand_is_refused_with_the_reason() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut state = State::new(folder.path());
+    let gate = |state: &mut State| {
+        let view = state.view(crate::Skipped::default(), 0, std::time::Instant::now());
+        assert_eq!((view.grasp.hands.len(), view.grasp.hand), (3, HandChoice::Left));
+        view.grasp.gates.iter().find(|gate| gate.name == "Method").expect("it is looked at").clone()
+    };
+    state.apply(Command::Grasp(GraspCommand::Arm(HandChoice::Left)));
+    assert!(!gate(&mut state).text.contains("right hand only"));
+    state.apply(Command::Grasp(GraspCommand::Method(Method::M4)));
+    let refused = gate(&mut state);
+    assert_eq!(refused.state, GateState::Shut);
+    assert!(refused.text.contains("M4 knows the right hand only"), "{}", refused.text);
 }
 
 #[test]

@@ -22,7 +22,8 @@ impl GraspWorkflow {
         context: &mut Context<'_>,
     ) -> Result<(), Refusal> {
         self.idle()?;
-        let needed = gates(around, &self.arm, self.method);
+        let choice = if matches!(what, What::Hand(_)) { self.hand().into() } else { self.choice };
+        let needed = gates(around, choice, self.method);
         // A step of the hand needs neither eyes nor a method.
         let of_arm = ["Robot", "STOP", "Arm"];
         let needed: Vec<_> = needed
@@ -46,7 +47,7 @@ impl GraspWorkflow {
             What::Hand(step) => context.start(GraspWork::Hand(Box::new(HandWork {
                 step,
                 rests_on: around.rests_on(),
-                arm: self.arm.clone(),
+                arm: self.hand().name().to_owned(),
                 ropes,
                 closed_at_m: self.closed_at_m,
             }))),
@@ -73,7 +74,7 @@ impl GraspWorkflow {
         self.progress = Some(progress.clone());
         Attempt {
             rests_on: around.rests_on(),
-            arm: self.arm.clone(),
+            hand: self.choice,
             method: self.method,
             target,
             ropes,

@@ -22,12 +22,14 @@ impl GraspWorkflow {
                 self.method = method;
                 self.plan = None;
             }
-            GraspCommand::Arm(arm) => {
+            GraspCommand::Arm(choice) => {
                 self.idle()?;
-                if around.described.arm(&arm).is_none() {
-                    return Err(Refusal::NoArm(arm));
+                if let Some(hand) = choice.asked()
+                    && around.described.arm(hand.name()).is_none()
+                {
+                    return Err(Refusal::NoArm(hand.name().to_owned()));
                 }
-                (self.arm, self.plan) = (arm, None);
+                (self.choice, self.plan) = (choice, None);
             }
             GraspCommand::Target(target) => self.aim(target)?,
             GraspCommand::Point { eye, u_px, v_px } => {

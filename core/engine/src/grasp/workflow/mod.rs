@@ -7,7 +7,7 @@ mod results;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use plumbline_grasp::Method;
+use plumbline_grasp::{Hand, HandChoice, Method};
 use plumbline_model::StereoFrame;
 
 use super::around::GraspAround;
@@ -44,7 +44,7 @@ pub(in crate::grasp) enum What {
 pub struct GraspWorkflow {
     folder: PathBuf,
     pub(in crate::grasp) method: Method,
-    pub(in crate::grasp) arm: String,
+    pub(in crate::grasp) choice: HandChoice,
     pub(in crate::grasp) target: GraspTarget,
     pub(in crate::grasp) running: Option<Running>,
     /// What is done when what is under way has ended.
@@ -77,7 +77,7 @@ impl GraspWorkflow {
         Self {
             folder: folder.to_owned(),
             method: Method::M5,
-            arm: "right".to_owned(),
+            choice: HandChoice::default(),
             target: GraspTarget::default(),
             running: None,
             then: None,
@@ -87,6 +87,13 @@ impl GraspWorkflow {
             sights: Sights::default(),
             closed_at_m: None,
         }
+    }
+
+    /// The hand that a step is of: the one that was chosen, else the one that grasped last or is about to.
+    pub(in crate::grasp) fn hand(&self) -> Hand {
+        let planned = self.plan.as_ref().map(|plan| plan.hand);
+        let last = || self.attempts.first().map(|attempt| attempt.hand);
+        self.choice.asked().or(planned).or_else(last).unwrap_or_default()
     }
 
     /// A pair has come from the eyes.

@@ -1,0 +1,114 @@
+//! The left hand is the mirror image of the right one, and so is what it does.
+#![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+use plumbline_effects::RobotModel;
+use plumbline_grasp::plan::{GraspPlan, GraspPlanner, NoPlan, Standing};
+use plumbline_grasp::{Hand, PLACES_M, PalmArm};
+use plumbline_model::robot::{Posture, Rig};
+
+fn rig() -> Arc<Rig> {
+    Arc::new(Rig::built_in("nico").expect("valid"))
+}
+
+fn planner(rig: &Arc<Rig>, hand: Hand) -> GraspPlanner {
+    GraspPlanner::new(PalmArm::new(&RobotModel::nominal(rig.clone()), hand.name()).expect("an arm"))
+}
+
+fn plan(planner: &GraspPlanner, [x_m, y_m]: [f64; 2], from: &Posture) -> Result<GraspPlan, NoPlan> {
+    let standing = Standing { xy_m: [x_m, y_m], support_m: 0.056, height_m: 0.054 };
+    planner.plan(&standing, &Vector3::zeros(), from)
+}
+
+/// The same angles make the other arm its mirror image.
+fn mirrored(rig: &Rig, posture: &Posture) -> Posture {
+    let [right, left] = Hand::BOTH.map(|hand| {
+        let arm = rig.arm(hand.name()).expect("an arm");
+        [arm.joints.clone(), arm.hand.clone()].concat()
+    });
+    posture.with(&right, &posture.of(&left)).with(&left, &posture.of(&right))
+}
+
+#[test]
+fn the_same_angles_make_one_hand_the_mirror_image_of_the_other() {
+    let rig = rig();
+    let description = &rig.description;
+    let arm = rig.arm("right").expect("an arm");
+    let links = [
+        ("right_palm_center", "left_palm_center"),
+        ("right_index_tip", "left_index_tip"),
+        ("r_indexfinger", "l_indexfinger"),
+        ("r_littlefinger", "l_littlefinger"),
+        ("right_thumb", "left_thumb"),
+    ];
+    let joints = [arm.joints.clone(), arm.hand.clone()].concat();
+    let bent = rig.home().with(&joints, &[0.3, 0.4, 0.5, 1.9, 0.7, -0.3, -0.4, -1.5, -0.9, -1.7]);
+    for posture in [rig.home(), bent] {
+        let other = mirrored(&rig, &posture);
+        let (right, left) = (description.forward(&posture), description.forward(&other));
+        for (of_right, of_left) in links {
+            let link = |name: &str| description.find_link(name).expect("a link");
+            let (a, b) = (right.of(link(of_right)).isometry, left.of(link(of_left)).isometry);
+            // A point on the link's own z axis tells where it points, too: along a finger or thumb.
+            for z_m in [0.0, -0.05] {
+                let on_axis = nalgebra::Point3::new(0.0, 0.0, z_m);
+                let (a, b) = (a * on_axis, b * on_axis);
+                let off_m = (a - nalgebra::Point3::new(b.x, -b.y, b.z)).norm();
+                assert!(off_m < 2e-3, "{of_right}: {a} against {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_left_plan_is_the_mirror_image_of_the_right_one() {
+    let rig = rig();
+    let [right, left] = Hand::BOTH.map(|hand| planner(&rig, hand));
+    assert_eq!((right.arm().which(), left.arm().which()), (Hand::Right, Hand::Left));
+    let from = rig.home();
+    for [x_m, y_m] in [[0.3, -0.2], [0.4, -0.1], [0.25, 0.0]] {
+        let of_right = plan(&right, [x_m, y_m], &from).expect("in reach");
+        let of_left = plan(&left, [x_m, -y_m], &from).expect("in reach");
+        assert_eq!((of_right.hand, of_left.hand), (Hand::Right, Hand::Left));
+        let turned = (of_right.heading_rad + of_left.heading_rad).abs();
+        assert!(turned < 1e-9, "{} against {}", of_right.heading_rad, of_left.heading_rad);
+        assert!((of_right.level - of_left.level).abs() < 0.01, "{} {}", of_right.level, of_left.level);
+        let (a, b) = (of_right.palm_m, of_left.palm_m);
+        let off_m = (a - Vector3::new(b.x, -b.y, b.z)).norm();
+        assert!(off_m < 2e-3, "{a:?} against {b:?}");
+        // Nothing of the other arm moves.
+        for (plan, other) in [(&of_right, "left"), (&of_left, "right")] {
+            let still = &rig.arm(other).expect("an arm").joints;
+            assert!(plan.approach.iter().chain(&plan.down).all(|at| at.of(still) == from.of(still)));
+        }
+    }
+}
+
+#[test]
+fn an_arm_that_is_in_the_way_is_parked_and_one_at_home_stays() {
+    let rig = rig();
+    let left = planner(&rig, Hand::Left);
+    assert_eq!(left.parked(&rig.home()), Ok(None));
+    let over = plan(&left, [0.3, 0.1], &rig.home()).expect("in reach").above().expect("a posture").clone();
+    let way = left.parked(&over).expect("free").expect("it is not at home");
+    let arm = rig.arm("left").expect("an arm");
+    let last = way.last().expect("a posture");
+    assert_eq!(last.of(&arm.joints), rig.home().of(&arm.joints));
+    assert_eq!(last.of(&arm.hand), over.of(&arm.hand), "fingers stay as they are");
+}
+
+#[test]
+#[ignore = "figures for who chooses the hand"]
+fn at_every_place() {
+    let rig = rig();
+    let planners = Hand::BOTH.map(|hand| planner(&rig, hand));
+    for at_m in PLACES_M {
+        let of = planners.each_ref().map(|planner| match plan(planner, at_m, &rig.home()) {
+            Ok(plan) => format!("level {:.3} effort {:.2}", plan.level, plan.effort_rad),
+            Err(why) => why.to_string().chars().take(40).collect(),
+        });
+        println!("{at_m:?}: right {} | left {}", of[0], of[1]);
+    }
+}
