@@ -106,7 +106,7 @@ mod tests {
                     "{}",
                     plan.heading_rad
                 );
-                let sent = planner.arm().palm(plan.closing().expect("a way down")).coords;
+                let sent = planner.arm().palm(plan.closing().expect("a way down")).coords.coords;
                 let beside = (sent.xy() - Vector3::new(x_m, y_m, 0.0).xy()).norm();
                 let off_m = (sent - plan.palm_m - headed.shift_m(&standing, plan.heading_rad)).norm();
                 assert!(off_m < 1e-3, "{off_m}");
