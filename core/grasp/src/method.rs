@@ -116,8 +116,9 @@ pub fn published(
         Method::M3 => {
             let answer = needs(&corrections.m3)?.correct(pixel);
             let sent = answer.target.coords.coords;
-            let height_m = match &corrections.hand {
-                Some(hand) if answer.inside => sent.z + hand.over_finger_m() - knowledge.support_m(x_m, y_m),
+            let over_finger_m = corrections.hand.as_ref().map(|hand| hand.over_finger_m());
+            let height_m = match over_finger_m {
+                Some(Some(over_m)) if answer.inside => sent.z + over_m - knowledge.support_m(x_m, y_m),
                 Some(_) => support(method, knowledge, [x_m, y_m], sent.xy())?,
                 None => sent.z - glass_m,
             };
@@ -143,4 +144,63 @@ fn support(
     let m1 = knowledge.corrections.m1.as_ref().and_then(|model| model.m1());
     let heights = &m1.ok_or(NotKnown::NotTrained(method))?.heights;
     Ok(heights.at(sent_m.x, sent_m.y) - knowledge.glass_m(x_m, y_m))
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_correction::tables::{HeightPoint, HeightTable};
+    use plumbline_effects::RobotModel;
+    use plumbline_model::StereoCalibration;
+    use plumbline_model::robot::Rig;
+
+    use super::*;
+    use crate::knowledge::Corrections;
+    use crate::published::HandHeights;
+
+    /// A robot whose screen was found to lie 10 mm farther away than described, and whose hand has the
+    /// table 20 mm higher than it is.
+    fn knowledge(hand: bool) -> Knowledge {
+        let rig = Arc::new(Rig::built_in("nico").expect("valid"));
+        let mut found = (*rig).clone();
+        found.touchscreen = found.touchscreen.moved(&nalgebra::Isometry3::translation(0.010, 0.0, 0.0));
+        let points = (0..45).map(|k| HeightPoint {
+            x_m: 0.15 + 0.07 * f64::from(k % 5),
+            y_m: -0.42 + 0.09 * f64::from(k / 5),
+            height_m: rig.touchscreen.origin.coords.z + 0.020,
+        });
+        let table = HeightTable::new(points.collect()).expect("a table");
+        let hand = hand.then(|| Arc::new(HandHeights::new(&table, []).expect("usable")));
+        Knowledge {
+            model: RobotModel::nominal(Arc::new(found)),
+            described: rig.clone(),
+            calibration: Arc::new(StereoCalibration::bare(rig.eyes.cameras)),
+            corrections: Corrections { hand, ..Corrections::default() },
+        }
+    }
+
+    #[test]
+    fn m1_sends_the_middle_of_the_palm_by_the_screen_as_described_at_heights_of_the_hand() {
+        let knowledge = knowledge(true);
+        let place = Point::new(0.35, -0.1, 0.08);
+        let headed = published(Method::M1, &knowledge, &place).expect("known").expect("published");
+        assert!(headed.centered);
+        let off = headed.shift_m - Vector3::new(-0.010, 0.0, 0.020);
+        assert!(off.xy().norm() < 1e-6 && off.z.abs() < 5e-4, "{}", headed.shift_m);
+        // M4 begins there, too, with the grip over the thing.
+        let m4 = published(Method::M4, &knowledge, &place).expect("known").expect("published");
+        assert_eq!(m4, Headed { centered: false, ..headed });
+    }
+
+    #[test]
+    fn what_is_missing_is_named_and_m5_needs_nothing_of_it() {
+        let place = Point::new(0.35, -0.1, 0.08);
+        for (method, hand) in
+            [(Method::M1, false), (Method::M2, true), (Method::M3, true), (Method::M4, false)]
+        {
+            let missing = published(method, &knowledge(hand), &place).expect_err("nothing was learned");
+            assert_eq!(missing, NotKnown::NotTrained(method));
+            assert!(missing.to_string().contains("train one in Models"), "{missing}");
+        }
+        assert_eq!(published(Method::M5, &knowledge(false), &place), Ok(None));
+    }
 }

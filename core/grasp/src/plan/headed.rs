@@ -86,3 +86,46 @@ impl GraspPlanner {
         }))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use plumbline_effects::RobotModel;
+    use plumbline_model::robot::Rig;
+
+    use super::*;
+    use crate::arm::PalmArm;
+    use crate::published::heading_rad;
+
+    #[test]
+    fn a_palm_comes_with_the_heading_that_was_asked_for_or_the_nearest_that_it_can() {
+        let rig = Arc::new(Rig::built_in("nico").expect("valid"));
+        let planner =
+            GraspPlanner::new(PalmArm::new(&RobotModel::nominal(rig.clone()), "right").expect("an arm"));
+        let home = rig.home();
+        for [x_m, y_m] in [[0.3, -0.1], [0.4, -0.2], [0.3, 0.2]] {
+            let standing = Standing { xy_m: [x_m, y_m], support_m: rig.table.height_m, height_m: 0.054 };
+            let heading_rad = heading_rad(x_m, y_m);
+            for centered in [false, true] {
+                let headed = Headed { heading_rad, shift_m: Vector3::new(0.0, 0.0, 0.01), centered };
+                let plan = planner.plan_headed(&standing, &headed, &home).expect("a plan");
+                assert!(
+                    (plan.heading_rad - heading_rad).abs() < 2.0 * HEADING_STEP_RAD,
+                    "{}",
+                    plan.heading_rad
+                );
+                let sent = planner.arm().palm(plan.closing().expect("a way down")).coords.coords;
+                let beside = (sent.xy() - Vector3::new(x_m, y_m, 0.0).xy()).norm();
+                let off_m = (sent - plan.palm_m - headed.shift_m(&standing, plan.heading_rad)).norm();
+                assert!(off_m < 1e-3, "{off_m}");
+                // The middle of the palm, or where the fingers close around the thing.
+                assert!(if centered { beside < 0.003 } else { beside > 0.010 }, "{centered} {beside}");
+            }
+        }
+        let far = Standing { xy_m: [0.9, 0.0], support_m: rig.table.height_m, height_m: 0.054 };
+        let headed = Headed { heading_rad: 0.0, shift_m: Vector3::zeros(), centered: false };
+        let refused = planner.plan_headed(&far, &headed, &home).expect_err("out of reach");
+        assert_eq!(refused, NoPlan::OutOfReach { xy_m: far.xy_m });
+    }
+}

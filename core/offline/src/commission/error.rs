@@ -60,6 +60,14 @@ pub enum CommissionError {
         /// The folder.
         folder: PathBuf,
     },
+    /// What the published methods know cannot be read.
+    #[error("{} cannot be used ({reason}): remove it, and it is made anew", .file.display())]
+    Published {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),

@@ -2,7 +2,7 @@
 //! published ones were, and heights at which the open hand met the table. A commissioned lab does without; the
 //! experiment compares with it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use plumbline_correction::tables::HeightTable;
@@ -53,8 +53,14 @@ pub(crate) fn corrections(lab: &Lab, context: &dyn JobContext) -> Result<Correct
         .map_err(|_| CommissionError::room("the published methods are three"))?
         .map(|model| Some(Arc::new(model)));
     let heights = heights(lab, &half(0.7, 1.0))?;
-    let hand = HandHeights::new(&heights, m3.as_deref()).map_err(CommissionError::room)?;
+    let touches = m3.iter().flat_map(|m3| &m3.provenance().touches);
+    let fingertips_m = touches.map(|touch| touch.sent_m);
+    let hand = HandHeights::new(&heights, fingertips_m).map_err(CommissionError::room)?;
     Ok(Corrections { m1, m2, m3, hand: Some(Arc::new(hand)) })
+}
+
+fn unusable(file: &Path, error: &impl std::fmt::Display) -> CommissionError {
+    CommissionError::Published { file: file.to_owned(), reason: error.to_string() }
 }
 
 /// Heights of the open hand.
@@ -67,7 +73,7 @@ fn heights(lab: &Lab, context: &dyn JobContext) -> Result<HeightTable, Commissio
         files::write(&folder.join(HEIGHTS_LEFT_OUT), lowered.left_out.join("\n"))?;
         lowered.table.write(&file).map_err(CommissionError::room)?;
     }
-    HeightTable::read(&file).map_err(CommissionError::room)
+    HeightTable::read(&file).map_err(|error| unusable(&file, &error))
 }
 
 /// The model of a method, trained when it is asked for first.
@@ -100,7 +106,10 @@ fn models(
             model.write(&file(method)).map_err(CommissionError::room)?;
         }
     }
-    let read = |method: &Method| CorrectionModel::read(&file(method)).map_err(CommissionError::room);
+    let read = |method: &Method| {
+        let file = file(method);
+        CorrectionModel::read(&file).map_err(|error| unusable(&file, &error))
+    };
     methods.iter().map(read).collect()
 }
 
@@ -135,4 +144,28 @@ fn touches(lab: &Lab, context: &dyn JobContext) -> Result<TouchData, CommissionE
         }
     }
     TouchData::new(touches, screen.clone(), left_out).map_err(CommissionError::room)
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_model::Unattended;
+    use plumbline_model::robot::Rig;
+
+    use super::*;
+
+    #[test]
+    fn heights_that_cannot_be_read_say_which_file_and_what_to_do() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let scenario = crate::commission::scenario("perfect").expect("valid");
+        let rig = Arc::new(Rig::built_in("nico").expect("valid"));
+        let lab = Lab { folder: folder.path().to_owned(), rig, scenario, seed: 1 };
+        let file = folder.path().join(FOLDER).join(HEIGHTS);
+        std::fs::create_dir(folder.path().join(FOLDER)).expect("made");
+        std::fs::write(&file, "x_m,y_m\n0.3,0.1\n").expect("written");
+        let why = heights(&lab, &Unattended).expect_err("no heights").to_string();
+        assert!(why.contains(HEIGHTS) && why.contains("remove it, and it is made anew"), "{why}");
+        let text = "x_m,y_m,height_m\n0.2,0,0.05\n0.3,0,0.05\n0.2,0.1,0.06\n0.3,0.1,0.06\n";
+        std::fs::write(&file, text).expect("written");
+        assert_eq!(heights(&lab, &Unattended).expect("heights").points.len(), 4);
+    }
 }
