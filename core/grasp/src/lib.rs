@@ -12,6 +12,7 @@ mod outline;
 mod places;
 pub mod plan;
 pub mod record;
+mod rim;
 pub mod see;
 pub mod things;
 

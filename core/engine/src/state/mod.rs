@@ -37,7 +37,7 @@ use crate::ground::{Asked, Clock, Context, Moment, PerWorld, Time, Workflow, Wor
 use crate::labels::work::LabelsWork;
 use crate::live::{ProbeInput, ProbeOutput, RectifyInput, RectifyOutput};
 use crate::mount::MountWorkflow;
-use crate::rig_models::{Accepted, other_eyes};
+use crate::rig_models::{Accepted, mounted, other_eyes};
 use crate::robot::view::{Connection, RobotView};
 use crate::robot::{News, RobotControl, TouchNews};
 use crate::source::view::SourceView;
@@ -224,6 +224,7 @@ impl State {
         let accepted = Accepted {
             cameras: eyes.map(|calibration| &calibration.cameras),
             head_from_left: mount.map(|mount| mount.head_from_left),
+            mounted: mount.map(|mount| mounted(mount)),
             screen: touch.of(world).screen(),
             effects: gap.of(world).model().filter(|effects| {
                 !self.refused.as_ref().is_some_and(|refused| Arc::ptr_eq(refused, effects))
