@@ -200,3 +200,95 @@ fn sandwich(lines: &[Line], inverse: &Matrix3<f64>) -> Matrix3<f64> {
     // Two eyes, three unknowns: what is spent on them is not left to contradict.
     inverse * sum * inverse * (count / (count - 3.0).max(1.0))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use image::{Rgb, RgbImage};
+    use plumbline_effects::RobotModel;
+    use plumbline_model::StereoCalibration;
+    use plumbline_model::robot::Rig;
+
+    use super::*;
+    use crate::knowledge::Corrections;
+
+    fn knowledge() -> Knowledge {
+        let rig = Arc::new(Rig::built_in("nico").expect("valid"));
+        Knowledge {
+            model: RobotModel::nominal(rig.clone()),
+            described: rig.clone(),
+            calibration: Arc::new(StereoCalibration::bare(rig.eyes.cameras)),
+            corrections: Corrections::default(),
+        }
+    }
+
+    /// A red body of this size on a gray table, each pixel as much as the body covers it.
+    fn sight(knowledge: &Knowledge, thing: &Thing, xy_m: Vector2<f64>, size: f64) -> Sight {
+        let posture = knowledge.described.home();
+        let gray = |eye: Eye| {
+            let (width, height) = knowledge.calibration.cameras.camera(eye).size_px();
+            RgbImage::from_pixel(width, height, Rgb([110, 105, 100]))
+        };
+        let mut images = Eye::BOTH.map(gray);
+        let blank = Sight {
+            left: Arc::new(images[0].clone()),
+            right: Arc::new(images[1].clone()),
+            posture,
+            at_s: 0.0,
+            seq: 0,
+        };
+        let rim = Rim { sight: &blank, knowledge, thing };
+        let seen = rim.outlines(&Unknowns::new(xy_m.x, xy_m.y, size.ln()), 0.0).expect("seen");
+        for (image, outline) in images.iter_mut().zip(&seen) {
+            let corners: Vec<_> = outline.iter().flatten().copied().collect();
+            let middle = corners.iter().map(|(pixel, _)| pixel).sum::<Vector2<f64>>() / corners.len() as f64;
+            for (u, v, color) in image.enumerate_pixels_mut() {
+                let at = Vector2::new(f64::from(u), f64::from(v));
+                if (at - middle).norm() > 40.0 {
+                    continue;
+                }
+                // How far outside of the nearest side of the outline, px.
+                let outside = corners.iter().map(|(pixel, normal)| (at - pixel).dot(normal));
+                let covered = (0.5 - outside.fold(f64::NEG_INFINITY, f64::max) / 1.6).clamp(0.0, 1.0);
+                let mix = |a: f64, b: f64| (a * covered + b * (1.0 - covered)).round() as u8;
+                *color = Rgb([mix(190.0, 110.0), mix(30.0, 105.0), mix(25.0, 100.0)]);
+            }
+        }
+        let [left, right] = images.map(Arc::new);
+        Sight { left, right, ..blank }
+    }
+
+    fn boxes(xy_m: Vector2<f64>) -> OnTable {
+        OnTable { xy_m, covariance_m2: Matrix2::identity() * 9e-6 }
+    }
+
+    #[test]
+    fn a_body_is_found_to_half_a_millimeter_from_boxes_that_are_off_by_three_whatever_its_size() {
+        let knowledge = knowledge();
+        let tomato = Thing::of_class("Tomato").expect("known");
+        for at_m in [[0.3, -0.2], [0.3, 0.1], [0.4, 0.0]] {
+            for size in [1.0, 0.95] {
+                let truly = Vector2::from(at_m);
+                let sight = sight(&knowledge, &tomato, truly, size);
+                let rim = Rim { sight: &sight, knowledge: &knowledge, thing: &tomato };
+                let found = rim.on_table(&boxes(truly + Vector2::new(0.002, -0.002))).expect("found");
+                let off_m = (found.xy_m - truly).norm();
+                let sigma_m = found.covariance_m2.trace().sqrt();
+                assert!(off_m < 0.0008, "{at_m:?}, {size}: {:.2} mm", off_m * 1e3);
+                // Most of it is the height at which it may stand.
+                assert!((0.0005..0.004).contains(&sigma_m), "{at_m:?}, {size}: {sigma_m}");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_is_found_where_nothing_stands() {
+        let knowledge = knowledge();
+        let tomato = Thing::of_class("Tomato").expect("known");
+        let truly = Vector2::new(0.3, -0.1);
+        let sight = sight(&knowledge, &tomato, truly, 1.0);
+        let rim = Rim { sight: &sight, knowledge: &knowledge, thing: &tomato };
+        assert_eq!(rim.on_table(&boxes(Vector2::new(0.3, 0.2))), None);
+    }
+}
