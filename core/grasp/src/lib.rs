@@ -14,6 +14,7 @@ mod places;
 pub mod plan;
 pub mod published;
 pub mod record;
+mod rim;
 pub mod see;
 pub mod things;
 

@@ -7,7 +7,7 @@ use image::RgbImage;
 use plumbline_effects::rig_model::ModelEffect;
 use plumbline_effects::{RobotModel, SeenUnder};
 use plumbline_engine::ground::text::sentence;
-use plumbline_engine::rig_models::Accepted;
+use plumbline_engine::rig_models::{Accepted, mounted};
 use plumbline_hardware::load_image;
 use plumbline_model::robot::{Posture, RigPart};
 use plumbline_model::{JobContext, Pixel, Raw, StereoCameras};
@@ -157,9 +157,13 @@ fn known(args: &LocateRobot, cameras: &StereoCameras) -> Result<(RobotModel, Pos
     };
     rig.need(RigPart::Eyes)?;
     let mount = args.mount.as_ref().map(|file| MountCalibration::read(file, &rig)).transpose()?;
-    let head_from_left = mount.map(|mount| mount.head_from_left);
-    let accepted =
-        Accepted { cameras: Some(cameras), head_from_left, screen: None, effects: effects.as_ref() };
+    let accepted = Accepted {
+        cameras: Some(cameras),
+        head_from_left: mount.as_ref().map(|mount| mount.head_from_left),
+        mounted: mount.as_ref().map(mounted),
+        screen: None,
+        effects: effects.as_ref(),
+    };
     let model = accepted.robot_model(&rig)?;
     let mut posture = rig.home();
     for (joint, angle_rad) in [rig.eyes.pan, rig.eyes.tilt].into_iter().zip(args.head_rad) {

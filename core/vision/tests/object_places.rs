@@ -3,12 +3,12 @@
 
 use std::path::Path;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use plumbline_model::{
     CalibrationOptions, Chessboard, ClassIndex, ClassNames, Detection, PixelBox, StereoCalibration,
     Unattended, measured_data,
 };
-use plumbline_vision::detect_places::{PlaceFinder, PlaceOptions, RangeFrom, Seen};
+use plumbline_vision::detect_places::{Estimate, PlaceFinder, PlaceOptions, RangeFrom, Seen};
 use plumbline_vision::{calibrate, chessboard};
 
 /// Solves the chessboard pairs of the eyes.
@@ -59,7 +59,7 @@ fn labeled_objects_of_real_pairs_are_paired_and_lie_on_one_table() {
     let calibration = calibration(&boards);
     let names = ClassNames::published();
     let mut finder = PlaceFinder::new(Some(&calibration), PlaceOptions::for_classes(&names));
-    let (mut out, mut on_table, mut sigmas) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut out, mut on_table, mut sigmas, mut of_scenes) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let (mut common, mut paired, mut own) = (0, 0, 0);
     let mut off_line_px: Vec<f64> = Vec::new();
     for entry in std::fs::read_dir(scenes.join("images")).expect("a folder") {
@@ -72,6 +72,7 @@ fn labeled_objects_of_real_pairs_are_paired_and_lie_on_one_table() {
         });
         common += left.1.iter().filter(|l| right.1.iter().any(|r| r.class == l.class)).count();
         finder.find((&left.0, &left.1), (&right.0, &right.1), &mut out);
+        let mut standing = Vec::new();
         for object in &out {
             let Seen::Both { epipolar_px, eyes_disagree: None, .. } = object.seen else { continue };
             paired += 1;
@@ -82,8 +83,10 @@ fn labeled_objects_of_real_pairs_are_paired_and_lie_on_one_table() {
             if !name.ends_with("Hand") {
                 on_table.push(place.middle.point.coords.coords);
                 sigmas.push(place.middle.sigma_m());
+                standing.push((middle_height_m(name), place.middle));
             }
         }
+        of_scenes.push(standing);
     }
     let middle = on_table.iter().sum::<Vector3<f64>>() / on_table.len() as f64;
     let scatter: Matrix3<f64> = on_table.iter().map(|p| (p - middle) * (p - middle).transpose()).sum();
@@ -104,4 +107,51 @@ fn labeled_objects_of_real_pairs_are_paired_and_lie_on_one_table() {
     assert!(own * 10 >= paired * 9, "only {own} of {paired} by their own pixels");
     // Middles are 10 to 30 mm above the table, so they cannot all lie in one plane.
     assert!(rms_m < 0.015, "places scatter by {rms_m} m about a plane");
+    of_scenes.retain(|standing| standing.len() >= 3);
+    let chi2 = chi2_of_heights(&of_scenes);
+    eprintln!("heights over the table of {} scenes: chi2 {chi2:.2} per degree of freedom", of_scenes.len());
+    assert!((0.4..1.8).contains(&chi2), "places are not as uncertain as stated: {chi2}");
+}
+
+/// Heights of the toys' middles over the table, as far as photographs tell, m; and how sure that is.
+fn middle_height_m(name: &str) -> f64 {
+    match name {
+        "Tomato" => 0.027,
+        "Mushroom" | "Onion" => 0.020,
+        "Duck" => 0.019,
+        "Orange" => 0.018,
+        _ => 0.015,
+    }
+}
+const HEIGHT_SIGMA_M: f64 = 0.003;
+
+/// Squared differences of middles from their heights over the table, in units of what is stated, per degree
+/// of freedom. The head stands a little differently in every scene: each has its own distance to the table,
+/// whose tilt they share.
+fn chi2_of_heights(scenes: &[Vec<(f64, Estimate)>]) -> f64 {
+    let all: Vec<(usize, f64, Estimate)> =
+        scenes.iter().enumerate().flat_map(|(k, of)| of.iter().map(move |(h, e)| (k, *h, *e))).collect();
+    let unknowns = scenes.len() + 2;
+    let (mut normal, mut chi2) = (Vector3::new(0.0, 0.9, 0.43), 0.0);
+    for _ in 0..30 {
+        let length = 1.0 / normal.y;
+        let sigma = |estimate: &Estimate| {
+            ((normal.transpose() * estimate.covariance_m2 * normal).x + HEIGHT_SIGMA_M.powi(2)).sqrt()
+        };
+        let mut design = DMatrix::zeros(all.len(), unknowns);
+        let mut right = DVector::zeros(all.len());
+        for (row, (scene, height_m, estimate)) in all.iter().enumerate() {
+            let (at, weight) = (estimate.point.coords.coords, 1.0 / (length * sigma(estimate)));
+            design[(row, *scene)] = weight;
+            design[(row, unknowns - 2)] = weight * at.x;
+            design[(row, unknowns - 1)] = weight * at.z;
+            right[row] = weight * (at.y + length * height_m);
+        }
+        let square = design.transpose() * &design;
+        let found = square.cholesky().expect("seen from above").solve(&(design.transpose() * &right));
+        let slope = Vector3::new(-found[unknowns - 2], 1.0, -found[unknowns - 1]);
+        normal = slope.normalize();
+        chi2 = (right - design * found).norm_squared() / (all.len() - unknowns) as f64;
+    }
+    chi2
 }

@@ -7,6 +7,7 @@
 mod arm;
 #[cfg(test)]
 mod laws;
+mod mounted;
 mod place;
 mod uncertainty;
 
@@ -20,6 +21,7 @@ use crate::eyes::Eyes;
 use crate::rig_model::{Measured, RigModel, RigModelError};
 
 pub use arm::ModelArm;
+pub use mounted::Mounted;
 pub use place::{PlaceInRobot, SeenUnder, worst_sigma_m};
 
 /// The robot as it is known now: its description with what was calibrated (lenses, mount of the
@@ -31,6 +33,8 @@ pub struct RobotModel {
     eyes: Arc<Eyes>,
     /// Effects on the eyes.
     of_eyes: Arc<[Measured]>,
+    /// How well their mount is known; `None`: it counts as known.
+    mounted: Option<Mounted>,
 }
 
 impl RobotModel {
@@ -55,7 +59,18 @@ impl RobotModel {
     fn put_together(rig: Arc<Rig>, added: Arc<RigModel>) -> Self {
         let eyes = Eyes::of_rig(&rig).expect("the link of the eyes is one of the description");
         let of_eyes = added.measured(None, None, Some(&eyes));
-        Self { rig, added, eyes: Arc::new(eyes), of_eyes: of_eyes.into() }
+        Self { rig, added, eyes: Arc::new(eyes), of_eyes: of_eyes.into(), mounted: None }
+    }
+
+    /// The same, with how well the mount of the eyes is known: places are as uncertain by that, too.
+    #[must_use]
+    pub fn with_mounted(self, mounted: Option<Mounted>) -> Self {
+        Self { mounted, ..self }
+    }
+
+    /// How well the mount of the eyes is known; `None`: it counts as known.
+    pub fn mounted(&self) -> Option<&Mounted> {
+        self.mounted.as_ref()
     }
 
     /// The same effects on a rig whose calibrations are others.
@@ -63,7 +78,7 @@ impl RobotModel {
     /// # Errors
     /// As [`Self::new`].
     pub fn with_rig(&self, rig: Arc<Rig>) -> Result<Self, RigModelError> {
-        Self::new(rig, self.added.clone())
+        Ok(Self::new(rig, self.added.clone())?.with_mounted(self.mounted))
     }
 
     /// The description with what was calibrated.

@@ -29,7 +29,8 @@ pub struct SeenUnder {
 pub struct PlaceInRobot {
     /// Robot frame.
     pub point: Point<Robot>,
-    /// Covariance in the robot's axes, m²: that of what was seen, and that of the effects' values.
+    /// Covariance in the robot's axes, m²: that of what was seen, that of the effects' values, and that of
+    /// the mount of the eyes where it is known.
     pub covariance_m2: Matrix3<f64>,
 }
 
@@ -83,9 +84,12 @@ impl RobotModel {
         seen: &SeenUnder,
     ) -> Option<PlaceInRobot> {
         let robot_from_left = self.rig.robot_from_left(posture);
+        let by_mount = self.mounted.map_or_else(Matrix3::zeros, |mounted| {
+            mounted.covariance_m2(&self.rig, posture, &in_left.coords.coords)
+        });
         if self.of_eyes.is_empty() {
             let turn = robot_from_left.rotation();
-            let covariance_m2 = turn * covariance_m2 * turn.transpose();
+            let covariance_m2 = turn * covariance_m2 * turn.transpose() + by_mount;
             return Some(PlaceInRobot { point: robot_from_left * *in_left, covariance_m2 });
         }
         let row = self.row(posture, seen);
@@ -104,7 +108,8 @@ impl RobotModel {
         }
         let by_sight = slopes * covariance_m2 * slopes.transpose();
         let by_values = of_values(&self.of_eyes, |effects| undone(&seen_at, effects))?;
-        Some(PlaceInRobot { point: Point::new(here.x, here.y, here.z), covariance_m2: by_sight + by_values })
+        let covariance_m2 = by_sight + by_values + by_mount;
+        Some(PlaceInRobot { point: Point::new(here.x, here.y, here.z), covariance_m2 })
     }
 
     /// Where both eyes see a point of the robot frame, with the effects, raw px: left, right. `None`:

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use plumbline_effects::rig_model::ModelEffect;
+use plumbline_effects::robot_model::Mounted;
 use plumbline_effects::{RigModel, RigModelError, RobotModel};
 use plumbline_model::StereoCameras;
 use plumbline_model::frame::{Head, LeftCamera, Pose};
@@ -24,6 +25,8 @@ pub struct Accepted<'a> {
     pub cameras: Option<&'a StereoCameras>,
     /// How the eyes sit in the head.
     pub head_from_left: Option<Pose<Head, LeftCamera>>,
+    /// How well that is known.
+    pub mounted: Option<Mounted>,
     /// Where the touchscreen lies.
     pub screen: Option<&'a Touchscreen>,
     /// Effects.
@@ -44,6 +47,7 @@ impl Accepted<'_> {
         same_effects
             && rig.eyes.cameras == *self.cameras.unwrap_or(&described.eyes.cameras)
             && rig.eyes.head_from_left == self.head_from_left.unwrap_or(described.eyes.head_from_left)
+            && model.mounted() == self.mounted.as_ref()
             && rig.touchscreen == *self.screen.unwrap_or(&described.touchscreen)
     }
 
@@ -63,14 +67,20 @@ impl Accepted<'_> {
             rig.touchscreen = screen.clone();
         }
         let rig = Arc::new(rig);
-        match self.effects {
-            None => Ok(RobotModel::nominal(rig)),
+        let model = match self.effects {
+            None => RobotModel::nominal(rig),
             Some(effects) => {
                 let effects = effects.for_eyes_of(&rig);
-                RobotModel::new(rig, effects)
+                RobotModel::new(rig, effects)?
             }
-        }
+        };
+        Ok(model.with_mounted(self.mounted))
     }
+}
+
+/// How well a mount is known.
+pub fn mounted(mount: &MountCalibration) -> Mounted {
+    Mounted { covariance: mount.covariance, rest_sigma_rad: mount.angle_sigma_rad }
 }
 
 /// What the operator is told of effects that were found with other eyes; `None`: there are none.
@@ -103,6 +113,7 @@ pub fn in_use(folder: &Path, described: &Rig) -> Result<RobotModel, ModelInUseEr
     let accepted = Accepted {
         cameras: calibration.as_ref().map(|calibration| &calibration.cameras),
         head_from_left: mount.as_ref().map(|mount| mount.head_from_left),
+        mounted: mount.as_ref().map(mounted),
         screen: placement.as_ref().map(|placement| &placement.screen),
         effects: Some(&effects),
     };

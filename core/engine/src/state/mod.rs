@@ -38,7 +38,7 @@ use crate::labels::work::LabelsWork;
 use crate::live::{ProbeInput, ProbeOutput, RectifyInput, RectifyOutput};
 use crate::mount::MountWorkflow;
 use crate::recording::{Recorder, RecordingWorkflow};
-use crate::rig_models::{Accepted, other_eyes};
+use crate::rig_models::{Accepted, mounted, other_eyes};
 use crate::robot::view::{Connection, RobotView};
 use crate::robot::{News, RobotControl, TouchNews};
 use crate::source::view::SourceView;
@@ -244,6 +244,7 @@ impl State {
         let accepted = Accepted {
             cameras: eyes.map(|calibration| &calibration.cameras),
             head_from_left: mount.map(|mount| mount.head_from_left),
+            mounted: mount.map(|mount| mounted(mount)),
             screen: touch.of(world).screen(),
             effects: gap.of(world).model().filter(|effects| {
                 !self.refused.as_ref().is_some_and(|refused| Arc::ptr_eq(refused, effects))

@@ -27,7 +27,7 @@ mod votes;
 use image::RgbImage;
 use plumbline_model::{Detection, Eye, Pixel, Raw, StereoCalibration};
 
-pub use options::PlaceOptions;
+pub use options::{Body, PlaceOptions};
 pub use rates::{ClassRates, Rates};
 pub use types::{
     Disagreement, Estimate, LeakWarning, NoPlace, ObjectPlace, Place, RangeFrom, Seen, Unpaired,
@@ -80,7 +80,9 @@ impl PlaceFinder {
         for matched in &self.pairing.pairs {
             let (l, r) = (&lefts[matched.left], &rights[matched.right]);
             let shapes = [&l.shape, &r.shape];
-            let place = rig.place(&mut self.matcher, [left.0, right.0], shapes, &self.options);
+            let surer = if r.detection.confidence > l.detection.confidence { r } else { l };
+            let body = self.options.body(surer.detection.class);
+            let place = rig.place(&mut self.matcher, [left.0, right.0], shapes, body, &self.options);
             out.push(paired(l, r, matched, place.ok_or(NoPlace::DoNotMeet)));
         }
         for &(eye, index, why) in &self.pairing.alone {

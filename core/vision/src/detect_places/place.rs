@@ -8,7 +8,7 @@ use crate::locate::epipolar::{EpipolarGeometry, EpipolarRay};
 
 use super::boxes::EpipolarBox;
 use super::matching::{Matcher, Matching};
-use super::options::PlaceOptions;
+use super::options::{Body, PlaceOptions};
 use super::pairing::px_rad;
 use super::types::{Disagreement, Estimate, LeakWarning, NoPlace, Place, RangeFrom};
 use super::uncertainty::{Sigmas, add_along, by_calibration, triangulate};
@@ -19,21 +19,24 @@ use super::votes::Votes;
 pub(super) struct Rig {
     pub geometry: EpipolarGeometry,
     covariance: Option<ParameterCovariance>,
+    /// How well a place of these images can be matched at best, raw px: lens blur and color mosaic move
+    /// every feature a little. The calibration has measured it by its corners.
+    image_sigma_px: f64,
 }
 
-/// From the middle of the matched surface to the middle of the body, as a share of half the smaller
-/// side of the box, and its standard deviation. A ball's visible half lies 0.67 radii before its
-/// middle on average, its outline 0 (rendered balls come out at 0.4); a lying banana or an open hand
-/// is flatter or deeper than wide.
-const HALF_DEPTH: [f64; 2] = [0.45, 0.3];
-/// The same for what a box is longer than broad, as a share of half of that.
+/// Used for a calibration that does not say how well it fits, raw px.
+const UNKNOWN_IMAGE_SIGMA_PX: f64 = 0.05;
+/// How far edges of boxes are off before both eyes' boxes are compared, as a share of
+/// [`PlaceOptions::edge_sigma_px`], and as how many measured edges that counts. Renderings show 0.2 of it,
+/// photographs of the real eyes 0.4 (boxes drawn by hand) to 1 (boxes of a detector).
+const ASSUMED_SHARE: f64 = 0.7;
+const ASSUMED_EDGES: f64 = 2.0;
+/// Something long may lie along the ray as well as across it: standard deviation of how deep it is, as a
+/// share of half of what its box is longer than broad.
 const LONG_SIGMA: f64 = 0.2;
-/// The middle of a box is not quite that of the body in it: share of the box's side, as a standard
-/// deviation.
-const OFF_MIDDLE: f64 = 0.04;
-/// How well surfaces of toys can be matched at best, raw px: gloss that moves with the eye, outlines
-/// that are different places for each eye, the mosaic of the sensor.
-const MATCH_SIGMA_PX: f64 = 0.25;
+/// What moves edges of boxes (blur, eyes that are not read at the same moment, lenses that are not quite
+/// as calibrated) moves what is matched, too: by this share of it.
+const MATCH_SHARE: f64 = 0.3;
 /// Contradictions below this are chance, standard deviations.
 const DISAGREE_SIGMAS: f64 = 3.0;
 /// How far from where the boxes put it the surface is looked for: this many standard deviations…
@@ -45,7 +48,8 @@ impl Rig {
     pub fn new(calibration: Option<&StereoCalibration>) -> Result<Self, NoPlace> {
         let calibration = calibration.ok_or(NoPlace::NoCalibration)?;
         let geometry = EpipolarGeometry::new(&calibration.cameras).ok_or(NoPlace::NoBaseline)?;
-        Ok(Self { geometry, covariance: calibration.covariance.clone() })
+        let image_sigma_px = calibration.summary.as_ref().map_or(UNKNOWN_IMAGE_SIGMA_PX, |s| s.rms_stereo_px);
+        Ok(Self { geometry, covariance: calibration.covariance.clone(), image_sigma_px })
     }
 
     /// Where the object of two boxes is.
@@ -54,31 +58,34 @@ impl Rig {
         matcher: &mut Matcher,
         images: [&RgbImage; 2],
         [left, right]: [&EpipolarBox; 2],
+        body: Body,
         options: &PlaceOptions,
     ) -> Option<Place> {
-        let view = View::new(&self.geometry, left, right);
+        let view = View::new(&self.geometry, left, right, body);
         let box_rad = left.middle.along_rad - right.middle.along_rad;
         let by_boxes = self.geometry.point(&view.ray, box_rad)?;
-        let half_depth = HalfDepth::new(&self.geometry, &view, by_boxes.range_m(), [left, right], box_rad);
+        let half_depth =
+            HalfDepth::new(&self.geometry, &view, by_boxes.range_m(), [left, right], box_rad, body);
 
         let reach_rad = REACH_SIGMAS * view.disparity_sigma_rad.hypot(half_depth.sigma_rad)
             + LEAST_REACH_PX * view.px_rad;
         let surface_rad = box_rad + half_depth.rad;
         let matching =
             matcher.find(&self.geometry, images, left, surface_rad, [reach_rad, half_depth.spread_rad]);
-        let fused = Fused::new(&view, box_rad, &half_depth, matching.as_ref());
+        let matched = matching.as_ref().map(|matching| self.by_votes(&view, matching, &half_depth));
+        let fused = Fused::new(&view, box_rad, matched);
 
         let middle = self.estimate(&view, fused.middle_rad, fused.sigma_rad)?;
         let surface = match &matching {
             Some(matching) => {
-                let sigma_rad = matching.sigma_rad.hypot(MATCH_SIGMA_PX * view.px_rad);
+                let sigma_rad = self.surface_sigma_rad(&view, matching);
                 self.estimate(&view, matching.disparity_rad, sigma_rad * fused.inflation)?
             }
             None => self.before(&middle, &half_depth)?,
         };
         let range_m = |disparity_rad: f64| self.geometry.point(&view.ray, disparity_rad).map(|p| p.range_m());
         let disagreement = fused.disagreement_sigmas.and_then(|sigmas| {
-            let by_m = range_m(matching.as_ref()?.disparity_rad - half_depth.rad)? - range_m(box_rad)?;
+            let by_m = range_m(matched?.middle_rad)? - range_m(box_rad)?;
             Some(Disagreement { by_m, sigmas })
         });
         let leak =
@@ -95,6 +102,18 @@ impl Rig {
             disagreement,
             leak,
         })
+    }
+
+    /// The middle by the surface that most pixels voted for.
+    fn by_votes(&self, view: &View, matching: &Matching, half_depth: &HalfDepth) -> Matched {
+        let sigma_rad = self.surface_sigma_rad(view, matching).hypot(half_depth.sigma_rad);
+        Matched { middle_rad: matching.disparity_rad - half_depth.rad, sigma_rad }
+    }
+
+    /// How well the disparity of the matched surface is known, rad.
+    fn surface_sigma_rad(&self, view: &View, matching: &Matching) -> f64 {
+        let images_px = self.image_sigma_px.hypot(MATCH_SHARE * view.edge_sigma_px);
+        matching.sigma_rad.hypot(images_px * view.px_rad)
     }
 
     fn estimate(&self, view: &View, disparity_rad: f64, disparity_sigma_rad: f64) -> Option<Estimate> {
@@ -154,10 +173,19 @@ impl Rig {
     }
 }
 
+/// The disparity of the body's middle by matched pixels, and its standard deviation, rad.
+#[derive(Clone, Copy)]
+struct Matched {
+    middle_rad: f64,
+    sigma_rad: f64,
+}
+
 /// The ray of the object's middle and how well it is known.
 struct View {
     ray: EpipolarRay,
     px_rad: f64,
+    /// Of the edges of the boxes, as far as both eyes tell, raw px.
+    edge_sigma_px: f64,
     plane_sigma_rad: f64,
     along_sigma_rad: f64,
     /// Of the disparity between the middles of the boxes.
@@ -165,9 +193,12 @@ struct View {
 }
 
 impl View {
-    fn new(geometry: &EpipolarGeometry, left: &EpipolarBox, right: &EpipolarBox) -> Self {
+    fn new(geometry: &EpipolarGeometry, left: &EpipolarBox, right: &EpipolarBox, body: Body) -> Self {
         let px_rad = px_rad(geometry, Eye::Left);
-        let [l, r] = [left.middle_sigma_px(), right.middle_sigma_px()];
+        let share = edges_share(left, right, px_rad);
+        let [l, r] = [left, right].map(|shape| shape.middle_sigma_px().map(|sigma_px| sigma_px * share));
+        let edge_sigma_px =
+            share * left.edge_sigma_px.into_iter().chain(right.edge_sigma_px).fold(f64::INFINITY, f64::min);
         // Both eyes measure the plane.
         let weight = r[1].powi(2) / (l[1].powi(2) + r[1].powi(2));
         let plane_rad = weight * left.middle.plane_rad + (1.0 - weight) * right.middle.plane_rad;
@@ -175,12 +206,25 @@ impl View {
         Self {
             ray,
             px_rad,
-            plane_sigma_rad: (weight.sqrt() * l[1] * px_rad).hypot(OFF_MIDDLE * left.height_rad())
+            edge_sigma_px,
+            plane_sigma_rad: (weight.sqrt() * l[1] * px_rad).hypot(body.middle_sigma * left.height_rad())
                 / ray.along_rad.cos(),
-            along_sigma_rad: (l[0] * px_rad).hypot(OFF_MIDDLE * left.width_rad()),
+            along_sigma_rad: (l[0] * px_rad).hypot(body.middle_sigma * left.width_rad()),
             disparity_sigma_rad: l[0].hypot(r[0]) * px_rad,
         }
     }
+}
+
+/// How far edges of boxes are off, as a share of the standard deviations of their edges: both eyes' boxes
+/// have top and bottom in the same epipolar planes.
+fn edges_share(left: &EpipolarBox, right: &EpipolarBox, px_rad: f64) -> f64 {
+    let [l, r] = [left.edge_sigma_px, right.edge_sigma_px];
+    let across = left.middle.along_rad.cos() / px_rad;
+    let top = (right.planes_rad[0] - left.planes_rad[0]) * across / l[1].hypot(r[1]);
+    let bottom = (right.planes_rad[1] - left.planes_rad[1]) * across / l[3].hypot(r[3]);
+    let found = [top, bottom];
+    let squares: f64 = found.iter().map(|off| off * off).sum();
+    ((ASSUMED_EDGES * ASSUMED_SHARE.powi(2) + squares) / (ASSUMED_EDGES + found.len() as f64)).sqrt()
 }
 
 /// From the matched surface to the middle of the body.
@@ -203,13 +247,14 @@ impl HalfDepth {
         range_m: f64,
         boxes: [&EpipolarBox; 2],
         disparity_rad: f64,
+        body: Body,
     ) -> Self {
         let sides = || boxes.iter().flat_map(|shape| [shape.width_rad(), shape.height_rad()]);
         let shorter_m = sides().fold(f64::INFINITY, f64::min) * range_m;
         let longer_m = sides().fold(0.0, f64::max) * range_m;
-        let m = HALF_DEPTH[0] * 0.5 * shorter_m;
+        let m = body.depth[0] * 0.5 * shorter_m;
         // Something long may lie along the ray as well as across it.
-        let sigma_m = HALF_DEPTH[1] * 0.5 * shorter_m + LONG_SIGMA * 0.5 * (longer_m - shorter_m);
+        let sigma_m = body.depth[1] * 0.5 * shorter_m + LONG_SIGMA * 0.5 * (longer_m - shorter_m);
         // Not nearer than half way to the eyes, whatever the box claims.
         let nearer_m = (range_m - m).max(0.5 * range_m);
         let nearer_rad = geometry.disparity_rad(&view.ray, nearer_m * view.ray.along_rad.cos());
@@ -236,16 +281,13 @@ struct Fused {
 }
 
 impl Fused {
-    fn new(view: &View, box_rad: f64, half_depth: &HalfDepth, matching: Option<&Matching>) -> Self {
+    fn new(view: &View, box_rad: f64, matched: Option<Matched>) -> Self {
         let box_variance = view.disparity_sigma_rad.powi(2);
-        let Some(matching) = matching else {
+        let Some(Matched { middle_rad: match_rad, sigma_rad }) = matched else {
             let sigma_rad = view.disparity_sigma_rad;
             return Self { middle_rad: box_rad, sigma_rad, inflation: 1.0, disagreement_sigmas: None };
         };
-        let match_rad = matching.disparity_rad - half_depth.rad;
-        let match_variance = matching.sigma_rad.powi(2)
-            + (MATCH_SIGMA_PX * view.px_rad).powi(2)
-            + half_depth.sigma_rad.powi(2);
+        let match_variance = sigma_rad.powi(2);
         let total = box_variance + match_variance;
         let sigmas = (match_rad - box_rad).abs() / total.sqrt();
         let disagrees = sigmas > DISAGREE_SIGMAS;
