@@ -240,3 +240,21 @@ fn looking_elsewhere_that_screen_says_its_own() {
     assert!(says(&window, "Commissioning 3 of 7: place the screen"));
     assert!(says(&window, "Drag a joint or choose a pose"));
 }
+
+#[test]
+fn before_a_second_try_it_is_said_why_and_what_will_move() {
+    let mut view = at(CommissionStep::Grasp);
+    let run = plumbline_engine::view::GraspRun {
+        name: "run".to_owned(),
+        tries: [2, 3],
+        again: Some("the hand closed beside the tomato, which is where it was".to_owned()),
+        ..Default::default()
+    };
+    let grasp = Arc::make_mut(&mut view.grasp);
+    grasp.phase = plumbline_engine::view::GraspPhase::Grasping { paused: false, ending: false };
+    grasp.run = Some(Arc::new(run));
+    let window = Fake::over(view).window(on(Screen::Grasp));
+    assert!(says(&window, "The hand closed beside the tomato, which is where it was."));
+    assert!(says(&window, "Try 2 of 3: the hand opens, the arm goes back to where it began"));
+    assert!(!says(&window, "Next: "), "nothing is to be pressed but what stops it");
+}

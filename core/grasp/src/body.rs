@@ -66,6 +66,8 @@ pub struct ServoState {
     pub angle_rad: f64,
     /// Share of the full torque in the joint's sense, −1 to 1; `None`: it does not say.
     pub load: Option<f64>,
+    /// Current of its motor, A; `None`: it does not say.
+    pub current_a: Option<f64>,
     /// °C; `None`: it does not say.
     pub temperature_c: Option<f64>,
 }

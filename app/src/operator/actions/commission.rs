@@ -91,9 +91,12 @@ impl CommissionAction {
 }
 
 fn lay_out(view: &View) -> Vec<Command> {
-    let class = Some(FIRST_CLASS.to_owned());
-    let target = GraspCommand::Target(GraspTarget { class, near_m: None });
-    let mut commands: Vec<Command> = vec![target.into()];
+    let target = GraspTarget { class: Some(FIRST_CLASS.to_owned()), near_m: None };
+    let mut commands: Vec<Command> = vec![];
+    // Nothing else can be chosen while the arm goes home.
+    if view.grasp.target != target {
+        commands.push(GraspCommand::Target(target).into());
+    }
     if view.twin.running {
         if view.twin.board.is_some() {
             commands.push(TwinCommand::HideBoard.into());

@@ -48,6 +48,9 @@ pub fn short(effect: &NamedEffect) -> String {
 pub fn named(id: &str, site: &str, title: &str) -> String {
     let kind = id.replace('-', " ");
     match title.split_once(": ") {
+        Some((whose, _)) if whose.to_lowercase().starts_with("every ") => {
+            format!("{kind} of {}", lower(whose))
+        }
         Some((whose, _)) => format!("{kind} of the {}", lower(whose)),
         None if matches!(site, "" | "screen" | "tip" | "base" | "eyes") => kind,
         None => format!("{kind} of {}", site.replace('_', " ")),
@@ -157,6 +160,7 @@ mod tests {
     fn effects_are_called_by_kind_and_place() {
         let title = "Right elbow: zero position off";
         assert_eq!(named("joint-zero", "r_elbow_y", title), "joint zero of the right elbow");
+        assert_eq!(named("axis-skew", "", "Every joint: axis not square"), "axis skew of every joint");
         assert_eq!(named("screen-tilt", "screen", "screen tilted or shifted"), "screen tilt");
         assert_eq!(named("link-length", "forearm_r", "wrong length"), "link length of forearm r");
     }

@@ -1,5 +1,6 @@
 //! The seven steps: what is done with its figure and date, what comes now, what waits.
 
+use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align2, RichText, ScrollArea, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
 use plumbline_engine::View;
 use plumbline_engine::view::{CommissionState, CommissionStep, CommissionStepView};
@@ -57,10 +58,11 @@ fn row(ui: &mut Ui, view: &CommissionStepView, course: Option<&Course>) {
     };
     let painter = ui.painter().with_clip_rect(rect);
     painter.text(pos2(left, rect.center().y - 9.0), Align2::LEFT_CENTER, name, strong, ink);
-    let text = painter.layout(below, small, tokens.text_weak, (rect.right() - left - space::S).max(40.0));
     // One line; the whole of it under the mouse.
-    let lines = painter.with_clip_rect(rect.with_min_y(rect.center().y).with_max_y(rect.bottom() - 4.0));
-    lines.galley(pos2(left, rect.center().y + 2.0), text, tokens.text_weak);
+    let mut line = LayoutJob::simple_singleline(below, small, tokens.text_weak);
+    line.wrap = TextWrapping::truncate_at_width((rect.right() - left - space::S).max(40.0));
+    let line = painter.layout_job(line);
+    painter.galley(pos2(left, rect.center().y + 2.0), line, tokens.text_weak);
 }
 
 fn circle(ui: &Ui, center: egui::Pos2, view: &CommissionStepView) {

@@ -6,13 +6,17 @@ use plumbline_widgets::theme::{self, Role};
 
 const HEIGHT: f32 = 42.0;
 const RADIUS: f32 = 6.5;
+/// The widest title needs so much, and each this height.
+const TITLE: f32 = 58.0;
+const LINE: f32 = 14.0;
 
 /// All steps, those that are done filled, the one under way ringed, the one where it ended crossed.
 pub fn show(ui: &mut Ui, lamps: &[(GraspStep, LampState)]) {
     let tokens = theme::tokens(ui);
     let width = ui.available_width();
-    let (rect, _) = ui.allocate_exact_size(vec2(width, HEIGHT), Sense::hover());
     let each = width / lamps.len().max(1) as f32;
+    let height = if each < TITLE { HEIGHT + LINE } else { HEIGHT };
+    let (rect, _) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
     let font = FontSelection::Style(TextStyle::Small).resolve(ui.style());
     let y = rect.top() + 11.0;
     for (i, (step, lamp)) in lamps.iter().enumerate() {
@@ -46,8 +50,11 @@ pub fn show(ui: &mut Ui, lamps: &[(GraspStep, LampState)]) {
                 painter.line_segment([at - vec2(out, -out), at + vec2(out, -out)], stroke);
             }
         }
-        painter.text(pos2(x, rect.bottom() - 4.0), Align2::CENTER_BOTTOM, step.title(), font.clone(), color);
-        let area = egui::Rect::from_center_size(at, vec2(each, HEIGHT));
+        // Where titles would meet, every other one stands a line lower.
+        let lower = if each < TITLE && i % 2 == 1 { LINE } else { 0.0 };
+        let below = pos2(x, y + 2.0 * RADIUS + lower);
+        painter.text(below, Align2::CENTER_TOP, step.title(), font.clone(), color);
+        let area = egui::Rect::from_center_size(at, vec2(each, 2.0 * (RADIUS + 2.0)));
         let response = ui.interact(area, ui.scope_id().with(("step", i)), Sense::hover());
         let label = format!("{} {words}", step.title());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, &label));

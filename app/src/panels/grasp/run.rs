@@ -121,9 +121,12 @@ fn planned(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             turns.join(", ")
         ),
     ));
+    // The words beside it need about so much, points.
+    ui.spacing_mut().slider_width = (ui.available_width() - 150.0).clamp(60.0, 140.0);
     let slider =
         Slider::new(&mut cx.state.grasp.along, 0.0..=1.0).show_value(false).text("ghost along the way");
     ui.add(slider);
+    ui.reset_style();
     ui.add_space(space::S);
 }
 

@@ -98,7 +98,7 @@ fn fit(ui: &mut Ui, left_out: Option<&str>, rms_px: Option<f64>) {
 
 /// In a column of its own.
 fn head_label(ui: &mut Ui, pan_rad: f64, tilt_rad: f64) -> egui::Response {
-    let (rect, response) = ui.allocate_exact_size(egui::vec2(122.0, ROW), egui::Sense::hover());
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(132.0, ROW), egui::Sense::hover());
     let font = egui::TextStyle::Body.resolve(ui.style());
     let text = head_text(pan_rad, tilt_rad);
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));

@@ -188,6 +188,7 @@ impl Body for LedBody<'_> {
                 joint: reading.joint,
                 angle_rad: reading.angle_rad?,
                 load: reading.load,
+                current_a: reading.current_a,
                 temperature_c: reading.temperature_c,
             })
         };

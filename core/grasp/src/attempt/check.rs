@@ -15,8 +15,10 @@ use crate::see::Seen;
 const THUMB_SHARE: f64 = 0.3;
 /// A thumb or a finger that presses with less than this share of its torque presses on nothing.
 const PRESSES: f64 = 0.1;
-/// Where servos do not say how hard they press: a finger that is kept open by more than this holds something,
-/// rad.
+/// The same by the currents of their motors, A: those of a hand say no load. Fingers that press with a fifth
+/// of their torque take several times as much.
+const PRESSES_A: f64 = 0.015;
+/// Where servos say neither: a finger that is kept open by more than this holds something, rad.
 const HELD_RAD: f64 = 0.10;
 /// A thing that is seen this near to where it stood, and no higher than this over it, was left, m.
 const LEFT_M: f64 = 0.10;
@@ -86,20 +88,24 @@ impl Running<'_> {
         let open_rad: Vec<f64> =
             fingers.iter().map(|servo| (servo.angle_rad - closed[servo.joint]).abs()).collect();
         self.record.fingers_open_rad = Some(open_rad.iter().sum::<f64>() / open_rad.len().max(1) as f64);
-        let loads =
-            |servos: &[&ServoState]| servos.iter().map(|servo| servo.load).collect::<Option<Vec<_>>>();
-        Ok(match (loads(&fingers), loads(&thumb)) {
-            (Some(fingers), Some(thumb)) if !thumb.is_empty() => is_pinched(&fingers, &thumb),
-            _ => open_rad.iter().any(|open_rad| *open_rad > HELD_RAD),
-        })
+        let pinched = |says: fn(&ServoState) -> Option<f64>, presses: f64| {
+            let all =
+                |servos: &[&ServoState]| servos.iter().map(|servo| says(servo)).collect::<Option<Vec<_>>>();
+            let (fingers, thumb) = (all(&fingers)?, all(&thumb)?);
+            (!thumb.is_empty()).then(|| is_pinched(&fingers, &thumb, presses))
+        };
+        let pinched =
+            pinched(|servo| servo.load, PRESSES).or_else(|| pinched(|servo| servo.current_a, PRESSES_A));
+        Ok(pinched.unwrap_or_else(|| open_rad.iter().any(|open_rad| *open_rad > HELD_RAD)))
     }
 }
 
-/// Whether what presses the fingers presses the thumb, by shares of the torque of their servos.
-fn is_pinched(fingers: &[f64], thumb: &[f64]) -> bool {
+/// Whether what presses the fingers presses the thumb, by what their servos say of their torque; less than
+/// `presses` is nothing.
+fn is_pinched(fingers: &[f64], thumb: &[f64], presses: f64) -> bool {
     let strongest = fingers.iter().fold(0.0f64, |strongest, load| strongest.max(load.abs()));
     let thumb: f64 = thumb.iter().map(|load| load.abs()).sum();
-    strongest > PRESSES && thumb > PRESSES.max(THUMB_SHARE * strongest)
+    strongest > presses && thumb > presses.max(THUMB_SHARE * strongest)
 }
 
 /// Whether both eyes see it in the boxes in which the chosen one was before.
@@ -187,7 +193,7 @@ mod tests {
             ([-0.0, -1.0], [-0.3, 0.12]),
             ([-0.0, -1.0], [-0.4, 0.07]),
         ] {
-            assert!(is_pinched(&fingers, &thumb), "{fingers:?} {thumb:?}");
+            assert!(is_pinched(&fingers, &thumb, PRESSES), "{fingers:?} {thumb:?}");
         }
         // A tomato that slipped out, fingers that press on the hand itself, fingers that closed around nothing.
         for (fingers, thumb) in [
@@ -196,7 +202,7 @@ mod tests {
             ([-0.0, -0.03], [-0.02, 0.02]),
             ([0.0, 0.0], [0.0, 0.0]),
         ] {
-            assert!(!is_pinched(&fingers, &thumb), "{fingers:?} {thumb:?}");
+            assert!(!is_pinched(&fingers, &thumb, PRESSES), "{fingers:?} {thumb:?}");
         }
     }
 

@@ -46,6 +46,7 @@ impl Body for TwinBody {
             joint: servo.joint,
             angle_rad: servo.angle_rad,
             load: Some(servo.load),
+            current_a: None,
             temperature_c: Some(servo.temperature_c),
         });
         Ok(servos.collect())

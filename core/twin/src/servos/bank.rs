@@ -159,11 +159,18 @@ impl Bank {
         memory.set_si(Item::PresentLoad, load);
         memory.set_si(Item::PresentVoltage, reading.voltage_v);
         memory.set_si(Item::PresentTemperature, reading.temperature_c);
-        // Full load of an MX-64 draws about 4 A.
-        memory.set_si(Item::PresentCurrent, 4.0 * load);
+        memory.set_si(Item::PresentCurrent, current_a(memory.table(), load));
         memory.set(Item::Moving, u16::from(speed_rad_s.abs() > STANDING_RAD_S));
         unit.watch(reading, dt_s);
     }
+}
+
+/// Full load of an MX-64 draws about 4 A; the small motors of a hand draw a quarter of an ampere, and say no
+/// direction.
+fn current_a(table: &ControlTable, load: f64) -> f64 {
+    let says_direction =
+        table.register(Item::PresentCurrent).is_some_and(|register| register.raw(-1.0).is_some());
+    if says_direction { 4.0 * load } else { 0.25 * load.abs() }
 }
 
 impl Unit {

@@ -17,7 +17,8 @@ pub(super) fn said(view: &View) -> Said {
     match &of_view.phase {
         GraspPhase::Idle => {}
         phase if phase.is_paused() => return grasp::grasp(view).into(),
-        _ => return Said::wait("Grasps. The arm moves; Esc or space stops.", None),
+        GraspPhase::Planning => return Said::wait("Looks and plans. Nothing moves.", None),
+        _ => return Said::wait(grasp::under_way(of_view), None),
     }
     if let Some(trouble) = robot::trouble(&view.robot) {
         return trouble.into();
@@ -75,7 +76,7 @@ fn lay_out(view: &View, again: bool) -> Said {
     }
     if again {
         // The hand may hold it, or stand where it is to lie.
-        let sentence = format!("The arm goes home with an open hand; the tomato is laid {place}.");
+        let sentence = format!("The right arm goes home; an unseen hand lays the tomato {place}.");
         let home = Action::Grasp(GraspAction::Hand(HandStep::Home));
         return Said::press(sentence, "Lay the tomato out again", vec![home, lay]);
     }

@@ -10,9 +10,11 @@ pub use title::{done_in_words, name, spent};
 
 use plumbline_engine::View;
 use plumbline_engine::view::{CommissionStep, GraspPhase, JobState};
+use plumbline_widgets::format;
 
 use super::sentence::Guidance;
 use super::{failed_inside, gap, robot};
+use crate::operator::snapshot::gap::Finding;
 use crate::operator::{Action, CommissionAction, GapAction, MountAction, Screen};
 
 /// Where commissioning is, and what comes next.
@@ -160,13 +162,23 @@ fn mount(view: &View) -> Said {
         && *actions == [accept]
     {
         let error = view.mount.proposal.as_ref().map(|proposal| proposal.rms_px);
-        let error = error.map_or_else(String::new, plumbline_widgets::format::px);
+        let error = error.map_or_else(String::new, format::px);
         said.sentence = format!("Solved: {error} are left over in the images. Accepting puts it in use.");
     }
     said
 }
 
 /// What is found is added; the touches of the check tell whether that helped.
+/// What was found and what it is good for; all of it stands in the panes of the gap.
+fn in_short(finding: &Finding, addable: &[usize]) -> String {
+    let named = addable.iter().filter_map(|index| finding.effects.get(*index));
+    let names: Vec<String> = named.map(crate::operator::words::gap::short).collect();
+    let closed = finding.shown.closure.map_or_else(String::new, |closure| {
+        format!(" On touches that were held out it closes {} of the gap.", format::percent(closure))
+    });
+    format!("Found: {}.{closed} Adding puts it into the model in use; nothing moves.", names.join(", "))
+}
+
 fn effects(view: &View) -> Said {
     let gap_view = &view.gap;
     let find = Action::Gap(GapAction::Find);
@@ -176,7 +188,7 @@ fn effects(view: &View) -> Said {
     let addable = gap_view.addable();
     if gap::is_of_choice(gap_view) && !addable.is_empty() {
         let label = crate::operator::words::gap::add_label(view, &addable);
-        let sentence = gap_view.finding().map_or_else(String::new, |finding| finding.sentence.clone());
+        let sentence = gap_view.finding().map_or_else(String::new, |finding| in_short(finding, &addable));
         return Said::press(sentence, label, vec![Action::Gap(GapAction::Add)]);
     }
     Said::press(

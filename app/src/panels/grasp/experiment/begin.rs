@@ -91,7 +91,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.horizontal_wrapped(|ui| {
         let places = [(Places::Published, "22 published places"), (Places::Three, "3 places")];
         choice(ui, "Places", &mut draft.places, &places);
-        let label = ui.label("attempts at each");
+    });
+    ui.horizontal(|ui| {
+        let label = ui.label("Attempts at each");
         ui.add(DragValue::new(&mut draft.attempts).range(1..=20)).labelled_by(label.id);
     });
     ui.horizontal_wrapped(|ui| {

@@ -164,8 +164,12 @@ fn stopped_in_any_step_the_arm_holds_and_the_next_grasp_works() {
         bench.send(RobotCommand::ReleaseStop);
         bench.until("release", |view| !view.robot.stopped);
         for step in [HandStep::Open, HandStep::Home] {
+            // A hand that is open already is open at once.
+            let sent = Instant::now();
             bench.send(GraspCommand::Hand(step));
-            bench.until("it to begin", |view| view.grasp.phase.moves());
+            bench.until("it to begin", |view| {
+                view.grasp.phase.moves() || sent.elapsed() > Duration::from_millis(700)
+            });
             bench.until_idle();
         }
         bench.place(Toy::Tomato, EASY_M);

@@ -1,7 +1,7 @@
 //! Grasps of the live twin in a lab that was commissioned: how many are held.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use plumbline_grasp::Method;
 use plumbline_twin::Toy;
@@ -62,6 +62,19 @@ fn six_places_in_a_lab() {
             began.elapsed().as_secs_f64(),
             view.twin.real_time_factor,
         );
+        // How long it stays in the hand, where that is asked.
+        let hold_s = std::env::var("PLUMBLINE_HOLD_S").ok().and_then(|s| s.parse::<u64>().ok()).unwrap_or(0);
+        for second in 1..=hold_s {
+            let later = Instant::now() + Duration::from_secs(1);
+            let view = bench.until("a second", |_| Instant::now() > later);
+            if !is_truly_lifted(&view, Toy::Tomato) {
+                println!("    it is lost after {second} s");
+                break;
+            }
+            if second == hold_s {
+                println!("    it is held for {hold_s} s");
+            }
+        }
     }
     println!("held {held}/{}", places.len());
 }
