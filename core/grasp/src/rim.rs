@@ -237,6 +237,7 @@ mod tests {
             posture,
             at_s: 0.0,
             seq: 0,
+            eyes_on_s: None,
         };
         let rim = Rim { sight: &blank, knowledge, thing };
         let seen = rim.outlines(&Unknowns::new(xy_m.x, xy_m.y, size.ln()), 0.0).expect("seen");

@@ -117,7 +117,7 @@ mod tests {
                 );
                 let sent = planner.arm().palm(plan.closing().expect("a way down")).coords.coords;
                 let beside = (sent.xy() - Vector3::new(x_m, y_m, 0.0).xy()).norm();
-                let off_m = (sent - plan.palm_m - headed.shift_m(&standing, plan.heading_rad)).norm();
+                let off_m = (sent - plan.palm_m - headed.shift_m(&standing, plan.heading_rad, false)).norm();
                 assert!(off_m < 1e-3, "{off_m}");
                 // The middle of the palm, or where the fingers close around the thing.
                 assert!(if centered { beside < 0.003 } else { beside > 0.010 }, "{centered} {beside}");
