@@ -21,6 +21,7 @@ pub fn readers() -> Vec<Reader> {
         Reader { finite: false, ..one("data-folder", &["data/"], 12, data_folder) },
         Reader { finite: false, ..one("grasp-record", &["data/grasps/"], 20, data_folder) },
         Reader { finite: false, ..one("commissioning", &["data/commission.json"], 20, data_folder) },
+        Reader { finite: false, ..one("touch-correction", &["data/touch_correction.json"], 10, data_folder) },
         Reader { finite: false, ..one("experiments", &["data/experiments/"], 10, data_folder) },
         one("experiment", &["data/experiments/"], 30, experiment),
         Reader { finite: false, ..one("journal", &["journal/journal.jsonl"], 40, replay) },

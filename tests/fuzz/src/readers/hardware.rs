@@ -5,6 +5,8 @@ use std::path::Path;
 use plumbline_hardware::dynamixel::{Deframer, Found, decode_instruction, decode_status};
 use plumbline_hardware::{Next, Replay, SourceOptions, SourceSpec, load_image, open};
 
+use plumbline_recording::{Recording, Topic};
+
 use super::{Reader, one};
 use crate::check::Heard;
 
@@ -23,6 +25,13 @@ pub fn readers() -> Vec<Reader> {
                 right: folder.join("videos/right.avi"),
             })
         }),
+        one("recording", &["recordings/"], 25, |folder| {
+            let file = folder.join("recordings/log.mcap");
+            match SourceSpec::from_paths(&[file.clone()]) {
+                Ok(spec) => source(&spec).and(rest_of_a_recording(&file)),
+                Err(error) => Heard::refused(error),
+            }
+        }),
         one("wire-protocol-1", &["wire/v1.bin"], 30, |folder| wire(&folder.join("wire/v1.bin"))),
     ]
 }
@@ -32,6 +41,17 @@ fn picture(file: &Path) -> Heard {
         Ok(loaded) => Heard::accepted((loaded.image.dimensions(), &loaded.notes)),
         Err(problem) => Heard::refused(problem),
     }
+}
+
+/// What is in it beside images; nothing where it cannot be opened.
+fn rest_of_a_recording(file: &Path) -> Vec<String> {
+    let Ok(mut recording) = Recording::open(file) else { return vec![] };
+    let told = Topic::ALL.map(|topic| match topic {
+        Topic::Joints => recording.joints().map(|told| format!("{told:?}")),
+        Topic::Notes => recording.notes().map(|told| format!("{told:?}")),
+        topic => recording.told(topic).map(|told| format!("{told:?}")),
+    });
+    told.into_iter().map(|told| told.unwrap_or_else(|error| error.to_string())).collect()
 }
 
 /// Opens a source and plays it.

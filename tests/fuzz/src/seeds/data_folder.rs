@@ -10,6 +10,7 @@ pub fn make(folder: &Path) -> Result<(), Problem> {
     put(folder, "data/sessions/one/progress.json", PROGRESS)?;
     put(folder, "data/grasps/2026-01-01T00-00-00Z_m5/record.json", GRASP)?;
     put(folder, "data/commission.json", COMMISSION)?;
+    put(folder, "data/touch_correction.json", "{\"correct_with\":\"effects\"}")?;
     put(folder, "data/experiments/one/experiment.json", EXPERIMENT)?;
     let attempt = ATTEMPT.replace("RECORD", GRASP);
     put(folder, "data/experiments/one/attempts/00001-m5.json", attempt)?;

@@ -5,6 +5,9 @@ use std::path::Path;
 
 use image::{DynamicImage, ImageFormat, Luma, Rgb, RgbImage, Rgba};
 
+use jiff::{SignedDuration, Timestamp};
+use plumbline_recording::{About, Attached, JointReading, Jpeg, Level, Note, RecordingWriter, Topic};
+
 use super::{Problem, put};
 
 pub fn make(folder: &Path) -> Result<(), Problem> {
@@ -32,6 +35,30 @@ pub fn make(folder: &Path) -> Result<(), Problem> {
             put(folder, &format!("pairs/{eye}/{name}"), encoded(&image, format)?)?;
         }
     }
+    recording(&folder.join("recordings"))
+}
+
+/// Both eyes for three seconds, with something of everything.
+fn recording(folder: &Path) -> Result<(), Problem> {
+    std::fs::create_dir_all(folder)?;
+    let start = Timestamp::from_second(1_780_000_000)?;
+    let rig = Attached {
+        name: "rig.toml".to_owned(),
+        media_type: "application/toml".to_owned(),
+        bytes: b"name = \"nico\"".to_vec(),
+    };
+    let about = About { rig: "nico".to_owned(), attached: vec![rig], ..About::default() };
+    let mut writer = RecordingWriter::create(&folder.join("log.mcap"), start, &about)?;
+    for number in 0..6_u8 {
+        let at = start + SignedDuration::from_millis(500 * i64::from(number));
+        let jpeg = Jpeg(encoded(&DynamicImage::ImageRgb8(picture(16, 12)), ImageFormat::Jpeg)?);
+        writer.pair(at, u64::from(number), [jpeg.clone(), jpeg], Some(0.001))?;
+        let joint = JointReading { name: "head_z".to_owned(), angle_rad: 0.1, speed_rad_s: None };
+        writer.joints(at, &[joint])?;
+        writer.note(at, &Note { level: Level::Warning, text: "hot".to_owned() })?;
+        writer.told(Topic::Commands, at, &serde_json::json!({ "command": number }))?;
+    }
+    writer.finish()?;
     Ok(())
 }
 
