@@ -5,8 +5,10 @@ use serde::{Deserialize, Serialize};
 
 /// Version of the files.
 pub const FORMAT: u32 = 1;
-/// An experiment has no more attempts: it would take years.
-const MOST_ATTEMPTS: usize = 1_000_000;
+/// An experiment has no more attempts: it would take a robot half a year.
+const MOST_ATTEMPTS: usize = 20_000;
+/// Names of twins and things are no longer, letters.
+const LONGEST_NAME: usize = 200;
 /// Things lie no farther from the robot than this, m.
 const FARTHEST_M: f64 = 10.0;
 /// A person puts a thing this near to where it belongs, m per axis (standard deviation).
@@ -58,6 +60,9 @@ impl Experiment {
         let all = parts.iter().try_fold(1usize, |all, part| all.checked_mul(*part));
         if all.is_none_or(|all| all > MOST_ATTEMPTS) {
             return Some(format!("more than {MOST_ATTEMPTS} attempts"));
+        }
+        if [&self.twin, &self.object].iter().any(|name| name.chars().count() > LONGEST_NAME) {
+            return Some(format!("a name of more than {LONGEST_NAME} letters"));
         }
         let far = self.positions_m.iter().find(|at_m| at_m.iter().any(|m| !(m.abs() <= FARTHEST_M)));
         far.map(|[x_m, y_m]| format!("a position at {x_m}, {y_m} m"))

@@ -384,3 +384,42 @@ fn parts_are_put_together_unless_they_disagree() {
     let said = store::merge(&[b, other], &folder.path().join("torn")).expect_err("they disagree").to_string();
     assert!(said.contains("says something else"), "{said}");
 }
+
+#[test]
+fn a_file_of_an_experiment_that_cannot_be_is_refused_with_what_is_wrong() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let sound = Experiment {
+        format: FORMAT,
+        twin: "lab".to_owned(),
+        methods: vec![Method::M5],
+        attempts: 2,
+        positions_m: vec![[0.3, 0.0]],
+        object: "Tomato".to_owned(),
+        seed: 1,
+    };
+    let write = |experiment: &Experiment| {
+        let text = serde_json::to_string(experiment).expect("plain data");
+        std::fs::write(folder.path().join("experiment.json"), text).expect("written");
+    };
+    for (wrong, why) in [
+        (Experiment { attempts: usize::MAX, ..sound.clone() }, "more than 20000 attempts"),
+        (Experiment { attempts: 65_535, ..sound.clone() }, "more than 20000 attempts"),
+        (Experiment { positions_m: vec![[0.3, 4e9]], ..sound.clone() }, "a position at 0.3, 4000000000 m"),
+        (Experiment { object: "o".repeat(70_000), ..sound.clone() }, "a name of more than 200 letters"),
+    ] {
+        write(&wrong);
+        let said = store::read_experiment(folder.path()).expect_err("it cannot be").to_string();
+        assert!(said.contains(why) && said.contains("delete it"), "{said}");
+    }
+    // An attempt at a position that the experiment has not.
+    write(&sound);
+    let attempts = folder.path().join("attempts");
+    std::fs::create_dir(&attempts).expect("made");
+    let record = Record::new(Method::M5, "Tomato", Timestamp::UNIX_EPOCH, "nominal".to_owned());
+    let trial = super::Trial { number: 0, position: 7, attempt: 0, method: Method::M5 };
+    let attempt = Attempt { trial, placed_m: [0.3, 0.0], record, judged: Judged::default() };
+    std::fs::write(attempts.join("00000-m5.json"), serde_json::to_string(&attempt).expect("plain data"))
+        .expect("written");
+    let said = store::attempts(folder.path(), &sound).expect_err("it cannot be").to_string();
+    assert!(said.contains("position 7"), "{said}");
+}
