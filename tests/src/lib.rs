@@ -10,7 +10,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::Node;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, WindowOptions};
 use plumbline_engine::watched::Trial;
 use plumbline_engine::{Engine, EngineSettings, View};
@@ -78,18 +79,22 @@ pub fn for_a_while(window: &mut Window, time: Duration) {
     until(window, "time to pass", |_| start.elapsed() > time);
 }
 
-/// Clicks what has exactly this label, once it is there.
+/// Clicks what has exactly this label, once it is there and can be.
 pub fn click(window: &mut Window, label: &str) {
-    until(window, label, |window| window.query_all_by_label(label).next().is_some());
+    until(window, label, |window| window.query_all_by_label(label).next().is_some_and(is_enabled));
     window.get_all_by_label(label).next().expect("just seen").click();
     window.run_steps(3);
 }
 
-/// Clicks the first thing whose label has these words, once it is there.
+/// Clicks the first thing whose label has these words, once it is there and can be.
 pub fn click_containing(window: &mut Window, words: &str) {
-    until(window, words, |window| window.query_all_by_label_contains(words).next().is_some());
+    until(window, words, |window| window.query_all_by_label_contains(words).next().is_some_and(is_enabled));
     window.get_all_by_label_contains(words).next().expect("just seen").click();
     window.run_steps(3);
+}
+
+fn is_enabled(node: Node<'_>) -> bool {
+    !node.accesskit_node().is_disabled()
 }
 
 /// Types a path into the field that has the focus, in place of what stands there.

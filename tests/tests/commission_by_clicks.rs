@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline_engine::view::{CommissionFigure, CommissionStep};
-use plumbline_tests::{Window, click, eye_renderer, for_a_while, until, view, window};
+use plumbline_tests::{Window, click, eye_renderer, until, view, window};
 
 /// The touches alone take minutes: the twin's clock is the real one.
 const LONGEST: Duration = Duration::from_secs(3000);
@@ -45,8 +45,8 @@ fn commission(scenario: &str) {
         assert!(last < 4, "{pressed:#?}, {:?}", view(&window).notices);
         pressed.push(label.clone());
         click(&mut window, &label);
-        // What was asked for has to show before anybody reads the next label.
-        for_a_while(&mut window, Duration::from_millis(1500));
+        // It is gray once it was pressed; then what was asked for shows, or it can be pressed again.
+        until(&mut window, "the press", |window| next(window).is_none());
     }
 
     let done = view(&window).commission.clone();

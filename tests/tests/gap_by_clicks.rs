@@ -4,14 +4,17 @@
 
 #![allow(clippy::print_stdout, reason = "figures of the run, with --nocapture")]
 
+use std::sync::Arc;
+
 use plumbline_blind::bench::Bench;
 use plumbline_blind::case::{Case, make_or_smaller};
 use plumbline_blind::design::{Design, Planner};
 use plumbline_blind::recipe::{Family, Recipe};
 use plumbline_blind::secret::Kind;
+use plumbline_engine::View;
 use plumbline_engine::gap::Verdict;
 use plumbline_engine::view::StepState;
-use plumbline_tests::{Window, click, click_containing, type_over, until, view, window};
+use plumbline_tests::{Beginning, Window, click, click_containing, type_over, until, view, window};
 
 /// A rich plan with one effect of four noise deviations.
 fn hidden() -> Case {
@@ -43,6 +46,7 @@ fn a_hidden_effect_is_found_named_added_and_the_gap_shrinks() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let session = folder.path().join("a session from the lab");
     case.session.write(&session).expect("the session is written");
+    let beginning = Beginning::of(folder.path());
 
     let mut window = window(&folder.path().join("data"), None);
     click(&mut window, "Gap");
@@ -96,4 +100,15 @@ fn a_hidden_effect_is_found_named_added_and_the_gap_shrinks() {
     assert!(is_in_class, "hidden {secret:?}, found {effect:?}");
     assert!(shown.closure.is_some_and(|closure| closure > 0.8), "{shown:?}");
     assert!(left.finding.comparison.size_sigmas < 0.5 * found.finding.comparison.size_sigmas);
+    drop(found);
+
+    beginning.leads_to_what_is_shown(window, without_seconds);
+}
+
+/// How long a search took is of that start of the program.
+fn without_seconds(view: &mut View) {
+    let gap = Arc::make_mut(&mut view.gap);
+    for shown in [&mut gap.shown, &mut gap.beside].into_iter().flatten() {
+        Arc::make_mut(shown).finding.seconds = 0.0;
+    }
 }

@@ -6,24 +6,29 @@
 
 use std::time::Duration;
 
+use egui_kittest::kittest::Queryable as _;
 use plumbline_engine::models::Method;
 use plumbline_engine::view::{StepState, TouchFigures, TouchPhase};
 use plumbline_model::session::Session;
 use plumbline_tests::{Window, click, click_containing, for_a_while, until, view, window};
 
-/// Waits for the end of a run; a run that a busy machine interrupted goes on by a click.
+/// Waits for the end of a run; a run that a busy machine interrupted goes on by itself or by a click.
 fn finish_run(window: &mut Window, what: &str) {
+    const GO_ON: &str = "Go on with touch";
     until(window, what, |window| {
         matches!(view(window).touch.phase, TouchPhase::Running { .. } | TouchPhase::Paused { .. })
     });
     loop {
         until(window, what, |window| {
-            matches!(view(window).touch.phase, TouchPhase::Finished | TouchPhase::Paused { .. })
+            view(window).touch.phase == TouchPhase::Finished
+                || window.query_all_by_label_contains(GO_ON).next().is_some()
         });
         if view(window).touch.phase == TouchPhase::Finished {
             return;
         }
-        click_containing(window, "Go on with touch");
+        if let Some(button) = window.query_all_by_label_contains(GO_ON).next() {
+            button.click();
+        }
         for_a_while(window, Duration::from_millis(300));
     }
 }

@@ -153,8 +153,7 @@ pub fn percent(fraction: f64) -> String {
 
 /// A count with its noun: `1 pair`, `30 pairs`, `80 touches`.
 pub fn count(n: usize, singular: &str) -> String {
-    let ending = if singular.ends_with("ch") { "es" } else { "s" };
-    format!("{n} {singular}{}", if n == 1 { "" } else { ending })
+    plumbline_model::counted(n, singular)
 }
 
 /// A pixel position: `(312.4, 87.0)`; one decimal is what a pointer can tell.

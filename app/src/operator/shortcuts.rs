@@ -102,18 +102,20 @@ pub fn shortcut_text(ctx: &egui::Context, action: Action) -> Option<String> {
     Some(text.replace("Escape", "Esc").replace("Period", ".").replace("Comma", ","))
 }
 
-/// Whether Esc or space was pressed in this frame; takes nothing away.
-pub fn stop_asked(ctx: &egui::Context) -> bool {
+/// Whether what stops was pressed in this frame: space, and Esc where it does; takes nothing away.
+pub fn stop_asked(ctx: &egui::Context, escape_stops: bool) -> bool {
     let typing = ctx.text_edit_focused();
-    ctx.input(|input| input.key_pressed(Key::Escape) || !typing && input.key_pressed(Key::Space))
+    ctx.input(|input| {
+        escape_stops && input.key_pressed(Key::Escape) || !typing && input.key_pressed(Key::Space)
+    })
 }
 
-/// Whether Esc or space was pressed, with whatever other keys are held. Esc counts while a text
-/// is typed as well: who presses it in alarm must not be asked where the cursor is. Space is
+/// Whether what stops was pressed, with whatever other keys are held. Where Esc stops it does so while a
+/// text is typed as well: who presses it in alarm must not be asked where the cursor is. Space is
 /// taken away, so that it does not press the button that has the focus too.
-fn take_stop_keys(ctx: &egui::Context, typing: bool) -> bool {
+fn take_stop_keys(ctx: &egui::Context, typing: bool, escape_stops: bool) -> bool {
     ctx.input_mut(|input| {
-        let escape = input.key_pressed(Key::Escape);
+        let escape = escape_stops && input.key_pressed(Key::Escape);
         let space = !typing && input.key_pressed(Key::Space);
         if space {
             input.events.retain(|event| !matches!(event, Event::Key { key: Key::Space, .. }));
@@ -123,11 +125,12 @@ fn take_stop_keys(ctx: &egui::Context, typing: bool) -> bool {
 }
 
 /// Takes the shortcuts out of this frame's input and returns their actions. While a text is
-/// being typed only those with Ctrl count (and Esc), so that letters and space reach the text.
-pub fn take_shortcuts(ctx: &egui::Context) -> Vec<Action> {
+/// being typed only those with Ctrl count (and Esc, where it stops), so that letters and space reach
+/// the text.
+pub fn take_shortcuts(ctx: &egui::Context, escape_stops: bool) -> Vec<Action> {
     let typing = ctx.text_edit_focused();
     let mut taken = Vec::new();
-    if take_stop_keys(ctx, typing) {
+    if take_stop_keys(ctx, typing, escape_stops) {
         taken.push(Action::Stop);
     }
     let mut shortcuts: Vec<(KeyboardShortcut, Action)> = actions::all()

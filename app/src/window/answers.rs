@@ -79,6 +79,10 @@ impl PlumblineWindow {
                 self.ask = None;
                 outbox.send(command);
             }
+            Asked::HoldAndClose => {
+                self.ask = None;
+                self.hold_and_close(ctx);
+            }
             Asked::CommandKeepOpen(command) => outbox.send(command),
             Asked::Answer(answer) => {
                 self.ask = None;

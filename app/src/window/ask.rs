@@ -38,6 +38,8 @@ pub enum Ask {
     },
     /// What the robot is connected to.
     Connect(ConnectChoice),
+    /// Whether the window closes although something moves.
+    CloseWhileMoving,
     /// Whether all joints may go limp.
     LetGo,
     /// Whether servos may be told for good to answer sooner.
@@ -78,6 +80,7 @@ impl Ask {
             Self::Cameras { left, right } => cameras(ui, view, left, right),
             Self::DeleteAll { count } => delete_all(ui, *count),
             Self::Connect(chosen) => connect::show(ui, view, chosen),
+            Self::CloseWhileMoving => close_while_moving(ui),
             Self::LetGo => let_go(ui),
             Self::ShortenAnswers => shorten_answers(ui, view),
             Self::NewLabelSet { folder, classes } => new_label_set(ui, folder, classes),
@@ -177,9 +180,22 @@ fn device_text(devices: &[&CameraDevice], number: u32) -> String {
 }
 
 fn delete_all(ui: &mut Ui, count: usize) -> Asked {
-    title(ui, &format!("Delete all {count} pairs?"), "You can take it back with Undo.");
+    title(
+        ui,
+        &format!("Delete {}?", if count == 1 { "the pair".to_owned() } else { format!("all {count} pairs") }),
+        "You can take it back with Undo.",
+    );
     match buttons(ui, "Delete all pairs", true) {
         Some(true) => Asked::Command(EyesCommand::DeleteAll.into()),
+        Some(false) => Asked::Closed,
+        None => Asked::Open,
+    }
+}
+
+fn close_while_moving(ui: &mut Ui) -> Asked {
+    title(ui, "Close while the robot moves?", "It is stopped first and holds where it is, with torque.");
+    match buttons(ui, "Stop and close", true) {
+        Some(true) => Asked::HoldAndClose,
         Some(false) => Asked::Closed,
         None => Asked::Open,
     }

@@ -15,8 +15,14 @@ const HEIGHT: f32 = 46.0;
 /// Before what was asked for shows, the same button would ask for it twice.
 const ONCE: Duration = Duration::from_millis(900);
 
-pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
-    let Some(course) = course(&window.view) else { return };
+pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let course = course(&window.view);
+    let meaning = course.as_ref().and_then(|course| match &course.press {
+        Press::Do { actions, .. } => Some(actions.clone()),
+        Press::Wait { .. } => None,
+    });
+    window.commission_rest.see(ui.ctx(), meaning);
+    let (Some(course), window) = (course, &*window) else { return };
     let margin = egui::Margin { left: 16, right: 8, top: 5, bottom: 5 };
     let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(margin);
     let frame = frame.fill(theme::tokens(ui).raised);
@@ -63,7 +69,8 @@ fn next(window: &PlumblineWindow, course: &Course, ui: &mut Ui, outbox: &mut Out
             let button = accent_button(ui, next_label(label)).min_size(egui::vec2(120.0, 34.0));
             let keys = shortcut_text(ui.ctx(), Action::Next).unwrap_or_default();
             let hover = format!("{}\n{keys} does the same", course.sentence);
-            let button = ui.add_enabled(just_pressed.is_none(), button).on_hover_text(hover);
+            let resting = just_pressed.is_some() || window.commission_rest.is_on(ui.ctx());
+            let button = ui.add_enabled(!resting, button).on_hover_text(hover);
             if button.clicked() {
                 outbox.act(Action::Commission(CommissionAction::Next));
             }

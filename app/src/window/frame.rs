@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use plumbline_engine::view::MotionState;
+use plumbline_engine::view::{MotionState, TouchPhase, TrialsPhase};
 use plumbline_model::duration;
 
 use super::{
-    PlumblineWindow, apply, commission, drop, frame_time, frame_times_overlay, health, inspector, jogging,
-    rail, status_line, tiles, transport,
+    Ask, PlumblineWindow, apply, commission, drop, frame_time, frame_times_overlay, health, inspector,
+    jogging, rail, status_line, tiles, transport,
 };
 use crate::operator::{Outbox, Screen, shortcuts};
 
@@ -21,9 +21,10 @@ const BEGINS_WITHIN: Duration = Duration::from_secs(2);
 impl PlumblineWindow {
     fn before_frame(&mut self, ctx: &egui::Context) {
         // Before anything that takes time.
-        if shortcuts::stop_asked(ctx) {
+        if shortcuts::stop_asked(ctx, self.escape_stops(ctx)) {
             self.backend.stop();
         }
+        self.hold_before_closing(ctx);
         self.backend.heartbeat();
         self.view = self.backend.view();
         if let Some(answer) = self.dialogs.poll() {
@@ -46,6 +47,40 @@ impl PlumblineWindow {
         matches!(self.view.robot.motion, MotionState::Moving { .. })
             || self.jogging.active()
             || self.motion_asked.is_some_and(|asked| asked.elapsed() < BEGINS_WITHIN)
+    }
+
+    /// Whether something moves, or goes on moving by itself.
+    fn moves(&self) -> bool {
+        let view = &self.view;
+        let runs = matches!(view.touch.phase, TouchPhase::Waiting { .. } | TouchPhase::Running { .. })
+            || view.grasp.phase.moves()
+            || matches!(view.trials.phase, TrialsPhase::Running { .. });
+        runs || self.may_move()
+    }
+
+    /// Esc closes what lies on top; it stops where nothing does, and always where something moves.
+    fn escape_stops(&self, ctx: &egui::Context) -> bool {
+        let lies_on_top = self.ask.is_some()
+            || self.palette.is_open()
+            || self.notices.is_history_open()
+            || egui::Popup::is_any_open(ctx);
+        self.moves() || !lies_on_top
+    }
+
+    /// A window that closes would leave what moves to itself.
+    fn hold_before_closing(&mut self, ctx: &egui::Context) {
+        if self.closes || !self.moves() || !ctx.input(|input| input.viewport().close_requested()) {
+            return;
+        }
+        ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+        self.ask = Some(Ask::CloseWhileMoving);
+    }
+
+    /// Holds what moves, and closes.
+    pub(super) fn hold_and_close(&mut self, ctx: &egui::Context) {
+        self.closes = true;
+        self.stop();
+        ctx.send_viewport_cmd(egui::ViewportCommand::Close);
     }
 
     /// Only the robot's screen is jogged with one; its STOP counts everywhere.
@@ -88,7 +123,8 @@ impl PlumblineWindow {
                 outbox.act(action);
             }
         }
-        for action in shortcuts::take_shortcuts(&ctx) {
+        let escape_stops = self.escape_stops(&ctx);
+        for action in shortcuts::take_shortcuts(&ctx, escape_stops) {
             outbox.act(action);
         }
         self.draw_frame(ui, &mut outbox);

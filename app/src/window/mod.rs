@@ -30,6 +30,7 @@ mod notices;
 mod palette;
 mod rail;
 pub mod renderer;
+mod rest;
 mod robot_lamps;
 mod saving;
 mod script;
@@ -56,6 +57,7 @@ pub use script_step::ScriptStep;
 pub use settings::{ThemeChoice, WindowSettings};
 pub use touch_window::{TouchSurface, touch_surface};
 
+use crate::operator::Action;
 use crate::panels::PanelState;
 use ask::Ask;
 use dialogs::Dialogs;
@@ -65,6 +67,7 @@ use jogging::Jogging;
 use log_panel::LogPanel;
 use notices::NoticeList;
 use palette::Palette;
+use rest::Rest;
 use script::Script;
 use touch_window::TouchWindow;
 
@@ -129,6 +132,8 @@ pub struct PlumblineWindow {
     started: Instant,
     stopped_at: Option<Instant>,
     pending_picture: Option<Arc<egui::ColorImage>>,
+    /// Whether it closes although something moves: that was asked, or nobody is there to be.
+    closes: bool,
     dismissed: Vec<JobId>,
     wanted: Option<Products>,
     gamepads: Gamepads,
@@ -139,6 +144,9 @@ pub struct PlumblineWindow {
     commission_pressed: Option<Instant>,
     /// Whether commissioning is still to be opened where nothing was ever commissioned.
     may_open_commissioning: bool,
+    /// The one button of the bottom line, and that of commissioning, when they mean something new.
+    primary_rest: Rest<Action>,
+    commission_rest: Rest<Vec<Action>>,
     touch_window: TouchWindow,
     /// When monitors were looked for last, by the clock of the window, s.
     monitors_found_s: f64,
@@ -176,6 +184,7 @@ impl PlumblineWindow {
             started: Instant::now(),
             stopped_at: None,
             pending_picture: None,
+            closes: false,
             dismissed: Vec::new(),
             wanted: None,
             gamepads,
@@ -183,6 +192,8 @@ impl PlumblineWindow {
             motion_asked: None,
             commission_pressed: None,
             may_open_commissioning: options.opens_commissioning,
+            primary_rest: Rest::default(),
+            commission_rest: Rest::default(),
             touch_window: TouchWindow::default(),
             monitors_found_s: f64::NEG_INFINITY,
         }

@@ -59,6 +59,10 @@ impl NoticeList {
         self.unread
     }
 
+    pub(super) fn is_history_open(&self) -> bool {
+        self.history_open
+    }
+
     pub(super) fn toggle_history(&mut self) {
         self.history_open = !self.history_open;
         self.unread = 0;

@@ -114,7 +114,10 @@ impl PlumblineWindow {
                     save_picture(&again, &picture, file, move |_| waiting.store(false, Ordering::Relaxed));
                 });
             }
-            ScriptStep::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            ScriptStep::Quit => {
+                self.closes = true;
+                ctx.send_viewport_cmd(egui::ViewportCommand::Close);
+            }
         }
     }
 

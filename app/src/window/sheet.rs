@@ -51,6 +51,8 @@ pub enum Asked {
     Command(Command),
     /// For the engine; the sheet shows what comes of it.
     CommandKeepOpen(Command),
+    /// What moves is held, then the window closes.
+    HoldAndClose,
     /// Paths for the window to use.
     Answer(Answer),
 }

@@ -58,7 +58,7 @@ pub(super) fn shortened(name: &str) -> String {
 
 fn long_name(spec: &SourceSpec) -> String {
     match spec {
-        SourceSpec::Folder(folder) => folder.display().to_string(),
+        SourceSpec::Folder(path) | SourceSpec::Recording { file: path, .. } => path.display().to_string(),
         SourceSpec::Folders { left, right } | SourceSpec::Videos { left, right } => {
             format!("left: {}\nright: {}", left.display(), right.display())
         }

@@ -13,56 +13,89 @@ use crate::operator::{Action, Course, GraspAction, Outbox, Screen, TouchAction, 
 
 const HEIGHT: f32 = 52.0;
 
-pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let line = line_of(&window.view, window.settings.screen);
+    let next = match &line {
+        Line::Running(_) => None,
+        Line::Guided { guidance, .. } => guidance.next.as_ref().map(|next| next.action),
+    };
+    window.primary_rest.see(ui.ctx(), next);
     let margin = egui::Margin { left: 16, right: 8, top: 8, bottom: 8 };
     let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(margin);
     let bottom = Panel::bottom("bottom line").frame(frame).exact_size(HEIGHT).show_separator_line(false);
     bottom.show(ui, |ui| {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| contents(window, ui, outbox));
+        let resting = window.primary_rest.is_on(ui.ctx());
+        let layout = Layout::right_to_left(Align::Center);
+        ui.with_layout(layout, |ui| contents(&window.view, line, resting, ui, outbox));
     });
 }
 
-fn contents(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
-    let view = &window.view;
-    let screen = window.settings.screen;
+/// What stands in it.
+enum Line<'a> {
+    /// Work is under way.
+    Running(&'a JobView),
+    /// What to do next; `led`: by commissioning, whose strip has the primary button.
+    Guided { guidance: Guidance, led: bool },
+}
+
+fn line_of(view: &View, screen: Screen) -> Line<'_> {
     let failed = failed_inside(view, screen);
     // What failed inside is not hidden behind work that goes on.
     if let (Some(job), None) = (view.running_job(), &failed) {
-        return running(job, ui, outbox);
+        return Line::Running(job);
     }
-    let (guidance, led) = match (failed, course(view)) {
-        (Some(failed), _) => (failed, false),
-        (None, Some(course)) => (of_course(view, screen, course), true),
-        (None, None) => (guidance(view, screen), false),
+    match (failed, course(view)) {
+        (Some(guidance), _) => Line::Guided { guidance, led: false },
+        (None, Some(course)) => Line::Guided { guidance: of_course(view, screen, course), led: true },
+        (None, None) => Line::Guided { guidance: guidance(view, screen), led: false },
+    }
+}
+
+fn contents(view: &View, line: Line<'_>, resting: bool, ui: &mut Ui, outbox: &mut Outbox) {
+    let (guidance, led) = match line {
+        Line::Running(job) => return running(job, ui, outbox),
+        Line::Guided { guidance, led } => (guidance, led),
     };
-    next_button(view, &guidance, led, ui, outbox);
-    if let Some((job, reason)) = failed_job(view) {
-        if ui.button("Dismiss").clicked() {
-            outbox.send(JobCommand::Dismiss(job.id));
-        }
-        line(ProgressLine::warning(&format!("{}: {reason}", job.title)), ui, outbox);
-    } else if guidance.warning {
-        line(ProgressLine::warning(&guidance.sentence), ui, outbox);
-    } else {
-        line(ProgressLine::idle(&guidance.sentence), ui, outbox);
+    let accepts = guidance.next.as_ref().is_some_and(|next| next.action.puts_in_use());
+    if !accepts {
+        next_button(view, &guidance, Look { led, resting }, ui, outbox);
     }
+    let failed = failed_job(view);
+    if let Some((job, _)) = failed
+        && ui.button("Dismiss").clicked()
+    {
+        outbox.send(JobCommand::Dismiss(job.id));
+    }
+    let said = failed.map(|(job, reason)| format!("{}: {reason}", job.title));
+    let said = match &said {
+        Some(said) => ProgressLine::warning(said),
+        None if guidance.warning => ProgressLine::warning(&guidance.sentence),
+        None => ProgressLine::idle(&guidance.sentence),
+    };
+    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+        // Accepting is never where collecting was.
+        if accepts {
+            next_button(view, &guidance, Look { led, resting }, ui, outbox);
+        }
+        answer(said.show(ui), outbox);
+    });
 }
 
 fn running(job: &JobView, ui: &mut Ui, outbox: &mut Outbox) {
     let JobState::Running { fraction, doing, remaining, cancelling } = &job.state else { return };
     let sentence = format!("{}: {doing}", job.title);
     let progress = ProgressLine::job(&sentence, *fraction).time_left(*remaining).cancelling(*cancelling);
-    if line(progress, ui, outbox) == Some(ProgressAction::Cancel) {
+    let asked = ui.with_layout(Layout::left_to_right(Align::Center), |ui| progress.show(ui)).inner;
+    if asked == Some(ProgressAction::Cancel) {
         outbox.send(JobCommand::Cancel(job.id));
     }
+    answer(asked, outbox);
 }
 
-fn line(progress: ProgressLine<'_>, ui: &mut Ui, outbox: &mut Outbox) -> Option<ProgressAction> {
-    let action = ui.with_layout(Layout::left_to_right(Align::Center), |ui| progress.show(ui)).inner;
-    if action == Some(ProgressAction::OpenLog) {
+fn answer(asked: Option<ProgressAction>, outbox: &mut Outbox) {
+    if asked == Some(ProgressAction::OpenLog) {
         outbox.act(Action::ToggleLog);
     }
-    action
 }
 
 /// While commissioning leads, its button is the primary one: here stands what it says, with nothing but a
@@ -83,14 +116,23 @@ fn of_course(view: &View, screen: Screen, course: Course) -> Guidance {
     }
 }
 
-fn next_button(view: &View, guidance: &Guidance, led: bool, ui: &mut Ui, outbox: &mut Outbox) {
+/// How the one button looks.
+#[derive(Clone, Copy)]
+struct Look {
+    /// Another one is the primary button.
+    led: bool,
+    /// It meant something else a moment ago.
+    resting: bool,
+}
+
+fn next_button(view: &View, guidance: &Guidance, look: Look, ui: &mut Ui, outbox: &mut Outbox) {
     let Some(next) = &guidance.next else { return };
     let refusal = next.action.refusal(view);
     let keys = shortcut_text(ui.ctx(), Action::Next).unwrap_or_default();
-    let button = if led { egui::Button::new(&next.label) } else { accent_button(ui, &next.label) };
+    let button = if look.led { egui::Button::new(&next.label) } else { accent_button(ui, &next.label) };
     let button = button.min_size(egui::vec2(120.0, 36.0));
     ui.spacing_mut().button_padding.x = space::M;
-    let button = ui.add_enabled(refusal.is_none(), button);
+    let button = ui.add_enabled(refusal.is_none() && !look.resting, button);
     let button = button.on_hover_text(format!("{keys} does the same"));
     if button.on_disabled_hover_text(refusal.unwrap_or_default()).clicked() {
         outbox.act(next.action);

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use plumbline::{Screen, WindowSettings};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{EyesView, JobState, JobView, ReplayView, SourceStatus, SourceView};
 use plumbline_engine::{Command, EyesCommand, JobCommand, JobId, SourceCommand, View};
 
@@ -83,4 +85,46 @@ fn empty_screens_say_how_to_fill_them() {
         let window = fake.window(on(screen));
         assert!(shows(&window, words), "{screen:?}");
     }
+}
+
+#[test]
+fn a_button_that_means_something_new_rests_for_half_a_second() {
+    let status = SourceStatus::Lost { reason: "Unplugged.".to_owned(), since: Instant::now(), attempts: 2 };
+    let source = Arc::new(SourceView { status, ..SourceView::default() });
+    let fake = Fake::over(View { source, ..View::default() });
+    let mut window = fake.window(on(Screen::Collect));
+    fake.show(View { source: folder_of(30), ..View::default() });
+    // Time goes on by a quarter of a second with each frame.
+    window.run_steps(1);
+    let enabled = |window: &Harness<'_, PlumblineWindow>| {
+        !window.get_by_label("Use all 30 pairs of this folder").accesskit_node().is_disabled()
+    };
+    assert!(!enabled(&window));
+    let pos = window.get_by_label("Use all 30 pairs of this folder").rect().center();
+    let modifiers = egui::Modifiers::COMMAND;
+    let button = |pressed| egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: egui::Modifiers::NONE,
+    };
+    let key = egui::Event::Key {
+        key: egui::Key::Enter,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers,
+    };
+    // All of it within one frame.
+    window.input_mut().events.extend([egui::Event::PointerMoved(pos), button(true), button(false), key]);
+    window.run_steps(1);
+    assert_eq!(fake.take_sent(), [], "who hammers the button before presses nothing");
+    window.run_steps(2);
+    assert!(enabled(&window));
+    click(&mut window, "Use all 30 pairs of this folder");
+    assert_eq!(fake.take_sent(), [Command::from(EyesCommand::CollectRecording)]);
+    // What means the same as before does not rest, and the same within one frame counts.
+    window.input_mut().events.extend([egui::Event::PointerMoved(pos), button(true), button(false)]);
+    window.run_steps(1);
+    assert_eq!(fake.take_sent().len(), 1);
 }

@@ -229,6 +229,11 @@ fn the_best_proposal_is_used_by_the_button_of_the_step() {
     let best = best.expect("three");
     let fake = Fake::over(with(view));
     let mut window = fake.window(on_models());
+    let label = format!("Use {}", best.name());
+    let button =
+        window.get_all_by_label(&label).map(|node| node.rect()).max_by(|a, b| a.top().total_cmp(&b.top()));
+    let button = button.expect("the button of the step");
+    assert!(button.right() < 640.0, "not where touches were collected a moment ago: {button}");
     window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Enter);
     window.run_steps(2);
     assert_eq!(models(&fake), [ModelsCommand::Accept(best)]);

@@ -4,12 +4,15 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use egui::{Key, Modifiers};
+use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use plumbline::{Screen, WindowSettings};
-use plumbline_engine::view::{EyesView, JobState, JobView, ReplayView, SourceStatus, SourceView};
+use plumbline::{PlumblineWindow, Screen, WindowSettings};
+use plumbline_engine::view::{
+    EyesView, JobState, JobView, MotionState, ReplayView, RobotView, SourceStatus, SourceView,
+};
 use plumbline_engine::{Command, EyesCommand, JobCommand, JobId, SourceCommand, View};
 
-use crate::fake::{Fake, click};
+use crate::fake::{Fake, click, says, shows};
 
 /// A job, a playing recording and automatic capture: all that can run.
 fn everything_runs() -> View {
@@ -81,17 +84,76 @@ fn space_stops_and_does_not_press_the_button_that_has_the_focus() {
     assert_eq!(fake.take_sent(), stopped());
 }
 
+/// The arm moves, too.
+fn moving() -> View {
+    let motion = MotionState::Moving { what: "to Home".to_owned(), fraction: Some(0.2), remaining: None };
+    View { robot: Arc::new(RobotView { motion, ..RobotView::default() }), ..everything_runs() }
+}
+
+/// What Esc does with the palette open: what was stopped, and whether the palette is still there.
+fn escape_in_the_palette(view: View, modifiers: Modifiers) -> (Vec<Command>, usize, bool) {
+    let fake = Fake::over(view);
+    let mut window = fake.window(WindowSettings::default());
+    window.key_press_modifiers(Modifiers::COMMAND, Key::K);
+    window.run_steps(3);
+    assert!(shows(&window, "Search commands"), "the palette is open");
+    fake.take_stops();
+    window.key_press_modifiers(modifiers, Key::Escape);
+    window.run_steps(3);
+    (fake.take_sent(), fake.take_stops(), shows(&window, "Search commands"))
+}
+
 #[test]
-fn escape_stops_while_a_text_is_typed_and_with_other_keys_held() {
+fn escape_stops_what_moves_while_a_text_is_typed_and_with_other_keys_held() {
     for modifiers in [Modifiers::NONE, Modifiers::SHIFT, Modifiers::COMMAND] {
+        let (sent, stops, _) = escape_in_the_palette(moving(), modifiers);
+        assert_eq!(sent, stopped(), "{modifiers:?}");
+        assert!(stops > 0, "{modifiers:?}");
+    }
+}
+
+#[test]
+fn where_nothing_moves_escape_closes_what_lies_on_top_and_stops_only_then() {
+    assert_eq!(escape_in_the_palette(everything_runs(), Modifiers::NONE), (Vec::new(), 0, false));
+    for key in [Key::L, Key::M] {
         let fake = Fake::over(everything_runs());
         let mut window = fake.window(WindowSettings::default());
-        window.key_press_modifiers(Modifiers::COMMAND, Key::K);
+        window.key_press_modifiers(Modifiers::COMMAND, key);
         window.run_steps(3);
-        window.key_press_modifiers(modifiers, Key::Escape);
-        window.run_steps(2);
-        assert_eq!(fake.take_sent(), stopped(), "{modifiers:?}");
+        fake.take_sent();
+        window.key_press(Key::Escape);
+        window.run_steps(3);
+        assert_eq!((fake.take_sent(), fake.take_stops()), (Vec::new(), 0), "{key:?}");
+        window.key_press(Key::Escape);
+        window.run_steps(3);
+        assert_eq!(fake.take_sent(), stopped(), "nothing lies on top any more");
     }
+}
+
+#[test]
+fn closing_while_something_moves_asks_and_stops_first() {
+    let fake = Fake::over(moving());
+    let mut window = fake.window(WindowSettings::default());
+    let close = |window: &mut Harness<'_, PlumblineWindow>| {
+        let viewport = window.input_mut().viewports.entry(egui::ViewportId::ROOT).or_default();
+        viewport.events.push(egui::ViewportEvent::Close);
+        window.run_steps(1);
+        let viewport = window.input_mut().viewports.entry(egui::ViewportId::ROOT).or_default();
+        viewport.events.clear();
+        window.run_steps(2);
+    };
+    close(&mut window);
+    assert!(says(&window, "Close while the robot moves?"));
+    assert_eq!(fake.take_stops(), 0, "nothing is done before it was answered");
+    click(&mut window, "Stop and close");
+    assert!(fake.take_stops() > 0);
+    close(&mut window);
+    assert!(!says(&window, "Close while the robot moves?"), "it is asked once");
+
+    let fake = Fake::over(everything_runs());
+    let mut window = fake.window(WindowSettings::default());
+    close(&mut window);
+    assert!(!says(&window, "Close while the robot moves?"), "nothing moves");
 }
 
 #[test]

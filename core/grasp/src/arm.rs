@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Point3, Vector3};
+use nalgebra::{Matrix3, Point3, UnitQuaternion, Vector3};
 use plumbline_effects::RobotModel;
 use plumbline_effects::rig_model::Conditions;
 use plumbline_effects::robot_model::ModelArm;
 use plumbline_model::frame::Tip;
 use plumbline_model::robot::ik::{Options, SolverError, Target};
-use plumbline_model::robot::{Arm, JointIndex, Posture, Rig};
+use plumbline_model::robot::{Arm, JointIndex, LinkIndex, Posture, Rig, Shape};
 use plumbline_model::{Point, Pose, Robot};
 
 use crate::hands::Hand;
@@ -123,6 +123,26 @@ impl PalmArm {
         self.solved(point, heading_rad, from, &options).filter(|next| next.distance_rad(from) < JUMP_RAD)
     }
 
+    /// Height of the lowest point of the hand by the description, robot frame, m: of what it must not run
+    /// into something with. `None`: the description shows no body.
+    pub fn lowest_m(&self, posture: &Posture) -> Option<f64> {
+        let description = &self.rig.description;
+        let poses = description.forward(posture);
+        let mut hand = vec![description.joint(*self.arm.joints().last()?).child];
+        let mut lowest_m: Option<f64> = None;
+        for (i, link) in description.links().iter().enumerate() {
+            if link.parent.is_some_and(|parent| hand.contains(&parent)) {
+                hand.push(LinkIndex(i));
+            }
+            for body in link.collisions.iter().filter(|_| hand.contains(&LinkIndex(i))) {
+                let place = poses.all()[i] * body.link_from_shape;
+                let low_m = place.translation.z - below_m(&body.shape, &place.rotation);
+                lowest_m = Some(lowest_m.map_or(low_m, |least_m| least_m.min(low_m)));
+            }
+        }
+        lowest_m
+    }
+
     fn solved(
         &self,
         point: Point<Robot>,
@@ -142,6 +162,19 @@ fn is_left(rig: &Rig, arm: &Arm) -> bool {
     let description = &rig.description;
     let shoulder = arm.joints.first().map(|joint| description.joint(*joint).child);
     shoulder.is_some_and(|link| description.forward(&rig.home()).of(link).isometry.translation.y > 0.0)
+}
+
+/// How far a shape reaches below its middle, m.
+fn below_m(shape: &Shape, robot_from_shape: &UnitQuaternion<f64>) -> f64 {
+    let down = robot_from_shape.inverse() * Vector3::z();
+    match *shape {
+        Shape::Box { half_m } => half_m.dot(&down.abs()),
+        Shape::Sphere { radius_m } => radius_m,
+        Shape::Capsule { radius_m, half_length_m } => radius_m + half_length_m * down.z.abs(),
+        Shape::Cylinder { radius_m, half_length_m } => {
+            radius_m * down.xy().norm() + half_length_m * down.z.abs()
+        }
+    }
 }
 
 /// Middle of what is drawn of the palm, frame of the tip, m; `None`: nothing is.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use image::RgbImage;
+use plumbline_effects::robot_model::SeenUnder;
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 /// What carries out what a grasp asks for. Calls wait until it is done.
@@ -80,8 +81,17 @@ pub struct Sight {
     pub posture: Posture,
     /// Clock of the body, s.
     pub at_s: f64,
+    /// For how long the eyes had been on, s; `None`: nobody knows.
+    pub eyes_on_s: Option<f64>,
     /// Counts up with every pair.
     pub seq: u64,
+}
+
+impl Sight {
+    /// What effects on the eyes depend on besides the posture.
+    pub fn seen_under(&self) -> SeenUnder {
+        SeenUnder { t_secs: self.eyes_on_s, ..SeenUnder::default() }
+    }
 }
 
 /// Why something was not carried out to its end. The arm holds where it is. Reads as a sentence.

@@ -9,6 +9,8 @@ use plumbline_effects::robot_model::{PlaceInRobot, SeenUnder};
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::{LeftCamera, Point, Pose, Robot, StereoCalibration};
 
+use crate::published::HandHeights;
+
 /// The touchscreen's glass lies so much higher than the table on which it stands, m.
 const GLASS_OVER_TABLE_M: f64 = 0.002;
 
@@ -25,7 +27,7 @@ pub struct Knowledge {
     pub corrections: Corrections,
 }
 
-/// Models learned from touches.
+/// What was learned from touches, for the published methods.
 #[derive(Clone, Debug, Default)]
 pub struct Corrections {
     /// Placement and heights.
@@ -34,6 +36,8 @@ pub struct Corrections {
     pub m2: Option<Arc<CorrectionModel>>,
     /// Network.
     pub m3: Option<Arc<CorrectionModel>>,
+    /// Heights at which the open hand met the table, where it was lowered.
+    pub hand: Option<Arc<HandHeights>>,
 }
 
 impl Knowledge {
@@ -42,14 +46,29 @@ impl Knowledge {
         self.model.robot_from_left(posture)
     }
 
-    /// A place seen by the eyes, and how sure it is.
+    /// A place seen by the eyes under these conditions, and how sure it is.
     pub fn place(
         &self,
         in_left: &Point<LeftCamera>,
         covariance_m2: &Matrix3<f64>,
         posture: &Posture,
+        under: &SeenUnder,
     ) -> Option<PlaceInRobot> {
-        self.model.place(in_left, covariance_m2, posture, &SeenUnder::default())
+        self.model.place(in_left, covariance_m2, posture, under)
+    }
+
+    /// How far beside a place (robot frame) both eyes see it by their calibration alone, with the head
+    /// where [`Self::robot_from_left`] has it, robot frame, m: what the effects of the eyes do there. `None`:
+    /// one of them does not see it.
+    pub fn seen_beside_m(
+        &self,
+        place: &Point<Robot>,
+        posture: &Posture,
+        under: &SeenUnder,
+    ) -> Option<Vector3<f64>> {
+        let (left, right) = self.model.project(place, posture, under)?;
+        let in_left = self.calibration.cameras.triangulate(left, right)?;
+        Some((self.robot_from_left(posture) * in_left).coords.coords - place.coords.coords)
     }
 
     /// Height of what things stand on at a place: the glass where the touchscreen lies, the table
@@ -67,5 +86,61 @@ impl Knowledge {
         let normal: Vector3<f64> = screen.normal().vector();
         let origin = screen.origin.coords.coords;
         origin.z - (normal.x * (x_m - origin.x) + normal.y * (y_m - origin.y)) / normal.z
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_effects::rig_model::{ModelEffect, RigModel};
+    use plumbline_effects::{Effect, Kind};
+
+    use super::*;
+
+    /// Long after they were switched on, s.
+    const WARM_S: f64 = 3600.0;
+
+    /// A robot whose right eye turns while it gets warm.
+    fn warming() -> Knowledge {
+        let described = Arc::new(Rig::built_in("nico").expect("comes with the program"));
+        let mut added = RigModel::nominal(&described);
+        added.contents.effects.push(ModelEffect {
+            id: Kind::EyeYaw.id().to_owned(),
+            site: "right".to_owned(),
+            title: String::new(),
+            tip: None,
+            shape: Some(Effect::yaw_growth(400.0, 0.0)),
+            values: vec![0.01],
+            covariance: vec![],
+            probability: None,
+            parameters: vec![],
+        });
+        Knowledge {
+            model: RobotModel::new(described.clone(), Arc::new(added)).expect("it fits"),
+            calibration: Arc::new(StereoCalibration::bare(described.eyes.cameras)),
+            described,
+            corrections: Corrections::default(),
+        }
+    }
+
+    #[test]
+    fn an_effect_that_grows_with_the_warmth_of_the_eyes_moves_places_and_hands_alike() {
+        let knowledge = warming();
+        let posture = knowledge.described.home();
+        let truly = Point::new(0.3, -0.1, 0.08);
+        let under = |t_secs: Option<f64>| SeenUnder { t_secs, ..SeenUnder::default() };
+        let (left, right) = knowledge.model.project(&truly, &posture, &under(Some(WARM_S))).expect("in view");
+        let in_left = knowledge.calibration.cameras.triangulate(left, right).expect("rays meet");
+        let place = |t_secs| {
+            let place = knowledge.place(&in_left, &Matrix3::zeros(), &posture, &under(t_secs));
+            place.expect("a place").point
+        };
+        let off_m = |t_secs| place(t_secs).distance_m(&truly);
+        assert!(off_m(Some(WARM_S)) < 1e-6, "{} m", off_m(Some(WARM_S)));
+        assert!(off_m(None) > 0.01 && off_m(Some(0.0)) > 0.01, "{} m", off_m(None));
+        assert!(off_m(Some(400.0)) > 0.003 && off_m(Some(400.0)) < off_m(None));
+        // What is looked for is looked for where the eyes would see it.
+        let beside_m =
+            |t_secs| knowledge.seen_beside_m(&truly, &posture, &under(t_secs)).expect("in view").norm();
+        assert!((beside_m(Some(WARM_S)) - off_m(None)).abs() < 1e-6 && beside_m(None) < 1e-9);
     }
 }

@@ -12,6 +12,7 @@ pub mod method;
 mod outline;
 mod places;
 pub mod plan;
+pub mod published;
 pub mod record;
 pub mod see;
 pub mod things;

@@ -45,6 +45,8 @@ pub struct Boxes<'a> {
     pub boxes_px: &'a [Option<[f32; 4]>; 2],
     /// All joints by their encoders.
     pub posture: &'a Posture,
+    /// What effects on the eyes depend on besides.
+    pub under: SeenUnder,
 }
 
 impl Boxes<'_> {
@@ -137,7 +139,7 @@ impl Boxes<'_> {
             let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
             for point in outline(&middle, thing, &eye_at)? {
                 let point = Point::new(point.x, point.y, point.z);
-                let (left, right) = knowledge.model.project(&point, self.posture, &SeenUnder::default())?;
+                let (left, right) = knowledge.model.project(&point, self.posture, &self.under)?;
                 let Pixel::<Raw> { u_px, v_px, .. } = if eye == Eye::Left { left } else { right };
                 for (k, at_px) in [u_px, v_px].into_iter().enumerate() {
                     (low[k], high[k]) = (low[k].min(at_px), high[k].max(at_px));
@@ -196,7 +198,11 @@ mod tests {
 
     fn boxes_of(knowledge: &Knowledge, thing: &Thing, xy_m: Vector2<f64>) -> [Option<[f32; 4]>; 2] {
         let posture = knowledge.described.home();
-        let empty = Boxes { boxes_px: &[Some([0.0; 4]), Some([0.0; 4])], posture: &posture };
+        let empty = Boxes {
+            boxes_px: &[Some([0.0; 4]), Some([0.0; 4])],
+            posture: &posture,
+            under: SeenUnder::default(),
+        };
         // What is left of a box around the origin is the middle of the outline, and its corner.
         let middles = empty.residuals(knowledge, thing, xy_m, 0.0).expect("seen");
         let around = |u: f64, v: f64| {
@@ -216,14 +222,14 @@ mod tests {
             let both = boxes_of(&knowledge, &tomato, truly);
             let off = Vector2::new(0.02, -0.015);
             for seen in [both, [both[0], None], [None, both[1]]] {
-                let boxes = Boxes { boxes_px: &seen, posture: &posture };
+                let boxes = Boxes { boxes_px: &seen, posture: &posture, under: SeenUnder::default() };
                 let found = boxes.on_table(&knowledge, &tomato, truly + off).expect("found");
                 assert!((found.xy_m - truly).norm() < 1e-4, "{at_m:?}: {found:?}");
                 let sigma_m = found.covariance_m2.trace().sqrt();
                 assert!((0.001..0.02).contains(&sigma_m), "{at_m:?}: {sigma_m}");
             }
         }
-        let unseen = Boxes { boxes_px: &[None, None], posture: &posture };
+        let unseen = Boxes { boxes_px: &[None, None], posture: &posture, under: SeenUnder::default() };
         assert_eq!(unseen.on_table(&knowledge, &tomato, Vector2::new(0.3, 0.0)), None);
     }
 
@@ -237,7 +243,7 @@ mod tests {
         for area in seen.iter_mut().flatten() {
             *area = area.map(|at| at + BOX_SIGMA_PX as f32);
         }
-        let boxes = Boxes { boxes_px: &seen, posture: &posture };
+        let boxes = Boxes { boxes_px: &seen, posture: &posture, under: SeenUnder::default() };
         let found = boxes.on_table(&knowledge, &tomato, truly).expect("found");
         let off_m = (found.xy_m - truly).norm();
         let sigma_m = found.covariance_m2.trace().sqrt();

@@ -79,6 +79,7 @@ impl Looker {
             self.detector.detect(image, &self.settings, found)?;
         }
         let [left, right] = &boxes;
+        let under = sight.seen_under();
         self.places.find((&sight.left, left), (&sight.right, right), &mut self.found);
         let area = |eye: Eye, index: Option<usize>| {
             let PixelBox { x0_px, y0_px, x1_px, y1_px } = boxes[eye.index()].get(index?)?.area;
@@ -93,7 +94,7 @@ impl Looker {
                 boxes_px: Eye::BOTH.map(|eye| area(eye, thing.seen.index(eye))),
                 place: thing.place.map_err(|why| why.to_string()).and_then(|place| {
                     let middle = &place.middle;
-                    let place = knowledge.place(&middle.point, &middle.covariance_m2, &sight.posture);
+                    let place = knowledge.place(&middle.point, &middle.covariance_m2, &sight.posture, &under);
                     let place = place.ok_or_else(|| BEYOND.to_owned())?;
                     Ok(SeenPlace {
                         point_m: place.point.coords.coords.into(),

@@ -111,6 +111,12 @@ pub enum SourceError {
         /// Why, and what to do.
         problem: String,
     },
+    /// A recording that cannot be used.
+    #[error("{problem}")]
+    Recording {
+        /// Why, and what to do.
+        problem: String,
+    },
     /// A camera that cannot be used.
     #[error("the {eye} camera (number {index}) cannot be used: {problem}")]
     Camera {

@@ -1,5 +1,24 @@
 //! Whether a JPEG file is all there. Decoders fill what is missing with gray and report
-//! nothing; for a calibration such a picture is worse than none.
+//! nothing; for a calibration such a picture is worse than none. And how images are made into one.
+
+use image::RgbImage;
+use jpeg_encoder::{ColorType, Encoder, EncodingError, SamplingFactor};
+
+/// What images are recorded at, of 100: what a camera would send, and little more.
+pub const QUALITY: u8 = 92;
+
+/// An image as a JPEG file, with half the resolution in color, as cameras send it.
+///
+/// # Errors
+/// When the image is too large for the format (65,535 pixels).
+pub fn encode(image: &RgbImage, quality: u8) -> Result<Vec<u8>, EncodingError> {
+    let [width, height] = [image.width(), image.height()].map(|size| u16::try_from(size).unwrap_or(u16::MAX));
+    let mut bytes = Vec::with_capacity(64 << 10);
+    let mut encoder = Encoder::new(&mut bytes, quality);
+    encoder.set_sampling_factor(SamplingFactor::F_2_2);
+    encoder.encode(image.as_raw(), width, height, ColorType::Rgb)?;
+    Ok(bytes)
+}
 
 /// Walks the markers (ITU-T T.81, annex B) and returns whether the end-of-image marker is
 /// reached. Bytes after it (cameras pad their files) do not matter, and an embedded preview

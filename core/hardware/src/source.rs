@@ -79,6 +79,8 @@ pub enum SourceKind {
     Folder,
     /// A pair of video files.
     Videos,
+    /// `log.mcap` of a session.
+    Recording,
     /// Images in memory.
     Memory,
     /// The eyes of the simulated robot.
@@ -159,6 +161,12 @@ pub enum Report {
         file: String,
         /// What was done.
         note: ImageNote,
+    },
+    /// A recording that was not finished.
+    #[error("{file} was cut off: what was recorded in its last second, and after it, is not there")]
+    Cut {
+        /// File name.
+        file: String,
     },
     /// The two videos or cameras are not alike.
     #[error("{0}")]

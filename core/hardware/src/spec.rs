@@ -12,6 +12,7 @@ use crate::eye_name::eye_of_name;
 use crate::folder::PairFolder;
 use crate::folder_source::FolderSource;
 use crate::image_file::file_name;
+use crate::recording_source::RecordingSource;
 use crate::replay::Replay;
 use crate::retrying::{RetryPolicy, Retrying};
 use crate::source::StereoSource;
@@ -36,6 +37,13 @@ pub enum SourceSpec {
         left: PathBuf,
         /// Video of the right eye.
         right: PathBuf,
+    },
+    /// A recording, `log.mcap` of a session.
+    Recording {
+        /// The file.
+        file: PathBuf,
+        /// Whether it is of the simulated robot.
+        of_twin: bool,
     },
     /// The eyes of the simulated robot, which the program itself provides.
     Twin,
@@ -69,6 +77,7 @@ pub fn open(spec: &SourceSpec, options: &SourceOptions) -> Result<Box<dyn Stereo
             Box::new(FolderSource::new(PairFolder::open_one(folder)?, options.replay)?)
         }
         SourceSpec::Videos { left, right } => Box::new(VideoSource::open(left, right, options.replay)?),
+        SourceSpec::Recording { file, .. } => Box::new(RecordingSource::open(file, options.replay)?),
         SourceSpec::Twin => return Err(SourceError::TwinNotRunning),
         SourceSpec::Cameras { left_index, right_index } => {
             Box::new(CameraSource::open(*left_index, *right_index, options.cameras)?)
@@ -116,6 +125,10 @@ impl SourceSpec {
         }
         match paths {
             [] => Err(SourceError::NotASource { found: "nothing was given".to_owned() }),
+            [file] if is_recording(file) => Self::of_recording(file),
+            [folder] if folder.join(plumbline_recording::FILE).is_file() => {
+                Self::of_recording(&folder.join(plumbline_recording::FILE))
+            }
             [folder] if folder.is_dir() => Ok(Self::Folder(folder.clone())),
             [a, b] if a.is_dir() && b.is_dir() => {
                 let (left, right) = left_and_right(a, b)?;
@@ -136,6 +149,12 @@ impl SourceSpec {
                 found: format!("these {} paths do not make a pair of eyes", many.len()),
             }),
         }
+    }
+
+    fn of_recording(file: &Path) -> Result<Self, SourceError> {
+        let whose = plumbline_recording::Whose::read(file);
+        let whose = whose.map_err(|error| SourceError::Recording { problem: error.to_string() })?;
+        Ok(Self::Recording { file: file.to_owned(), of_twin: whose.of_twin })
     }
 
     fn from_images(files: &[PathBuf]) -> Result<Self, SourceError> {
@@ -176,6 +195,10 @@ fn has_extension(path: &Path, extensions: &[&str]) -> bool {
 
 fn is_video(path: &Path) -> bool {
     has_extension(path, &["avi", "mp4", "mkv", "mov", "m4v", "webm", "mpg", "mpeg", "ogv", "mjpeg"])
+}
+
+fn is_recording(path: &Path) -> bool {
+    has_extension(path, &["mcap"])
 }
 
 fn is_image(path: &Path) -> bool {

@@ -8,6 +8,7 @@ pub mod aim;
 pub mod calibration;
 pub mod camera;
 pub mod chessboard;
+mod counted;
 pub mod decompose;
 pub mod detection;
 pub mod duration;
@@ -35,6 +36,7 @@ pub use calibration::{
 };
 pub use camera::{Camera, CameraModel, Fisheye, ModelKind, Pinhole, ProjectError};
 pub use chessboard::{BoardError, Chessboard, InnerCorners, default_board};
+pub use counted::counted;
 pub use detection::{ClassIndex, ClassNames, Detection, PixelBox};
 pub use formats::FormatError;
 pub use frame::{

@@ -192,6 +192,11 @@ impl Lockstep {
         self.world.advance_warm_up(duration_s);
     }
 
+    /// For how long the eyes have been on, s.
+    pub fn eyes_on_s(&self) -> f64 {
+        self.world.eyes_on_s()
+    }
+
     /// Switches the eyes off until they are cold, and on again.
     pub fn cool_eyes(&mut self) {
         self.world.cool_eyes();

@@ -314,6 +314,19 @@ impl Action {
         .to_owned()
     }
 
+    /// Whether it puts a proposal in use.
+    pub fn puts_in_use(self) -> bool {
+        matches!(
+            self,
+            Self::Accept
+                | Self::Mount(MountAction::Accept)
+                | Self::Touch(TouchAction::AcceptScreen)
+                | Self::Models(ModelsAction::AcceptShown | ModelsAction::Accept(_))
+                | Self::Gap(GapAction::Add)
+                | Self::Labels(LabelsAction::AcceptProposals | LabelsAction::AcceptImport)
+        )
+    }
+
     /// Why it cannot be done now; `None` when it can.
     pub fn refusal(self, view: &View) -> Option<Cow<'static, str>> {
         let eyes = &view.eyes;

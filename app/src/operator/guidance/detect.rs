@@ -60,7 +60,7 @@ fn trouble(why: &str) -> Guidance {
 
 /// "1 box", "3 boxes".
 fn boxes(n: usize) -> String {
-    if n == 1 { "1 box".to_owned() } else { format!("{n} boxes") }
+    format::count(n, "box")
 }
 
 pub(super) fn scores(view: &View) -> Guidance {

@@ -6,7 +6,7 @@ use plumbline_widgets::format;
 
 use super::robot;
 use super::sentence::{Guidance, say};
-use crate::operator::words::grasp::{closed, method, object_of};
+use crate::operator::words::grasp::{again, closed, method, object_of, try_of};
 use crate::operator::words::trials::ask;
 use crate::operator::{Action, GraspAction, RobotAction, TrialsAction};
 
@@ -18,10 +18,7 @@ pub(super) fn grasp(view: &View) -> Guidance {
         phase if phase.is_paused() => {
             say("Paused: the arm holds. Going on moves it.").then("Go on", Action::Grasp(GraspAction::Resume))
         }
-        GraspPhase::Grasping { .. } => {
-            say(format!("{}. The arm moves; Esc or space stops.", under_way(grasp)))
-                .then("Pause", Action::Grasp(GraspAction::Pause))
-        }
+        GraspPhase::Grasping { .. } => say(under_way(grasp)).then("Pause", Action::Grasp(GraspAction::Pause)),
         GraspPhase::Hand { step, .. } => say(format!("{}. The arm moves; Esc or space stops.", step.title()))
             .then("Pause", Action::Grasp(GraspAction::Pause)),
         GraspPhase::Idle => idle(view),
@@ -67,13 +64,20 @@ fn idle(view: &View) -> Guidance {
     }
 }
 
-/// "Grasps the tomato with M5: approach".
-fn under_way(grasp: &GraspView) -> String {
-    let Some(run) = &grasp.run else { return "Grasps".to_owned() };
+/// "Grasps tomato with M5, try 2 of 3: approach. The arm moves; Esc or space stops."
+pub(super) fn under_way(grasp: &GraspView) -> String {
+    let Some(run) = &grasp.run else { return "Grasps. The arm moves; Esc or space stops.".to_owned() };
+    if let Some(again) = again(run) {
+        return format!("{again} Esc or space stops.");
+    }
     let step = run.lamps.iter().find(|(_, lamp)| *lamp == LampState::Lit);
     let step = step.map_or("getting ready", |(step, _)| step.title()).to_lowercase();
     let by = run.method.map(method).unwrap_or_default();
-    format!("Grasps {} with {by}: {step}", run.object.to_lowercase())
+    let which = try_of(run).map_or_else(String::new, |which| format!(", {which}"));
+    format!(
+        "Grasps {} with {by}{which}: {step}. The arm moves; Esc or space stops.",
+        run.object.to_lowercase()
+    )
 }
 
 /// What a person has to do for the experiment.

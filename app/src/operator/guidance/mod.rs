@@ -165,14 +165,14 @@ fn collect(view: &View) -> Guidance {
     let enough = count >= ENOUGH_PAIRS && (eyes.ghost.is_none() || toured);
     if enough || view.source.replay.is_some() || view.source.status == SourceStatus::None {
         let said = if count < ENOUGH_PAIRS {
-            format!("{count} pairs are few; {ENOUGH_PAIRS} or more are better.")
+            format!("{}: {ENOUGH_PAIRS} or more are better.", format::count(count, "pair"))
         } else {
-            format!("{count} pairs collected. Next: solve them.")
+            format!("{} collected. Next: solve them.", format::count(count, "pair"))
         };
-        return say(said).then(format!("Solve {count} pairs"), Action::Solve);
+        return say(said).then(format!("Solve {}", format::count(count, "pair")), Action::Solve);
     }
     let wanted = eyes.ghost.as_ref().map_or_else(String::new, |g| format!(" Next: {}.", g.reason));
-    say(format!("{count} pairs collected. {}{wanted}", hint_sentence(eyes)))
+    say(format!("{} collected. {}{wanted}", format::count(count, "pair"), hint_sentence(eyes)))
         .then("Capture pair", Action::Capture)
 }
 
@@ -185,7 +185,9 @@ pub fn other_board(eyes: &EyesView) -> Option<(u32, u32)> {
 
 fn collect_label(view: &View) -> String {
     match view.source.replay {
-        Some(replay) if view.source.photographs => format!("Use all {} pairs of this folder", replay.length),
+        Some(replay) if view.source.photographs => {
+            format!("Use all {} of this folder", format::count(replay.length as usize, "pair"))
+        }
         Some(_) => "Use all pairs of this recording".to_owned(),
         None => "Capture pair".to_owned(),
     }
@@ -226,12 +228,13 @@ fn judge(eyes: &EyesView) -> Guidance {
             (None, 0) => say("There is nothing to judge yet: collect pairs first.")
                 .then("Collect pairs", Action::Go(Screen::Collect)),
             (None, n) => {
-                say(format!("{n} pairs wait to be solved.")).then(format!("Solve {n} pairs"), Action::Solve)
+                let pairs = format::count(n, "pair");
+                say(format!("Collected, not solved: {pairs}.")).then(format!("Solve {pairs}"), Action::Solve)
             }
         };
     };
     if let Some(why) = &proposal.stale {
-        return say(why.clone()).then(format!("Solve {count} pairs again"), Action::Solve);
+        return say(why.clone()).then(format!("Solve {} again", format::count(count, "pair")), Action::Solve);
     }
     let verdict = verdict(proposal);
     if !verdict.good {

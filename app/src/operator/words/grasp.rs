@@ -1,6 +1,8 @@
 //! A grasp in words.
 
-use plumbline_engine::view::{AttemptView, GraspHand, GraspMethod, GraspOutcome, GraspView, HandChoice};
+use plumbline_engine::view::{
+    AttemptView, GraspHand, GraspMethod, GraspOutcome, GraspRun, GraspView, HandChoice,
+};
 
 /// "M5".
 pub fn method(method: GraspMethod) -> String {
@@ -35,6 +37,21 @@ pub fn object_of(grasp: &GraspView) -> String {
 pub fn closed(clause: &str) -> String {
     let clause = super::capitalized(clause);
     if clause.ends_with(['.', '!', '?']) { clause } else { format!("{clause}.") }
+}
+
+/// "try 2 of 3"; `None` of a first one, of which nothing need be said.
+pub fn try_of(run: &GraspRun) -> Option<String> {
+    let [number, tries] = run.tries;
+    (number > 1).then(|| format!("try {number} of {tries}"))
+}
+
+/// Before an arm moves to try again: why, and what will move. `None` while it does not.
+pub fn again(run: &GraspRun) -> Option<String> {
+    let why = closed(run.again.as_ref()?);
+    let which = try_of(run).map_or_else(String::new, |which| format!(" {}:", super::capitalized(&which)));
+    Some(format!(
+        "{why}{which} the hand opens, the arm goes back to where it began, both eyes look, and it is grasped once more."
+    ))
 }
 
 /// What became of an attempt, in a word or two.

@@ -26,6 +26,9 @@ pub fn source_name(spec: &SourceSpec) -> String {
             _ => format!("{} and {}", last(left), last(right)),
         },
         SourceSpec::Videos { left, right } => format!("{} and {}", last(left), last(right)),
+        SourceSpec::Recording { file, .. } => {
+            format!("recording {}", file.parent().map_or_else(|| last(file), last))
+        }
         SourceSpec::Twin => "the twin's eyes".to_owned(),
         SourceSpec::Cameras { left_index, right_index } => format!("cameras {left_index} and {right_index}"),
     }

@@ -8,7 +8,8 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::{aligned, choice, lamps, result};
 use crate::operator::GraspAction;
-use crate::operator::words::grasp::hand as hand_words;
+use crate::operator::words::capitalized;
+use crate::operator::words::grasp::{again, hand as hand_words, try_of};
 use crate::panels::parts::action_button;
 use crate::panels::{PanelContext, padded};
 
@@ -20,6 +21,12 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             buttons(ui, cx);
             ui.add_space(space::S);
             if let Some(run) = cx.view.grasp.run.clone() {
+                if let Some(which) = try_of(&run).filter(|_| cx.view.grasp.phase.moves()) {
+                    ui.label(theme::strong(ui, capitalized(&which)));
+                }
+                if let Some(again) = again(&run) {
+                    ui.label(again);
+                }
                 lamps::show(ui, &run.lamps);
                 ui.add_space(space::XS);
                 result::show(ui, cx, &run);
@@ -70,7 +77,7 @@ fn doing(view: &View) -> String {
         plumbline_engine::view::JobState::Running { doing, .. } => Some(doing.clone()),
         _ => None,
     });
-    crate::operator::words::capitalized(&running.unwrap_or_default())
+    capitalized(&running.unwrap_or_default())
 }
 
 /// What keeps anything from moving; when nothing does and nothing else is shown, one word. Notes stand in

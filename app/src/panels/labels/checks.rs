@@ -39,7 +39,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 fn import_plan(ui: &mut Ui, cx: &mut PanelContext<'_>, import: &ImportView) {
     group_heading(ui, "Import, nothing is written yet");
     ui.add(Label::new(import.from.display().to_string()).wrap());
-    let boxes = if import.boxes == 1 { "1 box".to_owned() } else { format!("{} boxes", import.boxes) };
+    let boxes = format::count(import.boxes, "box");
     ui.label(format!("{} with {boxes} would come in.", format::count(import.images, "image")));
     if import.renumbered {
         let text = "Class numbers differ: classes are matched by name, and the numbers are changed to those of this data set.";

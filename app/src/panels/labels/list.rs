@@ -40,7 +40,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     if counts.to_check > 0 {
         summary += &format!(" · {} to check", counts.to_check);
     }
-    summary += &format!(" · {} boxes", counts.boxes);
+    summary += &format!(" · {}", format::count(counts.boxes, "box"));
     ui.label(theme::small(ui, summary));
     ui.add_space(space::XS);
     let why = LabelsAction::Capture.refusal(view);
@@ -132,8 +132,10 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, image: &LabelImage, shown: bool) 
         LabelState::Unlabeled => "without labels",
         LabelState::ToCheck => "to be looked at again",
     };
-    let hint =
-        image.unusable.clone().unwrap_or_else(|| format!("{}: {state}, {} boxes", image.name, image.boxes));
+    let hint = image
+        .unusable
+        .clone()
+        .unwrap_or_else(|| format!("{}: {state}, {}", image.name, format::count(image.boxes, "box")));
     if response.on_hover_text(hint).clicked() {
         cx.outbox.send(LabelsCommand::Choose { image: image.name.clone() });
     }

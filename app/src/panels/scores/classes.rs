@@ -3,7 +3,7 @@
 use egui::{Rect, ScrollArea, Sense, Stroke, Ui, pos2, vec2};
 use plumbline_engine::view::{Score, ScoreTable};
 use plumbline_widgets::theme::{self, space};
-use plumbline_widgets::{class_color, class_swatch};
+use plumbline_widgets::{class_color, class_swatch, format};
 
 use super::parts::{chosen, figure, judged};
 use crate::panels::PanelContext;
@@ -33,7 +33,11 @@ fn row(ui: &mut Ui, table: &ScoreTable, class: usize, name: &str, score: Option<
     let tokens = theme::tokens(ui);
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
     let boxes = table.instances.get(class).copied().unwrap_or(0);
-    let text = format!("{name}: mAP50–95 {}, {boxes} boxes", figure(score.map(|score| score.map50_95)));
+    let text = format!(
+        "{name}: mAP50–95 {}, {}",
+        figure(score.map(|score| score.map50_95)),
+        format::count(boxes, "box")
+    );
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &text));
     let body = egui::TextStyle::Body.resolve(ui.style());
     let small = egui::TextStyle::Small.resolve(ui.style());

@@ -41,5 +41,5 @@ pub fn purpose(purpose: Purpose) -> &'static str {
 
 /// "1 touch", "80 touches".
 pub fn touches(count: usize) -> String {
-    if count == 1 { "1 touch".to_owned() } else { format!("{count} touches") }
+    format::count(count, "touch")
 }

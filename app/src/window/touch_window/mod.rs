@@ -2,6 +2,7 @@
 //! and feels where the glass is touched.
 
 mod contacts;
+mod prompt;
 mod showing;
 mod surface;
 

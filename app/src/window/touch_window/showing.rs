@@ -4,8 +4,8 @@ use egui::{Key, ViewportBuilder, ViewportClass, ViewportCommand, ViewportId};
 use plumbline_engine::{Command, ScreenWindow, TouchCommand};
 use plumbline_model::session::Touchscreen;
 
-use super::{TouchSurface, touch_surface};
-use crate::operator::{Monitor, Screen, screen_of, shortcuts};
+use super::{TouchSurface, prompt, touch_surface};
+use crate::operator::{Action, Monitor, Screen, screen_of, shortcuts};
 use crate::window::{PlumblineWindow, icon};
 
 /// Size of the window where it is only tried out, points.
@@ -18,6 +18,7 @@ struct Asked {
     window: Option<ScreenWindow>,
     stop: bool,
     close: bool,
+    answered: Option<Action>,
 }
 
 impl PlumblineWindow {
@@ -37,8 +38,11 @@ impl PlumblineWindow {
         let id = ViewportId::from_hash_of("touch window");
         let asked = ctx.show_viewport_immediate(id, builder, |ui, class| {
             let window = window_of(ui, class);
-            let commands = touch_surface(ui, &view.touch, screen.as_ref(), &window, surface);
-            let stop = class != ViewportClass::EmbeddedWindow && shortcuts::stop_asked(ui.ctx());
+            let (commands, answered) = match prompt::prompt(&view) {
+                Some(prompt) => (vec![], prompt::show(ui, &prompt)),
+                None => (touch_surface(ui, &view.touch, screen.as_ref(), &window, surface), None),
+            };
+            let stop = class != ViewportClass::EmbeddedWindow && shortcuts::stop_asked(ui.ctx(), true);
             keys(ui, class, window.full_screen);
             let close = ui.input(|input| input.viewport().close_requested());
             Asked {
@@ -46,8 +50,12 @@ impl PlumblineWindow {
                 window: Some(window),
                 stop,
                 close: close && class != ViewportClass::EmbeddedWindow,
+                answered,
             }
         });
+        if let Some(action) = asked.answered {
+            self.act(ctx, action);
+        }
         self.take_asked(asked);
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use plumbline_model::JobContext;
+use plumbline_model::{JobContext, counted};
 
 use super::command::{DetectorChoice, Provider};
 use super::detector::{LoadedDetector, OpenDetector};
@@ -94,7 +94,7 @@ impl DetectResult {
             Self::Kept(_) => "Settings of detection kept.".to_owned(),
             Self::Opened(detector) => {
                 let facts = &detector.facts;
-                format!("Detector {}: {} classes.", facts.name, facts.names.len())
+                format!("Detector {}: {}.", facts.name, counted(facts.names.len(), "class"))
             }
         }
     }

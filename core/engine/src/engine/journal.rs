@@ -95,6 +95,12 @@ pub enum Line {
     Command(Entry),
 }
 
+impl Line {
+    fn is_command(&self) -> bool {
+        matches!(self, Self::Command(_))
+    }
+}
+
 /// Why a journal cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum JournalError {
@@ -129,7 +135,7 @@ pub enum JournalError {
 pub struct Journal {
     file: PathBuf,
     entries: Option<Sender<Line>>,
-    /// Entries that were not taken, because too many waited or the writer has ended.
+    /// Commands that were not taken, because too many waited or the writer has ended.
     refused: u64,
     handed_over: u64,
     written: Arc<AtomicU64>,
@@ -222,7 +228,7 @@ impl Journal {
         self.hand_over(Line::Event(event));
     }
 
-    /// Entries that were lost because the disk did not keep up, or does not take any more.
+    /// Commands that were lost because the disk did not keep up, or does not take any more.
     pub fn lost(&self) -> u64 {
         let has_failed = self.writer.pulse().has_failed();
         let unwritten = self.handed_over.saturating_sub(self.written.load(Ordering::Acquire));
@@ -231,9 +237,11 @@ impl Journal {
 
     fn hand_over(&mut self, line: Line) {
         let Some(entries) = &self.entries else { return };
+        // What came by itself is not what somebody asked for, which is what is counted.
+        let count = u64::from(line.is_command());
         match entries.try_send(line) {
-            Ok(()) => self.handed_over += 1,
-            Err(_) => self.refused += 1,
+            Ok(()) => self.handed_over += count,
+            Err(_) => self.refused += count,
         }
     }
 }
@@ -305,7 +313,9 @@ fn write_entries(
             // One broken line is left out by whoever reads it; a second one would be taken for damage.
             return pulse.fail(&format!("{name}: {error}"));
         }
-        written.fetch_add(1, Ordering::Release);
+        if entry.is_command() {
+            written.fetch_add(1, Ordering::Release);
+        }
         pulse.rest();
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use plumbline_model::StereoFrame;
+use plumbline_model::{StereoFrame, counted};
 
 use super::assess::{Assessment, STATED_AT_M};
 use super::collection::Collection;
@@ -97,7 +97,9 @@ impl EyesWorkflow {
                 self.hint = Some(CaptureHint::Captured { pair: name.clone() });
                 self.keep(&name, frame, context);
                 let count = self.collection.pairs().len();
-                context.notices.add(NoticeLevel::Success, format!("Captured {name}: {count} pairs."));
+                context
+                    .notices
+                    .add(NoticeLevel::Success, format!("Captured {name}: {}.", counted(count, "pair")));
             }
             Err(error) => context.refuse(error),
         }

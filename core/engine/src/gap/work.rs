@@ -6,7 +6,7 @@ use std::sync::Arc;
 use plumbline_effects::RigModel;
 use plumbline_gap::Options;
 use plumbline_model::robot::Rig;
-use plumbline_model::{JobContext, Session, files};
+use plumbline_model::{JobContext, Session, counted, files};
 use plumbline_report::ReportContext;
 
 use super::model;
@@ -288,7 +288,7 @@ impl GapResult {
     pub fn summary(&self) -> String {
         match self {
             Self::Restored(_) => "What was found before was read.".to_owned(),
-            Self::Listed { sessions, .. } => format!("{} sessions.", sessions.len()),
+            Self::Listed { sessions, .. } => format!("{}.", counted(sessions.len(), "session")),
             Self::Found(named) => named.kept.finding.sentence.clone(),
             Self::Deleted(_) => "The finding was deleted.".to_owned(),
             Self::InUse(model) => format!("The model in use is {}.", model::name(model)),

@@ -36,6 +36,25 @@ pub struct Ropes {
     pub sights: Sights,
     /// Pause and end.
     pub reins: Reins,
+    /// Since when the eyes are on; `None`: nobody knows.
+    pub eyes_on: Option<EyesOn>,
+}
+
+/// For how long the eyes have been on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EyesOn {
+    /// s…
+    pub for_s: f64,
+    /// …at this moment.
+    pub at: Instant,
+}
+
+impl EyesOn {
+    /// At another moment, s.
+    pub fn seconds_at(&self, when: Instant) -> f64 {
+        let later_s = when.saturating_duration_since(self.at).as_secs_f64();
+        self.for_s + later_s - self.at.saturating_duration_since(when).as_secs_f64()
+    }
 }
 
 /// The robot at the other end of the ropes.
@@ -245,7 +264,14 @@ impl Body for LedBody<'_> {
         };
         let posture = self.posture_at(frame.stamp.captured_at)?;
         self.pairs += 1;
-        Ok(Sight { left: frame.left, right: frame.right, posture, at_s: self.now_s(), seq: self.pairs })
+        Ok(Sight {
+            left: frame.left,
+            right: frame.right,
+            posture,
+            at_s: self.now_s(),
+            eyes_on_s: self.ropes.eyes_on.map(|eyes_on| eyes_on.seconds_at(frame.stamp.captured_at)),
+            seq: self.pairs,
+        })
     }
 }
 

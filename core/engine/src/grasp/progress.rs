@@ -21,7 +21,9 @@ impl Progress {
     /// Of an attempt that begins.
     pub fn new(method: Method, object: &str) -> Self {
         let lamps = steps_of(method).map(|step| (step, LampState::Dark)).collect();
-        let run = GraspRun { method: Some(method), object: object.to_owned(), lamps, ..GraspRun::default() };
+        let tries = [1, method.tries()];
+        let object = object.to_owned();
+        let run = GraspRun { method: Some(method), object, lamps, tries, ..GraspRun::default() };
         Self(Arc::new(Mutex::new(run)))
     }
 
@@ -116,8 +118,21 @@ impl<'a> Watcher<'a> {
 }
 
 impl Watch for Watcher<'_> {
+    fn again(&mut self, number: usize, tries: usize, why: &str) {
+        self.progress.change(|run| {
+            run.tries = [number, tries];
+            run.again = Some(why.to_owned());
+            run.lamps.iter_mut().for_each(|(_, lamp)| *lamp = LampState::Dark);
+            run.iterations.clear();
+            (run.wanted_px, run.hand_px) = ([None; 2], [None; 2]);
+        });
+    }
+
     fn step(&mut self, step: Step) {
         self.progress.change(|run| {
+            if step != Step::Again {
+                run.again = None;
+            }
             for (other, lamp) in &mut run.lamps {
                 if *other == step {
                     *lamp = LampState::Lit;

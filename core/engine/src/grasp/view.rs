@@ -172,6 +172,10 @@ pub struct GraspRun {
     pub object: String,
     /// Its steps in their order.
     pub lamps: Vec<(GraspStep, LampState)>,
+    /// Which try it is, from 1, and how many there may be.
+    pub tries: [usize; 2],
+    /// Why the try before failed, while the arm goes back to try again.
+    pub again: Option<String>,
     /// Looks at the hand.
     pub iterations: Vec<GraspIteration>,
     /// What was seen last, and at which step.

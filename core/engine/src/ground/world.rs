@@ -36,7 +36,7 @@ impl World {
     /// Whose eyes a source shows.
     pub fn of(source: Option<&SourceSpec>) -> Self {
         match source {
-            Some(SourceSpec::Twin) => Self::Twin,
+            Some(SourceSpec::Twin | SourceSpec::Recording { of_twin: true, .. }) => Self::Twin,
             _ => Self::Robot,
         }
     }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use image::RgbImage;
-use plumbline_model::{ClassNames, JobContext, StereoFrame, files};
+use plumbline_model::{ClassNames, JobContext, StereoFrame, counted, files};
 use plumbline_vision::yolo_set::{ClassMapping, SplitOptions, YoloSet};
 
 use super::images::{Pixels, read_image};
@@ -166,9 +166,9 @@ impl LongWork for LabelsWork {
             Self::Save { .. } => "Save boxes".to_owned(),
             Self::Capture { .. } => "Add the pair".to_owned(),
             Self::Propose { name, .. } => format!("Propose boxes for {name}"),
-            Self::Export { set, .. } => format!("Export {} images", set.images.len()),
+            Self::Export { set, .. } => format!("Export {}", counted(set.images.len(), "image")),
             Self::PlanImport { path, .. } => format!("Read the data set {}", short(path)),
-            Self::Import { plan, .. } => format!("Import {} images", plan.view.images),
+            Self::Import { plan, .. } => format!("Import {}", counted(plan.view.images, "image")),
         }
     }
 
@@ -229,7 +229,7 @@ impl LabelsResult {
     pub fn summary(&self) -> String {
         match self {
             Self::Restored(_) => "Looked for the last data set.".to_owned(),
-            Self::Opened(set) => format!("The data set has {} images.", set.entries.len()),
+            Self::Opened(set) => format!("The data set has {}.", counted(set.entries.len(), "image")),
             Self::Loaded(name, _) => format!("{name} read."),
             Self::Thumbnails(pictures) => format!("{} small pictures read.", pictures.len()),
             Self::Saved => "Boxes saved.".to_owned(),
@@ -237,9 +237,9 @@ impl LabelsResult {
                 let names: Vec<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
                 format!("{} are in the data set.", names.join(" and "))
             }
-            Self::Proposed { boxes, .. } => format!("{} boxes proposed.", boxes.len()),
+            Self::Proposed { boxes, .. } => format!("Proposed: {}.", counted(boxes.len(), "box")),
             Self::Exported(text) => text.clone(),
-            Self::Planned(plan) => format!("{} images can be imported.", plan.view.images),
+            Self::Planned(plan) => format!("Can be imported: {}.", counted(plan.view.images, "image")),
         }
     }
 }

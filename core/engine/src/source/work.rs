@@ -1,7 +1,7 @@
 //! What takes time: asking the system.
 
 use plumbline_hardware::{CameraDevice, camera_devices};
-use plumbline_model::JobContext;
+use plumbline_model::{JobContext, counted};
 
 use super::command::Control;
 use crate::ground;
@@ -49,7 +49,7 @@ impl SourceResult {
     /// The result in a sentence.
     pub fn summary(&self) -> String {
         match self {
-            Self::Cameras(cameras) => format!("{} cameras", cameras.len()),
+            Self::Cameras(cameras) => counted(cameras.len(), "camera"),
         }
     }
 }

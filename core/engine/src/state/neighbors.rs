@@ -272,7 +272,12 @@ impl Neighbors<GraspWorkflow> for State {
             },
             has_mount: mount.of(world).in_use().is_some(),
             has_screen: touch.of(world).screen().is_some(),
-            corrections: Corrections { m1: model(Method::M1), m2: model(Method::M2), m3: model(Method::M3) },
+            corrections: Corrections {
+                m1: model(Method::M1),
+                m2: model(Method::M2),
+                m3: model(Method::M3),
+                hand: None,
+            },
             detector: (detector.clone(), provider),
             own_eyes: self.shown == world && self.shows_own_eyes(),
             source: source.view().clone(),

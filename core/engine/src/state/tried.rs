@@ -15,6 +15,7 @@ impl Neighbors<TrialsWorkflow> for State {
             twin: self.twin.clone(),
             is_twin: world == World::Twin,
             grasp: GraspNow { is_idle: grasp.is_idle(), newest: grasp.newest().cloned() },
+            newest_pair: self.rooms.live.newest().map(|frame| frame.stamp.captured_at),
         }
     }
 

@@ -44,7 +44,7 @@ fn a_kill_takes_no_touch_that_was_reported() {
     store::write(folder.path(), &[], &progress(1)).expect("written");
     let (mut known, mut nth) = (1, 0);
     // How much is written between two kills is the disk's affair: some touches, in the end.
-    while nth < 20 || (known <= 20 && nth < 100) {
+    while nth < 20 || (known <= 20 && nth < 1000) {
         crate::ground::kept::kill(TEST, folder.path(), nth);
         nth += 1;
         let (recorded, in_table) = touches(folder.path());

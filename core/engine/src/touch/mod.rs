@@ -3,6 +3,7 @@
 //! [`TouchWorkflow`] is driven by commands, by what the robot reports and by finished work; it owns
 //! no thread and reads no clock.
 
+mod choice;
 pub mod command;
 mod figures;
 #[cfg(all(test, target_os = "linux"))]

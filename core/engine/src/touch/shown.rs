@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use plumbline_model::counted;
 use plumbline_model::touch_plan::Purpose;
 
 use super::figures::{error_m, figures};
@@ -212,10 +213,12 @@ impl TouchWorkflow {
             },
             Phase::Paused(Some(why)) => why.clone(),
             Phase::Paused(None) if run.screen != self.placed_screen(&around.rig) => format!(
-                "{} touches are left. The screen was placed anew since the run was begun: go on only if it was not moved, else finish this run and plan a new one.",
+                "Still to do: {}. The screen was placed anew since the run was begun: go on only if it was not moved, else finish this run and plan a new one.",
                 run.left()
             ),
-            Phase::Paused(None) => format!("{} touches are left. Go on; the arm moves.", run.left()),
+            Phase::Paused(None) => {
+                format!("Still to do: {}. Go on; the arm moves.", counted(run.left(), "touch"))
+            }
             Phase::Stuck(reason) => reason.clone(),
             Phase::Preparing(wanted) => preparation(run.progress.prepared, *wanted),
             Phase::Finished if self.placing.is_some() => {

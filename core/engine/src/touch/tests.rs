@@ -9,7 +9,7 @@ use plumbline_model::session::names;
 use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose};
 use plumbline_model::{Pixel, Session, Unattended};
 
-use super::command::{ContactWith, ScreenContact, ScreenWindow, TouchCommand};
+use super::command::{ContactWith, Correction, ScreenContact, ScreenWindow, TouchCommand};
 use super::store::{PLAN, PROGRESS, REJECTED};
 use super::testing::{Desk, area, grid, only_session, rig};
 use super::view::{ContactSource, TouchOutcome, TouchPhase};
@@ -368,6 +368,25 @@ fn a_check_with_a_model_lands_nearer() {
     assert!(after.mean_m < 0.3 * before.mean_m, "{} {}", after.mean_m, before.mean_m);
     assert!(view.session.expect("a session").to_string_lossy().ends_with("_check"));
     assert!(view.placement_proposal.is_some(), "that of the run before is still there");
+}
+
+#[test]
+fn what_corrects_targets_is_the_same_after_a_restart() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    desk.apply(TouchCommand::CorrectWith(Some(Correction::Effects)));
+    drop(desk);
+    let mut desk = Desk::new(folder.path());
+    assert_eq!(desk.view().correct_with, Some(Correction::Effects));
+    desk.apply(TouchCommand::CorrectWith(None));
+    drop(desk);
+    let mut desk = Desk::new(folder.path());
+    assert_eq!((desk.view().correct_with, desk.said().as_str()), (None, ""));
+
+    fs::write(folder.path().join("touch_correction.json"), "{\"correct_with\": \"m9\"}").expect("written");
+    let mut desk = Desk::new(folder.path());
+    assert!(desk.said().contains("choose it anew in Touch"), "{}", desk.said());
+    assert_eq!(desk.view().correct_with, None);
 }
 
 #[test]

@@ -9,6 +9,8 @@ use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::touch_plan::TouchArea;
 use plumbline_model::touchscreen::ScreenPlacement;
 
+use super::choice::{self, NoChoice};
+use super::command::Correction;
 use super::placement::{self, Proposal};
 use super::plan::{self, Aim, PlanRequest, RunPlan, TIP};
 use super::record::{Progress, TouchRecord};
@@ -83,6 +85,13 @@ pub enum TouchWork {
         /// The place.
         placement: Arc<ScreenPlacement>,
     },
+    /// Keeps what targets are corrected with.
+    KeepChoice {
+        /// Where.
+        kept: InUse,
+        /// What was chosen.
+        correct_with: Option<Correction>,
+    },
     /// Removes the file, so that the nominal place is used again.
     Forget {
         /// Which.
@@ -120,6 +129,8 @@ pub enum TouchResult {
         runs: Runs,
         /// The part of the screen that the finger reaches.
         reach: Option<TouchArea>,
+        /// What targets were corrected with last, or why that is not known; `None`: never chosen.
+        choice: Result<Option<Option<Correction>>, Arc<NoChoice>>,
     },
     /// A plan, of a screen that lies where this rig has it.
     Planned(Arc<RunPlan>, Arc<Rig>),
@@ -161,6 +172,8 @@ pub enum TouchResult {
     Saved(Arc<ScreenPlacement>),
     /// The nominal place is in use.
     Forgotten,
+    /// What was chosen is kept.
+    ChoiceKept,
 }
 
 /// What the handlers of this room may reach besides their own workflow.
@@ -179,6 +192,7 @@ impl LongWork for TouchWork {
             Self::Route(request) => format!("Look for the way to target {}", request.aim.touch.number),
             Self::Place { touches, .. } => format!("Place the screen from {} touches", touches.len()),
             Self::Accept { .. } => "Use this place of the screen".to_owned(),
+            Self::KeepChoice { .. } => "Keep what targets are corrected with".to_owned(),
             Self::Forget { .. } => "Go back to the nominal place of the screen".to_owned(),
         }
     }
@@ -193,6 +207,7 @@ impl LongWork for TouchWork {
                 | Self::Write { .. }
                 | Self::Route(_)
                 | Self::Place { .. }
+                | Self::KeepChoice { .. }
         )
     }
 
@@ -225,6 +240,10 @@ impl LongWork for TouchWork {
                 kept.put(JobError::told, |file| placement.write(file).map_err(JobError::told))?;
                 Ok(TouchResult::Saved(placement))
             }
+            Self::KeepChoice { kept, correct_with } => {
+                choice::write(&kept, correct_with).map_err(JobError::told)?;
+                Ok(TouchResult::ChoiceKept)
+            }
             Self::Forget { kept } => {
                 kept.forget().map_err(|error| JobError::not_removed(kept.file(), &error))?;
                 Ok(TouchResult::Forgotten)
@@ -240,7 +259,8 @@ fn restore(folder: &std::path::Path, rig: &Rig) -> TouchResult {
     let placement = kept.map(|placement| placement.map(Arc::new).map_err(Arc::new));
     // A rig without this finger cannot touch anyway; planning says so.
     let reach = TouchArea::reached_by(rig, TIP).ok().flatten();
-    TouchResult::Restored { placement, runs: store::list(&folder.join("sessions")), reach }
+    let choice = choice::read(&choice::choice_in(folder)).map_err(Arc::new);
+    TouchResult::Restored { placement, runs: store::list(&folder.join("sessions")), reach, choice }
 }
 
 fn begin(
@@ -299,6 +319,7 @@ impl TouchResult {
             Self::Placed(_) => "The place of the screen was measured.".to_owned(),
             Self::Saved(_) => "The measured place of the screen is in use.".to_owned(),
             Self::Forgotten => "The nominal place of the screen is in use.".to_owned(),
+            Self::ChoiceKept => "What corrects targets is kept.".to_owned(),
         }
     }
 }

@@ -52,6 +52,14 @@ pub enum TrialsError {
         /// Its format.
         format: u32,
     },
+    /// It says what cannot be.
+    #[error("{} is no file of an experiment ({why}): delete it, and what it says is made again", .file.display())]
+    Implausible {
+        /// Which.
+        file: PathBuf,
+        /// What cannot be.
+        why: String,
+    },
     /// The page cannot be made.
     #[error(transparent)]
     Report(#[from] ReportError),

@@ -5,6 +5,10 @@ use serde::{Deserialize, Serialize};
 
 /// Version of the files.
 pub const FORMAT: u32 = 1;
+/// An experiment has no more attempts: it would take years.
+const MOST_ATTEMPTS: usize = 1_000_000;
+/// Things lie no farther from the robot than this, m.
+const FARTHEST_M: f64 = 10.0;
 /// A person puts a thing this near to where it belongs, m per axis (standard deviation).
 const PLACING_M: f64 = 0.002;
 
@@ -35,7 +39,7 @@ fn right() -> HandChoice {
 }
 
 /// One attempt of an experiment.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Trial {
     /// Its number, from 0.
     pub number: usize,
@@ -48,6 +52,17 @@ pub struct Trial {
 }
 
 impl Experiment {
+    /// What of it cannot be; `None`: it can be carried out.
+    pub fn is_wrong(&self) -> Option<String> {
+        let parts = [self.positions_m.len(), self.methods.len(), self.attempts];
+        let all = parts.iter().try_fold(1usize, |all, part| all.checked_mul(*part));
+        if all.is_none_or(|all| all > MOST_ATTEMPTS) {
+            return Some(format!("more than {MOST_ATTEMPTS} attempts"));
+        }
+        let far = self.positions_m.iter().find(|at_m| at_m.iter().any(|m| !(m.abs() <= FARTHEST_M)));
+        far.map(|[x_m, y_m]| format!("a position at {x_m}, {y_m} m"))
+    }
+
     /// All attempts, in their order: every method at a position before the next attempt there.
     pub fn trials(&self) -> impl Iterator<Item = Trial> + '_ {
         let of_position = move |position: usize| {

@@ -2,7 +2,7 @@
 //! and what came of them. An attempt is on disk before the next begins, so that an experiment goes on where
 //! it was interrupted, and parts of it that were made elsewhere can be put together.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::path::{Path, PathBuf};
 
 use plumbline_model::files::{self, Size};
@@ -48,7 +48,10 @@ pub fn read_experiment(folder: &Path) -> Result<Experiment, TrialsError> {
     if experiment.format != FORMAT {
         return Err(TrialsError::Newer { file, format: experiment.format });
     }
-    Ok(experiment)
+    match experiment.is_wrong() {
+        Some(why) => Err(TrialsError::Implausible { file, why }),
+        None => Ok(experiment),
+    }
 }
 
 /// Whether an attempt was made.
@@ -64,15 +67,24 @@ pub fn keep(out: &Path, attempt: &Attempt) -> Result<(), TrialsError> {
     write_json(&file_of(out, &attempt.trial), attempt)
 }
 
-/// All attempts so far, in their order.
+/// All attempts so far of an experiment, in their order.
 ///
 /// # Errors
-/// When one cannot be read.
-pub fn attempts(out: &Path) -> Result<Vec<Attempt>, TrialsError> {
+/// When one cannot be read, or is of another experiment.
+pub fn attempts(out: &Path, experiment: &Experiment) -> Result<Vec<Attempt>, TrialsError> {
     let mut attempts: Vec<Attempt> = vec![];
+    let known: HashSet<Trial> = experiment.trials().collect();
     for (file, text) in attempt_files(out)? {
-        let attempt = serde_json::from_str(&text)
-            .map_err(|error| TrialsError::Unreadable { file: out.join(ATTEMPTS).join(file), error })?;
+        let file = out.join(ATTEMPTS).join(file);
+        let attempt: Attempt = match serde_json::from_str(&text) {
+            Ok(attempt) => attempt,
+            Err(error) => return Err(TrialsError::Unreadable { file, error }),
+        };
+        let (trial, is_known) = (attempt.trial, known.contains(&attempt.trial));
+        if !is_known || attempts.iter().any(|other| other.trial == trial) {
+            let why = format!("attempt {} at position {}, counted from 0", trial.number, trial.position);
+            return Err(TrialsError::Implausible { file, why });
+        }
         attempts.push(attempt);
     }
     attempts.sort_by_key(|attempt| attempt.trial.number);
@@ -84,7 +96,7 @@ pub fn attempts(out: &Path) -> Result<Vec<Attempt>, TrialsError> {
 /// # Errors
 /// When a file cannot be read or written.
 pub fn conclude(out: &Path, experiment: &Experiment, rig: &Rig) -> Result<Summary, TrialsError> {
-    let attempts = attempts(out)?;
+    let attempts = attempts(out, experiment)?;
     let summary = summary(experiment, &attempts);
     write_json(&out.join(SUMMARY), &summary)?;
     files::write(&out.join("attempts.csv"), csv(experiment, &attempts))?;

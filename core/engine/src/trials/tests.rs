@@ -50,6 +50,7 @@ impl Lab {
             twin: Arc::new(TwinView { running: is_twin, scenario: "lab".to_owned(), ..TwinView::default() }),
             is_twin,
             grasp: GraspNow { is_idle: true, newest: None },
+            newest_pair: None,
         };
         let room = TrialsWorkflow::new(folder.path());
         let mut lab = Self {
@@ -93,13 +94,30 @@ impl Lab {
 
     fn tell(&mut self, command: TrialsCommand) -> Arc<TrialsView> {
         self.with(|room, around, context| room.apply(command, around, context));
+        self.lay();
         self.view()
     }
 
+    /// The eyes see what there is then.
     fn after_s(&mut self, seconds: f64) -> Arc<TrialsView> {
+        self.around.newest_pair = Some(self.time.after(Duration::from_secs_f64(seconds)).instant);
+        self.blindly_after_s(seconds)
+    }
+
+    fn blindly_after_s(&mut self, seconds: f64) -> Arc<TrialsView> {
         self.time = self.time.after(Duration::from_secs_f64(seconds));
         self.with(|room, around, context| room.step(around, context));
+        self.lay();
         self.view()
+    }
+
+    /// What was to be laid somewhere lies there.
+    fn lay(&mut self) {
+        let Some(TwinCommand::PlaceToy { x_m, y_m, .. }) = self.controls.last() else { return };
+        let (x_m, y_m) = (*x_m, *y_m);
+        for toy in &mut Arc::make_mut(&mut self.around.twin).toys {
+            toy.place = toy.place.map(|at| plumbline_model::frame::Point::new(x_m, y_m, at.coords.z));
+        }
     }
 
     fn view(&mut self) -> Arc<TrialsView> {
@@ -116,6 +134,7 @@ impl Lab {
             rgb: [200, 40, 40],
         };
         Arc::make_mut(&mut self.around.twin).toys = vec![tomato];
+        self.lay();
     }
 
     /// An attempt has ended so.
@@ -210,6 +229,34 @@ fn on_the_twin_it_goes_through_all_attempts_by_itself() {
         lab.wishes();
     }
     assert_eq!(lab.view().phase, TrialsPhase::Idle);
+}
+
+#[test]
+fn what_was_laid_down_is_grasped_once_the_eyes_have_seen_it_there() {
+    let mut lab = Lab::new(true);
+    lab.tell(begin(1, 1));
+    let rolled_away = |lab: &mut Lab, by_m: f64| {
+        let place = Arc::make_mut(&mut lab.around.twin).toys[0].place.as_mut().expect("it is there");
+        place.coords.x += by_m;
+    };
+    // The twin has not laid it down yet, then the eyes have not looked again.
+    rolled_away(&mut lab, 0.1);
+    lab.around.newest_pair = Some(lab.time.after(Duration::from_secs(2)).instant);
+    lab.time = lab.time.after(Duration::from_secs(2));
+    lab.with(|room, around, context| room.step(around, context));
+    assert_eq!(stage(&lab.view()), Some(TrialStage::Laying));
+    rolled_away(&mut lab, -0.1);
+    lab.around.newest_pair = Some(lab.time.instant - Duration::from_secs(1));
+    assert_eq!(stage(&lab.blindly_after_s(2.0)), Some(TrialStage::Laying));
+    assert!(lab.wishes().is_empty());
+    assert_eq!(stage(&lab.after_s(0.5)), Some(TrialStage::Grasping));
+    assert_eq!(lab.wishes().len(), 3);
+
+    // Eyes that give nothing are not waited for forever: grasping says so.
+    let mut lab = Lab::new(true);
+    lab.tell(begin(1, 1));
+    assert_eq!(stage(&lab.blindly_after_s(9.0)), Some(TrialStage::Laying));
+    assert_eq!(stage(&lab.blindly_after_s(3.0)), Some(TrialStage::Grasping));
 }
 
 #[test]

@@ -139,7 +139,7 @@ impl LongWork for TrialsWork {
 /// What came of an experiment so far, and what is still to be made.
 fn shown(folder: PathBuf, rig: &Rig) -> Result<(Arc<ShownTrials>, Vec<Trial>), TrialsError> {
     let experiment = store::read_experiment(&folder)?;
-    let attempts = store::attempts(&folder)?;
+    let attempts = store::attempts(&folder, &experiment)?;
     let summary = summary(&experiment, &attempts);
     let page = super::page::page(&experiment, &summary, rig);
     let made = |trial: &Trial| attempts.iter().any(|attempt| attempt.trial == *trial);
@@ -172,7 +172,7 @@ fn list(experiments: &Path) -> TrialsResult {
 
 fn export(folder: &Path, file: &Path, format: TrialsFormat, rig: &Rig) -> Result<(), TrialsError> {
     let experiment = store::read_experiment(folder)?;
-    let attempts = store::attempts(folder)?;
+    let attempts = store::attempts(folder, &experiment)?;
     let page = || super::page::page(&experiment, &summary(&experiment, &attempts), rig);
     files::export(file)?;
     match format {

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use plumbline_grasp::things::Thing;
 use plumbline_grasp::{Failure, HandChoice, Outcome, PLACES_M};
 use plumbline_model::robot::Rig;
+use plumbline_model::{Point, Robot};
 
 use super::command::TrialsCommand;
 use super::plan::{Experiment, FORMAT, Trial};
@@ -24,6 +25,10 @@ use crate::twin::view::TwinView;
 
 /// A thing that was laid down comes to rest within this.
 const SETTLES: Duration = Duration::from_millis(1500);
+/// The eyes have seen it lie there within this, or they are blind, which grasping says.
+const SEEN_WITHIN: Duration = Duration::from_secs(10);
+/// It lies where it was laid when it is this near, m: what is round rolls a little.
+const LAID_M: f64 = 0.05;
 /// A thing that is this much higher than before is lifted, m.
 const LIFTED_M: f64 = 0.04;
 /// The pace is that of so many attempts.
@@ -85,6 +90,8 @@ pub struct TrialsAround {
     pub is_twin: bool,
     /// Grasping.
     pub grasp: GraspNow,
+    /// When the newest pair was captured.
+    pub newest_pair: Option<Instant>,
 }
 
 impl TrialsAround {
@@ -95,8 +102,19 @@ impl TrialsAround {
 
     /// How high a thing stands on the twin's table, as the scene shows it, m.
     fn height_m(&self, object: &str) -> Option<f64> {
-        let toy = self.twin.toys.iter().find(|toy| toy.name.eq_ignore_ascii_case(object))?;
-        Some(toy.place?.coords.z)
+        Some(self.place(object)?.coords.z)
+    }
+
+    /// Where a thing is on the twin's table, as the scene shows it.
+    fn place(&self, object: &str) -> Option<Point<Robot>> {
+        self.twin.toys.iter().find(|toy| toy.name.eq_ignore_ascii_case(object))?.place
+    }
+
+    /// Whether a thing that has come to rest by `rests` lies where it was laid and was seen there since.
+    fn is_seen_at(&self, object: &str, [x_m, y_m]: [f64; 2], rests: Instant) -> bool {
+        let lies = |at: Point<Robot>| (at.coords.x - x_m).hypot(at.coords.y - y_m) < LAID_M;
+        let lies = !self.is_twin || self.place(object).is_some_and(lies);
+        lies && self.newest_pair.is_some_and(|captured| captured > rests)
     }
 }
 
@@ -267,7 +285,11 @@ impl TrialsWorkflow {
         let object = &shown.experiment.object;
         let now = context.time.instant;
         match attempt.stage.clone() {
-            Stage::Laying(until) if now >= until => {
+            // The robot and its eyes may be busy: what is not seen yet is waited for.
+            Stage::Laying(until)
+                if now >= until + SEEN_WITHIN
+                    || now >= until && around.is_seen_at(object, attempt.placed_m, until) =>
+            {
                 let target = GraspTarget { class: Some(object.clone()), near_m: Some(attempt.placed_m) };
                 self.wishes = vec![
                     GraspCommand::Method(attempt.trial.method),

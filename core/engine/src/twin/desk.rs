@@ -20,8 +20,10 @@ use crate::ground::notice::NoticeLevel;
 const AT_EACH_PLACE: Duration = Duration::from_millis(1600);
 /// Where the machine is slow, it stays until it was looked at so often: a few looks must agree.
 const LOOKS_AT_EACH_PLACE: u64 = 8;
-/// After this it goes on all the same: nobody looks.
-const LONGEST_AT_A_PLACE: Duration = Duration::from_secs(12);
+/// After this it goes on all the same when nobody looks…
+const NOBODY_LOOKS: Duration = Duration::from_secs(12);
+/// …and after this also when somebody does: the machine is too slow.
+const LONGEST_AT_A_PLACE: Duration = Duration::from_secs(60);
 /// So much around the touchscreen is kept free of toys while it is touched: a hand is broad, m.
 const BESIDE_SCREEN_M: f64 = 0.06;
 const PHYSICS_FAILED: &str = "The twin's physics have failed inside, so the twin has ended. Nothing real is hurt: connect to the twin again, and report it with the log.";
@@ -43,8 +45,13 @@ impl Tour {
     fn is_seen(&self, now: Instant, looks: u64) -> bool {
         let Some(held) = self.held else { return true };
         let since = now.saturating_duration_since(held);
-        let looked = looks.saturating_sub(self.looks) >= LOOKS_AT_EACH_PLACE;
-        since >= AT_EACH_PLACE && (looked || since >= LONGEST_AT_A_PLACE)
+        let looked = looks.saturating_sub(self.looks);
+        let waits_for = match looked {
+            LOOKS_AT_EACH_PLACE.. => AT_EACH_PLACE,
+            0 => NOBODY_LOOKS,
+            _ => LONGEST_AT_A_PLACE,
+        };
+        since >= waits_for
     }
 }
 
@@ -357,7 +364,7 @@ mod tests {
         let seen = |after_ms: u64, looks: u64| tour.is_seen(held + Duration::from_millis(after_ms), looks);
         assert!(!seen(500, 200), "not found still yet");
         assert!(seen(1600, 108));
-        assert!(!seen(5000, 104), "a slow machine has looked four times");
+        assert!(!seen(30_000, 104) && seen(60_000, 104), "a slow machine has looked four times");
         assert!(seen(12_000, 100), "nobody looks");
     }
 

@@ -5,12 +5,16 @@ use plumbline_model::robot::Posture;
 use super::{AIR_RAD_S, End, Running};
 use crate::record::{Earlier, Failure, Outcome, Step};
 
+/// Before the arm moves again, who watches has this long to read what will move, and to stop it, s.
+const SAID_S: f64 = 2.0;
+
 impl Running<'_> {
     /// Opens the hand, goes back to where the arm was at first, so that the eyes see the table as they did
     /// then, and grasps what is seen there once more. Where that cannot be, the last try counts.
     pub(super) fn once_more(
         &mut self,
         from: &Posture,
+        number: usize,
         failure: Failure,
         why: String,
     ) -> Result<Outcome, End> {
@@ -20,7 +24,9 @@ impl Running<'_> {
         let Ok(back) = planner.free_way(&opened, &start) else {
             return Ok(Outcome::Failed { failure, why });
         };
+        self.watch.again(number, self.order.method.tries(), &why);
         self.begin(Step::Again);
+        self.body.wait(SAID_S)?;
         self.follow(Step::Again, std::slice::from_ref(&opened), AIR_RAD_S)?;
         self.follow(Step::Again, &back, AIR_RAD_S)?;
         self.near_m = self.record.standing_m.or(self.near_m);

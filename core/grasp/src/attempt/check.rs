@@ -1,18 +1,23 @@
 //! Whether something is held: the fingers say, and the eyes.
 
 use plumbline_model::detection::PixelBox;
+use plumbline_model::robot::JointIndex;
 use plumbline_model::{Point, Robot};
 
 use super::{Chosen, End, Running};
+use crate::body::ServoState;
 use crate::record::{Failure, Outcome, Step};
 use crate::see::Seen;
 
-/// A finger that is kept open by more than this holds something, rad…
+/// What is held presses the thumb with at least this share of what presses the strongest finger: what fingers
+/// press on alone is the hand itself, or slips out between them. Of 883 attempts of the twin the thumb had
+/// more than 0.42 in all but one of 763 that held something, and less than 0.18 in the 120 that did not.
+const THUMB_SHARE: f64 = 0.3;
+/// A thumb or a finger that presses with less than this share of its torque presses on nothing.
+const PRESSES: f64 = 0.1;
+/// Where servos do not say how hard they press: a finger that is kept open by more than this holds something,
+/// rad.
 const HELD_RAD: f64 = 0.10;
-/// …and one that presses with this share of its torque when it is kept open by this, rad: what is small
-/// lets fingers close nearly all the way.
-const PRESSES: f64 = 0.2;
-const PRESSING_RAD: f64 = 0.015;
 /// A thing that is seen this near to where it stood, and no higher than this over it, was left, m.
 const LEFT_M: f64 = 0.10;
 /// What is not held well has fallen after this time, s.
@@ -21,12 +26,17 @@ const FALLEN_S: f64 = 1.5;
 const STANDS_M: f64 = 0.03;
 /// Boxes that overlap by more than this (intersection over union) are of the same thing at the same place.
 const SAME_IOU: f32 = 0.3;
+/// Where the hand holds something, only boxes of both eyes that overlap by more than this are of a thing that
+/// was left: a hand covers parts of what it holds, and what is left of it is seen elsewhere.
+const UNTOUCHED_IOU: f32 = 0.6;
+/// What is seen higher than before by more than this is not where it was, m.
+const HIGHER_M: f64 = 0.04;
 
 impl Running<'_> {
     pub(super) fn check(&mut self, chosen: &Chosen) -> Result<Outcome, End> {
         self.body.wait(FALLEN_S)?;
         self.keep(Step::Check)?;
-        let holds = self.fingers_hold()?;
+        let holds = self.hand_holds()?;
         let sight = self.body.look()?;
         let grasper = &mut *self.grasper;
         let seen = grasper.looker.look(&sight, &grasper.knowledge)?;
@@ -40,6 +50,7 @@ impl Running<'_> {
         let left = seen
             .iter()
             .filter(is_of_class)
+            .filter(|thing| !holds || is_untouched(thing, before))
             .any(|thing| is_where_it_was(thing, before, &chosen.point, &others));
         self.record.seen_after = seen;
         let object = object.to_lowercase();
@@ -55,32 +66,48 @@ impl Running<'_> {
             },
             (true, true) => Outcome::Failed {
                 failure: Failure::Slipped,
-                why: format!("something keeps the fingers open, but the {object} is where it was"),
+                why: format!("something else is in the hand: the {object} is where it was"),
             },
         })
     }
 
-    /// Whether a finger (the thumb is none) is kept from closing around nothing. A body may let them press
-    /// less than it was asked, so it is not what was commanded last that counts. How far they are kept
-    /// open, the mean, goes into the record.
-    fn fingers_hold(&mut self) -> Result<bool, End> {
+    /// Whether something is between fingers and thumb. How far the fingers (the thumb is none) are kept
+    /// from closing around nothing, the mean, goes into the record. A body may let them press less than it
+    /// was asked, so it is not what was commanded last that counts.
+    fn hand_holds(&mut self) -> Result<bool, End> {
         let planner = self.grasper.planner(self.order.method);
         let closed = planner.closed(&self.body.commanded()?);
-        let fingers = planner.fingers();
+        let (fingers, thumb) = (planner.fingers(), planner.thumb());
         let servos = self.body.servos()?;
-        let open: Vec<(f64, Option<f64>)> = servos
-            .iter()
-            .filter(|servo| fingers.contains(&servo.joint))
-            .map(|servo| ((servo.angle_rad - closed[servo.joint]).abs(), servo.load))
-            .collect();
-        let sum_rad: f64 = open.iter().map(|(open_rad, _)| open_rad).sum();
-        self.record.fingers_open_rad = Some(sum_rad / open.len().max(1) as f64);
-        let presses = |load: Option<f64>| load.is_some_and(|load| load.abs() > PRESSES);
-        let holds = |(open_rad, load): &(f64, Option<f64>)| {
-            *open_rad > HELD_RAD || (*open_rad > PRESSING_RAD && presses(*load))
+        let of = |joints: &[JointIndex]| -> Vec<&ServoState> {
+            servos.iter().filter(|servo| joints.contains(&servo.joint)).collect()
         };
-        Ok(open.iter().any(holds))
+        let (fingers, thumb) = (of(&fingers), of(&thumb));
+        let open_rad: Vec<f64> =
+            fingers.iter().map(|servo| (servo.angle_rad - closed[servo.joint]).abs()).collect();
+        self.record.fingers_open_rad = Some(open_rad.iter().sum::<f64>() / open_rad.len().max(1) as f64);
+        let loads =
+            |servos: &[&ServoState]| servos.iter().map(|servo| servo.load).collect::<Option<Vec<_>>>();
+        Ok(match (loads(&fingers), loads(&thumb)) {
+            (Some(fingers), Some(thumb)) if !thumb.is_empty() => is_pinched(&fingers, &thumb),
+            _ => open_rad.iter().any(|open_rad| *open_rad > HELD_RAD),
+        })
     }
+}
+
+/// Whether what presses the fingers presses the thumb, by shares of the torque of their servos.
+fn is_pinched(fingers: &[f64], thumb: &[f64]) -> bool {
+    let strongest = fingers.iter().fold(0.0f64, |strongest, load| strongest.max(load.abs()));
+    let thumb: f64 = thumb.iter().map(|load| load.abs()).sum();
+    strongest > PRESSES && thumb > PRESSES.max(THUMB_SHARE * strongest)
+}
+
+/// Whether both eyes see it in the boxes in which the chosen one was before.
+fn is_untouched(thing: &Seen, before: Option<&Seen>) -> bool {
+    before.is_some_and(|before| {
+        let boxes = before.boxes_px.iter().zip(&thing.boxes_px);
+        boxes.map(both_known).all(|boxes| boxes.is_some_and(|(a, b)| a.iou(&b) > UNTOUCHED_IOU))
+    })
 }
 
 /// Whether a thing is where the chosen one was, and not another one that stood beside it.
@@ -100,6 +127,9 @@ fn is_where_it_was(thing: &Seen, before: Option<&Seen>, chosen: &Point<Robot>, o
         if is_low && off_m < LEFT_M {
             return true;
         }
+        if here.coords.z - chosen.coords.z > HIGHER_M {
+            return false;
+        }
     }
     let overlap = |other: &Seen| overlap(&other.boxes_px, &thing.boxes_px);
     let of_chosen = before.map_or(0.0, overlap);
@@ -108,9 +138,14 @@ fn is_where_it_was(thing: &Seen, before: Option<&Seen>, chosen: &Point<Robot>, o
 
 /// How far a box of one eye is where it was (intersection over union, the larger one): what was lifted is seen higher by more than its size.
 fn overlap(before: &[Option<[f32; 4]>; 2], now: &[Option<[f32; 4]>; 2]) -> f32 {
+    let both = before.iter().zip(now).filter_map(both_known);
+    both.map(|(before, now)| before.iou(&now)).fold(0.0, f32::max)
+}
+
+/// The boxes of one eye before and now, where there are both.
+fn both_known((before, now): (&Option<[f32; 4]>, &Option<[f32; 4]>)) -> Option<(PixelBox, PixelBox)> {
     let area = |[x0, y0, x1, y1]: [f32; 4]| PixelBox { x0_px: x0, y0_px: y0, x1_px: x1, y1_px: y1 };
-    let both = before.iter().zip(now).filter_map(|(before, now)| Some(((*before)?, (*now)?)));
-    both.map(|(before, now)| area(before).iou(&area(now))).fold(0.0, f32::max)
+    Some((area((*before)?), area((*now)?)))
 }
 
 #[cfg(test)]
@@ -138,7 +173,39 @@ mod tests {
         // The first one, left where it was or pushed a little, is found beside the second.
         assert!(is_left(&tomato([0.301, -0.099, 0.08], 201.0), &[&second]));
         assert!(is_left(&tomato([0.3, -0.13, 0.08], 170.0), &[&second]));
-        // In the hand it is high and elsewhere in the images.
+        // In the hand it is high and elsewhere in the images, or high and not.
         assert!(!is_left(&tomato([0.3, -0.1, 0.18], 290.0), &[]));
+        assert!(!is_left(&tomato([0.3, -0.1, 0.18], 210.0), &[]));
+    }
+
+    #[test]
+    fn what_is_held_presses_the_thumb_however_far_the_fingers_are_closed() {
+        // Fingers and thumb of attempts: a tomato pressed with all and with a fifth of the torque, a mushroom.
+        for (fingers, thumb) in [
+            ([-0.0, -1.0], [-0.4, 0.35]),
+            ([-0.01, -0.2], [-0.15, 0.01]),
+            ([-0.0, -1.0], [-0.3, 0.12]),
+            ([-0.0, -1.0], [-0.4, 0.07]),
+        ] {
+            assert!(is_pinched(&fingers, &thumb), "{fingers:?} {thumb:?}");
+        }
+        // A tomato that slipped out, fingers that press on the hand itself, fingers that closed around nothing.
+        for (fingers, thumb) in [
+            ([-0.0, -1.0], [-0.09, 0.07]),
+            ([-0.2, -0.2], [-0.0, -0.0]),
+            ([-0.0, -0.03], [-0.02, 0.02]),
+            ([0.0, 0.0], [0.0, 0.0]),
+        ] {
+            assert!(!is_pinched(&fingers, &thumb), "{fingers:?} {thumb:?}");
+        }
+    }
+
+    #[test]
+    fn of_a_thing_in_the_hand_a_piece_seen_beside_does_not_count_as_left() {
+        let before = tomato([0.197, -0.004, 0.083], 328.0);
+        let piece = Some([336.0, 92.0, 354.0, 112.0]);
+        let seen = Seen { boxes_px: [piece, piece], ..tomato([0.227, -0.011, 0.07], 336.0) };
+        assert!(!is_untouched(&seen, Some(&before)));
+        assert!(is_untouched(&tomato([0.198, -0.004, 0.083], 329.0), Some(&before)));
     }
 }

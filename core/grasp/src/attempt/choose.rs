@@ -45,7 +45,8 @@ impl Running<'_> {
             .place
             .clone()
             .map_err(|why| End::Failed(Failure::NotSeen, format!("the {object} has no place: {why}")))?;
-        let boxes = Boxes { boxes_px: &self.record.seen[index].boxes_px, posture: &sight.posture };
+        let boxes_px = &self.record.seen[index].boxes_px;
+        let boxes = Boxes { boxes_px, posture: &sight.posture, under: sight.seen_under() };
         self.standing(&place, &thing, &boxes)
     }
 

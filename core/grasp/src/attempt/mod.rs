@@ -66,6 +66,9 @@ pub trait Watch {
     fn planned(&mut self, plan: &GraspPlan);
     /// The hand was looked at.
     fn aligned(&mut self, iteration: &Iteration);
+    /// The try before came up without the object: it will be tried again, with the arm's way back to where it
+    /// began. `number` of `tries` counts from 1; `why` the try before failed.
+    fn again(&mut self, _number: usize, _tries: usize, _why: &str) {}
     /// All that is known so far, before a step is begun: `record.step` is that step. To be kept before
     /// it goes on.
     fn about_to(&mut self, _record: &Record) {}
@@ -109,9 +112,9 @@ impl From<NoPlan> for End {
     }
 }
 
-impl From<method::NotTrained> for End {
-    fn from(not_trained: method::NotTrained) -> Self {
-        Self::Refused(not_trained.to_string())
+impl From<method::NotKnown> for End {
+    fn from(not_known: method::NotKnown) -> Self {
+        Self::Refused(not_known.to_string())
     }
 }
 
@@ -271,9 +274,10 @@ impl Running<'_> {
         let chosen = self.find(&before)?;
         self.begin(Step::Plan);
         let method = self.order.method;
-        let (shift_m, _) = method::correction(method, &self.grasper.knowledge, &chosen.point)?;
         let from = self.body.commanded()?;
-        let plan = self.best_plan(&hands, &chosen, &shift_m, &from)?;
+        let headed = method::published(method, &self.grasper.knowledge, &chosen.point)?;
+        let plan = self.best_plan(&hands, &chosen, headed.as_ref(), &from)?;
+        let shift_m = headed.map_or_else(Vector3::zeros, |headed| headed.shift_m);
         self.planned(&plan);
         Ok(Prepared { before, chosen, shift_m, plan })
     }
@@ -283,9 +287,9 @@ impl Running<'_> {
     fn run(&mut self) -> Result<Outcome, End> {
         let from = self.body.commanded()?;
         let mut last = self.try_once()?;
-        for _ in 1..self.order.method.tries() {
+        for number in 2..=self.order.method.tries() {
             last = match last {
-                Outcome::Failed { failure, why } => self.once_more(&from, failure, why)?,
+                Outcome::Failed { failure, why } => self.once_more(&from, number, failure, why)?,
                 other => return Ok(other),
             };
         }

@@ -49,12 +49,18 @@ impl HandFinder for RenderedHand {
             cameras: knowledge.calibration.cameras,
             robot_from_left: knowledge.robot_from_left(&now.posture),
         };
-        let predicted =
-            Predicted { posture: commanded, robot_from_tip: *robot_from_palm, covariance_m2: *covariance_m2 };
+        // It is rendered where the eyes, as calibrated, would see it.
+        let palm = robot_from_palm.translation_m();
+        let beside_m = knowledge
+            .seen_beside_m(&Point::new(palm.x, palm.y, palm.z), &now.posture, &now.seen_under())
+            .ok_or_else(|| HandMissing("it is beside what both eyes see".to_owned()))?;
+        let mut robot_from_tip = *robot_from_palm;
+        robot_from_tip.isometry.translation.vector += beside_m;
+        let predicted = Predicted { posture: commanded, robot_from_tip, covariance_m2: *covariance_m2 };
         let (before, now) = (Some(Pair::from(before)), Pair::from(now));
         let seen = look_for_hand(before, now, &eyes, &self.shape, &predicted, &self.options)
             .map_err(|why| HandMissing(why.to_string()))?;
-        let found = robot_from_palm.translation_m() + seen.offset_m;
+        let found = palm + seen.offset_m;
         Ok(FoundHand { palm: Point::new(found.x, found.y, found.z), covariance_m2: seen.covariance_m2 })
     }
 }

@@ -21,6 +21,11 @@ impl GraspPlanner {
         self.arm.hand().iter().filter(is_finger).copied().collect()
     }
 
+    /// Joints of the thumb.
+    pub fn thumb(&self) -> Vec<JointIndex> {
+        self.arm.hand().iter().filter(|joint| self.is_thumb(**joint)).copied().collect()
+    }
+
     /// The hand closed, the rest as in `from`.
     pub fn closed(&self, from: &Posture) -> Posture {
         let angles: Vec<f64> = self.arm.hand().iter().map(|joint| self.closed_rad(*joint)).collect();
@@ -29,8 +34,7 @@ impl GraspPlanner {
 
     /// The thumb closed, the rest as in `from`.
     pub fn thumb_closed(&self, from: &Posture) -> Posture {
-        let thumb: Vec<JointIndex> =
-            self.arm.hand().iter().filter(|joint| self.is_thumb(**joint)).copied().collect();
+        let thumb = self.thumb();
         let angles: Vec<f64> = thumb.iter().map(|joint| self.closed_rad(*joint)).collect();
         from.with(&thumb, &angles)
     }

@@ -2,6 +2,7 @@
 //! and free ways there and up again.
 
 mod fingers;
+mod headed;
 mod standing;
 mod ways;
 
@@ -15,6 +16,7 @@ use plumbline_model::{Point, Robot};
 use crate::arm::PalmArm;
 use crate::hands::Hand;
 
+pub use headed::Headed;
 pub use standing::Standing;
 
 /// The palm waits this high above where it closes, m; lower where the arm does not get so high.

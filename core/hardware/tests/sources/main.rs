@@ -5,6 +5,7 @@ mod disappearing;
 mod dropped_paths;
 mod folders;
 mod measured_data;
+mod recordings;
 mod replaying;
 mod videos;
 mod world;

@@ -105,7 +105,7 @@ fn to_targets(detector: Detector, rig: &Arc<Rig>, pair: &RenderedPair) -> Result
     let mut looker = Looker::new(detector, &knowledge, DetectSettings::default());
     let posture = rig.home();
     let (left, right) = (Arc::new(pair.left.clone()), Arc::new(pair.right.clone()));
-    let sight = Sight { left, right, posture: posture.clone(), at_s: 0.0, seq: 0 };
+    let sight = Sight { left, right, posture: posture.clone(), at_s: 0.0, eyes_on_s: None, seq: 0 };
     let planner = GraspPlanner::new(palm.clone());
     let (mut to_target, mut planned) = (vec![], vec![]);
     for round in 0..=ROUNDS {

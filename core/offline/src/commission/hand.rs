@@ -121,7 +121,8 @@ fn look(
 fn sight(robot: &mut Robot) -> Result<Sight, CommissionError> {
     let seen = robot.look()?;
     let at_s = robot.on_s();
-    Ok(Sight { left: seen.left, right: seen.right, posture: seen.posture, at_s, seq: 0 })
+    let eyes_on_s = Some(at_s);
+    Ok(Sight { left: seen.left, right: seen.right, posture: seen.posture, at_s, eyes_on_s, seq: 0 })
 }
 
 /// The eyes that look for hands.

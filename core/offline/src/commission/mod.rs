@@ -15,6 +15,7 @@ mod estimate;
 mod eyes;
 mod glass;
 mod hand;
+mod hand_heights;
 mod judge;
 mod judged;
 mod known;

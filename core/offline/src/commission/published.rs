@@ -1,14 +1,21 @@
 //! What the published methods know: correction models from 245 touches on the published area, made as the
-//! published ones were. A commissioned lab does without; the experiment compares with it.
+//! published ones were, and heights at which the open hand met the table. A commissioned lab does without; the
+//! experiment compares with it.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
+use plumbline_correction::tables::HeightTable;
 use plumbline_correction::{CorrectionModel, Method, Recipe, Touch, TouchData, TrainOptions, train};
+use plumbline_engine::ground::jobs::Part;
 use plumbline_engine::motion::{Hold, ScreenPlace};
+use plumbline_grasp::Corrections;
+use plumbline_grasp::published::HandHeights;
 use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose, Side, Sides, TouchArea, TouchPlan};
 use plumbline_model::{JobContext, files};
 
 use super::error::CommissionError;
+use super::hand_heights;
 use super::lab::Lab;
 use super::robot::Robot;
 use super::touches::Depths;
@@ -17,6 +24,9 @@ use super::touches::Depths;
 const AREA: TouchArea = TouchArea { u_px: [120.0, 1761.0], v_px: [335.0, 1055.0] };
 /// Folder in that of the lab.
 const FOLDER: &str = "published";
+/// Heights of the hand, in that folder, and the places at which it met nothing.
+const HEIGHTS: &str = "hand-heights.csv";
+const HEIGHTS_LEFT_OUT: &str = "hand-heights-left-out.txt";
 
 /// The published plan: a grid of 36, lines of 89, and 120 drawn by chance.
 fn patterns() -> Vec<Pattern> {
@@ -31,11 +41,40 @@ fn patterns() -> Vec<Pattern> {
     ]
 }
 
+/// What the published methods know, made when it is asked for first. Neither its touches nor its time count
+/// as commissioning: they are what the published methods need, not what a lab needs.
+///
+/// # Errors
+/// When it cannot be made, or what was kept of it cannot be read.
+pub(crate) fn corrections(lab: &Lab, context: &dyn JobContext) -> Result<Corrections, CommissionError> {
+    let half = |begin, end| Part { whole: context, begin, end };
+    let models = models(lab, &Method::ALL, &half(0.0, 0.7))?;
+    let [m1, m2, m3] = <[CorrectionModel; 3]>::try_from(models)
+        .map_err(|_| CommissionError::room("the published methods are three"))?
+        .map(|model| Some(Arc::new(model)));
+    let heights = heights(lab, &half(0.7, 1.0))?;
+    let hand = HandHeights::new(&heights, m3.as_deref()).map_err(CommissionError::room)?;
+    Ok(Corrections { m1, m2, m3, hand: Some(Arc::new(hand)) })
+}
+
+/// Heights of the open hand.
+fn heights(lab: &Lab, context: &dyn JobContext) -> Result<HeightTable, CommissionError> {
+    let folder = lab.folder.join(FOLDER);
+    let file = folder.join(HEIGHTS);
+    if !file.exists() {
+        let lowered = hand_heights::measure(lab, context)?;
+        files::make_folder(&folder)?;
+        files::write(&folder.join(HEIGHTS_LEFT_OUT), lowered.left_out.join("\n"))?;
+        lowered.table.write(&file).map_err(CommissionError::room)?;
+    }
+    HeightTable::read(&file).map_err(CommissionError::room)
+}
+
 /// The model of a method, trained when it is asked for first.
 ///
 /// # Errors
 /// When the touches cannot be made or learned from.
-pub(crate) fn published(
+fn models(
     lab: &Lab,
     methods: &[Method],
     context: &dyn JobContext,

@@ -73,6 +73,7 @@ impl Body for TwinBody {
             right: Arc::new(pair.right),
             posture: self.twin.encoders(),
             at_s: self.twin.now_s(),
+            eyes_on_s: Some(self.twin.eyes_on_s()),
             seq: self.pairs,
         })
     }

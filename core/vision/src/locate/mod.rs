@@ -10,7 +10,7 @@
 //! as "not found" with a reason where they can be told.
 
 pub(crate) mod epipolar;
-mod refine;
+pub(crate) mod refine;
 pub(crate) mod scene;
 pub(crate) mod search;
 #[cfg(test)]

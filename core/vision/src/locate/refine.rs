@@ -27,7 +27,7 @@ pub(super) struct Refined {
 const LEAST_NOISE: f64 = 1.5;
 /// Neighboring samples share pixels through interpolation in both images; the covariance of
 /// independent samples is too small by about the number of samples that share one.
-const SHARED_SAMPLES: f64 = 2.0;
+pub(crate) const SHARED_SAMPLES: f64 = 2.0;
 const MOST_ITERATIONS: usize = 15;
 const CONVERGED_PX: f64 = 1e-3;
 /// Refinement that moves further than this has found something else.
@@ -98,15 +98,19 @@ pub(super) fn refine(
 }
 
 /// One place of the patch.
-struct Sample {
-    ray: EpipolarRay,
-    along_px: f64,
-    plane_px: f64,
-    value: f64,
-    weight: f64,
+pub(crate) struct Sample {
+    pub ray: EpipolarRay,
+    /// From the middle of the patch along the curve, px.
+    pub along_px: f64,
+    /// Across it.
+    pub plane_px: f64,
+    /// Brightness, gray levels.
+    pub value: f64,
+    pub weight: f64,
 }
 
-fn samples(
+/// The patch about a ray; `None` where it leaves the image.
+pub(crate) fn samples(
     geometry: &EpipolarGeometry,
     scene: &Scene,
     eye: Eye,
@@ -131,15 +135,17 @@ fn samples(
     Some(samples)
 }
 
-/// Standard deviation of the shift (px) and the correlation of the aligned patches.
-fn judge(
-    p: &Vector5<f64>,
-    samples: &[Sample],
-    normal: &Matrix5<f64>,
-    look: impl Fn(&Vector5<f64>, &Sample, f64) -> Option<f64>,
-) -> Option<(f64, f64)> {
+/// How alike two patches are after they were laid onto each other.
+pub(crate) struct Likeness {
+    /// −1..1; not finite for patches without texture.
+    pub correlation: f64,
+    /// Variance of the brightness that is left, gray levels²; never less than what an image has.
+    pub noise: f64,
+}
+
+/// Compares samples with the brightness of the other patch, by its gain and offset.
+pub(crate) fn likeness(samples: &[Sample], others: &[f64], gain: f64, offset: f64) -> Likeness {
     let total: f64 = samples.iter().map(|s| s.weight).sum();
-    let others: Vec<f64> = samples.iter().map(|s| look(p, s, 0.0)).collect::<Option<_>>()?;
     let mean = |f: &dyn Fn(usize) -> f64| {
         samples.iter().enumerate().map(|(i, s)| s.weight * f(i)).sum::<f64>() / total
     };
@@ -147,10 +153,21 @@ fn judge(
     let variance_a = mean(&|i| (samples[i].value - mean_a).powi(2));
     let variance_b = mean(&|i| (others[i] - mean_b).powi(2));
     let covariance = mean(&|i| (samples[i].value - mean_a) * (others[i] - mean_b));
-    let residual = mean(&|i| (samples[i].value - (p[3] * others[i] + p[4])).powi(2));
-    let noise = residual.max(LEAST_NOISE.powi(2));
+    let residual = mean(&|i| (samples[i].value - (gain * others[i] + offset)).powi(2));
+    let correlation = covariance / (variance_a * variance_b).sqrt();
+    Likeness { correlation, noise: residual.max(LEAST_NOISE.powi(2)) }
+}
+
+/// Standard deviation of the shift (px) and the correlation of the aligned patches.
+fn judge(
+    p: &Vector5<f64>,
+    samples: &[Sample],
+    normal: &Matrix5<f64>,
+    look: impl Fn(&Vector5<f64>, &Sample, f64) -> Option<f64>,
+) -> Option<(f64, f64)> {
+    let others: Vec<f64> = samples.iter().map(|s| look(p, s, 0.0)).collect::<Option<_>>()?;
+    let Likeness { correlation, noise } = likeness(samples, &others, p[3], p[4]);
     // Weighted least squares: cov = N⁻¹ (Σ w² J Jᵀ σ²) N⁻¹ ≤ N⁻¹ σ² for weights up to 1.
     let variance_px = normal.try_inverse()?[(0, 0)] * noise * SHARED_SAMPLES;
-    let correlation = covariance / (variance_a * variance_b).sqrt();
     (variance_px > 0.0 && correlation.is_finite()).then(|| (variance_px.sqrt(), correlation))
 }

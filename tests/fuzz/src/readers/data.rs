@@ -7,6 +7,7 @@ use plumbline::WindowSettings;
 use plumbline_engine::jobs::Outcome;
 use plumbline_engine::robot::PoseLibrary;
 use plumbline_engine::state::State;
+use plumbline_engine::trials::{TrialsError, store};
 use plumbline_engine::{Action, Skipped, journal};
 use plumbline_model::Unattended;
 use plumbline_twin::Scenario;
@@ -18,6 +19,10 @@ use crate::check::Heard;
 pub fn readers() -> Vec<Reader> {
     vec![
         Reader { finite: false, ..one("data-folder", &["data/"], 12, data_folder) },
+        Reader { finite: false, ..one("grasp-record", &["data/grasps/"], 20, data_folder) },
+        Reader { finite: false, ..one("commissioning", &["data/commission.json"], 20, data_folder) },
+        Reader { finite: false, ..one("experiments", &["data/experiments/"], 10, data_folder) },
+        one("experiment", &["data/experiments/"], 30, experiment),
         Reader { finite: false, ..one("journal", &["journal/journal.jsonl"], 40, replay) },
         one("saved-poses", &["data/poses/"], 20, |folder| {
             let (library, problem) = PoseLibrary::read(&folder.join("data"), &nico());
@@ -38,6 +43,17 @@ fn data_folder(folder: &Path) -> Heard {
     let mut state = State::new(&folder.join("data"));
     work_off(&mut state);
     told(&mut state)
+}
+
+/// An experiment is shown with all that came of it.
+fn experiment(folder: &Path) -> Heard {
+    let folder = folder.join("data/experiments/one");
+    let read = || {
+        let experiment = store::read_experiment(&folder)?;
+        let summary = store::conclude(&folder, &experiment, &nico())?;
+        Ok::<_, TrialsError>((experiment.positions_m, summary.missing))
+    };
+    read().into()
 }
 
 /// Commands of a journal are applied; work that they start is not done, for it may write anywhere.

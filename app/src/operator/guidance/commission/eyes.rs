@@ -2,6 +2,7 @@
 
 use plumbline_engine::View;
 use plumbline_engine::view::SourceStatus;
+use plumbline_widgets::format;
 
 use super::super::{ENOUGH_PAIRS, dropped, source_trouble, verdict};
 use super::Said;
@@ -49,7 +50,7 @@ fn solve(count: usize) -> Said {
     let sentence = format!(
         "{count} pairs are collected. Solving moves nothing, and nothing is used before you accept it."
     );
-    Said::press(sentence, format!("Solve {count} pairs"), vec![Action::Solve])
+    Said::press(sentence, format!("Solve {}", format::count(count, "pair")), vec![Action::Solve])
 }
 
 /// Nobody is needed: an unseen hand shows the board.

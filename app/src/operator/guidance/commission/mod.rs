@@ -9,7 +9,7 @@ mod touch;
 pub use title::{done_in_words, name, spent};
 
 use plumbline_engine::View;
-use plumbline_engine::view::{CommissionStep, JobState};
+use plumbline_engine::view::{CommissionStep, GraspPhase, JobState};
 
 use super::sentence::Guidance;
 use super::{failed_inside, gap, robot};
@@ -130,10 +130,17 @@ fn said(view: &View, step: Option<CommissionStep>, screen: Screen) -> Said {
 
 /// Whatever runs is waited for.
 fn running(view: &View) -> Option<Said> {
+    if view.grasp.phase.is_paused() {
+        return None;
+    }
     let job = view.running_job()?;
     let JobState::Running { fraction, doing, .. } = &job.state else { return None };
-    let moves = if view.grasp.phase.moves() { " The arm moves; Esc or space stops." } else { "" };
-    let said = Said::wait(format!("{}: {doing}.{moves}", job.title), Some(*fraction));
+    let said = match view.grasp.phase {
+        GraspPhase::Grasping { .. } => super::grasp::under_way(&view.grasp),
+        GraspPhase::Hand { .. } => format!("{}: {doing}. The arm moves; Esc or space stops.", job.title),
+        _ => format!("{}: {doing}.", job.title),
+    };
+    let said = Said::wait(said, Some(*fraction));
     Some(said)
 }
 

@@ -9,7 +9,7 @@ mod recording;
 mod restore;
 mod solve;
 
-use plumbline_model::JobContext;
+use plumbline_model::{JobContext, counted};
 
 use super::view::BoardSeen;
 use crate::ground;
@@ -83,7 +83,7 @@ impl LongWork for EyesWork {
             Self::Recognize(_) => "Look which board is seen".to_owned(),
             Self::Keep(_) => "Keep the captured pair".to_owned(),
             Self::CollectRecording(_) => "Collect the pairs of the recording".to_owned(),
-            Self::Solve(solve) => format!("Solve {} pairs", solve.pair_count()),
+            Self::Solve(solve) => format!("Solve {}", counted(solve.pair_count(), "pair")),
             Self::Open(open) => open.title(),
             Self::Accept(_) => "Accept calibration".to_owned(),
             Self::Export(export) => format!("Write {}", export.file.display()),

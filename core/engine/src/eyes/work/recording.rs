@@ -56,7 +56,7 @@ impl CollectRecording {
         let folder = match &self.source {
             SourceSpec::Folder(folder) => PairFolder::open_one(folder),
             SourceSpec::Folders { left, right } => PairFolder::open_two(left, right),
-            SourceSpec::Videos { .. } => return self.search_video(context),
+            SourceSpec::Videos { .. } | SourceSpec::Recording { .. } => return self.search_video(context),
             SourceSpec::Cameras { .. } | SourceSpec::Twin => {
                 return Err(JobError::failed(
                     "Cameras are no recording. Capture single pairs, or switch on capturing by itself.",

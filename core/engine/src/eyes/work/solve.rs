@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use plumbline_model::{
-    CalibrationOptions, Chessboard, JobContext, PairObservation, StereoCalibration, Workspace,
+    CalibrationOptions, Chessboard, JobContext, PairObservation, StereoCalibration, Workspace, counted,
 };
 use plumbline_vision::calibrate::{self, SolveError};
 
@@ -89,8 +89,8 @@ impl Solved {
     pub fn summary(&self) -> String {
         let pairs = self.calibration.per_pair.len();
         match &self.calibration.summary {
-            Some(summary) => format!("Solved {pairs} pairs: {:.3} px.", summary.rms_stereo_px),
-            None => format!("Solved {pairs} pairs."),
+            Some(summary) => format!("Solved {}: {:.3} px.", counted(pairs, "pair"), summary.rms_stereo_px),
+            None => format!("Solved {}.", counted(pairs, "pair")),
         }
     }
 }

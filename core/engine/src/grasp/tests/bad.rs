@@ -8,7 +8,7 @@ use plumbline_grasp::{Failure, Record, Step};
 use plumbline_twin::Toy;
 
 use super::bench::{Bench, words};
-use crate::command::{GraspCommand, HandStep, TwinCommand};
+use crate::command::{GraspCommand, HandStep, RobotCommand, TwinCommand};
 use crate::view::{GateState, GraspOutcome, GraspStep, MotionState};
 
 const EASY_M: [f64; 2] = [0.32, -0.15];
@@ -116,11 +116,60 @@ fn killed_in_any_step_the_record_says_how_far_it_came_and_the_next_grasp_works()
     let bench =
         Bench::start_at(folder.path(), "perfect", Toy::Tomato, EASY_M).expect("it was rendered before");
     let view = bench.until("the list", |view| view.grasp.attempts.len() == names.len());
+    let said = view.notices.iter().find(|notice| notice.text.contains("The program ended while it grasped"));
+    let said = said.expect("the next start says what happened").text.clone();
+    assert!(said.contains("tomato (M5, ") && said.contains("press Home"), "{said}");
     for attempt in view.grasp.attempts.iter() {
         assert!(
             attempt.outcome.is_none() && has_reached(attempt.reached, GraspStep::Approach),
             "{attempt:?}"
         );
+    }
+    let run = bench.grasp();
+    assert_eq!(run.outcome, Some(GraspOutcome::Success), "{run:?}");
+}
+
+#[test]
+#[ignore = "three minutes of a robot's time: once through every step"]
+fn stopped_in_any_step_the_arm_holds_and_the_next_grasp_works() {
+    let Some(bench) = Bench::start("perfect", Toy::Tomato, EASY_M) else { return };
+    for step in [
+        GraspStep::Approach,
+        GraspStep::Align,
+        GraspStep::Lower,
+        GraspStep::Close,
+        GraspStep::Lift,
+        GraspStep::Check,
+    ] {
+        bench.send(GraspCommand::Grasp);
+        bench.until_step(step);
+        std::thread::sleep(Duration::from_millis(150));
+        bench.stop();
+        let view = bench.until_idle();
+        let run = view.grasp.run.clone().expect("there was one");
+        assert!(
+            matches!(&run.outcome, Some(GraspOutcome::Failed { failure: Failure::Halted, why }) if why.contains("STOP")),
+            "{step:?}: {}",
+            words(run.outcome.as_ref())
+        );
+        // A beginning under STOP is refused, and nothing moves.
+        bench.send(GraspCommand::Grasp);
+        std::thread::sleep(Duration::from_millis(700));
+        let posture = |what| bench.until(what, |view| view.robot.measured.is_some()).robot.measured.clone();
+        let stood = posture("angles").expect("read");
+        std::thread::sleep(Duration::from_millis(700));
+        let moved_rad = stood.distance_rad(&posture("angles").expect("read"));
+        println!("stopped in {step:?}: moves by {moved_rad:.4} rad after that");
+        assert!(moved_rad < 0.02, "{step:?}: it moved by {moved_rad:.3} rad");
+        bench.send(RobotCommand::ReleaseStop);
+        bench.until("release", |view| !view.robot.stopped);
+        for step in [HandStep::Open, HandStep::Home] {
+            bench.send(GraspCommand::Hand(step));
+            bench.until("it to begin", |view| view.grasp.phase.moves());
+            bench.until_idle();
+        }
+        bench.place(Toy::Tomato, EASY_M);
+        bench.settle();
     }
     let run = bench.grasp();
     assert_eq!(run.outcome, Some(GraspOutcome::Success), "{run:?}");

@@ -3,7 +3,7 @@
 use super::{GraspWorkflow, Running, What};
 use crate::grasp::around::GraspAround;
 use crate::grasp::attempt::Attempt;
-use crate::grasp::body::Ropes;
+use crate::grasp::body::{EyesOn, Ropes};
 use crate::grasp::command::GraspTarget;
 use crate::grasp::gates::{gates, shut};
 use crate::grasp::keeping::grasps_in;
@@ -40,7 +40,8 @@ impl GraspWorkflow {
             What::Hand(_) => "a step of the hand",
         };
         let (leader, led) = Leader::pair(title, what != What::Plan, &reins);
-        let ropes = Ropes { leader, sights: self.sights.clone(), reins: reins.clone() };
+        let eyes_on = around.eyes_on_min.map(|min| EyesOn { for_s: 60.0 * min, at: context.time.instant });
+        let ropes = Ropes { leader, sights: self.sights.clone(), reins: reins.clone(), eyes_on };
         context.control(RobotControl::Lead(led));
         let job = match what {
             What::Hand(step) => context.start(GraspWork::Hand(Box::new(HandWork {

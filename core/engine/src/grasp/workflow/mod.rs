@@ -59,6 +59,18 @@ pub struct GraspWorkflow {
     closed_at_m: Option<f64>,
 }
 
+/// What became of an attempt during which the program ended; `None`: it came to its end.
+fn broken_off(attempt: &AttemptView) -> Option<String> {
+    let reached = attempt.reached.filter(|_| attempt.outcome.is_none())?;
+    Some(format!(
+        "The program ended while it grasped the {} ({}, {}). The arm holds as its servos were told last: look what \
+         is in the hand, open it if you must, then press Home.",
+        attempt.object.to_lowercase(),
+        attempt.method.name().to_uppercase(),
+        reached.title().to_lowercase()
+    ))
+}
+
 impl GraspWorkflow {
     /// Nothing grasped. Attempts are kept in `folder/grasps`.
     pub fn new(folder: &Path) -> Self {
@@ -121,6 +133,9 @@ impl Workflow for GraspWorkflow {
         let summary = result.summary();
         match result {
             GraspResult::Restored(attempts, problems) => {
+                if let Some(said) = attempts.first().and_then(broken_off) {
+                    context.notices.add(NoticeLevel::Warning, said);
+                }
                 self.attempts.extend(attempts);
                 for problem in problems {
                     context.notices.add(NoticeLevel::Warning, crate::ground::text::sentence(&problem));

@@ -193,9 +193,10 @@ impl Player {
             SourceSpec::Folder(_) | SourceSpec::Folders { .. } => {
                 ReplayRate::PairsPerSecond(PHOTOGRAPHS_PER_SECOND)
             }
-            SourceSpec::Videos { .. } | SourceSpec::Cameras { .. } | SourceSpec::Twin => {
-                ReplayRate::AsRecorded
-            }
+            SourceSpec::Videos { .. }
+            | SourceSpec::Recording { .. }
+            | SourceSpec::Cameras { .. }
+            | SourceSpec::Twin => ReplayRate::AsRecorded,
         };
         let replay = Replay { rate, looping: true };
         // Cameras can be opened only once, so the same ones must be let go first.
@@ -281,7 +282,11 @@ impl Player {
 fn is_photographs(kind: SourceKind) -> bool {
     match kind {
         SourceKind::Folder => true,
-        SourceKind::Cameras | SourceKind::Videos | SourceKind::Memory | SourceKind::Twin => false,
+        SourceKind::Cameras
+        | SourceKind::Videos
+        | SourceKind::Recording
+        | SourceKind::Memory
+        | SourceKind::Twin => false,
     }
 }
 
@@ -296,6 +301,7 @@ fn notes(reports: Vec<Report>) -> Vec<Note> {
                 Report::Returned { .. } => NoticeLevel::Success,
                 Report::Unpaired { .. }
                 | Report::Ignored { .. }
+                | Report::Cut { .. }
                 | Report::Skipped { .. }
                 | Report::Lost { .. } => NoticeLevel::Warning,
             };

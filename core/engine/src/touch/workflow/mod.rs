@@ -25,6 +25,7 @@ use super::store::Runs;
 use super::view::{ContactSource, ContactView, TouchView};
 use super::work::{Context, TouchResult, TouchWork};
 use crate::ground::jobs::JobId;
+use crate::ground::notice::NoticeLevel;
 use crate::ground::{Moment, Workflow};
 use crate::robot::RobotControl;
 use crate::robot::view::{Connection, RobotView};
@@ -192,8 +193,13 @@ impl Workflow for TouchWorkflow {
 
     fn work_done(&mut self, id: JobId, result: TouchResult, around: &TouchAround, context: &mut Context<'_>) {
         match result {
-            TouchResult::Restored { placement, runs, reach } => {
+            TouchResult::Restored { placement, runs, reach, choice } => {
                 self.reach = reach;
+                match choice {
+                    Ok(None) => {}
+                    Ok(Some(chosen)) => self.correct_with = chosen,
+                    Err(reason) => context.notices.add(NoticeLevel::Warning, reason.to_string()),
+                }
                 self.restored(placement, runs, context);
             }
             TouchResult::Planned(plan, rig) if self.planning == Some(id) => {
@@ -237,7 +243,8 @@ impl Workflow for TouchWorkflow {
             TouchResult::Planned(..)
             | TouchResult::Begun { .. }
             | TouchResult::Opened { .. }
-            | TouchResult::Placed(_) => {}
+            | TouchResult::Placed(_)
+            | TouchResult::ChoiceKept => {}
         }
         self.go_on(around, context);
         self.refresh(around, context);

@@ -7,6 +7,7 @@ use plumbline_correction::{CorrectionModel, Method};
 use plumbline_model::robot::Rig;
 use plumbline_model::touch_plan::PlanOptions;
 
+use super::super::choice;
 use super::super::command::Correction;
 use super::super::plan::{Corrector, PlanRequest};
 use super::super::refusal::Refusal;
@@ -83,6 +84,8 @@ impl TouchWorkflow {
             model_of(around, method)?;
         }
         self.correct_with = correction;
+        let kept = choice::choice_in(&self.folder);
+        context.start(TouchWork::KeepChoice { kept, correct_with: correction });
         self.plan_anew(around, context);
         Ok(())
     }

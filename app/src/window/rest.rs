@@ -1,0 +1,39 @@
+//! A button that means something else than a moment ago rests first: who hammers the one that stood
+//! there must not press the next.
+
+/// For so long, s.
+const REST_S: f64 = 0.5;
+
+/// What a button means, and since when.
+pub(super) struct Rest<T> {
+    meaning: Option<T>,
+    until_s: f64,
+    is_new: bool,
+}
+
+impl<T> Default for Rest<T> {
+    fn default() -> Self {
+        Self { meaning: None, until_s: f64::NEG_INFINITY, is_new: true }
+    }
+}
+
+impl<T: PartialEq> Rest<T> {
+    /// Takes in what the button means in this frame; `None`: there is none. What the window opens with
+    /// does not rest.
+    pub(super) fn see(&mut self, ctx: &egui::Context, meaning: Option<T>) {
+        let now_s = ctx.input(|input| input.time);
+        if self.meaning != meaning {
+            self.meaning = meaning;
+            self.until_s = if self.is_new { f64::NEG_INFINITY } else { now_s + REST_S };
+        }
+        self.is_new = false;
+        if now_s < self.until_s {
+            ctx.request_repaint_after_secs((self.until_s - now_s) as f32);
+        }
+    }
+
+    /// Whether it is not to be pressed yet.
+    pub(super) fn is_on(&self, ctx: &egui::Context) -> bool {
+        ctx.input(|input| input.time) < self.until_s
+    }
+}

@@ -1,0 +1,222 @@
+//! Both eyes of a recording, replayed at the times at which they were captured.
+
+use std::collections::HashSet;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use image::{ImageFormat, ImageReader, RgbImage};
+use plumbline_model::{Eye, Stamp, StereoFrame};
+use plumbline_recording::{Jpeg, RecordedPair, Recording};
+
+use crate::error::{PairProblem, SourceError};
+use crate::image_file::{ImageProblem, file_name};
+use crate::jpeg;
+use crate::replay::{Pace, Replay};
+use crate::source::{Counters, FiniteSource, Next, Report, SourceDescription, SourceKind, StereoSource};
+
+/// Delivers the pairs of a recording one after the other.
+pub struct RecordingSource {
+    path: PathBuf,
+    recording: Recording,
+    replay: Replay,
+    pace: Pace,
+    position: usize,
+    recorded_hz: f64,
+    image_size: Option<(u32, u32)>,
+    counters: Counters,
+    /// Pairs that failed: each is told once, not once a round.
+    told: HashSet<usize>,
+    failed_in_a_row: usize,
+    reports: Vec<Report>,
+}
+
+impl RecordingSource {
+    /// Replays a recording from its first pair on.
+    ///
+    /// # Errors
+    /// When it cannot be read, or holds no images.
+    pub fn open(path: &Path, replay: Replay) -> Result<Self, SourceError> {
+        let replay = replay.check()?;
+        let refused = |problem: String| SourceError::Recording { problem };
+        let mut recording = Recording::open(path).map_err(|error| refused(error.to_string()))?;
+        let pairs = recording.pair_count();
+        if pairs == 0 {
+            return Err(refused(format!("{} holds no images of two eyes", path.display())));
+        }
+        let first = recording.pair(0).map_err(|error| refused(error.to_string()))?;
+        let image_size = decode(&first.images[0], Eye::Left, "pair 0").ok().map(|image| image.dimensions());
+        let mut reports = Vec::new();
+        if !recording.is_whole() {
+            reports.push(Report::Cut { file: file_name(path) });
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            recorded_hz: rate(&recording),
+            recording,
+            replay,
+            pace: Pace::start(),
+            position: 0,
+            image_size,
+            counters: Counters::default(),
+            told: HashSet::new(),
+            failed_in_a_row: 0,
+            reports,
+        })
+    }
+
+    /// Time to the next pair.
+    fn period(&self, index: usize) -> Duration {
+        let captured = |index| self.recording.captured_at(index);
+        let apart_s = captured(index).zip(captured(index + 1));
+        let apart_s = apart_s.map_or(0.0, |(this, next)| next.duration_since(this).as_secs_f64());
+        self.replay.period(if apart_s > 0.0 { 1.0 / apart_s } else { self.recorded_hz })
+    }
+
+    fn load(&mut self, index: usize) -> Result<(RecordedPair, [RgbImage; 2]), PairProblem> {
+        let name = pair_name(index);
+        let damaged = |detail: String| PairProblem::Image {
+            eye: Eye::Left,
+            problem: ImageProblem::Damaged { file: name.clone(), detail },
+        };
+        let pair = self.recording.pair(index).map_err(|error| damaged(error.to_string()))?;
+        let left = decode(&pair.images[0], Eye::Left, &name)?;
+        let right = decode(&pair.images[1], Eye::Right, &name)?;
+        if left.dimensions() != right.dimensions() {
+            return Err(PairProblem::EyesDiffer { left: left.dimensions(), right: right.dimensions() });
+        }
+        Ok((pair, [left, right]))
+    }
+
+    fn skip(&mut self, index: usize, problem: PairProblem) -> Result<(), SourceError> {
+        self.counters.skipped += 1;
+        self.failed_in_a_row += 1;
+        let pairs = self.recording.pair_count();
+        if self.failed_in_a_row >= pairs {
+            return Err(SourceError::NothingUsable { pairs, first: problem.to_string() });
+        }
+        if self.told.insert(index) {
+            self.reports.push(Report::Skipped { pair: pair_name(index), problem });
+        }
+        Ok(())
+    }
+}
+
+fn pair_name(index: usize) -> String {
+    format!("pair {index}")
+}
+
+/// Pairs per second, on the whole; the usual rate where times do not tell.
+fn rate(recording: &Recording) -> f64 {
+    let last = recording.pair_count().saturating_sub(1);
+    let took = recording.captured_at(0).zip(recording.captured_at(last));
+    let took_s = took.map_or(0.0, |(first, last)| last.duration_since(first).as_secs_f64());
+    if took_s > 0.0 { last as f64 / took_s } else { Replay::USUAL_RATE_HZ }
+}
+
+fn decode(image: &Jpeg, eye: Eye, name: &str) -> Result<RgbImage, PairProblem> {
+    let file = name.to_owned();
+    if !jpeg::is_complete(&image.0) {
+        let problem = ImageProblem::Truncated { file, bytes: image.0.len() };
+        return Err(PairProblem::Image { eye, problem });
+    }
+    let decoded = ImageReader::with_format(Cursor::new(&image.0), ImageFormat::Jpeg).decode();
+    let damaged = |error: image::ImageError| PairProblem::Image {
+        eye,
+        problem: ImageProblem::Damaged { file, detail: error.to_string() },
+    };
+    Ok(decoded.map_err(damaged)?.into_rgb8())
+}
+
+impl StereoSource for RecordingSource {
+    fn next_pair(&mut self) -> Result<Next, SourceError> {
+        if !self.pace.is_due() {
+            return Ok(Next::NotYet);
+        }
+        if self.position >= self.recording.pair_count() {
+            if !self.replay.looping {
+                return Ok(Next::End);
+            }
+            self.position = 0;
+        }
+        let index = self.position;
+        self.position += 1;
+        match self.load(index) {
+            Ok((pair, [left, right])) => {
+                self.failed_in_a_row = 0;
+                self.pace.advance(self.period(index));
+                let seq = self.counters.delivered;
+                self.counters.delivered += 1;
+                Ok(Next::Pair(StereoFrame {
+                    stamp: Stamp { seq, captured_at: Instant::now() },
+                    left: Arc::new(left),
+                    right: Arc::new(right),
+                    time_difference_s: Some(pair.right_later_s),
+                    name: Some(pair_name(index)),
+                }))
+            }
+            // The next one is tried in the next call, so that no call reads two pairs.
+            Err(problem) => {
+                self.skip(index, problem)?;
+                Ok(Next::NotYet)
+            }
+        }
+    }
+
+    fn describe(&self) -> SourceDescription {
+        SourceDescription {
+            kind: SourceKind::Recording,
+            title: format!("recording {}", file_name(&self.path)),
+            image_size: self.image_size,
+            rate_hz: self.replay.rate_hz(self.recorded_hz),
+            pair_count: Some(self.recording.pair_count()),
+        }
+    }
+
+    fn counters(&self) -> Counters {
+        self.counters
+    }
+
+    fn take_reports(&mut self) -> Vec<Report> {
+        std::mem::take(&mut self.reports)
+    }
+
+    fn wait_hint(&self) -> Duration {
+        self.pace.wait()
+    }
+
+    fn as_finite(&mut self) -> Option<&mut dyn FiniteSource> {
+        Some(self)
+    }
+}
+
+impl FiniteSource for RecordingSource {
+    fn pair_count(&self) -> usize {
+        self.recording.pair_count()
+    }
+
+    fn position(&self) -> usize {
+        self.position
+    }
+
+    fn seek(&mut self, index: usize) -> Result<(), SourceError> {
+        let pairs = self.pair_count();
+        if index >= pairs {
+            return Err(SourceError::NoSuchPair { index, pairs });
+        }
+        self.position = index;
+        self.pace.restart();
+        Ok(())
+    }
+
+    fn replay(&self) -> Replay {
+        self.replay
+    }
+
+    fn set_replay(&mut self, replay: Replay) -> Result<(), SourceError> {
+        self.replay = replay.check()?;
+        self.pace.restart();
+        Ok(())
+    }
+}

@@ -1,0 +1,165 @@
+//! What stands where in a file, found by reading it once from the beginning: a file that was cut has no
+//! index of its own.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use mcap::read::ChunkReader;
+use mcap::records::Record;
+use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
+
+use crate::error::RecordingError;
+use crate::topic::Topic;
+use crate::whose::Whose;
+use crate::writer::Attached;
+
+/// A record longer than this is no record of a recording, bytes.
+const LONGEST: usize = 256 << 20;
+/// Bytes before the first record.
+const MAGIC: u64 = 8;
+/// Bytes before the body of a record: what it is, and how long.
+const HEAD: u64 = 9;
+
+/// Where a message stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    /// Number of its chunk.
+    pub chunk: usize,
+    /// Which of the messages of that chunk.
+    pub nth: usize,
+    /// Time of the log, ns.
+    pub at: u64,
+    /// Number within its topic.
+    pub sequence: u32,
+}
+
+/// A chunk in the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ChunkPlace {
+    /// Where its body begins.
+    pub offset: u64,
+    /// Bytes of the body.
+    pub length: usize,
+}
+
+/// All of it.
+#[derive(Debug, Default)]
+pub(crate) struct Index {
+    pub software: String,
+    pub whose: Whose,
+    /// Whether this program has written it.
+    pub is_ours: bool,
+    pub chunks: Vec<ChunkPlace>,
+    pub messages: BTreeMap<Topic, Vec<Place>>,
+    pub attached: Vec<Attached>,
+    /// Whether it ends as a recording does that was finished.
+    pub is_whole: bool,
+}
+
+impl Index {
+    /// Reads the whole file once.
+    pub fn of(file: &Path) -> Result<Self, RecordingError> {
+        let mut input =
+            BufReader::with_capacity(1 << 20, File::open(file).map_err(RecordingError::io(file))?);
+        let options = LinearReaderOptions::default()
+            .with_emit_chunks(true)
+            .with_skip_end_magic(true)
+            .with_record_length_limit(LONGEST);
+        let mut reader = LinearReader::new_with_options(options);
+        let mut scan = Scan { index: Self::default(), offset: MAGIC, topics: BTreeMap::new() };
+        let mut is_at_end = false;
+        while let Some(event) = reader.next_event() {
+            match event {
+                Ok(LinearReadEvent::ReadRequest(wanted)) => {
+                    let read = input.read(reader.insert(wanted)).map_err(RecordingError::io(file))?;
+                    reader.notify_read(read);
+                    // A second read of nothing: it was cut in the middle of a record.
+                    if read == 0 && std::mem::replace(&mut is_at_end, true) {
+                        break;
+                    }
+                }
+                Ok(LinearReadEvent::Record { data, opcode }) => {
+                    if scan.take(opcode, data).is_err() {
+                        break;
+                    }
+                }
+                Err(mcap::McapError::BadMagic) => {
+                    let what = "it does not begin as MCAP does".to_owned();
+                    return Err(RecordingError::NotARecording { file: file.to_owned(), what });
+                }
+                // Cut, or damaged: what stands before it is whole.
+                Err(_) => break,
+            }
+        }
+        Ok(scan.index)
+    }
+
+    pub fn of_topic(&self, topic: Topic) -> &[Place] {
+        self.messages.get(&topic).map_or(&[], Vec::as_slice)
+    }
+}
+
+struct Scan {
+    index: Index,
+    offset: u64,
+    topics: BTreeMap<u16, Topic>,
+}
+
+impl Scan {
+    fn take(&mut self, opcode: u8, body: &[u8]) -> mcap::McapResult<()> {
+        let offset = self.offset + HEAD;
+        self.offset = offset + body.len() as u64;
+        match mcap::parse_record(opcode, body)? {
+            Record::Header(header) => self.index.software = header.library,
+            Record::Channel(channel) => self.channel(&channel),
+            Record::Metadata(metadata) if metadata.name == "plumbline" => {
+                (self.index.whose, self.index.is_ours) = (Whose::of(&metadata), true);
+            }
+            Record::Attachment { header, data, .. } => self.index.attached.push(Attached {
+                name: header.name,
+                media_type: header.media_type,
+                bytes: data.into_owned(),
+            }),
+            Record::Chunk { header, data } => self.chunk(offset, body.len(), header, &data)?,
+            Record::DataEnd(_) => self.index.is_whole = true,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn channel(&mut self, channel: &mcap::records::Channel) {
+        if let Some(topic) = Topic::of_name(&channel.topic) {
+            self.topics.insert(channel.id, topic);
+        }
+    }
+
+    fn chunk(
+        &mut self,
+        offset: u64,
+        length: usize,
+        header: mcap::records::ChunkHeader,
+        data: &[u8],
+    ) -> mcap::McapResult<()> {
+        let chunk = self.index.chunks.len();
+        let mut found = Vec::new();
+        let mut nth = 0;
+        for record in ChunkReader::new(header, data)? {
+            match record? {
+                Record::Channel(channel) => self.channel(&channel),
+                Record::Message { header, .. } => {
+                    let place = Place { chunk, nth, at: header.log_time, sequence: header.sequence };
+                    found.extend(self.topics.get(&header.channel_id).map(|topic| (*topic, place)));
+                    nth += 1;
+                }
+                _ => {}
+            }
+        }
+        self.index.chunks.push(ChunkPlace { offset, length });
+        for (topic, place) in found {
+            self.index.messages.entry(topic).or_default().push(place);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,55 @@
+//! Where in a recording what stands.
+
+/// A stream of messages of one kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Topic {
+    /// Images of the left eye.
+    LeftEye,
+    /// Images of the right eye.
+    RightEye,
+    /// Lens of the left eye.
+    LeftCalibration,
+    /// Lens of the right eye.
+    RightCalibration,
+    /// Angles of joints.
+    Joints,
+    /// Messages for the operator.
+    Notes,
+    /// What was asked for.
+    Commands,
+    /// What was seen in images, and where it is.
+    Detections,
+}
+
+impl Topic {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::LeftEye,
+        Self::RightEye,
+        Self::LeftCalibration,
+        Self::RightCalibration,
+        Self::Joints,
+        Self::Notes,
+        Self::Commands,
+        Self::Detections,
+    ];
+
+    /// Its name in the file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::LeftEye => "/eyes/left/image",
+            Self::RightEye => "/eyes/right/image",
+            Self::LeftCalibration => "/eyes/left/calibration",
+            Self::RightCalibration => "/eyes/right/calibration",
+            Self::Joints => "/joints",
+            Self::Notes => "/notes",
+            Self::Commands => "/commands",
+            Self::Detections => "/detections",
+        }
+    }
+
+    /// The topic of a name; `None`: of another program.
+    pub fn of_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|topic| topic.name() == name)
+    }
+}
