@@ -361,7 +361,7 @@ fn one_in_a_lab() {
                 .zip(&bench.rig().servos)
                 .filter(|(_, s)| s.joint_name.starts_with(&record.hand.name()[..1]))
                 .map(|(load, s)| {
-                    format!("{}:{:.2}", s.joint_name.trim_start_matches(["r", "l"]), load.unwrap_or_default())
+                    format!("{}:{:.2}", s.joint_name.trim_start_matches(['r', 'l']), load.unwrap_or_default())
                 })
                 .collect();
             println!("{:?} {:.1} {}", moment.after, moment.at_s, off.join(" "));
