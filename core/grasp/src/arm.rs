@@ -15,6 +15,9 @@ use crate::hands::Hand;
 
 /// A step of the solution that turns a joint by more is another way to hold the arm, rad.
 const JUMP_RAD: f64 = 0.5;
+/// Standard deviation per axis of the palm of an arm that nobody has measured, m: about what the arm of the
+/// published robot missed by before anything was learned.
+const UNMEASURED_M: f64 = 0.012;
 
 /// Why there is no such hand.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -42,6 +45,8 @@ pub struct PalmArm {
     /// Middle of the palm's body on the palm, m.
     palm_from_body_m: Vector3<f64>,
     is_left: bool,
+    /// The other arm was measured, this one was not.
+    is_unmeasured: bool,
 }
 
 impl PalmArm {
@@ -56,7 +61,10 @@ impl PalmArm {
         let tip = &arm.tips.first().ok_or_else(no_arm)?.link;
         let palm_from_body_m = body_of_palm(rig, arm, tip).unwrap_or_default();
         let is_left = is_left(rig, arm);
-        Ok(Self { arm: model.arm(tip)?, hand: arm.hand.clone(), palm_from_body_m, is_left, rig: rig.clone() })
+        let (hand, arm) = (arm.hand.clone(), model.arm(tip)?);
+        let of_an_arm = model.added().effects().iter().any(|effect| effect.tip.is_some());
+        let is_unmeasured = of_an_arm && arm.is_nominal();
+        Ok(Self { arm, hand, palm_from_body_m, is_left, is_unmeasured, rig: rig.clone() })
     }
 
     /// The robot.
@@ -101,9 +109,12 @@ impl PalmArm {
         (self.robot_from_palm(commanded).isometry * Point3::from(self.palm_from_body_m)).coords
     }
 
-    /// How sure the model is of that place, from the uncertainty of its effects, m².
+    /// How sure the model is of that place, from the uncertainty of its effects, m². Of an arm that was not
+    /// measured while the other one was, what such arms usually miss by.
     pub fn covariance_m2(&self, commanded: &Posture) -> Matrix3<f64> {
-        self.arm.covariance_m2(commanded, &Conditions::default())
+        let unmeasured_m = if self.is_unmeasured { UNMEASURED_M } else { 0.0 };
+        let unmeasured_m2 = Matrix3::identity() * (unmeasured_m * unmeasured_m);
+        self.arm.covariance_m2(commanded, &Conditions::default()) + unmeasured_m2
     }
 
     /// How level the palm is: the cosine of its inclination, 1 when it faces straight down.
@@ -157,6 +168,13 @@ impl PalmArm {
     }
 }
 
+/// Whether an arm begins on the left side of the robot, by the description.
+fn is_left(rig: &Rig, arm: &Arm) -> bool {
+    let description = &rig.description;
+    let shoulder = arm.joints.first().map(|joint| description.joint(*joint).child);
+    shoulder.is_some_and(|link| description.forward(&rig.home()).of(link).isometry.translation.y > 0.0)
+}
+
 /// How far a shape reaches below its middle, m.
 fn below_m(shape: &Shape, robot_from_shape: &UnitQuaternion<f64>) -> f64 {
     let down = robot_from_shape.inverse() * Vector3::z();
@@ -168,13 +186,6 @@ fn below_m(shape: &Shape, robot_from_shape: &UnitQuaternion<f64>) -> f64 {
             radius_m * down.xy().norm() + half_length_m * down.z.abs()
         }
     }
-}
-
-/// Whether an arm begins on the left side of the robot, by the description.
-fn is_left(rig: &Rig, arm: &Arm) -> bool {
-    let description = &rig.description;
-    let shoulder = arm.joints.first().map(|joint| description.joint(*joint).child);
-    shoulder.is_some_and(|link| description.forward(&rig.home()).of(link).isometry.translation.y > 0.0)
 }
 
 /// Middle of what is drawn of the palm, frame of the tip, m; `None`: nothing is.

@@ -66,7 +66,10 @@ pub struct LedBody<'a> {
     pairs: u64,
     /// Joints of hands, and the links that they move.
     hands: Vec<JointIndex>,
-    finger_allowances: Vec<Allowance>,
+    /// Of each hand: its joints, and what its fingers may meet.
+    finger_allowances: Vec<(Vec<JointIndex>, Vec<Allowance>)>,
+    /// The hand that acts, by its place there: the one whose fingers were sent somewhere last.
+    acting: usize,
     /// Fingers that met something before they were where they were sent, and where that was.
     given_way: Vec<(JointIndex, f64)>,
     /// Whether fingers may meet what things stand on.
@@ -78,11 +81,15 @@ impl<'a> LedBody<'a> {
     pub fn new(rig: Arc<Rig>, ropes: Ropes, context: &'a dyn JobContext) -> Self {
         let hands: Vec<JointIndex> = rig.arms.iter().flat_map(|arm| arm.hand.iter().copied()).collect();
         let bodies = CollisionModel::of_rig(&rig);
-        let mut links: Vec<_> = hands.iter().flat_map(|joint| bodies.links_moved_by(*joint)).collect();
-        links.sort_unstable();
-        links.dedup();
-        let to = |body| Allowance { links: links.clone(), body, depth_m: AROUND_DEPTH_M };
-        let finger_allowances = vec![to(Solid::Table), to(Solid::Touchscreen)];
+        let allowances = |hand: &[JointIndex]| {
+            let mut links: Vec<_> = hand.iter().flat_map(|joint| bodies.links_moved_by(*joint)).collect();
+            links.sort_unstable();
+            links.dedup();
+            let to = |body| Allowance { links: links.clone(), body, depth_m: AROUND_DEPTH_M };
+            vec![to(Solid::Table), to(Solid::Touchscreen)]
+        };
+        let finger_allowances =
+            rig.arms.iter().map(|arm| (arm.hand.clone(), allowances(&arm.hand))).collect();
         Self {
             rig,
             ropes,
@@ -91,9 +98,22 @@ impl<'a> LedBody<'a> {
             pairs: 0,
             hands,
             finger_allowances,
+            acting: 0,
             given_way: vec![],
             may_touch: false,
         }
+    }
+
+    /// For one hand of the robot, which acts before its fingers are sent anywhere.
+    pub fn of_arm(mut self, arm: &str) -> Self {
+        self.acting = self.rig.arms.iter().position(|known| known.name == arm).unwrap_or(self.acting);
+        self
+    }
+
+    /// The hand whose fingers are among these goals acts.
+    fn acts(&mut self, goals: &[(JointIndex, f64)]) {
+        let among = |(hand, _): &(Vec<JointIndex>, _)| goals.iter().any(|(joint, _)| hand.contains(joint));
+        self.acting = self.finger_allowances.iter().position(among).unwrap_or(self.acting);
     }
 
     /// How the joints are.
@@ -156,7 +176,8 @@ impl<'a> LedBody<'a> {
 
     fn let_touch(&mut self, may: bool) -> Result<(), Halt> {
         if may != self.may_touch {
-            let allowed = if may { self.finger_allowances.clone() } else { vec![] };
+            let own = self.finger_allowances.get(self.acting).filter(|_| may);
+            let allowed = own.map(|(_, allowed)| allowed.clone()).unwrap_or_default();
             self.carry_out(LeadOrder::MayTouch(allowed))?;
             self.may_touch = may;
         }
@@ -210,6 +231,7 @@ impl Body for LedBody<'_> {
         if goals.is_empty() {
             return Ok(());
         }
+        self.acts(&goals);
         if self.closes(&from, &goals) {
             self.let_touch(true)?;
             self.carry_out(LeadOrder::Close { goals: goals.clone() })?;

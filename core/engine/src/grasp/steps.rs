@@ -73,6 +73,7 @@ impl HandWork {
         let arm = PalmArm::new(&self.rests_on.model, &self.arm).map_err(JobError::told)?;
         let planner = GraspPlanner::new(arm);
         let body = LedBody::new(self.rests_on.model.rig().clone(), self.ropes.clone(), context);
+        let body = body.of_arm(&self.arm);
         let mut hand = Hand { planner: &planner, body, context };
         Ok(match self.step {
             HandStep::Open => hand.open(),

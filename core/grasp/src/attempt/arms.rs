@@ -10,7 +10,7 @@ use crate::arm::{NoArm, PalmArm};
 use crate::hands::Hand;
 use crate::knowledge::Knowledge;
 use crate::method::Method;
-use crate::plan::{GraspPlan, GraspPlanner, NoPlan};
+use crate::plan::{GraspPlan, GraspPlanner, Headed, NoPlan};
 
 /// A palm that is more level than another one's by this (cosine) closes better around things, whatever else.
 const LEVELER: f64 = 0.02;
@@ -103,14 +103,14 @@ impl Running<'_> {
         &mut self,
         hands: &[Hand],
         chosen: &Chosen,
-        shift_m: &Vector3<f64>,
+        headed: Option<&Headed>,
         from: &Posture,
     ) -> Result<GraspPlan, End> {
         let mut best: Option<Offer> = None;
         let mut why = None;
         for hand in hands {
             self.take(*hand)?;
-            match self.offer(chosen, shift_m, from) {
+            match self.offer(chosen, headed, from) {
                 Ok(offer) => {
                     if best.as_ref().is_none_or(|best| is_better(&offer, best)) {
                         best = Some(offer);
@@ -128,18 +128,22 @@ impl Running<'_> {
     }
 
     /// What the hand in use would do. Where the other arm is in its way, that goes home first.
-    fn offer(&self, chosen: &Chosen, shift_m: &Vector3<f64>, from: &Posture) -> Result<Offer, NoPlan> {
+    fn offer(&self, chosen: &Chosen, headed: Option<&Headed>, from: &Posture) -> Result<Offer, NoPlan> {
         let grasper = &*self.grasper;
         let method = self.order.method;
         let planner = grasper.planner(method);
-        let plan = match planner.plan(&chosen.standing, shift_m, from) {
+        let plan_from = |from: &Posture| match headed {
+            Some(headed) => planner.plan_headed(&chosen.standing, headed, from),
+            None => planner.plan(&chosen.standing, &Vector3::zeros(), from),
+        };
+        let plan = match plan_from(from) {
             Err(NoPlan::NotFree(why)) => {
                 let parked = grasper
                     .others
                     .iter()
                     .find_map(|other| other.planner(method).parked(from).ok().flatten())
                     .ok_or(NoPlan::NotFree(why))?;
-                let plan = planner.plan(&chosen.standing, shift_m, parked.last().unwrap_or(from))?;
+                let plan = plan_from(parked.last().unwrap_or(from))?;
                 GraspPlan { approach: [parked, plan.approach].concat(), ..plan }
             }
             planned => planned?,

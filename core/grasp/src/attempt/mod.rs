@@ -275,17 +275,9 @@ impl Running<'_> {
         self.begin(Step::Plan);
         let method = self.order.method;
         let from = self.body.commanded()?;
-        let (shift_m, plan) = match method::published(method, &self.grasper.knowledge, &chosen.point)? {
-            // The published ones know one hand.
-            Some(headed) => {
-                let hand = hands.first().copied().unwrap_or(Hand::Right);
-                self.take(hand)?;
-                self.record.hand = hand;
-                let planner = self.grasper.planner(method);
-                (headed.shift_m, planner.plan_headed(&chosen.standing, &headed, &from)?)
-            }
-            None => (Vector3::zeros(), self.best_plan(&hands, &chosen, &Vector3::zeros(), &from)?),
-        };
+        let headed = method::published(method, &self.grasper.knowledge, &chosen.point)?;
+        let plan = self.best_plan(&hands, &chosen, headed.as_ref(), &from)?;
+        let shift_m = headed.map_or_else(Vector3::zeros, |headed| headed.shift_m);
         self.planned(&plan);
         Ok(Prepared { before, chosen, shift_m, plan })
     }

@@ -4,7 +4,9 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use plumbline_model::robot::Posture;
 
-use super::{ABOVE_M, GraspPlan, GraspPlanner, HEADING_STEP_RAD, LEAST_LEVEL, NoPlan, Standing, WayDown};
+use super::{
+    ABOVE_M, GraspPlan, GraspPlanner, HEADING_STEP_RAD, LEAST_LEVEL, NoPlan, Standing, WayDown, turn_rad,
+};
 
 /// An arm that cannot turn its palm so takes the nearest heading in so many steps to either side.
 const ASIDE: i32 = 9;
@@ -80,7 +82,7 @@ impl GraspPlanner {
             heading_rad,
             level,
             palm_m,
-            effort_rad: super::turn_rad(&above, &down),
+            effort_rad: turn_rad(&above, &down),
             approach,
             down,
         }))

@@ -4,7 +4,7 @@
 
 use plumbline_effects::arm::Arm;
 use plumbline_effects::rig_model::{Addition, ModelEffect, PlacedScreen, StepGap};
-use plumbline_effects::{Effect, Kind, Measurements, Present, RigModel};
+use plumbline_effects::{Effect, Kind, Measurements, Present, RigModel, Surface};
 use plumbline_engine::gap::search::{measured, search};
 use plumbline_engine::gap::sessions::stamps;
 use plumbline_engine::gap::store::{KeptFinding, KeptSession, Store};
@@ -21,7 +21,7 @@ use super::estimate::{Fit, Known, fit, held_out_m, is_first_zero};
 use super::known::{Seen, Share};
 use super::lab::Lab;
 use super::lag;
-use super::plan::effects_of;
+use super::plan::{effects_of, measurements, moves_palm};
 use super::seen_by_eyes::SeenHands;
 use super::steps::Step;
 use super::touches::session;
@@ -160,6 +160,56 @@ pub(super) fn again(lab: &Lab, hands: &SeenHands) -> Result<(), CommissionError>
     accept(lab, model, &measurements, &fitted, effects, said, None)
 }
 
+/// Sizes the effects of an arm that touched nothing by the hands alone that the eyes saw, and by where its
+/// servos stopped: all usual ones, each drawn to zero as far as those of the arm that touched. What was known
+/// before (`base`) stays as it is.
+pub(super) fn by_eyes(
+    lab: &Lab,
+    base: &RigModel,
+    tip: &str,
+    hands: &SeenHands,
+    lags: &Measurements,
+) -> Result<(), CommissionError> {
+    let arm = Arm::of_rig(&lab.rig, tip)?;
+    let library: Vec<Effect> = effects_of(&arm).into_iter().filter(moves_palm).collect();
+    let seen = Seen::read(lab)?;
+    let mut known = Known { hands: Some(hands), screen: None, ..seen.known(&lab.rig, Share::read(lab)?.0) };
+    // The neck was told by touches and body: the arm is tied to the eyes as they are in use.
+    let neck = base.effects().iter().find(|effect| effect.id == Kind::HeadJoint.id());
+    if let Some((value, variance)) = neck.and_then(|neck| neck.values.first().zip(neck.covariance.first())) {
+        known.neck_rad = (*value, variance.max(0.0).sqrt());
+    }
+    let surface = Some(Surface::of(&lab.rig.touchscreen));
+    let nothing = measurements(&lab.rig, arm.clone(), surface, vec![]);
+    let Some(fitted) = fit(&nothing, &[], &library, &known) else { return Ok(()) };
+    let mut at = 0;
+    let mut effects = vec![];
+    for present in &fitted.assumed.effects {
+        let width = present.values.len();
+        let covariance = fitted.covariance.view((at, at), (width, width));
+        at += width;
+        effects.push(effect_of(tip, present, covariance.iter().copied().collect()));
+    }
+    for (present, covariance) in lag::fit(lags, &arm) {
+        effects.push(effect_of(tip, &present, covariance));
+    }
+    let addition = Addition {
+        effects,
+        screens: vec![],
+        externals: vec![],
+        eyes: vec![],
+        replaces: false,
+        at: jiff::Timestamp::now(),
+        sentence: "The eyes looked at the hand.".to_owned(),
+        sessions: vec![],
+        version: String::new(),
+        gap: None,
+    };
+    let mut model = base.clone();
+    model.add(&lab.rig, addition).map_err(CommissionError::room)?;
+    rig_models::save(&lab.world(), &model, &lab.rig).map_err(CommissionError::room)
+}
+
 /// The touches with what the library needs of them.
 fn touches(lab: &Lab) -> Result<Measurements, CommissionError> {
     let mut measurements = measured(std::slice::from_ref(&session(lab)), &lab.rig)?;
@@ -206,17 +256,23 @@ fn directions(lab: &Lab, measurements: &mut Measurements) -> Result<(), Commissi
 }
 
 fn model_effect(present: &Present, covariance: Vec<f64>, finding: &Finding) -> ModelEffect {
-    let Present { effect, values } = present;
+    let effect = &present.effect;
     let named = finding.effects.iter().find(|named| named.id == effect.id() && named.site == effect.site);
+    let probability = named.map(|named| named.probability);
+    ModelEffect { probability, ..effect_of(TIP, present, covariance) }
+}
+
+fn effect_of(tip: &str, present: &Present, covariance: Vec<f64>) -> ModelEffect {
+    let Present { effect, values } = present;
     ModelEffect {
         id: effect.id().to_owned(),
         site: effect.site.clone(),
         title: effect.title.clone(),
-        tip: Some(TIP.to_owned()),
+        tip: Some(tip.to_owned()),
         shape: effect.shape,
         values: values.clone(),
         covariance,
-        probability: named.map(|named| named.probability),
+        probability: None,
         parameters: vec![],
     }
 }

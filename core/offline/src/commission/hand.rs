@@ -1,30 +1,31 @@
 //! Step hand: the eyes look at the hand, where the grasp will happen.
 //!
-//! Touches tell of the arm only where the fingertip meets the glass. Held open over the table at places all
+//! Touches tell of the right arm only where the fingertip meets the glass. Held open over the table at places all
 //! around, the hand is rendered where the arm's model has it and found in both eyes; what it is beside sizes
-//! the arm's effects anew, together with the touches.
+//! the arm's effects anew, together with the touches. The left arm touches nothing: what the eyes see of its
+//! hand, and where its servos stop, is all that sizes its effects.
 
 use std::sync::Arc;
 
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use plumbline_effects::arm::Arm;
-use plumbline_effects::measurements::What;
-use plumbline_effects::{Kind, RobotModel};
+use plumbline_effects::measurements::{Observation, What};
+use plumbline_effects::{Kind, Measurements, RobotModel};
 use plumbline_grasp::attempt::{HandFinder as _, RenderedHand};
 use plumbline_grasp::plan::{GraspPlanner, Standing};
-use plumbline_grasp::{Corrections, Knowledge, PalmArm, Sight};
-use plumbline_model::robot::Posture;
+use plumbline_grasp::{Corrections, Hand, Knowledge, PalmArm, Sight};
+use plumbline_model::robot::{JointIndex, Posture};
 use plumbline_model::{JobContext, StereoCalibration};
 
 use super::effects;
 use super::error::CommissionError;
 use super::lab::Lab;
-use super::plan::{PALM, measurements, row};
+use super::plan::{measurements, row};
 use super::robot::Robot;
 use super::seen_by_eyes::{Looked, SeenHand, SeenHands};
 use super::steps::Step;
 
-/// Where the hand is held open over the table: x, y, m.
+/// Where the right hand is held open over the table, the left one at their mirror images: x, y, m.
 const OVER_M: [[f64; 2]; 12] = [
     [0.22, -0.35],
     [0.32, -0.33],
@@ -45,6 +46,8 @@ const HEIGHT_M: f64 = 0.04;
 const FOUND_SD_M: f64 = 0.0015;
 /// The hand is looked for this far around, first and in later rounds, m.
 const AROUND_M: [f64; 2] = [0.02, 0.01];
+/// A hand whose arm has touched nothing is looked for this far around at first, m.
+const LEFT_AROUND_M: f64 = 0.03;
 /// Fewer hands tell nothing.
 const FEWEST: usize = 5;
 
@@ -56,20 +59,29 @@ struct Look {
     before: Posture,
 }
 
+impl Look {
+    /// From which side each joint came: 1 or −1.
+    fn direction(&self, joints: &[JointIndex]) -> Vec<f64> {
+        let came = self.before.of(joints).into_iter().zip(self.commanded.of(joints));
+        came.map(|(from, to)| if to >= from { 1.0 } else { -1.0 }).collect()
+    }
+}
+
 /// Looks at the hand from the home posture of the head, and sizes the arm's effects anew.
 pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Result<Step, CommissionError> {
     let mut step = Step::new("hand", "hands that were not used, seen against where the arm has them, rms");
     let calibration = Arc::new(lab.calibration()?);
     let model = lab.known()?;
-    let planner = planner(&model)?;
+    let hand = Hand::Right;
+    let planner = planner(&model, hand)?;
     let (before, looks) = look(robot, &planner, &model, context)?;
-    let mut eyes = Eyes { finder: finder(&model)?, calibration, before };
+    let mut eyes = Eyes { hand, finder: finder(&model, hand)?, calibration, before };
     let every: Vec<usize> = (0..looks.len()).collect();
     let (used, back): (Vec<usize>, Vec<usize>) = every.iter().partition(|i| *i % 4 != 1);
     step.before_mm = eyes.miss_mm(lab, &looks, &back)?;
     for (k, around_m) in AROUND_M.into_iter().enumerate() {
         context.checkpoint()?;
-        context.report(0.7 + 0.1 * k as f64, "sizing the arm's errors anew");
+        context.report(0.4 + 0.05 * k as f64, "sizing the arm's errors anew");
         let seen = eyes.seen(lab, &looks, &used, around_m)?;
         effects::again(lab, &seen)?;
     }
@@ -77,15 +89,65 @@ pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Res
     let seen = eyes.seen(lab, &looks, &every, AROUND_M[1])?;
     effects::again(lab, &seen)?;
     step.notes.push(format!("{} of {} hands were found.", seen.seen.len(), looks.len()));
+    if lab.rig.arm(Hand::Left.name()).is_some() {
+        step.notes.push(left(lab, robot, context)?);
+    }
     Ok(step)
 }
 
-fn planner(model: &RobotModel) -> Result<GraspPlanner, CommissionError> {
-    Ok(GraspPlanner::new(PalmArm::new(model, "right").map_err(CommissionError::room)?))
+/// Looks at the left hand, and sizes the effects of its arm; says what came of it.
+fn left(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Result<String, CommissionError> {
+    let (base, model, hand) = (lab.model()?, lab.known()?, Hand::Left);
+    let planner = planner(&model, hand)?;
+    let (before, looks) = look(robot, &planner, &model, context)?;
+    let calibration = Arc::new(lab.calibration()?);
+    let mut eyes = Eyes { hand, finder: finder(&model, hand)?, calibration, before };
+    let every: Vec<usize> = (0..looks.len()).collect();
+    let (used, back): (Vec<usize>, Vec<usize>) = every.iter().partition(|i| *i % 4 != 1);
+    let before_mm = eyes.miss_mm(lab, &looks, &back)?;
+    let lags = lags(lab, hand, &looks)?;
+    let mut after_mm = None;
+    for (which, around_m) in [(&used, LEFT_AROUND_M), (&used, AROUND_M[1]), (&every, AROUND_M[1])] {
+        context.checkpoint()?;
+        context.report(0.9, "sizing the left arm's errors");
+        let seen = match eyes.seen(lab, &looks, which, around_m) {
+            Ok(seen) => seen,
+            // The right hand grasps without it.
+            Err(why) => return Ok(format!("The left arm is taken as described: {why}.")),
+        };
+        if which.len() == every.len() {
+            after_mm = eyes.miss_mm(lab, &looks, &back)?;
+        }
+        effects::by_eyes(lab, &base, hand.index_tip(), &seen, &lags)?;
+    }
+    let mm = |mm: Option<f64>| mm.map_or("not known".to_owned(), |mm| format!("{mm:.1} mm"));
+    Ok(format!(
+        "Left hand: {} looks; on those that were not used it is seen beside where its arm has it by {} before \
+         and {} after, rms.",
+        looks.len(),
+        mm(before_mm),
+        mm(after_mm)
+    ))
 }
 
-fn finder(model: &RobotModel) -> Result<RenderedHand, CommissionError> {
-    RenderedHand::of_rig(model.rig(), PALM).map_err(CommissionError::room)
+/// How far servos of an arm stop from where they are sent, at every look.
+fn lags(lab: &Lab, hand: Hand, looks: &[Look]) -> Result<Measurements, CommissionError> {
+    let arm = Arm::of_rig(&lab.rig, hand.index_tip())?;
+    let joints: Vec<_> = arm.parts.iter().map(|part| part.index).collect();
+    let rows = looks.iter().map(|look| Observation {
+        commanded_rad: Some(look.commanded.of(&joints)),
+        ..row(What::Pose, look.sight.posture.of(&joints), look.direction(&joints))
+    });
+    let rows = rows.collect();
+    Ok(measurements(&lab.rig, arm, None, rows))
+}
+
+fn planner(model: &RobotModel, hand: Hand) -> Result<GraspPlanner, CommissionError> {
+    Ok(GraspPlanner::new(PalmArm::new(model, hand.name()).map_err(CommissionError::room)?))
+}
+
+fn finder(model: &RobotModel, hand: Hand) -> Result<RenderedHand, CommissionError> {
+    RenderedHand::of_rig(model.rig(), hand.palm()).map_err(CommissionError::room)
 }
 
 /// Holds the open hand over the table at one place after another.
@@ -101,7 +163,9 @@ fn look(
     let mut looks = vec![];
     for (i, xy_m) in OVER_M.into_iter().enumerate() {
         context.checkpoint()?;
-        context.report(0.7 * i as f64 / OVER_M.len() as f64, "looking at the hand");
+        let begin = if planner.arm().is_left() { 0.5 } else { 0.0 };
+        context.report(begin + 0.4 * i as f64 / OVER_M.len() as f64, "looking at the hand");
+        let xy_m = if planner.arm().is_left() { [xy_m[0], -xy_m[1]] } else { xy_m };
         let support_m = model.rig().table.height_m;
         let standing = Standing { xy_m, support_m, height_m: HEIGHT_M };
         let stands = robot.lockstep().commanded().clone();
@@ -127,6 +191,7 @@ fn sight(robot: &mut Robot) -> Result<Sight, CommissionError> {
 
 /// The eyes that look for hands.
 struct Eyes {
+    hand: Hand,
     finder: RenderedHand,
     calibration: Arc<StereoCalibration>,
     before: Sight,
@@ -174,8 +239,8 @@ impl Eyes {
         around_m: f64,
     ) -> Result<SeenHands, CommissionError> {
         let model = lab.known()?;
-        let planner = planner(&model)?;
-        let arm = Arm::of_rig(&lab.rig, PALM)?;
+        let planner = planner(&model, self.hand)?;
+        let arm = Arm::of_rig(&lab.rig, self.hand.palm())?;
         let joints: Vec<_> = arm.parts.iter().map(|part| part.index).collect();
         let pan = &lab.rig.description.joint(lab.rig.eyes.pan).name;
         let of_neck =
@@ -191,9 +256,7 @@ impl Eyes {
             let Some((_, palm_m, information)) = self.find(&knowledge, &planner, look, around_m) else {
                 continue;
             };
-            let came = look.before.of(&joints).into_iter().zip(look.commanded.of(&joints));
-            let direction = came.map(|(from, to)| if to >= from { 1.0 } else { -1.0 }).collect();
-            rows.push(row(What::Pose, look.sight.posture.of(&joints), direction));
+            rows.push(row(What::Pose, look.sight.posture.of(&joints), look.direction(&joints)));
             seen.push(SeenHand { palm_m: (undone * Point3::from(palm_m)).coords, information });
         }
         if seen.len() < FEWEST {
@@ -214,7 +277,7 @@ impl Eyes {
         which: &[usize],
     ) -> Result<Option<f64>, CommissionError> {
         let model = lab.known()?;
-        let planner = planner(&model)?;
+        let planner = planner(&model, self.hand)?;
         let knowledge = self.knowledge(model);
         let found: Vec<f64> = which
             .iter()

@@ -7,6 +7,7 @@ use plumbline_effects::rig_model::Conditions;
 use plumbline_engine::motion::{Hold, Planner, ScreenPlace};
 use plumbline_engine::touch::plan::{Aim, Corrector, PlanRequest, TIP, make};
 use plumbline_engine::touch::store;
+use plumbline_grasp::Hand;
 use plumbline_model::robot::Rig;
 use plumbline_model::robot::ik::{Options, Solver, Target};
 use plumbline_model::session::Screen;
@@ -17,7 +18,7 @@ use plumbline_twin::Toy;
 use super::error::CommissionError;
 use super::judged::{PalmError, PlaceError, PlaceRow, TouchError};
 use super::lab::Lab;
-use super::plan::{PALM, area};
+use super::plan::area;
 use super::robot::Robot;
 use super::see::Seer;
 use super::touches::{Depths, rms, session};
@@ -116,19 +117,21 @@ pub(super) fn places(
     Ok((error, judged))
 }
 
-/// Sends the palm over places of the table in its reach, with the effects in use, and compares.
+/// Sends a palm over places of the table in its reach, with the effects in use, and compares.
 pub(super) fn palm(
+    hand: Hand,
     lab: &Lab,
     robot: &mut Robot,
     found: &[Judged],
     context: &dyn JobContext,
 ) -> Result<PalmError, CommissionError> {
     let (rig, model) = (&lab.rig, lab.model()?);
-    let (arm, solver) = (model.arm(rig, PALM)?, Solver::of_rig(rig, PALM)?);
-    let link = rig.description.find_link(PALM)?;
-    let ready = Planner::new(rig, TIP, ScreenPlace::Nominal)?.ready(&rig.home());
+    let (arm, solver) = (model.arm(rig, hand.palm())?, Solver::of_rig(rig, hand.palm())?);
+    let link = rig.description.find_link(hand.palm())?;
+    let ready = Planner::new(rig, hand.index_tip(), ScreenPlace::Nominal)?.ready(&rig.home());
+    let side = if hand == Hand::Left { -1.0 } else { 1.0 };
     let (mut alone, mut to_object) = (vec![], vec![]);
-    for judged in found.iter().filter(|judged| judged.at_m[1] <= 0.1) {
+    for judged in found.iter().filter(|judged| side * judged.at_m[1] <= 0.1) {
         context.checkpoint()?;
         context.report(0.55, "judging where the palm gets to");
         let [x_m, y_m] = judged.at_m;

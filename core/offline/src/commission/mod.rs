@@ -38,6 +38,7 @@ use std::sync::Arc;
 
 use plumbline_engine::gap::store::Store as GapStore;
 use plumbline_engine::ground::jobs::Part;
+use plumbline_grasp::Hand;
 use plumbline_model::JobContext;
 use plumbline_model::files::{self, Size};
 use plumbline_model::robot::Rig;
@@ -176,7 +177,18 @@ fn one(
 fn check(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Result<Step, CommissionError> {
     let mut step = Step::new("check", "new touches inside of the touched area, along the glass, rms");
     let (places, found) = judge::places(lab, robot, context)?;
-    let palm = judge::palm(lab, robot, &found, context)?;
+    let palm = judge::palm(Hand::Right, lab, robot, &found, context)?;
+    if lab.rig.arm(Hand::Left.name()).is_some() {
+        let left = judge::palm(Hand::Left, lab, robot, &found, context)?;
+        let mm = |mm: Option<f64>| mm.map_or("–".to_owned(), |mm| format!("{mm:.1}"));
+        step.notes.push(format!(
+            "The left palm gets to within {} mm (median) and {} mm (95 %) of where it is sent, {} places.",
+            mm(left.median),
+            mm(left.p95),
+            left.places
+        ));
+        robot.go(&lab.rig.home());
+    }
     let touched = judge::touches(lab, robot, context)?;
     step.before_mm = touched.uncorrected;
     step.after_mm = touched.inside;
