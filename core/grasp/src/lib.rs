@@ -12,7 +12,6 @@ mod outline;
 mod places;
 pub mod plan;
 pub mod record;
-mod rim;
 pub mod see;
 pub mod things;
 
