@@ -32,9 +32,11 @@ const HOLDS_M: f64 = 0.009;
 const MOST_SIGMA_M: f64 = HOLDS_M / 1.28;
 /// Standard deviation per axis of what the named effects leave of an arm's error, m.
 const ARM_SIGMA_M: f64 = 0.004;
-/// Standard deviation of the height that its model has, m: it was taught by touching what things stand on.
-/// The eyes see two directions of a hand better than its distance, so its height is told by both.
-const ARM_HEIGHT_SIGMA_M: f64 = 0.002;
+/// Standard deviation of the height that its model has over the table, m: both were taught by touching.
+/// What the eyes say of a height is off by millimeters as their mount and lenses are, and off the same way
+/// at every look, while the object's height is the table's: a hand that is believed to be higher or lower
+/// than it is to the object seems to be beside it. So the arm's word counts for more.
+const ARM_HEIGHT_SIGMA_M: f64 = 0.001;
 /// It changes with the posture: standard deviation per axis, m, for moving at all (play of the gears), and
 /// for a joint that turns by a radian.
 const PLAY_SIGMA_M: f64 = 0.0005;
