@@ -11,8 +11,11 @@ use crate::body::Sight;
 use crate::plan::GraspPlan;
 use crate::record::{Failure, Step};
 
-/// Seen low and nearer than this, the hand is lowered, m; what is missing is corrected on the way.
-const NEAR_M: f64 = 0.002;
+/// Seen low and nearer than this, the hand is lowered straight down, m: smaller moves than the play of the
+/// gears end somewhere by chance, and nobody would have looked where.
+const NEAR_M: f64 = 0.001;
+/// A correction that the hand can reach to within this is one, m.
+const REACHED_M: f64 = 0.002;
 /// A hand that is known less well than this over the table is looked at once more, m.
 const SURE_M: f64 = 0.002;
 /// At the end of its reach the hand may stay so far from where it belongs, m; it is sent there with the
@@ -84,11 +87,10 @@ impl Running<'_> {
             let Some(missing_m) = self.look_at_hand(finder, &mut error, &over.plan, before)? else { break };
             let sigma_m = over_table_m(&error.covariance_m2);
             let there = missing_m < NEAR_M && (sigma_m < SURE_M || look == LOOKS);
-            let was_low = over.lowered.is_some();
-            over = self.corrected(over, &mut error)?;
-            if there && was_low && over.lowered.is_some() {
+            if there && over.lowered.is_some() {
                 break;
             }
+            over = self.corrected(over, &mut error)?;
             over = self.go_over(over, &mut error)?;
         }
         self.sure_enough(chosen, &error.covariance_m2)?;
@@ -144,7 +146,7 @@ impl Running<'_> {
                 .filter(|share| (1.0 - share) * error_m.xy().norm() <= short_m)
                 .find_map(|share| planner.again(plan, &(-share * error_m)).ok())
         };
-        if let Some(plan) = nearly(self, &over.plan, NEAR_M) {
+        if let Some(plan) = nearly(self, &over.plan, REACHED_M) {
             let Some(lowered) = over.lowered else { return Ok(Over { plan, lowered: None }) };
             return Ok(Over { plan: plan.from_low(LOW_M).1, lowered: Some(lowered) });
         }
