@@ -14,7 +14,6 @@ mod places;
 pub mod plan;
 pub mod published;
 pub mod record;
-mod rim;
 pub mod see;
 pub mod things;
 

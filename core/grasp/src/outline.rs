@@ -16,7 +16,7 @@ use crate::knowledge::Knowledge;
 use crate::things::Thing;
 
 /// Points of an outline.
-pub(crate) const POINTS: usize = 24;
+const POINTS: usize = 24;
 /// Standard deviation of the middle of a box along rows and along columns, px: half of what its edges are
 /// off by.
 const BOX_SIGMA_PX: f64 = 0.7;
@@ -156,7 +156,7 @@ impl Boxes<'_> {
 }
 
 /// Outline of an upright ellipsoid, seen from somewhere outside of it, m.
-pub(crate) fn outline(middle: &Point3<f64>, thing: &Thing, eye: &Point3<f64>) -> Option<Vec<Point3<f64>>> {
+fn outline(middle: &Point3<f64>, thing: &Thing, eye: &Point3<f64>) -> Option<Vec<Point3<f64>>> {
     let half = Vector3::new(0.5 * thing.width_m, 0.5 * thing.width_m, 0.5 * thing.height_m);
     // Where the ellipsoid is a ball of radius 1, its outline is a circle.
     let toward = (eye - middle).component_div(&half);

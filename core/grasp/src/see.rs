@@ -2,8 +2,8 @@
 
 use nalgebra::Matrix3;
 use plumbline_model::detection::{ClassNames, PixelBox};
-use plumbline_model::{Eye, Point, Robot, decompose};
-use plumbline_vision::detect::{DetectError, DetectSettings, Detector};
+use plumbline_model::{Eye, Point, Robot, Workspace, decompose};
+use plumbline_vision::detect::{DetectError, DetectSettings, Detector, Part};
 use plumbline_vision::detect_places::{ObjectPlace, PlaceFinder, PlaceOptions};
 use serde::{Deserialize, Serialize};
 
@@ -74,9 +74,32 @@ impl Looker {
     /// # Errors
     /// When the detector fails.
     pub fn look(&mut self, sight: &Sight, knowledge: &Knowledge) -> Result<Vec<Seen>, DetectError> {
+        self.look_in(sight, knowledge, [Part::Lit; 2])
+    }
+
+    /// All things on the table, the surest first: what lies beside the workspace is not looked at, which
+    /// takes less than half the time.
+    ///
+    /// # Errors
+    /// When the detector fails.
+    pub fn look_at_table(&mut self, sight: &Sight, knowledge: &Knowledge) -> Result<Vec<Seen>, DetectError> {
+        let described = knowledge.model.rig().workspace(&sight.posture);
+        let robot_from_left = knowledge.robot_from_left(&sight.posture);
+        let workspace = Workspace { robot_from_left, ..described };
+        let cameras = &knowledge.calibration.cameras;
+        let part = |eye: Eye| Part::of_workspace(cameras, &workspace, eye, sight.left.dimensions());
+        self.look_in(sight, knowledge, Eye::BOTH.map(part))
+    }
+
+    fn look_in(
+        &mut self,
+        sight: &Sight,
+        knowledge: &Knowledge,
+        parts: [Part; 2],
+    ) -> Result<Vec<Seen>, DetectError> {
         let mut boxes = [vec![], vec![]];
-        for (image, found) in [&sight.left, &sight.right].into_iter().zip(&mut boxes) {
-            self.detector.detect(image, &self.settings, found)?;
+        for ((image, part), found) in [&sight.left, &sight.right].into_iter().zip(parts).zip(&mut boxes) {
+            self.detector.detect_in(image, part, &self.settings, found)?;
         }
         let [left, right] = &boxes;
         let under = sight.seen_under();

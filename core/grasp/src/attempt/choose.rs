@@ -9,7 +9,6 @@ use crate::method::Method;
 use crate::outline::{Boxes, HEIGHT_SIGMA_M};
 use crate::plan::Standing;
 use crate::record::{Failure, Step};
-use crate::rim::Rim;
 use crate::see::{Seen, SeenPlace};
 use crate::things::Thing;
 
@@ -34,7 +33,7 @@ impl Running<'_> {
     /// Looks for the object that is meant.
     pub(super) fn find(&mut self, sight: &Sight) -> Result<Chosen, End> {
         let grasper = &mut *self.grasper;
-        let seen = grasper.looker.look(sight, &grasper.knowledge)?;
+        let seen = grasper.looker.look_at_table(sight, &grasper.knowledge)?;
         self.watch.saw(Step::Look, sight, &seen);
         self.record.seen = seen;
         let object = &self.order.object;
@@ -48,17 +47,11 @@ impl Running<'_> {
             .map_err(|why| End::Failed(Failure::NotSeen, format!("the {object} has no place: {why}")))?;
         let boxes_px = &self.record.seen[index].boxes_px;
         let boxes = Boxes { boxes_px, posture: &sight.posture, under: sight.seen_under() };
-        self.standing(&place, &thing, &boxes, sight)
+        self.standing(&place, &thing, &boxes)
     }
 
     /// Where it stands; ours by its outline in both eyes.
-    fn standing(
-        &self,
-        place: &SeenPlace,
-        thing: &Thing,
-        boxes: &Boxes<'_>,
-        sight: &Sight,
-    ) -> Result<Chosen, End> {
+    fn standing(&self, place: &SeenPlace, thing: &Thing, boxes: &Boxes<'_>) -> Result<Chosen, End> {
         let knowledge = &self.grasper.knowledge;
         let (mut point, mut covariance_m2) = (place.point().coords.coords, place.covariance_m2);
         let support_m = knowledge.support_m(point.x, point.y);
@@ -76,8 +69,6 @@ impl Running<'_> {
         if self.order.method == Method::M5
             && let Some(found) = boxes.on_table(knowledge, thing, point.xy())
         {
-            // Boxes that the outline contradicts stay: something stands before it.
-            let found = Rim { sight, knowledge, thing }.on_table(&found).unwrap_or(found);
             let support_m = knowledge.support_m(found.xy_m.x, found.xy_m.y);
             point = Vector3::new(found.xy_m.x, found.xy_m.y, support_m + 0.5 * thing.height_m);
             covariance_m2 = Matrix3::identity() * HEIGHT_SIGMA_M.powi(2);

@@ -136,9 +136,7 @@ impl Search<'_> {
                         from_evidence(ratios, &sight.evidence.region, &point, half_px)
                     }
                     (Some(_), None) => None,
-                    (None, _) => {
-                        from_colors(sight.images.now, sight.images.before, &point.pixel, &point.normal)
-                    }
+                    (None, _) => from_colors(sight.images.now, sight.images.before, &point),
                 };
                 let crossing = crossing.map(|crossing| match sight.images.before {
                     Some(_) => crossing,

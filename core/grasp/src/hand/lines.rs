@@ -12,7 +12,7 @@ use super::view::{Region, RimPoint};
 
 /// Where the hand ends on a line, from the rim that was predicted, outward positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Crossing {
+pub(super) struct Crossing {
     pub shift_px: f64,
     /// One over its variance, 1/px².
     pub information: f64,
@@ -91,13 +91,8 @@ const NOISE: f64 = 4.0;
 const GAIN: [f64; 2] = [0.35, 1.3];
 
 /// From the colors themselves, for a rim that is right to about a pixel.
-pub(crate) fn from_colors(
-    now: &RgbImage,
-    before: Option<&RgbImage>,
-    pixel: &Vector2<f64>,
-    normal: &Vector2<f64>,
-) -> Option<Crossing> {
-    let place = |r: f64| pixel + normal * r;
+pub(super) fn from_colors(now: &RgbImage, before: Option<&RgbImage>, point: &RimPoint) -> Option<Crossing> {
+    let place = |r: f64| point.pixel + point.normal * r;
     let own = mean_color(now, place, [-OWN_PX[1], -OWN_PX[0]]);
     let behind: Box<dyn Fn(f64) -> [f64; 3]> = match before {
         Some(before) => {

@@ -37,7 +37,6 @@ use plumbline_model::frame::{Robot, Tip};
 use plumbline_model::robot::Posture;
 
 pub use find::look_for_hand;
-pub(crate) use lines::from_colors;
 pub use shape::{EyesAt, HandShape, HandShapeError, Part};
 pub use view::{HandView, Mask};
 
