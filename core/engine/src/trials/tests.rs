@@ -389,6 +389,7 @@ fn parts_are_put_together_unless_they_disagree() {
 fn a_file_of_an_experiment_that_cannot_be_is_refused_with_what_is_wrong() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let sound = Experiment {
+        hand: plumbline_grasp::HandChoice::Auto,
         format: FORMAT,
         twin: "lab".to_owned(),
         methods: vec![Method::M5],
