@@ -2,15 +2,14 @@
 //! index of its own.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{BufReader, Read};
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use mcap::read::ChunkReader;
 use mcap::records::Record;
-use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use crate::error::RecordingError;
+use crate::records::each_record;
 use crate::topic::Topic;
 use crate::whose::Whose;
 use crate::writer::Attached;
@@ -61,38 +60,11 @@ pub(crate) struct Index {
 impl Index {
     /// Reads the whole file once.
     pub fn of(file: &Path) -> Result<Self, RecordingError> {
-        let mut input =
-            BufReader::with_capacity(1 << 20, File::open(file).map_err(RecordingError::io(file))?);
-        let options = LinearReaderOptions::default()
-            .with_emit_chunks(true)
-            .with_skip_end_magic(true)
-            .with_record_length_limit(LONGEST);
-        let mut reader = LinearReader::new_with_options(options);
         let mut scan = Scan { index: Self::default(), offset: MAGIC, topics: BTreeMap::new() };
-        let mut is_at_end = false;
-        while let Some(event) = reader.next_event() {
-            match event {
-                Ok(LinearReadEvent::ReadRequest(wanted)) => {
-                    let read = input.read(reader.insert(wanted)).map_err(RecordingError::io(file))?;
-                    reader.notify_read(read);
-                    // A second read of nothing: it was cut in the middle of a record.
-                    if read == 0 && std::mem::replace(&mut is_at_end, true) {
-                        break;
-                    }
-                }
-                Ok(LinearReadEvent::Record { data, opcode }) => {
-                    if scan.take(opcode, data).is_err() {
-                        break;
-                    }
-                }
-                Err(mcap::McapError::BadMagic) => {
-                    let what = "it does not begin as MCAP does".to_owned();
-                    return Err(RecordingError::NotARecording { file: file.to_owned(), what });
-                }
-                // Cut, or damaged: what stands before it is whole.
-                Err(_) => break,
-            }
-        }
+        each_record(file, LONGEST, |opcode, body| match scan.take(opcode, body) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        })?;
         Ok(scan.index)
     }
 

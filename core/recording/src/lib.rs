@@ -13,6 +13,7 @@ mod error;
 mod index;
 mod messages;
 mod reader;
+mod records;
 mod topic;
 mod whose;
 mod writer;

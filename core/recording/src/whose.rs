@@ -1,13 +1,12 @@
 //! Whose a recording is, without reading all of it.
 
-use std::fs::File;
-use std::io::{BufReader, Read};
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use mcap::records::Record;
-use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use crate::error::RecordingError;
+use crate::records::each_record;
 
 /// Whose a recording is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -24,35 +23,16 @@ impl Whose {
     /// # Errors
     /// When there is no file, or it is no recording. One that does not say whose it is, is the robot's.
     pub fn read(file: &Path) -> Result<Self, RecordingError> {
-        let mut input = BufReader::new(File::open(file).map_err(RecordingError::io(file))?);
-        let options = LinearReaderOptions::default()
-            .with_emit_chunks(true)
-            .with_skip_end_magic(true)
-            .with_record_length_limit(1 << 20);
-        let mut reader = LinearReader::new_with_options(options);
-        let mut is_at_end = false;
-        while let Some(event) = reader.next_event() {
-            match event {
-                Ok(LinearReadEvent::ReadRequest(wanted)) => {
-                    let read = input.read(reader.insert(wanted)).map_err(RecordingError::io(file))?;
-                    reader.notify_read(read);
-                    if read == 0 && std::mem::replace(&mut is_at_end, true) {
-                        break;
-                    }
-                }
-                Ok(LinearReadEvent::Record { data, opcode }) => {
-                    match mcap::parse_record(opcode, data).map_err(RecordingError::mcap(file))? {
-                        Record::Metadata(metadata) if metadata.name == "plumbline" => {
-                            return Ok(Self::of(&metadata));
-                        }
-                        Record::Chunk { .. } => break,
-                        _ => {}
-                    }
-                }
-                Err(error) => return Err(RecordingError::mcap(file)(error)),
+        let mut whose = Self::default();
+        each_record(file, 1 << 20, |opcode, body| match mcap::parse_record(opcode, body) {
+            Ok(Record::Metadata(metadata)) if metadata.name == "plumbline" => {
+                whose = Self::of(&metadata);
+                ControlFlow::Break(())
             }
-        }
-        Ok(Self::default())
+            Ok(Record::Chunk { .. }) | Err(_) => ControlFlow::Break(()),
+            Ok(_) => ControlFlow::Continue(()),
+        })?;
+        Ok(whose)
     }
 
     pub(crate) fn of(metadata: &mcap::records::Metadata) -> Self {
