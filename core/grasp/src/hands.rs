@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::method::Method;
-
 /// A hand, named as the rig names its arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -88,21 +86,6 @@ impl HandChoice {
             Self::Left => Some(Hand::Left),
         }
     }
-
-    /// The hands among which a method chooses, the usual one first.
-    ///
-    /// # Errors
-    /// When the published methods are asked for the left hand: what they know was learned with the right one.
-    pub fn hands(self, method: Method) -> Result<&'static [Hand], PublishedWithRight> {
-        match (self, method) {
-            (Self::Right, _) | (Self::Auto, Method::M1 | Method::M2 | Method::M3 | Method::M4) => {
-                Ok(&[Hand::Right])
-            }
-            (Self::Left, Method::M5) => Ok(&[Hand::Left]),
-            (Self::Auto, Method::M5) => Ok(&Hand::BOTH),
-            (Self::Left, _) => Err(PublishedWithRight(method)),
-        }
-    }
 }
 
 impl From<Hand> for HandChoice {
@@ -114,28 +97,12 @@ impl From<Hand> for HandChoice {
     }
 }
 
-/// A published method was asked for the left hand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{} knows the right hand only, with which it was learned: choose the right hand, or M5", .0.name().to_uppercase())]
-pub struct PublishedWithRight(pub Method);
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn published_methods_grasp_with_the_right_hand_and_ours_with_either() {
-        for method in Method::ALL {
-            let both = method == Method::M5;
-            let auto = HandChoice::Auto.hands(method).expect("there is always the right one");
-            assert_eq!(auto.len(), if both { 2 } else { 1 }, "{method:?}");
-            assert_eq!(auto[0], Hand::Right);
-            assert_eq!(HandChoice::Right.hands(method), Ok(&[Hand::Right][..]));
-            match HandChoice::Left.hands(method) {
-                Ok(hands) => assert!(both && hands == [Hand::Left]),
-                Err(why) => assert!(!both && why.to_string().contains("right hand only"), "{why}"),
-            }
-        }
+    fn choices_are_found_by_their_names() {
         for choice in HandChoice::ALL {
             assert_eq!(HandChoice::from_name(&choice.name().to_uppercase()), Some(choice));
         }

@@ -6,6 +6,7 @@ use plumbline_model::{Point, Robot};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
+use crate::hands::{Hand, HandChoice};
 use crate::knowledge::Knowledge;
 use crate::plan::Headed;
 use crate::published::heading_rad;
@@ -61,11 +62,31 @@ impl Method {
         if self == Self::M5 { 3 } else { 1 }
     }
 
+    /// The hands among which it chooses, the usual one first.
+    ///
+    /// # Errors
+    /// When the published methods are asked for the left hand: what they know was learned with the right one.
+    pub fn hands(self, choice: HandChoice) -> Result<&'static [Hand], PublishedWithRight> {
+        match (choice, self) {
+            (HandChoice::Right, _) | (HandChoice::Auto, Self::M1 | Self::M2 | Self::M3 | Self::M4) => {
+                Ok(&[Hand::Right])
+            }
+            (HandChoice::Left, Self::M5) => Ok(&[Hand::Left]),
+            (HandChoice::Auto, Self::M5) => Ok(&Hand::BOTH),
+            (HandChoice::Left, _) => Err(PublishedWithRight(self)),
+        }
+    }
+
     /// Whether it uses the effects that were named.
     pub fn knows_effects(self) -> bool {
         self == Self::M5
     }
 }
+
+/// A published method was asked for the left hand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{} knows the right hand only, with which it was learned: choose the right hand, or M5", .0.name().to_uppercase())]
+pub struct PublishedWithRight(pub Method);
 
 /// What a published method needs is not there. Reads as a sentence.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -202,5 +223,20 @@ mod tests {
             assert!(missing.to_string().contains("train one in Models"), "{missing}");
         }
         assert_eq!(published(Method::M5, &knowledge(false), &place), Ok(None));
+    }
+
+    #[test]
+    fn published_methods_grasp_with_the_right_hand_and_ours_with_either() {
+        for method in Method::ALL {
+            let both = method == Method::M5;
+            let auto = method.hands(HandChoice::Auto).expect("there is always the right one");
+            assert_eq!(auto.len(), if both { 2 } else { 1 }, "{method:?}");
+            assert_eq!(auto[0], Hand::Right);
+            assert_eq!(method.hands(HandChoice::Right), Ok(&[Hand::Right][..]));
+            match method.hands(HandChoice::Left) {
+                Ok(hands) => assert!(both && hands == [Hand::Left]),
+                Err(why) => assert!(!both && why.to_string().contains("right hand only"), "{why}"),
+            }
+        }
     }
 }

@@ -126,6 +126,7 @@ fn one_place_writes_files() {
     let writers = [
         "core/model/src/files/",
         "core/engine/src/engine/journal.rs",
+        "core/recording/src/writer.rs",
         "core/offline/src/doctor/",
         "core/model/src/measured_data.rs",
     ];

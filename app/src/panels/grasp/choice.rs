@@ -72,7 +72,7 @@ fn hands(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     row(ui, "Hand", |ui| {
         for choice in grasp.hands.iter().copied() {
             // The published methods know the right hand only.
-            let known = grasp.method.is_none_or(|method| choice.hands(method).is_ok());
+            let known = grasp.method.is_none_or(|method| method.hands(choice).is_ok());
             let chosen = grasp.hand == choice;
             let chip = egui::Button::selectable(chosen, hand_choice(choice));
             let chip = ui.add_enabled(known || chosen, chip).on_hover_text(about_hand(choice));

@@ -14,7 +14,7 @@ use crate::source::view::SourceStatus;
 /// All gates, in the order in which they are passed.
 pub fn gates(around: &GraspAround, choice: HandChoice, method: Method) -> Vec<Gate> {
     let robot = &around.robot;
-    let hands = choice.hands(method);
+    let hands = method.hands(choice);
     let mut gates = vec![connected(robot)];
     if robot.connection.is_connected() {
         // A step of a hand needs no method: published ones are refused below.

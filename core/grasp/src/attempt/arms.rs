@@ -82,7 +82,7 @@ struct Offer {
 impl Running<'_> {
     /// The hands that may grasp and are fit to move; the first reason where none is.
     pub(super) fn fit_hands(&mut self) -> Result<Vec<Hand>, End> {
-        let asked = self.order.hand.hands(self.order.method)?;
+        let asked = self.order.method.hands(self.order.hand)?;
         let mut fit = vec![];
         let mut why = None;
         for hand in asked {

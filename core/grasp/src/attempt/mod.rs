@@ -17,9 +17,9 @@ use plumbline_vision::detect::DetectError;
 
 use crate::arm::NoArm;
 use crate::body::{Body, Halt, Sight};
-use crate::hands::{Hand, HandChoice, PublishedWithRight};
+use crate::hands::{Hand, HandChoice};
 use crate::knowledge::Knowledge;
-use crate::method::{self, Method};
+use crate::method::{self, Method, PublishedWithRight};
 use crate::plan::{GraspPlan, GraspPlanner, NoPlan};
 use crate::record::{Failure, Iteration, Moment, Outcome, Record, Step};
 use crate::see::{Looker, Seen};
