@@ -34,7 +34,7 @@ impl Desk {
             world: World::Twin,
             is_live,
             rig: "nico".to_owned(),
-            cameras: Some(default_rig().eyes.cameras.clone()),
+            cameras: Some(default_rig().eyes.cameras),
         };
         let room = RecordingWorkflow::new(folder);
         Self { room, around, notices: Notices::default(), jobs: JobList::default() }

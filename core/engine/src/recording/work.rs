@@ -98,7 +98,7 @@ fn attached(session: &Path, rig: &str, cameras: Option<&StereoCameras>) -> Resul
     }
     if let Some(cameras) = cameras {
         let beside = session.join("rig-cameras.yaml");
-        native::write(&StereoCalibration::bare(cameras.clone()), &beside).map_err(JobError::failed)?;
+        native::write(&StereoCalibration::bare(*cameras), &beside).map_err(JobError::failed)?;
         let bytes = files::read(&beside, Size::SHORT).map_err(JobError::failed)?;
         attached.push(file("rig-cameras.yaml", "application/yaml", bytes));
     }

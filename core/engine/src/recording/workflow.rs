@@ -150,7 +150,7 @@ impl RecordingWorkflow {
             started: context.time.day,
             rig: around.rig.clone(),
             of_twin: around.world == World::Twin,
-            cameras: around.cameras.clone().map(Box::new),
+            cameras: around.cameras.map(Box::new),
         };
         self.since = Some(context.time);
         self.phase = Phase::Begins(context.start(work));

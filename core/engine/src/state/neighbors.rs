@@ -137,7 +137,7 @@ impl Neighbors<SourceWorkflow> for State {
 impl Neighbors<RecordingWorkflow> for State {
     fn around(&self, _world: World) -> RecordingAround {
         let source = self.rooms.source.view();
-        let cameras = self.rooms.eyes.of(self.shown).in_use().map(|calibration| calibration.cameras.clone());
+        let cameras = self.rooms.eyes.of(self.shown).in_use().map(|calibration| calibration.cameras);
         RecordingAround {
             world: self.shown,
             is_live: source.replay.is_none() && source.status == SourceStatus::Running,

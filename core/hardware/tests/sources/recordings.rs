@@ -78,7 +78,7 @@ fn the_world_that_it_is_of_is_known_before_it_is_opened() {
     for of_twin in [false, true] {
         let folder = session(of_twin);
         let file = folder.path().join(FILE);
-        let spec = SourceSpec::from_paths(&[file.clone()]).expect("a recording");
+        let spec = SourceSpec::from_paths(std::slice::from_ref(&file)).expect("a recording");
         assert_eq!(spec, SourceSpec::Recording { file, of_twin });
     }
 }

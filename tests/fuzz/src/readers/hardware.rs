@@ -27,7 +27,7 @@ pub fn readers() -> Vec<Reader> {
         }),
         one("recording", &["recordings/"], 25, |folder| {
             let file = folder.join("recordings/log.mcap");
-            match SourceSpec::from_paths(&[file.clone()]) {
+            match SourceSpec::from_paths(std::slice::from_ref(&file)) {
                 Ok(spec) => source(&spec).and(rest_of_a_recording(&file)),
                 Err(error) => Heard::refused(error),
             }
