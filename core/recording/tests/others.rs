@@ -64,7 +64,7 @@ fn the_python_package_reads_what_was_written() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("log.mcap");
     let at: Timestamp = "2026-11-21T10:04:00.25Z".parse().expect("a time");
-    let cameras = default_rig().eyes.cameras.clone();
+    let cameras = default_rig().eyes.cameras;
     let rig = Attached {
         name: "rig.toml".to_owned(),
         media_type: "application/toml".to_owned(),
@@ -74,7 +74,7 @@ fn the_python_package_reads_what_was_written() {
         software: "plumbline".to_owned(),
         rig: "nico".to_owned(),
         of_twin: true,
-        cameras: Some(cameras.clone()),
+        cameras: Some(cameras),
         attached: vec![rig],
     };
     let mut writer = RecordingWriter::create(&file, at, &about).expect("begun");
