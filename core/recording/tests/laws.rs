@@ -133,7 +133,7 @@ fn what_was_cut_anywhere_is_whole_up_to_its_last_second() {
                 assert!(pairs as f64 >= 40.0 * share - 12.0, "{pairs} pairs of {length} bytes");
                 assert!(pairs >= most);
                 // What was cut may be nothing but the index behind the last pair.
-                assert!(pairs % 10 == 0 && (!recording.is_whole() || pairs == 40), "{pairs} pairs");
+                assert!(pairs.is_multiple_of(10) && (!recording.is_whole() || pairs == 40), "{pairs} pairs");
                 most = pairs;
             }
             Err(error) => assert!(length < 4096, "{length} bytes: {error}"),
