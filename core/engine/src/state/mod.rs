@@ -290,11 +290,13 @@ impl State {
             self.rooms.detect.clear();
         }
         self.shown = World::of(view.spec.as_ref());
-        let own_eyes = is_of_this_robot(view.spec.as_ref());
+        // A recording was made by these eyes, whose head stood otherwise.
+        let is_recorded = matches!(view.spec, Some(SourceSpec::Recording { .. }));
+        let own_lenses = is_recorded || is_of_this_robot(view.spec.as_ref());
         self.rooms.source.update(view);
         self.source_before_silence = None;
         self.use_models();
-        self.rooms.live.use_nominal_lenses(own_eyes);
+        self.rooms.live.use_nominal_lenses(own_lenses);
     }
 
     /// The source has a message for the operator.

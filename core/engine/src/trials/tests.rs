@@ -250,7 +250,7 @@ fn what_was_laid_down_is_grasped_once_the_eyes_have_seen_it_there() {
     assert_eq!(stage(&lab.blindly_after_s(2.0)), Some(TrialStage::Laying));
     assert!(lab.wishes().is_empty());
     assert_eq!(stage(&lab.after_s(0.5)), Some(TrialStage::Grasping));
-    assert_eq!(lab.wishes().len(), 3);
+    assert_eq!(lab.wishes().len(), 4);
 
     // Eyes that give nothing are not waited for forever: grasping says so.
     let mut lab = Lab::new(true);
@@ -299,7 +299,7 @@ fn on_the_robot_a_person_lays_it_down_and_has_the_last_word() {
     assert!(lab.wishes().is_empty(), "nothing moves before it is laid down");
     lab.tell(TrialsCommand::Placed);
     lab.after_s(2.0);
-    assert_eq!(lab.wishes().len(), 3);
+    assert_eq!(lab.wishes().len(), 4);
     lab.grasped("first", Outcome::Success);
     lab.after_s(0.1);
     let view = lab.after_s(30.0);

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use plumbline_grasp::{Failure, Record, Step};
+use plumbline_grasp::{Failure, HandChoice, Record, Step};
 use plumbline_twin::Toy;
 
 use super::bench::{Bench, words};
@@ -22,6 +22,8 @@ const PATIENCE: Duration = Duration::from_secs(150);
 #[test]
 fn a_servo_that_gets_too_hot_ends_it_and_the_next_one_waits_until_it_is_cool() {
     let Some(bench) = Bench::start("perfect", Toy::Tomato, EASY_M) else { return };
+    // Left the choice, the other hand would grasp.
+    bench.send(GraspCommand::Arm(HandChoice::Right));
     bench.send(TwinCommand::Fault { name: "hot-servo".to_owned(), on: true });
     let hottest = |view: &crate::view::View| {
         view.robot.joints.iter().filter_map(|joint| joint.temperature_c).fold(0.0, f64::max)
