@@ -26,7 +26,7 @@ fn the_twin_is_recorded_and_played_again() {
         view.source.status == SourceStatus::Running && view.robot.measured.is_some()
     });
     window.key_press(egui::Key::R);
-    until(&mut window, "some pairs", |window| pairs(window) >= 8);
+    until(&mut window, "some pairs", |window| pairs(window) >= 25);
     assert!(window.query_all_by_label_contains("Recording").next().is_some(), "the top line says so");
     window.key_press(egui::Key::R);
     until(&mut window, "the file", |window| view(window).recording.last.is_some());
@@ -36,7 +36,7 @@ fn the_twin_is_recorded_and_played_again() {
     assert!(recording.is_whole() && recording.whose().of_twin);
     assert_eq!(recording.pair_count() as u64, last.so_far.pairs);
     let joints = recording.joints().expect("readable");
-    assert!(joints.len() > 3, "{} readings of joints", joints.len());
+    assert!(joints.len() >= 3, "{} readings of joints", joints.len());
     let named = |name: &str| joints[0].what.iter().any(|joint| joint.name == name);
     assert!(named("head_z") && named("r_elbow_y") && named("l_elbow_y"));
     let asked = recording.told(Topic::Commands).expect("readable");

@@ -227,7 +227,8 @@ impl Grasper {
     fn record_of(&self, order: &Order, began: Timestamp) -> Record {
         let knows_effects = order.method.knows_effects();
         let model = if knows_effects { self.knowledge.model.title() } else { "as described".to_owned() };
-        Record::new(order.method, &order.object, began, model)
+        let hand = order.hand.asked().unwrap_or_default();
+        Record { hand, ..Record::new(order.method, &order.object, began, model) }
     }
 }
 

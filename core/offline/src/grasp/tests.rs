@@ -64,7 +64,7 @@ fn the_left_hand_lifts_what_the_right_one_does_not_reach_well() {
     };
     for (hand, at_m, used) in [
         (HandChoice::Left, [0.3, 0.1], Hand::Left),
-        (HandChoice::Auto, [0.3, 0.3], Hand::Left),
+        (HandChoice::Auto, [0.2, 0.3], Hand::Left),
         (HandChoice::Auto, [0.3, -0.2], Hand::Right),
     ] {
         let (record, judged) = bench.attempt(&with(hand, at_m)).expect("done");
