@@ -365,8 +365,12 @@ impl State {
 
     /// The detector has something.
     pub fn detected(&mut self, output: Timed<DetectOutput>, now: Instant) {
+        let before = self.rooms.detect.found().cloned();
         self.rooms.detect.detected(output, self.shown_of, now);
-        if let Some(found) = self.rooms.detect.found().cloned() {
+        // What failed, or came too late, leaves what was found before.
+        let found = self.rooms.detect.found().cloned();
+        let is_new = |found: &Arc<_>| before.as_ref().is_none_or(|before| !Arc::ptr_eq(before, found));
+        if let Some(found) = found.filter(is_new) {
             self.record(|recording, time| recording.found(&found, time));
         }
     }
