@@ -65,12 +65,25 @@ pub fn until(window: &mut Window, what: &str, holds: impl Fn(&Window) -> bool) {
         if start.elapsed() > patience() {
             let view = view(window);
             panic!(
-                "waited in vain for {what}; robot {:?}, jobs {:?}, messages {:?}",
-                view.robot.motion, view.jobs, view.notices
+                "waited in vain for {what}; robot {:?}, jobs {:?}, messages {:?}; it shows {:?}",
+                view.robot.motion,
+                view.jobs,
+                view.notices,
+                labels(window)
             );
         }
         std::thread::sleep(Duration::from_millis(10));
     }
+}
+
+/// What the window says, top to bottom as it was drawn; what cannot be pressed in brackets.
+fn labels(window: &Window) -> Vec<String> {
+    let all = window.query_all_by(|node| node.label().is_some_and(|label| !label.is_empty()));
+    let told = all.map(|node| {
+        let label = node.accesskit_node().label().unwrap_or_default();
+        if is_enabled(node) { label } else { format!("[{label}]") }
+    });
+    told.collect()
 }
 
 /// Draws frames for some time.
@@ -81,16 +94,50 @@ pub fn for_a_while(window: &mut Window, time: Duration) {
 
 /// Clicks what has exactly this label, once it is there and can be.
 pub fn click(window: &mut Window, label: &str) {
-    until(window, label, |window| window.query_all_by_label(label).next().is_some_and(is_enabled));
-    window.get_all_by_label(label).next().expect("just seen").click();
-    window.run_steps(3);
+    press(window, label, |window, label| window.query_all_by_label(label).next());
 }
 
 /// Clicks the first thing whose label has these words, once it is there and can be.
 pub fn click_containing(window: &mut Window, words: &str) {
-    until(window, words, |window| window.query_all_by_label_contains(words).next().is_some_and(is_enabled));
-    window.get_all_by_label_contains(words).next().expect("just seen").click();
-    window.run_steps(3);
+    press(window, words, |window, words| window.query_all_by_label_contains(words).next());
+}
+
+/// Presses what is found as a hand would: again, if it moved away or began to rest while the finger was
+/// on its way, which the engine's threads decide and not the test.
+fn press(window: &mut Window, what: &str, find: impl for<'w> Fn(&'w Window, &'w str) -> Option<Node<'w>>) {
+    let place = |window: &Window| find(window, what).filter(|node| is_enabled(*node)).map(|node| node.rect());
+    let start = Instant::now();
+    while start.elapsed() < patience() {
+        until(window, what, |window| place(window).is_some());
+        let aimed = place(window).expect("just seen");
+        window.event(egui::Event::PointerMoved(aimed.center()));
+        window.event(finger(aimed, true));
+        window.step();
+        // What is pressed may be drawn a little larger.
+        let stayed = place(window).is_some_and(|now| now.center().distance(aimed.center()) < 3.0);
+        if !stayed {
+            window.event(egui::Event::PointerGone);
+        }
+        window.event(finger(aimed, false));
+        window.step();
+        let pressed = stayed && is_click_taken(window);
+        window.run_steps(2);
+        if pressed {
+            return;
+        }
+    }
+    panic!("{what} moved away from the finger, or began to rest, for as long as anybody waits");
+}
+
+fn finger(aimed: egui::Rect, pressed: bool) -> egui::Event {
+    let (pos, button) = (aimed.center(), egui::PointerButton::Primary);
+    egui::Event::PointerButton { pos, button, pressed, modifiers: egui::Modifiers::default() }
+}
+
+/// Whether a widget was told of the click that the last frame brought.
+fn is_click_taken(window: &Window) -> bool {
+    let clicked = window.ctx.interaction_snapshot(|snapshot| snapshot.clicked);
+    clicked.and_then(|id| window.ctx.read_response(id)).is_some_and(|response| response.clicked())
 }
 
 fn is_enabled(node: Node<'_>) -> bool {
