@@ -143,11 +143,11 @@ pub fn stop_keys(ctx: &egui::Context) -> bool {
     })
 }
 
-/// A choice of a few, side by side. Returns whether it changed.
+/// A choice of a few, side by side, in more lines where one is too narrow. Returns whether it changed.
 pub fn choice<T: PartialEq + Copy>(ui: &mut Ui, label: &str, chosen: &mut T, options: &[(T, &str)]) -> bool {
     let before = *chosen;
-    let inner = ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 2.0;
+    let inner = ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = egui::vec2(2.0, 2.0);
         for (value, text) in options {
             ui.selectable_value(chosen, *value, *text);
         }

@@ -4,8 +4,8 @@
 //! the window loses the keyboard, or the pad is disabled.
 
 use egui::{
-    Align2, EventFilter, Id, Key, Rect, Response, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo, pos2,
-    vec2,
+    Align2, EventFilter, Id, Key, Pos2, Rect, Response, Sense, Stroke, StrokeKind, TextStyle, Ui, WidgetInfo,
+    pos2, vec2,
 };
 use nalgebra::Vector3;
 
@@ -18,6 +18,7 @@ const CELL: egui::Vec2 = vec2(72.0, 40.0);
 const GAP: f32 = space::XS;
 const ENABLE_HEIGHT: f32 = 46.0;
 const PAD_WIDTH: f32 = 5.0 * CELL.x + 4.0 * GAP + 2.0 * space::S;
+const NARROW_WIDTH: f32 = 3.0 * CELL.x + 2.0 * GAP;
 
 /// A motion that is asked for right now, in the robot's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,6 +85,19 @@ const fn direction(
     Direction { word, axis, linear, yaw, column, row, key: key.0, key_name: key.1 }
 }
 
+impl Direction {
+    /// Height and turn stand a little apart from the plane: beside it, or below it where that is too wide.
+    fn rect(&self, pad: Pos2, wide: bool) -> Rect {
+        let cell = |column: f32, row: f32| vec2(column * (CELL.x + GAP), row * (CELL.y + GAP));
+        let at = match (self.column >= 3.0, wide) {
+            (false, _) => cell(self.column, self.row),
+            (true, true) => cell(self.column, self.row) + vec2((self.column - 2.0) * space::S, 0.0),
+            (true, false) => cell(self.column - 3.0, self.row + 2.5) + vec2(0.0, space::S),
+        };
+        Rect::from_min_size(pad + at, CELL)
+    }
+}
+
 /// As seen from above the robot, looking where it looks; the same as on the table map.
 const DIRECTIONS: [Direction; 8] = [
     direction("Forward", "+x", [1.0, 0.0, 0.0], 0.0, [1.0, 0.0], (Key::ArrowUp, "arrow up")),
@@ -141,8 +155,10 @@ impl<'a> JogPad<'a> {
         ui.add_space(space::XS);
         speeds(ui, speed);
         ui.add_space(space::XS);
-        let height = 3.0 * CELL.y + 2.0 * GAP + space::S + ENABLE_HEIGHT;
-        let (rect, response) = ui.allocate_exact_size(vec2(PAD_WIDTH, height), Sense::hover());
+        let wide = ui.available_width() >= PAD_WIDTH;
+        let (width, rows) = if wide { (PAD_WIDTH, 3.0) } else { (NARROW_WIDTH, 5.0) };
+        let height = rows * CELL.y + (rows - 1.0) * GAP + 2.0 * space::S + ENABLE_HEIGHT;
+        let (rect, response) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
         let label = format!("Jog the {}", self.what);
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Group, ui.is_enabled(), &label));
         let whole = Rect::from_min_max(start.min(rect.min), rect.max);
@@ -150,7 +166,9 @@ impl<'a> JogPad<'a> {
         let base = response.id;
         let usable = self.why_not.is_none() && ui.is_enabled();
         let held = |response: &Response| response.is_pointer_button_down_on();
-        let buttons = DIRECTIONS.each_ref().map(|direction| interact(ui, rect, base, direction, usable));
+        let buttons = DIRECTIONS
+            .each_ref()
+            .map(|direction| interact(ui, direction.rect(rect.min, wide), base, direction, usable));
         let enable_rect = Rect::from_min_max(pos2(rect.left(), rect.bottom() - ENABLE_HEIGHT), rect.max);
         let enable = ui.interact(enable_rect, base.with("enable"), sense(usable));
         let enable_label = self.why_not.unwrap_or("Hold to move");
@@ -243,11 +261,8 @@ fn sense(usable: bool) -> Sense {
     if usable { Sense::click() } else { Sense::hover() }
 }
 
-fn interact(ui: &Ui, pad: Rect, base: Id, direction: &Direction, usable: bool) -> Response {
-    // The columns for height and turn stand a little apart.
-    let apart = if direction.column >= 3.0 { (direction.column - 2.0) * space::S } else { 0.0 };
-    let at = pad.min + vec2(direction.column * (CELL.x + GAP) + apart, direction.row * (CELL.y + GAP));
-    let response = ui.interact(Rect::from_min_size(at, CELL), base.with(direction.word), sense(usable));
+fn interact(ui: &Ui, rect: Rect, base: Id, direction: &Direction, usable: bool) -> Response {
+    let response = ui.interact(rect, base.with(direction.word), sense(usable));
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, usable, direction.word));
     response
 }

@@ -62,20 +62,26 @@ pub fn share_rows(ui: &mut Ui, rows: &[ShareRow]) {
         let bar = Rect::from_min_max(pos2(left, rect.top()), pos2(right, rect.bottom()));
         fill(ui, bar, row.share, row.role);
         let painter = ui.painter_at(rect);
-        let name = elided(ui, &row.name, &small, names - space::S);
+        let name = elided(ui, &row.name, &small, names - space::S, tokens.text);
         painter.galley(pos2(rect.left(), rect.center().y - name.size().y / 2.0), name, tokens.text);
         let figure_at = pos2(right + FIGURE_WIDTH - 4.0, rect.center().y);
         painter.text(figure_at, Align2::RIGHT_CENTER, figure, small.clone(), tokens.text_strong);
         let note_at = pos2(right + FIGURE_WIDTH + space::S, rect.center().y);
-        painter.text(note_at, Align2::LEFT_CENTER, &row.note, small.clone(), tokens.text_weak);
+        let note = elided(ui, &row.note, &small, rect.right() - note_at.x, tokens.text_weak);
+        painter.galley(note_at - vec2(0.0, note.size().y / 2.0), note, tokens.text_weak);
         response.on_hover_text(words);
     }
 }
 
 /// Text that ends in … where there is no room for more.
-fn elided(ui: &Ui, text: &str, font: &egui::FontId, width: f32) -> std::sync::Arc<egui::Galley> {
-    let mut job =
-        egui::text::LayoutJob::simple_singleline(text.to_owned(), font.clone(), theme::tokens(ui).text);
+fn elided(
+    ui: &Ui,
+    text: &str,
+    font: &egui::FontId,
+    width: f32,
+    color: egui::Color32,
+) -> std::sync::Arc<egui::Galley> {
+    let mut job = egui::text::LayoutJob::simple_singleline(text.to_owned(), font.clone(), color);
     job.wrap = egui::text::TextWrapping::truncate_at_width(width.max(20.0));
     ui.painter().layout_job(job)
 }

@@ -42,7 +42,7 @@ fn contents(ui: &mut Ui, recent: &VecDeque<SourceSpec>, outbox: &mut Outbox) {
                 outbox.act(action);
             }
             ui.add_space(space::S);
-            ui.label(theme::weak(ui, when));
+            ui.add(egui::Label::new(theme::weak(ui, when)).wrap());
         });
     }
     ui.add_space(space::M);

@@ -18,10 +18,14 @@ use crate::panels::{
     show_robot_inspector, show_scores_inspector, show_touch_inspector,
 };
 
+/// In a window that is not wider than this the tiles need what the inspector can spare, pt.
+const NARROW: f32 = 1120.0;
+
 pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let margin = egui::Margin::symmetric(space::M as i8, space::S as i8);
     let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(margin);
-    let panel = Panel::right("inspector").frame(frame).default_size(248.0).size_range(200.0..=420.0);
+    let usual = if ui.ctx().content_rect().width() < NARROW { 208.0 } else { 248.0 };
+    let panel = Panel::right("inspector").frame(frame).default_size(usual).size_range(200.0..=420.0);
     let (view, screen) = (std::sync::Arc::clone(&window.view), window.settings.screen);
     let state = &mut window.panels;
     panel.show_separator_line(false).show(ui, |ui| {

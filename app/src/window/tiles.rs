@@ -4,6 +4,7 @@ use egui::{CentralPanel, Color32, Frame, Stroke, Ui, Visuals, WidgetText};
 use egui_tiles::{Behavior, SimplificationOptions, TabState, TileId, Tiles, UiResponse};
 use plumbline_engine::View;
 use plumbline_engine::view::{Connection, SourceStatus};
+use plumbline_widgets::texture::Picture;
 use plumbline_widgets::theme;
 
 use super::PlumblineWindow;
@@ -24,6 +25,37 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
         let mut behavior = PaneBehavior { view: &window.view, screen, state: &mut window.panels, outbox };
         tree.ui(&mut behavior, ui);
     });
+}
+
+/// What "Copy" and "Save…" take beside the titles, and what the menu takes that holds both where they
+/// would lie over a title; where not even that fits, a title is worth more.
+const BUTTONS_WIDTH: f32 = 100.0;
+const MENU_WIDTH: f32 = 32.0;
+/// On each side of a title.
+const TITLE_SPACING: f32 = 12.0;
+
+fn titles_width(ui: &Ui, tiles: &Tiles<Pane>, tabs: &egui_tiles::Tabs) -> f32 {
+    let panes = tabs.children.iter().filter_map(|child| tiles.get_pane(child));
+    let widths = panes.map(|pane| {
+        let title: WidgetText = pane.title().into();
+        let galley =
+            title.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, egui::TextStyle::Button);
+        galley.size().x + 2.0 * TITLE_SPACING
+    });
+    widths.sum()
+}
+
+fn picture_buttons(ui: &mut Ui, pane: Pane, picture: &Picture, outbox: &mut Outbox) {
+    for (text, slot) in [("Save…", &mut outbox.save), ("Copy", &mut outbox.copy)] {
+        let button = ui.add(egui::Button::new(theme::small(ui, text)).frame(false));
+        button.widget_info(|| {
+            let label = format!("{} {}", text.trim_end_matches('…'), pane.title());
+            egui::WidgetInfo::labeled(egui::Role::Button, true, label)
+        });
+        if button.on_hover_text("The picture alone, in its own pixels").clicked() {
+            *slot = Some(picture.clone());
+        }
+    }
 }
 
 struct PaneBehavior<'a> {
@@ -59,17 +91,21 @@ impl Behavior<Pane> for PaneBehavior<'_> {
         let pane = tabs.active.and_then(|active| tiles.get_pane(&active));
         let Some((pane, key)) = pane.and_then(|pane| Some((pane, picture_key(*pane)?))) else { return };
         let Some(picture) = self.state.textures.last(key).cloned() else { return };
-        ui.spacing_mut().item_spacing.x = theme::space::S + 2.0;
-        ui.add_space(0.0);
-        for (text, slot) in [("Save…", &mut self.outbox.save), ("Copy", &mut self.outbox.copy)] {
-            let button = ui.add(egui::Button::new(theme::small(ui, text)).frame(false));
-            button.widget_info(|| {
-                let label = format!("{} {}", text.trim_end_matches('…'), pane.title());
+        let room = ui.available_width() - titles_width(ui, tiles, tabs);
+        if room > BUTTONS_WIDTH {
+            ui.spacing_mut().item_spacing.x = theme::space::S + 2.0;
+            ui.add_space(0.0);
+            picture_buttons(ui, *pane, &picture, self.outbox);
+        } else if room > MENU_WIDTH {
+            let more = ui.menu_button(theme::small(ui, "⋯"), |ui| {
+                ui.with_layout(egui::Layout::top_down_justified(egui::Align::Min), |ui| {
+                    picture_buttons(ui, *pane, &picture, self.outbox);
+                });
+            });
+            more.response.widget_info(|| {
+                let label = format!("Copy or save {}", pane.title());
                 egui::WidgetInfo::labeled(egui::Role::Button, true, label)
             });
-            if button.on_hover_text("The picture alone, in its own pixels").clicked() {
-                *slot = Some(picture.clone());
-            }
         }
     }
 
@@ -90,7 +126,7 @@ impl Behavior<Pane> for PaneBehavior<'_> {
     }
 
     fn tab_title_spacing(&self, _visuals: &Visuals) -> f32 {
-        12.0
+        TITLE_SPACING
     }
 
     fn tab_bar_color(&self, visuals: &Visuals) -> Color32 {

@@ -7,6 +7,7 @@ mod faults;
 mod gap;
 mod guidance;
 mod labels;
+mod layout;
 mod made_up;
 mod made_up_gap;
 mod made_up_labels;

@@ -18,6 +18,9 @@ pub(super) const AXES: egui::Vec2 = vec2(34.0, 36.0);
 /// The part of it that is left and above.
 pub(super) const TOP_LEFT: egui::Vec2 = vec2(34.0, 18.0);
 
+/// Where the names of the axes have less room, the unit alone is said, pt.
+const NAMES_WIDTH: f32 = 150.0;
+
 /// Half width and half depth of the torso, meters; a sign, not a measurement.
 const TORSO_M: [f64; 2] = [0.11, 0.05];
 
@@ -46,13 +49,13 @@ pub(super) fn map(
         scene.outlines.iter().filter_map(|outline| map.outline(outline, field.is_some())).collect();
     names.extend(scene.border.as_ref().and_then(|border| map.border(border)));
     if let Some((field, scale)) = field {
-        map.contours(field, scale, names);
+        map.contours(field, scale, names.clone());
     }
     for error in &scene.before_after {
         map.before_after(error, scene.vector_scale, field.is_some());
     }
     for mark in &scene.marks {
-        map.mark(mark, scene.vector_scale, field.is_some());
+        map.mark(mark, scene.vector_scale, field.is_some(), &mut names);
     }
     map
 }
@@ -106,7 +109,9 @@ impl Map {
             word(pos2(x, rect.bottom() + 3.0), Align2::CENTER_TOP, format::fixed(y, 0));
         }
         let names = pos2(rect.left(), rect.top() - 3.0);
-        word(names, Align2::LEFT_BOTTOM, "x ↑ forward, y ← left, mm".to_owned());
+        let long = "x ↑ forward, y ← left, mm";
+        let text = if rect.width() < NAMES_WIDTH { "mm" } else { long };
+        word(names, Align2::LEFT_BOTTOM, text.to_owned());
     }
 
     /// Smooth colors: one quad per cell with a color per corner; cells with a missing node stay
@@ -218,7 +223,8 @@ impl Map {
         })
     }
 
-    fn mark(&self, mark: &TableMark, vector_scale: f64, on_field: bool) {
+    /// `taken` is where words stand already: a name that finds no room is left to the pointer.
+    fn mark(&self, mark: &TableMark, vector_scale: f64, on_field: bool, taken: &mut Vec<Rect>) {
         let tokens = if on_field { &theme::ON_IMAGE } else { self.tokens };
         let rim = if on_field { theme::RIM } else { Color32::TRANSPARENT };
         let at = self.transform.to_screen(mark.at_m);
@@ -230,8 +236,27 @@ impl Map {
         let radius = if mark.vector_m.is_some() { 1.5 } else { 3.5 };
         self.painter.circle(at, radius, color, Stroke::new(1.0, rim));
         if !mark.text.is_empty() {
-            self.word(at + vec2(6.0, 0.0), Align2::LEFT_CENTER, &mark.text, color);
+            let galley = self.painter.layout_no_wrap(mark.text.clone(), self.font.clone(), color);
+            if let Some(room) = self.room_beside(at, galley.size(), taken) {
+                taken.push(room);
+                self.painter.galley(room.min, galley, color);
+            }
         }
+    }
+
+    /// A place for a name: right, left, above or below what it names.
+    fn room_beside(&self, at: Pos2, size: egui::Vec2, taken: &[Rect]) -> Option<Rect> {
+        let inside = self.painter.clip_rect();
+        let sides = [
+            (Align2::LEFT_CENTER, vec2(6.0, 0.0)),
+            (Align2::RIGHT_CENTER, vec2(-6.0, 0.0)),
+            (Align2::CENTER_BOTTOM, vec2(0.0, -5.0)),
+            (Align2::CENTER_TOP, vec2(0.0, 5.0)),
+        ];
+        let rooms = sides.map(|(anchor, beside)| anchor.anchor_size(at + beside, size));
+        rooms.into_iter().find(|room| {
+            inside.contains_rect(*room) && !taken.iter().any(|word| word.shrink(1.0).intersects(*room))
+        })
     }
 
     /// As it was below, as it is above.

@@ -50,12 +50,10 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 }
 
 fn sessions(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label(theme::strong(ui, "Sessions"));
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            action_button(ui, cx, GapAction::OpenSession, "Open folder…");
-            action_button(ui, cx, GapAction::ListSessions, "Look again");
-        });
+        action_button(ui, cx, GapAction::ListSessions, "Look again");
+        action_button(ui, cx, GapAction::OpenSession, "Open folder…");
     });
     let gap = cx.view.gap.clone();
     if gap.sessions.is_empty() {

@@ -43,6 +43,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     });
 }
 
+/// What both entries take side by side, pt.
+const LEGEND_WIDTH: f32 = 400.0;
+
 fn legend(ui: &mut Ui, errors: Errors, drawn: &Drawn) {
     ui.spacing_mut().item_spacing.y = 2.0;
     let scale = drawn.scale(errors);
@@ -53,7 +56,11 @@ fn legend(ui: &mut Ui, errors: Errors, drawn: &Drawn) {
         n => format!(" Gray dots: {}, not used.", format::count(n, "outlier")),
     };
     ui.label(theme::small(ui, format!("Measured − predicted, {times}; each row held out.{outliers}")));
-    ui.horizontal(|ui| {
+    // Side by side where there is room.
+    let beside = egui::Layout::left_to_right(egui::Align::Center);
+    let below = egui::Layout::top_down(egui::Align::Min);
+    let layout = if ui.available_width() > LEGEND_WIDTH { beside } else { below };
+    ui.allocate_ui_with_layout(egui::vec2(ui.available_width(), 0.0), layout, |ui| {
         if errors != Errors::After {
             entry(ui, BeforeAfter::BEFORE, &format!("before, {} on average", format::mm(drawn.mean_m[0])));
         }

@@ -46,10 +46,8 @@ pub fn state(ui: &mut Ui, view: &View) {
         ui.horizontal(|ui| {
             ui.spinner();
             let percent = plumbline_widgets::format::percent(fraction);
-            ui.label(theme::weak(
-                ui,
-                format!("Looking again: {doing} ({percent}). Below is the finding before."),
-            ));
+            let said = format!("Looking again: {doing} ({percent}). Below is the finding before.");
+            ui.add(Label::new(theme::weak(ui, said)).wrap());
         });
     } else if let Some(why) = &view.gap.failed {
         line(ui, Glyph::Cross, Role::Warning, why);

@@ -131,24 +131,23 @@ fn keys(ui: &mut Ui) {
     group_heading(ui, "Keys");
     // Nothing here is pressed, so rows may be as low as their text.
     ui.spacing_mut().interact_size.y = 16.0;
-    egui::Grid::new("label keys").num_columns(2).min_row_height(16.0).spacing([space::M, 2.0]).show(
-        ui,
-        |ui| {
-            for (key, what) in [
-                ("1–9", "class"),
-                ("Shift+drag", "draw over a box"),
-                ("Delete", "delete the box"),
-                ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo"),
-                ("← →", "image before, after"),
-                ("C", "copy from the image before"),
-                ("P, Enter", "propose, accept"),
-                ("N", "next without labels"),
-                ("wheel, right drag", "zoom, move"),
-            ] {
-                ui.label(theme::small(ui, key));
-                ui.label(theme::small(ui, what));
-                ui.end_row();
-            }
-        },
-    );
+    let most = (ui.available_width() - space::M) * 0.55;
+    let grid = egui::Grid::new("label keys").num_columns(2).min_row_height(16.0).max_col_width(most);
+    grid.spacing([space::M, 2.0]).show(ui, |ui| {
+        for (key, what) in [
+            ("1–9", "class"),
+            ("Shift+drag", "draw over a box"),
+            ("Delete", "delete the box"),
+            ("Ctrl+Z, Ctrl+Shift+Z", "undo, redo"),
+            ("← →", "image before, after"),
+            ("C", "copy from the image before"),
+            ("P, Enter", "propose, accept"),
+            ("N", "next without labels"),
+            ("wheel, right drag", "zoom, move"),
+        ] {
+            ui.add(egui::Label::new(theme::small(ui, key)).wrap());
+            ui.add(egui::Label::new(theme::small(ui, what)).wrap());
+            ui.end_row();
+        }
+    });
 }

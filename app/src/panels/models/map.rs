@@ -63,15 +63,11 @@ fn header(ui: &mut Ui, cx: &mut PanelContext<'_>, models: &ModelsView) {
             ui.label(theme::small(ui, if proposed { "proposed" } else { "in use" }));
         }
     });
-    // Rows of their own: choices do not wrap.
-    ui.horizontal(|ui| {
-        let state = &mut cx.state.models;
-        let errors = [(Errors::Before, "Before"), (Errors::After, "After"), (Errors::Both, "Both")];
-        choice(ui, "Errors", &mut state.errors, &errors);
-        ui.add_space(space::S);
-        let fields = [(Shown::Uncertainty, "Uncertainty"), (Shown::Correction, "Correction")];
-        choice(ui, "Field", &mut state.field, &fields);
-    });
+    let state = &mut cx.state.models;
+    let errors = [(Errors::Before, "Before"), (Errors::After, "After"), (Errors::Both, "Both")];
+    choice(ui, "Errors", &mut state.errors, &errors);
+    let fields = [(Shown::Uncertainty, "Uncertainty"), (Shown::Correction, "Correction")];
+    choice(ui, "Field", &mut state.field, &fields);
 }
 
 fn draw(ui: &mut Ui, cx: &PanelContext<'_>, drawn: &Drawn, height: f32) {

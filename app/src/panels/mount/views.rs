@@ -53,6 +53,9 @@ fn summary(mount: &MountView) -> String {
     }
 }
 
+/// Where less is left, what fits is better told by the inspector, pt.
+const FIT_WIDTH: f32 = 24.0;
+
 fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, seen: &HeadViewSummary) {
     let mount = &cx.view.mount;
     let left_out =
@@ -73,7 +76,9 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, seen: &HeadViewSummary) {
                     "{}: {} corners left, {} right",
                     seen.name, seen.corners.0, seen.corners.1
                 ));
-                fit(ui, left_out.map(|(_, why)| why.as_str()), seen.rms_px);
+                if ui.available_width() > FIT_WIDTH {
+                    fit(ui, left_out.map(|(_, why)| why.as_str()), seen.rms_px);
+                }
             });
         });
     });

@@ -27,8 +27,8 @@ fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let view = cx.view;
     ui.horizontal(|ui| {
         choose_tip(ui, &view.robot, &mut |link| cx.outbox.send(RobotCommand::ChooseTip { link }));
-        gamepad(ui, cx.state.robot.gamepad.as_ref());
     });
+    gamepad(ui, cx.state.robot.gamepad.as_ref());
     let why = cannot_jog(&view.robot);
     let tip = tip_title(&view.robot).to_lowercase();
     let pad = cx.state.robot.gamepad.clone().filter(|pad| pad.enabled && why.is_none());
@@ -62,13 +62,16 @@ fn choose_tip(ui: &mut Ui, robot: &RobotView, choose: &mut dyn FnMut(String)) {
     let Some(rig) = &robot.rig else { return };
     let label = ui.label("Tip");
     let shown = tip_title(robot);
-    let combo = ComboBox::from_id_salt("tip").width(170.0).selected_text(shown).show_ui(ui, |ui| {
-        for tip in rig.arms.iter().flat_map(|arm| &arm.tips) {
-            if ui.selectable_label(tip.link == robot.tip, &tip.title).clicked() {
-                choose(tip.link.clone());
+    let combo = ComboBox::from_id_salt("tip")
+        .width(170.0_f32.min(ui.available_width()))
+        .selected_text(shown)
+        .show_ui(ui, |ui| {
+            for tip in rig.arms.iter().flat_map(|arm| &arm.tips) {
+                if ui.selectable_label(tip.link == robot.tip, &tip.title).clicked() {
+                    choose(tip.link.clone());
+                }
             }
-        }
-    });
+        });
     combo.response.labelled_by(label.id);
 }
 

@@ -13,6 +13,8 @@ use crate::operator::{Action, RobotAction};
 use crate::panels::{PanelContext, padded};
 
 const ROW: f32 = 30.0;
+/// How many joints a pose moves is said where a title of usual length still fits beside it, pt.
+const WITH_JOINTS: f32 = 230.0;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     if super::parts::without_joints(ui, cx, Some("Poses to go to, and to keep, stand here.")) {
@@ -46,21 +48,23 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, pose: &PoseView) {
     let shown = cx.view.robot.preview.as_ref().is_some_and(|p| p.title.contains(&pose.title));
     let why = cannot_show(&cx.view.robot);
-    ui.horizontal(|ui| {
-        ui.set_min_height(ROW);
-        ui.add_enabled_ui(why.is_none(), |ui| {
-            let hover = format!("{}\n{}; shows it, nothing moves yet.", pose.about, joints(pose));
-            let label = ui.selectable_label(shown, &pose.title).on_hover_text(hover);
-            if label.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
-                cx.preview(Asked::Poses, Destination::Pose { name: pose.name.clone() });
-            }
-        });
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if pose.own {
-                delete(ui, cx, pose);
-            } else {
-                ui.label(theme::small(ui, joints(pose)));
-            }
+    let line = egui::vec2(ui.available_width(), ROW);
+    // What stands at the end takes its place first: the title gets what is left.
+    ui.allocate_ui_with_layout(line, egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        if pose.own {
+            delete(ui, cx, pose);
+        } else if ui.available_width() > WITH_JOINTS {
+            ui.label(theme::small(ui, joints(pose)));
+        }
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            ui.add_enabled_ui(why.is_none(), |ui| {
+                let hover = format!("{}\n{}; shows it, nothing moves yet.", pose.about, joints(pose));
+                let title = Button::selectable(shown, &pose.title).truncate();
+                let label = ui.add(title).on_hover_text(hover);
+                if label.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
+                    cx.preview(Asked::Poses, Destination::Pose { name: pose.name.clone() });
+                }
+            });
         });
     });
 }

@@ -36,6 +36,7 @@ fn models(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     }
     for model in models.iter() {
         ui.horizontal(|ui| {
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Truncate);
             let mut chosen = model.chosen;
             let name =
                 model.file.file_name().unwrap_or(model.file.as_os_str()).to_string_lossy().into_owned();

@@ -1,0 +1,143 @@
+//! Every screen at small and usual sizes: no text is cut at the side of what holds it, and no text lies on
+//! another one. Read from what is painted, so that nobody has to look.
+
+use egui::epaint::{ClippedShape, Shape, TextShape};
+use egui::{Rect, Vec2};
+use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
+use plumbline_engine::View;
+
+use crate::fake::Fake;
+use crate::{made_up, made_up_gap, made_up_labels, made_up_models, made_up_objects, made_up_touch};
+
+/// What letters may stand over, pt: overhanging letters and rounding.
+const SLACK: f32 = 2.0;
+
+/// How high the bar of tabs is, pt.
+const TAB_BAR: f32 = 32.0;
+
+const SIZES: [[f32; 2]; 2] = [[1024.0, 700.0], [1440.0, 900.0]];
+
+/// A line of text as it is painted.
+struct Line {
+    text: String,
+    rect: Rect,
+    clip: Rect,
+}
+
+fn lines(window: &egui_kittest::Harness<'static, PlumblineWindow>) -> Vec<Line> {
+    let mut lines = Vec::new();
+    for ClippedShape { clip_rect, shape, .. } in &window.output().shapes {
+        collect(shape, *clip_rect, &mut lines);
+    }
+    lines
+}
+
+fn collect(shape: &Shape, clip: Rect, lines: &mut Vec<Line>) {
+    match shape {
+        Shape::Vec(shapes) => shapes.iter().for_each(|shape| collect(shape, clip, lines)),
+        Shape::Text(text) if text.angle == 0.0 => lines.extend(lines_of(text, clip)),
+        _ => {}
+    }
+}
+
+fn lines_of(text: &TextShape, clip: Rect) -> impl Iterator<Item = Line> {
+    let rows = text.galley.rows.iter().map(move |row| Line {
+        text: row.text(),
+        rect: row.rect().translate(text.pos.to_vec2()),
+        clip,
+    });
+    rows.filter(|line| !line.text.trim().is_empty() && line.rect.intersects(line.clip))
+}
+
+/// What is scrolled away above or below is no fault; what ends at the side is. Of more tabs than there
+/// is room for an arrow leads to the next.
+fn cut(lines: &[Line]) -> Vec<String> {
+    let is_cut = |line: &&Line| {
+        let is_tab = line.rect.bottom() <= line.clip.top() + TAB_BAR;
+        if is_tab {
+            return false;
+        }
+        line.rect.left() < line.clip.left() - SLACK || line.rect.right() > line.clip.right() + SLACK
+    };
+    lines
+        .iter()
+        .filter(is_cut)
+        .map(|line| format!("cut: {:?} at {} by {}", line.text, line.rect, line.clip))
+        .collect()
+}
+
+fn overlapping(lines: &[Line]) -> Vec<String> {
+    let visible: Vec<_> = lines.iter().map(|line| line.rect.intersect(line.clip)).collect();
+    let mut faults = Vec::new();
+    for (i, a) in visible.iter().enumerate() {
+        for (j, b) in visible.iter().enumerate().skip(i + 1) {
+            let common = a.intersect(*b).size();
+            // Shadows and double strokes draw one text twice.
+            let same =
+                lines[i].text == lines[j].text && (lines[i].rect.min - lines[j].rect.min).length() < 3.0;
+            if !same && common.min_elem() > 0.0 && Vec2::min_elem(common) > SLACK {
+                faults.push(format!(
+                    "over each other: {:?} at {a} and {:?} at {b}",
+                    lines[i].text, lines[j].text
+                ));
+            }
+        }
+    }
+    faults
+}
+
+fn faults(view: &View, screen: Screen, size: [f32; 2], zoom: f32) -> Vec<String> {
+    let fake = Fake::over(view.clone());
+    let settings = WindowSettings { theme: ThemeChoice::Light, screen, zoom, ..WindowSettings::default() };
+    let mut window = fake.window_of_size(settings, size);
+    window.run_steps(4);
+    let lines = lines(&window);
+    assert!(lines.len() > 10, "{screen:?} draws texts");
+    let mut faults = overlapping(&lines);
+    // Its tables scroll sideways.
+    if screen != Screen::Scores {
+        faults.extend(cut(&lines));
+    }
+    faults.iter().map(|fault| format!("{screen:?} {size:?} {zoom}: {fault}")).collect()
+}
+
+fn assert_none(all: &[String]) {
+    assert!(all.is_empty(), "{} faults:\n{}", all.len(), all.join("\n"));
+}
+
+#[test]
+fn no_text_is_cut_or_covered_on_any_screen() {
+    let mut all = Vec::new();
+    for view in [View::default(), made_up::everything()] {
+        for screen in Screen::ALL {
+            for size in SIZES {
+                all.extend(faults(&view, screen, size, 1.0));
+            }
+        }
+    }
+    assert_none(&all);
+}
+
+#[test]
+fn no_text_is_cut_or_covered_where_there_is_much_to_show() {
+    let views = [
+        (Screen::Mount, View { mount: made_up::mount().into(), ..made_up::everything() }),
+        (Screen::Touch, made_up_touch::with_touch(made_up_touch::running())),
+        (Screen::Touch, made_up_touch::with_touch(made_up_touch::after(12, made_up_touch::running().phase))),
+        (Screen::Models, made_up_models::with(made_up_models::trained())),
+        (Screen::Models, made_up_models::with(made_up_models::in_use())),
+        (Screen::Gap, made_up_gap::searching()),
+        (Screen::Gap, made_up_gap::with(made_up_gap::failed())),
+        (Screen::Gap, made_up_gap::with(made_up_gap::added())),
+        (Screen::Live, made_up_objects::live(made_up_objects::detect())),
+        (Screen::Images, made_up_labels::labeling(made_up_labels::proposed())),
+        (Screen::Scores, made_up_labels::judging(made_up_labels::judged())),
+    ];
+    let mut all = Vec::new();
+    for (screen, view) in views {
+        for size in SIZES {
+            all.extend(faults(&view, screen, size, 1.0));
+        }
+    }
+    assert_none(&all);
+}
