@@ -193,10 +193,13 @@ pub fn age(duration: Duration) -> String {
 }
 
 /// A number with so many significant digits. Digits before the decimal point are never
-/// replaced by zeros (1234 stays 1234), and nothing is written finer than 0.0001.
+/// replaced by zeros (1234 stays 1234), nothing is written finer than 0.0001, and zero has no digits.
 pub fn significant(value: f64, digits: i32) -> String {
     if !value.is_finite() {
         return NONE.to_owned();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
     }
     fixed(value, decimals_for(value, digits))
 }

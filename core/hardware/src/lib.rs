@@ -22,6 +22,7 @@ mod jpeg;
 mod memory;
 mod natural_order;
 mod pair_by_time;
+mod playback;
 mod recording_source;
 mod replay;
 mod retrying;

@@ -1,21 +1,19 @@
 //! Pairs from memory: synthetic worlds, tests, demonstrations.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use plumbline_model::{Stamp, StereoFrame};
+use plumbline_model::StereoFrame;
 
 use crate::error::SourceError;
-use crate::replay::{Pace, Replay};
+use crate::playback::{Playback, Turn};
+use crate::replay::Replay;
 use crate::source::{Counters, FiniteSource, Next, Report, SourceDescription, SourceKind, StereoSource};
 
 /// Delivers prepared pairs, each with a fresh stamp.
 pub struct MemorySource {
     title: String,
     pairs: Vec<StereoFrame>,
-    replay: Replay,
-    pace: Pace,
-    position: usize,
-    counters: Counters,
+    playback: Playback,
 }
 
 impl MemorySource {
@@ -25,33 +23,20 @@ impl MemorySource {
         pairs: Vec<StereoFrame>,
         replay: Replay,
     ) -> Result<Self, SourceError> {
-        let replay = replay.check()?;
-        Ok(Self {
-            title: title.into(),
-            pairs,
-            replay,
-            pace: Pace::start(),
-            position: 0,
-            counters: Counters::default(),
-        })
+        let playback = Playback::new(pairs.len(), replay, Vec::new())?;
+        Ok(Self { title: title.into(), pairs, playback })
     }
 }
 
 impl StereoSource for MemorySource {
     fn next_pair(&mut self) -> Result<Next, SourceError> {
-        if !self.pace.is_due() {
-            return Ok(Next::NotYet);
-        }
-        if self.position >= self.pairs.len() && self.replay.looping {
-            self.position = 0;
-        }
-        let Some(pair) = self.pairs.get(self.position) else { return Ok(Next::End) };
-        let mut frame = pair.clone();
-        frame.stamp = Stamp { seq: self.counters.delivered, captured_at: Instant::now() };
-        self.position += 1;
-        self.counters.delivered += 1;
-        self.pace.advance(self.replay.period(Replay::USUAL_RATE_HZ));
-        Ok(Next::Pair(frame))
+        let index = match self.playback.turn() {
+            Turn::NotYet => return Ok(Next::NotYet),
+            Turn::End => return Ok(Next::End),
+            Turn::Pair(index) => index,
+        };
+        let stamp = self.playback.deliver(index, Replay::USUAL_RATE_HZ);
+        Ok(Next::Pair(StereoFrame { stamp, ..self.pairs[index].clone() }))
     }
 
     fn describe(&self) -> SourceDescription {
@@ -59,21 +44,21 @@ impl StereoSource for MemorySource {
             kind: SourceKind::Memory,
             title: self.title.clone(),
             image_size: self.pairs.first().map(|pair| pair.left.dimensions()),
-            rate_hz: self.replay.rate_hz(Replay::USUAL_RATE_HZ),
-            pair_count: Some(self.pairs.len()),
+            rate_hz: self.playback.replay().rate_hz(Replay::USUAL_RATE_HZ),
+            pair_count: Some(self.playback.pairs()),
         }
     }
 
     fn counters(&self) -> Counters {
-        self.counters
+        self.playback.counters()
     }
 
     fn take_reports(&mut self) -> Vec<Report> {
-        Vec::new()
+        self.playback.take_reports()
     }
 
     fn wait_hint(&self) -> Duration {
-        self.pace.wait()
+        self.playback.wait()
     }
 
     fn as_finite(&mut self) -> Option<&mut dyn FiniteSource> {
@@ -83,29 +68,22 @@ impl StereoSource for MemorySource {
 
 impl FiniteSource for MemorySource {
     fn pair_count(&self) -> usize {
-        self.pairs.len()
+        self.playback.pairs()
     }
 
     fn position(&self) -> usize {
-        self.position
+        self.playback.position()
     }
 
     fn seek(&mut self, index: usize) -> Result<(), SourceError> {
-        if index >= self.pairs.len() {
-            return Err(SourceError::NoSuchPair { index, pairs: self.pairs.len() });
-        }
-        self.position = index;
-        self.pace.restart();
-        Ok(())
+        self.playback.seek(index)
     }
 
     fn replay(&self) -> Replay {
-        self.replay
+        self.playback.replay()
     }
 
     fn set_replay(&mut self, replay: Replay) -> Result<(), SourceError> {
-        self.replay = replay.check()?;
-        self.pace.restart();
-        Ok(())
+        self.playback.set_replay(replay)
     }
 }

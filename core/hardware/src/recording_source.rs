@@ -1,35 +1,28 @@
 //! Both eyes of a recording, replayed at the times at which they were captured.
 
-use std::collections::HashSet;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use image::{ImageFormat, ImageReader, RgbImage};
-use plumbline_model::{Eye, Stamp, StereoFrame};
+use plumbline_model::{Eye, StereoFrame};
 use plumbline_recording::{Jpeg, RecordedPair, Recording};
 
 use crate::error::{PairProblem, SourceError};
 use crate::image_file::{ImageProblem, file_name};
 use crate::jpeg;
-use crate::replay::{Pace, Replay};
+use crate::playback::{Playback, Turn};
+use crate::replay::Replay;
 use crate::source::{Counters, FiniteSource, Next, Report, SourceDescription, SourceKind, StereoSource};
 
 /// Delivers the pairs of a recording one after the other.
 pub struct RecordingSource {
     path: PathBuf,
     recording: Recording,
-    replay: Replay,
-    pace: Pace,
-    position: usize,
+    playback: Playback,
     recorded_hz: f64,
     image_size: Option<(u32, u32)>,
-    counters: Counters,
-    /// Pairs that failed: each is told once, not once a round.
-    told: HashSet<usize>,
-    failed_in_a_row: usize,
-    reports: Vec<Report>,
 }
 
 impl RecordingSource {
@@ -38,7 +31,6 @@ impl RecordingSource {
     /// # Errors
     /// When it cannot be read, or holds no images.
     pub fn open(path: &Path, replay: Replay) -> Result<Self, SourceError> {
-        let replay = replay.check()?;
         let refused = |problem: String| SourceError::Recording { problem };
         let mut recording = Recording::open(path).map_err(|error| refused(error.to_string()))?;
         let pairs = recording.pair_count();
@@ -51,27 +43,16 @@ impl RecordingSource {
         if !recording.is_whole() {
             reports.push(Report::Cut { file: file_name(path) });
         }
-        Ok(Self {
-            path: path.to_owned(),
-            recorded_hz: rate(&recording),
-            recording,
-            replay,
-            pace: Pace::start(),
-            position: 0,
-            image_size,
-            counters: Counters::default(),
-            told: HashSet::new(),
-            failed_in_a_row: 0,
-            reports,
-        })
+        let playback = Playback::new(pairs, replay, reports)?;
+        Ok(Self { path: path.to_owned(), recorded_hz: rate(&recording), recording, playback, image_size })
     }
 
-    /// Time to the next pair.
-    fn period(&self, index: usize) -> Duration {
+    /// How soon the next pair followed this one, Hz.
+    fn rate_after(&self, index: usize) -> f64 {
         let captured = |index| self.recording.captured_at(index);
         let apart_s = captured(index).zip(captured(index + 1));
         let apart_s = apart_s.map_or(0.0, |(this, next)| next.duration_since(this).as_secs_f64());
-        self.replay.period(if apart_s > 0.0 { 1.0 / apart_s } else { self.recorded_hz })
+        if apart_s > 0.0 { 1.0 / apart_s } else { self.recorded_hz }
     }
 
     fn load(&mut self, index: usize) -> Result<(RecordedPair, [RgbImage; 2]), PairProblem> {
@@ -87,19 +68,6 @@ impl RecordingSource {
             return Err(PairProblem::EyesDiffer { left: left.dimensions(), right: right.dimensions() });
         }
         Ok((pair, [left, right]))
-    }
-
-    fn skip(&mut self, index: usize, problem: PairProblem) -> Result<(), SourceError> {
-        self.counters.skipped += 1;
-        self.failed_in_a_row += 1;
-        let pairs = self.recording.pair_count();
-        if self.failed_in_a_row >= pairs {
-            return Err(SourceError::NothingUsable { pairs, first: problem.to_string() });
-        }
-        if self.told.insert(index) {
-            self.reports.push(Report::Skipped { pair: pair_name(index), problem });
-        }
-        Ok(())
     }
 }
 
@@ -131,36 +99,23 @@ fn decode(image: &Jpeg, eye: Eye, name: &str) -> Result<RgbImage, PairProblem> {
 
 impl StereoSource for RecordingSource {
     fn next_pair(&mut self) -> Result<Next, SourceError> {
-        if !self.pace.is_due() {
-            return Ok(Next::NotYet);
-        }
-        if self.position >= self.recording.pair_count() {
-            if !self.replay.looping {
-                return Ok(Next::End);
-            }
-            self.position = 0;
-        }
-        let index = self.position;
-        self.position += 1;
+        let index = match self.playback.turn() {
+            Turn::NotYet => return Ok(Next::NotYet),
+            Turn::End => return Ok(Next::End),
+            Turn::Pair(index) => index,
+        };
         match self.load(index) {
             Ok((pair, [left, right])) => {
-                self.failed_in_a_row = 0;
-                self.pace.advance(self.period(index));
-                let seq = self.counters.delivered;
-                self.counters.delivered += 1;
+                let recorded_hz = self.rate_after(index);
                 Ok(Next::Pair(StereoFrame {
-                    stamp: Stamp { seq, captured_at: Instant::now() },
+                    stamp: self.playback.deliver(index, recorded_hz),
                     left: Arc::new(left),
                     right: Arc::new(right),
                     time_difference_s: Some(pair.right_later_s),
                     name: Some(pair_name(index)),
                 }))
             }
-            // The next one is tried in the next call, so that no call reads two pairs.
-            Err(problem) => {
-                self.skip(index, problem)?;
-                Ok(Next::NotYet)
-            }
+            Err(problem) => self.playback.skip(index, pair_name(index), problem),
         }
     }
 
@@ -169,21 +124,21 @@ impl StereoSource for RecordingSource {
             kind: SourceKind::Recording,
             title: format!("recording {}", file_name(&self.path)),
             image_size: self.image_size,
-            rate_hz: self.replay.rate_hz(self.recorded_hz),
-            pair_count: Some(self.recording.pair_count()),
+            rate_hz: self.playback.replay().rate_hz(self.recorded_hz),
+            pair_count: Some(self.playback.pairs()),
         }
     }
 
     fn counters(&self) -> Counters {
-        self.counters
+        self.playback.counters()
     }
 
     fn take_reports(&mut self) -> Vec<Report> {
-        std::mem::take(&mut self.reports)
+        self.playback.take_reports()
     }
 
     fn wait_hint(&self) -> Duration {
-        self.pace.wait()
+        self.playback.wait()
     }
 
     fn as_finite(&mut self) -> Option<&mut dyn FiniteSource> {
@@ -193,30 +148,22 @@ impl StereoSource for RecordingSource {
 
 impl FiniteSource for RecordingSource {
     fn pair_count(&self) -> usize {
-        self.recording.pair_count()
+        self.playback.pairs()
     }
 
     fn position(&self) -> usize {
-        self.position
+        self.playback.position()
     }
 
     fn seek(&mut self, index: usize) -> Result<(), SourceError> {
-        let pairs = self.pair_count();
-        if index >= pairs {
-            return Err(SourceError::NoSuchPair { index, pairs });
-        }
-        self.position = index;
-        self.pace.restart();
-        Ok(())
+        self.playback.seek(index)
     }
 
     fn replay(&self) -> Replay {
-        self.replay
+        self.playback.replay()
     }
 
     fn set_replay(&mut self, replay: Replay) -> Result<(), SourceError> {
-        self.replay = replay.check()?;
-        self.pace.restart();
-        Ok(())
+        self.playback.set_replay(replay)
     }
 }
