@@ -116,7 +116,7 @@ fn what_moves_is_said_before_it_moves() {
 #[test]
 fn presets_stay_where_the_arm_reaches() {
     let reach = TouchArea { u_px: [200.0, 1700.0], v_px: [450.0, 1040.0] };
-    let (fake, mut window) = window(with_touch(TouchView { reach: Some(reach), ..idle() }));
+    let (fake, mut window) = window(with_touch(TouchView { reach: [Some(reach), None], ..idle() }));
     press_next(&mut window, "Plan to touch the corners");
     let all = sent(&fake);
     let [TouchCommand::Plan(options)] = all.as_slice() else { panic!("planned: {all:?}") };

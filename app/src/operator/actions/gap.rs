@@ -3,9 +3,11 @@
 use std::borrow::Cow;
 
 use plumbline_engine::{Command, GapCommand, GapModel, TouchCommand, View};
+use plumbline_model::touch_plan::Finger;
 use serde::Serialize;
 
 use super::touch::{Preset, TouchAction, usual_area};
+use crate::operator::snapshot::gap::{Finding, plan_for};
 
 /// Of the gap between model and measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -113,10 +115,19 @@ impl GapAction {
     }
 }
 
+/// What touched when the finding was measured: its candidates sit in that arm.
+fn finger_of(view: &View, finding: &Finding) -> Finger {
+    let chain = view.robot.rig.as_ref().and_then(|rig| rig.chain(Finger::Left.tip()).ok());
+    let of_left = |site: &String| chain.as_ref().is_some_and(|chain| chain.names().contains(site));
+    let left = finding.candidates.iter().any(|candidate| of_left(&candidate.site));
+    if left { Finger::Left } else { Finger::Right }
+}
+
 /// The next experiment as a command to the touch step.
 pub fn plan(view: &View) -> Option<Command> {
-    let next = view.gap.finding()?.next.as_ref()?;
-    let plan = crate::operator::snapshot::gap::plan_for(next, usual_area(view)?)?;
+    let finding = view.gap.finding()?;
+    let finger = finger_of(view, finding);
+    let plan = plan_for(finding.next.as_ref()?, finger, usual_area(view, finger)?)?;
     Some(TouchCommand::Plan(plan).into())
 }
 

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use plumbline_engine::view::{ContactSource, TouchPhase};
 use plumbline_engine::{Command, TouchCommand, View};
 use plumbline_model::session::Touchscreen;
-use plumbline_model::touch_plan::{PlanOptions, TouchArea};
+use plumbline_model::touch_plan::{Finger, PlanOptions, TouchArea};
 use serde::Serialize;
 
 use crate::operator::touch_monitor::window_problem;
@@ -83,11 +83,11 @@ impl Preset {
     }
 }
 
-/// What the arm reaches of the screen, as far as that is known; else all of it but its border.
-pub fn usual_area(view: &View) -> Option<TouchArea> {
+/// What a finger reaches of the screen, as far as that is known; else all of it but its border.
+pub fn usual_area(view: &View, finger: Finger) -> Option<TouchArea> {
     let screen = screen_of(view)?;
     let whole = TouchArea::within(screen, MARGIN_M);
-    let Some(reach) = view.touch.reach else { return Some(whole) };
+    let Some(reach) = view.touch.reach[finger as usize] else { return Some(whole) };
     // The real screen lies some millimeters beside where reach was looked for.
     let inset = screen.pitch_m().map(|pitch_m| (REACH_INSET_M / pitch_m).round());
     let inner = |reach: [f64; 2], inset: f64| [(reach[0] + inset).round(), (reach[1] - inset).round()];
@@ -192,7 +192,7 @@ impl TouchAction {
         let touch = &view.touch;
         Some(
             match self {
-                Self::Plan(preset) => TouchCommand::Plan(preset.options(usual_area(view)?)),
+                Self::Plan(preset) => TouchCommand::Plan(preset.options(usual_area(view, Finger::Right)?)),
                 Self::Start => TouchCommand::Start,
                 Self::Pause => TouchCommand::Pause,
                 Self::Resume => TouchCommand::Resume,

@@ -2,7 +2,7 @@
 
 use plumbline_engine::View;
 use plumbline_engine::view::{PlanView, TouchCounts, TouchOutcome, TouchPhase, TouchView};
-use plumbline_model::touch_plan::Purpose;
+use plumbline_model::touch_plan::{Finger, Purpose};
 use plumbline_widgets::format;
 
 use super::robot;
@@ -59,8 +59,12 @@ fn waiting(what: &str, prepare: bool) -> Guidance {
 /// What moves, and what stays.
 pub fn what_moves(plan: &PlanView) -> String {
     let touches = if plan.reachable == 1 { "once".to_owned() } else { format!("{} times", plan.reachable) };
+    let (moves, stays) = match plan.options.finger {
+        Finger::Right => ("right", "left"),
+        Finger::Left => ("left", "right"),
+    };
     format!(
-        "The right arm touches the glass {touches}, about {}; the head and the left arm stay.",
+        "The {moves} arm touches the glass {touches}, about {}; the head and the {stays} arm stay.",
         minutes(plan.duration)
     )
 }

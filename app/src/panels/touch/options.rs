@@ -1,7 +1,7 @@
 //! The fields of a plan.
 
 use egui::{DragValue, Grid, TextEdit, Ui, WidgetInfo};
-use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose, Sides, TouchArea};
+use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, Sides};
 use plumbline_widgets::buttons::choice;
 use plumbline_widgets::theme::{self, space};
 
@@ -15,7 +15,8 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, options: &PlanOptions) {
     ui.spacing_mut().interact_size.y = 22.0;
     Grid::new("plan").num_columns(2).spacing([space::M, space::XS]).show(ui, |ui| {
         row(ui, "For", |ui| purpose(ui, &mut edited.purpose));
-        area(ui, cx, &mut edited.area);
+        row(ui, "With", |ui| finger(ui, cx, &mut edited));
+        area(ui, cx, &mut edited);
         patterns(ui, &mut edited.patterns);
         row(ui, "Each target", |ui| {
             count(ui, "Times each target", &mut edited.repeats, 1..=20);
@@ -50,8 +51,19 @@ fn purpose(ui: &mut Ui, purpose: &mut Purpose) {
     choice(ui, "For", purpose, &all);
 }
 
+/// Another finger reaches another part of the screen.
+fn finger(ui: &mut Ui, cx: &PanelContext<'_>, edited: &mut PlanOptions) {
+    let fingers = [(Finger::Right, "Right index finger"), (Finger::Left, "Left index finger")];
+    if choice(ui, "Finger", &mut edited.finger, &fingers)
+        && let Some(usual) = usual_area(cx.view, edited.finger)
+    {
+        edited.area = usual;
+    }
+}
+
 /// In pixels; the drawing beside drags it.
-fn area(ui: &mut Ui, cx: &PanelContext<'_>, area: &mut TouchArea) {
+fn area(ui: &mut Ui, cx: &PanelContext<'_>, edited: &mut PlanOptions) {
+    let PlanOptions { area, finger, .. } = edited;
     let Some(screen) = screen_of(cx.view) else { return };
     let most = [screen.width_px, screen.height_px].map(|count| f64::from(count.saturating_sub(1)));
     row(ui, "Columns", |ui| {
@@ -66,9 +78,9 @@ fn area(ui: &mut Ui, cx: &PanelContext<'_>, area: &mut TouchArea) {
         pixel(ui, "Last row", &mut area.v_px[1], most[1]);
         ui.label(theme::weak(ui, "px"));
         ui.add_space(space::S);
-        let usual = usual_area(cx.view);
-        let text = if cx.view.touch.reach.is_some() { "In reach" } else { "All" };
-        let button = ui.button(text).on_hover_text("The part of the screen that the arm reaches");
+        let usual = usual_area(cx.view, *finger);
+        let text = if cx.view.touch.reach[*finger as usize].is_some() { "In reach" } else { "All" };
+        let button = ui.button(text).on_hover_text("The part of the screen that the finger reaches");
         if let (true, Some(usual)) = (button.clicked(), usual) {
             *area = usual;
         }

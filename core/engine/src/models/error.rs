@@ -59,6 +59,12 @@ pub enum ModelError {
     /// Nobody knows what touched.
     #[error("The session does not say which tip touched.")]
     NoTip,
+    /// It was touched with the other arm.
+    #[error(
+        "It was touched with the left index finger; M1 to M3 correct the right one. Look at it under Gap: there each \
+         joint has its own effects."
+    )]
+    LeftFinger,
     /// The robot has no such tip.
     #[error("{}", sentence(&.0.to_string()))]
     Description(#[from] DescriptionError),

@@ -6,6 +6,7 @@ use plumbline_correction::TouchData;
 use plumbline_model::Session;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::{Manifest, names};
+use plumbline_model::touch_plan::Finger;
 
 use super::error::ModelError;
 use super::view::TouchSession;
@@ -52,6 +53,10 @@ pub fn touch_data(folder: &Path, rig: &Rig) -> Result<TouchData, ModelError> {
         return Err(ModelError::OtherRobotsSession { recorded: own.name, present: rig.name.clone() });
     }
     let chain = session.manifest.chain.as_ref().ok_or(ModelError::NoTip)?;
+    // What is learned here is where one finger lands; it is used for that finger alone.
+    if chain.tip == Finger::Left.tip() {
+        return Err(ModelError::LeftFinger);
+    }
     let chain = rig.chain(&chain.tip)?;
     let data = TouchData::of_session(&session, &chain)?;
     super::screen::same_size(&(&data.screen).into(), &(&rig.touchscreen).into(), "The session")?;

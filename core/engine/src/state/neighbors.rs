@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use plumbline_correction::Method;
 use plumbline_grasp::Corrections;
+use plumbline_model::touch_plan::Finger;
 use plumbline_vision::detect::Provider;
 
 use super::State;
@@ -230,6 +231,8 @@ impl Neighbors<TouchWorkflow> for State {
 
     fn after(&mut self, world: World) {
         self.use_models();
+        // A run that has ended is counted before anything else is offered.
+        self.with::<CommissionWorkflow>(world, |room, around, context| room.look(around, context));
         let finished = self.rooms.touch.of(world).finished_session();
         let Some(finished) = finished.map(|(session, revision)| (session.to_owned(), revision)) else {
             return;
@@ -239,9 +242,11 @@ impl Neighbors<TouchWorkflow> for State {
         }
         // What is told below comes back here.
         self.learned_from.insert(world, finished.clone());
-        self.with::<ModelsWorkflow>(world, |models, around, context| {
-            models.touched(&finished.0, around, context);
-        });
+        if self.rooms.touch.of(world).finger() == Some(Finger::Right) {
+            self.with::<ModelsWorkflow>(world, |models, around, context| {
+                models.touched(&finished.0, around, context);
+            });
+        }
         self.with::<GapWorkflow>(world, |gap, _, context| gap.touched(&finished.0, context));
     }
 }

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use plumbline_model::robot::Rig;
 use plumbline_model::session::Screen;
+use plumbline_model::touch_plan::Finger;
 use plumbline_model::touchscreen::{ScreenPlacement, place_screen};
 use plumbline_model::{Pixel, Point, Robot};
 
-use super::plan::TIP;
 use super::record::TouchRecord;
 use super::refusal::Unplaced;
 
@@ -25,8 +25,13 @@ pub struct Proposal {
 ///
 /// # Errors
 /// A sentence: why the touches do not tell.
-pub fn place(rig: &Rig, joints: &[String], touches: &[TouchRecord]) -> Result<ScreenPlacement, Unplaced> {
-    let chain = rig.chain(TIP)?;
+pub fn place(
+    rig: &Rig,
+    finger: Finger,
+    joints: &[String],
+    touches: &[TouchRecord],
+) -> Result<ScreenPlacement, Unplaced> {
+    let chain = rig.chain(finger.tip())?;
     let order: Option<Vec<usize>> =
         chain.names().iter().map(|name| joints.iter().position(|joint| joint == name)).collect();
     let order = order.ok_or(Unplaced::OtherArm)?;

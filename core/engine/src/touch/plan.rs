@@ -22,7 +22,7 @@ use crate::ground::jobs::JobError;
 use crate::ground::text::sentence;
 use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
 
-/// The tip that touches.
+/// The tip that touches unless another finger was chosen, and that M1 to M3 correct.
 pub const TIP: &str = "right_index_tip";
 /// Version of the plan's file.
 pub const FORMAT: u32 = 1;
@@ -155,7 +155,8 @@ pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, 
     let PlanRequest { rig, place, options, corrector } = request;
     let words = |error: &dyn std::fmt::Display| JobError::failed(sentence(&error.to_string()));
     let plan = TouchPlan::make(options, &rig.touchscreen).map_err(|error| words(&error))?;
-    let senders = Senders::of(corrector).map_err(JobError::failed)?;
+    let tip = options.finger.tip();
+    let senders = Senders::of(corrector, tip).map_err(JobError::failed)?;
     let (pace, count) = (TouchPace::default(), plan.touches.len());
     let mut duration = Duration::ZERO;
     let mut planner: Option<(f64, Planner)> = None;
@@ -171,7 +172,7 @@ pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, 
             Some((of_m, planner)) if *of_m == height_m => &*planner,
             slot => {
                 let on_block = Arc::new(raised(rig, height_m));
-                let made = Planner::new(&on_block, TIP, *place).map_err(JobError::failed)?;
+                let made = Planner::new(&on_block, tip, *place).map_err(JobError::failed)?;
                 &slot.insert((height_m, made)).1
             }
         };
@@ -206,7 +207,7 @@ pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, 
     context.checkpoint()?;
     context.report(0.9, "what the touches will tell");
     // A plan without a score is still a plan.
-    let score = score(rig, TIP, &contacts, &Noise::default())
+    let score = score(rig, tip, &contacts, &Noise::default())
         .map_err(|error| log::info!("the plan was not scored: {error}"))
         .ok();
     Ok(RunPlan {
@@ -228,6 +229,12 @@ enum NotCorrected {
         "No effect was added to the model yet. Search the gap and add what it names, or correct with something else."
     )]
     Nominal,
+    /// It was learned with another arm.
+    #[error(
+        "M1 to M3 were learned with the right index finger. Correct the left one with the effects of the model, or \
+         send its targets as they are."
+    )]
+    OtherFinger,
     /// The model does not speak of this arm.
     #[error("{}", sentence(&.0.to_string()))]
     Arm(#[from] SolverError),
@@ -245,15 +252,16 @@ enum Senders<'a> {
 }
 
 impl<'a> Senders<'a> {
-    fn of(corrector: &'a Corrector) -> Result<Self, NotCorrected> {
+    fn of(corrector: &'a Corrector, tip: &str) -> Result<Self, NotCorrected> {
         Ok(match corrector {
             Corrector::None => Self::Plain,
+            Corrector::Model(_) if tip != TIP => return Err(NotCorrected::OtherFinger),
             Corrector::Model(model) => Self::Model(model),
             Corrector::Effects(model) => {
                 if model.is_nominal() {
                     return Err(NotCorrected::Nominal);
                 }
-                let arm = model.arm(TIP)?;
+                let arm = model.arm(tip)?;
                 let screen = model.touchscreen().clone();
                 Self::Effects { arm, screen }
             }

@@ -115,6 +115,8 @@ pub struct Run {
     contacts: Vec<Instant>,
     planner: Option<(Touchscreen, Arc<Planner>)>,
     ended: bool,
+    /// Whether the disk knows that it is finished.
+    end_on_disk: bool,
 }
 
 impl Run {
@@ -128,6 +130,7 @@ impl Run {
     pub fn opened(session: PathBuf, stored: Stored) -> Self {
         let Stored { plan, progress, screen, joints } = stored;
         Self {
+            end_on_disk: progress.finished,
             session,
             plan: Arc::new(plan),
             phase: if progress.finished { Phase::Finished } else { Phase::Paused(None) },
@@ -173,6 +176,11 @@ impl Run {
         if let Phase::Stuck(_) = self.phase {
             self.phase = if self.progress.finished { Phase::Finished } else { Phase::Paused(None) };
         }
+    }
+
+    /// Whether it is finished and the disk knows it.
+    pub fn is_over(&self) -> bool {
+        self.phase == Phase::Finished && self.end_on_disk
     }
 
     /// Whether everything that happened is on disk.
@@ -276,6 +284,7 @@ impl Run {
             planner: planner.map(|(_, planner)| planner.clone()),
             order: next_order(),
             pace: TouchPace::default().at(speed(now.robot)),
+            finger: self.plan.options.finger,
             from,
             aim: Box::new(aim),
         };
@@ -299,6 +308,7 @@ impl Run {
             }
             None => {
                 self.written = revision;
+                self.end_on_disk = self.progress.finished && (self.end_on_disk || self.is_on_disk());
                 if self.written == self.revision {
                     self.unwritten = None;
                 }

@@ -130,6 +130,8 @@ impl TouchWorkflow {
                 what: preparation(run.progress.prepared, *wanted),
                 prepare: Some((wanted[0], wanted[1])),
             },
+            // What comes next rests on what is on disk.
+            Phase::Finished if !run.is_over() => running(run),
             Phase::Finished => TouchPhase::Finished,
         }
     }
@@ -258,7 +260,7 @@ fn running(run: &Run) -> TouchPhase {
             (number, format!("writing touch {number} to disk"))
         }
     };
-    let holds = run.pause || run.phase != Phase::Working;
+    let holds = run.pause || !matches!(run.phase, Phase::Working | Phase::Finished);
     let doing = if holds { format!("{doing}, then it pauses") } else { doing };
     TouchPhase::Running { number, doing }
 }

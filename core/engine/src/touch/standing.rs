@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use jiff::Timestamp;
 use plumbline_model::touch_plan::Purpose;
 
-use super::run::Phase;
 use super::workflow::TouchWorkflow;
 
 /// How a run of touches stands.
@@ -35,7 +34,7 @@ impl TouchWorkflow {
             session: run.session.clone(),
             started: run.progress.started,
             purpose: run.progress.purpose,
-            is_finished: run.phase == Phase::Finished && run.is_on_disk(),
+            is_finished: run.is_over(),
             touched: run.progress.counted().count(),
             contacts: run.progress.records.len(),
             mean_m: self.seen.figures.map(|figures| figures.mean_m),

@@ -13,7 +13,7 @@ use plumbline_model::touch_plan::Purpose;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::plan::{self, RunPlan, TIP};
+use super::plan::{self, RunPlan};
 use super::record::{self, Progress, Standing, TouchRecord};
 use super::refusal::RunError;
 use super::view::UnfinishedRun;
@@ -108,7 +108,7 @@ pub fn manifest(
         operator: String::new(),
         notes: String::new(),
         touchscreen: Some(screen.clone()),
-        chain: Some(Chain { tip: TIP.to_owned(), joints: joints.to_vec() }),
+        chain: Some(Chain { tip: plan.options.finger.tip().to_owned(), joints: joints.to_vec() }),
         extra,
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use plumbline_correction::{Method, TouchData, TrainOptions, train};
 use plumbline_model::session::names;
-use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose};
+use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, TouchArea};
 use plumbline_model::{Pixel, Session, Unattended};
 
 use super::command::{ContactWith, Correction, ScreenContact, ScreenWindow, TouchCommand};
@@ -341,6 +341,52 @@ fn touches_are_stale_when_the_screen_is_placed_anew_but_not_by_themselves() {
     desk.touch_all();
     desk.apply(TouchCommand::AcceptPlacement);
     assert!(matches!(desk.view().step, StepState::Stale { .. }));
+}
+
+#[test]
+fn the_left_finger_touches_what_it_reaches_and_its_session_says_so() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    let [Some(right), Some(left)] = desk.view().reach else { panic!("both fingers reach a part") };
+    assert!(left.u_px[0] < right.u_px[0] || left.u_px[1] < right.u_px[1], "{left:?} {right:?}");
+    let inner = |range: [f64; 2]| [0.8 * range[0] + 0.2 * range[1], 0.2 * range[0] + 0.8 * range[1]];
+    let area = TouchArea { u_px: inner(left.u_px), v_px: inner(left.v_px) };
+    let options = PlanOptions { finger: Finger::Left, area, ..PlanOptions::quick(area) };
+    desk.start(options.clone());
+    assert!(desk.view().plan.is_some_and(|plan| plan.reachable > 12), "{:?}", desk.view().plan);
+    desk.touch_all();
+    assert_eq!(desk.view().phase, TouchPhase::Finished);
+    assert!(desk.view().placement_proposal.is_none(), "the right finger places the screen");
+    let session = Session::read(&only_session(folder.path())).expect("readable");
+    let chain = session.manifest.chain.clone().expect("a chain");
+    assert_eq!(chain.tip, "left_index_tip");
+    assert!(chain.joints.iter().all(|joint| joint.starts_with("l_")), "{:?}", chain.joints);
+
+    // What was learned of the right arm says nothing of the left one.
+    let data = TouchData::of_session(&session, &rig().chain(&chain.tip).expect("the tip")).expect("touches");
+    let model = train(&data, Method::M1, &TrainOptions::default(), &Unattended, &mut |_| {});
+    desk.models = vec![Arc::new(model.expect("trained"))];
+    desk.apply(TouchCommand::Close);
+    desk.apply(TouchCommand::CorrectWith(Some(Method::M1.into())));
+    desk.apply(TouchCommand::Plan(options));
+    assert!(desk.said().contains("right index finger"), "{}", desk.said());
+    assert!(desk.view().plan.is_none());
+}
+
+#[test]
+fn a_run_is_finished_when_the_disk_says_so() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    desk.start(grid(2, 1));
+    while let Some(order) = desk.order() {
+        desk.held = (order.number == desk.view().counts.planned).then_some("Write the touches");
+        desk.touch(&order);
+    }
+    assert!(matches!(desk.view().phase, TouchPhase::Running { .. }), "{:?}", desk.view().phase);
+    assert!(desk.workflow.run_standing().is_some_and(|run| !run.is_finished));
+    desk.release();
+    assert_eq!(desk.view().phase, TouchPhase::Finished);
+    assert!(desk.workflow.run_standing().is_some_and(|run| run.is_finished && run.touched == run.contacts));
 }
 
 #[test]

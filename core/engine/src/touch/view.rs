@@ -39,9 +39,9 @@ pub struct TouchView {
     pub unfinished: Arc<[UnfinishedRun]>,
     /// The screen as it is taken to lie now.
     pub screen: Option<Touchscreen>,
-    /// The largest rectangle of the screen that the finger reaches, nothing in its way; `None`:
-    /// not known yet, or none.
-    pub reach: Option<TouchArea>,
+    /// The largest rectangle of the screen that each finger reaches, the right one first, nothing in its
+    /// way; `None`: not known yet, or none.
+    pub reach: [Option<TouchArea>; 2],
     /// Its measured place in use; `None`: nominal, from the rig file.
     pub placement: Option<Arc<ScreenPlacement>>,
     /// A measured place that waits to be accepted.

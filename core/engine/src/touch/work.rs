@@ -6,13 +6,13 @@ use std::sync::Arc;
 use jiff::Timestamp;
 use plumbline_model::JobContext;
 use plumbline_model::robot::{Posture, Rig};
-use plumbline_model::touch_plan::TouchArea;
+use plumbline_model::touch_plan::{Finger, TouchArea};
 use plumbline_model::touchscreen::ScreenPlacement;
 
 use super::choice::{self, NoChoice};
 use super::command::Correction;
 use super::placement::{self, Proposal};
-use super::plan::{self, Aim, PlanRequest, RunPlan, TIP};
+use super::plan::{self, Aim, PlanRequest, RunPlan};
 use super::record::{Progress, TouchRecord};
 use super::refusal::{NotRestored, RunError, Unplaced};
 use super::store::{self, Runs, Stored};
@@ -73,6 +73,8 @@ pub enum TouchWork {
         session: PathBuf,
         /// The robot, its screen where it nominally lies.
         rig: Arc<Rig>,
+        /// What touched.
+        finger: Finger,
         /// Joints of the run's chain.
         joints: Vec<String>,
         /// Touches that count.
@@ -108,6 +110,8 @@ pub struct RouteRequest {
     pub place: ScreenPlace,
     /// Made for that place of the screen before; `None`: to be made.
     pub planner: Option<Arc<Planner>>,
+    /// What touches.
+    pub finger: Finger,
     /// The target.
     pub aim: Box<Aim>,
     /// Where the arm stands.
@@ -128,7 +132,7 @@ pub enum TouchResult {
         /// Runs of earlier starts.
         runs: Runs,
         /// The part of the screen that the finger reaches.
-        reach: Option<TouchArea>,
+        reach: [Option<TouchArea>; 2],
         /// What targets were corrected with last, or why that is not known; `None`: never chosen.
         choice: Result<Option<Option<Correction>>, Arc<NoChoice>>,
     },
@@ -231,8 +235,8 @@ impl LongWork for TouchWork {
                 Ok(TouchResult::Written { revision, problem })
             }
             Self::Route(request) => Ok(route(request)),
-            Self::Place { session, rig, joints, touches } => {
-                let placed = placement::place(&rig, &joints, &touches);
+            Self::Place { session, rig, finger, joints, touches } => {
+                let placed = placement::place(&rig, finger, &joints, &touches);
                 let proposal = |placement| Proposal { placement: Arc::new(placement), session };
                 Ok(TouchResult::Placed(placed.map(proposal).map_err(Arc::new)))
             }
@@ -258,7 +262,7 @@ fn restore(folder: &std::path::Path, rig: &Rig) -> TouchResult {
         .transpose();
     let placement = kept.map(|placement| placement.map(Arc::new).map_err(Arc::new));
     // A rig without this finger cannot touch anyway; planning says so.
-    let reach = TouchArea::reached_by(rig, TIP).ok().flatten();
+    let reach = Finger::BOTH.map(|finger| TouchArea::reached_by(rig, finger.tip()).ok().flatten());
     let choice = choice::read(&choice::choice_in(folder)).map_err(Arc::new);
     TouchResult::Restored { placement, runs: store::list(&folder.join("sessions")), reach, choice }
 }
@@ -269,7 +273,7 @@ fn begin(
     plan: &Arc<RunPlan>,
     started: Timestamp,
 ) -> Result<TouchResult, RunError> {
-    let chain = rig.chain(TIP)?;
+    let chain = rig.chain(plan.options.finger.tip())?;
     let joints = chain.names().to_vec();
     let manifest = store::manifest(&rig.name, &rig.touchscreen, &joints, plan, started);
     let progress = Progress::new(plan.options.purpose, started, plan.reachable());
@@ -280,7 +284,7 @@ fn begin(
 
 fn open(session: &std::path::Path, rig: &Rig) -> Result<Stored, RunError> {
     let stored = store::read(session)?;
-    let chain = rig.chain(TIP)?;
+    let chain = rig.chain(stored.plan.options.finger.tip())?;
     if stored.joints != chain.names() {
         return Err(RunError::OtherArm);
     }
@@ -291,7 +295,7 @@ fn route(request: RouteRequest) -> TouchResult {
     let number = request.aim.touch.number;
     let planner = match &request.planner {
         Some(planner) => planner.clone(),
-        None => match Planner::new(&request.rig, TIP, request.place) {
+        None => match Planner::new(&request.rig, request.finger.tip(), request.place) {
             Ok(planner) => Arc::new(planner),
             Err(reason) => return TouchResult::Routed { number, planner: None, order: Err(reason) },
         },

@@ -1,6 +1,6 @@
 //! The next experiment as a plan that the touch wizard can run.
 
-use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose, Sides, TouchArea};
+use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, Sides, TouchArea};
 
 use super::menu::{BLOCKS_M, WEIGHT_KG};
 use crate::finding::{Experiment, NextExperiment};
@@ -10,7 +10,7 @@ use crate::finding::{Experiment, NextExperiment};
 ///
 /// The plan holds the condition that is known and the new one, so that both are measured with the
 /// screen in one place. Make it with [`plumbline_model::touch_plan::TouchPlan::make`].
-pub fn plan_for(next: &NextExperiment, area: TouchArea) -> Option<PlanOptions> {
+pub fn plan_for(next: &NextExperiment, finger: Finger, area: TouchArea) -> Option<PlanOptions> {
     let plain = PlanOptions {
         area,
         patterns: vec![],
@@ -20,6 +20,7 @@ pub fn plan_for(next: &NextExperiment, area: TouchArea) -> Option<PlanOptions> {
         payloads_kg: vec![0.0],
         seed: 1,
         purpose: Purpose::Train,
+        finger,
     };
     let grid = |times: usize| {
         let places = next.count.div_ceil(times).max(2);

@@ -6,7 +6,7 @@ use plumbline_effects::{Assumed, Effect, Present, Surface};
 use plumbline_model::Unattended;
 use plumbline_model::pixel::Pixel;
 use plumbline_model::robot::Rig;
-use plumbline_model::touch_plan::{Sides, TouchArea, TouchPlan};
+use plumbline_model::touch_plan::{Finger, Sides, TouchArea, TouchPlan};
 use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
@@ -254,7 +254,7 @@ fn an_experiment_with_touches_becomes_a_plan_that_can_be_made() {
         others: vec![],
     };
     let made = |kind, count| {
-        let options = plan_for(&next(kind, count), area)?;
+        let options = plan_for(&next(kind, count), Finger::Right, area)?;
         Some(TouchPlan::make(&options, &screen).expect("a plan that can be made"))
     };
     let weight = made(Experiment::Weight, 20).expect("a matter of touches");

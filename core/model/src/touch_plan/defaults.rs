@@ -1,6 +1,6 @@
 //! Plans that are good to start with.
 
-use super::{Pattern, PlanOptions, Purpose, Sides, TouchArea};
+use super::{Finger, Pattern, PlanOptions, Purpose, Sides, TouchArea};
 
 impl PlanOptions {
     /// A first calibration: about 80 touches. A grid for the shape of the error over the area,
@@ -54,6 +54,7 @@ impl PlanOptions {
             payloads_kg: vec![0.0],
             seed: 1,
             purpose,
+            finger: Finger::default(),
         }
     }
 }

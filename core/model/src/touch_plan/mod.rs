@@ -23,7 +23,7 @@ use crate::pixel::Pixel;
 use crate::session::{Screen, Touchscreen};
 
 pub use error::PlanError;
-pub use options::{Pattern, PlanOptions, Purpose, Sides, TouchArea};
+pub use options::{Finger, Pattern, PlanOptions, Purpose, Sides, TouchArea};
 
 /// More touches than this are a mistake: at 15 s each they take more than 8 hours.
 pub const MOST_TOUCHES: usize = 2000;

@@ -101,6 +101,34 @@ impl Sides {
     }
 }
 
+/// The finger that touches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Finger {
+    /// The right index finger.
+    #[default]
+    Right,
+    /// The left index finger.
+    Left,
+}
+
+impl Finger {
+    /// Both.
+    pub const BOTH: [Self; 2] = [Self::Right, Self::Left];
+
+    /// Its tip in the robot's description.
+    pub fn tip(self) -> &'static str {
+        match self {
+            Self::Right => "right_index_tip",
+            Self::Left => "left_index_tip",
+        }
+    }
+
+    fn is_right(&self) -> bool {
+        *self == Self::Right
+    }
+}
+
 /// What the touches are for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -132,6 +160,9 @@ pub struct PlanOptions {
     pub seed: u64,
     /// What the touches are for.
     pub purpose: Purpose,
+    /// What touches.
+    #[serde(default, skip_serializing_if = "Finger::is_right")]
+    pub finger: Finger,
 }
 
 impl PlanOptions {

@@ -11,7 +11,7 @@ use plumbline_grasp::Hand;
 use plumbline_model::robot::Rig;
 use plumbline_model::robot::ik::{Options, Solver, Target};
 use plumbline_model::session::Screen;
-use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose, Sides, TouchArea};
+use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, Sides, TouchArea};
 use plumbline_model::{JobContext, Pixel, Point};
 use plumbline_twin::Toy;
 
@@ -218,6 +218,7 @@ fn new_aims(
         // Not the commissioning's own chance.
         seed: lab.seed.wrapping_add(1000),
         purpose: Purpose::Check,
+        finger: Finger::Right,
     };
     let request = PlanRequest { rig: rig.clone(), place: ScreenPlace::Measured, options, corrector };
     let plan = make(&request, context)?;

@@ -11,7 +11,7 @@ use plumbline_engine::ground::jobs::Part;
 use plumbline_engine::motion::{Hold, ScreenPlace};
 use plumbline_grasp::Corrections;
 use plumbline_grasp::published::HandHeights;
-use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose, Side, Sides, TouchArea, TouchPlan};
+use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, Side, Sides, TouchArea, TouchPlan};
 use plumbline_model::{JobContext, files};
 
 use super::error::CommissionError;
@@ -123,6 +123,7 @@ fn touches(lab: &Lab, context: &dyn JobContext) -> Result<TouchData, CommissionE
         payloads_kg: vec![0.0],
         seed: lab.seed,
         purpose: Purpose::Train,
+        finger: Finger::Right,
     };
     let screen = &lab.rig.touchscreen;
     let plan = TouchPlan::make(&options, screen).map_err(CommissionError::room)?;

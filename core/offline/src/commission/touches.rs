@@ -12,7 +12,7 @@ use plumbline_engine::touch::record::{Ended, Progress, TouchRecord};
 use plumbline_engine::touch::{placement, store};
 use plumbline_model::robot::{Chain, Rig};
 use plumbline_model::session::Screen;
-use plumbline_model::touch_plan::{Pattern, PlanOptions, PlannedTouch, Purpose, Side, Sides};
+use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, PlannedTouch, Purpose, Side, Sides};
 use plumbline_model::{JobContext, Pixel, Point, Robot as RobotFrame};
 use plumbline_twin::Touched;
 
@@ -59,6 +59,7 @@ pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Res
             payloads_kg: vec![0.0],
             seed: lab.seed,
             purpose: Purpose::Train,
+            finger: Finger::Right,
         },
         touches: aims,
         corrected_with: None,
@@ -168,13 +169,13 @@ pub(super) fn place(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> R
         Step::new("screen", "touched places against the fingertip by the model, each left out once, rms");
     let stored = store::read(&session(lab))?;
     let records: Vec<TouchRecord> = stored.progress.counted().cloned().collect();
-    let placed = placement::place(&lab.rig, &stored.joints, &records)?;
+    let placed = placement::place(&lab.rig, Finger::Right, &stored.joints, &records)?;
     step.before_mm = miss_mm(lab, &stored.joints, &records, None);
     let left_out: Vec<f64> = (0..records.len())
         .filter_map(|k| {
             let others: Vec<TouchRecord> =
                 records.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, r)| r.clone()).collect();
-            let without = placement::place(&lab.rig, &stored.joints, &others).ok()?;
+            let without = placement::place(&lab.rig, Finger::Right, &stored.joints, &others).ok()?;
             miss_mm(lab, &stored.joints, std::slice::from_ref(&records[k]), Some(&without.screen))
         })
         .collect();

@@ -5,7 +5,7 @@ use plumbline_engine::view::TouchPhase;
 use plumbline_model::touch_plan::Purpose;
 
 use super::super::robot;
-use super::super::touch::{done_of, minutes, touch, wanted};
+use super::super::touch::{done_of, touch, wanted, what_moves};
 use super::Said;
 use crate::operator::{Action, CommissionAction, Preset, TouchAction, needs_window};
 
@@ -79,11 +79,7 @@ fn run(view: &View, purpose: Purpose, plan: Said) -> Said {
     match (&of_view.phase, planned) {
         (TouchPhase::Planned, Some(_)) if needs_window(view) => touch(view).into(),
         (TouchPhase::Planned, Some(planned)) if planned.reachable > 0 => {
-            let sentence = format!(
-                "The right arm touches the glass {} times, about {}; the head and the left arm stay.",
-                planned.reachable,
-                minutes(planned.duration)
-            );
+            let sentence = what_moves(planned);
             let label = super::super::touch::start_label(planned);
             Said::press(sentence, label, vec![Action::Touch(TouchAction::Start)])
         }

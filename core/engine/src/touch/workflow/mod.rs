@@ -12,7 +12,7 @@ use plumbline_correction::CorrectionModel;
 use plumbline_effects::{RigModel, RobotModel};
 use plumbline_model::robot::Rig;
 use plumbline_model::session::Touchscreen;
-use plumbline_model::touch_plan::{PlanOptions, TouchArea};
+use plumbline_model::touch_plan::{Finger, PlanOptions, TouchArea};
 use plumbline_model::touchscreen::ScreenPlacement;
 
 use super::command::{Correction, ScreenWindow, TouchCommand};
@@ -47,7 +47,7 @@ pub struct TouchAround {
 pub struct TouchWorkflow {
     folder: PathBuf,
     /// The part of the screen that the finger reaches, once that was looked for.
-    pub(super) reach: Option<TouchArea>,
+    pub(super) reach: [Option<TouchArea>; 2],
     pub(super) placement: Option<Arc<ScreenPlacement>>,
     pub(super) proposal: Option<Proposal>,
     pub(super) correct_with: Option<Correction>,
@@ -82,6 +82,11 @@ impl TouchWorkflow {
     pub fn finished_session(&self) -> Option<(&Path, u64)> {
         let run = self.run.as_ref().filter(|run| run.phase == Phase::Finished && run.is_on_disk())?;
         Some((run.session.as_path(), run.revision()))
+    }
+
+    /// What touches in the run that is under way or shown.
+    pub fn finger(&self) -> Option<Finger> {
+        self.run.as_ref().map(|run| run.plan.options.finger)
     }
 
     /// The screen where it was measured to lie, on its block while a run has put it on one; `None`:

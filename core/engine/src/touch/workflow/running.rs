@@ -1,7 +1,7 @@
 //! A run under way: what is asked of it, what the robot says, its end.
 
 use plumbline_model::session::Touchscreen;
-use plumbline_model::touch_plan::Purpose;
+use plumbline_model::touch_plan::{Finger, Purpose};
 
 use super::super::command::TouchCommand;
 use super::super::refusal::Refusal;
@@ -127,7 +127,9 @@ impl TouchWorkflow {
             format!("The run is finished: {} of {} targets touched.", touches.len(), run.plan.reachable());
         context.notices.add(NoticeLevel::Success, text);
         let purpose = run.plan.options.purpose;
-        if purpose == Purpose::Train && !touches.is_empty() {
+        let finger = run.plan.options.finger;
+        // M1 to M3 are learned with the right finger, and its touches place the screen.
+        if purpose == Purpose::Train && finger == Finger::Right && !touches.is_empty() {
             self.runs.trained = Some(TrainedRun {
                 session: run.session.clone(),
                 screen: run.screen.clone(),
@@ -136,10 +138,13 @@ impl TouchWorkflow {
         }
         // A check is made with a model: what it touches was sent elsewhere on purpose, and says
         // nothing new of the screen.
-        if purpose != Purpose::Check {
+        let places =
+            purpose == Purpose::PlaceScreen || (purpose == Purpose::Train && finger == Finger::Right);
+        if places {
             let work = TouchWork::Place {
                 session: run.session.clone(),
                 rig: around.rig.clone(),
+                finger,
                 joints: run.joints.clone(),
                 touches,
             };
