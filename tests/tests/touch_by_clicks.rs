@@ -10,6 +10,7 @@ use egui_kittest::kittest::Queryable as _;
 use plumbline_engine::models::Method;
 use plumbline_engine::view::{StepState, TouchFigures, TouchPhase};
 use plumbline_model::session::Session;
+use plumbline_model::touch_plan::Finger;
 use plumbline_tests::{Window, click, click_containing, for_a_while, until, view, window};
 
 /// Waits for the end of a run; a run that a busy machine interrupted goes on by itself or by a click.
@@ -118,4 +119,37 @@ fn the_screen_is_placed_touched_learned_and_touched_better() {
     let after = figures(&window);
     println!("mean error {:.2} mm before, {:.2} mm with M3", before.mean_m * 1e3, after.mean_m * 1e3);
     assert!(after.mean_m < 0.6 * before.mean_m, "{before:?} {after:?}");
+}
+
+#[test]
+fn the_left_finger_touches_the_glass() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut window = window(&folder.path().join("data"), Some("lab"));
+    until(&mut window, "the twin's joints", |window| view(window).robot.measured.is_some());
+    click(&mut window, "Touch");
+    click(&mut window, "Quick");
+    until(&mut window, "the plan", |window| view(window).touch.phase == TouchPhase::Planned);
+    click(&mut window, "Left index finger");
+    until(&mut window, "the other plan", |window| {
+        let touch = &view(window).touch;
+        let plan = touch.plan.as_ref().filter(|_| touch.phase == TouchPhase::Planned);
+        plan.is_some_and(|plan| plan.options.finger == Finger::Left && plan.reachable >= 12)
+    });
+    assert!(window.query_all_by_label_contains("The left arm touches the glass").next().is_some());
+    let right_arm = |window: &Window| {
+        let view = view(window);
+        let (rig, measured) = view.robot.rig.clone().zip(view.robot.measured.clone()).expect("connected");
+        let chain = rig.chain(Finger::Right.tip()).expect("a tip");
+        measured.of(chain.joints())
+    };
+    let before = right_arm(&window);
+    click_containing(&mut window, "Touch ");
+    until(&mut window, "three touches", |window| view(window).touch.counts.touched >= 3);
+    let turned = before.iter().zip(right_arm(&window)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(turned < 0.02, "the right arm stays, it turned by {turned} rad");
+    let session = view(&window).touch.session.clone().expect("a run has a session");
+    click_containing(&mut window, "Pause");
+    until(&mut window, "the pause", |window| matches!(view(window).touch.phase, TouchPhase::Paused { .. }));
+    let manifest = Session::read(&session).expect("a session that can be read").manifest;
+    assert_eq!(manifest.chain.map(|chain| chain.tip).as_deref(), Some(Finger::Left.tip()));
 }
