@@ -28,6 +28,8 @@ fn board(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         _ => BoardDraft::of(&eyes.board),
     };
     let mut edited = draft;
+    // The grid of numbers may be wider than a narrow tile; what is said below it is not.
+    let width = ui.available_width();
     egui::Grid::new("board").num_columns(2).spacing([space::S, space::S]).show(ui, |ui| {
         ui.label("Squares");
         ui.horizontal(|ui| {
@@ -43,6 +45,12 @@ fn board(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         side.on_hover_text("Measure several squares with a ruler and divide: all lengths rest on it");
         ui.end_row();
     });
+    ui.allocate_ui(egui::vec2(width, 0.0), |ui| chosen(ui, cx, draft, edited));
+}
+
+/// What comes of the numbers, and what is seen.
+fn chosen(ui: &mut Ui, cx: &mut PanelContext<'_>, draft: BoardDraft, edited: BoardDraft) {
+    let eyes = &cx.view.eyes;
     match edited.board() {
         Ok(board) => {
             let inner = format!("{}×{} inner corners", board.inner_columns, board.inner_rows);
@@ -67,7 +75,7 @@ fn board(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.add_space(space::XS);
     let action = Action::RecognizeBoard;
     let refusal = action.refusal(cx.view);
-    let button = ui.add_enabled(refusal.is_none(), egui::Button::new(action.label()));
+    let button = ui.add_enabled(refusal.is_none(), egui::Button::new(action.label()).wrap());
     let button = button.on_hover_text("Counts the squares of the board in the newest pair");
     if button.on_disabled_hover_text(refusal.unwrap_or_default()).clicked() {
         cx.outbox.act(action);

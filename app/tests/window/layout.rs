@@ -113,6 +113,8 @@ fn no_text_is_cut_or_covered_on_any_screen() {
             for size in SIZES {
                 all.extend(faults(&view, screen, size, 1.0));
             }
+            // As large again: the window of 1440 by 900 at 200 %.
+            all.extend(faults(&view, screen, [720.0, 450.0], 2.0));
         }
     }
     assert_none(&all);

@@ -12,6 +12,8 @@ use crate::theme::{self, Tokens, space};
 const INSET: f32 = 8.0;
 /// Below this width the buttons become one menu.
 const NARROW: f32 = 460.0;
+/// Below this width the menu needs the room of the name.
+const NAMED: f32 = 140.0;
 /// Least size for the small axes.
 const COMPASS_ROOM: Vec2 = vec2(640.0, 320.0);
 /// Least distance of two numbers along an axis, in points: beside or below each other.
@@ -50,7 +52,10 @@ pub(super) fn captions(ui: &Ui, rect: Rect, label: &str, stale: Option<&str>, sc
     let mut place = |text: &str, warning: bool| {
         at.y = chip(ui, rect, at, Align2::LEFT_TOP, text, warning).bottom() + space::XS;
     };
-    place(label, false);
+    // The tab says it, too.
+    if rect.width() > NAMED {
+        place(label, false);
+    }
     if let Some(sentence) = stale {
         place(sentence, true);
     }

@@ -8,6 +8,8 @@ use crate::overlay;
 use crate::theme::{self, Tokens, space};
 
 /// Arrows may reach so far beyond the glass: fingers slip off.
+/// Narrower drawings leave out where the robot sits, pt.
+const WITH_ROBOT: f32 = 210.0;
 const REACH: f32 = 12.0;
 /// Room below for a line of words.
 pub(super) const BELOW: f32 = 20.0;
@@ -147,7 +149,9 @@ fn below(
         }
         None => {
             let [width, height] = pattern.size_px;
-            let text = format!("{width}×{height} px, the robot sits below");
+            let size = format!("{width}×{height} px");
+            let below = rect.width() > WITH_ROBOT;
+            let text = if below { format!("{size}, the robot sits below") } else { size };
             word(rect.left(), Align2::LEFT_TOP, text, tokens.text_weak);
             if pattern.marks.iter().any(|mark| mark.error_px.is_some()) && rect.width() > 320.0 {
                 let text = format!("errors ×{}", format::significant(pattern.error_scale, 1));

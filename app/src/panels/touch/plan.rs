@@ -72,7 +72,8 @@ fn choose_first(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     for (preset, name, about) in PRESETS {
         let action = Action::Touch(TouchAction::Plan(preset));
         let refusal = action.refusal(cx.view);
-        let button = egui::Button::new(name).min_size(egui::vec2(132.0, 26.0));
+        let width = ui.available_width().min(132.0);
+        let button = egui::Button::new(name).min_size(egui::vec2(width, 26.0));
         let button = ui.add_enabled(refusal.is_none(), button);
         if button.on_disabled_hover_text(refusal.unwrap_or_default()).clicked() {
             cx.outbox.act(action);
