@@ -8,6 +8,7 @@ mod file;
 mod find;
 pub mod finding;
 mod floor;
+mod marker;
 mod next;
 mod options;
 mod search;

@@ -8,7 +8,7 @@ use plumbline_effects::{Effect, Kind, Measurements, Present, RigModel, Surface};
 use plumbline_engine::gap::search::{measured, search};
 use plumbline_engine::gap::sessions::stamps;
 use plumbline_engine::gap::store::{KeptFinding, KeptSession, Store};
-use plumbline_engine::gap::{Finding, Verdict, model_name};
+use plumbline_engine::gap::{Finding, model_name};
 use plumbline_engine::rig_models;
 use plumbline_engine::touch::plan::TIP;
 use plumbline_engine::touch::store;
@@ -232,8 +232,7 @@ fn arm_effects(fitted: &Fit, finding: &Finding) -> Vec<ModelEffect> {
 
 /// Effects of a finding that can be added, of the library.
 fn named_effects(finding: &Finding, arm: &Arm) -> Vec<Effect> {
-    let named = matches!(finding.verdict, Verdict::Named | Verdict::Class);
-    let effects = finding.effects.iter().filter(|effect| named && effect.not_addable.is_none());
+    let effects = finding.addable().into_iter().map(|i| &finding.effects[i]);
     effects
         .filter_map(|effect| Effect::find(&effect.id, &effect.site, effect.shape, Some(arm), None))
         .collect()
