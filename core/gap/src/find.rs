@@ -14,6 +14,7 @@ use crate::next;
 use crate::options::Options;
 use crate::search::{self, Found};
 use crate::sentence;
+use crate::servos;
 use crate::show;
 
 /// Where each stage ends, as a share of the whole.
@@ -97,13 +98,30 @@ pub fn find(
         compared.warnings.push(words);
     }
     let partial = bound_by_held_out(&mut found, &shown, &mut compared.warnings);
+    let servos = servos::servos(&used, &compared.floor, &found.assumed);
     let mut finding = assemble(measurements, compared, Some(found), shown, options);
     finding.next = next;
     finding.partial = partial;
+    with_servos(&mut finding, servos);
     finding.seconds = start.elapsed().as_secs_f64();
     finding.sentence = sentence::of(&finding);
     context.report(1.0, "done");
     Ok(finding)
+}
+
+/// What servos do between command and encoder stands beside what touches say of the arm.
+fn with_servos(finding: &mut Finding, servos: Vec<NamedEffect>) {
+    let unrelated = finding.verdict == Verdict::NotInLibrary && finding.effects.is_empty();
+    if servos.is_empty() || unrelated {
+        return;
+    }
+    if finding.verdict == Verdict::NoGap {
+        finding.verdict = Verdict::Named;
+    }
+    finding
+        .effects
+        .retain(|effect| servos.iter().all(|servo| (&servo.id, &servo.site) != (&effect.id, &effect.site)));
+    finding.effects.extend(servos);
 }
 
 /// The answer where there is nothing to search for, or nothing that may be named.
@@ -114,7 +132,9 @@ fn without_search(
     start: Instant,
 ) -> Finding {
     let shown = show::nothing_added(measurements, &compared);
+    let servos = servos::servos(measurements, &compared.floor, &compared.assumed);
     let mut finding = assemble(measurements, compared, None, shown, options);
+    with_servos(&mut finding, servos);
     finding.seconds = start.elapsed().as_secs_f64();
     finding.sentence = sentence::of(&finding);
     finding

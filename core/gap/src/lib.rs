@@ -13,6 +13,7 @@ mod next;
 mod options;
 mod search;
 mod sentence;
+mod servos;
 mod show;
 mod statistics;
 

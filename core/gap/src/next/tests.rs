@@ -99,7 +99,6 @@ fn found(measurements: &Measurements, verdict: Verdict, sets: &[(&[Present], f64
     let effects = assumed.effects.iter().map(|present| named(&present.effect, sets[0].1)).collect();
     Found {
         floor: floor(),
-        partial: false,
         undetermined: vec![],
         doubt: Doubt {
             nuisances: measurements.nuisances(),
