@@ -181,12 +181,7 @@ fn within_cells(
 pub fn structure_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> Option<Structure> {
     let of = |what: What| -> Option<Structure> {
         let (repeats, course) = within_cells(measurements, residuals, what)?;
-        let course = course.map(|course| Structure {
-            on: "time".to_owned(),
-            p_value: course.p_value,
-            size_sigmas: course.size_sigmas,
-            left: course.left,
-        });
+        let course = course.map(|course| Structure::new("time".to_owned(), course.p_value, course.left));
         let other = structure_within(measurements, residuals, what, repeats.degrees_of_freedom);
         course.into_iter().chain(other).max_by(|a, b| a.size_sigmas.total_cmp(&b.size_sigmas))
     };

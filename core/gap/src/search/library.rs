@@ -93,3 +93,26 @@ impl Library {
         Self { effects, blocks, names, columns: start }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use plumbline_effects::arm::Arm;
+    use plumbline_model::robot::Rig;
+
+    use super::*;
+
+    #[test]
+    fn a_family_is_not_there_beside_one_of_its_members() {
+        let rig = Rig::built_in("nico").expect("comes along");
+        let arm = Arm::of_rig(&rig, "right_index_tip").expect("an arm");
+        let of = |kind: Kind| Effect::sites(kind, Some(&arm), None);
+        let library = Library::with([of(Kind::JointZero), of(Kind::AxisSkew)].concat());
+        let place = |kind: Kind, family: bool| {
+            let wanted = |effect: &Effect| effect.kind == kind && effect.is_of_every_site() == family;
+            &library.blocks[library.effects.iter().position(wanted).expect("in the library")]
+        };
+        let (zeros, zero) = (place(Kind::JointZero, true), place(Kind::JointZero, false));
+        assert!(zeros.excludes(zero) && zero.excludes(zeros));
+        assert!(!zeros.excludes(place(Kind::AxisSkew, false)) && !zero.excludes(place(Kind::AxisSkew, true)));
+    }
+}

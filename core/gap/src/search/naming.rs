@@ -88,7 +88,7 @@ impl Evidence<'_> {
             .map(|model| model.probability)
             .sum();
         let vetoed = p_value < VETO_P && left > VETO_SIZE;
-        let unknown = rival.max(if vetoed { 0.95 } else { 0.0 }).max(self.white());
+        let unknown = rival.max(if vetoed { 0.95 } else { 0.0 }).max(self.white()).min(1.0);
         // Beside something unknown, what the library does best without it is what can be said of it.
         if let Some(alone) = self.alone.filter(|_| unknown > 0.5) {
             return Self { explored: alone, alone: None, ..*self }.named(unknown, p_value);
