@@ -9,6 +9,7 @@ use std::sync::Arc;
 use plumbline_blind::bench::Bench;
 use plumbline_blind::case::{Case, make_or_smaller};
 use plumbline_blind::design::{Design, Planner};
+use plumbline_blind::physics::Generator;
 use plumbline_blind::recipe::{Family, Recipe};
 use plumbline_blind::secret::Kind;
 use plumbline_engine::View;
@@ -22,6 +23,7 @@ fn hidden() -> Case {
     let planner = Planner::new(&bench).expect("a planner");
     let recipe = Recipe {
         number: 1,
+        generator: Generator::Lean,
         family: Family::Single,
         design: Design::Rich,
         dirt: false,

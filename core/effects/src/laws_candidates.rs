@@ -472,3 +472,18 @@ fn speed_of_tangents() {
         }
     }
 }
+
+#[test]
+fn a_choice_has_a_key_of_its_own_beside_the_number() {
+    let rig = Rig::built_in("nico").expect("comes along");
+    let eyes = Eyes::of_rig(&rig).expect("calibrated eyes");
+    for (shape, which) in [(None, "focal length"), (Some(1.0), "distance of the eyes")] {
+        let effect =
+            Effect::find("focal-or-baseline", "eyes", shape, None, Some(&eyes)).expect("in the library");
+        let reported = effect.report(&[0.03], &DMatrix::from_element(1, 1, 1e-6));
+        let [size, choice] = &reported[..] else { panic!("{reported:?}") };
+        assert_eq!((size.name.as_str(), size.value, size.text.clone()), ("scale", 0.03, None));
+        assert!(size.low < 0.03 && 0.03 < size.high);
+        assert_eq!((choice.name.as_str(), choice.text.as_deref()), ("which", Some(which)));
+    }
+}

@@ -5,14 +5,16 @@ use std::time::Instant;
 use plumbline_effects::Measurements;
 use plumbline_model::{Cancelled, JobContext};
 
-use crate::compare::{Compared, compare};
+use crate::compare::{self, Compared, compare};
 use crate::error::GapError;
-use crate::finding::{FORMAT, Finding, FloorSource, NamedEffect, Shown, Unexplained, Verdict};
+use crate::finding::{Dependence, FORMAT, Finding, FloorSource, NamedEffect, Shown, Unexplained, Verdict};
 use crate::floor::Floor;
+use crate::marker;
 use crate::next;
 use crate::options::Options;
 use crate::search::{self, Found};
 use crate::sentence;
+use crate::servos;
 use crate::show;
 
 /// Where each stage ends, as a share of the whole.
@@ -24,6 +26,16 @@ const PATIENCE_S: f64 = 60.0;
 /// A misfit smaller than this that nothing explains is dirt, not a gap; standard deviations of one
 /// measurement.
 const DIRT_SIGMAS: f64 = 0.6;
+/// Held-out rows stay far above the noise when they are this many times as far off …
+const FAR_ABOVE: f64 = 1.3;
+/// … and less than this share of the gap closes.
+const MOSTLY_OPEN: f64 = 0.5;
+/// Repeats that still depend on something by less than this (units of what is left) are noise enough …
+const LEAST_STRUCTURE: f64 = 0.4;
+/// … or by less than this share of the gap.
+const STRUCTURE_SHARE: f64 = 0.2;
+/// What closes less of the gap is no part of it.
+const LEAST_PART: f64 = 0.15;
 
 /// Looks for the gap, names what is missing and shows how far it closes.
 ///
@@ -37,7 +49,12 @@ pub fn find(
 ) -> Result<Finding, GapError> {
     let start = Instant::now();
     context.checkpoint()?;
-    let compared = compare(measurements, options.seed, &Stage::new(context, 0.0, COMPARED))?;
+    // What cannot be looked at is refused with its own words, not taken for a turned marker.
+    compare::refuse(measurements, context)?;
+    let anew = marker::mounted_anew(measurements, context)?;
+    let (measurements, told) = anew.as_ref().map_or((measurements, &[][..]), |(of, words)| (of, words));
+    let mut compared = compare(measurements, options.seed, &Stage::new(context, 0.0, COMPARED))?;
+    compared.warnings.extend(told.iter().cloned());
     if !compared.comparison.is_gap || !compared.is_related {
         return Ok(without_search(measurements, compared, options, start));
     }
@@ -76,16 +93,35 @@ pub fn find(
         found.effects = effects;
     }
     flag_outliers(&mut compared, &kept, &found);
+    still_structured(&mut found, &used, &compared);
     if let Some(words) = no_help(&found, &shown, options) {
         compared.warnings.push(words);
     }
-    bound_by_held_out(&mut found, &shown, &mut compared.warnings);
+    let partial = bound_by_held_out(&mut found, &shown, &mut compared.warnings);
+    let servos = servos::servos(&used, &compared.floor, &found.assumed);
     let mut finding = assemble(measurements, compared, Some(found), shown, options);
     finding.next = next;
+    finding.partial = partial;
+    with_servos(&mut finding, servos);
     finding.seconds = start.elapsed().as_secs_f64();
     finding.sentence = sentence::of(&finding);
     context.report(1.0, "done");
     Ok(finding)
+}
+
+/// What servos do between command and encoder stands beside what touches say of the arm.
+fn with_servos(finding: &mut Finding, servos: Vec<NamedEffect>) {
+    let unrelated = finding.verdict == Verdict::NotInLibrary && finding.effects.is_empty();
+    if servos.is_empty() || unrelated {
+        return;
+    }
+    if finding.verdict == Verdict::NoGap {
+        finding.verdict = Verdict::Named;
+    }
+    finding
+        .effects
+        .retain(|effect| servos.iter().all(|servo| (&servo.id, &servo.site) != (&effect.id, &effect.site)));
+    finding.effects.extend(servos);
 }
 
 /// The answer where there is nothing to search for, or nothing that may be named.
@@ -96,19 +132,23 @@ fn without_search(
     start: Instant,
 ) -> Finding {
     let shown = show::nothing_added(measurements, &compared);
+    let servos = servos::servos(measurements, &compared.floor, &compared.assumed);
     let mut finding = assemble(measurements, compared, None, shown, options);
+    with_servos(&mut finding, servos);
     finding.seconds = start.elapsed().as_secs_f64();
     finding.sentence = sentence::of(&finding);
     finding
 }
 
-/// What makes rows that were not used worse has no name, whatever speaks for it on those that were; and
-/// a closure beyond one says that the floor was not the floor.
-fn bound_by_held_out(found: &mut Found, shown: &Shown, warnings: &mut Vec<String>) {
+/// What makes rows that were not used worse, or leaves most of the gap open there, has no name, whatever
+/// speaks for it on those that were; and a closure beyond one says that the floor was not the floor.
+/// Whether what was found is no name, but closes a part of the gap.
+fn bound_by_held_out(found: &mut Found, shown: &Shown, warnings: &mut Vec<String>) -> bool {
+    let Some(closure) = shown.closure else { return false };
     let named = matches!(found.verdict, Verdict::Named | Verdict::Class);
-    if shown.closure.is_some() && named && shown.after >= shown.before {
-        found.verdict = Verdict::NotInLibrary;
-        found.unexplained.probability = found.unexplained.probability.max(0.5);
+    let is_far = shown.after > FAR_ABOVE * shown.floor && closure < MOSTLY_OPEN;
+    if named && (shown.after >= shown.before || is_far) {
+        misled(found, 0.5);
     }
     if shown.closure.is_some_and(|closure| closure > 1.0) {
         warnings.push(
@@ -117,6 +157,41 @@ fn bound_by_held_out(found: &mut Found, shown: &Shown, warnings: &mut Vec<String
                 .to_owned(),
         );
     }
+    let holds_elsewhere = shown.unseen.as_ref().is_none_or(|unseen| unseen.after < unseen.before);
+    let is_certain = shown.closure_range.is_some_and(|[low, _]| low > 0.0);
+    // What was held out was predicted with all of them.
+    let addable =
+        !found.effects.is_empty() && found.effects.iter().all(|effect| effect.not_addable.is_none());
+    found.verdict == Verdict::NotInLibrary && closure > LEAST_PART && is_certain && holds_elsewhere && addable
+}
+
+/// Where repeats still depend on something that was logged, with all that was found in the model, that is
+/// not explained, and no noise.
+fn still_structured(found: &mut Found, used: &Measurements, compared: &Compared) {
+    let Some(structure) = compare::structure_of(used, &compare::residuals(used, &found.assumed)) else {
+        return;
+    };
+    if structure.size_sigmas < LEAST_STRUCTURE.max(STRUCTURE_SHARE * compared.comparison.size_sigmas) {
+        return;
+    }
+    found.unexplained.depends_on.retain(|known| known.on != structure.on);
+    let share = 1.0 - structure.left.iter().copied().fold(1.0, f64::min);
+    let of = "spread of repeats".to_owned();
+    found.unexplained.depends_on.insert(0, Dependence { on: structure.on, of, share, formula: None });
+    misled(found, 0.95);
+}
+
+/// Something unknown is at work beside what was found: names are less sure than they look.
+fn misled(found: &mut Found, probability: f64) {
+    let unknown = &mut found.unexplained.probability;
+    let before = if found.verdict == Verdict::NotInLibrary { *unknown } else { 0.0 };
+    *unknown = unknown.max(probability);
+    let less = (1.0 - search::MISLED * *unknown) / (1.0 - search::MISLED * before);
+    for effect in &mut found.effects {
+        effect.probability *= less;
+        effect.class_probability *= less;
+    }
+    found.verdict = Verdict::NotInLibrary;
 }
 
 /// The comparison against the noise that was found along with the effects.
@@ -191,6 +266,7 @@ fn assemble(
         next: None,
         placements: assumed.placements,
         mounts: assumed.mounts,
+        partial: false,
         undetermined,
         left_out: measurements.left_out.clone(),
         warnings: compared.warnings,

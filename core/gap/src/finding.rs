@@ -17,8 +17,22 @@ pub enum Verdict {
     Named,
     /// An effect was found, but the data cannot tell which of some names it has.
     Class,
-    /// There is a gap that no effect of the library explains.
+    /// There is a gap that no effect of the library explains, see [`Finding::partial`].
     NotInLibrary,
+}
+
+impl Finding {
+    /// Effects that can be added to a model, by place: those with a name, and those that close a part of
+    /// the gap.
+    pub fn addable(&self) -> Vec<usize> {
+        let allowed = match self.verdict {
+            Verdict::Named | Verdict::Class => true,
+            Verdict::NotInLibrary => self.partial,
+            Verdict::NoGap => false,
+        };
+        let addable = |i: &usize| allowed && self.effects[*i].not_addable.is_none();
+        (0..self.effects.len()).filter(addable).collect()
+    }
 }
 
 /// All that a search found.
@@ -47,6 +61,10 @@ pub struct Finding {
     pub candidates: Vec<Candidate>,
     /// The gap before and after on rows that were not used.
     pub shown: Shown,
+    /// With [`Verdict::NotInLibrary`]: what was found does not explain the gap, but closes a part of it on
+    /// rows that were not used, and can be added as that.
+    #[serde(default)]
+    pub partial: bool,
     /// What stays unexplained.
     pub unexplained: Unexplained,
     /// What of the effects these rows do not tell.

@@ -8,10 +8,12 @@ mod file;
 mod find;
 pub mod finding;
 mod floor;
+mod marker;
 mod next;
 mod options;
 mod search;
 mod sentence;
+mod servos;
 mod show;
 mod statistics;
 

@@ -26,8 +26,8 @@ pub(crate) fn of(finding: &Finding) -> String {
 
 /// So many effects are told, the others counted.
 const MOST_EFFECTS: usize = 3;
-/// An effect with more parameters tells only those that are not zero.
-const ALL_PARAMETERS: usize = 2;
+/// So many of its parameters are told.
+const MOST_PARAMETERS: usize = 3;
 
 /// The effects that are not told one by one.
 fn more(effects: &[NamedEffect]) -> Option<String> {
@@ -80,6 +80,21 @@ fn not_in_library(finding: &Finding) -> String {
     } else {
         format!(" What is left depends on the {}.", depends.join(" and the "))
     };
+    if finding.partial {
+        let parts: Vec<String> =
+            finding.addable().into_iter().map(|i| &finding.effects[i]).map(self::effect).collect();
+        let told: Vec<String> = parts.iter().take(MOST_EFFECTS).cloned().collect();
+        let more = parts.len().saturating_sub(MOST_EFFECTS);
+        let more = if more > 0 { format!(" And {more} more, smaller.") } else { String::new() };
+        return format!(
+            "There is a gap ({} where noise alone leaves {}), and no name explains it. A part of it can be added: {}{more} \
+             {}{on}",
+            size(shown.before, shown.unit),
+            size(shown.floor, shown.unit),
+            told.join(" "),
+            shrink(shown)
+        );
+    }
     let partly: Vec<&str> = finding.effects.iter().map(|effect| effect.title.as_str()).take(2).collect();
     let partly = if partly.is_empty() {
         String::new()
@@ -89,13 +104,36 @@ fn not_in_library(finding: &Finding) -> String {
     format!("{gap}{on}{partly}")
 }
 
+/// The parameters that stand out most, in their order, and the number of the others.
+fn clearest(told: Vec<&FoundParameter>) -> (Vec<&FoundParameter>, usize) {
+    let sure = |one: &FoundParameter| one.value.abs() / (one.high - one.low).max(f64::MIN_POSITIVE);
+    let mut order: Vec<f64> = told.iter().map(|one| sure(one)).collect();
+    order.sort_by(|a, b| b.total_cmp(a));
+    let least = order.get(MOST_PARAMETERS - 1).copied().unwrap_or(0.0);
+    let all = told.len();
+    let kept: Vec<&FoundParameter> =
+        told.into_iter().filter(|one| one.text.is_some() || sure(one) >= least).collect();
+    let more = all - kept.len();
+    (kept, more)
+}
+
+/// Whether it stands for every joint or link at once, and no single one could take its place.
+fn is_family(effect: &NamedEffect) -> bool {
+    let of_kind = effect.class.iter().skip(1).any(|member| member.id == effect.id);
+    effect.title.starts_with("every ") && !of_kind
+}
+
 fn effect(effect: &NamedEffect) -> String {
-    let many = effect.parameters.iter().filter(|one| one.text.is_none()).count() > ALL_PARAMETERS;
     let (told, zero): (Vec<&FoundParameter>, Vec<&FoundParameter>) =
-        effect.parameters.iter().partition(|one| !many || one.text.is_some() || one.low * one.high > 0.0);
+        effect.parameters.iter().partition(|one| one.text.is_some() || one.low * one.high > 0.0);
+    let (told, more) = clearest(told);
     let mut parameters: Vec<String> = told.into_iter().filter_map(parameter).collect();
+    if more > 0 {
+        parameters.push(format!("{more} more"));
+    }
     if !zero.is_empty() {
         let rest = match (parameters.is_empty(), zero.len()) {
+            (true, 1) => "its size is not told from zero".to_owned(),
             (true, count) => format!("none of its {count} values is told from zero"),
             (false, 1) => "one more is not told from zero".to_owned(),
             (false, count) => format!("{count} more are not told from zero"),
@@ -104,7 +142,11 @@ fn effect(effect: &NamedEffect) -> String {
     }
     let sized = if parameters.is_empty() { String::new() } else { format!(": {}", parameters.join(", ")) };
     let others: Vec<&str> = effect.class.iter().skip(1).map(|member| member.title.as_str()).take(3).collect();
-    let title = capital(&effect.title);
+    let family = if is_family(effect) { " (no single one explains it)" } else { "" };
+    let title = format!("{}{family}", capital(&effect.title));
+    if effect.not_addable.is_some() {
+        return format!("{title}: further off than is plausible, so something else is probably at work.");
+    }
     if others.is_empty() {
         return format!("{title}{sized}.");
     }

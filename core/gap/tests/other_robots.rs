@@ -240,3 +240,16 @@ fn what_places_alone_tell_does_not_turn_the_tip() {
     assert!(with[0] <= 0.6 * nominal[0], "{with:?} {nominal:?}");
     assert!(with[1] <= nominal[1], "{with:?} {nominal:?}");
 }
+
+#[test]
+fn a_marker_that_stands_turned_is_taken_as_mounted_anew() {
+    let Some(mut made) = series("a") else { return };
+    // As the session has it: nobody said that the target was mounted anew.
+    made.apparatuses[0].tip_is_unknown = false;
+    let options = Options { show: false, advise: false, ..Options::default() };
+    let finding = find(&made, &options, &Unattended).expect("can be looked at");
+    say(&finding);
+    assert!(finding.warnings.iter().any(|words| words.contains("mounted anew")), "{:?}", finding.warnings);
+    assert!(!finding.mounts.is_empty());
+    assert!(finding.effects.iter().all(|effect| effect.not_addable.is_none()), "{}", finding.sentence);
+}

@@ -46,6 +46,8 @@ pub struct GapReport {
     pub effects: Vec<EffectReport>,
     /// The gap before and after on rows that were not used; lengths in the unit that the key names.
     pub held_out: Map<String, Value>,
+    /// Whether effects are no names, but close a part of the gap and can be added as that.
+    pub partial: bool,
     /// What stays.
     pub unexplained: UnexplainedReport,
     /// What of the effects the rows do not tell.
@@ -88,7 +90,7 @@ pub struct EffectReport {
     pub not_addable: Option<String>,
 }
 
-/// A parameter with its 95 % interval; some are the name of a joint.
+/// A parameter with its 95 % interval; some are a choice, as the name of a joint.
 #[derive(Clone, Debug, Serialize)]
 #[serde(untagged)]
 pub enum ParameterReport {
@@ -175,10 +177,8 @@ fn check_outputs(args: &GapArgs, given: &Given) -> Result<(), OfflineError> {
 
 /// Writes the model with all effects that can be added; as it was where there is none.
 fn add(given: &Given, finding: &Finding, file: &Path) -> Result<Vec<String>, OfflineError> {
-    let named = matches!(finding.verdict, Verdict::Named | Verdict::Class);
-    let addable = |(_, effect): &(usize, &NamedEffect)| named && effect.not_addable.is_none();
-    let effects: Vec<(usize, &NamedEffect)> = finding.effects.iter().enumerate().filter(addable).collect();
-    let places: Vec<usize> = effects.iter().map(|(i, _)| *i).collect();
+    let places = finding.addable();
+    let effects: Vec<&NamedEffect> = places.iter().map(|&i| &finding.effects[i]).collect();
     let model = if places.is_empty() {
         given.model.clone()
     } else {
@@ -195,7 +195,7 @@ fn add(given: &Given, finding: &Finding, file: &Path) -> Result<Vec<String>, Off
         .map_err(|error| OfflineError::NotAdded(error.to_string()))?
     };
     model.write(file, &given.rig)?;
-    Ok(effects.into_iter().map(|(_, effect)| name(&effect.id, &effect.site)).collect())
+    Ok(effects.into_iter().map(|effect| name(&effect.id, &effect.site)).collect())
 }
 
 fn write_report(given: &Given, finding: &Finding, file: &Path) -> Result<(), OfflineError> {
@@ -270,6 +270,7 @@ impl GapReport {
             sentence: finding.sentence.clone(),
             effects: finding.effects.iter().map(EffectReport::of).collect(),
             held_out: held_out(&finding),
+            partial: finding.partial,
             unexplained: UnexplainedReport {
                 p_value: finding.unexplained.p_value,
                 depends_on: finding.unexplained.depends_on.iter().map(dependence).collect(),

@@ -261,6 +261,7 @@ fn base() -> Finding {
         next: None,
         placements: vec![Isometry3::identity()],
         mounts: vec![],
+        partial: false,
         undetermined: vec![],
         left_out: vec![],
         warnings: vec![],

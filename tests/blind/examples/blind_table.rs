@@ -1,6 +1,6 @@
 //! Makes blind cases, searches each, scores the answers and prints the table.
 //!
-//! `cargo run --release -p plumbline-blind --example blind_table -- [--cases N] [--seed S]
+//! `cargo run --release -p plumbline-blind --example blind_table -- [--generator lean|worn] [--cases N] [--seed S]
 //! [--only single,pair,…] [--plan plain|rich] [--first N] [--no-show] [--list]`
 //!
 //! Cases are kept under `target/blind`, so that a search can be repeated without the physics.
@@ -14,6 +14,7 @@ use plumbline_blind::answer::Answer;
 use plumbline_blind::bench::Bench;
 use plumbline_blind::case;
 use plumbline_blind::design::Planner;
+use plumbline_blind::physics::Generator;
 use plumbline_blind::recipe::Recipe;
 use plumbline_blind::score::{Score, Verdict};
 use plumbline_blind::{mix, table, words};
@@ -24,10 +25,11 @@ mod judge;
 use judge::AnyError;
 
 /// Cases are made anew when the physics changes.
-const PHYSICS: &str = "v5";
+const PHYSICS: &str = "v6";
 const THREADS: usize = 2;
 
 struct Arguments {
+    generator: Generator,
     cases: usize,
     seed: u64,
     only: Option<Vec<String>>,
@@ -38,12 +40,21 @@ struct Arguments {
 }
 
 fn arguments() -> Result<Arguments, AnyError> {
-    let mut read =
-        Arguments { cases: 200, seed: 1000, only: None, plan: None, first: 0, show: true, list: false };
+    let mut read = Arguments {
+        generator: Generator::Lean,
+        cases: 200,
+        seed: 1000,
+        only: None,
+        plan: None,
+        first: 0,
+        show: true,
+        list: false,
+    };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or(format!("{word} needs a value"));
         match word.as_str() {
+            "--generator" => read.generator = value()?.parse()?,
             "--cases" => read.cases = value()?.parse()?,
             "--seed" => read.seed = value()?.parse()?,
             "--only" => read.only = Some(value()?.split(',').map(str::to_owned).collect()),
@@ -60,8 +71,10 @@ fn arguments() -> Result<Arguments, AnyError> {
 fn main() -> Result<(), AnyError> {
     let arguments = arguments()?;
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
-    let folder = target.join("blind").join(format!("{PHYSICS}-{}-{}", arguments.seed, arguments.cases));
-    let recipes: Vec<Recipe> = mix::recipes(arguments.cases, arguments.seed)
+    let generator: &str = arguments.generator.into();
+    let folder =
+        target.join("blind").join(format!("{PHYSICS}-{generator}-{}-{}", arguments.seed, arguments.cases));
+    let recipes: Vec<Recipe> = mix::recipes(arguments.generator, arguments.cases, arguments.seed)
         .into_iter()
         .skip(arguments.first)
         .filter(|recipe| {
@@ -103,7 +116,12 @@ fn main() -> Result<(), AnyError> {
             list(&answer, verdict);
         }
     }
-    println!("{} cases, seed {}\n\n{}", score.cases, arguments.seed, table::markdown(&score));
+    println!(
+        "{} cases, generator {generator}, seed {}\n\n{}",
+        score.cases,
+        arguments.seed,
+        table::markdown(&score)
+    );
     Ok(())
 }
 

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::design::Design;
 use crate::error::BlindError;
+use crate::physics::Generator;
 use crate::recipe::Family;
 
 /// What was hidden in a case.
@@ -18,12 +19,16 @@ pub struct Answer {
     pub seed: u64,
     /// What kind of case.
     pub family: Family,
+    /// Whose physics.
+    pub generator: Generator,
     /// Which plan.
     pub design: Design,
     /// What is to be found.
     pub hidden: Vec<Hidden>,
     /// What is there and need not be found, as `id@site`.
     pub dirt: Vec<String>,
+    /// Names that are true of every case of this generator, whatever is hidden, as `id@site`.
+    pub also: Vec<String>,
     /// Spread of repeats: along u, along v, out of the glass, m.
     pub sigma_m: [f64; 3],
     /// Touches.

@@ -14,22 +14,17 @@ use crate::answer::{Answer, Hidden};
 use crate::bench::{Bench, RIG, TIP};
 use crate::design::{Design, Planner};
 use crate::error::BlindError;
-use crate::measure::{residual_m, sigma_m, size_sigmas};
+use crate::measure::{lag_m, residual_m, sigma_m, size_sigmas};
 use crate::mix::SIZES;
+use crate::physics::{Physics, normal};
 use crate::recipe::{Family, Recipe};
 use crate::secret::{Kind, Secret};
 use crate::stage::{Cell, Met, Stage};
 
-/// Spread of the panel and the pad, per axis of the image, m.
-const PANEL_M: f64 = 0.9e-3;
-/// Spread of a joint about what its encoder says, rad.
-const JOINT_RAD: f64 = 0.5e-3;
 /// From one touch to the next, s.
 const PACE_S: f64 = 7.0;
 /// The robot has been on for so long when the first finger comes down, s.
 const START_S: f64 = 40.0;
-/// Dirt is at most so large, in sigmas.
-const DIRT_SIGMAS: f64 = 0.2;
 /// What chance does when nothing is left to it: six joints and a descent.
 const USUAL_CHANCES: [f64; 7] = [0.5; 7];
 /// Draws before a case is given up.
@@ -55,8 +50,10 @@ struct Order {
 /// When the physics does not accept it or the arm misses the screen.
 pub fn make(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) -> Result<Case, BlindError> {
     let mut random = StdRng::seed_from_u64(recipe.seed);
-    let cells = planner.cells(recipe.design, &mut random)?;
-    let maker = Maker { bench, cells, screen: moved_screen(&mut random), design: recipe.design };
+    let physics = Physics::of(recipe.generator, recipe.seed);
+    let cells = planner.cells(recipe.design, &physics.plans, &mut random)?;
+    let screen = moved_screen(&mut random);
+    let maker = Maker { bench, physics, cells, screen, design: recipe.design };
     let order = maker.order(&mut random);
     let (bare, _) = maker.tell_noise(&order, &[], &mut random)?;
     let mut secrets: Vec<Secret> = vec![];
@@ -76,12 +73,13 @@ pub fn make(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) -> Result<Cas
     }
     let mut dirt = vec![];
     if recipe.dirt {
-        for _ in 0..random.random_range(5..=8) {
+        let [fewest, most] = maker.physics.dirt;
+        for _ in 0..random.random_range(fewest..=most) {
             let few: Vec<usize> = places.iter().copied().step_by(2).collect();
             let clean: Vec<Option<Met>> = clean.iter().cloned().step_by(2).collect();
-            let size = DIRT_SIGMAS * random.random_range(0.25..1.0);
+            let size = maker.physics.dirt_sigmas * random.random_range(0.25..1.0);
             let all = [secrets.clone(), dirt.clone()].concat();
-            let secret = maker.candidate(Kind::NAMED, &all, &mut random);
+            let secret = maker.candidate(&maker.kinds(), &all, &mut random);
             let Some(secret) = secret else { continue };
             let found = maker.size(&secret, &order, &few, &clean, &bare)?;
             let amount = secret.amount * size / found.max(1e-9);
@@ -98,6 +96,8 @@ pub fn make(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) -> Result<Cas
         seed: recipe.seed,
         family: recipe.family,
         design: recipe.design,
+        generator: recipe.generator,
+        also: maker.physics.servo_names(&bench.joints()),
         dirt: dirt.iter().map(|secret| maker.hidden(secret, f64::NAN).named()).collect(),
         hidden,
         sigma_m: [bare.x, bare.y, bare.z],
@@ -149,17 +149,32 @@ fn moved_screen(random: &mut StdRng) -> Isometry3<f64> {
 
 struct Maker<'a> {
     bench: &'a Bench,
+    physics: Physics,
     cells: Vec<Cell>,
     screen: Isometry3<f64>,
     design: Design,
 }
 
 impl Maker<'_> {
+    fn repeats(&self) -> usize {
+        self.design.repeats(&self.physics.plans)
+    }
+
+    /// What this generator can hide of what the library knows.
+    fn kinds(&self) -> Vec<Kind> {
+        Kind::NAMED.iter().copied().filter(|kind| kind.is_hidden_by(self.physics.generator)).collect()
+    }
+
     fn order(&self, random: &mut StdRng) -> Order {
-        let mut cells: Vec<usize> =
-            (0..self.cells.len()).flat_map(|cell| vec![cell; self.design.repeats()]).collect();
-        // Drawn by chance, so that time goes with nothing else.
-        cells.shuffle(random);
+        let mut cells: Vec<usize> = if self.physics.plans.shuffled {
+            (0..self.cells.len()).flat_map(|cell| vec![cell; self.repeats()]).collect()
+        } else {
+            (0..self.repeats()).flat_map(|_| 0..self.cells.len()).collect()
+        };
+        if self.physics.plans.shuffled {
+            // Drawn by chance, so that time goes with nothing else.
+            cells.shuffle(random);
+        }
         let mut t = START_S;
         let touches = cells
             .into_iter()
@@ -172,7 +187,8 @@ impl Maker<'_> {
     }
 
     fn stage(&self, secrets: &[Secret], order: &Order) -> Result<Stage<'_>, BlindError> {
-        Stage::new(self.bench, secrets, self.design.payloads_kg(), self.screen, order.duration_s)
+        let payloads_kg = self.design.payloads_kg(&self.physics.plans);
+        Stage::new((self.bench, &self.physics), secrets, payloads_kg, self.screen, order.duration_s)
     }
 
     /// Touches some cells once, without noise.
@@ -188,7 +204,7 @@ impl Maker<'_> {
             .map(|&cell| {
                 // One of its repeats, another one for the next cell: early and late ones.
                 let mut repeats = order.touches.iter().filter(|(number, _)| *number == cell);
-                let t_secs = repeats.nth(cell % self.design.repeats()).map_or(START_S, |touch| touch.1);
+                let t_secs = repeats.nth(cell % self.repeats()).map_or(START_S, |touch| touch.1);
                 stage.touch(&self.cells[cell], t_secs, &USUAL_CHANCES)
             })
             .collect())
@@ -209,7 +225,14 @@ impl Maker<'_> {
             let (Some(with), Some(without)) = (with, without) else { continue };
             let height_m = self.cells[*cell].height_m;
             at.push(Vector3::new(without.at_m[0], without.at_m[1], height_m));
-            moved.push(residual_m(self.bench, with, height_m) - residual_m(self.bench, without, height_m));
+            let seen = |met: &Met| {
+                if secret.kind.is_of_servo() {
+                    lag_m(self.bench, met)
+                } else {
+                    residual_m(self.bench, met, height_m)
+                }
+            };
+            moved.push(seen(with) - seen(without));
         }
         if at.len() * 10 < places.len() * 9 {
             return Err(BlindError::Missed { met: at.len(), tried: places.len() });
@@ -232,7 +255,7 @@ impl Maker<'_> {
         let kinds: Vec<Kind> = match (recipe.kind, recipe.family) {
             (Some(kind), _) if taken.is_empty() => vec![kind],
             (_, Family::OffLibrary) => Kind::NAMELESS.to_vec(),
-            _ => Kind::NAMED.to_vec(),
+            _ => self.kinds(),
         };
         for _ in 0..DRAWS {
             let Some(mut secret) = self.candidate(&kinds, taken, random) else { continue };
@@ -278,6 +301,10 @@ impl Maker<'_> {
         if leans(kind) && taken.iter().any(|s| leans(s.kind)) {
             return None;
         }
+        let of_servo = kind.is_of_servo() && taken.iter().any(|s| s.joint == joint && s.kind.is_of_servo());
+        if of_servo {
+            return None;
+        }
         let gives = |kind: Kind| matches!(kind, Kind::JointSag | Kind::SoftWhenWarm);
         if gives(kind) && taken.iter().any(|s| s.joint == joint && gives(s.kind)) {
             return None;
@@ -301,6 +328,8 @@ impl Maker<'_> {
                 | Kind::EarlyLog
                 | Kind::StickSlip
                 | Kind::SoftWhenWarm
+                | Kind::ServoDroop
+                | Kind::Stiction
         ) || (kind == Kind::Backlash && matches!(joint, 1..=3));
         let sign = if positive || random.random_bool(0.5) { 1.0 } else { -1.0 };
         let mut unit = |n: usize| {
@@ -347,8 +376,8 @@ impl Maker<'_> {
         let (mut rows, mut residuals) = (vec![], vec![]);
         for (cell, t_secs) in &order.touches {
             let chances: [f64; 7] = random.random();
-            let Some(met) = stage.touch(&self.cells[*cell], *t_secs, &chances) else { continue };
-            let cell = &self.cells[*cell];
+            let cell = &self.jittered(&self.cells[*cell], random);
+            let Some(met) = stage.touch(cell, *t_secs, &chances) else { continue };
             let Some((met, pixel)) = self.log(met, random) else { continue };
             residuals.push((cell.number, residual_m(self.bench, &met, cell.height_m)));
             rows.push(row(cell, &met, pixel, *t_secs));
@@ -359,6 +388,15 @@ impl Maker<'_> {
         Ok((sigma_m(&residuals), rows))
     }
 
+    /// As it is commanded this time.
+    fn jittered(&self, cell: &Cell, random: &mut StdRng) -> Cell {
+        let mut cell = cell.clone();
+        if self.physics.jitter_rad > 0.0 {
+            cell.angles_rad.iter_mut().for_each(|angle| *angle += self.physics.jitter_rad * normal(random));
+        }
+        cell
+    }
+
     /// As it is logged: noise of panel and joints, whole pixels, whole steps of encoders. `None`
     /// beside the image.
     fn log(
@@ -366,7 +404,8 @@ impl Maker<'_> {
         mut met: Met,
         random: &mut StdRng,
     ) -> Option<(Met, Pixel<plumbline_model::session::Screen>)> {
-        let spread = met.at_m.map(|at| at + PANEL_M * normal(random));
+        let physics = &self.physics;
+        let spread = [0, 1].map(|k| met.at_m[k] + physics.panel_m[k] * physics.noise(random));
         let exact = self.bench.pixel(spread[0], spread[1]);
         let pixel = Pixel::new(exact.u_px.round(), exact.v_px.round());
         if !self.bench.screen().contains(pixel) {
@@ -374,7 +413,7 @@ impl Maker<'_> {
         }
         met.at_m = self.bench.on_screen_m(pixel.u_px, pixel.v_px);
         for (angle, part) in met.encoder_rad.iter_mut().zip(&self.bench.parts) {
-            let read = *angle + JOINT_RAD * normal(random);
+            let read = *angle + physics.joint_rad * normal(random);
             *angle = (read / part.tick_rad).round() * part.tick_rad;
         }
         Some((met, pixel))
@@ -420,12 +459,6 @@ fn row(cell: &Cell, met: &Met, pixel: Pixel<plumbline_model::session::Screen>, t
     }
 }
 
-/// A standard normal number (Box and Muller 1958).
-fn normal(random: &mut StdRng) -> f64 {
-    let (a, b): (f64, f64) = (random.random::<f64>().max(1e-300), random.random());
-    (-2.0 * a.ln()).sqrt() * (std::f64::consts::TAU * b).cos()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -439,8 +472,10 @@ mod tests {
         let planner = Planner::new(&bench).expect("it reaches the screen");
         let mut random = StdRng::seed_from_u64(5);
         for design in [Design::Plain, Design::Rich] {
-            let cells = planner.cells(design, &mut random).expect("poses");
-            let maker = Maker { bench: &bench, cells, screen: moved_screen(&mut random), design };
+            let physics = Physics::lean();
+            let cells = planner.cells(design, &physics.plans, &mut random).expect("poses");
+            let screen = moved_screen(&mut random);
+            let maker = Maker { bench: &bench, physics, cells, screen, design };
             let order = maker.order(&mut random);
             let all: Vec<usize> = (0..maker.cells.len()).collect();
             let met = maker.rehearse(&[], &order, &all).expect("physics");

@@ -11,39 +11,31 @@ use serde::{Deserialize, Serialize};
 
 use crate::bench::{Bench, TIP};
 use crate::error::BlindError;
+use crate::physics::Plans;
 use crate::stage::Cell;
 
 /// Which plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Design {
-    /// 40 places four times, straight from above, one height.
+    /// Some 40 places, straight from above, one height.
     Plain,
-    /// 24 places at three heights from two sides in many postures, a weight on some, three times.
+    /// Some 20 places at several heights from two sides in many postures, a weight on some.
     Rich,
 }
 
 impl Design {
     /// How often every pose is touched.
-    pub fn repeats(self) -> usize {
-        match self {
-            Self::Plain => 4,
-            Self::Rich => 3,
-        }
+    pub fn repeats(self, plans: &Plans) -> usize {
+        plans.repeats[self as usize]
     }
 
     /// Weights that hang in the palm, kg.
-    pub fn payloads_kg(self) -> &'static [f64] {
-        match self {
-            Self::Plain => &[0.0],
-            Self::Rich => &[0.0, 0.25],
-        }
+    pub fn payloads_kg(self, plans: &Plans) -> &'static [f64] {
+        plans.payloads_kg[self as usize]
     }
 }
 
-const PLAIN: [usize; 2] = [8, 5];
-const RICH_PLACES: usize = 24;
-const RICH_HEIGHTS_M: [f64; 3] = [0.0, 0.04, 0.08];
 /// Least descent for every meter along the glass.
 const LEAST_SLOPE: f64 = 0.45;
 
@@ -72,10 +64,10 @@ impl<'a> Planner<'a> {
     ///
     /// # Errors
     /// When too few can be reached.
-    pub fn cells(&self, design: Design, random: &mut StdRng) -> Result<Vec<Cell>, BlindError> {
+    pub fn cells(&self, design: Design, plans: &Plans, random: &mut StdRng) -> Result<Vec<Cell>, BlindError> {
         match design {
-            Design::Plain => self.plain(random),
-            Design::Rich => self.rich(random),
+            Design::Plain => self.plain(plans, random),
+            Design::Rich => self.rich(plans, random),
         }
     }
 
@@ -87,13 +79,16 @@ impl<'a> Planner<'a> {
         self.bench.screen().raised(height_m).point_at(pixel)
     }
 
-    fn plain(&self, random: &mut StdRng) -> Result<Vec<Cell>, BlindError> {
-        let [columns, rows] = PLAIN;
+    fn plain(&self, plans: &Plans, random: &mut StdRng) -> Result<Vec<Cell>, BlindError> {
+        let [columns, rows] = plans.grid;
         let mut cells = vec![];
         let mut from = self.ready.clone();
         for row in 0..rows {
             for column in 0..columns {
                 let mut part = |i: usize, n: usize| {
+                    if plans.scattered {
+                        return random.random_range(0.0..1.0);
+                    }
                     ((i as f64 + 0.5 + random.random_range(-0.3..0.3)) / n as f64).clamp(0.0, 1.0)
                 };
                 let point = self.place(part(column, columns), part(row, rows), 0.0);
@@ -118,22 +113,23 @@ impl<'a> Planner<'a> {
         Ok(cells)
     }
 
-    fn rich(&self, random: &mut StdRng) -> Result<Vec<Cell>, BlindError> {
+    fn rich(&self, plans: &Plans, random: &mut StdRng) -> Result<Vec<Cell>, BlindError> {
         let mut cells = vec![];
         let mut places = 0;
-        for trial in 0..RICH_PLACES * 3 {
-            if places == RICH_PLACES {
+        for trial in 0..plans.places * 3 {
+            if places == plans.places {
                 break;
             }
             let (across, down) = (random.random::<f64>(), random.random::<f64>());
             let set = format!("place {}", 1 + trial % 7);
             let before = cells.len();
-            for height_m in RICH_HEIGHTS_M {
+            for &height_m in plans.heights_m {
                 // One posture for both sides, so that only the side differs.
                 let Some(angles_rad) = self.varied(self.place(across, down, height_m), random) else {
                     continue;
                 };
-                let payload_kg = if random.random_bool(0.3) { 0.25 } else { 0.0 };
+                let heaviest_kg = Design::Rich.payloads_kg(plans).last().copied().unwrap_or(0.0);
+                let payload_kg = if random.random_bool(0.3) { heaviest_kg } else { 0.0 };
                 for (approach, sign) in [("plus", 1.0), ("minus", -1.0)] {
                     let Some(way_rad_per_m) = self.all_joints(&angles_rad, sign) else { continue };
                     cells.push(Cell {
@@ -149,7 +145,7 @@ impl<'a> Planner<'a> {
             }
             places += usize::from(cells.len() > before);
         }
-        let wanted = 2 * RICH_PLACES * RICH_HEIGHTS_M.len();
+        let wanted = 2 * plans.places * plans.heights_m.len();
         if cells.len() < wanted / 2 {
             return Err(BlindError::Plan { found: cells.len(), wanted });
         }

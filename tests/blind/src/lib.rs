@@ -3,6 +3,7 @@
 //!
 //! - [`bench`]: the robot whose arm is simulated, as described.
 //! - [`secret`]: what can be hidden.
+//! - [`physics`]: what the generators take servos, masses, contact and noise to be.
 //! - [`world`], [`stage`]: the physics, touch by touch.
 //! - [`design`]: plans of touches.
 //! - [`recipe`], [`mix`]: which cases shall be made.
@@ -17,6 +18,7 @@ mod error;
 mod heat;
 pub mod measure;
 pub mod mix;
+pub mod physics;
 pub mod recipe;
 pub mod score;
 pub mod secret;

@@ -11,6 +11,12 @@ pub fn residual_m(bench: &Bench, met: &Met, height_m: f64) -> Vector3<f64> {
     Vector3::new(met.at_m[0] - tip.x, met.at_m[1] - tip.y, height_m - tip.z)
 }
 
+/// Where the tip was sent, less where the encoders say that it was: along u, against v, out of the
+/// glass, m.
+pub fn lag_m(bench: &Bench, met: &Met) -> Vector3<f64> {
+    bench.nominal_tip_m(&met.commanded_rad) - bench.nominal_tip_m(&met.encoder_rad)
+}
+
 /// Spread of a touch about the mean of its repeats, per coordinate, m.
 pub fn sigma_m(residuals: &[(usize, Vector3<f64>)]) -> Vector3<f64> {
     let cells = residuals.iter().map(|(cell, _)| cell + 1).max().unwrap_or(0);

@@ -4,6 +4,7 @@ use rand::rngs::StdRng;
 use rand::{Rng, SeedableRng};
 
 use crate::design::Design;
+use crate::physics::Generator;
 use crate::recipe::{Family, Recipe};
 use crate::secret::Kind;
 
@@ -13,8 +14,9 @@ pub const SIZES: [f64; 5] = [0.5, 1.0, 2.0, 5.0, 10.0];
 /// Cases of every family: of a hundred, 12 without anything hidden (half of them with dirt), 52
 /// singles of all kinds and sizes, 14 pairs, 8 triples, 14 with what the library does not have;
 /// half of each on the plain plan, half on the rich one. Dirt is in every other case.
-pub fn recipes(cases: usize, seed: u64) -> Vec<Recipe> {
+pub fn recipes(generator: Generator, cases: usize, seed: u64) -> Vec<Recipe> {
     let mut random = StdRng::seed_from_u64(seed);
+    let kinds: Vec<Kind> = Kind::NAMED.iter().copied().filter(|kind| kind.is_hidden_by(generator)).collect();
     let mut named: Vec<Kind> = vec![];
     let mut nameless: Vec<Kind> = vec![];
     (0..cases)
@@ -36,12 +38,13 @@ pub fn recipes(cases: usize, seed: u64) -> Vec<Recipe> {
             };
             // Every kind in its turn, in an order drawn by chance.
             let kind = match family {
-                Family::Single => Some(next(&mut named, Kind::NAMED, design, &mut random)),
+                Family::Single => Some(next(&mut named, &kinds, design, &mut random)),
                 Family::OffLibrary => Some(next(&mut nameless, Kind::NAMELESS, design, &mut random)),
                 _ => None,
             };
             Recipe {
                 number,
+                generator,
                 family,
                 design,
                 dirt: (number / 2) % 2 == 1,
@@ -75,11 +78,12 @@ mod tests {
 
     #[test]
     fn a_mix_has_every_family_plan_and_kind() {
-        let recipes = recipes(200, 3);
+        let recipes = recipes(Generator::Lean, 200, 3);
         let count = |family| recipes.iter().filter(|recipe| recipe.family == family).count();
         assert_eq!(count(Family::Null), 24);
         assert!(count(Family::Single) > 90 && count(Family::Pair) > 20 && count(Family::Triple) > 10);
-        for kind in Kind::NAMED.iter().chain(Kind::NAMELESS) {
+        let named = Kind::NAMED.iter().filter(|kind| kind.is_hidden_by(Generator::Lean));
+        for kind in named.chain(Kind::NAMELESS) {
             assert!(recipes.iter().any(|recipe| recipe.kind == Some(*kind)), "{kind:?}");
         }
         let plain_backlash =

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::design::Design;
+use crate::physics::Generator;
 use crate::secret::Kind;
 
 /// What kind of case.
@@ -26,6 +27,8 @@ pub enum Family {
 pub struct Recipe {
     /// Its number.
     pub number: usize,
+    /// Whose physics.
+    pub generator: Generator,
     /// What kind of case.
     pub family: Family,
     /// Which plan of touches.

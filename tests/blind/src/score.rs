@@ -164,7 +164,9 @@ impl Score {
         let plan = crate::words::word(answer.design);
         match answer.family {
             Family::Null => {
-                self.null_named[usize::from(!answer.dirt.is_empty())].count(verdict.names());
+                let also = |found: &Found| answer.also.iter().any(|name| plain(name) == found.name());
+                let false_names = verdict.names() && !verdict.effects.iter().all(also);
+                self.null_named[usize::from(!answer.dirt.is_empty())].count(false_names);
                 self.null_gap.count(verdict.verdict == "not-in-library");
             }
             Family::Single => self.count_single(answer, verdict, &plan),
@@ -181,7 +183,7 @@ impl Score {
                 }
                 let wrong = verdict.effects.iter().any(|found| {
                     found.probability > CONFIDENT
-                        && !answer.dirt.iter().any(|dirt| found.may_be(&plain(dirt)))
+                        && !answer.dirt.iter().chain(&answer.also).any(|there| found.may_be(&plain(there)))
                 });
                 self.nameless_named.count(wrong);
             }
@@ -223,7 +225,7 @@ impl Score {
             .hidden
             .iter()
             .map(Hidden::named)
-            .chain(answer.dirt.iter().cloned())
+            .chain(answer.dirt.iter().chain(&answer.also).cloned())
             .map(|n| plain(&n))
             .collect();
         for found in &verdict.effects {
@@ -316,6 +318,7 @@ pub fn median(values: &[f64]) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::design::Design;
+    use crate::physics::Generator;
     use serde_json::json;
 
     fn answer(family: Family, hidden: &[(&str, &str, f64)], dirt: &[&str]) -> Answer {
@@ -329,8 +332,10 @@ mod tests {
             case: 0,
             seed: 0,
             family,
+            generator: Generator::Lean,
             design: Design::Rich,
             hidden: hidden.collect(),
+            also: vec![],
             dirt: dirt.iter().map(|name| (*name).to_owned()).collect(),
             sigma_m: [1e-3; 3],
             rows: 300,

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use strum::{IntoStaticStr, VariantArray};
 
+use crate::physics::Generator;
+
 /// What kind of thing is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -52,6 +54,10 @@ pub enum Kind {
     ServoWarmUp,
     /// The encoders were read before the finger was there.
     EarlyLog,
+    /// The servo gives way like a soft spring, and its encoder sees it.
+    ServoDroop,
+    /// Friction stops the servo short of its goal, and its encoder sees it.
+    Stiction,
     /// Not in the library: a wave of the gear train, not whole in a turn.
     #[strum(serialize = "(gear-train)")]
     GearTrain,
@@ -83,11 +89,21 @@ impl Kind {
     pub const NAMELESS: &'static [Self] = Self::VARIANTS.split_at(Self::KNOWN).1;
 
     /// How many the library knows; they stand first.
-    const KNOWN: usize = Self::EarlyLog as usize + 1;
+    const KNOWN: usize = Self::Stiction as usize + 1;
 
     /// Its name on the command line.
     pub fn id(self) -> &'static str {
         self.into()
+    }
+
+    /// Whether only commands against encoders show it.
+    pub fn is_of_servo(self) -> bool {
+        matches!(self, Self::ServoDroop | Self::Stiction)
+    }
+
+    /// Whether a generator can hide it. Where the load is fed forward, the log of commands holds the load.
+    pub fn is_hidden_by(self, generator: Generator) -> bool {
+        generator == Generator::Worn || !self.is_of_servo()
     }
 
     /// Whether the library knows it.
@@ -110,7 +126,8 @@ impl Kind {
             Self::JointScale | Self::JointEccentricity | Self::Backlash | Self::AxisSkew => {
                 &[0, 1, 2, 3, 4, 5]
             }
-            Self::GravityBacklash | Self::JointSag => &[1, 2, 3, 4, 5],
+            Self::GravityBacklash | Self::JointSag | Self::ServoDroop => &[1, 2, 3, 4, 5],
+            Self::Stiction => &[0, 1, 2, 3, 4, 5],
             Self::SidewaysGive => &[0, 1, 2, 3, 4],
             Self::GearTrain | Self::CableStep | Self::Magnet | Self::Hysteresis => &[1, 2, 3],
             Self::SoftWhenWarm => &[1, 2, 3],
@@ -131,6 +148,7 @@ impl Kind {
                 | Self::FingerRoll
                 | Self::StickSlip
                 | Self::SoftWhenWarm
+                | Self::Stiction
         )
     }
 
@@ -149,6 +167,8 @@ impl Kind {
             Self::TouchDrag => 0.03,
             Self::TorsoLean => 0.005,
             Self::ScreenScale => 0.03,
+            Self::ServoDroop => 0.05,
+            Self::Stiction => 0.02,
             Self::ScreenBow => 0.1,
             Self::ScreenBumped => 0.004,
             Self::ServoWarmUp => 0.01,
@@ -174,6 +194,8 @@ impl Kind {
             Self::TouchDrag => 0.12,
             Self::TorsoLean => 0.02,
             Self::ScreenScale => 0.2,
+            Self::ServoDroop => 0.15,
+            Self::Stiction => 0.06,
             Self::ScreenBow => 0.4,
             Self::ScreenBumped => 0.03,
             Self::ServoWarmUp => 0.03,
@@ -234,7 +256,8 @@ impl Secret {
                 let sign = amount.signum();
                 many(&["amplitude_rad", "phase_rad"], &[amount.abs(), (-b * sign).atan2(a * sign)])
             }
-            Kind::Backlash | Kind::GravityBacklash => one("width_rad"),
+            Kind::Backlash | Kind::GravityBacklash | Kind::Stiction => one("width_rad"),
+            Kind::ServoDroop => BTreeMap::from([("stiffness_nm_per_rad".to_owned(), 1.0 / amount)]),
             Kind::JointSag | Kind::SidewaysGive => one("compliance_rad_per_nm"),
             Kind::JointCoupling => one("ratio"),
             Kind::AxisSkew => {

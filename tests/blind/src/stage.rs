@@ -6,16 +6,12 @@ use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use crate::bench::Bench;
 use crate::error::BlindError;
 use crate::heat;
+use crate::physics::{Physics, Servo};
 use crate::secret::{Kind, Secret};
-use crate::world::{self, SERVO_NM_PER_RAD, STEP_S};
+use crate::world::{self, STEP_S};
 
 /// Descent per step of the physics, m.
 const DESCENT_M: f64 = 1.2e-4;
-/// Friction of a moving servo, N m; between these shares of it from touch to touch.
-const FRICTION_NM: f64 = 0.09;
-const FRICTION_SHARES: [f64; 2] = [0.3, 1.0];
-/// A touch is felt from this force on, N.
-const THRESHOLD_N: f64 = 0.05;
 /// Steps to come to rest before the descent begins.
 const SETTLING: usize = 40;
 /// Where the descent begins over the expected contact, m; higher when the finger was in the glass.
@@ -82,6 +78,7 @@ struct Hinge {
 /// The physics of a case.
 pub struct Stage<'a> {
     bench: &'a Bench,
+    physics: &'a Physics,
     secrets: Vec<Secret>,
     worlds: Vec<World>,
     /// Where the screen stands against the rig file: nobody knows.
@@ -98,7 +95,7 @@ impl<'a> Stage<'a> {
     /// # Errors
     /// When MuJoCo does not accept them.
     pub fn new(
-        bench: &'a Bench,
+        (bench, physics): (&'a Bench, &'a Physics),
         secrets: &[Secret],
         payloads_kg: &[f64],
         screen_moved: Isometry3<f64>,
@@ -106,10 +103,11 @@ impl<'a> Stage<'a> {
     ) -> Result<Self, BlindError> {
         let worlds = payloads_kg
             .iter()
-            .map(|payload_kg| World::new(bench, secrets, *payload_kg))
+            .map(|payload_kg| World::new(bench, physics, secrets, *payload_kg))
             .collect::<Result<_, _>>()?;
         Ok(Self {
             bench,
+            physics,
             worlds,
             screen_moved,
             duration_s,
@@ -136,8 +134,9 @@ impl<'a> Stage<'a> {
         let world = &mut self.worlds[w];
         world.put_glass(&place);
         world.stand(&planned(start_m), &cell.way_rad_per_m, &self.secrets);
-        let hold: Vec<f64> =
-            world.servo.iter().map(|hinge| world.data.qfrc_bias()[hinge.dof] / SERVO_NM_PER_RAD).collect();
+        let mut hold = world.hold(self.physics, &self.secrets, &planned(start_m), &cell.way_rad_per_m);
+        let sums = sums_per_s(self.physics, &self.secrets, world.servo.len());
+        let is_fed = self.physics.servo == Servo::Fed;
         let integrating = self.secrets.iter().any(|s| s.kind == Kind::EarlyLog);
         let late = self.secrets.iter().filter(|s| matches!(s.kind, Kind::TouchDrag | Kind::StickSlip));
         let late_steps = (late.map(|s| s.amount.abs()).sum::<f64>() / STEP_S).round() as usize;
@@ -150,22 +149,29 @@ impl<'a> Stage<'a> {
         for step in 0..steps {
             let left_m = start_m - DESCENT_M * step.saturating_sub(SETTLING) as f64;
             let plan = planned(left_m);
+            if !is_fed {
+                let off = plan.iter().zip(world.motors()).map(|(plan, motor)| plan - motor);
+                hold.iter_mut()
+                    .zip(off)
+                    .zip(&sums)
+                    .for_each(|((hold, off), per_s)| *hold += STEP_S * per_s * off);
+            }
             for (k, ctrl) in world.data.ctrl_mut().iter_mut().enumerate() {
                 *ctrl = plan[k] + hold[k];
             }
             world.push(&self.secrets, cell, warm);
-            world.rub(&cell.way_rad_per_m, chances);
+            world.rub(self.physics, &self.secrets, &cell.way_rad_per_m, chances);
             world.data.step();
             if early_steps > 0 {
                 logged.push(world.motors());
             }
-            if let Some(contact) = world.contact() {
+            if let Some(contact) = world.contact(self.physics.threshold_n) {
                 if step < SETTLING {
                     return None;
                 }
                 at = Some(place.inverse() * contact);
                 if first.is_none() {
-                    let commanded = if integrating { plan } else { world.data.ctrl().to_vec() };
+                    let commanded = if integrating || !is_fed { plan } else { world.data.ctrl().to_vec() };
                     let motors = if early_steps > 0 {
                         logged[logged.len().saturating_sub(1 + early_steps)].clone()
                     } else {
@@ -250,9 +256,20 @@ impl<'a> Stage<'a> {
     }
 }
 
+/// How fast each servo sums up what is left, 1/s; one that gives way or sticks does not.
+fn sums_per_s(physics: &Physics, secrets: &[Secret], joints: usize) -> Vec<f64> {
+    let idle = |j: usize| secrets.iter().any(|s| s.joint == j && s.kind.is_of_servo());
+    (0..joints).map(|j| if idle(j) { 0.0 } else { physics.integral_per_s() }).collect()
+}
+
 impl World {
-    fn new(bench: &Bench, secrets: &[Secret], payload_kg: f64) -> Result<Self, BlindError> {
-        let xml = world::write(bench, secrets, payload_kg);
+    fn new(
+        bench: &Bench,
+        physics: &Physics,
+        secrets: &[Secret],
+        payload_kg: f64,
+    ) -> Result<Self, BlindError> {
+        let xml = world::write(bench, physics, secrets, payload_kg);
         let model = MjModel::from_xml_string(&xml)
             .map_err(|error| BlindError::Physics { reason: format!("{error} in\n{xml}") })?;
         let model = Box::new(model);
@@ -339,12 +356,34 @@ impl World {
         }
     }
 
-    /// Friction holds every servo back.
-    fn rub(&mut self, way: &[f64], chances: &[f64]) {
+    /// What is added to the goals from the start, rad: the load where it is known or has been summed up.
+    /// Servos that give way stand below their goals then.
+    fn hold(&mut self, physics: &Physics, secrets: &[Secret], goals: &[f64], way: &[f64]) -> Vec<f64> {
+        let (mut hold, mut stands) = (vec![], goals.to_vec());
         for (j, hinge) in self.servo.iter().enumerate() {
-            let [least, most] = FRICTION_SHARES;
+            let of = |s: &&Secret| s.joint == j;
+            let stiffness = world::stiffness_nm_per_rad(physics, secrets.iter().filter(of));
+            let load_rad = self.data.qfrc_bias()[hinge.dof] / stiffness;
+            let droops = secrets.iter().any(|s| s.kind == Kind::ServoDroop && s.joint == j);
+            let gives = droops || physics.servo == Servo::Proportional;
+            hold.push(if gives { 0.0 } else { load_rad });
+            stands[j] -= if gives { load_rad } else { 0.0 };
+        }
+        if stands != goals {
+            self.stand(&stands, way, secrets);
+        }
+        hold
+    }
+
+    /// Friction holds every servo back.
+    fn rub(&mut self, physics: &Physics, secrets: &[Secret], way: &[f64], chances: &[f64]) {
+        for (j, hinge) in self.servo.iter().enumerate() {
+            let [least, most] = physics.friction_shares;
             let share = least + (most - least) * chances.get(j).copied().unwrap_or(0.5);
-            self.data.qfrc_applied_mut()[hinge.dof] = -way[j].signum() * share * FRICTION_NM;
+            let sticks = secrets.iter().find(|s| s.kind == Kind::Stiction && s.joint == j);
+            let friction_nm =
+                sticks.map_or(share * physics.friction_nm, |s| 0.5 * s.amount * physics.servo_nm_per_rad);
+            self.data.qfrc_applied_mut()[hinge.dof] = -way[j].signum() * friction_nm;
         }
     }
 
@@ -356,13 +395,13 @@ impl World {
             .collect()
     }
 
-    fn contact(&self) -> Option<Point3<f64>> {
+    fn contact(&self, threshold_n: f64) -> Option<Point3<f64>> {
         self.data.contact().iter().enumerate().find_map(|(i, contact)| {
             if !contact.geom.contains(&self.tip) {
                 return None;
             }
             let force = self.data.try_contact_force(i).ok()?;
-            (force[0] >= THRESHOLD_N).then(|| Point3::from(contact.pos))
+            (force[0] >= threshold_n).then(|| Point3::from(contact.pos))
         })
     }
 }

@@ -6,22 +6,19 @@ use std::fmt::Write as _;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use crate::bench::Bench;
+use crate::physics::Physics;
 use crate::secret::{Kind, Secret};
 
 /// Step of the physics, s.
 pub const STEP_S: f64 = 0.002;
-/// Stiffness of a servo, N m/rad.
-pub const SERVO_NM_PER_RAD: f64 = 30.0;
 /// Gravity, m/s².
 const GRAVITY: f64 = 9.80665;
-/// Pad of a finger that is as pointed as the model has it, m.
-const POINT_M: f64 = 2e-4;
 /// Stops of steel: at the edge of what the step can follow (stiffness 1/s², damping 1/s).
 const STEEL: &str = r#"solreflimit="-200000 -480" solimplimit="0.999 0.9999 0.0001""#;
 const STEEL_TENDON: &str = r#"solreflimit="-200000 -480" solimplimit="0.999 0.9999 0.0001""#;
 
 /// The world of a case; `payload_kg` hangs in the palm.
-pub fn write(bench: &Bench, secrets: &[Secret], payload_kg: f64) -> String {
+pub fn write(bench: &Bench, physics: &Physics, secrets: &[Secret], payload_kg: f64) -> String {
     let mut text = format!(
         r#"<mujoco>
   <compiler angle="radian" autolimits="true" inertiafromgeom="false" balanceinertia="true" boundmass="1e-6" boundinertia="1e-8"/>
@@ -30,7 +27,7 @@ pub fn write(bench: &Bench, secrets: &[Secret], payload_kg: f64) -> String {
     <body name="glass" mocap="true">{}</body>
     <body name="torso"><inertial pos="0 0 0" mass="0.01" diaginertia="0.01 0.01 0.01"/>
 "#,
-        glass(secrets)
+        glass(physics, secrets)
     );
     for secret in secrets.iter().filter(|s| matches!(s.kind, Kind::TorsoLean | Kind::OtherArm)) {
         let compliance = if secret.kind == Kind::OtherArm { 0.002 } else { secret.amount.abs().max(1e-9) };
@@ -40,7 +37,7 @@ pub fn write(bench: &Bench, secrets: &[Secret], payload_kg: f64) -> String {
     }
     let mut tail = Tail::default();
     for j in 0..bench.parts.len() {
-        part(&mut text, &mut tail, bench, secrets, j, payload_kg);
+        part(&mut text, &mut tail, (bench, physics), secrets, j, payload_kg);
     }
     text.push_str(&"    </body>\n".repeat(bench.parts.len() + 1));
     let _ = write!(
@@ -57,8 +54,8 @@ struct Tail {
     actuators: String,
 }
 
-fn glass(secrets: &[Secret]) -> String {
-    let slip = r#"condim="3" friction="0.3 0.002 0.0001" solref="0.006 1" solimp="0.95 0.99 0.0003""#;
+fn glass(physics: &Physics, secrets: &[Secret]) -> String {
+    let slip = physics.glass;
     match secrets.iter().find(|s| s.kind == Kind::ScreenBow && s.amount > 1e-6) {
         // A flat arch that is highest along the middle row: a very large drum.
         Some(secret) => {
@@ -71,7 +68,14 @@ fn glass(secrets: &[Secret]) -> String {
     }
 }
 
-fn part(text: &mut String, tail: &mut Tail, bench: &Bench, secrets: &[Secret], j: usize, payload_kg: f64) {
+fn part(
+    text: &mut String,
+    tail: &mut Tail,
+    (bench, physics): (&Bench, &Physics),
+    secrets: &[Secret],
+    j: usize,
+    payload_kg: f64,
+) {
     let part = &bench.parts[j];
     let here: Vec<&Secret> = secrets.iter().filter(|s| s.joint == j && !s.kind.joints().is_empty()).collect();
     let mut place = part.place;
@@ -105,14 +109,14 @@ fn part(text: &mut String, tail: &mut Tail, bench: &Bench, secrets: &[Secret], j
         );
     }
     let _ = writeln!(text, r#"    <body name="{}" {}>"#, part.link, pose(&place));
-    inertia(text, bench, j, payload_kg);
+    inertia(text, bench, physics, j, payload_kg);
     for secret in here.iter().filter(|s| s.kind == Kind::SidewaysGive) {
         let a = part.axis.cross(&Vector3::ith(part.axis.iamin(), 1.0)).normalize();
         for (k, across) in [a, part.axis.cross(&a)].iter().enumerate() {
             spring(text, &format!("{name}.across{k}"), &list(across), secret.amount.abs().max(1e-9));
         }
     }
-    servo(text, tail, bench, &here, j);
+    servo(text, tail, (bench, physics), &here, j);
     for secret in &here {
         match secret.kind {
             Kind::JointSag | Kind::SoftWhenWarm => {
@@ -131,11 +135,17 @@ fn part(text: &mut String, tail: &mut Tail, bench: &Bench, secrets: &[Secret], j
         }
     }
     if j + 1 == bench.parts.len() {
-        fingertip(text, bench, secrets);
+        fingertip(text, bench, physics.point_m, secrets);
     }
 }
 
-fn servo(text: &mut String, tail: &mut Tail, bench: &Bench, here: &[&Secret], j: usize) {
+fn servo(
+    text: &mut String,
+    tail: &mut Tail,
+    (bench, physics): (&Bench, &Physics),
+    here: &[&Secret],
+    j: usize,
+) {
     let part = &bench.parts[j];
     let name = &part.joint;
     let (armature, damping) = if j < 4 { (0.02, 1.0) } else { (0.01, 0.5) };
@@ -146,7 +156,7 @@ fn servo(text: &mut String, tail: &mut Tail, bench: &Bench, here: &[&Secret], j:
     );
     let gear: f64 =
         here.iter().filter(|s| s.kind == Kind::JointScale).map(|s| 1.0 / (1.0 + s.amount)).product();
-    let servo = format!(r#"kp="{SERVO_NM_PER_RAD}""#);
+    let servo = format!(r#"kp="{}""#, stiffness_nm_per_rad(physics, here.iter().copied()));
     // A cable that runs over the joint before: what the motor winds is this joint less a share of
     // that one.
     if let Some(secret) = here.iter().find(|s| s.kind == Kind::JointCoupling && j > 0) {
@@ -160,6 +170,12 @@ fn servo(text: &mut String, tail: &mut Tail, bench: &Bench, here: &[&Secret], j:
     } else {
         let _ = writeln!(tail.actuators, r#"    <position joint="{name}" gear="{gear}" {servo}/>"#);
     }
+}
+
+/// Stiffness of the servo of a joint, with what is wrong there.
+pub fn stiffness_nm_per_rad<'a>(physics: &Physics, mut here: impl Iterator<Item = &'a Secret>) -> f64 {
+    let droops = here.find(|secret| secret.kind == Kind::ServoDroop);
+    droops.map_or(physics.servo_nm_per_rad, |secret| 1.0 / secret.amount.abs().max(1e-3))
 }
 
 /// A spring that rings off within a few hundredths of a second.
@@ -182,8 +198,9 @@ fn play(text: &mut String, name: &str, axis: &str, width: f64) {
 }
 
 /// What hangs on a link, as one body: fingers and weight included.
-fn inertia(text: &mut String, bench: &Bench, j: usize, payload_kg: f64) {
-    let mut masses = bench.parts[j].masses.clone();
+fn inertia(text: &mut String, bench: &Bench, physics: &Physics, j: usize, payload_kg: f64) {
+    let factor = physics.mass_factors.get(j).copied().unwrap_or(1.0);
+    let mut masses: Vec<_> = bench.parts[j].masses.iter().map(|(at, mass)| (*at, mass * factor)).collect();
     if j + 1 == bench.parts.len() && payload_kg > 0.0 {
         masses.push((bench.palm_m, payload_kg));
     }
@@ -197,13 +214,13 @@ fn inertia(text: &mut String, bench: &Bench, j: usize, payload_kg: f64) {
     );
 }
 
-fn fingertip(text: &mut String, bench: &Bench, secrets: &[Secret]) {
+fn fingertip(text: &mut String, bench: &Bench, point_m: f64, secrets: &[Secret]) {
     let mut tip = bench.last_from_tip;
-    let mut radius_m = POINT_M;
+    let mut radius_m = point_m;
     for secret in secrets {
         match secret.kind {
             Kind::TipOffset => tip *= Translation3::from(Vector3::from(secret.shape) * secret.amount),
-            Kind::FingerRoll => radius_m = secret.amount.abs().max(POINT_M),
+            Kind::FingerRoll => radius_m = secret.amount.abs().max(point_m),
             _ => {}
         }
     }

@@ -8,6 +8,7 @@ use plumbline_blind::answer::Answer;
 use plumbline_blind::bench::Bench;
 use plumbline_blind::case;
 use plumbline_blind::design::{Design, Planner};
+use plumbline_blind::physics::Generator;
 use plumbline_blind::recipe::{Family, Recipe};
 use plumbline_blind::score::{Score, Share};
 use plumbline_blind::secret::Kind;
@@ -31,6 +32,7 @@ fn recipes() -> Vec<Recipe> {
     let nameless = [Kind::CableStep, Kind::Hysteresis, Kind::OtherArm, Kind::SoftWhenWarm];
     let one = |family, design, size_sigmas, kind| Recipe {
         number: 0,
+        generator: Generator::Lean,
         family,
         design,
         dirt: false,

@@ -61,6 +61,9 @@ fn verdict(ui: &mut Ui, finding: &Finding) {
         Verdict::Class => {
             "These data fit several names equally well. Adding the most probable one corrects what was measured; the experiment says which one is right elsewhere, too."
         }
+        Verdict::NotInLibrary if finding.partial => {
+            "What is listed below is no name, but it closes a part of the gap on rows that were not used. It can be added as that; the rest stays."
+        }
         Verdict::NotInLibrary => {
             "What is listed below is what the rest looks partly like; it is not a name, and it cannot be added. The map and the charts say where it shows."
         }

@@ -21,7 +21,8 @@ pub struct Reported {
     pub low: f64,
     /// Upper end.
     pub high: f64,
-    /// What a number cannot say (`from_joint`: the name of a joint; the value is then zero).
+    /// What a number cannot say (`from_joint`: the name of a joint; `which` of two things); the value is then
+    /// zero.
     pub text: Option<String>,
 }
 
@@ -69,7 +70,14 @@ impl Effect {
     pub(super) fn either(&self, fit: &Fit<'_>) -> Vec<Reported> {
         let Shape::Either([first, second]) = self.kind.entry().shape else { return self.plain(fit) };
         let which = if self.shape.is_some() { second } else { first };
-        vec![Reported { text: Some(which.to_owned()), ..fit.plain(0, self.parameters()[0].name) }]
+        let choice = Reported {
+            name: "which".to_owned(),
+            value: 0.0,
+            low: 0.0,
+            high: 0.0,
+            text: Some(which.to_owned()),
+        };
+        vec![fit.plain(0, self.parameters()[0].name), choice]
     }
 
     /// Those of every member, with the name of its site before.

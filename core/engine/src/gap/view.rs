@@ -152,13 +152,7 @@ impl GapView {
 impl ShownFinding {
     /// Effects that can be added and are not in the model yet, by place.
     pub fn addable(&self) -> Vec<usize> {
-        if self.finding.verdict == Verdict::NotInLibrary {
-            return vec![];
-        }
-        let effects = self.finding.effects.iter().zip(&self.added).enumerate();
-        effects
-            .filter(|(_, (effect, added))| effect.not_addable.is_none() && !**added)
-            .map(|(i, _)| i)
-            .collect()
+        let is_new = |i: &usize| !self.added.get(*i).copied().unwrap_or(false);
+        self.finding.addable().into_iter().filter(is_new).collect()
     }
 }

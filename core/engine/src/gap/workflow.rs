@@ -114,7 +114,7 @@ impl GapWorkflow {
             return context.refuse(why);
         }
         let named = &finding.kept.finding;
-        if named.verdict == Verdict::NotInLibrary {
+        if named.verdict == Verdict::NotInLibrary && !named.partial {
             return context
                 .refuse("What is missing is not in the library, so there is nothing to add by name.");
         }

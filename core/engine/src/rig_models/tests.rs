@@ -106,6 +106,7 @@ fn finding(effects: Vec<NamedEffect>) -> Finding {
         next: None,
         placements: vec![nalgebra::Isometry3::translation(0.004, -0.002, 0.001)],
         mounts: vec![],
+        partial: false,
         undetermined: vec![],
         left_out: vec![],
         warnings: vec![],

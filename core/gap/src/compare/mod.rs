@@ -9,6 +9,7 @@ mod neighbors;
 mod noise;
 mod oddities;
 mod outliers;
+mod structure;
 mod turns;
 mod units;
 
@@ -20,6 +21,7 @@ use rayon::prelude::*;
 pub(crate) use crate::statistics::{NORMAL_95, f_tail, median, robust_sd};
 pub(crate) use displacement::{at_m, nominal_place_m, of_arm};
 pub(crate) use frames::placed;
+pub(crate) use noise::structure_of;
 
 use crate::covariates::Covariates;
 use crate::error::GapError;
@@ -56,6 +58,20 @@ pub(crate) struct Compared {
     pub warnings: Vec<String>,
 }
 
+/// Stops where a column cannot be looked at: dead, in a wrong unit, of a joint that turns otherwise.
+///
+/// # Errors
+/// Why, see [`GapError`], or cancelled.
+pub(crate) fn refuse(measurements: &Measurements, context: &dyn JobContext) -> Result<(), GapError> {
+    let rows = measurements.rows.len();
+    if rows < FEWEST_ROWS {
+        return Err(GapError::TooFew { rows, needed: FEWEST_ROWS });
+    }
+    context.report(0.0, "looking at units and columns");
+    oddities::stop_at_dead_columns(measurements)?;
+    units::check(measurements, context)
+}
+
 /// Compares what was measured with the nominal model, the frames of all sessions placed.
 ///
 /// # Errors
@@ -69,9 +85,6 @@ pub(crate) fn compare(
     if rows < FEWEST_ROWS {
         return Err(GapError::TooFew { rows, needed: FEWEST_ROWS });
     }
-    context.report(0.0, "looking at units and columns");
-    oddities::stop_at_dead_columns(measurements)?;
-    units::check(measurements, context)?;
     let mut warnings = measurements.remarks();
     warnings.extend(oddities::warnings(measurements));
     context.report(0.1, "placing frames");
@@ -114,6 +127,10 @@ pub(crate) fn compare(
     if let Some(course) = &noise.drift {
         misfit.p_value = misfit.p_value.min(course.p_value);
         misfit.size_sigmas = misfit.size_sigmas.max(course.size_sigmas);
+    }
+    if let Some(structure) = &noise.structure {
+        misfit.p_value = misfit.p_value.min(structure.p_value);
+        misfit.size_sigmas = misfit.size_sigmas.max(structure.size_sigmas);
     }
     let is_related = related(measurements, &residuals);
     if !is_related {

@@ -12,6 +12,7 @@ use plumbline_model::decompose;
 
 use super::drift::{Deviation, Drift, drift};
 use super::neighbors::Points;
+use super::structure::{Repeat, Structure, structure};
 use crate::finding::FloorSource;
 use crate::floor::{Floor, KindFloor, finest};
 use crate::statistics::{median, robust_sd};
@@ -34,8 +35,10 @@ pub struct Noise {
     pub floor: Floor,
     /// Per kind of [`Floor::kinds`] and coordinate: whether repeats say it.
     pub repeated: Vec<Vec<bool>>,
-    /// What changed between repeats, where something did.
+    /// What changed between repeats over time, where something did.
     pub drift: Option<Drift>,
+    /// What else repeats depend on.
+    pub structure: Option<Structure>,
 }
 
 /// The floor of rows with these residuals (`None`: not predictable, or an outlier).
@@ -44,15 +47,23 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
     let mut repeated = vec![];
     let mut source = FloorSource::Repeats;
     let mut changed: Option<Drift> = None;
+    let mut depends: Option<Structure> = None;
     for what in What::ALL {
         if !measurements.has(what) {
             continue;
         }
         let repeats = within_cells(measurements, residuals, what).map(|(mut repeats, course)| {
-            if let Some(course) = course {
-                repeats.sd.iter_mut().zip(&course.left).for_each(|(sd, left)| *sd *= left.sqrt());
-                changed = Some(course);
-            }
+            let other = structure_within(measurements, residuals, what, repeats.degrees_of_freedom);
+            // The surer of both says what is noise.
+            let left = match (&course, &other) {
+                (Some(course), Some(other)) if other.p_value < course.p_value => &other.left[..],
+                (Some(course), _) => &course.left,
+                (None, Some(other)) => &other.left,
+                (None, None) => &[],
+            };
+            repeats.sd.iter_mut().zip(left).for_each(|(sd, left)| *sd *= left.sqrt());
+            changed = course.or(changed.take());
+            depends = other.or(depends.take());
             repeats
         });
         let nearby = near_neighbors(measurements, residuals, what);
@@ -89,7 +100,7 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
         kinds.push(KindFloor { what, sd, degrees_of_freedom: free, sigma_m });
         repeated.push(known);
     }
-    Noise { floor: Floor { kinds, source }, repeated, drift: changed }
+    Noise { floor: Floor { kinds, source }, repeated, drift: changed, structure: depends }
 }
 
 /// The least noise of coordinates that follow from the command: the height of a touch whose
@@ -164,6 +175,90 @@ fn within_cells(
         .collect();
     let course = drift(&deviations(measurements, residuals, what), free);
     Some((KindFloor { what, sd, degrees_of_freedom: free, sigma_m: None }, course))
+}
+
+/// What repeats of any kind still depend on under a model with these residuals: the largest.
+pub fn structure_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> Option<Structure> {
+    let of = |what: What| -> Option<Structure> {
+        let (repeats, course) = within_cells(measurements, residuals, what)?;
+        let course = course.map(|course| Structure::new("time".to_owned(), course.p_value, course.left));
+        let other = structure_within(measurements, residuals, what, repeats.degrees_of_freedom);
+        course.into_iter().chain(other).max_by(|a, b| a.size_sigmas.total_cmp(&b.size_sigmas))
+    };
+    let all = What::ALL.into_iter().filter(|what| measurements.has(*what)).filter_map(of);
+    all.max_by(|a, b| a.size_sigmas.total_cmp(&b.size_sigmas))
+}
+
+/// What repeats of one kind depend on, of the session with most of them.
+fn structure_within(
+    measurements: &Measurements,
+    residuals: &[Option<Vec<f64>>],
+    what: What,
+    free: f64,
+) -> Option<Structure> {
+    let of_kind = |i: &usize| measurements.rows[*i].what == what;
+    let mut sessions = BTreeMap::<usize, Vec<usize>>::new();
+    for i in (0..measurements.rows.len()).filter(of_kind) {
+        sessions.entry(measurements.rows[i].session).or_default().push(i);
+    }
+    let share =
+        |own: &[usize]| own.len() as f64 / sessions.values().map(Vec::len).sum::<usize>().max(1) as f64;
+    let (session, rows) = sessions.iter().max_by_key(|(_, own)| own.len())?;
+    let repeats = repeats(measurements, residuals, rows);
+    let apparatus = &measurements.apparatuses[*session];
+    let parts = if what.is_placed() {
+        apparatus.arm.as_ref().map(|arm| &arm.parts)
+    } else {
+        apparatus.eyes.as_ref().map(|eyes| &eyes.neck.parts)
+    };
+    let titles: Vec<String> = parts.into_iter().flatten().map(|part| part.title.clone()).collect();
+    let timed = rows.iter().all(|&i| measurements.rows[i].t_secs.is_some());
+    structure(&repeats, free * share(rows), if timed { "time" } else { "the order of the rows" }, &titles)
+}
+
+/// Rows of cells with repeats, in their order, less the mean of their cell.
+fn repeats(measurements: &Measurements, residuals: &[Option<Vec<f64>>], rows: &[usize]) -> Vec<Repeat> {
+    let timed = rows.iter().all(|&i| measurements.rows[i].t_secs.is_some());
+    let mut ordered = rows.to_vec();
+    if timed {
+        ordered.sort_by(|&a, &b| {
+            let t_secs = |i: usize| measurements.rows[i].t_secs.unwrap_or_default();
+            t_secs(a).total_cmp(&t_secs(b))
+        });
+    }
+    let stands = |i: usize| -> &[f64] {
+        let row = &measurements.rows[i];
+        if row.what.is_placed() { row.angles_rad() } else { &row.neck_rad }
+    };
+    let mut means = BTreeMap::<usize, (Vec<f64>, f64)>::new();
+    for (i, residual) in rows.iter().filter_map(|&i| Some((i, residuals[i].as_ref()?))) {
+        let (sum, count) =
+            means.entry(measurements.rows[i].cell).or_insert_with(|| (vec![0.0; residual.len()], 0.0));
+        sum.iter_mut().zip(residual).for_each(|(sum, value)| *sum += value);
+        *count += 1.0;
+    }
+    let mut all = vec![];
+    for (place, &i) in ordered.iter().enumerate() {
+        let row = &measurements.rows[i];
+        let Some((residual, (sum, count))) = residuals[i].as_ref().zip(means.get(&row.cell)) else {
+            continue;
+        };
+        if *count < 2.0 {
+            continue;
+        }
+        let turned_rad = place.checked_sub(1).map_or(vec![], |before| {
+            stands(i).iter().zip(stands(ordered[before])).map(|(now, then)| now - then).collect()
+        });
+        let warmth = row.temperature_c.as_ref().filter(|all| !all.is_empty());
+        all.push(Repeat {
+            cell: row.cell,
+            when: row.t_secs.filter(|_| timed).unwrap_or(place as f64),
+            turned_rad,
+            temperature_c: warmth.map(|all| all.iter().sum::<f64>() / all.len() as f64).or(row.ambient_c),
+            off: residual.iter().zip(sum).map(|(value, sum)| value - sum / count).collect(),
+        });
+    }
+    all
 }
 
 /// Rows of cells with repeats whose time is known, less the mean of their cell.

@@ -94,15 +94,15 @@ impl Space<'_> {
     }
 
     fn usable(&self, set: &[usize]) -> Vec<usize> {
-        let mut names = HashSet::new();
-        let mut set: Vec<usize> = set
-            .iter()
-            .copied()
-            .filter(|block| self.allowed.contains(block) && names.insert(self.blocks[*block].name))
-            .take(self.most)
-            .collect();
-        set.sort_unstable();
-        set
+        let mut usable: Vec<usize> = vec![];
+        for &block in set.iter().filter(|block| self.allowed.contains(block)) {
+            let excluded = usable.iter().any(|&other| self.blocks[block].excludes(&self.blocks[other]));
+            if !excluded && usable.len() < self.most {
+                usable.push(block);
+            }
+        }
+        usable.sort_unstable();
+        usable
     }
 
     fn best(&self, visited: &HashMap<Vec<usize>, f64>) -> Vec<usize> {
@@ -141,9 +141,8 @@ impl Space<'_> {
         if base.len() >= self.most {
             return Ok(());
         }
-        let names: HashSet<usize> = base.iter().map(|&block| self.blocks[block].name).collect();
         for &block in self.allowed {
-            if names.contains(&self.blocks[block].name) {
+            if base.iter().any(|&other| self.blocks[block].excludes(&self.blocks[other])) {
                 continue;
             }
             context.checkpoint()?;

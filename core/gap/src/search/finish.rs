@@ -33,6 +33,7 @@ pub(super) struct Finish<'a> {
     pub library: &'a Library,
     pub look: &'a Look,
     pub explored: &'a Explored,
+    pub alone: Option<&'a Explored>,
 }
 
 impl Finish<'_> {
@@ -42,6 +43,7 @@ impl Finish<'_> {
             library: self.library,
             look: self.look,
             explored: self.explored,
+            alone: self.alone,
             floor: self.floor,
             floor_m: floor_m(self.measurements, self.floor),
             temperature: TEMPERATURE,
@@ -57,7 +59,9 @@ impl Finish<'_> {
             })
             .collect();
         let families = effects.iter().any(|present| present.effect.is_of_every_site());
-        let named_all = effects.len() == fitted.assumed.effects.len() && !families;
+        let of_fit = &fitted.assumed.effects;
+        let is_fitted = |one: &Present| of_fit.iter().any(|other| other.effect == one.effect);
+        let named_all = effects.len() == of_fit.len() && effects.iter().all(is_fitted) && !families;
         let start = Assumed { effects, ..fitted.assumed.clone() };
         // Values that were found beside effects that get no name are not theirs alone.
         let (assumed, doubt, sds) = if named_all {

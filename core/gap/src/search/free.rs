@@ -109,6 +109,8 @@ pub(super) fn rivals(
         .map(|k| Block {
             start: library.columns + k * FUNCTIONS,
             len: FUNCTIONS,
+            kind: None,
+            is_family: false,
             name: library.names.len(),
             log_prior: (UNKNOWN / count).ln(),
         })

@@ -14,6 +14,10 @@ pub(super) struct Block {
     pub start: usize,
     /// Number of columns.
     pub len: usize,
+    /// Number of its kind; `None` of what is in no library.
+    pub kind: Option<Kind>,
+    /// Whether it stands for every joint or link at once.
+    pub is_family: bool,
     /// Number of its name. Two blocks of one name (shapes of one effect) are never in together.
     pub name: usize,
     /// How much it is trusted beforehand, log of the odds.
@@ -21,6 +25,13 @@ pub(super) struct Block {
 }
 
 impl Block {
+    /// Whether it cannot be there together with another one: two shapes of one name, or a family with one of
+    /// its members.
+    pub fn excludes(&self, other: &Self) -> bool {
+        let of_one_kind = self.kind.is_some() && self.kind == other.kind;
+        self.name == other.name || of_one_kind && self.is_family != other.is_family
+    }
+
     /// Its columns.
     pub fn columns(&self) -> std::ops::Range<usize> {
         self.start..self.start + self.len
@@ -67,7 +78,8 @@ impl Library {
                 names.len() - 1
             });
             let len = effect.parameters().len();
-            blocks.push(Block { start, len, name, log_prior: 0.0 });
+            let (kind, is_family) = (Some(effect.kind), effect.is_of_every_site());
+            blocks.push(Block { start, len, kind, is_family, name, log_prior: 0.0 });
             start += len;
         }
         let mut shapes = vec![0_usize; names.len()];
@@ -79,5 +91,28 @@ impl Library {
             block.log_prior = (many * odds / shapes[block.name] as f64).ln();
         }
         Self { effects, blocks, names, columns: start }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_effects::arm::Arm;
+    use plumbline_model::robot::Rig;
+
+    use super::*;
+
+    #[test]
+    fn a_family_is_not_there_beside_one_of_its_members() {
+        let rig = Rig::built_in("nico").expect("comes along");
+        let arm = Arm::of_rig(&rig, "right_index_tip").expect("an arm");
+        let of = |kind: Kind| Effect::sites(kind, Some(&arm), None);
+        let library = Library::with([of(Kind::JointZero), of(Kind::AxisSkew)].concat());
+        let place = |kind: Kind, family: bool| {
+            let wanted = |effect: &Effect| effect.kind == kind && effect.is_of_every_site() == family;
+            &library.blocks[library.effects.iter().position(wanted).expect("in the library")]
+        };
+        let (zeros, zero) = (place(Kind::JointZero, true), place(Kind::JointZero, false));
+        assert!(zeros.excludes(zero) && zero.excludes(zeros));
+        assert!(!zeros.excludes(place(Kind::AxisSkew, false)) && !zero.excludes(place(Kind::AxisSkew, true)));
     }
 }

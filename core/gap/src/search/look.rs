@@ -138,7 +138,7 @@ impl Look {
         Ok(Self { blocks, packed, rivals, effects, fields, plain, sizes, allowed, total, within, gauge })
     }
 
-    /// Looks through sets of blocks.
+    /// Looks through sets of blocks, with rivals that are in no library or without.
     ///
     /// # Errors
     /// Cancelled.
@@ -146,12 +146,15 @@ impl Look {
         &self,
         seeds: &[Vec<usize>],
         most: usize,
+        with_rivals: bool,
         context: &dyn JobContext,
     ) -> Result<Explored, GapError> {
+        let known = |block: &&usize| with_rivals || **block < self.effects;
+        let allowed: Vec<usize> = self.allowed.iter().filter(known).copied().collect();
         let space = Space {
             fields: &self.fields,
             blocks: &self.packed,
-            allowed: &self.allowed,
+            allowed: &allowed,
             most,
             temperature: TEMPERATURE,
         };

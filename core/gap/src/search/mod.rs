@@ -40,6 +40,7 @@ use explore::Explored;
 use finish::Finish;
 use library::Library;
 use look::Look;
+pub(crate) use naming::MISLED;
 use refit::refit;
 
 /// Times that the model is linearized anew, at the effects found before.
@@ -132,7 +133,7 @@ pub(crate) fn search(
         context.report(0.1 + 0.8 * round as f64 / rounds as f64, "looking through sets of effects");
         let look =
             Look::at(measurements, &floor, &fitted.assumed, &library, &covariates, &fitted.weights, context)?;
-        let explored = look.explore(&seeds, options.most_effects, context)?;
+        let explored = look.explore(&seeds, options.most_effects, true, context)?;
         let top = top(&look, &explored);
         let effects: Vec<Effect> = top.iter().map(|&block| library.effects[block].clone()).collect();
         let same = effects.iter().eq(fitted.assumed.effects.iter().map(|present| &present.effect));
@@ -161,8 +162,23 @@ pub(crate) fn search(
         return Err(GapError::TooFew { rows, needed: FEWEST_ROWS });
     };
     context.report(0.9, "naming");
-    let finish =
-        Finish { measurements, floor: &floor, options, library: &library, look: &look, explored: &explored };
+    let has_rival = |explored: &Explored| {
+        explored.models.first().is_some_and(|model| model.set.iter().any(|&block| block >= look.effects))
+    };
+    let alone = if has_rival(&explored) {
+        Some(look.explore(&seeds, options.most_effects, false, context)?)
+    } else {
+        None
+    };
+    let finish = Finish {
+        measurements,
+        floor: &floor,
+        options,
+        library: &library,
+        look: &look,
+        explored: &explored,
+        alone: alone.as_ref(),
+    };
     finish.found(&bare, &fitted, context)
 }
 

@@ -8,11 +8,12 @@ use plumbline_effects::{Effect, Kind, Measurements, Present, RigModel, Surface};
 use plumbline_engine::gap::search::{measured, search};
 use plumbline_engine::gap::sessions::stamps;
 use plumbline_engine::gap::store::{KeptFinding, KeptSession, Store};
-use plumbline_engine::gap::{Finding, Verdict, model_name};
+use plumbline_engine::gap::{Finding, model_name};
 use plumbline_engine::rig_models;
 use plumbline_engine::touch::plan::TIP;
 use plumbline_engine::touch::store;
 use plumbline_gap::Options;
+use plumbline_gap::finding::NamedEffect;
 use plumbline_model::touchscreen::place_screen;
 use plumbline_model::{JobContext, Session};
 
@@ -232,8 +233,10 @@ fn arm_effects(fitted: &Fit, finding: &Finding) -> Vec<ModelEffect> {
 
 /// Effects of a finding that can be added, of the library.
 fn named_effects(finding: &Finding, arm: &Arm) -> Vec<Effect> {
-    let named = matches!(finding.verdict, Verdict::Named | Verdict::Class);
-    let effects = finding.effects.iter().filter(|effect| named && effect.not_addable.is_none());
+    // What encoders see is in every row that has them already.
+    let is_seen = |effect: &&NamedEffect| Kind::of_id(&effect.id).is_some_and(Kind::is_seen_by_encoder);
+    let effects =
+        finding.addable().into_iter().map(|i| &finding.effects[i]).filter(|effect| !is_seen(effect));
     effects
         .filter_map(|effect| Effect::find(&effect.id, &effect.site, effect.shape, Some(arm), None))
         .collect()

@@ -41,6 +41,7 @@ pub fn draw(drawing: &mut Drawing, area: Area, finding: &Finding, detail: Detail
         return area.y;
     }
     let title = match finding.verdict {
+        Verdict::NotInLibrary if finding.partial => "No names, but these close a part of the gap",
         Verdict::NotInLibrary => "It looks partly like these, but they do not explain it",
         _ => "What is missing in the model",
     };

@@ -1,6 +1,6 @@
 //! Makes cases and writes them: sessions into one folder, answers into another.
 //!
-//! `blind-cases OUT ANSWERS SEED CASES [FIRST]`
+//! `blind-cases OUT ANSWERS lean|worn SEED CASES [FIRST]`
 
 use std::path::Path;
 use std::time::Instant;
@@ -12,13 +12,13 @@ use plumbline_blind::{case, mix};
 #[allow(clippy::print_stdout)]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().collect();
-    let [_, out, answers, seed, cases, first @ ..] = arguments.as_slice() else {
-        return Err("give: OUT ANSWERS SEED CASES [FIRST]".into());
+    let [_, out, answers, generator, seed, cases, first @ ..] = arguments.as_slice() else {
+        return Err("give: OUT ANSWERS lean|worn SEED CASES [FIRST]".into());
     };
     let first = first.first().map_or(Ok(0), |text| text.parse::<usize>())?;
     let bench = Bench::usual()?;
     let planner = Planner::new(&bench)?;
-    for recipe in mix::recipes(cases.parse()?, seed.parse()?).into_iter().skip(first) {
+    for recipe in mix::recipes(generator.parse()?, cases.parse()?, seed.parse()?).into_iter().skip(first) {
         let started = Instant::now();
         let number = recipe.number;
         match case::make_or_smaller(&bench, &planner, &recipe) {

@@ -1,0 +1,216 @@
+//! Repeats that differ by what was logged of them: noise with structure is no noise.
+//!
+//! Deviations of rows from the mean of their cell are regressed, one covariate at a time, on a wobble
+//! over time (or over the order of the rows), on how each joint came to its angle, and on temperature.
+//! What that explains beyond chance is a gap; what it leaves is noise.
+
+use nalgebra::{Cholesky, DMatrix};
+
+use crate::statistics::{f_tail, robust_sd};
+
+/// Fewer deviations than this say nothing.
+const FEWEST: usize = 40;
+/// Full turns of a wobble that are tried at most, and rows that each needs.
+const MOST_TURNS: usize = 60;
+const ROWS_PER_TURN: usize = 6;
+/// A joint that came from further away than this came all the way from one side, rad.
+const SIDE_RAD: f64 = 0.02;
+/// A covariate that repeats hardly differ in (share of its variance) says nothing.
+const LEAST_WITHIN: f64 = 0.05;
+/// Deviations beyond this many robust standard deviations count as that far.
+const FAR: f64 = 4.0;
+/// A dependence counts from this probability by chance on, all that were tried together.
+const SIGNIFICANT: f64 = 1e-4;
+
+/// One repeat: what is known of it, and its coordinates less the mean of its cell.
+pub struct Repeat {
+    pub cell: usize,
+    /// Time (s), or place in the order of the rows where times are not known.
+    pub when: f64,
+    /// How far each joint turned since the row before, rad; empty for the first.
+    pub turned_rad: Vec<f64>,
+    /// Mean temperature, °C.
+    pub temperature_c: Option<f64>,
+    pub off: Vec<f64>,
+}
+
+/// What repeats depend on.
+#[derive(Clone, Debug)]
+pub struct Structure {
+    /// For people: "time", "where the elbow came from".
+    pub on: String,
+    /// Probability by chance, of all that was tried.
+    pub p_value: f64,
+    /// Root mean square over coordinates of what it explains, in units of what it leaves.
+    pub size_sigmas: f64,
+    /// Variance that it leaves over the variance that there was, per coordinate.
+    pub left: Vec<f64>,
+}
+
+impl Structure {
+    /// Of what is left.
+    pub fn new(on: String, p_value: f64, left: Vec<f64>) -> Self {
+        let explained = left.iter().map(|left| (1.0 - left).max(0.0) / left.max(1e-12));
+        let size_sigmas = (explained.sum::<f64>() / left.len().max(1) as f64).sqrt();
+        Self { on, p_value, size_sigmas, left }
+    }
+}
+
+/// The strongest dependence beyond doubt. `free`: degrees of freedom of the deviations; `when`: what
+/// [`Repeat::when`] is, `joints`: names of those that turned, for people.
+pub fn structure(rows: &[Repeat], free: f64, when: &str, joints: &[String]) -> Option<Structure> {
+    let width = rows.first()?.off.len();
+    if rows.len() < FEWEST || free < 0.5 * FEWEST as f64 {
+        return None;
+    }
+    let values = tamed(rows, width);
+    let before: Vec<f64> = (0..width).map(|c| values.column(c).norm_squared()).collect();
+    let widest = before.iter().copied().fold(0.0, f64::max);
+    let counted: Vec<usize> = (0..width).filter(|&c| before[c] > 1e-4 * widest).collect();
+    let tried = covariates(rows, when, joints);
+    let tests = (tried.len() * counted.len()) as f64;
+    let mut best: Option<Structure> = None;
+    for (on, columns) in tried {
+        let Some(design) = within_cells(rows, &columns) else { continue };
+        let used = design.ncols() as f64;
+        let mut normal = design.tr_mul(&design);
+        for k in 0..normal.ncols() {
+            normal[(k, k)] += 1e-9 * rows.len() as f64;
+        }
+        let Some(normal) = Cholesky::new(normal) else { continue };
+        let left = &values - &design * normal.solve(&design.tr_mul(&values));
+        let after: Vec<f64> = (0..width).map(|c| left.column(c).norm_squared()).collect();
+        let rest = (free - used).max(1.0);
+        let chance = |c: usize| {
+            let ratio = (before[c] - after[c]) / used / (after[c] / rest).max(1e-300);
+            f_tail(ratio, used, rest)
+        };
+        let p_value = counted.iter().map(|&c| chance(c)).fold(1.0, f64::min) * tests;
+        if p_value > SIGNIFICANT || best.as_ref().is_some_and(|best| best.p_value <= p_value) {
+            continue;
+        }
+        let share = |c: usize| if counted.contains(&c) { after[c] / before[c] * free / rest } else { 1.0 };
+        let left = (0..width).map(|c| share(c).min(1.0)).collect();
+        best = Some(Structure::new(on, p_value, left));
+    }
+    best
+}
+
+/// Deviations, one row each; what is far out is taken as less far.
+fn tamed(rows: &[Repeat], width: usize) -> DMatrix<f64> {
+    let limit: Vec<f64> = (0..width).map(|c| FAR * robust_sd(rows.iter().map(|row| row.off[c]))).collect();
+    DMatrix::from_fn(rows.len(), width, |r, c| {
+        let (off, limit) = (rows[r].off[c], limit[c]);
+        if limit > 0.0 { off.clamp(-limit, limit) } else { off }
+    })
+}
+
+/// Everything that is tried: what it is, and its columns.
+fn covariates(rows: &[Repeat], when: &str, joints: &[String]) -> Vec<(String, Vec<Vec<f64>>)> {
+    let mut all = vec![];
+    let (first, last) =
+        rows.iter().fold((f64::MAX, f64::MIN), |(a, b), row| (a.min(row.when), b.max(row.when)));
+    if last > first {
+        for turns in 1..=MOST_TURNS.min(rows.len() / ROWS_PER_TURN) {
+            let phase =
+                |row: &Repeat| std::f64::consts::TAU * turns as f64 * (row.when - first) / (last - first);
+            let [sines, cosines] =
+                [f64::sin, f64::cos].map(|of| rows.iter().map(|row| of(phase(row))).collect());
+            all.push((when.to_owned(), vec![sines, cosines]));
+        }
+    }
+    for (j, joint) in joints.iter().enumerate() {
+        let turned = |row: &Repeat| row.turned_rad.get(j).copied().unwrap_or(0.0);
+        let side = rows.iter().map(|row| (turned(row) / SIDE_RAD).tanh()).collect();
+        let far = rows.iter().map(turned).collect();
+        all.push((format!("where {joint} came from"), vec![side, far]));
+    }
+    let known: Option<Vec<f64>> = rows.iter().map(|row| row.temperature_c).collect();
+    all.extend(known.map(|warmth| ("temperature".to_owned(), vec![warmth])));
+    all
+}
+
+/// Columns less their means within cells, of unit length; `None` where repeats hardly differ in them.
+fn within_cells(rows: &[Repeat], columns: &[Vec<f64>]) -> Option<DMatrix<f64>> {
+    let mut members = std::collections::BTreeMap::<usize, Vec<usize>>::new();
+    rows.iter().enumerate().for_each(|(r, row)| members.entry(row.cell).or_default().push(r));
+    let mut design = DMatrix::zeros(rows.len(), columns.len());
+    for (k, column) in columns.iter().enumerate() {
+        for own in members.values() {
+            let mean = own.iter().map(|&r| column[r]).sum::<f64>() / own.len() as f64;
+            own.iter().for_each(|&r| design[(r, k)] = column[r] - mean);
+        }
+        let mean = column.iter().sum::<f64>() / column.len() as f64;
+        let whole: f64 = column.iter().map(|value| (value - mean).powi(2)).sum();
+        let within = design.column(k).norm_squared();
+        if within <= LEAST_WITHIN * whole || within < 1e-12 {
+            return None;
+        }
+        design.column_mut(k).scale_mut(within.sqrt().recip() * (rows.len() as f64).sqrt());
+    }
+    Some(design)
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::rngs::StdRng;
+    use rand::{Rng, SeedableRng};
+
+    use super::*;
+
+    /// 40 cells of four repeats in an order drawn by chance; `of` is added to the first coordinate.
+    fn rows(seed: u64, of: impl Fn(f64, f64) -> f64) -> Vec<Repeat> {
+        let mut random = StdRng::seed_from_u64(seed);
+        let mut all: Vec<Repeat> = (0..160)
+            .map(|i| {
+                let mut noise = || (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
+                let off = vec![noise(), noise()];
+                let (when, turned) = (7.0 * f64::from(i), random.random_range(-0.5..0.5));
+                let off = vec![off[0] + of(when, turned), off[1]];
+                let cell = usize::try_from(i % 40).expect("small");
+                Repeat { cell, when, turned_rad: vec![turned], temperature_c: None, off }
+            })
+            .collect();
+        for cell in 0..40 {
+            let own: Vec<usize> = (0..all.len()).filter(|&r| all[r].cell == cell).collect();
+            for c in 0..2 {
+                let mean = own.iter().map(|&r| all[r].off[c]).sum::<f64>() / own.len() as f64;
+                own.iter().for_each(|&r| all[r].off[c] -= mean);
+            }
+        }
+        all
+    }
+
+    fn found(rows: &[Repeat]) -> Option<Structure> {
+        structure(rows, 120.0, "time", &["the elbow".to_owned()])
+    }
+
+    #[test]
+    fn a_wobble_over_time_is_found() {
+        for seed in 0..10 {
+            let rows = rows(seed, |t, _| 2.0 * (t / 17.0).sin());
+            let structure = found(&rows).expect("two standard deviations");
+            assert_eq!(structure.on, "time");
+            assert!(structure.size_sigmas > 0.5, "{structure:?}");
+        }
+    }
+
+    #[test]
+    fn a_joint_that_remembers_where_it_came_from_is_found() {
+        for seed in 0..10 {
+            let rows = rows(100 + seed, |_, turned| 1.5 * turned.signum());
+            let structure = found(&rows).expect("one and a half standard deviations");
+            assert_eq!(structure.on, "where the elbow came from");
+            // What it leaves is the noise alone.
+            let spread: f64 = rows.iter().map(|row| row.off[0] * row.off[0]).sum();
+            let noise = (spread * structure.left[0] / 120.0).sqrt();
+            assert!((noise - 1.0).abs() < 0.35, "{noise}");
+        }
+    }
+
+    #[test]
+    fn noise_has_no_structure() {
+        let alarms = (0..200).filter(|seed| found(&rows(1000 + seed, |_, _| 0.0)).is_some()).count();
+        assert_eq!(alarms, 0);
+    }
+}
