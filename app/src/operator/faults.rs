@@ -29,6 +29,7 @@ pub fn most_urgent(view: &View, screen: Screen) -> Option<&ThreadFault> {
         WatchedThread::Engine | WatchedThread::Robot => true,
         WatchedThread::Source => looks,
         WatchedThread::Rectify | WatchedThread::Probe | WatchedThread::Detect => screen == Screen::Live,
+        WatchedThread::Drift => screen == Screen::Drift,
         WatchedThread::Corners => matches!(screen, Screen::Collect | Screen::Mount),
         WatchedThread::Journal => false,
     };

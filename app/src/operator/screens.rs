@@ -27,6 +27,8 @@ pub enum Screen {
     Gap,
     /// Grasping things.
     Grasp,
+    /// Watching whether places stay where they are.
+    Drift,
     /// The robot: its joints, moving it.
     Robot,
     /// Detectors judged on a labeled data set.
@@ -37,7 +39,7 @@ pub enum Screen {
 
 impl Screen {
     /// All of them, in the order of work.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Commission,
         Self::Live,
         Self::Collect,
@@ -48,6 +50,7 @@ impl Screen {
         Self::Models,
         Self::Gap,
         Self::Grasp,
+        Self::Drift,
         Self::Robot,
         Self::Scores,
         Self::Images,
@@ -154,6 +157,10 @@ pub enum Pane {
     GraspAttempts,
     /// The experiment with grasps.
     GraspExperiment,
+    /// How far places wander, over time.
+    DriftCourse,
+    /// How far they have wandered over the table.
+    DriftTable,
     /// Which detectors are judged on what.
     ScoreChoice,
     /// Detectors compared.
@@ -221,6 +228,8 @@ impl Pane {
             Self::GraspRun => "Grasp",
             Self::GraspAttempts => "Attempts",
             Self::GraspExperiment => "Experiment",
+            Self::DriftCourse => "Drift",
+            Self::DriftTable => "Drift over the table",
             Self::ScoreChoice => "Detectors and data set",
             Self::ScoreTable => "Detectors compared",
             Self::ScoreClasses => "Per class",

@@ -32,6 +32,8 @@ impl Action {
             Self::Go(Screen::Grasp) => command(Key::Num0),
             Self::Go(Screen::Images) => command(Key::D),
             Self::Go(Screen::Scores) => shift(Key::D),
+            Self::Go(Screen::Drift) => shift(Key::W),
+            Self::WatchDrift => plain(Key::W),
             Self::ToggleRecording => plain(Key::R),
             Self::Capture => plain(Key::C),
             Self::Detect(DetectAction::ToggleBoxes) => plain(Key::B),

@@ -10,6 +10,7 @@ mod comparison;
 mod context;
 mod coverage;
 mod depth;
+mod drift;
 mod error_bars;
 mod eye;
 mod figures;
@@ -39,6 +40,7 @@ mod verdict_line;
 pub(crate) use commission::show_inspector as show_commission_inspector;
 pub use context::{PanelContext, PanelState};
 pub(crate) use context::{padded, shown_calibration, shown_calibration_ref};
+pub(crate) use drift::show_inspector as show_drift_inspector;
 pub(crate) use gap::show_inspector as show_gap_inspector;
 pub(crate) use grasp::parts::{ghost as grasp_ghost, palm_way};
 pub(crate) use grasp::show_inspector as show_grasp_inspector;
@@ -105,6 +107,8 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
         Pane::GraspRun => grasp::show_run(ui, cx),
         Pane::GraspAttempts => grasp::show_attempts(ui, cx),
         Pane::GraspExperiment => grasp::show_experiment(ui, cx),
+        Pane::DriftCourse => drift::show_course(ui, cx),
+        Pane::DriftTable => drift::show_table(ui, cx),
         Pane::ScoreChoice
         | Pane::ScoreTable
         | Pane::ScoreClasses

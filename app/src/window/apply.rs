@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_engine::{
-    Command, EyesCommand, JobCommand, LiveCommand, MountCommand, NoticeCommand, NoticeLevel,
+    Command, DriftCommand, EyesCommand, JobCommand, LiveCommand, MountCommand, NoticeCommand, NoticeLevel,
     RecordingCommand, RobotCommand, SourceCommand, TouchCommand, TwinCommand, WatchCommand,
 };
 
@@ -214,6 +214,8 @@ impl PlumblineWindow {
             Action::ToggleLoop => SourceCommand::Loop(!replay?.looping).into(),
             Action::ToggleRecording if self.view.recording.is_on() => RecordingCommand::Stop.into(),
             Action::ToggleRecording => RecordingCommand::Start.into(),
+            Action::WatchDrift if self.view.drift.is_watching => DriftCommand::Stop.into(),
+            Action::WatchDrift => DriftCommand::Start.into(),
             Action::PlayLastRecording => {
                 SourceCommand::OpenPaths(vec![self.view.recording.last.as_ref()?.session.clone()]).into()
             }

@@ -18,6 +18,7 @@ pub fn default_arrangement(screen: Screen) -> Tree<Pane> {
         Screen::Models => models(&mut tiles),
         Screen::Gap => gap(&mut tiles),
         Screen::Grasp => grasp(&mut tiles),
+        Screen::Drift => drift(&mut tiles),
         Screen::Robot => robot(&mut tiles),
         Screen::Scores => scores(&mut tiles),
         Screen::Images => images(&mut tiles),
@@ -120,6 +121,14 @@ fn grasp(tiles: &mut Tiles<Pane>) -> TileId {
     let seen = column(tiles, &[(eyes, 0.6), (scene, 1.0)]);
     let work = column(tiles, &[(run, 4.8), (attempts, 1.0)]);
     row(tiles, &[(seen, 1.15), (work, 1.0)])
+}
+
+fn drift(tiles: &mut Tiles<Pane>) -> TileId {
+    let course = tabs(tiles, &[Pane::DriftCourse]);
+    let table = tabs(tiles, &[Pane::DriftTable]);
+    let eye = tabs(tiles, &[Pane::LeftEye, Pane::RightEye, Pane::Twin]);
+    let right = column(tiles, &[(table, 1.25), (eye, 1.0)]);
+    row(tiles, &[(course, 1.35), (right, 1.0)])
 }
 
 fn robot(tiles: &mut Tiles<Pane>) -> TileId {

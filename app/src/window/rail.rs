@@ -15,7 +15,7 @@ use crate::panels::shown_calibration;
 const WIDTH: f32 = 176.0;
 /// Height of all steps with the parts of "Eyes"; where there is less, the parts stand only on their own
 /// screens.
-const ALL_ROWS: f32 = 498.0;
+const ALL_ROWS: f32 = 534.0;
 /// Height of what belongs to "Detect".
 const DETECT_ROWS: f32 = 52.0;
 
@@ -59,6 +59,10 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
                 }
             }
             ui.add_space(space::S);
+            let drift = RailStep::new("Drift", drift_state(view)).selected(screen == Screen::Drift).show(ui);
+            if drift.clicked() {
+                outbox.act(Action::Go(Screen::Drift));
+            }
             let robot = RailStep::new("Robot", robot_state(view)).selected(screen == Screen::Robot).show(ui);
             if robot.clicked() {
                 outbox.act(Action::Go(Screen::Robot));
@@ -238,6 +242,14 @@ fn gap_state(view: &View) -> StepState<'_> {
     match &view.gap.failed {
         Some(why) => StepState::Failed(why),
         None => step_state(&view.gap.step),
+    }
+}
+
+/// No step of the work: it says whether it watches, and when something moved.
+fn drift_state(view: &View) -> StepState<'_> {
+    match &view.drift.step {
+        EngineStep::NotDone | EngineStep::Done => StepState::Always,
+        other => step_state(other),
     }
 }
 

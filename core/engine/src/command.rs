@@ -47,6 +47,8 @@ commands! {
     Live(live / LiveCommand);
     /// Detecting objects in those images, live.
     Detect(detect / DetectCommand);
+    /// Watching whether places stay where they are.
+    Drift(drift / DriftCommand);
     /// Calibrating the eyes.
     Eyes(eyes / EyesCommand);
     /// The robot: connecting and moving it.

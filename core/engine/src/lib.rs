@@ -8,6 +8,7 @@ pub mod ground;
 
 pub mod commission;
 pub mod detect;
+pub mod drift;
 pub mod eyes;
 pub mod gap;
 pub mod grasp;
@@ -34,11 +35,11 @@ pub mod engine;
 
 pub use command::{
     AimChoice, BoxEdit, Command, CommissionCommand, ConfusionCell, ContactWith, Correction, Destination,
-    DetectCommand, DetectorChoice, ExportFormat, Exported, EyesCommand, FileLength, GapCommand, GapModel,
-    GraspCommand, GraspTable, GraspTarget, HandStep, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates,
-    LabelsCommand, LiveCommand, ModelsCommand, MountCommand, NoticeCommand, ProbePoint, Products, Provider,
-    RecordingCommand, RobotCommand, ScoresCommand, ScreenContact, ScreenWindow, SetPart, SourceCommand,
-    TablesCommand, TouchCommand, TrialsCommand, TrialsFormat, TwinCommand, WatchCommand,
+    DetectCommand, DetectorChoice, DriftCommand, ExportFormat, Exported, EyesCommand, FileLength, GapCommand,
+    GapModel, GraspCommand, GraspTable, GraspTarget, HandStep, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId,
+    JogRates, LabelsCommand, LiveCommand, ModelsCommand, MountCommand, NoticeCommand, ProbePoint, Products,
+    Provider, RecordingCommand, RobotCommand, ScoresCommand, ScreenContact, ScreenWindow, SetPart,
+    SourceCommand, TablesCommand, TouchCommand, TrialsCommand, TrialsFormat, TwinCommand, WatchCommand,
 };
 pub use engine::settings::{self, EngineSettings};
 pub use engine::{Engine, Wake, journal, replay};

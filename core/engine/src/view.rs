@@ -46,6 +46,8 @@ views! {
     live: live / LiveView;
     /// What the detector sees live.
     detect: detect / DetectView;
+    /// Whether places stay where they are.
+    drift: drift / DriftView;
     /// Calibrating the eyes.
     eyes: eyes / EyesView;
     /// The robot.

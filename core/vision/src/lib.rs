@@ -14,6 +14,7 @@ pub mod detect_places;
 pub mod detect_score;
 pub mod disparity;
 pub mod disparity_bench;
+pub mod follow;
 pub mod health;
 pub mod locate;
 pub mod mat;

@@ -64,6 +64,8 @@ pub enum Action {
     ToggleRecording,
     /// Plays the recording that was made last.
     PlayLastRecording,
+    /// Watches whether places stay where they are, or stops that.
+    WatchDrift,
     /// Opens a screen.
     Go(Screen),
     /// Says which board the newest pair shows.
@@ -195,6 +197,7 @@ const ALL: &[Action] = &[
     Action::ToggleLoop,
     Action::ToggleRecording,
     Action::PlayLastRecording,
+    Action::WatchDrift,
     Action::Go(Screen::Commission),
     Action::Go(Screen::Live),
     Action::Go(Screen::Collect),
@@ -205,6 +208,7 @@ const ALL: &[Action] = &[
     Action::Go(Screen::Models),
     Action::Go(Screen::Gap),
     Action::Go(Screen::Grasp),
+    Action::Go(Screen::Drift),
     Action::Go(Screen::Robot),
     Action::Go(Screen::Images),
     Action::Go(Screen::Scores),
@@ -277,6 +281,7 @@ impl Action {
             Self::Go(Screen::Models) => "Go to Models",
             Self::Go(Screen::Gap) => "Go to Gap",
             Self::Go(Screen::Grasp) => "Go to Grasp",
+            Self::Go(Screen::Drift) => "Go to Drift",
             Self::Go(Screen::Robot) => "Go to Robot",
             Self::Go(Screen::Images) => "Go to Detect: images",
             Self::Go(Screen::Scores) => "Go to Detect: scores",
@@ -293,6 +298,7 @@ impl Action {
             Self::Detect(action) => action.label(),
             Self::ToggleRecording => "Record, or stop recording",
             Self::PlayLastRecording => "Play the last recording",
+            Self::WatchDrift => "Watch drift, or stop watching",
             Self::RecognizeBoard => "Recognize the board",
             Self::UseSeenBoard => "Use the recognized board",
             Self::Capture => "Capture pair",
@@ -358,6 +364,11 @@ impl Action {
             },
             Self::ToggleRecording => when(
                 view.source.replay.is_none() && view.source.status == SourceStatus::Running,
+                "no eyes are live",
+            ),
+            Self::WatchDrift if view.drift.is_watching => None,
+            Self::WatchDrift => when(
+                view.source.status == SourceStatus::Running && !view.source.photographs,
                 "no eyes are live",
             ),
             Self::PlayLastRecording => when(view.recording.last.is_some(), "nothing was recorded yet"),

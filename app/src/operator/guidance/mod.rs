@@ -2,6 +2,7 @@
 
 mod commission;
 mod detect;
+mod drift;
 mod gap;
 mod grasp;
 mod models;
@@ -48,6 +49,7 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
         Screen::Models => models::models(view),
         Screen::Gap => gap::gap(view),
         Screen::Grasp => grasp::grasp(view),
+        Screen::Drift => drift::drift(view),
         Screen::Robot => robot::robot(view),
         Screen::Scores => detect::scores(view),
         Screen::Images => detect::images(view),

@@ -12,6 +12,7 @@ use plumbline_model::robot::default_rig;
 use super::Shared;
 use super::journal::Happened;
 use crate::detect::DetectStage;
+use crate::drift::DriftStage;
 use crate::eyes::CornersStage;
 use crate::ground::bell::Bell;
 use crate::ground::slot::{Putter, Taker, newest_value_slot};
@@ -50,6 +51,7 @@ pub(super) struct Pipeline {
     corners: Line<CornersStage>,
     probe: Line<ProbeStage>,
     detect: Line<DetectStage>,
+    drift: Line<DriftStage>,
     probed: Probed,
 }
 
@@ -152,6 +154,7 @@ impl Pipeline {
             corners: start.stage()?,
             probe: start.stage()?,
             detect: start.stage()?,
+            drift: start.stage()?,
             probed: Probed::default(),
             bell: bell.clone(),
             trial: shared.trial.clone(),
@@ -171,7 +174,7 @@ impl Pipeline {
     }
 
     /// All watched threads.
-    pub(super) fn watched(&self) -> [&Watched; 6] {
+    pub(super) fn watched(&self) -> [&Watched; 7] {
         [
             self.robot.watched(),
             self.source.watched(),
@@ -179,6 +182,7 @@ impl Pipeline {
             self.corners.thread.watched(),
             self.probe.thread.watched(),
             self.detect.thread.watched(),
+            self.drift.thread.watched(),
         ]
     }
 
@@ -217,6 +221,7 @@ impl Pipeline {
             WatchedThread::Corners => self.corners = start.stage()?,
             WatchedThread::Probe => self.probe = start.stage()?,
             WatchedThread::Detect => self.detect = start.stage()?,
+            WatchedThread::Drift => self.drift = start.stage()?,
             WatchedThread::Engine | WatchedThread::Journal => {}
         }
         Ok(())
@@ -269,6 +274,7 @@ impl Pipeline {
         any |= self.corners.collect(state, now);
         any |= self.detect.collect(state, now);
         any |= self.probe.collect(state, now);
+        any |= self.drift.collect(state, now);
         any
     }
 
@@ -278,6 +284,7 @@ impl Pipeline {
         self.rectify.feed(state);
         self.corners.feed(state);
         self.detect.feed(state);
+        self.drift.feed(state);
         self.feed_probe(state);
     }
 

@@ -25,6 +25,7 @@ pub use stages::Serves;
 use crate::command::{Command, HeadPose};
 use crate::commission::CommissionWorkflow;
 use crate::detect::{DetectInput, DetectOutput, DetectWorkflow, OpenDetector};
+use crate::drift::{DriftInput, DriftOutput, DriftWorkflow};
 use crate::eyes::{CornersInput, EyesWorkflow, Look};
 use crate::ground::data_folder::KeptView;
 use crate::ground::jobs::list::JobList;
@@ -231,11 +232,18 @@ impl State {
         }
     }
 
-    /// Tells how long the eyes that are shown have been on: a twin knows it, of other eyes the operator does.
+    /// How long the eyes that are shown have been on, s: a twin knows it, of other eyes the operator does.
+    fn eyes_on_s(&self) -> Option<f64> {
+        match self.shown {
+            World::Twin => self.twin.running.then_some(self.twin.eyes_on_s),
+            World::Robot => self.rooms.eyes.of(World::Robot).minutes_since_on().map(|minutes| minutes * 60.0),
+        }
+    }
+
+    /// Tells whoever looks live.
     fn use_eyes_clock(&mut self) {
-        let told = self.rooms.eyes.of(self.shown).minutes_since_on().map(|minutes| minutes * 60.0);
-        let by_twin = self.twin.running.then_some(self.twin.eyes_on_s);
-        self.rooms.live.set_eyes_on(if self.shown == World::Twin { by_twin } else { told });
+        let on_s = self.eyes_on_s();
+        self.rooms.live.set_eyes_on(on_s);
     }
 
     fn put_together(&mut self, world: World) {
@@ -280,7 +288,20 @@ impl State {
         self.rooms.eyes.of_mut(self.shown).set_image_size(frame.left.dimensions());
         self.rooms.grasp.of(self.arm_of).saw(&frame);
         self.record(|recording, time| recording.saw(&frame, time));
+        self.with::<DriftWorkflow>(World::default(), |drift, around, context| {
+            drift.saw(&frame, around, context);
+        });
         self.rooms.live.frame(frame, now);
+    }
+
+    /// The thread that watches drift has looked.
+    pub fn drift_looked(&mut self, output: Timed<DriftOutput>) {
+        self.with::<DriftWorkflow>(World::default(), |drift, _, context| drift.looked(output, context));
+    }
+
+    /// What it is to look at, if anything.
+    pub fn drift_input(&self) -> Option<Arc<DriftInput>> {
+        self.rooms.drift.input()
     }
 
     /// The source says how it is doing.

@@ -14,6 +14,7 @@ use super::rooms::{Neighbors, Rooms, all_rooms};
 use crate::command::{Command, JobCommand, NoticeCommand};
 use crate::commission::CommissionWorkflow;
 use crate::detect::{DetectAround, DetectWorkflow};
+use crate::drift::{DriftAround, DriftWorkflow};
 use crate::eyes::{EyesAround, EyesWorkflow};
 use crate::gap::{GapAround, GapWorkflow};
 use crate::grasp::{GraspAround, GraspWorkflow};
@@ -156,6 +157,21 @@ impl Neighbors<DetectWorkflow> for State {
             opened: self.shown_of,
             photographs: source.view().photographs,
             setup: live.setup(),
+        }
+    }
+}
+
+impl Neighbors<DriftWorkflow> for State {
+    fn around(&self, _world: World) -> DriftAround {
+        let source = self.rooms.source.view();
+        DriftAround {
+            is_live: source.status == SourceStatus::Running && !source.photographs,
+            opened: source.opened,
+            model: self.models.of(self.shown).clone(),
+            own_eyes: self.shows_own_eyes() && self.shown == self.arm_of,
+            robot: self.robot.clone(),
+            eyes_on_s: self.eyes_on_s(),
+            found: self.rooms.detect.found().cloned(),
         }
     }
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::commission::CommissionWorkflow;
 use crate::detect::DetectWorkflow;
+use crate::drift::DriftWorkflow;
 use crate::eyes::EyesWorkflow;
 use crate::gap::GapWorkflow;
 use crate::grasp::GraspWorkflow;
@@ -42,6 +43,7 @@ macro_rules! all_rooms {
         }
         without_work {
             live: LiveWorkflow, Live;
+            drift: DriftWorkflow, Drift;
         }
         }
     };

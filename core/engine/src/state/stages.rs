@@ -1,9 +1,11 @@
 //! What each stage of the live pipeline is given, and who takes what it makes.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::State;
 use crate::detect::{DetectInput, DetectOutput, DetectStage};
+use crate::drift::{DriftInput, DriftOutput, DriftStage};
 use crate::eyes::{CornersInput, CornersStage, Look};
 use crate::ground::stage::{Stage, Timed};
 use crate::live::{ProbeInput, ProbeOutput, ProbeStage, RectifyInput, RectifyOutput, RectifyStage};
@@ -54,5 +56,15 @@ impl Serves<ProbeStage> for State {
 
     fn output(&mut self, output: Timed<ProbeOutput>, now: Instant) {
         self.probed(output, now);
+    }
+}
+
+impl Serves<DriftStage> for State {
+    fn input(&self) -> Option<Arc<DriftInput>> {
+        self.drift_input()
+    }
+
+    fn output(&mut self, output: Timed<DriftOutput>, _now: Instant) {
+        self.drift_looked(output);
     }
 }

@@ -66,6 +66,7 @@ impl State {
                 self.rooms.live.stage_is_down(fault.thread, Some(reason));
             }
             WatchedThread::Detect => self.rooms.detect.stage_is_down(Some(reason)),
+            WatchedThread::Drift => self.rooms.drift.stage_is_down(Some(reason)),
             WatchedThread::Engine | WatchedThread::Journal => {}
         }
     }
@@ -77,6 +78,7 @@ impl State {
                 self.rooms.live.stage_is_down(thread, None);
             }
             WatchedThread::Detect => self.rooms.detect.stage_is_down(None),
+            WatchedThread::Drift => self.rooms.drift.stage_is_down(None),
             WatchedThread::Robot => {
                 if let Some((robot, twin)) = self.before_silence.take() {
                     self.robot_changed(News { robot, twin, twins_started: self.twins_started });
@@ -99,6 +101,7 @@ impl State {
     pub(super) fn stage_gave_nothing(&mut self, thread: WatchedThread, why: &str) {
         match thread {
             WatchedThread::Detect => self.rooms.detect.gave_nothing(why),
+            WatchedThread::Drift => self.rooms.drift.gave_nothing(why, self.clock.time()),
             _ => self.rooms.live.gave_nothing(thread, why),
         }
     }

@@ -44,13 +44,15 @@ pub enum WatchedThread {
     Probe,
     /// Detects objects.
     Detect,
+    /// Watches drift.
+    Drift,
     /// Writes commands down.
     Journal,
 }
 
 impl WatchedThread {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Engine,
         Self::Robot,
         Self::Source,
@@ -58,6 +60,7 @@ impl WatchedThread {
         Self::Corners,
         Self::Probe,
         Self::Detect,
+        Self::Drift,
         Self::Journal,
     ];
 
@@ -71,6 +74,7 @@ impl WatchedThread {
             Self::Corners => "corners",
             Self::Probe => "probe",
             Self::Detect => "detect",
+            Self::Drift => "drift",
             Self::Journal => "journal",
         }
     }
@@ -85,6 +89,7 @@ impl WatchedThread {
             Self::Corners => "what looks for the chessboard",
             Self::Probe => "what measures points",
             Self::Detect => "what detects objects",
+            Self::Drift => "what watches drift",
             Self::Journal => "what writes the journal",
         }
     }
@@ -111,6 +116,9 @@ impl WatchedThread {
             Self::Detect => {
                 "What detects objects has failed inside: boxes are not shown any more. Start it again."
             }
+            Self::Drift => {
+                "What watches drift has failed inside: nobody looks whether places stay where they are. Start it again."
+            }
             Self::Journal => {
                 "The journal is not written any more: what you do is done, but a report of a mistake will lack it. Look at the disk, then start it again."
             }
@@ -132,7 +140,7 @@ impl WatchedThread {
             Self::Journal => {
                 "The journal waits for the disk: what you do is done, but may not be written down. Look at the disk."
             }
-            Self::Rectify | Self::Corners | Self::Probe | Self::Detect => {
+            Self::Rectify | Self::Corners | Self::Probe | Self::Detect | Self::Drift => {
                 "A part of the live view is at work on one pair without end: what it shows is old. Wait, or close the program and start it anew."
             }
         }

@@ -1,0 +1,86 @@
+//! How far looks scatter while nothing moves.
+
+use nalgebra::Vector3;
+
+use super::Sample;
+use super::mover::{since, turns};
+use crate::cost::{PlaceError, TableError};
+use crate::watch::Look;
+
+/// A look that is farther off than so many standard deviations is out of the band.
+const SIGMAS: f64 = 6.0;
+/// The band is no narrower than this near, in the middle and far, m: less is worth no word.
+const LEAST_M: [f64; 3] = [0.0015, 0.002, 0.003];
+/// And no wider, m: what a hand that grasps bears.
+const MOST_M: f64 = 0.008;
+
+/// Where places come out in the first minutes, and how far single looks lie from that.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Band {
+    /// The middle of it.
+    center: TableError,
+    /// How the eyes stood then: left, right, right against left, rad.
+    turns_rad: [Vector3<f64>; 3],
+    /// Its half width near, in the middle and far, m.
+    pub half_m: [f64; 3],
+    /// When the last look of it was, s.
+    pub until_s: f64,
+}
+
+impl Band {
+    /// It is learned from so many looks.
+    pub const LOOKS: usize = 15;
+
+    /// `None`: there were too few looks.
+    ///
+    /// Scatter is taken from successive differences (von Neumann 1941), which a slow drift does not widen.
+    pub(super) fn learned(samples: &[Sample]) -> Option<Self> {
+        let first = samples.get(..Self::LOOKS)?;
+        let count = Self::LOOKS as f64;
+        let mut center = first[0].look.table;
+        for (r, row) in center.rows.iter_mut().enumerate() {
+            for (p, place) in row.iter_mut().enumerate() {
+                let all = || first.iter().map(|sample| &sample.look.table.rows[r][p]);
+                let mean = |of: fn(&PlaceError) -> f64| all().map(of).sum::<f64>() / count;
+                place.error_m = all().map(|place| place.error_m).sum::<Vector3<f64>>() / count;
+                (place.along_m, place.across_m) = (mean(|p| p.along_m), mean(|p| p.across_m));
+            }
+        }
+        let mut turns_rad = [Vector3::zeros(); 3];
+        for sample in first {
+            for (sum, turn) in turns_rad.iter_mut().zip(turns(&sample.look)) {
+                *sum += turn / count;
+            }
+        }
+        let mut half_m = LEAST_M;
+        for (row, half_m) in half_m.iter_mut().enumerate() {
+            let squares =
+                first.windows(2).map(|two| two[1].look.table.apart_m(&two[0].look.table)[row].powi(2));
+            // The difference of two looks has twice the variance of one.
+            let sigma_m = (squares.sum::<f64>() / (2.0 * (count - 1.0))).sqrt();
+            *half_m = (SIGMAS * sigma_m).clamp(*half_m, MOST_M);
+        }
+        let until_s = first.last().map_or(0.0, |sample| sample.at_s);
+        Some(Self { center, turns_rad, half_m, until_s })
+    }
+
+    /// Half widths; those of a band that is not learned yet are the widest.
+    pub(super) fn limits_m(band: Option<&Self>) -> [f64; 3] {
+        band.map_or([MOST_M; 3], |band| band.half_m)
+    }
+
+    /// How far a look is from its middle near, in the middle and far, m.
+    pub(super) fn off_m(&self, look: &Look) -> [f64; 3] {
+        look.table.apart_m(&self.center)
+    }
+
+    /// Whether a look is out of it anywhere.
+    pub(super) fn is_out(&self, look: &Look) -> bool {
+        self.off_m(look).iter().zip(&self.half_m).any(|(off_m, half_m)| off_m > half_m)
+    }
+
+    /// How the eyes turned since then.
+    pub(super) fn turns_since(&self, look: &Look) -> [Vector3<f64>; 3] {
+        since(&self.turns_rad, look)
+    }
+}

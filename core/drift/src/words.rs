@@ -1,0 +1,103 @@
+//! What is the matter, for the operator.
+
+use crate::monitor::{Alarm, Mover, OwnMotion, Verdict};
+use crate::watch::ReferenceKind;
+
+/// A verdict as a sentence.
+pub fn verdict(verdict: &Verdict) -> String {
+    match verdict {
+        Verdict::NotSeen => "Nothing was seen yet.".to_owned(),
+        Verdict::Learning { looks, needed } => {
+            format!("Learns how far looks scatter: {looks} of {needed}.")
+        }
+        Verdict::Steady { cost_m } => {
+            format!("Places stay where they were: {} at the far end of the table.", off(cost_m[2]))
+        }
+        Verdict::Warming { to_go_s, cost_m, what, .. } => {
+            let to_go = match to_go_s {
+                Some(to_go_s) if *to_go_s >= 30.0 => {
+                    format!("about {} to go", minutes(*to_go_s))
+                }
+                Some(_) => "nearly done".to_owned(),
+                None => "how long it takes cannot be told yet".to_owned(),
+            };
+            format!("Still warming up, {to_go}: {} slowly. {}", turns(*what), costs(cost_m))
+        }
+        Verdict::Moved(moved) => alarm(moved),
+    }
+}
+
+/// What moved, since when, what it costs, and what to do.
+pub fn alarm(alarm: &Alarm) -> String {
+    let how = if alarm.sudden { "suddenly, " } else { "" };
+    let since = minutes(alarm.since_s);
+    let cost = costs(&alarm.cost_m);
+    let then = match alarm.what {
+        Mover::Head => "Move the head to its place again, or calibrate how the eyes sit in the head.",
+        _ => "Calibrate the eyes again.",
+    };
+    format!("{} {how}since minute {}. {cost} {then}", has_turned(alarm.what), since.trim_end_matches(" min"))
+}
+
+/// What a reference did by itself.
+pub fn own_motion(motion: &OwnMotion) -> String {
+    let at = minutes(motion.since_s);
+    let at = at.trim_end_matches(" min");
+    let OwnMotion { name, kind, by_m, .. } = motion;
+    match (by_m, kind) {
+        (None, _) => format!("{name}: gone or covered since minute {at}."),
+        (Some(by_m), ReferenceKind::Hand) => {
+            format!(
+                "{name}: sags by {} since minute {at}; its encoders stand still.",
+                millimeters(by_m.norm())
+            )
+        }
+        (Some(by_m), _) => {
+            format!("{name}: was moved by {} at minute {at}; the eyes stand still.", millimeters(by_m.norm()))
+        }
+    }
+}
+
+/// What moved, as the beginning of a sentence.
+fn has_turned(what: Mover) -> &'static str {
+    match what {
+        Mover::LeftEye => "The left eye has turned in its mount,",
+        Mover::RightEye => "The right eye has turned in its mount,",
+        Mover::BothEyes => "Both eyes have turned in their mounts,",
+        Mover::OneEye => "One eye has turned against the other,",
+        Mover::Head => "Both eyes have turned together, though the head's encoders stand still,",
+    }
+}
+
+fn turns(what: Mover) -> &'static str {
+    match what {
+        Mover::LeftEye => "the left eye turns",
+        Mover::RightEye => "the right eye turns",
+        Mover::BothEyes => "both eyes turn",
+        Mover::OneEye => "one eye turns against the other",
+        Mover::Head => "the head turns",
+    }
+}
+
+fn costs(cost_m: &[f64; 3]) -> String {
+    let [near, middle, far] = cost_m.map(millimeters);
+    format!("Places are off by {near} near, {middle} in the middle and {far} far.")
+}
+
+fn off(cost_m: f64) -> String {
+    format!("{} off", millimeters(cost_m))
+}
+
+fn millimeters(m: f64) -> String {
+    let mm = m * 1e3;
+    if mm < 9.95 { format!("{mm:.1} mm") } else { format!("{mm:.0} mm") }
+}
+
+fn minutes(s: f64) -> String {
+    let minutes = s / 60.0;
+    if minutes < 9.95 && minutes.fract() > 0.05 {
+        format!("{minutes:.1} min")
+    } else {
+        format!("{minutes:.0} min")
+    }
+}

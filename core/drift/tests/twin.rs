@@ -1,0 +1,203 @@
+//! The twin without a clock is watched: what its images and encoders say, and nothing else.
+#![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use image::GrayImage;
+use plumbline_drift::{
+    Monitor, Mover, Reference, ReferenceKind, Sample, Verdict, Watcher, WatcherSetup, words,
+};
+use plumbline_effects::{RobotModel, SeenUnder};
+use plumbline_model::measured_data::left_out;
+use plumbline_model::robot::{Posture, default_rig};
+use plumbline_model::{Pixel, Point};
+use plumbline_twin::eyes::RenderError;
+use plumbline_twin::{Lockstep, Scenario, Toy};
+
+const EVERY_S: f64 = 3.0;
+const SEED: u64 = 5;
+const TOYS: [(Toy, [f64; 2]); 2] = [(Toy::Tomato, [0.32, 0.12]), (Toy::Banana, [0.42, -0.18])];
+
+struct Bench {
+    twin: Lockstep,
+    model: Arc<RobotModel>,
+    watcher: Watcher,
+    monitor: Monitor,
+    busy_s: f64,
+    looks: usize,
+}
+
+impl Bench {
+    /// `None`: nothing can be drawn on this machine.
+    fn new(scenario: &Scenario) -> Option<Self> {
+        let rig = default_rig();
+        let mut twin = Lockstep::new(rig.clone(), scenario, SEED).expect("a world");
+        for toy in Toy::ALL {
+            twin.remove_toy(toy);
+        }
+        for (toy, [x_m, y_m]) in TOYS {
+            twin.place_toy(toy, x_m, y_m).expect("on the table");
+        }
+        twin.wait(1.0);
+        match twin.look() {
+            Ok(_) => {}
+            Err(RenderError::NoAdapter) => {
+                left_out("no Vulkan device on this machine");
+                return None;
+            }
+            Err(error) => panic!("{error}"),
+        }
+        let model = Arc::new(RobotModel::nominal(rig));
+        Some(Self {
+            twin,
+            model,
+            watcher: Watcher::default(),
+            monitor: Monitor::default(),
+            busy_s: 0.0,
+            looks: 0,
+        })
+    }
+
+    fn setup(&self) -> WatcherSetup {
+        let posture = self.twin.encoders();
+        let references = references(&self.model, &posture);
+        let eyes_on_s = Some(self.twin.eyes_on_s());
+        WatcherSetup { model: self.model.clone(), posture, eyes_on_s, references }
+    }
+
+    fn look(&mut self) {
+        let pair = self.twin.look().expect("drawn before");
+        let gray = |image| -> GrayImage { image::imageops::grayscale(image) };
+        let (left, right) = (gray(&pair.left), gray(&pair.right));
+        let began = Instant::now();
+        let look = self.watcher.look(&self.setup(), (&left, &right)).expect("enough to see");
+        self.busy_s += began.elapsed().as_secs_f64();
+        self.looks += 1;
+        self.monitor.add(Sample { at_s: self.twin.eyes_on_s(), look });
+    }
+
+    fn watch(&mut self, looks: usize) {
+        for _ in 0..looks {
+            self.twin.wait(0.02);
+            self.twin.advance_warm_up(EVERY_S - 0.02);
+            self.look();
+        }
+    }
+
+    fn newest(&self) -> &Sample {
+        self.monitor.samples().last().expect("looked")
+    }
+}
+
+/// The touchscreen by the rig, and the toys where they were put, as a detector would find them.
+fn references(model: &RobotModel, posture: &Posture) -> Vec<Reference> {
+    let around = |name: &str, kind, place: Point<_>, corners: Vec<Point<_>>| {
+        let seen = |corner: &Point<_>| model.project(corner, posture, &SeenUnder::default());
+        let pairs: Option<Vec<_>> = corners.iter().map(seen).collect();
+        let (left, right): (Vec<Pixel<_>>, Vec<Pixel<_>>) = pairs?.into_iter().unzip();
+        Some(Reference { name: name.to_owned(), kind, place, outlines: [left, right] })
+    };
+    let toy = |(toy, [x_m, y_m]): (Toy, [f64; 2])| {
+        let z_m = model.rig().table.height_m + 0.03;
+        let corner = |[dy, dz]: [f64; 2]| Point::new(x_m, y_m + dy, z_m + dz);
+        let corners = [[0.04, -0.04], [0.04, 0.04], [-0.04, 0.04], [-0.04, -0.04]].map(corner).to_vec();
+        around(&format!("{toy:?}"), ReferenceKind::Thing, Point::new(x_m, y_m, z_m), corners)
+    };
+    let screen = &model.rig().touchscreen;
+    let corners = screen.corners().to_vec();
+    let middle = screen.point_at(screen.middle());
+    let screen = around("Touchscreen", ReferenceKind::Screen, middle, corners);
+    TOYS.into_iter().filter_map(toy).chain(screen).collect()
+}
+
+fn warm(scenario: &Scenario) -> Option<Bench> {
+    let mut bench = Bench::new(scenario)?;
+    bench.twin.advance_warm_up(3600.0);
+    Some(bench)
+}
+
+/// The laboratory with its right eye turned in its mount.
+fn with_right_eye(turn_rad: [f64; 3]) -> Scenario {
+    let [x, y, z] = turn_rad;
+    let text = format!(
+        "format = 1\nname = \"knocked\"\ntitle = \"Knocked\"\nabout = \"An eye was knocked against.\"\n[eyes]\nright_rotation_rad = [{x}, {y}, {z}]\n"
+    );
+    Scenario::from_toml("knocked.toml", &text).expect("a scenario")
+}
+
+#[test]
+fn an_eye_that_is_knocked_is_noticed_and_named() {
+    let Some(mut bench) = warm(&with_right_eye([0.0; 3])) else { return };
+    bench.watch(20);
+    assert!(matches!(bench.monitor.verdict(), Verdict::Steady { .. }), "{:?}", bench.monitor.verdict());
+    let half = bench.monitor.band().expect("learned").half_m;
+    println!(
+        "band {:.2?} mm, {:.0} ms a look",
+        half.map(|m| m * 1e3),
+        1e3 * bench.busy_s / bench.looks as f64
+    );
+    for turn_deg in [[0.0, 0.5, 0.0], [0.5, 0.0, 0.0]] {
+        let turn_rad = turn_deg.map(f64::to_radians);
+        let mut knocked = warm(&with_right_eye(turn_rad)).expect("drawn before");
+        // The same robot a moment later.
+        knocked.twin.advance_warm_up(bench.twin.eyes_on_s() - knocked.twin.eyes_on_s());
+        std::mem::swap(&mut bench.twin, &mut knocked.twin);
+        bench.watch(3);
+        let Verdict::Moved(alarm) = bench.monitor.verdict() else {
+            panic!("{turn_deg:?} is not noticed: {:?}", bench.newest().look.turns_rad)
+        };
+        assert_eq!(alarm.what, Mover::RightEye, "{turn_deg:?}");
+        let turned_deg = bench.newest().look.turns_rad[1].norm().to_degrees();
+        println!("{turn_deg:?}: {turned_deg:.4}°; {}", words::alarm(&alarm));
+        assert!((turned_deg - 0.5).abs() < 0.02, "{turned_deg}");
+        std::mem::swap(&mut bench.twin, &mut knocked.twin);
+        bench.watch(4);
+        assert!(
+            matches!(bench.monitor.verdict(), Verdict::Steady { .. }),
+            "put back: {:?}",
+            bench.monitor.verdict()
+        );
+    }
+    assert_eq!(bench.monitor.alarms().len(), 2);
+}
+
+#[test]
+fn the_laboratory_warms_up_and_that_is_said() {
+    let Some(mut bench) = Bench::new(&Scenario::built_in("lab").expect("a scenario")) else { return };
+    bench.watch(20);
+    let mut warming = 0;
+    while bench.twin.eyes_on_s() < 720.0 {
+        bench.twin.advance_warm_up(12.0);
+        bench.watch(1);
+        warming += usize::from(matches!(bench.monitor.verdict(), Verdict::Warming { .. }));
+    }
+    let off_m = bench.monitor.off_m(bench.newest());
+    println!("after 12 min: {:.1?} mm; {}", off_m.map(|m| m * 1e3), words::verdict(&bench.monitor.verdict()));
+    assert!(warming > 20, "{warming} looks");
+    assert_eq!(bench.monitor.alarms(), &[], "nobody knocked against them");
+    assert!((0.02..0.08).contains(&off_m[2]), "as much as the paper lost: {off_m:?}");
+    let turns_deg = bench.newest().look.turns_rad.map(|turn| turn.y.to_degrees());
+    assert!(turns_deg[0] * turns_deg[1] < 0.0, "each eye its own way: {turns_deg:?}");
+}
+
+#[test]
+fn toys_that_are_moved_and_an_arm_that_moves_are_no_fault_of_the_eyes() {
+    let Some(mut bench) = warm(&with_right_eye([0.0; 3])) else { return };
+    bench.watch(18);
+    bench.twin.place_toy(Toy::Tomato, 0.30, 0.16).expect("on the table");
+    bench.twin.wait(0.5);
+    bench.watch(3);
+    let own = bench.monitor.own_motions();
+    assert!(own.iter().any(|motion| motion.name == "Tomato"), "{own:?}");
+    println!("{}", words::own_motion(&own[0]));
+    let rig = bench.twin.rig().clone();
+    let arm = &rig.arms[0].joints;
+    for k in 0..20 {
+        let posture = rig.home().with(arm, &[0.1 * f64::from(k % 5), 0.3, 0.2 + 0.1 * f64::from(k % 3)]);
+        bench.twin.follow(&[posture], 1.0);
+        bench.watch(2);
+    }
+    assert_eq!(bench.monitor.alarms(), &[]);
+    assert!(matches!(bench.monitor.verdict(), Verdict::Steady { .. }), "{:?}", bench.monitor.verdict());
+}

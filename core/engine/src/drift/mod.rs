@@ -1,0 +1,13 @@
+//! Watching drift: whether places stay where they are, looked at again and again in the background.
+
+mod around;
+pub mod command;
+mod stage;
+#[cfg(test)]
+mod tests;
+pub mod view;
+mod workflow;
+
+pub use around::DriftAround;
+pub use stage::{DriftInput, DriftOutput, DriftStage};
+pub use workflow::DriftWorkflow;

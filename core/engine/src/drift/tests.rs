@@ -1,0 +1,199 @@
+//! From the press to what the window shows, on rendered pairs.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use image::{GrayImage, RgbImage};
+use nalgebra::{Isometry3, Vector3};
+use plumbline_drift::{Mover, Verdict};
+use plumbline_effects::RobotModel;
+use plumbline_model::robot::default_rig;
+use plumbline_model::{Stamp, StereoFrame};
+use plumbline_vision::health::turned;
+use plumbline_vision::synthetic::{Plane, Scene, granite_texture};
+
+use super::command::DriftCommand;
+use super::view::DriftView;
+use super::{DriftAround, DriftStage, DriftWorkflow};
+use crate::ground::jobs::list::JobList;
+use crate::ground::notice::Notices;
+use crate::ground::stage::{Skipped, Stage as _, Timed};
+use crate::ground::step::StepState;
+use crate::ground::{Context, Moment, Time, Workflow as _};
+
+const EVERY: Duration = Duration::from_secs(3);
+
+struct Desk {
+    room: DriftWorkflow,
+    stage: DriftStage,
+    around: DriftAround,
+    notices: Notices,
+    jobs: JobList,
+    time: Time,
+    pairs: u64,
+}
+
+impl Desk {
+    fn new() -> Self {
+        let around = DriftAround {
+            is_live: true,
+            opened: 1,
+            model: Arc::new(RobotModel::nominal(default_rig())),
+            own_eyes: false,
+            robot: Arc::default(),
+            eyes_on_s: Some(3600.0),
+            found: None,
+        };
+        Self {
+            room: DriftWorkflow::new(Path::new("")),
+            stage: DriftStage::default(),
+            around,
+            notices: Notices::default(),
+            jobs: JobList::default(),
+            time: Time::now(),
+            pairs: 0,
+        }
+    }
+
+    fn with(
+        &mut self,
+        act: impl FnOnce(&mut DriftWorkflow, &DriftAround, &mut super::workflow::Context<'_>),
+    ) {
+        let Self { room, around, notices, jobs, time, .. } = self;
+        let mut asked = Vec::new();
+        act(room, around, &mut Context::new(notices, jobs, *time, &mut asked));
+    }
+
+    fn ask(&mut self, command: DriftCommand) {
+        self.with(|room, around, context| room.apply(command, around, context));
+    }
+
+    /// A pair comes, the thread looks if it is to; whether it did.
+    fn see(&mut self, images: &[Arc<RgbImage>; 2]) -> bool {
+        self.pairs += 1;
+        self.time = self.time.after(EVERY);
+        self.around.eyes_on_s = self.around.eyes_on_s.map(|on_s| on_s + EVERY.as_secs_f64());
+        let stamp = Stamp { seq: self.pairs, captured_at: Instant::now() };
+        let [left, right] = images.clone();
+        let frame = StereoFrame { stamp, left, right, time_difference_s: None, name: None };
+        self.with(|room, around, context| room.saw(&frame, around, context));
+        let Some(input) = self.room.input() else { return false };
+        let result = self.stage.process(input);
+        let output = Timed { stamp, busy: Duration::from_millis(50), result };
+        self.with(|room, _, context| room.looked(output, context));
+        true
+    }
+
+    fn view(&mut self) -> Arc<DriftView> {
+        let moment = Moment { now: self.time.instant, skipped: Skipped::default() };
+        self.room.view(&self.around, &moment)
+    }
+
+    fn said(&mut self) -> Vec<String> {
+        self.notices.view().iter().map(|notice| notice.text.clone()).collect()
+    }
+
+    /// A table and a wall, the right eye turned about its upright axis.
+    fn pair(&self, pan_deg: f64) -> [Arc<RgbImage>; 2] {
+        let table = Isometry3::new(Vector3::new(0.0, 0.25, 0.5), Vector3::new(1.9, 0.0, 0.0));
+        let wall = Isometry3::translation(0.0, 0.0, 1.6);
+        let planes =
+            vec![Plane::new(table, granite_texture(0.012, 7)), Plane::new(wall, granite_texture(0.05, 8))];
+        let scene = Scene { planes, balls: vec![], background: 90.0 };
+        let cameras = &self.around.model.rig().eyes.cameras;
+        let eyes = turned(cameras, &Vector3::new(0.0, pan_deg.to_radians(), 0.0));
+        let (left, right) = scene.render_pair(&eyes, 1.0, 3);
+        let rgb = |gray: GrayImage| Arc::new(image::DynamicImage::ImageLuma8(gray).to_rgb8());
+        [rgb(left), rgb(right)]
+    }
+}
+
+#[test]
+fn a_knocked_eye_is_told_once_and_shown_with_its_cost() {
+    let mut desk = Desk::new();
+    let (still, knocked) = (desk.pair(0.0), desk.pair(0.5));
+    assert!(!desk.see(&still), "nobody asked for it");
+    desk.ask(DriftCommand::Start);
+    assert_eq!(desk.view().step, StepState::Running);
+    for _ in 0..17 {
+        assert!(desk.see(&still));
+    }
+    let course = desk.view().course.clone().expect("looked");
+    assert!(matches!(course.verdict, Verdict::Steady { .. }), "{:?}", course.verdict);
+    assert!(course.from_switching_on && course.points.len() == 17 && course.band_m.is_some());
+    assert_eq!(desk.said(), [""; 0]);
+    for _ in 0..4 {
+        desk.see(&knocked);
+    }
+    let view = desk.view();
+    let course = view.course.clone().expect("looked");
+    let Verdict::Moved(alarm) = course.verdict else { panic!("{:?}", course.verdict) };
+    assert_eq!(alarm.what, Mover::RightEye);
+    assert!((course.turns_rad[1][1].to_degrees() - 0.5).abs() < 0.02, "{:?}", course.turns_rad);
+    assert!(matches!(&view.step, StepState::Stale { why } if why.contains("right eye")), "{:?}", view.step);
+    assert_eq!(desk.said().len(), 1, "{:?}", desk.said());
+    assert!(desk.said()[0].contains("right eye has turned"), "{:?}", desk.said());
+    // What was seen stays to be looked at.
+    desk.ask(DriftCommand::Stop);
+    assert!(!desk.see(&knocked) && desk.view().course.is_some() && !desk.view().is_watching);
+    assert_eq!(desk.view().step, StepState::Done);
+}
+
+#[test]
+fn lights_off_another_source_and_eyes_switched_on_again() {
+    let mut desk = Desk::new();
+    let still = desk.pair(0.0);
+    desk.ask(DriftCommand::Start);
+    (0..3).for_each(|_| _ = desk.see(&still));
+    let dark = [0, 1].map(|_| Arc::new(RgbImage::from_pixel(640, 480, image::Rgb([3; 3]))));
+    (0..5).for_each(|_| _ = desk.see(&dark));
+    let view = desk.view();
+    assert!(view.failed.is_some(), "nothing can be seen in the dark");
+    assert_eq!(view.course.as_ref().map(|course| course.points.len()), Some(3), "what was seen stays");
+    desk.see(&still);
+    assert_eq!(desk.view().failed, None);
+    // Cold again.
+    desk.around.eyes_on_s = Some(0.0);
+    desk.see(&still);
+    assert!(desk.said().iter().any(|text| text.contains("switched on again")), "{:?}", desk.said());
+    assert_eq!(desk.view().course.as_ref().map(|course| course.points.len()), Some(1));
+    desk.around.opened = 2;
+    desk.see(&still);
+    assert_eq!(
+        desk.view().course.as_ref().map(|course| course.points.len()),
+        Some(1),
+        "other eyes, a new watch"
+    );
+    desk.around.is_live = false;
+    assert!(!desk.see(&still));
+    assert!(desk.view().waits_because.as_deref().is_some_and(|why| why.contains("No pairs come")));
+    desk.ask(DriftCommand::Start);
+    assert!(desk.said().last().is_some_and(|text| text.contains("Nothing can be watched yet")));
+}
+
+#[test]
+fn it_looks_seldom_and_waits_while_the_thread_is_at_work() {
+    let mut desk = Desk::new();
+    let still = desk.pair(0.0);
+    desk.ask(DriftCommand::Start);
+    assert!(desk.see(&still));
+    let [left, right] = still;
+    let frame = StereoFrame {
+        stamp: Stamp { seq: 99, captured_at: Instant::now() },
+        left,
+        right,
+        time_difference_s: None,
+        name: None,
+    };
+    desk.time = desk.time.after(Duration::from_millis(500));
+    desk.with(|room, around, context| room.saw(&frame, around, context));
+    assert!(desk.room.input().is_none(), "half a second later is too early");
+    desk.time = desk.time.after(EVERY);
+    desk.with(|room, around, context| room.saw(&frame, around, context));
+    let waits = desk.room.input().expect("it is time");
+    desk.time = desk.time.after(EVERY);
+    let later = StereoFrame { stamp: Stamp { seq: 100, captured_at: Instant::now() }, ..frame };
+    desk.with(|room, around, context| room.saw(&later, around, context));
+    assert!(Arc::ptr_eq(&waits, &desk.room.input().expect("the same")), "one at a time");
+}
