@@ -8,7 +8,7 @@ use egui_kittest::kittest::Queryable as _;
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::view::{ContactSource, TouchOutcome, TouchPhase, TouchView};
 use plumbline_engine::{Command, ScreenWindow, TouchCommand, View};
-use plumbline_model::touch_plan::{Pattern, PlanOptions, Purpose, TouchArea};
+use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, TouchArea};
 
 use crate::fake::{Fake, click, says, shows};
 use crate::made_up::{connected, with_robot};
@@ -121,6 +121,41 @@ fn presets_stay_where_the_arm_reaches() {
     let all = sent(&fake);
     let [TouchCommand::Plan(options)] = all.as_slice() else { panic!("planned: {all:?}") };
     assert!(options.area.corners().into_iter().all(|corner| reach.contains(corner)), "{:?}", options.area);
+}
+
+#[test]
+fn the_left_finger_is_said_and_its_touches_lead_to_the_gap() {
+    let left = |plan: PlanOptions| PlanOptions { finger: Finger::Left, ..plan };
+    let reach = TouchArea { u_px: [200.0, 1200.0], v_px: [300.0, 900.0] };
+    let touch = TouchView { reach: [Some(area()), Some(reach)], ..first_plan() };
+    let (fake, mut window) = window(with_touch(touch));
+    click(&mut window, "Left index finger");
+    let all = sent(&fake);
+    let [TouchCommand::Plan(options)] = all.as_slice() else { panic!("planned: {all:?}") };
+    assert_eq!(options.finger, Finger::Left);
+    assert!(options.area.corners().into_iter().all(|corner| reach.contains(corner)), "{:?}", options.area);
+
+    let (_, window) = self::window(with_touch(planned(left(PlanOptions::quick(area())))));
+    assert!(says(&window, "The left arm touches the glass") && says(&window, "the right arm stay"));
+    let done = TouchView { phase: TouchPhase::Finished, ..planned(left(PlanOptions::quick(area()))) };
+    let (_, window) = self::window(with_touch(done));
+    assert!(says(&window, "of the left finger") && shows(&window, "Go to Gap"));
+    assert!(!shows(&window, "Train models") && !shows(&window, "Go to Models"));
+}
+
+#[test]
+fn new_targets_of_a_check_are_others() {
+    let checked = PlanOptions { seed: 9, ..PlanOptions::check_reach(area(), 6, 9) };
+    let done = TouchView {
+        phase: TouchPhase::Finished,
+        placement: Some(Arc::new(placement())),
+        ..planned(checked.clone())
+    };
+    let (fake, mut window) = window(with_touch(done));
+    press_next(&mut window, "Plan new targets");
+    let all = sent(&fake);
+    let [TouchCommand::Plan(options)] = all.as_slice() else { panic!("planned: {all:?}") };
+    assert_ne!(options.seed, checked.seed);
 }
 
 #[test]

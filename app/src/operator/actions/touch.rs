@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use plumbline_engine::view::{ContactSource, TouchPhase};
 use plumbline_engine::{Command, TouchCommand, View};
 use plumbline_model::session::Touchscreen;
-use plumbline_model::touch_plan::{Finger, PlanOptions, TouchArea};
+use plumbline_model::touch_plan::{Finger, PlanOptions, Purpose, TouchArea};
 use serde::Serialize;
 
 use crate::operator::touch_monitor::window_problem;
@@ -80,6 +80,15 @@ impl Preset {
             Self::Rich => PlanOptions::rich(area),
             Self::Check => PlanOptions::check_reach(area, CHECKED, CHECK_SEED),
         }
+    }
+}
+
+/// Targets that are drawn by chance are others than those of the check before.
+fn other_targets(view: &View, options: PlanOptions) -> PlanOptions {
+    let before = view.touch.plan.as_ref().map(|plan| &plan.options);
+    match before.filter(|before| before.purpose == Purpose::Check && options.purpose == Purpose::Check) {
+        Some(before) => PlanOptions { seed: before.seed.wrapping_add(1), ..options },
+        None => options,
     }
 }
 
@@ -192,7 +201,9 @@ impl TouchAction {
         let touch = &view.touch;
         Some(
             match self {
-                Self::Plan(preset) => TouchCommand::Plan(preset.options(usual_area(view, Finger::Right)?)),
+                Self::Plan(preset) => {
+                    TouchCommand::Plan(other_targets(view, preset.options(usual_area(view, Finger::Right)?)))
+                }
                 Self::Start => TouchCommand::Start,
                 Self::Pause => TouchCommand::Pause,
                 Self::Resume => TouchCommand::Resume,

@@ -136,7 +136,8 @@ fn finished(view: &View) -> Guidance {
             .then("Use this place of the screen", Action::Touch(TouchAction::AcceptScreen));
     }
     let purpose = touch.plan.as_ref().map(|plan| plan.options.purpose);
-    let touched = format::count(touch.counts.touched, "touch").replace("touchs", "touches");
+    let touched = format::count(touch.counts.touched, "touch");
+    let finger = touch.plan.as_ref().map(|plan| plan.options.finger);
     match purpose {
         Some(Purpose::PlaceScreen) if touch.placement.is_none() => {
             say("The screen could not be placed from these touches; the messages say why. Touch its corners again.")
@@ -149,6 +150,10 @@ fn finished(view: &View) -> Guidance {
         }
         Some(Purpose::Check) => say(format!("{touched} checked; the figures say how well the finger lands."))
             .then("Plan new targets", Action::Touch(TouchAction::Plan(Preset::Check))),
+        Some(Purpose::Train) if finger == Some(Finger::Left) => {
+            say(format!("{touched} of the left finger are on disk. Next: look what makes its arm miss."))
+                .then("Go to Gap", Action::Go(Screen::Gap))
+        }
         Some(Purpose::Train) | None => say(format!("{touched} are on disk. Next: train models on them."))
             .then("Train models", Action::Go(Screen::Models)),
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use plumbline_model::counted;
-use plumbline_model::touch_plan::Purpose;
+use plumbline_model::touch_plan::{Finger, Purpose};
 
 use super::figures::{error_m, figures};
 use super::plan::Aim;
@@ -231,6 +231,9 @@ impl TouchWorkflow {
                     .to_owned()
             }
             Phase::Finished => match run.plan.options.purpose {
+                Purpose::Train if run.plan.options.finger == Finger::Left => {
+                    "Look for what makes the left arm miss: step Gap.".to_owned()
+                }
                 Purpose::Train => "Train models from these touches: step Models.".to_owned(),
                 Purpose::PlaceScreen => "Plan the touches that models are trained on.".to_owned(),
                 Purpose::Check => "Read off how far touches land from their targets.".to_owned(),
