@@ -88,9 +88,8 @@ fn chips(ui: &mut Ui, cx: &mut PanelContext<'_>, options: &PlanOptions) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(2.0, 2.0);
         for (preset, name, about) in PRESETS {
-            let wanted =
-                PlanOptions { finger: options.finger, seed: options.seed, ..preset.options(options.area) };
-            let chosen = wanted == *options;
+            let wanted = PlanOptions { finger: options.finger, ..preset.options(options.area) };
+            let chosen = PlanOptions { seed: options.seed, ..wanted.clone() } == *options;
             if ui.selectable_label(chosen, name).on_hover_text(about).clicked() && !chosen {
                 cx.state.touch.draft.change(wanted);
             }
