@@ -44,6 +44,8 @@ pub struct PalmArm {
     hand: Vec<JointIndex>,
     /// Middle of the palm's body on the palm, m.
     palm_from_body_m: Vector3<f64>,
+    /// The link of the palm.
+    tip: Option<LinkIndex>,
     is_left: bool,
     /// The other arm was measured, this one was not.
     is_unmeasured: bool,
@@ -61,10 +63,11 @@ impl PalmArm {
         let tip = &arm.tips.first().ok_or_else(no_arm)?.link;
         let palm_from_body_m = body_of_palm(rig, arm, tip).unwrap_or_default();
         let is_left = is_left(rig, arm);
+        let link = rig.description.find_link(tip).ok();
         let (hand, arm) = (arm.hand.clone(), model.arm(tip)?);
         let of_an_arm = model.added().effects().iter().any(|effect| effect.tip.is_some());
         let is_unmeasured = of_an_arm && arm.is_nominal();
-        Ok(Self { arm, hand, palm_from_body_m, is_left, is_unmeasured, rig: rig.clone() })
+        Ok(Self { arm, hand, palm_from_body_m, tip: link, is_left, is_unmeasured, rig: rig.clone() })
     }
 
     /// The robot.
@@ -134,6 +137,30 @@ impl PalmArm {
         self.solved(point, heading_rad, from, &options).filter(|next| next.distance_rad(from) < JUMP_RAD)
     }
 
+    /// How far a point (robot frame, m) is from the nearest body of arm and hand, m: the bodies of the
+    /// description, where the model has the palm; 0 inside of one, infinite where it shows none.
+    pub fn distance_m(&self, commanded: &Posture, point_m: &Vector3<f64>) -> f64 {
+        let description = &self.rig.description;
+        let poses = description.forward(commanded);
+        let described = self.tip.map(|tip| poses.of(tip).isometry.translation.vector);
+        let beside_m =
+            described.map_or_else(Vector3::zeros, |at_m| self.palm(commanded).coords.coords - at_m);
+        let at = Point3::from(point_m - beside_m);
+        let mut links: Vec<LinkIndex> =
+            self.arm.joints().first().map(|joint| description.joint(*joint).child).into_iter().collect();
+        let mut nearest_m = f64::INFINITY;
+        for (i, link) in description.links().iter().enumerate() {
+            if link.parent.is_some_and(|parent| links.contains(&parent)) {
+                links.push(LinkIndex(i));
+            }
+            for body in link.collisions.iter().filter(|_| links.contains(&LinkIndex(i))) {
+                let in_shape = (poses.all()[i] * body.link_from_shape).inverse() * at;
+                nearest_m = nearest_m.min(beside_shape_m(&body.shape, &in_shape.coords));
+            }
+        }
+        nearest_m
+    }
+
     /// Height of the lowest point of the hand by the description, robot frame, m: of what it must not run
     /// into something with. `None`: the description shows no body.
     pub fn lowest_m(&self, posture: &Posture) -> Option<f64> {
@@ -173,6 +200,22 @@ fn is_left(rig: &Rig, arm: &Arm) -> bool {
     let description = &rig.description;
     let shoulder = arm.joints.first().map(|joint| description.joint(*joint).child);
     shoulder.is_some_and(|link| description.forward(&rig.home()).of(link).isometry.translation.y > 0.0)
+}
+
+/// How far a point is from a shape, in its own frame, m; 0 inside.
+fn beside_shape_m(shape: &Shape, at: &Vector3<f64>) -> f64 {
+    match *shape {
+        Shape::Box { half_m } => (at.abs() - half_m).sup(&Vector3::zeros()).norm(),
+        Shape::Sphere { radius_m } => (at.norm() - radius_m).max(0.0),
+        Shape::Capsule { radius_m, half_length_m } => {
+            let along_m = (at.z.abs() - half_length_m).max(0.0);
+            (at.xy().norm().hypot(along_m) - radius_m).max(0.0)
+        }
+        Shape::Cylinder { radius_m, half_length_m } => {
+            let along_m = (at.z.abs() - half_length_m).max(0.0);
+            (at.xy().norm() - radius_m).max(0.0).hypot(along_m)
+        }
+    }
 }
 
 /// How far a shape reaches below its middle, m.

@@ -177,22 +177,37 @@ pub(crate) struct FingertipReality {
 }
 
 /// How things touch.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct ContactReality {
     /// Coefficient of friction of toys against hands and table.
     pub toy_friction: f64,
     /// Mass of toys, times that of the usual ones.
     pub toy_mass: f64,
+    /// Size of toys, times that of the usual ones.
+    pub toy_size: f64,
     /// Coefficient of friction of the hand's skin on glass.
     pub glass_friction: f64,
     /// A touch is felt from this force on, N.
     pub touch_threshold_n: f64,
 }
 
+/// What says nothing of sizes reads as it did before there were any: labs know their twin by this text.
+impl std::fmt::Debug for ContactReality {
+    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { toy_friction, toy_mass, toy_size, glass_friction, touch_threshold_n } = self;
+        let mut text = to.debug_struct("ContactReality");
+        text.field("toy_friction", toy_friction).field("toy_mass", toy_mass);
+        if (toy_size - Self::default().toy_size).abs() > 0.0 {
+            text.field("toy_size", toy_size);
+        }
+        text.field("glass_friction", glass_friction).field("touch_threshold_n", touch_threshold_n).finish()
+    }
+}
+
 impl Default for ContactReality {
     fn default() -> Self {
-        Self { toy_friction: 1.0, toy_mass: 1.0, glass_friction: 0.3, touch_threshold_n: 0.15 }
+        Self { toy_friction: 1.0, toy_mass: 1.0, toy_size: 1.0, glass_friction: 0.3, touch_threshold_n: 0.15 }
     }
 }
 
@@ -274,6 +289,7 @@ impl Scenario {
         within("eyes.heat.power_w", heat.power_w, 0.0, 50.0)?;
         within("contact.toy_friction", self.contact.toy_friction, 0.0, 3.0)?;
         within("contact.toy_mass", self.contact.toy_mass, 0.1, 20.0)?;
+        within("contact.toy_size", self.contact.toy_size, 0.5, 1.5)?;
         within("contact.glass_friction", self.contact.glass_friction, 0.0, 3.0)?;
         within("contact.touch_threshold_n", self.contact.touch_threshold_n, 0.01, 10.0)
     }
@@ -317,6 +333,17 @@ mod tests {
             let error = Scenario::from_toml("x.toml", &format!("{HEAD}{text}")).expect_err(text).to_string();
             assert!(error.contains(part) && error.contains("x.toml"), "{error}");
         }
+    }
+
+    #[test]
+    fn only_other_sizes_of_toys_are_told_of() {
+        let text = |keys: &str| {
+            let read = Scenario::from_toml("x.toml", &format!("{HEAD}[contact]\n{keys}")).expect("valid");
+            format!("{read:?}")
+        };
+        assert_eq!(text("toy_size = 1.0"), text(""));
+        assert!(!text("").contains("toy_size") && text("toy_size = 1.1").contains("toy_size: 1.1"));
+        assert_ne!(text("toy_mass = 2.0"), text(""));
     }
 
     #[test]

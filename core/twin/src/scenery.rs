@@ -8,7 +8,8 @@ use crate::hand_look::{self, HandLook};
 use crate::physics::World;
 use crate::physics::parts::{self, Side};
 use crate::scene::{BodyIndex, Item, Light, Material, Pattern, Scenery, Shape};
-use crate::toys::Toy;
+use crate::toys::look::{self, Look};
+use crate::toys::{Toy, ToyPart};
 
 /// Numbers of the objects in [`Item::object`]; 0 is the room.
 pub mod object {
@@ -191,14 +192,18 @@ fn robot(world: &World, items: &mut Vec<Item>) {
 fn toys(world: &World, items: &mut Vec<Item>) {
     for toy in Toy::ALL.into_iter().filter(|toy| world.toy(*toy).is_some()) {
         let Some(body) = world.body_named(&format!("toy.{}", toy.name())) else { continue };
-        for part in toy.look() {
-            items.push(Item {
-                object: object::of_toy(toy),
-                body: BodyIndex(body),
-                body_from_shape: part.toy_from_shape,
-                shape: part.shape.clone(),
-                material: part.material,
-            });
+        let item = |part: &ToyPart| Item {
+            object: object::of_toy(toy),
+            body: BodyIndex(body),
+            body_from_shape: part.toy_from_shape,
+            shape: part.shape.clone(),
+            material: part.material,
+        };
+        if (world.toy_size() - 1.0).abs() < f64::EPSILON {
+            items.extend(toy.look().iter().map(item));
+        } else {
+            let look = Look { scale: world.toy_size(), ..Look::default() };
+            items.extend(look::parts(toy, &look).iter().map(item));
         }
     }
 }

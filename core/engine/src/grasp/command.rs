@@ -51,7 +51,8 @@ pub enum GraspCommand {
 pub struct GraspTarget {
     /// Class of the object; `None`: whatever can be held and is seen best.
     pub class: Option<String>,
-    /// The one nearest to this place of the table (robot frame, m); `None`: the one that is seen best.
+    /// The one nearest to this place of the table (robot frame, m); `None`: the one nearest to the
+    /// robot.
     pub near_m: Option<[f64; 2]>,
 }
 

@@ -10,7 +10,7 @@ use crate::arm::{NoArm, PalmArm};
 use crate::hands::Hand;
 use crate::knowledge::Knowledge;
 use crate::method::Method;
-use crate::plan::{GraspPlan, GraspPlanner, Headed, NoPlan};
+use crate::plan::{Beside, GraspPlan, GraspPlanner, Headed, NoPlan};
 
 /// A palm that is more level than another one's by this (cosine) closes better around things, whatever else.
 const LEVELER: f64 = 0.02;
@@ -54,6 +54,13 @@ impl Grasper {
     /// All hands that there are.
     pub fn hands(&self) -> impl Iterator<Item = Hand> {
         std::iter::once(self.arm.hand).chain(self.others.iter().map(|arm| arm.hand))
+    }
+
+    /// From now on these things are left as they are by our method; the published ones know of none.
+    pub(super) fn leave(&mut self, beside: &[Beside]) {
+        for arm in std::iter::once(&mut self.arm).chain(&mut self.others) {
+            arm.known.leave(beside.to_vec());
+        }
     }
 
     /// Takes a hand in use.

@@ -5,9 +5,10 @@ use plumbline_model::{Point, Robot};
 
 use super::{End, Running};
 use crate::body::Sight;
+use crate::knowledge::Knowledge;
 use crate::method::Method;
 use crate::outline::{Boxes, HEIGHT_SIGMA_M};
-use crate::plan::Standing;
+use crate::plan::{Beside, Standing};
 use crate::record::{Failure, Step};
 use crate::see::{Seen, SeenPlace};
 use crate::things::Thing;
@@ -17,6 +18,10 @@ use crate::things::Thing;
 const NOT_ON_TABLE_M: f64 = 0.03;
 /// Farther from the place that was pointed at it is not what was meant, m.
 const NEAR_M: f64 = 0.12;
+/// What seems to stand so near to the thing that is grasped is that thing, m.
+const SAME_M: f64 = 0.04;
+/// Of several of a class those count that are seen at least with this share of the confidence of the surest.
+const SURE_SHARE: f32 = 0.5;
 
 /// The thing that is grasped.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +44,9 @@ impl Running<'_> {
         let object = &self.order.object;
         let thing = Thing::of_class(object)
             .ok_or_else(|| End::Refused(format!("nothing is known of a thing called {object}")))?;
-        let index = nearest(&self.record.seen, thing.class, self.near_m)?;
+        let knowledge = &grasper.knowledge;
+        let stands = |place: &SeenPlace| over_table_m(knowledge, &thing, place).is_none();
+        let index = nearest(&self.record.seen, thing.class, self.near_m, stands)?;
         self.record.chosen = Some(index);
         let place = self.record.seen[index]
             .place
@@ -50,15 +57,29 @@ impl Running<'_> {
         self.standing(&place, &thing, &boxes)
     }
 
+    /// What else stands on the table, as far as it is seen and known; the same thing taken for another one
+    /// stands where it stands.
+    pub(super) fn beside(&self, chosen: &Chosen) -> Vec<Beside> {
+        let knowledge = &self.grasper.knowledge;
+        let others = self.record.seen.iter().enumerate().filter(|(i, _)| Some(*i) != self.record.chosen);
+        let beside = others.filter_map(|(_, seen)| {
+            let (thing, place) = (Thing::of_class(&seen.class)?, seen.place.as_ref().ok()?);
+            let stands = over_table_m(knowledge, &thing, place).is_none();
+            let [x_m, y_m, _] = place.point_m;
+            let [at_x_m, at_y_m] = chosen.standing.xy_m;
+            let is_another = (x_m - at_x_m).hypot(y_m - at_y_m) > SAME_M;
+            let middle_m = Vector3::new(x_m, y_m, knowledge.support_m(x_m, y_m) + 0.5 * thing.height_m);
+            let radius_m = 0.5 * thing.height_m.max(thing.width_m);
+            (stands && is_another).then_some(Beside { middle_m, radius_m })
+        });
+        beside.collect()
+    }
+
     /// Where it stands; ours by its outline in both eyes.
     fn standing(&self, place: &SeenPlace, thing: &Thing, boxes: &Boxes<'_>) -> Result<Chosen, End> {
         let knowledge = &self.grasper.knowledge;
         let (mut point, mut covariance_m2) = (place.point().coords.coords, place.covariance_m2);
-        let support_m = knowledge.support_m(point.x, point.y);
-        let middle_m = support_m + 0.5 * thing.height_m;
-        let off_m = point.z - middle_m;
-        let sigma_m = covariance_m2[(2, 2)].max(0.0).sqrt();
-        if off_m.abs() > NOT_ON_TABLE_M + 3.0 * sigma_m {
+        if let Some(off_m) = over_table_m(knowledge, thing, place) {
             return Err(End::Refused(format!(
                 "the {} seems to be {:.0} mm {} the table: put it down, or calibrate the eyes again",
                 thing.class.to_lowercase(),
@@ -81,6 +102,15 @@ impl Running<'_> {
     }
 }
 
+/// How far over the table a thing seems to be that does not stand on it (under it: negative), m; `None`: it
+/// seems to stand there.
+fn over_table_m(knowledge: &Knowledge, thing: &Thing, place: &SeenPlace) -> Option<f64> {
+    let [x_m, y_m, z_m] = place.point_m;
+    let off_m = z_m - knowledge.support_m(x_m, y_m) - 0.5 * thing.height_m;
+    let sigma_m = place.covariance_m2[(2, 2)].max(0.0).sqrt();
+    (off_m.abs() > NOT_ON_TABLE_M + 3.0 * sigma_m).then_some(off_m)
+}
+
 fn one_eye_only(lower: &str, eye: &str, why: &str) -> String {
     format!(
         "the {lower} is seen by the {eye} eye only ({why}): look for what is in front of the other one, or put the \
@@ -88,8 +118,14 @@ fn one_eye_only(lower: &str, eye: &str, why: &str) -> String {
     )
 }
 
-/// The thing of that class nearest to a place, else the one that is seen best.
-fn nearest(seen: &[Seen], class: &str, near_m: Option<[f64; 2]>) -> Result<usize, End> {
+/// The thing of that class nearest to a place; where none was pointed at, of those that seem to stand on the
+/// table (else of all) the one nearest to the robot.
+fn nearest(
+    seen: &[Seen],
+    class: &str,
+    near_m: Option<[f64; 2]>,
+    stands: impl Fn(&SeenPlace) -> bool,
+) -> Result<usize, End> {
     let not_seen = |why: String| End::Failed(Failure::NotSeen, why);
     let lower = class.to_lowercase();
     let of_class = || seen.iter().enumerate().filter(|(_, thing)| thing.class.eq_ignore_ascii_case(class));
@@ -97,7 +133,15 @@ fn nearest(seen: &[Seen], class: &str, near_m: Option<[f64; 2]>) -> Result<usize
     let far_m =
         |place: &SeenPlace, [x_m, y_m]: [f64; 2]| (place.point_m[0] - x_m).hypot(place.point_m[1] - y_m);
     let chosen = match near_m {
-        None => placed.map(|(index, _)| index).next(),
+        None => {
+            // What is seen much worse than another one may be something else.
+            let surest = placed.clone().map(|(index, _)| seen[index].confidence).fold(0.0, f32::max);
+            placed
+                .filter(|(index, _)| seen[*index].confidence >= SURE_SHARE * surest)
+                .map(|(index, place)| (index, !stands(place), far_m(place, [0.0; 2])))
+                .min_by(|a, b| a.1.cmp(&b.1).then(a.2.total_cmp(&b.2)))
+                .map(|(index, ..)| index)
+        }
         Some(near_m) => placed
             .map(|(index, place)| (index, far_m(place, near_m)))
             .filter(|(_, far_m)| *far_m < NEAR_M)
@@ -134,13 +178,23 @@ mod tests {
     }
 
     #[test]
-    fn of_two_the_one_that_was_pointed_at_is_taken_and_else_the_one_that_is_seen_best() {
-        let seen = [tomato(Ok([0.3, -0.1, 0.08]), [BOX; 2]), tomato(Ok([0.36, 0.0, 0.08]), [BOX; 2])];
-        let index = |near_m| nearest(&seen, "Tomato", near_m).map_err(why);
-        assert_eq!(index(Some([0.37, 0.01])), Ok(1));
-        assert_eq!(index(Some([0.29, -0.12])), Ok(0));
-        assert_eq!(index(None), Ok(0));
-        assert!(index(Some([0.2, 0.3])).is_err_and(|why| why.contains("near the place that was chosen")));
+    fn of_two_the_one_that_was_pointed_at_is_taken_and_else_the_nearest_to_the_robot() {
+        let mut seen = [tomato(Ok([0.36, 0.0, 0.08]), [BOX; 2]), tomato(Ok([0.3, -0.1, 0.08]), [BOX; 2])];
+        let stands = |place: &SeenPlace| place.point_m[2] < 0.1;
+        let index = |seen: &[Seen], near_m| nearest(seen, "Tomato", near_m, stands).map_err(why);
+        assert_eq!(index(&seen, Some([0.37, 0.01])), Ok(0));
+        assert_eq!(index(&seen, Some([0.29, -0.12])), Ok(1));
+        assert_eq!(index(&seen, None), Ok(1));
+        let nowhere = index(&seen, Some([0.2, 0.3]));
+        assert!(nowhere.is_err_and(|why| why.contains("near the place that was chosen")));
+        // What is hardly taken for a tomato is none where there is another one.
+        seen[1].confidence = 0.3;
+        assert_eq!(index(&seen, None), Ok(0));
+        // What is in the air counts where nothing stands.
+        let mut seen = [tomato(Ok([0.36, 0.0, 0.08]), [BOX; 2]), tomato(Ok([0.3, -0.1, 0.2]), [BOX; 2])];
+        assert_eq!(index(&seen, None), Ok(0));
+        seen[0].class = "Orange".to_owned();
+        assert_eq!(index(&seen, None), Ok(1));
     }
 
     #[test]
@@ -151,7 +205,7 @@ mod tests {
             ([BOX, BOX], "has no place: hidden"),
         ] {
             let seen = [tomato(Err("hidden"), boxes_px)];
-            let why = nearest(&seen, "tomato", None).map_err(why).expect_err("it has no place");
+            let why = nearest(&seen, "tomato", None, |_| true).map_err(why).expect_err("it has no place");
             assert!(why.contains(words), "{why}");
         }
     }

@@ -52,7 +52,8 @@ pub struct Order {
     pub hand: HandChoice,
     /// Class of the object.
     pub object: String,
-    /// The one nearest to this place of the table, robot frame, m; `None`: the one that is seen best.
+    /// The one nearest to this place of the table, robot frame, m; `None`: the one nearest to the
+    /// robot.
     pub near_m: Option<[f64; 2]>,
 }
 
@@ -274,6 +275,8 @@ impl Running<'_> {
         let before = self.body.look()?;
         let chosen = self.find(&before)?;
         self.begin(Step::Plan);
+        let beside = self.beside(&chosen);
+        self.grasper.leave(&beside);
         let method = self.order.method;
         let from = self.body.commanded()?;
         let headed = method::published(method, &self.grasper.knowledge, &chosen.point)?;

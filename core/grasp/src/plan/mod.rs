@@ -1,6 +1,7 @@
 //! From the place of an object to the postures that grasp it: how the hand comes, where it closes,
 //! and free ways there and up again.
 
+mod beside;
 mod fingers;
 mod headed;
 mod standing;
@@ -16,6 +17,7 @@ use plumbline_model::{Point, Robot};
 use crate::arm::PalmArm;
 use crate::hands::Hand;
 
+pub use beside::Beside;
 pub use headed::Headed;
 pub use standing::Standing;
 
@@ -121,13 +123,15 @@ struct WayDown {
 pub struct GraspPlanner {
     arm: PalmArm,
     bodies: CollisionModel,
+    /// What is left as it is.
+    others: Vec<Beside>,
 }
 
 impl GraspPlanner {
     /// For a hand as a model has it.
     pub fn new(arm: PalmArm) -> Self {
         let bodies = CollisionModel::of_rig(arm.rig());
-        Self { arm, bodies }
+        Self { arm, bodies, others: vec![] }
     }
 
     /// The hand.
@@ -136,7 +140,8 @@ impl GraspPlanner {
     }
 
     /// The grasp of what stands somewhere, by an arm that stands at `from`; `sent` shifts every point
-    /// to which the palm is sent (m), as a correction of the published kind does.
+    /// to which the palm is sent (m), as a correction of the published kind does. What it leaves as it is
+    /// ([`Self::leave`]) it touches only where there is no other way.
     ///
     /// # Errors
     /// Why it cannot be made.
@@ -146,11 +151,14 @@ impl GraspPlanner {
         shift_m: &Vector3<f64>,
         from: &Posture,
     ) -> Result<GraspPlan, NoPlan> {
+        let leaves = if self.others.is_empty() { &[false][..] } else { &[true, false] };
         let mut barred = None;
-        for above_m in ABOVE_M {
-            match self.plan_from(above_m, standing, shift_m, from) {
-                Ok(plan) => return Ok(plan),
-                Err(why) => barred = barred.or(Some(why)),
+        for leaves in leaves {
+            for above_m in ABOVE_M {
+                match self.plan_from(above_m, standing, shift_m, from, *leaves) {
+                    Ok(plan) => return Ok(plan),
+                    Err(why) => barred = barred.or(Some(why)),
+                }
             }
         }
         Err(barred.unwrap_or(NoPlan::OutOfReach { xy_m: standing.xy_m }))
@@ -163,6 +171,7 @@ impl GraspPlanner {
         standing: &Standing,
         shift_m: &Vector3<f64>,
         from: &Posture,
+        leaves: bool,
     ) -> Result<GraspPlan, NoPlan> {
         let open = self.open(from);
         let mut ways: Vec<(f64, f64, WayDown)> = vec![];
@@ -185,6 +194,9 @@ impl GraspPlanner {
                 break;
             }
             let WayDown { palm_m, above, down, .. } = way;
+            if leaves && self.meets_others(&down) {
+                continue;
+            }
             let free = self.room(&above, &down).and_then(|room_m| Ok((room_m, self.free_way(from, &above)?)));
             match free {
                 Ok((room_m, approach)) => {

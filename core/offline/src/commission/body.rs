@@ -47,6 +47,10 @@ const WORST_PX: f64 = 0.8;
 const LENS_PX: f64 = 0.15;
 /// The neck, the eyes in the head (turn, shift), the body (turn, shift).
 const UNKNOWNS: usize = 13;
+/// Where the body's unknowns begin.
+const BODY: usize = 7;
+/// What the description says of how far bodies are off counts as so many numbers that were measured.
+const DESCRIBED: f64 = 1.0;
 
 /// What was seen, in the lab's folder.
 const FILE: &str = "seen-body.json";
@@ -62,6 +66,9 @@ pub(super) struct SeenBody {
     pub rms_px: f64,
     /// Edge points that were found.
     pub points: usize,
+    /// This body is off by this share of what the description allows for.
+    #[serde(default)]
+    pub share_of_described: Option<f64>,
 }
 
 impl SeenBody {
@@ -137,10 +144,10 @@ fn fit(
 ) -> Option<SeenBody> {
     let body = rig.outlines.body.as_ref()?;
     let looking = Looking { rig, body };
-    let prior = prior_information(mount_covariance, body)?;
     let mut at = DVector::<f64>::zeros(UNKNOWNS);
-    let mut last = None;
+    let (mut last, mut share) = (None, 1.0);
     for round in 0..ROUNDS {
+        let prior = prior_information(mount_covariance, body, share)?;
         let window_px = WINDOW_PX[round.min(WINDOW_PX.len() - 1)];
         let (mut normal, mut right) = (DMatrix::<f64>::zeros(UNKNOWNS, UNKNOWNS), DVector::zeros(UNKNOWNS));
         let (mut squares, mut weights, mut points) = (0.0, 0.0, 0);
@@ -163,7 +170,9 @@ fn fit(
         let right = right * scale - &prior * &at;
         let factor = normal.cholesky()?;
         at += factor.solve(&right);
-        last = Some((factor.inverse()[(0, 0)], rms_px, points));
+        let covariance = factor.inverse();
+        share = share_of_described(body, &at, &covariance);
+        last = Some((covariance[(0, 0)], rms_px, points));
     }
     let (variance, rms_px, points) = last?;
     if rms_px > WORST_PX {
@@ -172,17 +181,35 @@ fn fit(
     // The head comes to rest elsewhere each time.
     let views = (pictures.len() / 2).max(1) as f64;
     let rest_rad = rest_sd_rad / views.sqrt();
-    Some(SeenBody { neck_rad: at[0], neck_sd_rad: variance.sqrt().hypot(rest_rad), rms_px, points })
+    let neck_sd_rad = variance.sqrt().hypot(rest_rad);
+    Some(SeenBody { neck_rad: at[0], neck_sd_rad, rms_px, points, share_of_described: Some(share) })
 }
 
-/// What is known before: the neck as necks usually are, the eyes by the board, the body as described.
-fn prior_information(mount: &Matrix6<f64>, body: &BodyEdges) -> Option<DMatrix<f64>> {
+/// How far this body is off, as a share of what the description allows for: that the body is turned about the
+/// neck's axis looks like a neck that is off, but a body that is where it should be in all that can be seen of
+/// it was put together well in that, too. A step of expectation maximization for the common variance of its
+/// turn and shift (Dempster, Laird and Rubin 1977): what cannot be seen adds nothing.
+fn share_of_described(body: &BodyEdges, at: &DVector<f64>, covariance: &DMatrix<f64>) -> f64 {
+    let squares = (0..6).map(|k| {
+        let variance = described_sd(body, k).powi(2);
+        (at[BODY + k].powi(2) + covariance[(BODY + k, BODY + k)]) / variance
+    });
+    ((DESCRIBED + squares.sum::<f64>()) / (DESCRIBED + 6.0)).sqrt()
+}
+
+/// How far bodies are off by the description: turn (rad), then shift (m).
+fn described_sd(body: &BodyEdges, k: usize) -> f64 {
+    if k < 3 { body.turn_sd_rad } else { body.shift_sd_m }
+}
+
+/// What is known before: the neck as necks usually are, the eyes by the board, the body as described and by
+/// how much this one seems to be off.
+fn prior_information(mount: &Matrix6<f64>, body: &BodyEdges, share: f64) -> Option<DMatrix<f64>> {
     let mut covariance = DMatrix::<f64>::zeros(UNKNOWNS, UNKNOWNS);
     covariance[(0, 0)] = NECK_SD_RAD.powi(2);
     covariance.view_mut((1, 1), (6, 6)).copy_from(mount);
-    for k in 0..3 {
-        covariance[(7 + k, 7 + k)] = body.turn_sd_rad.powi(2);
-        covariance[(10 + k, 10 + k)] = body.shift_sd_m.powi(2);
+    for k in 0..6 {
+        covariance[(BODY + k, BODY + k)] = (share * described_sd(body, k)).powi(2);
     }
     Some(covariance.cholesky()?.inverse())
 }
@@ -258,7 +285,7 @@ impl Looking<'_> {
         // The body turns about its middle.
         let middle =
             self.body.edges_m.iter().flatten().sum::<Vector3<f64>>() / (2 * self.body.edges_m.len()) as f64;
-        let lies = middle + (motion(7) * Point3::from(point - middle)).coords;
+        let lies = middle + (motion(BODY) * Point3::from(point - middle)).coords;
         let in_left = left_from_robot * Point3::from(lies);
         let in_eye = match picture.eye {
             Eye::Left => in_left,
@@ -301,6 +328,23 @@ mod tests {
             assert!((seen.neck_rad - zero_rad).abs() < 0.0035, "{seen:?}");
             assert!((0.0005..0.006).contains(&seen.neck_sd_rad), "{seen:?}");
         }
+    }
+
+    #[test]
+    fn a_body_that_is_off_tells_less_of_the_head_than_one_that_is_as_described() {
+        let rig = Rig::built_in("nico").expect("valid");
+        let right = looked(&rig, 0.0).expect("the body is in sight");
+        let mut other = rig.clone();
+        let body = other.outlines.body.as_mut().expect("it is described");
+        let off_m = Vector3::new(1.5, -1.5, 1.5) * body.shift_sd_m;
+        body.edges_m.iter_mut().flatten().for_each(|end| *end += off_m);
+        let off = looked(&other, 0.0).expect("the body is in sight");
+        let share = |seen: &SeenBody| seen.share_of_described.expect("told");
+        assert!(share(&right) < 0.6 && share(&off) > 1.5 * share(&right), "{right:?} {off:?}");
+        assert!(off.neck_sd_rad > 1.3 * right.neck_sd_rad, "{right:?} {off:?}");
+        // Within what it says of itself.
+        assert!(right.neck_rad.abs() < 3.0 * right.neck_sd_rad, "{right:?}");
+        assert!(off.neck_rad.abs() < 3.0 * off.neck_sd_rad, "{off:?}");
     }
 
     #[test]

@@ -1,4 +1,5 @@
 //! A whole commissioning, one that is interrupted, and scenarios that were drawn.
+#![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -173,4 +174,19 @@ fn a_perfect_twin_is_commissioned_within_its_targets() {
     assert!(report.place_error_mm.median.expect("judged") <= 3.0, "{report:#?}");
     assert!(report.place_error_mm.p95.expect("judged") <= 8.0, "{report:#?}");
     assert!(report.touch_error_mm.inside.expect("judged") <= 3.0, "{report:#?}");
+}
+
+/// How the tomato is found on the 36 places in the lab commissioned in `PLUMBLINE_LAB` (of the twin
+/// `PLUMBLINE_TWIN`), and how well what is stated fits.
+#[test]
+#[ignore = "a minute; figures for who works on places"]
+fn places_in_a_lab() {
+    let folder = PathBuf::from(std::env::var("PLUMBLINE_LAB").expect("PLUMBLINE_LAB is a commissioned lab"));
+    let twin = std::env::var("PLUMBLINE_TWIN").unwrap_or_else(|_| "lab".to_owned());
+    let rig = Arc::new(Rig::built_in("nico").expect("valid"));
+    let lab = Lab { folder, rig, scenario: scenario(&twin).expect("a twin"), seed: 1 };
+    let steps = Steps::read(&lab.folder, &lab.scenario, lab.seed).expect("commissioned");
+    let mut robot = Robot::new(&lab, steps.elapsed_s(), None).expect("a twin");
+    let (error, _) = judge::places(&lab, &mut robot, &Unattended).expect("judged");
+    println!("{}", serde_json::to_string(&error).expect("text"));
 }

@@ -27,25 +27,30 @@ pub(super) trait Meddler {
     /// The twin before it begins.
     fn before(&mut self, _twin: &mut Lockstep) {}
 
-    /// Does something before a move, or ends it.
-    fn moves(&mut self, _step: Step, _twin: &mut Lockstep) -> Result<(), Halt> {
+    /// Does something before the arm moves along a way, or ends it.
+    fn moves(&mut self, _step: Step, _way: &[Posture], _twin: &mut Lockstep) -> Result<(), Halt> {
         Ok(())
     }
 
     /// Changes what the eyes have seen.
     fn sees(&mut self, _step: Step, _sight: &mut Sight) {}
+
+    /// Changes what the servos say.
+    fn feels(&mut self, _step: Step, _servos: &mut [ServoState]) {}
+
+    /// Is told what goes to disk before a step begins.
+    fn keeps(&mut self, _record: &Record) {}
 }
 
 /// Who does something before moves only.
 impl<F: FnMut(Step, &mut Lockstep) -> Result<(), Halt>> Meddler for F {
-    fn moves(&mut self, step: Step, twin: &mut Lockstep) -> Result<(), Halt> {
+    fn moves(&mut self, step: Step, _way: &[Posture], twin: &mut Lockstep) -> Result<(), Halt> {
         self(step, twin)
     }
 }
 
-struct Nobody;
-
-impl Meddler for Nobody {}
+/// Nobody interferes.
+impl Meddler for () {}
 
 /// What attempts of one twin share.
 pub(super) struct Bench {
@@ -85,10 +90,16 @@ impl Bench {
         &self.rig
     }
 
+    /// What plans, sees and grasps.
+    #[cfg(test)]
+    pub fn grasper(&self) -> &Grasper {
+        &self.grasper
+    }
+
     /// Carries out one attempt in a world of its own, whose clock begins in 1970: two runs of the same
     /// attempt are the same file.
     pub fn attempt(&mut self, task: &Task) -> Result<(Record, Judged), OfflineError> {
-        self.attempt_disturbed(task, &mut Nobody)
+        self.attempt_disturbed(task, &mut ())
     }
 
     /// The same, with somebody who interferes.
@@ -97,28 +108,58 @@ impl Bench {
         task: &Task,
         meddler: &mut dyn Meddler,
     ) -> Result<(Record, Judged), OfflineError> {
+        let mut body = self.world(task)?;
+        let done = self.attempt_in(&mut body, task, meddler);
+        self.put_away(body);
+        Ok(done)
+    }
+
+    /// A world of its own for attempts one after another, with the thing in its place and the robot at home.
+    pub fn world(&mut self, task: &Task) -> Result<TwinBody, OfflineError> {
         let mut twin =
             Lockstep::new(self.rig.clone(), &self.scenario, task.seed)?.with_eyes(self.eyes.take());
         twin.advance_warm_up(WARM_S);
-        let mut body = TwinBody::new(twin, task.toy, task.at_m)?;
+        Ok(TwinBody::new(twin, task.toy, task.at_m)?)
+    }
+
+    /// Ends a world; the next one draws with its eyes.
+    pub fn put_away(&mut self, body: TwinBody) {
+        self.eyes = body.into_twin().take_eyes();
+    }
+
+    /// One attempt in a world as it is now.
+    pub fn attempt_in(
+        &mut self,
+        body: &mut TwinBody,
+        task: &Task,
+        meddler: &mut dyn Meddler,
+    ) -> (Record, Judged) {
         meddler.before(body.twin());
         let judge = Rc::new(RefCell::new(Judge::new(body.twin(), task.toy, &self.rig)));
         let step = Rc::new(RefCell::new(Step::Ready));
-        let mut watched = Watched { body: &mut body, judge: judge.clone(), step: step.clone(), meddler };
-        let mut watch = Steps(step);
+        let meddler = RefCell::new(meddler);
+        let mut watched =
+            Watched { body: &mut *body, judge: judge.clone(), step: step.clone(), meddler: &meddler };
+        let mut watch = Steps { step, meddler: &meddler };
         let record = self.grasper.attempt(&mut watched, &task.order, jiff::Timestamp::UNIX_EPOCH, &mut watch);
         let judged = judge.borrow().judge(body.twin(), &record);
-        self.eyes = body.into_twin().take_eyes();
-        Ok((record, judged))
+        (record, judged)
     }
 }
 
-/// Tells the judge where the attempt is.
-struct Steps(Rc<RefCell<Step>>);
+/// Tells the judge where the attempt is, and the meddler what is kept.
+struct Steps<'a, 'm> {
+    step: Rc<RefCell<Step>>,
+    meddler: &'a RefCell<&'m mut dyn Meddler>,
+}
 
-impl Watch for Steps {
+impl Watch for Steps<'_, '_> {
     fn step(&mut self, step: Step) {
-        *self.0.borrow_mut() = step;
+        *self.step.borrow_mut() = step;
+    }
+
+    fn about_to(&mut self, record: &Record) {
+        self.meddler.borrow_mut().keeps(record);
     }
 
     fn saw(&mut self, _step: Step, _sight: &Sight, _seen: &[Seen]) {}
@@ -129,14 +170,14 @@ impl Watch for Steps {
 }
 
 /// A body with a judge at its side, who looks at it and is not seen.
-struct Watched<'a> {
+struct Watched<'a, 'm> {
     body: &'a mut TwinBody,
     judge: Rc<RefCell<Judge>>,
     step: Rc<RefCell<Step>>,
-    meddler: &'a mut dyn Meddler,
+    meddler: &'a RefCell<&'m mut dyn Meddler>,
 }
 
-impl Body for Watched<'_> {
+impl Body for Watched<'_, '_> {
     fn rig(&self) -> &Arc<Rig> {
         self.body.rig()
     }
@@ -146,7 +187,9 @@ impl Body for Watched<'_> {
     }
 
     fn servos(&mut self) -> Result<Vec<ServoState>, Halt> {
-        self.body.servos()
+        let mut servos = self.body.servos()?;
+        self.meddler.borrow_mut().feels(*self.step.borrow(), &mut servos);
+        Ok(servos)
     }
 
     fn commanded(&mut self) -> Result<Posture, Halt> {
@@ -155,7 +198,7 @@ impl Body for Watched<'_> {
 
     fn follow(&mut self, way: &[Posture], speed_rad_s: f64) -> Result<(), Halt> {
         let step = *self.step.borrow();
-        self.meddler.moves(step, self.body.twin())?;
+        self.meddler.borrow_mut().moves(step, way, self.body.twin())?;
         self.body.follow(way, speed_rad_s)?;
         if *self.step.borrow() == Step::Lower {
             self.judge.borrow_mut().closing(self.body.twin());
@@ -179,7 +222,7 @@ impl Body for Watched<'_> {
             _ => {}
         }
         let mut sight = self.body.look()?;
-        self.meddler.sees(step, &mut sight);
+        self.meddler.borrow_mut().sees(step, &mut sight);
         Ok(sight)
     }
 }

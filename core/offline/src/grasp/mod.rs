@@ -3,7 +3,11 @@
 mod attempt;
 #[cfg(test)]
 mod bad_inputs;
+#[cfg(test)]
+mod beside;
 mod body;
+#[cfg(test)]
+mod broken_off;
 mod judge;
 mod lab;
 mod one;

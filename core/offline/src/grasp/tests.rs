@@ -24,7 +24,7 @@ fn bench(scenario: &str) -> Bench {
 
 /// With nothing learned.
 pub(super) fn bench_of(scenario: Scenario) -> Bench {
-    bench_with(scenario, Rig::built_in("nico").expect("valid"))
+    bench_with(scenario, Rig::built_in("nico").expect("valid"), Corrections::default())
 }
 
 pub(super) fn task(method: Method, toy: Toy, at_m: [f64; 2]) -> Task {
@@ -32,14 +32,14 @@ pub(super) fn task(method: Method, toy: Toy, at_m: [f64; 2]) -> Task {
     Task { order, toy, at_m, seed: 1 }
 }
 
-/// With nothing learned, on a robot with these arms.
-fn bench_with(scenario: Scenario, rig: Rig) -> Bench {
+/// With these corrections alone, on a robot with these arms.
+pub(super) fn bench_with(scenario: Scenario, rig: Rig, corrections: Corrections) -> Bench {
     let rig = Arc::new(rig);
     let knowledge = Knowledge {
         model: RobotModel::nominal(rig.clone()),
         described: rig.clone(),
         calibration: Arc::new(StereoCalibration::bare(rig.eyes.cameras)),
-        corrections: Corrections::default(),
+        corrections,
     };
     let shown = rig.clone();
     let mut finder = move |hand: Hand| -> Option<Box<dyn HandFinder>> {
@@ -83,7 +83,7 @@ fn the_left_hand_lifts_what_the_right_one_does_not_reach_well() {
 fn a_hand_that_the_robot_lacks_is_refused_by_name() {
     let mut rig = Rig::built_in("nico").expect("valid");
     rig.arms.retain(|arm| arm.name == "right");
-    let mut bench = bench_with(Scenario::built_in("perfect").expect("valid"), rig);
+    let mut bench = bench_with(Scenario::built_in("perfect").expect("valid"), rig, Corrections::default());
     let mut left = task(Method::M5, Toy::Tomato, [0.3, -0.1]);
     left.order.hand = HandChoice::Left;
     let (record, judged) = bench.attempt(&left).expect("done");

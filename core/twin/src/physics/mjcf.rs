@@ -305,10 +305,12 @@ impl Writer<'_> {
             );
             let mass_kg = toy.mass_kg() * self.scenario.contact.toy_mass;
             // A hollow ball of its size.
-            let moment = 2.0 / 3.0 * mass_kg * toy.radius_m().powi(2);
-            let low = if toy == Toy::Duck { -0.006 } else { 0.0 };
+            let size = self.scenario.contact.toy_size;
+            let moment = 2.0 / 3.0 * mass_kg * (size * toy.radius_m()).powi(2);
+            let low = if toy == Toy::Duck { -0.006 * size } else { 0.0 };
             self.inertia(mass_kg, Vector3::new(0.0, 0.0, low), Matrix3::identity() * moment, "    ");
             for (i, part) in toy.parts().iter().enumerate() {
+                let part = part.of_size(size);
                 self.geom(&format!("toy.{name}.{i}"), &part.toy_from_shape, &part.shape, &more, "    ");
             }
             self.text.push_str("    </body>\n");

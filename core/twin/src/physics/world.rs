@@ -48,6 +48,8 @@ pub struct World {
     /// Where the friction of each servo goes.
     rubs: Vec<Rub>,
     toys: Vec<ToyState>,
+    /// Size of toys, times that of the usual ones.
+    toy_size: f64,
     board: Option<Pose<Robot, Board>>,
     eyes: EyePlaces,
     warm_up: WarmUp,
@@ -120,6 +122,7 @@ impl World {
             board_body: find(data.model(), MjtObjBase::mjOBJ_BODY, "board")?,
             eyes: EyePlaces::of(&rig, scenario),
             warm_up: WarmUp::cold(scenario.eyes.heat),
+            toy_size: scenario.contact.toy_size,
             rig,
             places,
             level: places,
@@ -358,11 +361,16 @@ impl World {
                 remedy: "choose a place on the table",
             });
         }
-        let z_m = self.places.table_height_m(x_m, y_m) + toy.rest_height_m() + 0.004;
+        let z_m = self.places.table_height_m(x_m, y_m) + self.toy_size * toy.rest_height_m() + 0.004;
         let mut random = StdRng::seed_from_u64(self.seed.wrapping_mul(31).wrapping_add(toy as u64));
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), random.random_range(-0.6..0.6));
         self.put_toy(toy, Isometry3::from_parts(Translation3::new(x_m, y_m, z_m), turn));
         Ok(())
+    }
+
+    /// Size of toys, times that of the usual ones.
+    pub(crate) fn toy_size(&self) -> f64 {
+        self.toy_size
     }
 
     /// Puts a toy anywhere, also into the air.

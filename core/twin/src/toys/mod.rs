@@ -121,6 +121,24 @@ pub(crate) struct ToyPart {
     pub material: Material,
 }
 
+impl ToyPart {
+    /// The part of a toy of another size that collides.
+    pub fn of_size(&self, factor: f64) -> Self {
+        let mut part = self.clone();
+        part.toy_from_shape.translation.vector *= factor;
+        match &mut part.shape {
+            Shape::Ellipsoid { radii_m } => *radii_m *= factor,
+            Shape::Capsule { radius_m, half_length_m } | Shape::Cylinder { radius_m, half_length_m } => {
+                (*radius_m, *half_length_m) = (*radius_m * factor, *half_length_m * factor);
+            }
+            Shape::Box { half_m } => *half_m *= factor,
+            // What collides is made of none of these.
+            Shape::Board { .. } | Shape::Mesh { .. } => {}
+        }
+        part
+    }
+}
+
 const YELLOW: [f32; 3] = [0.82, 0.58, 0.015];
 const WHITE: [f32; 3] = [0.78, 0.76, 0.70];
 
