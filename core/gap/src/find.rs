@@ -71,7 +71,6 @@ pub fn find(
         found.verdict = Verdict::NoGap;
     }
     context.checkpoint()?;
-    let mut compared = compared;
     if found.floor.source == FloorSource::Fitted {
         with_floor(&mut compared, &found.floor);
     }
