@@ -109,7 +109,8 @@ pub fn find(
 }
 
 /// What servos do between command and encoder stands beside what touches say of the arm.
-fn with_servos(finding: &mut Finding, servos: Vec<NamedEffect>) {
+fn with_servos(finding: &mut Finding, (servos, words): (Vec<NamedEffect>, Option<String>)) {
+    finding.warnings.extend(words);
     let unrelated = finding.verdict == Verdict::NotInLibrary && finding.effects.is_empty();
     if servos.is_empty() || unrelated {
         return;

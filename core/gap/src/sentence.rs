@@ -51,8 +51,11 @@ fn no_gap(finding: &Finding) -> String {
     } else {
         "Model and measurement agree within the noise: there is no gap to close."
     };
+    // What servos do all alike has no name, but no gap does not mean that commands are kept.
+    let servos = finding.warnings.iter().find(|words| words.starts_with("the servos give way"));
+    let servos = servos.map_or(String::new(), |words| format!(" But {words}."));
     format!(
-        "{first} Once the frame is placed, the mean error is {}, and noise alone leaves {}{approximate}.",
+        "{first} Once the frame is placed, the mean error is {}, and noise alone leaves {}{approximate}.{servos}",
         size(shown.before, shown.unit),
         size(shown.floor, shown.unit)
     )
@@ -74,11 +77,18 @@ fn not_in_library(finding: &Finding) -> String {
         size(shown.before, shown.unit),
         size(shown.floor, shown.unit)
     );
-    let depends: Vec<&str> = finding.unexplained.depends_on.iter().map(|on| on.on.as_str()).take(2).collect();
+    let article = |on: &str| if on.starts_with("where ") { on.to_owned() } else { format!("the {on}") };
+    let depends: Vec<String> = finding
+        .unexplained
+        .depends_on
+        .iter()
+        .map(|on| article(on.on.trim_start_matches("the ")))
+        .take(2)
+        .collect();
     let on = if depends.is_empty() {
         String::new()
     } else {
-        format!(" What is left depends on the {}.", depends.join(" and the "))
+        format!(" What is left depends on {}.", depends.join(" and "))
     };
     if finding.partial {
         let parts: Vec<String> =

@@ -20,10 +20,13 @@ const FEWEST_CELLS: usize = 12;
 const SURE: f64 = 8.0;
 /// What moves the tip by less than this, and by less than the noise, is not told, m.
 const LEAST_M: f64 = 1e-3;
-/// Joints of one controller give way alike when they differ by less than this factor.
-const ALIKE: f64 = 2.0;
-/// So many joints make a controller.
-const FEWEST_ALIKE: usize = 3;
+/// A servo has a fault of its own when it gives way by so many times what others do …
+const MORE: f64 = 2.0;
+/// … of which so many have to be known, to this share of it.
+const FEWEST_OTHERS: usize = 2;
+const KNOWN: f64 = 0.2;
+/// No servo that holds an arm gives way by more, rad/N m.
+const FURTHEST: f64 = 0.3;
 /// Every joint lags a little behind while it moves; one that sticks does so by this many times more.
 const STANDS_OUT: f64 = 4.0;
 /// How sure a name is that all of this speaks for (the torque is that of the description's masses).
@@ -53,28 +56,30 @@ struct Joint {
     lever_m: f64,
 }
 
-/// Servos that give way or stick, the largest first.
-pub(crate) fn servos(measurements: &Measurements, floor: &Floor, assumed: &Assumed) -> Vec<NamedEffect> {
+/// Servos that give way or stick more than the others, the largest first, and what all of them do, in words.
+pub(crate) fn servos(
+    measurements: &Measurements,
+    floor: &Floor,
+    assumed: &Assumed,
+) -> (Vec<NamedEffect>, Option<String>) {
     let Some(session) = (0..measurements.apparatuses.len()).max_by_key(|&s| logged(measurements, s).count())
     else {
-        return vec![];
+        return (vec![], None);
     };
-    let Some(arm) = &measurements.apparatuses[session].arm else { return vec![] };
+    let Some(arm) = &measurements.apparatuses[session].arm else { return (vec![], None) };
     let rows: Vec<&Observation> = logged(measurements, session).collect();
     let known = |kind: Kind| measurements.present.iter().any(|present| present.effect.kind == kind);
     let joints: Vec<Joint> =
         (0..arm.len()).filter_map(|j| joint(measurements, arm, &rows, assumed, j)).collect();
     let noise_m = floor.kinds.iter().filter(|kind| kind.what.is_placed());
     let noise_m = noise_m.map(|kind| kind.sd[0].hypot(kind.sd[1])).fold(LEAST_M, f64::max);
-    let mut found = vec![];
-    if !known(Kind::ServoDroop) {
-        found.extend(droops(arm, &joints, noise_m));
-    }
+    let (mut found, words) =
+        if known(Kind::ServoDroop) { (vec![], None) } else { droops(arm, &joints, noise_m) };
     if !known(Kind::Stiction) {
         found.extend(sticking(arm, &joints, noise_m));
     }
     found.sort_by(|a, b| b.size_m.total_cmp(&a.size_m));
-    found
+    (found, words)
 }
 
 /// Rows of the arm that have both.
@@ -92,6 +97,11 @@ fn joint(
 ) -> Option<Joint> {
     let sided = ["plus", "minus"].map(|side| rows.iter().any(|row| row.approach.as_deref() == Some(side)));
     let sided = sided == [true, true];
+    // From one side and with one weight a torque goes with the posture, and so does how fast a joint moves.
+    let weights = rows.iter().map(|row| (row.payload_kg * 1e3).round() as i64);
+    if !sided && weights.collect::<std::collections::BTreeSet<_>>().len() < 2 {
+        return None;
+    }
     let mut cells = std::collections::BTreeMap::<usize, ([f64; 3], f64)>::new();
     let mut square = 0.0;
     for row in rows {
@@ -159,39 +169,37 @@ fn slopes(cells: &[[f64; 3]], sided: bool) -> Option<[Option<Slope>; 2]> {
     None
 }
 
-fn droops(arm: &Arm, joints: &[Joint], noise_m: f64) -> Vec<NamedEffect> {
-    let sure: Vec<(&Joint, Slope)> = joints
-        .iter()
-        .filter_map(|joint| Some((joint, joint.gives?)))
-        .filter(|(_, slope)| slope.value > SURE * slope.sd)
-        .collect();
-    let middle = median(sure.iter().map(|(_, slope)| slope.value)).unwrap_or(0.0);
-    let is_alike = |slope: &Slope| slope.value < ALIKE * middle && slope.value * ALIKE > middle;
-    let alike: Vec<&(&Joint, Slope)> = sure.iter().filter(|(_, slope)| is_alike(slope)).collect();
+/// Servos that give way more than the others, and what all of them do alike, in words: a controller without
+/// integral action gives way everywhere, and that is its way, not what is wrong with a joint.
+fn droops(arm: &Arm, joints: &[Joint], noise_m: f64) -> (Vec<NamedEffect>, Option<String>) {
     let size_m = |joint: &Joint, value: f64| value * joint.torque_nm * joint.lever_m;
-    let mut found = vec![];
-    let mut common = 0.0;
-    if alike.len() >= FEWEST_ALIKE {
-        let weight = |slope: &Slope| slope.sd.powi(-2);
-        let whole: f64 = alike.iter().map(|(_, slope)| weight(slope)).sum();
-        common = alike.iter().map(|(_, slope)| slope.value * weight(slope)).sum::<f64>() / whole;
-        let spread = alike.iter().map(|(_, slope)| (slope.value - common).powi(2)).sum::<f64>();
-        let sd = (1.0 / whole).sqrt().max((spread / (alike.len() - 1) as f64 / alike.len() as f64).sqrt());
-        let size = alike.iter().map(|(joint, _)| size_m(joint, common).powi(2)).sum::<f64>().sqrt();
-        if size > noise_m {
-            found.extend(named(arm, Kind::ServoDroop, "", Slope { value: common, sd }, (size, noise_m)));
-        } else {
-            common = 0.0;
-        }
-    }
-    for (joint, slope) in sure.iter().filter(|(_, slope)| common == 0.0 || !is_alike(slope)) {
-        let slope = Slope { value: slope.value - common, ..*slope };
+    let (mut found, mut alike) = (vec![], vec![]);
+    for joint in joints {
+        let Some(slope) = joint.gives.filter(|slope| slope.value > SURE * slope.sd) else { continue };
         let size = size_m(joint, slope.value);
-        if size > noise_m {
+        if size < noise_m || slope.value > FURTHEST {
+            continue;
+        }
+        let others = joints.iter().filter(|other| other.j != joint.j).filter_map(|other| other.gives);
+        let known: Vec<f64> =
+            others.filter(|other| other.sd < KNOWN * slope.value).map(|other| other.value.abs()).collect();
+        let usual = median(known.iter().copied()).filter(|_| known.len() >= FEWEST_OTHERS);
+        if usual.is_some_and(|usual| slope.value > MORE * usual) {
             found.extend(named(arm, Kind::ServoDroop, &arm.parts[joint.j].joint, slope, (size, noise_m)));
+        } else {
+            alike.push((slope.value, size));
         }
     }
-    found
+    let words = median(alike.iter().map(|(value, _)| *value)).map(|usual| {
+        let moved_m = alike.iter().map(|(_, size)| size * size).sum::<f64>().sqrt();
+        format!(
+            "the servos give way under load like springs of {:.0} N m/rad: where encoders are not read, the fingertip \
+             is up to {:.0} mm beside its command. Raise the integral gain, or predict from encoders",
+            1.0 / usual,
+            moved_m * 1e3
+        )
+    });
+    (found, words)
 }
 
 fn sticking(arm: &Arm, joints: &[Joint], noise_m: f64) -> Vec<NamedEffect> {

@@ -96,6 +96,23 @@ fn a_servo_that_gives_way_is_named_although_touches_agree_with_its_encoder() {
 }
 
 #[test]
+fn servos_that_all_give_way_are_told_and_none_of_them_is_named() {
+    let mut made = with_encoders(0.0, 8);
+    let arm = made.apparatuses[0].arm.clone().expect("an arm");
+    for row in &mut made.rows {
+        let encoder_rad = row.encoder_rad.clone().expect("logged");
+        let up = nalgebra::Vector3::z();
+        let situation = Situation::new(&arm, &encoder_rad, &row.direction, row.payload_kg, &up);
+        let commanded = row.commanded_rad.as_mut().expect("logged");
+        commanded.iter_mut().zip(situation.torques_nm()).for_each(|(angle, nm)| *angle -= nm / 30.0);
+    }
+    let finding = looked_at(&made, false);
+    assert_eq!(finding.verdict, Verdict::NoGap);
+    assert!(finding.effects.is_empty());
+    assert!(finding.sentence.contains("springs of 30 N m/rad"), "{}", finding.sentence);
+}
+
+#[test]
 fn servos_that_hold_have_no_name() {
     for seed in 0..5 {
         let finding = looked_at(&with_encoders(0.0, 30 + seed), false);

@@ -164,7 +164,7 @@ mod tests {
         let mut all: Vec<Repeat> = (0..160)
             .map(|i| {
                 let mut noise = || (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
-                let off = vec![noise(), noise()];
+                let off = [noise(), noise()];
                 let (when, turned) = (7.0 * f64::from(i), random.random_range(-0.5..0.5));
                 let off = vec![off[0] + of(when, turned), off[1]];
                 let cell = usize::try_from(i % 40).expect("small");
