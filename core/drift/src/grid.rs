@@ -92,11 +92,12 @@ impl PivotCorrection {
     pub const PUBLISHED: Self = Self { shift: [0.320_849, -0.163_687, 0.032_437], far_factor: 0.8 };
 
     /// Fitted as it was published: least squares of the shift that is missing along the way to the pivot.
-    /// `None`: the places do not tell it.
+    /// Where too few places are far the factor for those is the published one. `None`: the places do not tell
+    /// the shift.
     pub fn fitted(places: &[GridPlace]) -> Option<Self> {
         let (near, far): (Vec<&GridPlace>, Vec<&GridPlace>) =
             places.iter().partition(|place| place.range_m <= FAR_M);
-        if near.len() < LEAST_NEAR || far.len() < LEAST_FAR {
+        if near.len() < LEAST_NEAR {
             return None;
         }
         let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
@@ -108,6 +109,9 @@ impl PivotCorrection {
             right += row * missing_m;
         }
         let [a, b, c] = normal.cholesky()?.solve(&right).into();
+        if far.len() < LEAST_FAR {
+            return Some(Self { shift: [a, b, c], far_factor: Self::PUBLISHED.far_factor });
+        }
         let (mut sum, mut square) = (0.0, 0.0);
         for place in far {
             let out = -to_pivot(place);
@@ -164,7 +168,7 @@ mod tests {
         let mut places = vec![];
         for x in 0..4 {
             for y in 0..9 {
-                let estimate = Point::new(0.2 + 0.14 * f64::from(x), -0.4 + 0.1 * f64::from(y), 0.05);
+                let estimate = Point::new(0.2 + 0.18 * f64::from(x), -0.4 + 0.1 * f64::from(y), 0.05);
                 let range_m = (eye * estimate).range_m();
                 let place = GridPlace { target: estimate, estimate, range_m };
                 places
