@@ -13,6 +13,7 @@ mod disparity;
 mod doctor;
 mod gap;
 mod grasp;
+mod grid;
 mod health;
 mod ik;
 mod locate;
@@ -77,6 +78,8 @@ enum Verb {
     GraspTrials(WithJson<grasp::GraspTrials>),
     /// Says from ordinary pairs, without a board, whether the calibration of the eyes still holds.
     Health(WithJson<health::Health>),
+    /// Judges places on a grid of known targets, and what the published correction makes of them.
+    Grid(WithJson<grid::Grid>),
     /// Computes the disparity of a pair.
     Disparity(WithJson<disparity::Disparity>),
     /// Says what works on this machine: libraries, graphics, cameras, serial ports, folders.
@@ -140,6 +143,7 @@ pub fn run() -> ExitCode {
                 Verb::Grasp(verb) => verb.run(grasp::grasp),
                 Verb::GraspTrials(verb) => verb.run(grasp::trials),
                 Verb::Health(verb) => verb.run(health::run),
+                Verb::Grid(verb) => verb.run(grid::run),
                 Verb::Disparity(verb) => verb.run(disparity::run),
                 Verb::Doctor(verb) => verb.run(doctor::run),
                 Verb::Sample(verb) => verb.run(sample::run),

@@ -7,12 +7,14 @@
 //! reads images, encoders and detections and nothing else.
 
 mod cost;
+mod grid;
 mod monitor;
 mod warm_up;
 mod watch;
 pub mod words;
 
 pub use cost::{PlaceError, Row, TableError, errors};
+pub use grid::{GridErrors, GridPlace, PivotCorrection, grid_places};
 pub use monitor::{Alarm, Band, Monitor, Mover, OwnMotion, Sample, Verdict};
 pub use warm_up::{WarmUp, fit_warm_up};
-pub use watch::{Look, Reference, ReferenceKind, ReferenceSeen, Watcher, WatcherSetup};
+pub use watch::{Look, Reference, ReferenceKind, ReferenceSeen, WatchError, Watcher, WatcherSetup};

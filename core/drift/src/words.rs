@@ -13,12 +13,13 @@ pub fn verdict(verdict: &Verdict) -> String {
         Verdict::Steady { cost_m } => {
             format!("Places stay where they were: {} at the far end of the table.", off(cost_m[2]))
         }
+        Verdict::Warming { to_go_s: Some(to_go_s), cost_m, what, .. } if *to_go_s <= 0.0 => {
+            let turned = has_turned(*what).trim_end_matches(',');
+            format!("Warmed up. {turned}. {} Calibrate the eyes again, warm.", costs(cost_m))
+        }
         Verdict::Warming { to_go_s, cost_m, what, .. } => {
             let to_go = match to_go_s {
-                Some(to_go_s) if *to_go_s >= 30.0 => {
-                    format!("about {} to go", minutes(*to_go_s))
-                }
-                Some(_) => "nearly done".to_owned(),
+                Some(to_go_s) => format!("about {} to go", minutes(to_go_s.max(60.0))),
                 None => "how long it takes cannot be told yet".to_owned(),
             };
             format!("Still warming up, {to_go}: {} slowly. {}", turns(*what), costs(cost_m))

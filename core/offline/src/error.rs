@@ -106,6 +106,11 @@ pub enum OfflineError {
     /// A session without pairs.
     #[error("{0} has no pairs of images: they belong into stereo/left and stereo/right, by the same names")]
     NoPairs(PathBuf),
+    /// A session without places to judge.
+    #[error(
+        "{0} has no localizations.csv with true places and estimates that count: give a session that has"
+    )]
+    NoGrid(PathBuf),
     /// The eyes cannot be judged.
     #[error(transparent)]
     Health(#[from] HealthError),

@@ -18,6 +18,7 @@ pub mod doctor;
 mod error;
 mod gap;
 mod grasp;
+mod grid;
 mod health;
 mod ik;
 mod locate;
@@ -48,6 +49,7 @@ pub use grasp::{
     GraspArgs, GraspMethod, GraspReport, HandChoice, Judged, MethodSummary, PositionSummary, Spread, Summary,
     TrialsArgs, TrialsError, grasp, grasp_trials, merge_trials,
 };
+pub use grid::{GridArgs, GridCorrection, GridReport, GridRow, grid};
 pub use health::{CalibrationHealth, HealthArgs, HealthReport, health};
 pub use ik::{IkArgs, IkReport, IkSolution, ik};
 pub use locate::{LocateArgs, LocateReport, LocateRobot, LocatedPoint, PointInRobot, locate};

@@ -7,7 +7,7 @@ use plumbline_model::camera::ModelKind;
 use plumbline_model::formats::CalibrationFormat;
 use plumbline_model::{InnerCorners, Unattended, measured_data};
 use plumbline_offline::{
-    CalibrateArgs, CheckArgs, HealthArgs, OfflineError, calibrate_stereo, check, health,
+    CalibrateArgs, CheckArgs, GridArgs, HealthArgs, OfflineError, calibrate_stereo, check, grid, health,
 };
 use plumbline_vision::calibration_file;
 use plumbline_vision::health::turned;
@@ -128,4 +128,21 @@ fn a_session_without_pairs_is_told_where_they_belong() {
     let args = HealthArgs { session: folder.path().to_path_buf(), cameras: None, proposed: None };
     let error = health(&args, &Unattended).expect_err("nothing to look at");
     assert!(matches!(error, OfflineError::NoPairs(_)), "{error}");
+}
+
+#[test]
+fn a_grid_of_the_real_robot_is_judged_with_the_published_correction() {
+    let Ok(folder) = measured_data::folder("nico-vision/grid-z5").map_err(|reason| println!("{reason}"))
+    else {
+        return;
+    };
+    let report = grid(&GridArgs { session: folder }, &Unattended).expect("judged");
+    let of = |name: &str| report.corrections.iter().find(|one| one.correction == name).expect("made");
+    assert_eq!(of("none").places.len(), 36);
+    assert!((of("none").mean_mm - 36.8).abs() < 0.1, "{}", of("none").mean_mm);
+    assert!(of("pivot-fitted").mean_mm <= of("pivot-held-out").mean_mm);
+    let empty = tempfile::tempdir().expect("temporary folder");
+    let manifest = "format = 1\nrig = \"nico\"\nstarted = 2026-01-01T00:00:00Z\n";
+    std::fs::write(empty.path().join("session.toml"), manifest).expect("written");
+    assert!(grid(&GridArgs { session: empty.path().to_owned() }, &Unattended).is_err());
 }

@@ -13,6 +13,11 @@ const SIGMAS: f64 = 6.0;
 const LEAST_M: [f64; 3] = [0.0015, 0.002, 0.003];
 /// And no wider, m: what a hand that grasps bears.
 const MOST_M: f64 = 0.008;
+/// Two single looks are apart beyond so many half widths: both of them scatter.
+const OF_TWO: f64 = 1.8;
+/// The same of turns, rad: about 0.1 and 0.3 degrees. A nod of one eye costs little, but no calibration knows it.
+const LEAST_RAD: f64 = 0.0017;
+const MOST_RAD: f64 = 0.004;
 
 /// Where places come out in the first minutes, and how far single looks lie from that.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +28,8 @@ pub struct Band {
     turns_rad: [Vector3<f64>; 3],
     /// Its half width near, in the middle and far, m.
     pub half_m: [f64; 3],
+    /// The same for turns of the left eye, of the right one, and against each other, rad.
+    pub half_rad: [f64; 3],
     /// When the last look of it was, s.
     pub until_s: f64,
 }
@@ -60,13 +67,23 @@ impl Band {
             let sigma_m = (squares.sum::<f64>() / (2.0 * (count - 1.0))).sqrt();
             *half_m = (SIGMAS * sigma_m).clamp(*half_m, MOST_M);
         }
+        let mut half_rad = [LEAST_RAD; 3];
+        for (k, half_rad) in half_rad.iter_mut().enumerate() {
+            let apart = |two: &[Sample]| (turns(&two[1].look)[k] - turns(&two[0].look)[k]).norm_squared();
+            let sigma_rad = (first.windows(2).map(apart).sum::<f64>() / (2.0 * (count - 1.0))).sqrt();
+            *half_rad = (SIGMAS * sigma_rad).clamp(*half_rad, MOST_RAD);
+        }
         let until_s = first.last().map_or(0.0, |sample| sample.at_s);
-        Some(Self { center, turns_rad, half_m, until_s })
+        Some(Self { center, turns_rad, half_m, half_rad, until_s })
     }
 
-    /// Half widths; those of a band that is not learned yet are the widest.
-    pub(super) fn limits_m(band: Option<&Self>) -> [f64; 3] {
-        band.map_or([MOST_M; 3], |band| band.half_m)
+    /// Whether two looks lie farther apart than looks scatter; a band that is not learned yet is the widest.
+    pub(super) fn are_apart(band: Option<&Self>, a: &Look, b: &Look) -> bool {
+        let (limits_m, limits_rad) =
+            band.map_or(([MOST_M; 3], [MOST_RAD; 3]), |band| (band.half_m, band.half_rad));
+        let apart_m = a.table.apart_m(&b.table);
+        let (a, b) = (turns(a), turns(b));
+        (0..3).any(|k| apart_m[k] > OF_TWO * limits_m[k] || (a[k] - b[k]).norm() > OF_TWO * limits_rad[k])
     }
 
     /// How far a look is from its middle near, in the middle and far, m.
@@ -76,7 +93,9 @@ impl Band {
 
     /// Whether a look is out of it anywhere.
     pub(super) fn is_out(&self, look: &Look) -> bool {
-        self.off_m(look).iter().zip(&self.half_m).any(|(off_m, half_m)| off_m > half_m)
+        let turned = self.turns_since(look);
+        let off_m = self.off_m(look);
+        (0..3).any(|k| off_m[k] > self.half_m[k] || turned[k].norm() > self.half_rad[k])
     }
 
     /// How the eyes turned since then.

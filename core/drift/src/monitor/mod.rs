@@ -161,10 +161,11 @@ impl Monitor {
         }
         let since_s = self.samples[self.samples.len() - out].at_s;
         let what = Mover::of(&band.turns_since(&newest.look), newest.look.knows_which);
-        if what == Mover::Head || newest.at_s > WARM_S {
+        if what == Mover::Head || since_s > WARM_S {
             return Verdict::Moved(Alarm { what, since_s, sudden: false, cost_m });
         }
-        Verdict::Warming { to_go_s: self.to_go_s(newest), cost_m, what, since_s }
+        let to_go_s = if newest.at_s > WARM_S { Some(0.0) } else { self.to_go_s(newest) };
+        Verdict::Warming { to_go_s, cost_m, what, since_s }
     }
 
     /// Until the eyes are as good as warm, s.
@@ -175,7 +176,7 @@ impl Monitor {
             (sample.at_s, places)
         };
         let mut seen: Vec<_> = self.samples.iter().step_by(step).map(far).collect();
-        if (self.samples.len() - 1) % step != 0 {
+        if !(self.samples.len() - 1).is_multiple_of(step) {
             seen.push(far(newest));
         }
         match fit_warm_up(&seen) {
@@ -187,15 +188,13 @@ impl Monitor {
     /// A change from one look to the next that the look after it confirms.
     fn note_knock(&mut self) {
         let [.., before, first, second] = self.samples.as_slice() else { return };
-        let limit_m = Band::limits_m(self.band.as_ref());
-        let over = |a: &Sample, b: &Sample| {
-            let apart_m = a.look.table.apart_m(&b.look.table);
-            apart_m.iter().zip(&limit_m).any(|(apart_m, limit_m)| apart_m > limit_m)
-        };
+        let over = |a: &Sample, b: &Sample| Band::are_apart(self.band.as_ref(), &a.look, &b.look);
         let soon = first.at_s - before.at_s <= SUDDEN_S && second.at_s - first.at_s <= SUDDEN_S;
         let same = !over(first, second);
         if soon && same && over(before, first) && over(before, second) {
-            self.knock = Some((first.at_s, mover::turns(&before.look)));
+            // Put back where it was it is no matter any more.
+            let is_back = self.band.as_ref().is_some_and(|band| !band.is_out(&second.look));
+            self.knock = (!is_back).then(|| (first.at_s, mover::turns(&before.look)));
         }
     }
 
@@ -205,9 +204,7 @@ impl Monitor {
         let since = mover::since(&before, &newest.look);
         let earlier = self.samples.iter().rev().find(|sample| sample.at_s < since_s)?;
         let cost_m = newest.look.table.apart_m(&earlier.look.table);
-        let limit_m = Band::limits_m(self.band.as_ref());
-        // Put back where it was it is no matter any more.
-        let is_left = cost_m.iter().zip(&limit_m).any(|(cost_m, limit_m)| cost_m > limit_m);
+        let is_left = Band::are_apart(self.band.as_ref(), &newest.look, &earlier.look);
         let what = Mover::of(&since, newest.look.knows_which);
         is_left.then_some(Alarm { what, since_s, sudden: true, cost_m })
     }

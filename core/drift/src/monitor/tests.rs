@@ -95,7 +95,7 @@ fn half_a_degree_is_noticed_within_ten_seconds_and_named() {
             }
             let alarm = moved(&course);
             assert_eq!((alarm.what, alarm.since_s, alarm.sudden), (what, at_s, true), "{axis:?}");
-            assert!(alarm.cost_m[2] > 0.003, "{what:?} {axis:?}: {:?}", alarm.cost_m);
+            assert!(alarm.cost_m[2] > 0.001, "{what:?} {axis:?}: {:?}", alarm.cost_m);
             let said = words::alarm(&alarm);
             assert!(said.contains("minute 62") && said.contains("far"), "{said}");
             // It stays one alarm, and goes when the eye is put back.
@@ -120,7 +120,7 @@ fn healthy_eyes_raise_no_alarm_in_eight_hours() {
 #[test]
 fn eyes_that_warm_up_are_told_from_a_knock_and_how_long_it_takes() {
     let mut course = Course::new(0.0);
-    let (tau_s, most) = (420.0, degrees(0.02, -0.6, 0.03));
+    let (tau_s, most) = (420.0, degrees(0.01, -0.3, 0.01));
     let mut told_s = vec![];
     while course.at_s < 2000.0 {
         let share = 1.0 - (-course.at_s / tau_s).exp();
@@ -135,10 +135,15 @@ fn eyes_that_warm_up_are_told_from_a_knock_and_how_long_it_takes() {
     // From ten minutes on the end is known to two minutes.
     let end_s = |(at_s, to_go_s): &(f64, f64)| at_s + to_go_s;
     let late: Vec<f64> = told_s.iter().filter(|told| told.0 > 600.0 && told.1 > 0.0).map(end_s).collect();
-    let [least, most] = late.iter().fold([f64::MAX, 0.0], |[a, b], end| [a.min(*end), f64::max(b, *end)]);
-    assert!(most - least < 240.0, "{least} to {most} s");
+    let [soonest, latest] = late.iter().fold([f64::MAX, 0.0], |[a, b], end| [a.min(*end), f64::max(b, *end)]);
+    assert!(latest - soonest < 240.0, "{soonest} to {latest} s");
     let said = words::verdict(&course.monitor.verdict());
-    assert!(said.starts_with("Still warming up") && said.contains("nearly done"), "{said}");
+    assert!(said.starts_with("Warmed up. Both eyes have turned"), "{said}");
+    // And that stays no alarm.
+    while course.at_s < 6000.0 {
+        course.look(-0.6 * most, most, vec![]);
+    }
+    assert_eq!(course.monitor.alarms(), &[]);
 }
 
 #[test]

@@ -17,7 +17,7 @@ use remembered::Remembered;
 use crate::cost::{TableError, errors};
 
 /// Between the eyes places are matched in one of so many looks: that takes longer than following them.
-const MATCH_EVERY: usize = 4;
+const MATCH_EVERY: usize = 15;
 /// Joints that moved by more than this stand elsewhere, rad.
 const MOVED_RAD: f64 = 0.006;
 /// After so many looks in a row at which nothing could be followed, or a reference stands elsewhere, what is
@@ -62,6 +62,23 @@ pub struct Look {
     pub along_share: f64,
 }
 
+/// Why nothing came of a look.
+#[derive(Debug, thiserror::Error)]
+pub enum WatchError {
+    /// Too little to see, or another size.
+    #[error(transparent)]
+    Images(#[from] HealthError),
+    /// Something hides it.
+    #[error(
+        "too little of what was seen before is seen again: something moves or stands before the eyes, or the light has \
+         changed; it looks again by itself"
+    )]
+    NotSeenAgain,
+    /// The head looks elsewhere.
+    #[error("the eyes do not look at the table: turn the head toward it")]
+    TableNotSeen,
+}
+
 /// Looks at pairs and remembers what it needs.
 #[derive(Debug, Default)]
 pub struct Watcher {
@@ -81,11 +98,7 @@ impl Watcher {
     ///
     /// # Errors
     /// When the images are of another size, or there is too little to see in them; nothing is forgotten.
-    pub fn look(
-        &mut self,
-        setup: &WatcherSetup,
-        pair: (&GrayImage, &GrayImage),
-    ) -> Result<Look, HealthError> {
+    pub fn look(&mut self, setup: &WatcherSetup, pair: (&GrayImage, &GrayImage)) -> Result<Look, WatchError> {
         let now = SeenUnder { t_secs: setup.eyes_on_s, background_m: None };
         let first = *self.first.get_or_insert(now);
         let stood = self.stood(setup);
@@ -132,11 +145,11 @@ impl Watcher {
         first: &SeenUnder,
         now: &SeenUnder,
         epipolar: Option<f64>,
-    ) -> Result<Look, HealthError> {
+    ) -> Result<Look, WatchError> {
         if self.remembered.is_some() {
             self.misses += 1;
             if self.misses < ANEW_AFTER {
-                return Err(HealthError::NotDetermined);
+                return Err(WatchError::NotSeenAgain);
             }
         }
         self.remember(setup, pair)?;
@@ -154,7 +167,7 @@ impl Watcher {
         })
     }
 
-    fn remember(&mut self, setup: &WatcherSetup, pair: (&GrayImage, &GrayImage)) -> Result<(), HealthError> {
+    fn remember(&mut self, setup: &WatcherSetup, pair: (&GrayImage, &GrayImage)) -> Result<(), WatchError> {
         self.remembered = Some(Remembered::new(setup, pair, self.turns_rad)?);
         self.elsewhere = 0;
         Ok(())
@@ -165,8 +178,8 @@ impl Watcher {
         setup: &WatcherSetup,
         first: &SeenUnder,
         now: &SeenUnder,
-    ) -> Result<TableError, HealthError> {
-        errors(&setup.model, &setup.posture, self.turns_rad, first, now).ok_or(HealthError::NotDetermined)
+    ) -> Result<TableError, WatchError> {
+        errors(&setup.model, &setup.posture, self.turns_rad, first, now).ok_or(WatchError::TableNotSeen)
     }
 
     fn against_rad(&self, setup: &WatcherSetup) -> Vector3<f64> {
@@ -192,13 +205,13 @@ impl Watcher {
         setup: &WatcherSetup,
         (left, right): (&GrayImage, &GrayImage),
         stood: Stood,
-    ) -> Result<Option<f64>, HealthError> {
+    ) -> Result<Option<f64>, WatchError> {
         let cameras = &setup.model.rig().eyes.cameras;
         let pair = [(left.clone(), right.clone())];
         let matches: Vec<Match> = match find_matches(cameras, &pair) {
             Ok((matches, _)) => matches,
             Err(HealthError::TooFew { .. } | HealthError::NotDetermined) => return Ok(None),
-            Err(error) => return Err(error),
+            Err(error) => return Err(error.into()),
         };
         if let Ok(turn) = fit_turn(cameras, &matches) {
             if let (Stood::HeadElsewhere, Some(before)) = (stood, &self.matched) {

@@ -5,17 +5,19 @@ use nalgebra::{Rotation3, Vector2, Vector3};
 use opencv::core::{Mat, Point2f, Vector};
 use plumbline_model::{Camera, Pixel, Raw};
 
-use super::patch::{Pyramid, find};
+use super::patch::{LEVELS, Pyramid, find};
 use crate::health::HealthError;
 use crate::mat;
 
 /// Places that are remembered, and least distance between two, px.
-const PLACES: i32 = 160;
+const PLACES: i32 = 120;
 const APART_PX: f64 = 16.0;
 /// Against the strongest corner of the picture.
 const LEAST_CORNER: f64 = 0.01;
 /// Looking back must come within this of the start, px.
 const CONFIRMED_PX: f64 = 0.3;
+/// Sizes that are enough for places that are about where they were.
+const NEAR_LEVELS: usize = 2;
 /// Fewer places than these say nothing of an eye.
 pub const LEAST_FOLLOWED: usize = 40;
 
@@ -85,11 +87,11 @@ impl RememberedEye {
         check_size(&self.camera, image)?;
         let now = Pyramid::new(image);
         let turn = Rotation3::new(*near_rad);
-        let one = |(index, before): (usize, &Pixel<Raw>)| {
+        let one = |levels: usize, (index, before): (usize, &Pixel<Raw>)| {
             let at_px = before.vector();
             let guess = self.camera.project(&(turn * self.camera.unproject(*before).ok()?)).ok()?;
-            let there = find(&self.picture, &now, at_px, guess.vector())?;
-            let back = find(&now, &self.picture, there.at_px, at_px)?;
+            let there = find(&self.picture, &now, at_px, guess.vector(), levels)?;
+            let back = find(&now, &self.picture, there.at_px, at_px, 1)?;
             let confirmed = (back.at_px - at_px).norm() < CONFIRMED_PX;
             confirmed.then(|| Followed {
                 index,
@@ -98,7 +100,13 @@ impl RememberedEye {
                 sigma_px: there.sigma_px,
             })
         };
-        Ok(self.places.iter().enumerate().filter_map(one).collect())
+        let all = |levels: usize| -> Vec<Followed> {
+            self.places.iter().enumerate().filter_map(|place| one(levels, place)).collect()
+        };
+        // Usually everything is about where it was; what jumped is looked for in smaller pictures first.
+        let near = all(NEAR_LEVELS);
+        let enough = near.len() >= LEAST_FOLLOWED && 2 * near.len() >= self.places.len();
+        Ok(if enough { near } else { all(LEVELS) })
     }
 }
 

@@ -4,7 +4,7 @@ use image::GrayImage;
 use nalgebra::{Matrix4, Vector2, Vector4};
 
 /// Sizes kept: full, half, quarter, eighth.
-const LEVELS: usize = 4;
+pub(super) const LEVELS: usize = 4;
 /// Pixels to each side of the middle of a patch, at every size.
 const HALF_PX: i32 = 7;
 const MOST_ITERATIONS: usize = 12;
@@ -91,17 +91,19 @@ pub(super) struct Found {
     pub sigma_px: f64,
 }
 
-/// Looks in `now` for what was at `at_px` of `before`, first near `near_px`. `None`: it left the picture, is
+/// Looks in `now` for what was at `at_px` of `before`, first near `near_px` and in the smallest of so many
+/// sizes. `None`: it left the picture, is
 /// not alike, or does not settle.
 pub(super) fn find(
     before: &Pyramid,
     now: &Pyramid,
     at_px: Vector2<f64>,
     near_px: Vector2<f64>,
+    levels: usize,
 ) -> Option<Found> {
     let mut shift_px = near_px - at_px;
     let mut sigma_px = f64::INFINITY;
-    for level in (0..LEVELS).rev() {
+    for level in (0..levels.min(LEVELS)).rev() {
         let shrink = f64::from(1u32 << level);
         // Pixel centers: reduced pixel i covers full pixels 2i and 2i + 1.
         let reduced = |px: Vector2<f64>| (px.add_scalar(0.5)) / shrink - Vector2::new(0.5, 0.5);
