@@ -1,13 +1,7 @@
 //! Grasps on the twin: one, and the whole experiment.
 
 mod attempt;
-#[cfg(test)]
-mod bad_inputs;
-#[cfg(test)]
-mod beside;
 mod body;
-#[cfg(test)]
-mod broken_off;
 mod judge;
 mod lab;
 mod one;

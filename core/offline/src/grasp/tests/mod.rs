@@ -1,6 +1,10 @@
 //! Grasps of a twin that is exactly as described, with nothing learned.
 #![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
 
+mod bad_inputs;
+mod beside;
+mod broken_off;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

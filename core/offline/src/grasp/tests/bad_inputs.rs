@@ -10,8 +10,8 @@ use plumbline_grasp::{Failure, Method, Outcome, Record, Sight, Step};
 use plumbline_model::robot::Posture;
 use plumbline_twin::{Lockstep, Scenario, Toy};
 
-use super::attempt::Meddler;
-use super::tests::{bench_of, failure, task};
+use super::super::attempt::Meddler;
+use super::{bench_of, failure, task};
 
 const EASY_M: [f64; 2] = [0.3, -0.1];
 
@@ -178,8 +178,9 @@ impl Meddler for Cold {
 fn with_cold_eyes_in_a_lab() {
     let lab = std::env::var("PLUMBLINE_LAB").expect("PLUMBLINE_LAB is a commissioned lab");
     let scenario = Scenario::built_in("lab").expect("valid");
-    let mut bench = super::trials::bench(lab.as_ref(), scenario, &[Method::M5], &plumbline_model::Unattended)
-        .expect("a lab");
+    let mut bench =
+        super::super::trials::bench(lab.as_ref(), scenario, &[Method::M5], &plumbline_model::Unattended)
+            .expect("a lab");
     for at_m in [[0.3, -0.3], [0.2, -0.2], [0.4, -0.2], [0.3, -0.1], [0.4, 0.0], [0.3, 0.1]] {
         let task = task(Method::M5, Toy::Tomato, at_m);
         for cold in [false, true] {

@@ -9,10 +9,10 @@ use plumbline_grasp::{Body, Corrections, Failure, Halt, Method, Outcome, Record,
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_twin::{Lockstep, Scenario, Toy};
 
-use super::attempt::{Bench, Meddler};
+use super::super::attempt::{Bench, Meddler};
+use super::super::body::TwinBody;
 use super::bad_inputs::{HandHidden, assert_honest};
-use super::body::TwinBody;
-use super::tests::{bench_of, bench_with, failure, task};
+use super::{bench_of, bench_with, failure, task};
 
 const EASY_M: [f64; 2] = [0.3, -0.1];
 /// In every step that moves.

@@ -9,9 +9,9 @@ use plumbline_grasp::see::Seen;
 use plumbline_grasp::{Method, Outcome, Sight, Step};
 use plumbline_twin::{Lockstep, Scenario, Toy};
 
-use super::attempt::Meddler;
+use super::super::attempt::Meddler;
 use super::bad_inputs::assert_honest;
-use super::tests::{bench_of, task};
+use super::{bench_of, task};
 
 const EASY_M: [f64; 2] = [0.3, -0.1];
 /// Another thing stands so far from the one that is grasped, m.
