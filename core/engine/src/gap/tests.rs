@@ -11,6 +11,7 @@ use super::store::{KeptFinding, KeptSession, Store};
 use super::view::GapView;
 use crate::Skipped;
 use crate::command::Command;
+use crate::ground::jobs::{JobError, Outcome};
 use crate::ground::step::StepState;
 use crate::models::tests::{made_up_session, nico};
 use crate::state::{Action, State};
@@ -63,26 +64,26 @@ impl Lab {
     fn work(&mut self) {
         loop {
             let actions = self.state.take_actions();
-            let mut any = false;
-            for action in actions {
-                if let Action::Start(id, work) = action {
-                    any = true;
-                    let outcome = match work.run(&Unattended) {
-                        Ok(result) => crate::ground::jobs::Outcome::Done(result),
-                        Err(crate::ground::jobs::JobError::Cancelled(_)) => {
-                            crate::ground::jobs::Outcome::Cancelled
-                        }
-                        Err(crate::ground::jobs::JobError::Failed(why)) => {
-                            crate::ground::jobs::Outcome::Failed(why)
-                        }
-                    };
-                    self.state.work_ended(id, outcome, std::time::Duration::ZERO);
-                }
-            }
-            if !any {
+            if !self.run(actions) {
                 return;
             }
         }
+    }
+
+    /// Whether there was work among them.
+    fn run(&mut self, actions: Vec<Action>) -> bool {
+        let mut any = false;
+        for action in actions {
+            let Action::Start(id, work) = action else { continue };
+            any = true;
+            let outcome = match work.run(&Unattended) {
+                Ok(result) => Outcome::Done(result),
+                Err(JobError::Cancelled(_)) => Outcome::Cancelled,
+                Err(JobError::Failed(why)) => Outcome::Failed(why),
+            };
+            self.state.work_ended(id, outcome, std::time::Duration::ZERO);
+        }
+        any
     }
 
     fn view(&mut self) -> Arc<GapView> {
@@ -165,4 +166,22 @@ fn a_report_is_written_and_a_finding_is_deleted() {
     let view = lab.tell(GapCommand::Delete { id });
     assert!(view.findings.is_empty() && view.shown.is_none());
     assert_eq!(Lab::on(lab.folder).view().findings.len(), 0);
+}
+
+#[test]
+fn a_session_chosen_while_the_start_still_reads_stands_in_the_list() {
+    let mut lab = Lab::new();
+    let elsewhere = lab.folder.path().join("a session from another lab");
+    made_up_session(&nico()).write(&elsewhere).expect("written");
+    lab.state = State::new(lab.folder.path());
+    let start = lab.state.take_actions();
+    lab.state.apply(Command::Gap(GapCommand::Choose { sessions: vec![elsewhere.clone()] }));
+    lab.work();
+    // What the start reads did not know of the session, and ends last.
+    lab.run(start);
+    lab.work();
+    let view = lab.view();
+    assert_eq!(view.chosen[..], [elsewhere.clone()]);
+    assert!(view.sessions.iter().any(|listed| listed.folder == elsewhere), "{:?}", view.sessions);
+    assert_eq!(view.sessions.len(), 2, "the program's own session is listed, too");
 }

@@ -220,6 +220,15 @@ impl GapWorkflow {
         self.changed = restored.changed;
         self.model = restored.model;
         self.choose_first(around);
+        self.list_chosen(context);
+    }
+
+    /// What is chosen stands in the list, wherever it lies. What was read before it was chosen may come
+    /// in later: works run side by side.
+    fn list_chosen(&self, context: &mut Context<'_>) {
+        if self.chosen.iter().any(|chosen| !self.sessions.iter().any(|s| s.folder == *chosen)) {
+            self.list(context);
+        }
     }
 
     /// Something is chosen, so that there is something to compare.
@@ -274,9 +283,7 @@ impl Workflow for GapWorkflow {
             GapCommand::Choose { sessions } => {
                 self.chosen = sessions;
                 self.failed = None;
-                if self.chosen.iter().any(|chosen| !self.sessions.iter().any(|s| s.folder == *chosen)) {
-                    self.list(context);
-                }
+                self.list_chosen(context);
             }
             GapCommand::CompareWith(with) => self.with = with,
             GapCommand::Find { seed } => self.find(seed, around, context),
@@ -320,6 +327,7 @@ impl Workflow for GapWorkflow {
             GapResult::Listed { sessions, changed } => {
                 (self.sessions, self.changed) = (sessions, changed);
                 self.choose_first(around);
+                self.list_chosen(context);
             }
             GapResult::Found(named) => {
                 let before = self.shown.replace(named.id.clone());
