@@ -20,6 +20,7 @@ pub mod locate;
 pub mod mat;
 pub mod mount;
 pub mod opencv_storage;
+mod pyramid;
 pub mod rectify;
 pub mod synthetic;
 pub mod yolo_set;

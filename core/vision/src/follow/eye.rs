@@ -5,9 +5,10 @@ use nalgebra::{Rotation3, Vector2, Vector3};
 use opencv::core::{Mat, Point2f, Vector};
 use plumbline_model::{Camera, Pixel, Raw};
 
-use super::patch::{LEVELS, Pyramid, find};
+use super::patch::{LEVELS, find};
 use crate::health::HealthError;
 use crate::mat;
+use crate::pyramid::Pyramid;
 
 /// Places that are remembered, and least distance between two, px.
 const PLACES: i32 = 120;
@@ -66,7 +67,7 @@ impl RememberedEye {
         if places.len() < LEAST_FOLLOWED {
             return Err(HealthError::TooFew { found: places.len(), needed: LEAST_FOLLOWED, pairs: 1 });
         }
-        Ok(Self { camera: *camera, picture: Pyramid::new(image), places })
+        Ok(Self { camera: *camera, picture: Pyramid::new(image, LEVELS), places })
     }
 
     /// Its lens.
@@ -85,7 +86,7 @@ impl RememberedEye {
     /// When the picture is of another size.
     pub fn follow(&self, image: &GrayImage, near_rad: &Vector3<f64>) -> Result<Vec<Followed>, HealthError> {
         check_size(&self.camera, image)?;
-        let now = Pyramid::new(image);
+        let now = Pyramid::new(image, LEVELS);
         let turn = Rotation3::new(*near_rad);
         let one = |levels: usize, (index, before): (usize, &Pixel<Raw>)| {
             let at_px = before.vector();

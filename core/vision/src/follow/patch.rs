@@ -1,7 +1,8 @@
-//! A picture at several sizes, and a small piece of one found again in another.
+//! A small piece of a picture found again in another.
 
-use image::GrayImage;
 use nalgebra::{Matrix4, Vector2, Vector4};
+
+use crate::pyramid::Pyramid;
 
 /// Sizes kept: full, half, quarter, eighth.
 pub(super) const LEVELS: usize = 4;
@@ -13,74 +14,6 @@ const CONVERGED_PX: f64 = 5e-3;
 const MOST_MOVE_PX: f64 = 6.0;
 /// Patches less alike than this are not the same place.
 const LEAST_CORRELATION: f64 = 0.9;
-
-/// Brightness at one size.
-#[derive(Clone, Debug)]
-struct Level {
-    width: usize,
-    height: usize,
-    data: Vec<f32>,
-}
-
-impl Level {
-    /// Smoothed by [1 2 1]/4 each way: bilinear sampling of an edge sharper than that is wrong by up to a
-    /// tenth of a pixel.
-    fn full(gray: &GrayImage) -> Self {
-        let (width, height) = (gray.width() as usize, gray.height() as usize);
-        let raw: Vec<f32> = gray.as_raw().iter().map(|&g| f32::from(g)).collect();
-        let smooth = |from: &[f32], stride: usize| -> Vec<f32> {
-            let mut to = from.to_vec();
-            for i in stride..from.len().saturating_sub(stride) {
-                to[i] = 0.25 * (from[i - stride] + from[i + stride]) + 0.5 * from[i];
-            }
-            to
-        };
-        Self { width, height, data: smooth(&smooth(&raw, 1), width) }
-    }
-
-    /// Half the size, each pixel the mean of four.
-    fn halved(&self) -> Self {
-        let (width, height) = (self.width / 2, self.height / 2);
-        let mut data = Vec::with_capacity(width * height);
-        for y in 0..height {
-            let (top, bottom) = (&self.data[2 * y * self.width..], &self.data[(2 * y + 1) * self.width..]);
-            data.extend(
-                (0..width).map(|x| 0.25 * (top[2 * x] + top[2 * x + 1] + bottom[2 * x] + bottom[2 * x + 1])),
-            );
-        }
-        Self { width, height, data }
-    }
-
-    /// Bilinear; `None` outside.
-    fn at(&self, x: f64, y: f64) -> Option<f64> {
-        if !(x >= 0.0 && y >= 0.0 && x + 1.0 < self.width as f64 && y + 1.0 < self.height as f64) {
-            return None;
-        }
-        let (ix, iy) = (x as usize, y as usize);
-        let (fx, fy) = (x - ix as f64, y - iy as f64);
-        let value = |x: usize, y: usize| f64::from(self.data[y * self.width + x]);
-        let top = value(ix, iy) * (1.0 - fx) + value(ix + 1, iy) * fx;
-        let bottom = value(ix, iy + 1) * (1.0 - fx) + value(ix + 1, iy + 1) * fx;
-        Some(top * (1.0 - fy) + bottom * fy)
-    }
-}
-
-/// A picture at several sizes.
-#[derive(Clone, Debug)]
-pub(super) struct Pyramid {
-    levels: Vec<Level>,
-}
-
-impl Pyramid {
-    pub fn new(gray: &GrayImage) -> Self {
-        let mut levels = vec![Level::full(gray)];
-        while levels.len() < LEVELS {
-            let next = levels[levels.len() - 1].halved();
-            levels.push(next);
-        }
-        Self { levels }
-    }
-}
 
 /// A patch that was found again.
 #[derive(Clone, Copy, Debug)]
@@ -105,10 +38,8 @@ pub(super) fn find(
     let mut sigma_px = f64::INFINITY;
     for level in (0..levels.min(LEVELS)).rev() {
         let shrink = f64::from(1u32 << level);
-        // Pixel centers: reduced pixel i covers full pixels 2i and 2i + 1.
-        let reduced = |px: Vector2<f64>| (px.add_scalar(0.5)) / shrink - Vector2::new(0.5, 0.5);
-        let start = shift_px / shrink;
-        match align(&before.levels[level], &now.levels[level], reduced(at_px), start, level == 0) {
+        let (at, start) = (Pyramid::reduced(level, at_px), shift_px / shrink);
+        match align((before, now), level, at, start) {
             Some((shift, sigma)) => (shift_px, sigma_px) = (shift * shrink, sigma * shrink),
             // A small picture may hold too little of it; the next larger one decides.
             None if level > 0 => {}
@@ -118,28 +49,29 @@ pub(super) fn find(
     Some(Found { at_px: at_px + shift_px, sigma_px })
 }
 
-/// Shift, and gain and offset of brightness, by least squares. `must_match`: it has to be alike.
+/// Shift, and gain and offset of brightness, by least squares, in pixels of a size. In the full size it
+/// has to be alike.
 fn align(
-    before: &Level,
-    now: &Level,
+    (before, now): (&Pyramid, &Pyramid),
+    level: usize,
     at: Vector2<f64>,
     start: Vector2<f64>,
-    must_match: bool,
 ) -> Option<(Vector2<f64>, f64)> {
+    let brightness = |of: &Pyramid, x: f64, y: f64| of.at(level, Vector2::new(x, y)).map(f64::from);
     let offsets = || (-HALF_PX..=HALF_PX).flat_map(|y| (-HALF_PX..=HALF_PX).map(move |x| (x, y)));
     let mut patch = Vec::with_capacity(225);
     for (x, y) in offsets() {
         let (x, y) = (f64::from(x), f64::from(y));
-        patch.push((x, y, before.at(at.x + x, at.y + y)?));
+        patch.push((x, y, brightness(before, at.x + x, at.y + y)?));
     }
     let mut p = Vector4::new(start.x, start.y, 1.0, 0.0);
     for _ in 0..MOST_ITERATIONS {
         let (mut normal, mut right, mut square) = (Matrix4::zeros(), Vector4::zeros(), 0.0);
         for (x, y, value) in &patch {
             let (u, v) = (at.x + x + p[0], at.y + y + p[1]);
-            let there = now.at(u, v)?;
-            let along = now.at(u + 0.5, v)? - now.at(u - 0.5, v)?;
-            let down = now.at(u, v + 0.5)? - now.at(u, v - 0.5)?;
+            let there = brightness(now, u, v)?;
+            let along = brightness(now, u + 0.5, v)? - brightness(now, u - 0.5, v)?;
+            let down = brightness(now, u, v + 0.5)? - brightness(now, u, v - 0.5)?;
             let jacobian = Vector4::new(p[2] * along, p[2] * down, there, 1.0);
             let residual = value - (p[2] * there + p[3]);
             square += residual * residual;
@@ -157,7 +89,7 @@ fn align(
             let mean = patch.iter().map(|(_, _, value)| value).sum::<f64>() / count;
             let spread = patch.iter().map(|(_, _, value)| (value - mean).powi(2)).sum::<f64>();
             // What is left against what there was: 1 − r².
-            if must_match && square > (1.0 - LEAST_CORRELATION.powi(2)) * spread {
+            if level == 0 && square > (1.0 - LEAST_CORRELATION.powi(2)) * spread {
                 return None;
             }
             let inverse = factor.inverse();
