@@ -11,7 +11,8 @@ use plumbline_model::{LeftCamera, Point, Pose, Robot, StereoCalibration};
 
 use crate::published::HandHeights;
 
-/// The touchscreen's glass lies so much higher than the table on which it stands, m.
+/// The touchscreen's glass lies so much higher than the table on which it stands, where nobody measured
+/// it, m.
 const GLASS_OVER_TABLE_M: f64 = 0.002;
 
 /// What a grasp rests on.
@@ -77,7 +78,10 @@ impl Knowledge {
         let screen = self.model.touchscreen();
         let glass_m = self.glass_m(x_m, y_m);
         let on_glass = screen.contains(screen.pixel_at(Point::new(x_m, y_m, glass_m)));
-        if on_glass { glass_m } else { glass_m - GLASS_OVER_TABLE_M }
+        if on_glass {
+            return glass_m;
+        }
+        glass_m - self.model.glass_over_table_m().unwrap_or(GLASS_OVER_TABLE_M)
     }
 
     /// Height of the glass at a place, or of its plane beside it, m.

@@ -8,6 +8,7 @@ use plumbline_model::session::Touchscreen;
 use serde::{Deserialize, Serialize};
 
 use super::file::{isometry_part, screen_part};
+use super::together::Together;
 use crate::arm::Arm;
 use crate::eyes::Eyes;
 use crate::library::Present;
@@ -36,6 +37,9 @@ pub struct Contents {
     /// Effects, the oldest first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<ModelEffect>,
+    /// How well effects that were fitted together are known together.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub together: Vec<Together>,
     /// Where touchscreens lie for a robot with these effects, the newest last.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub screens: Vec<PlacedScreen>,
@@ -104,6 +108,9 @@ pub struct PlacedScreen {
     /// Where it lies.
     #[serde(with = "screen_part")]
     pub screen: Touchscreen,
+    /// So much higher than the table around it its glass lies, by the eyes, m; `None`: nobody measured it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub over_table_m: Option<f64>,
 }
 
 /// Where an external device stands that measured poses.
@@ -133,6 +140,9 @@ pub struct Addition {
     pub replaces: bool,
     /// When.
     pub at: Timestamp,
+    /// How well effects that were fitted together are known together; those of arms with the same tips that
+    /// were known before go.
+    pub together: Vec<Together>,
     /// What was found, a sentence.
     pub sentence: String,
     /// Sessions that were searched.
@@ -269,6 +279,7 @@ impl PlacedScreen {
             session: session.to_owned(),
             nominal: nominal.clone(),
             screen: nominal.moved(&placement.inverse()),
+            over_table_m: None,
         }
     }
 }
@@ -360,6 +371,7 @@ impl Contents {
                 }
             }
         }
+        self.together.iter().try_for_each(Together::check)?;
         for placed in &self.screens {
             [&placed.nominal, &placed.screen].into_iter().try_for_each(usable_screen)?;
         }

@@ -85,6 +85,7 @@ mod tests {
             screens: vec![],
             externals: vec![],
             eyes: numbers_of_eyes(rig),
+            together: vec![],
             replaces: false,
             at: jiff::Timestamp::UNIX_EPOCH,
             sentence: String::new(),

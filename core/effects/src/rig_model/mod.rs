@@ -16,6 +16,7 @@ mod reach;
 mod reach_laws;
 #[cfg(test)]
 mod tests;
+mod together;
 
 use jiff::Timestamp;
 use plumbline_model::robot::Rig;
@@ -30,6 +31,7 @@ pub use file::{FORMAT, is_rig_model};
 pub(crate) use predict::Measured;
 pub use predict::predict_session_with;
 pub use reach::{Conditions, DeviatedArm, Reached, SETTLED_M};
+pub use together::Together;
 
 /// A rig's model: effects and placements in force, and how they came to be.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,6 +84,10 @@ impl RigModel {
         }
         let names = addition.effects.iter().map(ModelEffect::name).collect();
         contents.effects.extend(addition.effects);
+        for together in addition.together {
+            contents.together.retain(|known| known.tip != together.tip);
+            contents.together.push(together);
+        }
         for screen in addition.screens {
             contents.screens.retain(|known| !known.is_of(&screen.nominal));
             contents.screens.push(screen);

@@ -6,7 +6,7 @@ use plumbline_model::robot::Rig;
 use plumbline_model::session::{LocalizationTable, PoseTable, Screen, Session, TouchTable, Touchscreen};
 use plumbline_model::{Pixel, Point};
 
-use super::RigModel;
+use super::{PlacedScreen, RigModel};
 use crate::arm::Arm;
 use crate::eyes::Eyes;
 use crate::forward::Assumed;
@@ -85,11 +85,20 @@ impl RigModel {
     /// Where the model has a screen that is taken to lie at `nominal`: as it was placed with that
     /// screen, else as it was placed last with one of the same resolution. `None` without any.
     pub fn screen(&self, nominal: &Touchscreen) -> Option<&Touchscreen> {
+        self.placed(nominal).map(|placed| &placed.screen)
+    }
+
+    /// So much higher than the table around it the glass of a screen lies, m; `None`: nobody measured it.
+    pub fn glass_over_table_m(&self, nominal: &Touchscreen) -> Option<f64> {
+        self.placed(nominal)?.over_table_m
+    }
+
+    fn placed(&self, nominal: &Touchscreen) -> Option<&PlacedScreen> {
         let size = |screen: &Touchscreen| (screen.width_px, screen.height_px);
         let screens = &self.contents.screens;
         let same = screens.iter().rev().find(|placed| placed.is_of(nominal));
         let other = || screens.iter().rev().find(|placed| size(&placed.screen) == size(nominal));
-        same.or_else(other).map(|placed| &placed.screen)
+        same.or_else(other)
     }
 
     /// Takes points of the robot into the external frame that was placed last.
@@ -100,27 +109,21 @@ impl RigModel {
     /// Effects that an arm which ends in `tip`, or eyes, have. Those of the other arm are left out, and
     /// those of another tip's own.
     pub fn present(&self, tip: Option<&str>, arm: Option<&Arm>, eyes: Option<&Eyes>) -> Vec<Present> {
-        self.measured(tip, arm, eyes).into_iter().map(|measured| measured.present).collect()
+        self.measured(tip, arm, eyes).present
     }
 
     /// The same, with how well their values are known.
-    pub(crate) fn measured(
-        &self,
-        tip: Option<&str>,
-        arm: Option<&Arm>,
-        eyes: Option<&Eyes>,
-    ) -> Vec<Measured> {
+    pub(crate) fn measured(&self, tip: Option<&str>, arm: Option<&Arm>, eyes: Option<&Eyes>) -> Measured {
         // What was found on one arm says nothing of another one, whatever its site is called.
         let of_arm = |own: &str| arm.is_none_or(|arm| arm.has_tip(own));
-        let here = |effect: &&super::ModelEffect| {
+        let here = |effect: &super::ModelEffect| {
             let same = |own: &str| if effect.is_of_the_tip() { Some(own) == tip } else { of_arm(own) };
             effect.tip.as_deref().is_none_or(same)
         };
-        let measured = |effect: &super::ModelEffect| {
-            let covariance = effect.covariance_of_values();
-            effect.on(arm, eyes).map(|present| Measured { present, covariance })
-        };
-        self.effects().iter().filter(here).filter_map(measured).collect()
+        let all = self.effects().iter().enumerate().filter(|(_, effect)| here(effect));
+        let (numbers, present): (Vec<usize>, Vec<Present>) =
+            all.filter_map(|(i, effect)| effect.on(arm, eyes).map(|present| (i, present))).unzip();
+        Measured { covariance: self.contents.covariance_of(&numbers), present }
     }
 
     /// Rows for a search for what comes in addition: predictions of these rows hold this model's
@@ -139,12 +142,29 @@ impl RigModel {
     }
 }
 
-/// An effect that is there, and how well its values are known.
+/// Effects that are there, and how well their values are known.
 #[derive(Clone, Debug)]
 pub(crate) struct Measured {
-    pub present: Present,
-    /// Covariance of the values; `None` where nobody knows it.
-    pub covariance: Option<DMatrix<f64>>,
+    pub present: Vec<Present>,
+    /// Covariance of all values in turn; zero where nobody knows it.
+    pub covariance: DMatrix<f64>,
+}
+
+impl Measured {
+    /// Those of them that are wanted.
+    pub fn of(self, is_wanted: impl Fn(&Present) -> bool) -> Self {
+        let mut rows = vec![];
+        let mut next = 0;
+        for present in &self.present {
+            let count = present.values.len();
+            if is_wanted(present) {
+                rows.extend(next..next + count);
+            }
+            next += count;
+        }
+        let covariance = self.covariance.select_rows(&rows).select_columns(&rows);
+        Self { present: self.present.into_iter().filter(is_wanted).collect(), covariance }
+    }
 }
 
 /// Those that are there without a touchscreen.

@@ -32,6 +32,7 @@ fn addition(effects: Vec<ModelEffect>) -> Addition {
         screens: vec![],
         externals: vec![],
         eyes: vec![],
+        together: vec![],
         replaces: false,
         at: Timestamp::UNIX_EPOCH,
         sentence: "The elbow's zero is off.".to_owned(),

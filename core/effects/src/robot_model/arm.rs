@@ -26,7 +26,7 @@ struct Parts {
     solver: Solver,
     deviated: DeviatedArm,
     /// Effects that the arm has without a touchscreen.
-    free: Vec<Measured>,
+    free: Measured,
 }
 
 impl ModelArm {
@@ -34,8 +34,8 @@ impl ModelArm {
         let solver = Solver::of_rig(rig, tip)?;
         let chain = rig.chain(tip)?;
         let deviated = added.arm(rig, tip)?;
-        let mut free = added.measured(Some(tip), Some(&Arm::of_rig(rig, tip)?), None);
-        free.retain(|measured| !measured.present.effect.kind.is_of_contact());
+        let free = added.measured(Some(tip), Some(&Arm::of_rig(rig, tip)?), None);
+        let free = free.of(|present| !present.effect.kind.is_of_contact());
         Ok(Self { parts: Arc::new(Parts { chain, solver, deviated, free }) })
     }
 
@@ -61,7 +61,7 @@ impl ModelArm {
 
     /// Whether no effect moves its tip.
     pub fn is_nominal(&self) -> bool {
-        self.parts.free.is_empty()
+        self.parts.free.present.is_empty()
     }
 
     /// Where the tip is when a posture is commanded.
@@ -87,8 +87,7 @@ impl ModelArm {
         if self.is_nominal() {
             return self.parts.chain.robot_from_tip_in(posture);
         }
-        let present: Vec<Present> = self.parts.free.iter().map(|measured| measured.present.clone()).collect();
-        Pose::new(self.place_with(angles, posture, conditions, &present))
+        Pose::new(self.place_with(angles, posture, conditions, &self.parts.free.present))
     }
 
     fn place_with(

@@ -8,7 +8,7 @@ use plumbline_model::{LeftCamera, Point};
 
 use super::*;
 use crate::library::{Effect, Kind};
-use crate::rig_model::{Conditions, ModelEffect};
+use crate::rig_model::{Conditions, ModelEffect, Together};
 
 const TIPS: [&str; 2] = ["right_index_tip", "right_palm_center"];
 
@@ -299,6 +299,65 @@ fn the_covariance_is_how_places_scatter_with_the_effects_values() {
     let sight = Matrix3::identity() * 4e-6;
     let both = here.place(&in_left, &sight, &posture, &SEEN).expect("a place");
     assert!(both.sigma_m() > place.sigma_m() && both.sigma_m() > 1.5e-3);
+}
+
+/// Zeros of three joints that were fitted together: two of them are known by what they do together.
+fn zeros() -> (Vec<ModelEffect>, DMatrix<f64>) {
+    let sites = ["r_shoulder_y", "r_elbow_y", "r_wrist_z"];
+    let root = DMatrix::from_row_slice(3, 3, &[0.03, 0.0, 0.0, -0.0285, 0.002, 0.0, 0.001, 0.0, 0.004]);
+    let covariance = &root * root.transpose();
+    let zero = |(k, site): (usize, &&str)| ModelEffect {
+        covariance: vec![covariance[(k, k)]],
+        ..effect("joint-zero", site, None, &[0.01])
+    };
+    (sites.iter().enumerate().map(zero).collect(), covariance)
+}
+
+#[test]
+fn effects_that_were_fitted_together_are_known_together() {
+    let rig = nico();
+    let (effects, covariance) = zeros();
+    let of = |effects: &[ModelEffect], together: Vec<Together>| {
+        let mut added = RigModel::nominal(&rig);
+        added.contents.effects = effects.to_vec();
+        added.contents.together = together;
+        let model = RobotModel::new(rig.clone(), Arc::new(added)).expect("they fit");
+        model.arm(TIPS[0]).expect("a tip")
+    };
+    let together = Together::new(&effects, &covariance).expect("of one size");
+    let (posture, conditions) = (rig.home(), Conditions::default());
+    let said = of(&effects, vec![together.clone()]).covariance_m2(&posture, &conditions);
+    let root = covariance.clone().cholesky().expect("positive").l();
+    let mut noise = Noise(11);
+    let drawn = (0..1500).map(|_| {
+        let step = &root * DMatrix::from_fn(3, 1, |_, _| noise.normal());
+        let moved = effects
+            .iter()
+            .zip(step.iter())
+            .map(|(effect, step)| ModelEffect { values: vec![effect.values[0] + step], ..effect.clone() });
+        let moved: Vec<ModelEffect> = moved.collect();
+        of(&moved, vec![]).tip(&posture, &conditions).coords.coords
+    });
+    agree(&said, &scatter(&drawn.collect::<Vec<_>>()), "fitted together");
+    let alone = of(&effects, vec![]).covariance_m2(&posture, &conditions);
+    assert!((alone - said).norm() > 0.1 * said.norm(), "{alone} {said}");
+
+    // What is not correlated is known as if nothing were said of it.
+    let diagonal = DMatrix::from_diagonal(&covariance.diagonal());
+    let apart = Together::new(&effects, &diagonal).expect("of one size");
+    let apart = of(&effects, vec![apart]).covariance_m2(&posture, &conditions);
+    assert!((apart - alone).norm() < 1e-12, "{apart} {alone}");
+    // One that was taken out leaves the others as they are known.
+    let left = of(&effects[1..], vec![together.clone()]).covariance_m2(&posture, &conditions);
+    let two =
+        Together::new(&effects[1..], &covariance.view((1, 1), (2, 2)).into_owned()).expect("of one size");
+    let expected = of(&effects[1..], vec![two]).covariance_m2(&posture, &conditions);
+    assert!((left - expected).norm() < 1e-12, "{left} {expected}");
+    // Of one that was added twice nobody knows which part was fitted with the others.
+    let twice = [effects.clone(), vec![effects[1].clone()]].concat();
+    let twice = of(&twice, vec![together]).covariance_m2(&posture, &conditions);
+    assert!(twice.trace() > alone.trace(), "{twice} {alone}");
+    assert_eq!(Together::new(&effects[1..], &covariance), None);
 }
 
 #[test]

@@ -32,7 +32,7 @@ pub struct RobotModel {
     added: Arc<RigModel>,
     eyes: Arc<Eyes>,
     /// Effects on the eyes.
-    of_eyes: Arc<[Measured]>,
+    of_eyes: Arc<Measured>,
     /// How well their mount is known; `None`: it counts as known.
     mounted: Option<Mounted>,
 }
@@ -59,7 +59,7 @@ impl RobotModel {
     fn put_together(rig: Arc<Rig>, added: Arc<RigModel>) -> Self {
         let eyes = Eyes::of_rig(&rig).expect("the link of the eyes is one of the description");
         let of_eyes = added.measured(None, None, Some(&eyes));
-        Self { rig, added, eyes: Arc::new(eyes), of_eyes: of_eyes.into(), mounted: None }
+        Self { rig, added, eyes: Arc::new(eyes), of_eyes: Arc::new(of_eyes), mounted: None }
     }
 
     /// The same, with how well the mount of the eyes is known: places are as uncertain by that, too.
@@ -109,6 +109,11 @@ impl RobotModel {
     pub fn touchscreen(&self) -> &Touchscreen {
         let nominal = &self.rig.touchscreen;
         self.added.screen(nominal).filter(|_| !self.is_nominal()).unwrap_or(nominal)
+    }
+
+    /// So much higher than the table around it the glass lies, m; `None`: nobody measured it.
+    pub fn glass_over_table_m(&self) -> Option<f64> {
+        self.added.glass_over_table_m(&self.rig.touchscreen).filter(|_| !self.is_nominal())
     }
 
     /// The arm that ends in a tip ("`right_palm_center`", "`right_index_tip`"). Made in milliseconds: make

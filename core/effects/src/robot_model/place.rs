@@ -53,7 +53,7 @@ impl RobotModel {
     /// Place of the left eye, with the effects of the neck's joints and of the mount that hold
     /// whenever and whatever it looks at.
     pub fn robot_from_left(&self, posture: &Posture) -> Pose<Robot, LeftCamera> {
-        if self.of_eyes.is_empty() {
+        if self.of_eyes.present.is_empty() {
             return self.rig.robot_from_left(posture);
         }
         let row = self.row(posture, &SeenUnder::default());
@@ -61,8 +61,8 @@ impl RobotModel {
         // Neck and mount deviate the same way whatever is looked at: something on the axis will do.
         let situation = self.eyes.situation(&row, nominal * Point3::new(0.0, 0.0, 0.5));
         let mut deviation = EyesDeviation::none(self.eyes.neck.len());
-        for measured in self.of_eyes.iter() {
-            measured.present.effect.deviate_eyes(&situation, &measured.present.values, &mut deviation);
+        for present in &self.of_eyes.present {
+            present.effect.deviate_eyes(&situation, &present.values, &mut deviation);
         }
         Pose::new(self.eyes.robot_from_left(&row.neck_rad, &deviation))
     }
@@ -87,23 +87,23 @@ impl RobotModel {
         let by_mount = self.mounted.map_or_else(Matrix3::zeros, |mounted| {
             mounted.covariance_m2(&self.rig, posture, &in_left.coords.coords)
         });
-        if self.of_eyes.is_empty() {
+        if self.of_eyes.present.is_empty() {
             let turn = robot_from_left.rotation();
             let covariance_m2 = turn * covariance_m2 * turn.transpose() + by_mount;
             return Some(PlaceInRobot { point: robot_from_left * *in_left, covariance_m2 });
         }
         let row = self.row(posture, seen);
-        let present: Vec<Present> = self.of_eyes.iter().map(|measured| measured.present.clone()).collect();
+        let present = &self.of_eyes.present;
         let undone = |in_left: &Vector3<f64>, effects: &[Present]| -> Option<Vector3<f64>> {
             let apparent: Point<Robot> = robot_from_left * Point::new(in_left.x, in_left.y, in_left.z);
             let looking = Looking { eyes: &self.eyes, row: &row, effects };
             Some(looking.place_of(apparent)?.coords.coords)
         };
         let seen_at = in_left.coords.coords;
-        let here = undone(&seen_at, &present)?;
+        let here = undone(&seen_at, present)?;
         let mut slopes = Matrix3::zeros();
         for k in 0..3 {
-            let mut at = |step: f64| undone(&(seen_at + Vector3::ith(k, step)), &present);
+            let mut at = |step: f64| undone(&(seen_at + Vector3::ith(k, step)), present);
             slopes.set_column(k, &slope(&mut at, &here, STEP_M)?);
         }
         let by_sight = slopes * covariance_m2 * slopes.transpose();
@@ -120,7 +120,7 @@ impl RobotModel {
         posture: &Posture,
         seen: &SeenUnder,
     ) -> Option<(Pixel<Raw>, Pixel<Raw>)> {
-        if self.of_eyes.is_empty() {
+        if self.of_eyes.present.is_empty() {
             let in_left = self.rig.robot_from_left(posture).inverse() * *point;
             let cameras = &self.rig.eyes.cameras;
             let in_right = cameras.right_from_left * in_left;
@@ -128,7 +128,7 @@ impl RobotModel {
             return Some((left, cameras.right.project(&in_right.coords.coords).ok()?));
         }
         let row = self.row(posture, seen);
-        let present: Vec<Present> = self.of_eyes.iter().map(|measured| measured.present.clone()).collect();
+        let present = &self.of_eyes.present;
         Looking { eyes: &self.eyes, row: &row, effects: &present }.pixels(*point)
     }
 

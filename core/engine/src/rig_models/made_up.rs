@@ -23,6 +23,7 @@ pub fn model_with(rig: &Rig, effects: &[(&str, &str, &[f64])]) -> RigModel {
         screens: vec![],
         externals: vec![],
         eyes: vec![],
+        together: vec![],
         replaces: false,
         at: Timestamp::UNIX_EPOCH,
         sentence: String::new(),

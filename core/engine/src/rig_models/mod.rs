@@ -124,6 +124,7 @@ pub fn with(
     let is_of_eyes = |effect: &&NamedEffect| Kind::of_id(&effect.id).is_some_and(Kind::is_of_eyes);
     let eyes = if chosen.iter().any(is_of_eyes) { numbers_of_eyes(rig) } else { vec![] };
     let addition = Addition {
+        together: vec![],
         effects: chosen.into_iter().map(|effect| model_effect(effect, tip)).collect(),
         screens,
         externals,

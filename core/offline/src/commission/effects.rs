@@ -3,7 +3,7 @@
 //! arm, the named effects and all together the one that errs least on touches held out is put in use.
 
 use plumbline_effects::arm::Arm;
-use plumbline_effects::rig_model::{Addition, ModelEffect, PlacedScreen, StepGap};
+use plumbline_effects::rig_model::{Addition, ModelEffect, PlacedScreen, StepGap, Together};
 use plumbline_effects::{Effect, Kind, Measurements, Present, RigModel, Surface};
 use plumbline_engine::gap::search::{measured, search};
 use plumbline_engine::gap::sessions::stamps;
@@ -19,6 +19,7 @@ use plumbline_model::{JobContext, Session};
 
 use super::error::CommissionError;
 use super::estimate::{Fit, Known, fit, held_out_m, is_first_zero};
+use super::glass::SeenScreen;
 use super::known::{Seen, Share};
 use super::lab::Lab;
 use super::lag;
@@ -195,6 +196,7 @@ pub(super) fn by_eyes(
         effects.push(effect_of(tip, &present, covariance));
     }
     let addition = Addition {
+        together: together(tip, &fitted, &effects),
         effects,
         screens: vec![],
         externals: vec![],
@@ -280,6 +282,18 @@ fn effect_of(tip: &str, present: &Present, covariance: Vec<f64>) -> ModelEffect 
     }
 }
 
+/// How well the effects of a fit are known together, as the model's file holds them.
+fn together(tip: &str, fitted: &Fit, effects: &[ModelEffect]) -> Vec<Together> {
+    let of_model = |present: &Present| {
+        let is_it = |effect: &&ModelEffect| {
+            (effect.id.as_str(), &effect.site) == (present.effect.id(), &present.effect.site)
+        };
+        effects.iter().filter(|effect| effect.tip.as_deref() == Some(tip)).find(is_it).cloned()
+    };
+    let fitted_effects: Option<Vec<ModelEffect>> = fitted.assumed.effects.iter().map(of_model).collect();
+    fitted_effects.and_then(|effects| Together::new(&effects, &fitted.covariance)).into_iter().collect()
+}
+
 /// Puts effects in use with the fitted zero of the neck, and the screen where the fit places it.
 fn accept(
     lab: &Lab,
@@ -293,7 +307,8 @@ fn accept(
     let read = Session::read(&session(lab))?;
     let title = measurements.apparatuses[0].title.clone();
     let nominal = read.manifest.touchscreen.clone().unwrap_or_else(|| lab.rig.touchscreen.clone());
-    let placed = PlacedScreen::moved(&title, &nominal, &fitted.assumed.placements[0]);
+    let mut placed = PlacedScreen::moved(&title, &nominal, &fitted.assumed.placements[0]);
+    placed.over_table_m = SeenScreen::read(lab)?.and_then(|seen| seen.table).map(|table| table.glass_over_m);
     if let Some((zero_rad, sd_rad)) = fitted.neck_rad {
         let joint = lab.rig.description.joint(lab.rig.eyes.pan).name.clone();
         effects.push(ModelEffect {
@@ -311,11 +326,13 @@ fn accept(
     if effects.is_empty() {
         return Ok(());
     }
+    let together = together(TIP, fitted, &effects);
     let addition = Addition {
         effects,
         screens: vec![placed.clone()],
         externals: vec![],
         eyes: vec![],
+        together,
         replaces: true,
         at: jiff::Timestamp::now(),
         sentence,

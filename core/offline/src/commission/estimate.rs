@@ -266,7 +266,8 @@ mod tests {
         });
         let seen = seen.collect();
         let covariance = Matrix6::from_diagonal(&Vector6::new(1e-6, 1e-6, 1e-6, 6e-6, 6e-6, 6e-6));
-        let screen = SeenScreen { robot_from_screen: pose(screen), covariance, rms_px: 0.2, edges: 800 };
+        let screen =
+            SeenScreen { robot_from_screen: pose(screen), covariance, rms_px: 0.2, edges: 800, table: None };
         (touches, screen, SeenHands { arm, seen })
     }
 

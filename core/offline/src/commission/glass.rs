@@ -1,5 +1,8 @@
 //! Where the eyes see the touchscreen: the outline of its frame, fitted to the edges in both images. It
 //! is what the arm's frame and the eyes' frame have in common.
+//!
+//! The head never stands quite where its encoders say. Seen from several head poses, a tenth of a degree of
+//! that would pass for a screen that is smaller and nearer; so where each pose really was is an unknown, too.
 
 use image::GrayImage;
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix6, Point3, UnitQuaternion, Vector2, Vector3};
@@ -8,12 +11,14 @@ use plumbline_model::files::{self, Size};
 use plumbline_model::robot::{Posture, Rig, ScreenFrame};
 use plumbline_model::session::Touchscreen;
 use plumbline_model::{Eye, JobContext};
+use plumbline_vision::mount::MountCalibration;
 use serde::{Deserialize, Serialize};
 
 use super::edges::{STEP_PX, profile};
 use super::error::CommissionError;
 use super::lab::Lab;
 use super::robot::{Robot, Sight};
+use super::table_beside::TableBeside;
 
 /// Turns of the head from home from which it is looked at, rad.
 const LOOKS_RAD: [f64; 3] = [0.0, 0.2, -0.2];
@@ -30,8 +35,12 @@ const ROUNDS: usize = 10;
 const FEWEST: usize = 120;
 /// Neighboring samples see the same speckle: so many of them count as one.
 const ALIKE: f64 = 4.0;
-/// Pose (turn, then shift) and the width's scale less 1.
-const UNKNOWNS: usize = 7;
+/// Pose (turn, then shift) and the width's scale less 1; two angles of every head pose come after them.
+const OF_SCREEN: usize = 7;
+/// The width's scale among them.
+const SCALE: usize = 6;
+/// The width is that of the data sheet to within this share.
+const SCALE_SD: f64 = 0.02;
 /// What the outline cannot know better than this: the frame's width, the picture of an edge; m and rad.
 const LEAST_SD: [f64; 2] = [0.001, 0.0025];
 
@@ -50,38 +59,82 @@ pub(super) struct SeenScreen {
     pub rms_px: f64,
     /// Edges that were found.
     pub edges: usize,
+    /// The table around it.
+    #[serde(default)]
+    pub table: Option<TableBeside>,
 }
 
-/// A picture and where its eyes were.
+/// An image of one eye, and where the head stood by its encoders.
 struct Picture {
     image: GrayImage,
     eye: Eye,
-    left_from_robot: Isometry3<f64>,
+    posture: Posture,
+    /// Number of the head pose.
+    head: usize,
 }
 
-/// Looks at the screen from some head poses and fits its outline. `rig` has its eyes where they sit;
-/// `start` is about where the screen lies. `None` when the rig does not describe its frame, or its edges are
+/// What the edges are compared with.
+struct Scene<'a> {
+    rig: &'a Rig,
+    frame: &'a ScreenFrame,
+    screen: &'a Touchscreen,
+}
+
+/// What is looked for.
+#[derive(Clone)]
+struct Guess {
+    robot_from_screen: Isometry3<f64>,
+    /// Of the width, as a share of the data sheet's.
+    scale: f64,
+    /// Turn and tilt of the head beyond its encoders, per head pose, rad.
+    heads: Vec<[f64; 2]>,
+}
+
+impl Guess {
+    fn unknowns(&self) -> usize {
+        OF_SCREEN + 2 * self.heads.len()
+    }
+
+    /// One of the unknowns changed: turns and shifts are about the middle, robot axes.
+    fn changed(&self, unknown: usize, by: f64) -> Self {
+        let mut new = self.clone();
+        let at = &mut new.robot_from_screen;
+        match unknown {
+            0..3 => at.rotation = UnitQuaternion::from_scaled_axis(Vector3::ith(unknown, by)) * at.rotation,
+            3..6 => at.translation.vector += Vector3::ith(unknown - 3, by),
+            SCALE => new.scale += by,
+            _ => {
+                let of_heads = unknown - OF_SCREEN;
+                new.heads[of_heads / 2][of_heads % 2] += by;
+            }
+        }
+        new
+    }
+}
+
+/// Looks at the screen from some head poses and fits its outline. `rig` has its eyes where they sit, `mount`
+/// says how well the head comes to rest; `start` is about where the screen lies. `None` when the rig does not describe its frame, or its edges are
 /// not seen.
 pub(super) fn see(
-    lab: &Lab,
     robot: &mut Robot,
     rig: &Rig,
+    mount: &MountCalibration,
     start: &Touchscreen,
     context: &dyn JobContext,
 ) -> Result<Option<SeenScreen>, CommissionError> {
     let Some(frame) = &rig.outlines.screen_frame else { return Ok(None) };
     let mut pictures = vec![];
-    for turn_rad in LOOKS_RAD {
+    let home = rig.home();
+    for (head, turn_rad) in LOOKS_RAD.into_iter().enumerate() {
         context.checkpoint()?;
-        let home = lab.rig.home();
         robot.go(&home.with(&[rig.eyes.pan], &[home[rig.eyes.pan] + turn_rad]));
         let Sight { left, right, posture } = robot.look()?;
-        let left_from_robot = left_from_robot(rig, &posture);
-        pictures.push(Picture { image: gray(&left), eye: Eye::Left, left_from_robot });
-        pictures.push(Picture { image: gray(&right), eye: Eye::Right, left_from_robot });
+        for (image, eye) in [(gray(&left), Eye::Left), (gray(&right), Eye::Right)] {
+            pictures.push(Picture { image, eye, posture: posture.clone(), head });
+        }
     }
-    robot.go(&lab.rig.home());
-    Ok(fit(rig, frame, start, &pictures))
+    robot.go(&home);
+    Ok(fit(&Scene { rig, frame, screen: start }, mount.angle_sigma_rad, &pictures))
 }
 
 impl SeenScreen {
@@ -106,14 +159,11 @@ impl SeenScreen {
     }
 }
 
-fn left_from_robot(rig: &Rig, posture: &Posture) -> Isometry3<f64> {
-    rig.robot_from_left(posture).isometry.inverse()
-}
-
 /// Points on the three edges that are looked at and a direction out of the frame, screen axes from the
 /// middle of the image, m.
 /// Nobody looks at the far one: the table ends there.
-fn outline(screen: &Touchscreen, frame: &ScreenFrame, scale: f64) -> Vec<(Vector3<f64>, Vector3<f64>)> {
+fn outline(scene: &Scene<'_>, scale: f64) -> Vec<(Vector3<f64>, Vector3<f64>)> {
+    let (screen, frame) = (scene.screen, scene.frame);
     let (half_u, half_v) = (0.5 * screen.width_m * scale, 0.5 * screen.height_m);
     let share = |k: usize| 2.0 * (k as f64 + 0.5) / SAMPLES as f64 - 1.0;
     let (side, near, below) = (half_u + frame.side_m, half_v + frame.near_m, frame.below_m);
@@ -137,44 +187,32 @@ pub(super) fn pose(screen: &Touchscreen) -> Isometry3<f64> {
     Isometry3::from_parts(screen.point_at(screen.middle()).coords.coords.into(), rotation)
 }
 
-fn fit(rig: &Rig, frame: &ScreenFrame, start: &Touchscreen, pictures: &[Picture]) -> Option<SeenScreen> {
-    let (mut at, mut scale) = (pose(start), 1.0);
+/// Fits all unknowns to the edges; the head comes to rest to within `rest_sd_rad` (turn, tilt) of where its
+/// encoders have it.
+fn fit(scene: &Scene<'_>, rest_sd_rad: [f64; 2], pictures: &[Picture]) -> Option<SeenScreen> {
+    let heads = pictures.iter().map(|picture| picture.head + 1).max()?;
+    let mut guess = Guess { robot_from_screen: pose(scene.screen), scale: 1.0, heads: vec![[0.0; 2]; heads] };
     let mut last = None;
     for round in 0..ROUNDS {
         let window_px = WINDOW_PX[usize::from(round > 2)];
-        let (mut normal, mut right) = (DMatrix::<f64>::zeros(UNKNOWNS, UNKNOWNS), DVector::zeros(UNKNOWNS));
-        let (mut squares, mut weights, mut edges) = (0.0, 0.0, 0);
+        let mut sums = Sums::new(guess.unknowns());
         for picture in pictures {
-            for (k, (point, out)) in outline(start, frame, scale).into_iter().enumerate() {
-                let Some((pixel, toward)) = on_image(rig, picture, &at, &point, &out) else { continue };
-                let Some(off_px) = edge(&picture.image, &pixel, &toward, window_px) else { continue };
-                let slope = DVector::from_fn(UNKNOWNS, |i, _| {
-                    let (moved, wider) = changed(&at, scale, i, 1e-4);
-                    let point = outline(start, frame, wider)[k].0;
-                    on_image(rig, picture, &moved, &point, &out)
-                        .map_or(0.0, |(there, _)| (there - pixel).dot(&toward) / 1e-4)
-                });
-                let weight = 1.0 / (1.0 + (off_px / ROBUST_PX).powi(2));
-                normal += &slope * slope.transpose() * weight;
-                right += &slope * (off_px * weight);
-                squares += weight * off_px * off_px;
-                weights += weight;
-                edges += 1;
-            }
+            sums.add(scene, picture, &guess, window_px);
         }
-        if edges < FEWEST {
+        if sums.edges < FEWEST {
             return None;
         }
-        // The width is that of the data sheet, to a few percent.
-        normal[(6, 6)] += (0.02f64).powi(-2);
-        right[6] -= (scale - 1.0) * (0.02f64).powi(-2);
-        let factor = normal.clone().cholesky()?;
-        let change = factor.solve(&right);
-        for i in 0..UNKNOWNS {
-            (at, scale) = changed(&at, scale, i, change[i]);
+        // The edges say themselves how good they are: what is known before is in units of that.
+        let rms_px = sums.rms_px();
+        let edge_sd_px = rms_px * ALIKE.sqrt();
+        sums.expect(SCALE, guess.scale - 1.0, SCALE_SD / edge_sd_px);
+        for (k, angle_rad) in guess.heads.iter().flatten().enumerate() {
+            sums.expect(OF_SCREEN + k, *angle_rad, rest_sd_rad[k % 2] / edge_sd_px);
         }
-        let rms_px = (squares / weights.max(1e-9)).sqrt();
-        last = Some((factor.inverse() * (rms_px * rms_px * ALIKE), rms_px, edges));
+        let factor = sums.normal.cholesky()?;
+        let change = factor.solve(&sums.right);
+        guess = (0..guess.unknowns()).fold(guess, |guess, i| guess.changed(i, change[i]));
+        last = Some((factor.inverse() * edge_sd_px.powi(2), rms_px, sums.edges));
     }
     let (covariance, rms_px, edges) = last?;
     // Turn then shift here, shift then turn there.
@@ -182,38 +220,94 @@ fn fit(rig: &Rig, frame: &ScreenFrame, start: &Touchscreen, pictures: &[Picture]
     for k in 0..6 {
         own[(k, k)] += LEAST_SD[k / 3].powi(2);
     }
-    Some(SeenScreen { robot_from_screen: at, covariance: own, rms_px, edges })
+    Some(SeenScreen {
+        robot_from_screen: guess.robot_from_screen,
+        covariance: own,
+        rms_px,
+        edges,
+        table: None,
+    })
 }
 
-/// One of the unknowns changed: turns and shifts about the middle, robot axes.
-fn changed(at: &Isometry3<f64>, scale: f64, unknown: usize, by: f64) -> (Isometry3<f64>, f64) {
-    let mut moved = *at;
-    match unknown {
-        0..3 => {
-            moved.rotation = UnitQuaternion::from_scaled_axis(Vector3::ith(unknown, by)) * at.rotation;
-        }
-        3..6 => moved.translation.vector += Vector3::ith(unknown - 3, by),
-        _ => return (moved, scale + by),
+/// The normal equations of the unknowns.
+struct Sums {
+    normal: DMatrix<f64>,
+    right: DVector<f64>,
+    squares_px2: f64,
+    weights: f64,
+    edges: usize,
+}
+
+impl Sums {
+    fn new(unknowns: usize) -> Self {
+        let (normal, right) = (DMatrix::zeros(unknowns, unknowns), DVector::zeros(unknowns));
+        Self { normal, right, squares_px2: 0.0, weights: 0.0, edges: 0 }
     }
-    (moved, scale)
+
+    /// The edges of one image.
+    fn add(&mut self, scene: &Scene<'_>, picture: &Picture, guess: &Guess, window_px: f64) {
+        const STEP: f64 = 1e-4;
+        let count = guess.unknowns();
+        let moved: Vec<Guess> = (0..count).map(|i| guess.changed(i, STEP)).collect();
+        let lines: Vec<_> = moved.iter().map(|moved| outline(scene, moved.scale)).collect();
+        let eyes: Vec<_> = moved.iter().map(|moved| left_from_robot(scene, picture, moved)).collect();
+        let left = left_from_robot(scene, picture, guess);
+        for (k, (point, out)) in outline(scene, guess.scale).into_iter().enumerate() {
+            let Some((pixel, toward)) =
+                on_image(scene, picture.eye, &(left * guess.robot_from_screen), &point, &out)
+            else {
+                continue;
+            };
+            let Some(off_px) = edge(&picture.image, &pixel, &toward, window_px) else { continue };
+            let slope = DVector::from_fn(count, |i, _| {
+                let left_from_screen = eyes[i] * moved[i].robot_from_screen;
+                on_image(scene, picture.eye, &left_from_screen, &lines[i][k].0, &out)
+                    .map_or(0.0, |(there, _)| (there - pixel).dot(&toward) / STEP)
+            });
+            let weight = 1.0 / (1.0 + (off_px / ROBUST_PX).powi(2));
+            self.normal += &slope * slope.transpose() * weight;
+            self.right += slope * (off_px * weight);
+            self.squares_px2 += weight * off_px * off_px;
+            self.weights += weight;
+            self.edges += 1;
+        }
+    }
+
+    /// An unknown that stands at `value` is 0 to within `sd`.
+    fn expect(&mut self, unknown: usize, value: f64, sd: f64) {
+        self.normal[(unknown, unknown)] += sd.powi(-2);
+        self.right[unknown] -= value * sd.powi(-2);
+    }
+
+    fn rms_px(&self) -> f64 {
+        (self.squares_px2 / self.weights.max(1e-9)).sqrt()
+    }
+}
+
+/// Where the left eye is, the head where it is taken to be.
+fn left_from_robot(scene: &Scene<'_>, picture: &Picture, guess: &Guess) -> Isometry3<f64> {
+    let head = [scene.rig.eyes.pan, scene.rig.eyes.tilt];
+    let [turn_rad, tilt_rad] = guess.heads[picture.head];
+    let stands = [picture.posture[head[0]] + turn_rad, picture.posture[head[1]] + tilt_rad];
+    scene.rig.robot_from_left(&picture.posture.with(&head, &stands)).isometry.inverse()
 }
 
 /// Where a point of the outline is seen, and the direction across its edge out of the frame (unit), px.
 fn on_image(
-    rig: &Rig,
-    picture: &Picture,
-    robot_from_screen: &Isometry3<f64>,
+    scene: &Scene<'_>,
+    eye: Eye,
+    left_from_screen: &Isometry3<f64>,
     point: &Vector3<f64>,
     out: &Vector3<f64>,
 ) -> Option<(Vector2<f64>, Vector2<f64>)> {
-    let cameras = &rig.eyes.cameras;
+    let cameras = &scene.rig.eyes.cameras;
     let seen = |point: Vector3<f64>| -> Option<Vector2<f64>> {
-        let in_left = picture.left_from_robot * robot_from_screen * Point3::from(point);
-        let in_eye = match picture.eye {
+        let in_left = left_from_screen * Point3::from(point);
+        let in_eye = match eye {
             Eye::Left => in_left,
             Eye::Right => cameras.right_from_left.isometry * in_left,
         };
-        Some(cameras.camera(picture.eye).project(&in_eye.coords).ok()?.vector())
+        Some(cameras.camera(eye).project(&in_eye.coords).ok()?.vector())
     };
     let pixel = seen(*point)?;
     // Across the edge as the image has it, which is not where the direction out is seen.

@@ -29,6 +29,7 @@ mod robot;
 mod see;
 mod seen_by_eyes;
 mod steps;
+mod table_beside;
 #[cfg(test)]
 mod tests;
 mod touches;

@@ -23,6 +23,7 @@ use super::lab::{Lab, TOUCH_SESSION};
 use super::plan::{Candidate, Chosen, TOUCHES, area, candidates, choose};
 use super::robot::{Robot, SPEED_RAD_S};
 use super::steps::Step;
+use super::table_beside;
 
 /// The tip comes down with this speed, m/s.
 const LOWER_M_S: f64 = 0.02;
@@ -183,7 +184,8 @@ pub(super) fn place(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> R
     step.notes.extend(placed.remarks.iter().cloned());
     lab.accept_placement(&placed)?;
     let rig = lab.rig_with_eyes()?;
-    match body::see(robot, &rig, &lab.mount()?, context)? {
+    let mount = lab.mount()?;
+    match body::see(robot, &rig, &mount, context)? {
         Some(body) => {
             step.notes.push(format!(
                 "By the robot's body the neck's turn is off by {:.2}° ± {:.2}° ({} edge points, {:.2} px).",
@@ -196,8 +198,8 @@ pub(super) fn place(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> R
         }
         None => step.notes.push("The eyes do not see the edges of the robot's body.".to_owned()),
     }
-    match see(lab, robot, &rig, &placed.screen, context)? {
-        Some(seen) => {
+    match see(robot, &rig, &mount, &placed.screen, context)? {
+        Some(mut seen) => {
             let off = seen.robot_from_screen * pose(&placed.screen).inverse();
             let middle = placed.screen.point_at(placed.screen.middle()).coords;
             let shift_mm = 1e3 * ((off * middle) - middle);
@@ -210,6 +212,17 @@ pub(super) fn place(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> R
                 seen.edges,
                 seen.rms_px
             ));
+            seen.table = table_beside::see(robot, &rig, &lab.calibration()?, &seen, &placed.screen)?;
+            step.notes.push(match &seen.table {
+                Some(table) => format!(
+                    "Its glass lies {:.1} ± {:.1} mm over the table around it ({} places).",
+                    1e3 * table.glass_over_m,
+                    1e3 * table.sd_m,
+                    table.places
+                ),
+                None => "The table around it shows the eyes too little to match: its glass is taken to lie 2 mm over it."
+                    .to_owned(),
+            });
             seen.write(lab)?;
         }
         None => step.notes.push("The eyes do not see its edges.".to_owned()),

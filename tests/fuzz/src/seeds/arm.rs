@@ -163,6 +163,7 @@ fn rig_model(rig: &Rig, session: &Session) -> Result<RigModel, Problem> {
         screens: vec![PlacedScreen::moved("session", screen, &moved)],
         externals: vec![],
         eyes: vec![],
+        together: vec![],
         replaces: true,
         at: Timestamp::from_second(1_770_000_100)?,
         sentence: "made up".to_owned(),
