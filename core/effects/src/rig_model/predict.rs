@@ -126,6 +126,12 @@ impl RigModel {
         Measured { covariance: self.contents.covariance_of(&numbers), present }
     }
 
+    /// Whether it is said how well the effects of an arm are known together.
+    pub(crate) fn is_known_together(&self, arm: &Arm) -> bool {
+        let tips = self.contents.together.iter().filter_map(|together| together.tip.as_deref());
+        tips.into_iter().any(|tip| arm.has_tip(tip))
+    }
+
     /// Rows for a search for what comes in addition: predictions of these rows hold this model's
     /// effects. Frames are where the sessions say, since a search places them itself.
     pub fn put_into(&self, mut measurements: Measurements) -> Measurements {

@@ -37,7 +37,7 @@ impl Together {
             tip: effects.first()?.tip.clone(),
             effects: effects.iter().map(ModelEffect::name).collect(),
             counts,
-            covariance: (0..n).flat_map(|r| (0..=r).map(move |c| covariance[(r, c)])).collect(),
+            covariance: (0..n).flat_map(|r| (0..=r).map(move |c| short(covariance[(r, c)]))).collect(),
         })
     }
 
@@ -71,6 +71,11 @@ impl Together {
         let (row, column) = (row.max(column), row.min(column));
         self.covariance[row * (row + 1) / 2 + column]
     }
+}
+
+/// Seven digits say enough, and a file of thousands of numbers stays small.
+fn short(number: f64) -> f64 {
+    format!("{number:.6e}").parse().unwrap_or(number)
 }
 
 impl Contents {

@@ -27,6 +27,7 @@ struct Parts {
     deviated: DeviatedArm,
     /// Effects that the arm has without a touchscreen.
     free: Measured,
+    is_known_together: bool,
 }
 
 impl ModelArm {
@@ -34,9 +35,11 @@ impl ModelArm {
         let solver = Solver::of_rig(rig, tip)?;
         let chain = rig.chain(tip)?;
         let deviated = added.arm(rig, tip)?;
-        let free = added.measured(Some(tip), Some(&Arm::of_rig(rig, tip)?), None);
+        let arm = Arm::of_rig(rig, tip)?;
+        let free = added.measured(Some(tip), Some(&arm), None);
         let free = free.of(|present| !present.effect.kind.is_of_contact());
-        Ok(Self { parts: Arc::new(Parts { chain, solver, deviated, free }) })
+        let is_known_together = added.is_known_together(&arm);
+        Ok(Self { parts: Arc::new(Parts { chain, solver, deviated, free, is_known_together }) })
     }
 
     /// Nominal inverse kinematics.
@@ -62,6 +65,12 @@ impl ModelArm {
     /// Whether no effect moves its tip.
     pub fn is_nominal(&self) -> bool {
         self.parts.free.present.is_empty()
+    }
+
+    /// Whether its effects were fitted together, with all that arms usually have: then little is left of its
+    /// error beside what [`Self::covariance_m2`] says.
+    pub fn is_known_together(&self) -> bool {
+        self.parts.is_known_together
     }
 
     /// Where the tip is when a posture is commanded.

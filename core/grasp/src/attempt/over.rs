@@ -33,8 +33,6 @@ const HOLDS_M: f64 = 0.009;
 /// Hand and object together may be this uncertain over the table, m: of a hundred hands eighty are then
 /// nearer than [`HOLDS_M`].
 const MOST_SIGMA_M: f64 = HOLDS_M / 1.28;
-/// Standard deviation per axis of what the named effects leave of an arm's error, m.
-const ARM_SIGMA_M: f64 = 0.004;
 /// Standard deviation of the height that its model has over the table, m: both were taught by touching.
 /// What the eyes say of a height is off by millimeters as their mount and lenses are, and off the same way
 /// at every look, while the object's height is the table's: a hand that is believed to be higher or lower
@@ -79,8 +77,8 @@ impl Running<'_> {
         before: &Sight,
     ) -> Result<GraspPlan, End> {
         let commanded = self.body.commanded()?;
-        let effects_m2 = self.grasper.arm.known.arm().covariance_m2(&commanded);
-        let covariance_m2 = effects_m2 + Matrix3::identity() * ARM_SIGMA_M.powi(2);
+        let arm = self.grasper.arm.known.arm();
+        let covariance_m2 = arm.covariance_m2(&commanded) + Matrix3::identity() * arm.rest_sigma_m().powi(2);
         let mut error = ArmError { m: Vector3::zeros(), covariance_m2 };
         let mut over = Over { plan, lowered: None };
         for look in 1..=LOOKS {

@@ -3,7 +3,7 @@
 //! priors). The screen's place is fitted with them; where the eyes have seen it, it ties the arm to the
 //! eyes, and the zero of the neck's turn is fitted, too.
 
-use nalgebra::{DMatrix, DVector, Isometry3, Matrix6, Vector6};
+use nalgebra::{DMatrix, DVector, Isometry3, Matrix6, Vector3, Vector6};
 use plumbline_effects::measurements::Observation;
 use plumbline_effects::{Assumed, Effect, Kind, Measurements, Present};
 use plumbline_model::robot::{Arm, Rig};
@@ -14,11 +14,15 @@ use super::seen_by_eyes::{Looked, SeenHands};
 
 /// What the neck's zero is off by, usually, rad: as the library of effects has it.
 pub(super) const NECK_SD_RAD: f64 = 0.026;
+/// What all hands are seen beside where they are, standard deviation per axis, m: no hand is quite of the shape
+/// that the rig file gives it.
+const BESIDE_SD_M: f64 = 0.0015;
 /// Unknowns before the effects: six of the screen, one of the neck, six of the eyes in the head (turn,
-/// then shift).
-const FRAME: usize = 13;
-/// Where those of neck and eyes begin.
+/// then shift), three of how hands are seen.
+const FRAME: usize = 16;
+/// Where those of neck and eyes begin, and those of how hands are seen.
 const NECK: usize = 6;
+const BESIDE: usize = 13;
 /// Scale of the robust loss of hands, standard deviations: one may be mistaken for its shadow.
 const ROBUST: f64 = 2.5;
 
@@ -112,7 +116,10 @@ pub(super) fn fit(
             frame += slopes.transpose() * (information * off);
         }
         if let Some(hands) = known.hands {
-            for (slopes, off, information) in hands.against(&looked, &assumed, effects, NECK, &eyes)? {
+            let beside_m = Vector3::from_fn(|k, _| at[BESIDE + k]);
+            for (slopes, off, information) in
+                hands.against(&looked, &assumed, effects, NECK, &eyes, &beside_m)?
+            {
                 let weight = 1.0 / (1.0 + (off.transpose() * information * off).x / ROBUST.powi(2));
                 normal += slopes.transpose() * information * &slopes * weight;
                 right += slopes.transpose() * (information * off) * weight;
@@ -154,6 +161,7 @@ fn information_before(effects: &[Effect], known: &Known<'_>) -> Option<DMatrix<f
     let frame = (0..FRAME).map(|k| match k {
         0..NECK => SCREEN_SD[k / 3],
         NECK => known.neck_rad.1,
+        BESIDE.. => BESIDE_SD_M,
         _ => 1.0,
     });
     let sd: Vec<f64> = frame.chain(shares).collect();
@@ -210,7 +218,6 @@ pub(super) fn held_out_m(measurements: &Measurements, effects: &[Effect], known:
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector3;
     use plumbline_effects::Surface;
     use plumbline_effects::arm::Arm;
     use plumbline_effects::measurements::What;

@@ -54,8 +54,8 @@ pub(super) struct SeenHands {
 pub(super) type Against = (DMatrix<f64>, Vector3<f64>, Matrix3<f64>);
 
 impl SeenHands {
-    /// All of them against the arm with effects; the unknowns of neck and eyes begin at `neck`, effects come
-    /// after those. `None` when the arm cannot be predicted.
+    /// All of them against the arm with effects; the unknowns of neck and eyes begin at `neck`, after
+    /// them comes how far all hands are seen beside where they are (`beside_m`), then effects. `None` when the arm cannot be predicted.
     pub fn against(
         &self,
         looked: &Looked<'_>,
@@ -63,13 +63,15 @@ impl SeenHands {
         effects: &[Effect],
         neck: usize,
         eyes: &[f64; 7],
+        beside_m: &Vector3<f64>,
     ) -> Option<Vec<Against>> {
         let of_palm = assumed.effects.iter().filter(|present| moves_palm(&present.effect)).cloned().collect();
         let assumed = Assumed { effects: of_palm, placements: vec![Isometry3::identity()], mounts: vec![] };
         let mut all = vec![];
         for (row, hand) in self.arm.rows.iter().zip(&self.seen) {
             let tangents = self.arm.tangents(row, &assumed, effects)?;
-            let first = neck + eyes.len();
+            let offset = neck + eyes.len();
+            let first = offset + 3;
             let mut slopes = DMatrix::zeros(3, first + tangents.effects.ncols());
             slopes.columns_mut(first, tangents.effects.ncols()).copy_from(&tangents.effects);
             let mut at = first;
@@ -88,7 +90,8 @@ impl SeenHands {
                 behind[k] -= STEP;
                 slopes.set_column(neck + k, &((by_eyes(&behind) - by_eyes(&ahead)) / (2.0 * STEP)));
             }
-            let predicted = Vector3::from_column_slice(&tangents.predicted);
+            slopes.view_mut((0, offset), (3, 3)).fill_diagonal(1.0);
+            let predicted = Vector3::from_column_slice(&tangents.predicted) + beside_m;
             all.push((slopes, by_eyes(eyes) - predicted, hand.information));
         }
         Some(all)
