@@ -19,8 +19,9 @@ const SAME_RAD: f64 = 5e-4;
 const ASKED_EVERY: Duration = Duration::from_millis(50);
 /// No order takes longer than this while it is not paused.
 const LONGEST: Duration = Duration::from_secs(60);
-/// A pair comes within this time, or the eyes are taken to be blind.
-const PAIR_WITHIN: Duration = Duration::from_secs(8);
+/// A pair comes within this time, or the eyes are taken to be blind: eyes that were started anew, on a machine
+/// that does much else, need some seconds.
+const PAIR_WITHIN: Duration = Duration::from_secs(20);
 /// The angles of a moment have been read after this long.
 const READ_WITHIN: Duration = Duration::from_secs(1);
 /// Fingers around a thing may come so much nearer to what it stands on than their shapes say, m: they

@@ -4,15 +4,16 @@ use nalgebra::{Point3, UnitQuaternion, Vector3};
 use plumbline_model::{Point, Robot};
 
 // In the middle of how far off things may be and still be lifted (`tests/tolerance.rs`): about 6 mm along and
-// across the hand, 10 to 17 mm from the palm to the middle of a tomato. Nearer to the palm the thumb pushes it
-// across the hand, farther it slips out below.
+// across the hand, 10 to 16 mm from the palm to the middle of a tomato. Nearer to the palm the thumb pushes it
+// across the hand, farther it slips out below: 3 to 5 mm off along and across, of 132 hands 121 lift it with the
+// palm at 8 mm, 132 at 10, 131 at 12 and 129 at 14.
 
 /// Things belong so much nearer to the fingers than the middle of the palm, m…
 const INTO_FINGERS_M: f64 = 0.017;
 /// …and so much away from the thumb: toward the right of a right hand, m.
 const FROM_THUMB_M: f64 = 0.004;
 /// …and the palm closes so much below the top of a thing, m.
-const BELOW_TOP_M: f64 = 0.017;
+const BELOW_TOP_M: f64 = 0.015;
 
 /// What is to be grasped, on what it stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
