@@ -129,7 +129,7 @@ impl RobotModel {
         }
         let row = self.row(posture, seen);
         let present = &self.of_eyes.present;
-        Looking { eyes: &self.eyes, row: &row, effects: &present }.pixels(*point)
+        Looking { eyes: &self.eyes, row: &row, effects: present }.pixels(*point)
     }
 
     fn row(&self, posture: &Posture, seen: &SeenUnder) -> Observation {

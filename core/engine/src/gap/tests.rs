@@ -181,7 +181,7 @@ fn a_session_chosen_while_the_start_still_reads_stands_in_the_list() {
     lab.run(start);
     lab.work();
     let view = lab.view();
-    assert_eq!(view.chosen[..], [elsewhere.clone()]);
+    assert_eq!(view.chosen[..], *std::slice::from_ref(&elsewhere));
     assert!(view.sessions.iter().any(|listed| listed.folder == elsewhere), "{:?}", view.sessions);
     assert_eq!(view.sessions.len(), 2, "the program's own session is listed, too");
 }
