@@ -17,7 +17,7 @@ use super::settings::ThemeChoice;
 use crate::operator::guidance::guidance;
 use crate::operator::{
     Action, CommissionAction, DetectAction, GapAction, LabelsAction, ModelsAction, Outbox, Preset,
-    RobotAction, ScoresAction, Screen, TouchAction, TrialsAction, gap_plan,
+    RobotAction, ScoresAction, Screen, TouchAction, TrialsAction, gap_plan, gap_proof,
 };
 
 /// A message of the window itself.
@@ -170,6 +170,12 @@ impl PlumblineWindow {
             GapAction::OpenSession => self.ask_for(ctx, Question::GapSession),
             GapAction::ReportHtml => self.ask_for(ctx, Question::GapReport { pdf: false }),
             GapAction::ReportPdf => self.ask_for(ctx, Question::GapReport { pdf: true }),
+            GapAction::Prove => {
+                if let Some(commands) = gap_proof(&self.view) {
+                    self.settings.screen = Screen::Touch;
+                    commands.into_iter().for_each(|command| self.send(command));
+                }
+            }
             GapAction::NextExperiment => {
                 if let Some(plan) = gap_plan(&self.view) {
                     self.settings.screen = Screen::Touch;

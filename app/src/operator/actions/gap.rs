@@ -2,11 +2,11 @@
 
 use std::borrow::Cow;
 
-use plumbline_engine::{Command, GapCommand, GapModel, TouchCommand, View};
-use plumbline_model::touch_plan::Finger;
+use plumbline_engine::{Command, Correction, GapCommand, GapModel, TouchCommand, View};
+use plumbline_model::touch_plan::{Finger, PlanOptions};
 use serde::Serialize;
 
-use super::touch::{Preset, TouchAction, usual_area};
+use super::touch::{CHECK_SEED, Preset, TouchAction, other_targets, usual_area};
 use crate::operator::snapshot::gap::{Finding, plan_for};
 
 /// Of the gap between model and measurement.
@@ -25,6 +25,8 @@ pub enum GapAction {
     Find,
     /// Adds all effects of the shown finding that can be added.
     Add,
+    /// Plans new touches, each with the effects and without them.
+    Prove,
     /// Takes over the next experiment as a plan of touches.
     NextExperiment,
     /// Writes a page about the finding as HTML (asks where to).
@@ -41,13 +43,14 @@ pub enum GapAction {
 
 impl GapAction {
     /// All of them, in the palette's order.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::ListSessions,
         Self::OpenSession,
         Self::CompareInUse,
         Self::CompareNominal,
         Self::Find,
         Self::Add,
+        Self::Prove,
         Self::NextExperiment,
         Self::ReportHtml,
         Self::ReportPdf,
@@ -65,6 +68,7 @@ impl GapAction {
             Self::CompareInUse => "Compare with the model in use",
             Self::Find => "Find what is missing",
             Self::Add => "Add the found effects to the model",
+            Self::Prove => "Plan touches with and without the effects",
             Self::NextExperiment => "Plan the next experiment",
             Self::ReportHtml => "Report of the gap (HTML)…",
             Self::ReportPdf => "Report of the gap (PDF)…",
@@ -86,8 +90,9 @@ impl GapAction {
                 Some(why) => Some(why.clone().into()),
                 None => when(!gap.addable().is_empty(), "nothing was found that could be added"),
             },
+            Self::Prove if gap.model.effects.is_empty() => Some("no effect is in the model".into()),
             Self::NextExperiment if plan(view).is_none() => Some("no experiment is waiting".into()),
-            Self::NextExperiment => TouchAction::Plan(Preset::Check).refusal(view),
+            Self::NextExperiment | Self::Prove => TouchAction::Plan(Preset::Check).refusal(view),
             Self::ReportHtml | Self::ReportPdf | Self::Delete => {
                 when(gap.shown.is_some(), "nothing was looked for yet")
             }
@@ -108,7 +113,11 @@ impl GapAction {
                 Self::Delete => GapCommand::Delete { id: view.gap.shown.as_ref()?.entry.id.clone() },
                 Self::Undo => GapCommand::Undo,
                 Self::UseNominal => GapCommand::UseNominal,
-                Self::OpenSession | Self::NextExperiment | Self::ReportHtml | Self::ReportPdf => return None,
+                Self::OpenSession
+                | Self::NextExperiment
+                | Self::Prove
+                | Self::ReportHtml
+                | Self::ReportPdf => return None,
             }
             .into(),
         )
@@ -121,6 +130,17 @@ fn finger_of(view: &View, finding: &Finding) -> Finger {
     let of_left = |site: &String| chain.as_ref().is_some_and(|chain| chain.names().contains(site));
     let left = finding.candidates.iter().any(|candidate| of_left(&candidate.site));
     if left { Finger::Left } else { Finger::Right }
+}
+
+/// Places that are touched with the effects and without them.
+const PROVED: usize = 10;
+
+/// Touches that show what the effects in the model are worth, as commands to the touch step.
+pub fn proof(view: &View) -> Option<[Command; 2]> {
+    let finger = view.gap.finding().map_or_else(Finger::default, |finding| finger_of(view, finding));
+    let options = PlanOptions::prove(usual_area(view, finger)?, PROVED, CHECK_SEED);
+    let plan = other_targets(view, PlanOptions { finger, ..options });
+    Some([TouchCommand::CorrectWith(Some(Correction::Effects)).into(), TouchCommand::Plan(plan).into()])
 }
 
 /// The next experiment as a command to the touch step.

@@ -12,7 +12,7 @@ mod trials;
 
 pub use commission::{CommissionAction, FIRST_CLASS, FIRST_PLACE_M};
 pub use detect::DetectAction;
-pub use gap::{GapAction, plan as gap_plan};
+pub use gap::{GapAction, plan as gap_plan, proof as gap_proof};
 pub use grasp::GraspAction;
 pub use labels::{LabelsAction, ScoresAction};
 pub use models::ModelsAction;

@@ -65,7 +65,7 @@ const REACH_INSET_M: f64 = 0.006;
 /// Targets of a check.
 const CHECKED: usize = 20;
 /// Random targets of a check lie elsewhere than those of training.
-const CHECK_SEED: u64 = 7;
+pub(super) const CHECK_SEED: u64 = 7;
 
 impl Preset {
     /// All of them, in the order of work.
@@ -84,7 +84,7 @@ impl Preset {
 }
 
 /// Targets that are drawn by chance are others than those of the check before.
-fn other_targets(view: &View, options: PlanOptions) -> PlanOptions {
+pub(super) fn other_targets(view: &View, options: PlanOptions) -> PlanOptions {
     let before = view.touch.plan.as_ref().map(|plan| &plan.options);
     match before.filter(|before| before.purpose == Purpose::Check && options.purpose == Purpose::Check) {
         Some(before) => PlanOptions { seed: before.seed.wrapping_add(1), ..options },

@@ -133,5 +133,8 @@ fn reach(ui: &mut Ui, plan: &PlanView) {
     }
     if plan.reachable > 0 {
         ui.label(theme::weak(ui, what_moves(plan)));
+        if plan.options.beside_described {
+            ui.label(theme::weak(ui, "Every place twice: by the robot as described, then with the effects."));
+        }
     }
 }

@@ -34,6 +34,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             head(ui, cx);
             ui.add_space(space::S);
             if let Some(found) = &cx.view.touch.figures {
+                if let Some(described) = &cx.view.touch.figures_described {
+                    proven(ui, described, found);
+                }
                 figures(ui, found);
                 ui.add_space(space::S);
             }
@@ -146,6 +149,19 @@ fn progress(ui: &mut Ui, touch: &TouchView) {
             ui.label(theme::weak(ui, format::time_left(left)));
         }
     });
+}
+
+/// What the effects are worth: touches of the same places as the robot is described, and with them.
+fn proven(ui: &mut Ui, described: &TouchFigures, found: &TouchFigures) {
+    let half = |figures: &TouchFigures| 0.5 * (figures.mean_interval_m[1] - figures.mean_interval_m[0]);
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(space::L, space::XS);
+        let before = format::mm_with(described.mean_m, half(described));
+        big_figure(ui, "as described", &before, Role::Ink);
+        let after = format::mm_with(found.mean_m, half(found));
+        big_figure(ui, "with the effects", &after, Role::HeldOut);
+    });
+    ui.label(theme::weak(ui, words::proof(described, found)));
 }
 
 fn figures(ui: &mut Ui, found: &TouchFigures) {

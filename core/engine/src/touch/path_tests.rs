@@ -170,3 +170,31 @@ fn touches_are_sent_where_the_arm_with_its_effects_ends_on_the_pixel() {
     }
     assert!(touched >= 6, "{touched} of 8");
 }
+
+/// What the effects are worth is told by touches of the same places without them.
+#[test]
+fn places_are_sent_as_the_robot_is_described_beside_what_the_effects_say() {
+    let rig = rig();
+    let area = TouchArea { u_px: [900.0, 1300.0], v_px: [500.0, 850.0] };
+    let model = model_with(&rig, &[("joint-zero", "r_elbow_y", &[0.03])]);
+    let known = RobotModel::new(rig.clone(), Arc::new(model)).expect("it fits");
+    let request = PlanRequest {
+        rig: rig.clone(),
+        place: ScreenPlace::Nominal,
+        options: PlanOptions::prove(area, 5, 1),
+        corrector: Corrector::Effects(Arc::new(known)),
+    };
+    let plan = plan::make(&request, &Unattended).expect("planned");
+    assert_eq!(plan.touches.len(), 10);
+    for (number, pair) in plan.touches.chunks(2).enumerate() {
+        let [described, corrected] = pair else { panic!("an odd number") };
+        assert_eq!(described.touch.number, 2 * number + 1);
+        assert_eq!(described.touch.target, corrected.touch.target);
+        assert!(described.touch.as_described && !corrected.touch.as_described);
+        assert_eq!(described.sent_m, described.place_m, "as described it is sent to the pixel itself");
+        assert!(corrected.sent().distance_m(&corrected.place()) > 2e-3, "it was sent elsewhere");
+        assert_ne!(described.touch.group, corrected.touch.group, "other commands are no repeats");
+    }
+    let kept = serde_json::to_string(&plan).expect("a plan is kept");
+    assert_eq!(serde_json::from_str::<plan::RunPlan>(&kept).expect("read again").touches, plan.touches);
+}

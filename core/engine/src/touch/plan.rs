@@ -273,6 +273,7 @@ impl<'a> Senders<'a> {
         let place = rig.touchscreen.raised(touch.screen_height_m).point_at(touch.target);
         let (mut sent, mut inside, mut refusal) = (place, true, None);
         match self {
+            _ if touch.as_described => {}
             Self::Plain => {}
             Self::Model(model) => {
                 let correction = model.correct(touch.target);

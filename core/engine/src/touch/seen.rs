@@ -12,6 +12,7 @@ pub struct Seen {
     pub touches: Arc<[TouchState]>,
     pub counts: TouchCounts,
     pub figures: Option<TouchFigures>,
+    pub figures_described: Option<TouchFigures>,
     /// Which plan `plan` was made from.
     pub of: Option<Arc<RunPlan>>,
 }

@@ -10,7 +10,9 @@ use super::plan::Aim;
 use super::record::Fate;
 use super::run::{Phase, Run, Task};
 use super::seen::Seen;
-use super::view::{ContactSource, TouchCounts, TouchOutcome, TouchPhase, TouchState, TouchView};
+use super::view::{
+    ContactSource, TouchCounts, TouchFigures, TouchOutcome, TouchPhase, TouchState, TouchView,
+};
 use super::workflow::{TouchAround, TouchWorkflow, source};
 use crate::ground::step::StepState;
 use crate::robot::TouchStage;
@@ -70,6 +72,12 @@ fn counts(touches: &[TouchState]) -> TouchCounts {
     counts
 }
 
+/// Figures of touches that were sent as the robot is described, or of the others.
+fn figures_of(run: &Run, as_described: bool) -> Option<TouchFigures> {
+    let is_one = |number: usize| run.plan.aim(number).is_some_and(|aim| aim.touch.as_described);
+    figures(run.progress.counted().filter(|touch| is_one(touch.number) == as_described), &run.screen)
+}
+
 impl TouchWorkflow {
     /// Lists as they stand now; what has not changed is kept.
     pub(super) fn seen_now(&self) -> Seen {
@@ -82,7 +90,8 @@ impl TouchWorkflow {
         Seen {
             plan: Some(view),
             counts: counts(&touches),
-            figures: run.and_then(|run| figures(run.progress.counted(), &run.screen)),
+            figures: run.and_then(|run| figures_of(run, false)),
+            figures_described: run.and_then(|run| figures_of(run, true)),
             touches,
             of: Some(plan.clone()),
         }
@@ -90,7 +99,7 @@ impl TouchWorkflow {
 
     /// What the window shows.
     pub(super) fn shown(&self, around: &TouchAround) -> TouchView {
-        let Seen { plan, touches, counts, figures, .. } = self.seen.clone();
+        let Seen { plan, touches, counts, figures, figures_described, .. } = self.seen.clone();
         TouchView {
             step: self.step_state(around),
             phase: self.phase(),
@@ -100,6 +109,7 @@ impl TouchWorkflow {
             counts,
             remaining: self.active_run().and_then(Run::remaining),
             figures,
+            figures_described,
             session: self.run.as_ref().map(|run| run.session.clone()),
             unfinished: self.runs.unfinished.as_slice().into(),
             screen: Some(self.screen().unwrap_or(&around.rig.touchscreen).clone()),

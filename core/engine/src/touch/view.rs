@@ -33,6 +33,8 @@ pub struct TouchView {
     pub remaining: Option<Duration>,
     /// Figures of what was touched so far; `None` before the second touch.
     pub figures: Option<TouchFigures>,
+    /// The same of touches that were sent as the robot is described, beside corrected ones.
+    pub figures_described: Option<TouchFigures>,
     /// Folder of the session that is written or shown.
     pub session: Option<PathBuf>,
     /// Runs that were begun and not finished, newest first.

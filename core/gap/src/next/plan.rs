@@ -21,6 +21,7 @@ pub fn plan_for(next: &NextExperiment, finger: Finger, area: TouchArea) -> Optio
         seed: 1,
         purpose: Purpose::Train,
         finger,
+        beside_described: false,
     };
     let grid = |times: usize| {
         let places = next.count.div_ceil(times).max(2);

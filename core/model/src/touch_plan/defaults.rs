@@ -39,6 +39,11 @@ impl PlanOptions {
         Self { patterns, seed, ..Self::plain(area, Purpose::Check) }
     }
 
+    /// The same, each once by the robot as it is described and once corrected: what a correction is worth.
+    pub fn prove(area: TouchArea, count: usize, seed: u64) -> Self {
+        Self { beside_described: true, ..Self::check_reach(area, count, seed) }
+    }
+
     /// Where the screen lies: the corners of the area, each twice.
     pub fn place_screen(area: TouchArea) -> Self {
         Self { patterns: vec![Pattern::Corners], repeats: 2, ..Self::plain(area, Purpose::PlaceScreen) }
@@ -55,6 +60,7 @@ impl PlanOptions {
             seed: 1,
             purpose,
             finger: Finger::default(),
+            beside_described: false,
         }
     }
 }

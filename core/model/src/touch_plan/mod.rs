@@ -68,6 +68,9 @@ pub struct PlannedTouch {
     pub screen_height_m: f64,
     /// Known mass at the palm, kg.
     pub payload_kg: f64,
+    /// Its target is sent as the robot is described, whatever corrects others.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub as_described: bool,
 }
 
 /// What will be touched, in order.
@@ -94,7 +97,8 @@ impl TouchPlan {
         }
         let per_block: usize = targets.iter().map(|target| target.times * options.repeats).sum::<usize>()
             * options.sides.all().len();
-        let count = per_block * options.screen_heights_m.len() * options.payloads_kg.len();
+        let ways = 1 + usize::from(options.beside_described);
+        let count = per_block * options.screen_heights_m.len() * options.payloads_kg.len() * ways;
         if count > MOST_TOUCHES {
             return Err(PlanError::TooMany { count, most: MOST_TOUCHES });
         }

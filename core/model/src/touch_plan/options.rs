@@ -163,6 +163,9 @@ pub struct PlanOptions {
     /// What touches.
     #[serde(default, skip_serializing_if = "Finger::is_right")]
     pub finger: Finger,
+    /// Every touch is made twice: by the robot as it is described, then as its targets are corrected.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub beside_described: bool,
 }
 
 impl PlanOptions {

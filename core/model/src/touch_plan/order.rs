@@ -17,15 +17,24 @@ pub(super) fn touches(options: &PlanOptions, targets: &[Target], screen: &Touchs
             payloads.reverse();
         }
         for payload_kg in payloads {
-            touches.extend(block.iter().map(|&(target, side)| PlannedTouch {
-                number: 0,
-                target: targets[target].pixel,
-                set: targets[target].set.clone(),
-                group: group(target, side, screen_height_m, payload_kg),
-                side,
-                screen_height_m,
-                payload_kg,
-            }));
+            for &(target, side) in &block {
+                let corrected = PlannedTouch {
+                    number: 0,
+                    target: targets[target].pixel,
+                    set: targets[target].set.clone(),
+                    group: group(target, side, screen_height_m, payload_kg),
+                    side,
+                    screen_height_m,
+                    payload_kg,
+                    as_described: false,
+                };
+                if options.beside_described {
+                    // Another command: no repeat of the other.
+                    let group = format!("{}-described", corrected.group);
+                    touches.push(PlannedTouch { group, as_described: true, ..corrected.clone() });
+                }
+                touches.push(corrected);
+            }
         }
     }
     for (i, touch) in touches.iter_mut().enumerate() {

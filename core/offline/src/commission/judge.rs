@@ -219,6 +219,7 @@ fn new_aims(
         seed: lab.seed.wrapping_add(1000),
         purpose: Purpose::Check,
         finger: Finger::Right,
+        beside_described: false,
     };
     let request = PlanRequest { rig: rig.clone(), place: ScreenPlace::Measured, options, corrector };
     let plan = make(&request, context)?;

@@ -124,6 +124,7 @@ fn touches(lab: &Lab, context: &dyn JobContext) -> Result<TouchData, CommissionE
         seed: lab.seed,
         purpose: Purpose::Train,
         finger: Finger::Right,
+        beside_described: false,
     };
     let screen = &lab.rig.touchscreen;
     let plan = TouchPlan::make(&options, screen).map_err(CommissionError::room)?;
