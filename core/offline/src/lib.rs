@@ -40,7 +40,9 @@ pub use commission::{
 };
 pub use correct::{CorrectArgs, CorrectReport, CorrectedPoint, correct};
 pub use detect::{DetectArgs, DetectReport, FoundBox, LeftOutImage, detect};
-pub use detect_eval::{ClassReport, DetectEvalArgs, DetectEvalReport, FailedModel, ModelReport, detect_eval};
+pub use detect_eval::{
+    ClassReport, DetectEvalArgs, DetectEvalReport, FailedModel, ModelReport, detect_eval, workspace_part,
+};
 pub use detector_set::{ClassBoxes, DetectorSetArgs, DetectorSetReport, detector_set};
 pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};
 pub use error::OfflineError;
