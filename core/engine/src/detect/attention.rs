@@ -114,22 +114,20 @@ impl Attention {
     /// What a look has found, as far as it is shown.
     pub fn looked(&mut self, looks: &Looks, workspace: InView, shown: [&[Detection]; 2]) {
         let Ok(now) = workspace else { return self.forget() };
-        let areas = shown.map(|shown| shown.iter().map(|found| found.area));
         let [Part::Region(left), Part::Region(right)] = looks.parts else {
-            self.last = Some(Everything { workspace: now, seen: areas.map(Iterator::collect) });
+            let seen = shown.map(|shown| shown.iter().map(|found| found.area).collect());
+            self.last = Some(Everything { workspace: now, seen });
             self.searching = false;
             return;
         };
         let Some(last) = &self.last else { return };
-        let lost = |eye: Eye| {
-            let eye = eye.index();
-            let seen = count_beyond(last.workspace[eye], areas[eye].clone().collect::<Vec<_>>().iter());
-            seen < last.beyond()[eye]
+        let beyond = last.beyond();
+        let is_missed = |(eye, region): (Eye, Region)| {
+            let shown = || shown[eye.index()].iter().map(|found| &found.area);
+            let over_edge = shown().any(|area| !region.holds(area));
+            over_edge || count_beyond(last.workspace[eye.index()], shown()) < beyond[eye.index()]
         };
-        let over_edge =
-            |(region, areas): (Region, _)| Iterator::any(&mut { areas }, |area| !region.holds(&area));
-        let [of_left, of_right] = areas.clone();
-        if Eye::BOTH.into_iter().any(lost) || over_edge((left, of_left)) || over_edge((right, of_right)) {
+        if Eye::BOTH.into_iter().zip([left, right]).any(is_missed) {
             self.last = None;
             self.searching = true;
         }

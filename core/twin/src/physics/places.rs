@@ -36,3 +36,38 @@ pub fn places_of_bodies(
     };
     Ok((0..bodies).filter_map(named).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use plumbline_model::robot::default_rig;
+
+    use super::*;
+
+    #[test]
+    fn a_description_written_for_mujoco_stands_as_described() {
+        let rig = default_rig();
+        let mjcf = rig.description.to_mjcf();
+        for pose in &rig.poses {
+            let posture = rig.home();
+            let (joints, angles): (Vec<_>, Vec<f64>) = pose.joints.iter().copied().unzip();
+            let posture = posture.with(&joints, &angles);
+            let movable = rig.description.movable().map(|joint| joint.name.as_str());
+            let angles = movable.map(|name| {
+                let index = rig.description.find_joint(name).expect("it is there");
+                (name, posture[index])
+            });
+            let places = places_of_bodies(&mjcf, &angles.collect::<Vec<_>>()).expect("MuJoCo accepts it");
+            let poses = rig.description.forward(&posture);
+            for tip in rig.arms.iter().flat_map(|arm| &arm.tips) {
+                let wanted = poses.of(rig.description.find_link(&tip.link).expect("a link")).isometry;
+                let found = places[&tip.link];
+                let off_m = (found.translation.vector - wanted.translation.vector).norm();
+                assert!(off_m < 1e-6, "{} in {}: {off_m} m", tip.link, pose.name);
+                assert!(found.rotation.angle_to(&wanted.rotation) < 1e-5, "{} in {}", tip.link, pose.name);
+            }
+        }
+        let refused = places_of_bodies(&mjcf, &[("r_tail_x", 0.0)]).expect_err("no such joint").to_string();
+        assert!(refused.contains("r_tail_x"), "{refused}");
+        assert!(places_of_bodies("<mujoco><nothing/></mujoco>", &[]).is_err());
+    }
+}

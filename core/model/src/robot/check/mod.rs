@@ -3,6 +3,7 @@
 
 mod description;
 mod keys;
+mod names;
 mod rig;
 #[cfg(test)]
 mod tests;
