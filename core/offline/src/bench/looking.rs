@@ -69,6 +69,9 @@ struct Look {
     places: Duration,
 }
 
+/// A part of that time.
+type PartOfLook = fn(&Look) -> Duration;
+
 impl Look {
     fn total(&self) -> Duration {
         self.eyes.total() + self.places
@@ -76,11 +79,11 @@ impl Look {
 }
 
 impl Way {
-    fn quickest_ms(&self, part: fn(&Look) -> Duration) -> f64 {
+    fn quickest_ms(&self, part: PartOfLook) -> f64 {
         self.looks.iter().map(part).min().map_or(f64::NAN, |time| time.as_secs_f64() * 1e3)
     }
 
-    fn median_ms(&self, part: fn(&Look) -> Duration) -> f64 {
+    fn median_ms(&self, part: PartOfLook) -> f64 {
         median_ms(self.looks.iter().map(part).collect())
     }
 }
@@ -138,13 +141,13 @@ fn total(way: &Way, whole_ms: f64) -> Figure {
 }
 
 fn stages(way: &Way) -> Vec<Figure> {
-    let stages: [(&str, fn(&Look) -> Duration); 4] = [
+    let stages: [(&str, PartOfLook); 4] = [
         ("letterbox", |look| look.eyes.before),
         ("network", |look| look.eyes.network),
         ("suppression", |look| look.eyes.after),
         ("pairing and places", |look| look.places),
     ];
-    let figure = |(stage, part): (&str, fn(&Look) -> Duration)| {
+    let figure = |(stage, part): (&str, PartOfLook)| {
         Figure::new(format!("  {}: {stage}", way.name), way.median_ms(part), "ms")
     };
     stages.map(figure).into()
