@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use plumbline_offline::detector::DetectorOptions;
-use plumbline_offline::scores::{ConfusionOptions, EvaluateOptions, Interval};
+use plumbline_offline::detector::{self, DetectorOptions, Region};
+use plumbline_offline::scores::{ConfusionOptions, EvaluateOptions, Interval, LookedAt};
 use plumbline_offline::{self as offline, ClassReport, DetectEvalArgs, DetectEvalReport, ModelReport};
 
 use super::common::listed;
@@ -31,9 +31,46 @@ pub struct DetectEval {
     /// Confidence of precision, recall and of what is taken for what; average precision has none.
     #[arg(long, value_name = "PART", default_value_t = 0.25)]
     confidence: f64,
+    /// What of every image the detector is given.
+    #[arg(long, value_enum, default_value_t)]
+    look: Look,
+    /// Only what lies in this part of every image counts; things that reach over its edge are neither missed
+    /// nor found. X,Y,WIDTH,HEIGHT in pixels, or `workspace`: where the robot's eyes see the workspace with
+    /// the head at home.
+    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT|workspace", required_if_eq("look", "part"), value_parser = part)]
+    part: Option<Region>,
     /// Threads on the processor; else one per core.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+}
+
+/// What of an image is looked at.
+#[derive(Clone, Copy, Debug, Default, ValueEnum)]
+enum Look {
+    /// All but what is black to the edge, as it is around the disc of a fisheye lens.
+    #[default]
+    Lit,
+    /// All of it.
+    All,
+    /// Only the part that counts.
+    Part,
+}
+
+/// A part of an image as it is typed.
+fn part(text: &str) -> Result<Region, String> {
+    if text == "workspace" {
+        return offline::workspace_part()
+            .ok_or_else(|| "the head at home does not see the workspace".to_owned());
+    }
+    let numbers: Option<Vec<u32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x_px, y_px, width_px, height_px]) if width_px > 0 && height_px > 0 => {
+            Ok(Region { x_px, y_px, width_px, height_px })
+        }
+        _ => Err("give four whole numbers, x,y,width,height in pixels with a width and a height above 0, \
+                  or workspace"
+            .to_owned()),
+    }
 }
 
 /// Part of a set.
@@ -62,6 +99,14 @@ impl From<Part> for offline::Split {
 pub fn run(arguments: DetectEval, output: &Output) -> anyhow::Result<()> {
     let confusion = ConfusionOptions { confidence: arguments.confidence, ..ConfusionOptions::default() };
     let threads = arguments.threads.map(usize::from);
+    let looked_at = LookedAt {
+        part: match (arguments.look, arguments.part) {
+            (Look::All, _) => detector::Part::Whole,
+            (Look::Part, Some(region)) => detector::Part::Region(region),
+            (Look::Lit | Look::Part, _) => detector::Part::Lit,
+        },
+        within: arguments.part,
+    };
     let args = DetectEvalArgs {
         models: arguments.model,
         data: arguments.data,
@@ -69,7 +114,7 @@ pub fn run(arguments: DetectEval, output: &Output) -> anyhow::Result<()> {
         csv: arguments.csv,
         matrices: arguments.matrices,
         options: DetectorOptions { threads, ..DetectorOptions::default() },
-        judging: EvaluateOptions { confusion, ..EvaluateOptions::default() },
+        judging: EvaluateOptions { confusion, looked_at, ..EvaluateOptions::default() },
     };
     let report = offline::detect_eval(&args, output)?;
     report.notes.iter().for_each(|note| say(note));
@@ -85,6 +130,12 @@ fn text(report: &DetectEvalReport) -> String {
         report.scenes,
         report.backgrounds,
     );
+    if let Some([x, y, width, height]) = report.counted_in_px {
+        text += &format!(
+            "only what lies in {width}x{height} px from ({x}, {y}) counts; looked at: {}\n\n",
+            report.looked_at
+        );
+    }
     text += &table(report);
     for model in &report.models {
         text += &details(model);

@@ -19,6 +19,7 @@ mod ik;
 mod locate;
 mod output;
 mod predict;
+mod rig;
 mod sample;
 mod train;
 mod window_args;
@@ -80,6 +81,9 @@ enum Verb {
     Health(WithJson<health::Health>),
     /// Judges places on a grid of known targets, and what the published correction makes of them.
     Grid(WithJson<grid::Grid>),
+    /// Says whether a rig file is sound, or writes the robot with its effects for other programs.
+    #[command(subcommand)]
+    Rig(Rig),
     /// Computes the disparity of a pair.
     Disparity(WithJson<disparity::Disparity>),
     /// Says what works on this machine: libraries, graphics, cameras, serial ports, folders.
@@ -96,6 +100,14 @@ enum Calibrate {
     Stereo(WithJson<calibrate::Stereo>),
     /// Judges a calibration on pairs that it has not seen.
     Check(WithJson<calibrate::Check>),
+}
+
+#[derive(Debug, Subcommand)]
+enum Rig {
+    /// Everything that is wrong with a rig file and its description: line, what, what to do.
+    Check(WithJson<rig::Check>),
+    /// The robot with those effects that are constant geometry, as URDF or MJCF.
+    Export(WithJson<rig::Export>),
 }
 
 #[derive(Debug, Args)]
@@ -144,6 +156,8 @@ pub fn run() -> ExitCode {
                 Verb::GraspTrials(verb) => verb.run(grasp::trials),
                 Verb::Health(verb) => verb.run(health::run),
                 Verb::Grid(verb) => verb.run(grid::run),
+                Verb::Rig(Rig::Check(verb)) => verb.run(rig::check),
+                Verb::Rig(Rig::Export(verb)) => verb.run(rig::export),
                 Verb::Disparity(verb) => verb.run(disparity::run),
                 Verb::Doctor(verb) => verb.run(doctor::run),
                 Verb::Sample(verb) => verb.run(sample::run),

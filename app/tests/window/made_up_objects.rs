@@ -8,7 +8,7 @@ use nalgebra::Matrix3;
 use plumbline_engine::View;
 use plumbline_engine::view::{
     ClassRates, DetectView, DetectionTiming, DetectionsView, DetectorFacts, DetectorState, LiveView,
-    ObjectPlaceView, ObjectView, SeenBox, SourceStatus, SourceView, Unplaced,
+    LookedAt, ObjectPlaceView, ObjectView, SeenBox, SourceStatus, SourceView, Unplaced,
 };
 use plumbline_model::detection::{ClassIndex, ClassNames, PixelBox};
 use plumbline_model::{Eye, Pixel, Point, Stamp, StereoFrame};
@@ -106,6 +106,7 @@ pub fn found(objects: Vec<ObjectView>) -> DetectionsView {
         names: ClassNames::published(),
         objects,
         no_places_because: None,
+        looked_at: LookedAt::Workspace { share: 0.21, with_beyond: false },
         timing: DetectionTiming {
             before: Duration::from_micros(2100),
             network: Duration::from_micros(38_200),

@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 use plumbline_model::detection::{ClassNames, PixelBox};
 use plumbline_model::{Eye, Point, Robot, Workspace, decompose};
-use plumbline_vision::detect::{DetectError, DetectSettings, Detector, Part};
+use plumbline_vision::detect::{DetectError, DetectSettings, EyesDetector, Part};
 use plumbline_vision::detect_places::{ObjectPlace, PlaceFinder, PlaceOptions};
 use serde::{Deserialize, Serialize};
 
@@ -53,7 +53,7 @@ impl SeenPlace {
 /// Looks: a detector, and what pairs its boxes.
 #[derive(Debug)]
 pub struct Looker {
-    detector: Detector,
+    detector: EyesDetector,
     places: PlaceFinder,
     settings: DetectSettings,
     names: ClassNames,
@@ -61,8 +61,10 @@ pub struct Looker {
 }
 
 impl Looker {
-    /// With a detector, for the calibration of the eyes in use.
-    pub fn new(detector: Detector, knowledge: &Knowledge, settings: DetectSettings) -> Self {
+    /// With a detector, for the calibration of the eyes in use; one of single images looks at one eye
+    /// after the other.
+    pub fn new(detector: impl Into<EyesDetector>, knowledge: &Knowledge, settings: DetectSettings) -> Self {
+        let detector = detector.into();
         let names = detector.info().names.clone();
         let options = PlaceOptions::for_classes(&names);
         let places = PlaceFinder::new(Some(&knowledge.calibration), options);
@@ -98,9 +100,8 @@ impl Looker {
         parts: [Part; 2],
     ) -> Result<Vec<Seen>, DetectError> {
         let mut boxes = [vec![], vec![]];
-        for ((image, part), found) in [&sight.left, &sight.right].into_iter().zip(parts).zip(&mut boxes) {
-            self.detector.detect_in(image, part, &self.settings, found)?;
-        }
+        let [in_left, in_right] = &mut boxes;
+        self.detector.detect_in([&sight.left, &sight.right], parts, &self.settings, [in_left, in_right])?;
         let [left, right] = &boxes;
         let under = sight.seen_under();
         self.places.find((&sight.left, left), (&sight.right, right), &mut self.found);

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use plumbline_model::{JobContext, files};
-use plumbline_vision::detect::{Detector, DetectorOptions, shipped_detector};
+use plumbline_model::robot::Rig;
+use plumbline_model::{Eye, JobContext, PixelBox, files};
+use plumbline_vision::detect::{Detector, DetectorOptions, Part, Region, shipped_detector};
 use plumbline_vision::detect_score::{
     EvaluateError, EvaluateOptions, Interval, Intervals, ModelEvaluation, PartOfJob, evaluate, matrix_csv,
     scores_csv,
@@ -48,6 +49,11 @@ pub struct DetectEvalReport {
     pub scenes: usize,
     /// Images with nothing on them.
     pub backgrounds: usize,
+    /// What of the images the network was given: `lit` (all but what is black to the edge), `all` or
+    /// `part`.
+    pub looked_at: &'static str,
+    /// Where things count, x, y, width, height in px; null: everywhere.
+    pub counted_in_px: Option<[u32; 4]>,
     /// Labeled boxes per class.
     pub boxes: BTreeMap<String, usize>,
     /// What is wrong with the set; it is left out.
@@ -132,6 +138,18 @@ pub struct FailedModel {
     pub model: PathBuf,
     /// Why.
     pub reason: String,
+}
+
+/// The part of an image of the robot's eyes in which the workspace is seen by one of them or the other,
+/// with the head at home; `None` where a head at home looks elsewhere.
+pub fn workspace_part() -> Option<Region> {
+    let rig = Rig::built_in("nico").ok()?;
+    let (cameras, workspace) = (&rig.eyes.cameras, rig.workspace(&rig.home()));
+    let [left, right] = Eye::BOTH.map(|eye| Region::of_workspace(cameras, &workspace, eye));
+    let right = right?;
+    let [x0, y0] = [right.x_px, right.y_px].map(|first| first as f32);
+    let (x1, y1) = (x0 + right.width_px as f32, y0 + right.height_px as f32);
+    Some(left?.with(&PixelBox::new(x0, y0, x1, y1), 0.0, cameras.camera(Eye::Left).size_px()))
 }
 
 /// Judges models on a set, one after the other.
@@ -231,6 +249,16 @@ fn about(args: &DetectEvalArgs, survey: &YoloSurvey) -> DetectEvalReport {
         images: set.images.len(),
         scenes: scenes.len(),
         backgrounds: set.images.iter().filter(|image| image.boxes.is_empty()).count(),
+        looked_at: match args.judging.looked_at.part {
+            Part::Lit => "lit",
+            Part::Whole => "all",
+            Part::Region(_) => "part",
+        },
+        counted_in_px: args
+            .judging
+            .looked_at
+            .within
+            .map(|Region { x_px, y_px, width_px, height_px }| [x_px, y_px, width_px, height_px]),
         boxes: boxes.map(|((_, name), count)| (name.to_owned(), count)).collect(),
         problems: problems.iter().map(ToString::to_string).collect(),
         models: Vec::new(),
@@ -289,7 +317,8 @@ fn model_report(evaluation: &ModelEvaluation) -> ModelReport {
 
 #[cfg(test)]
 mod tests {
-    use plumbline_model::{ClassIndex, PixelBox, Unattended};
+    use plumbline_model::{ClassIndex, Unattended};
+    use plumbline_vision::detect_score::LookedAt;
     use plumbline_vision::yolo_set::{LabeledBox, LabeledImage, WriteOptions};
 
     use super::*;
@@ -353,6 +382,29 @@ mod tests {
         assert!(model["per_class"][&report.classes[1]].is_null(), "nowhere in the set, so no score");
         assert!(std::fs::read_to_string(csv).expect("written").lines().count() > report.classes.len());
         assert!(matrices.join("raw.csv").is_file());
+    }
+
+    #[test]
+    fn what_lies_outside_the_part_that_counts_is_neither_missed_nor_found() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let data = set(folder.path());
+        let score = |within: Region| {
+            let mut args = args(data.clone(), vec![tiny()]);
+            args.judging.looked_at = LookedAt { part: Part::Whole, within: Some(within) };
+            let report = detect_eval(&args, &Unattended).expect("judged");
+            assert_eq!((report.looked_at, report.counted_in_px.map(|px| px[0])), ("all", Some(within.x_px)));
+            report.models[0].map50
+        };
+        let around = Region { x_px: 10, y_px: 20, width_px: 20, height_px: 20 };
+        assert!((score(around).expect("it is there") - 1.0).abs() < 1e-9);
+        assert_eq!(score(Region { x_px: 40, ..around }), None, "nothing is there");
+    }
+
+    #[test]
+    fn the_workspace_of_a_head_at_home_is_a_part_of_the_images() {
+        let part = workspace_part().expect("it is in view");
+        let share = part.share_of((640, 480));
+        assert!(share > 0.1 && share < 0.5, "{part:?}");
     }
 
     #[test]

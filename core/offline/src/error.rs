@@ -175,6 +175,9 @@ pub enum OfflineError {
     /// A model with effects cannot be used.
     #[error(transparent)]
     Effects(#[from] RigModelError),
+    /// The description cannot hold the effects.
+    #[error(transparent)]
+    Export(#[from] plumbline_effects::rig_model::ExportError),
     /// No report can be written.
     #[error(transparent)]
     Report(#[from] ReportError),

@@ -24,6 +24,7 @@ mod ik;
 mod locate;
 mod pairs;
 mod predict;
+mod rig;
 mod sample;
 mod session;
 mod table;
@@ -40,7 +41,9 @@ pub use commission::{
 };
 pub use correct::{CorrectArgs, CorrectReport, CorrectedPoint, correct};
 pub use detect::{DetectArgs, DetectReport, FoundBox, LeftOutImage, detect};
-pub use detect_eval::{ClassReport, DetectEvalArgs, DetectEvalReport, FailedModel, ModelReport, detect_eval};
+pub use detect_eval::{
+    ClassReport, DetectEvalArgs, DetectEvalReport, FailedModel, ModelReport, detect_eval, workspace_part,
+};
 pub use detector_set::{ClassBoxes, DetectorSetArgs, DetectorSetReport, detector_set};
 pub use disparity::{DisparityArgs, DisparityReport, Geometry, disparity};
 pub use error::OfflineError;
@@ -58,5 +61,6 @@ pub use plumbline_vision::detect as detector;
 pub use plumbline_vision::detect_score as scores;
 pub use plumbline_vision::yolo_set::Split;
 pub use predict::{ImagePoints, PredictArgs, PredictReport, PredictedRow, TableGap, predict};
+pub use rig::{RigCheckReport, RigExportArgs, RigExportReport, RigFormat, rig_check, rig_export};
 pub use sample::{SampleArgs, SampleReport, write_sample};
 pub use train::{TrainArgs, TrainReport, train};

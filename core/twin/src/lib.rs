@@ -25,6 +25,7 @@ mod warm_up;
 pub use board_presets::{board_presets, default_board};
 pub use error::TwinError;
 pub use lockstep::{Lockstep, ServoState, Touched};
+pub use physics::places_of_bodies;
 pub use scenario::Scenario;
 pub use servos::Fault;
 pub use toys::Toy;

@@ -61,6 +61,11 @@ fn found(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
     }
     list::show(ui, view, panels);
     details::show(ui, view, panels);
+    ui.add_space(space::S);
+    ui.label(theme::small(ui, format!("Looked at: {}", found.looked_at.words()))).on_hover_text(
+        "Where the table and what stands on it can be, with the head as it stands, at the full scale of the detector; \
+         every eighth pair, and whenever something moved beyond it, all that the lenses show",
+    );
     timing(ui, detect, &found.timing);
 }
 
@@ -69,7 +74,6 @@ fn timing(ui: &mut Ui, detect: &DetectView, timing: &DetectionTiming) {
     let ms = |duration: std::time::Duration| format::ms(duration.as_secs_f64());
     let rate =
         detect.statistics.per_second.map_or_else(String::new, |rate| format!(", {}", format::hertz(rate)));
-    ui.add_space(space::S);
     ui.label(theme::small(ui, format!("{} a pair{rate}", ms(timing.total()))))
         .on_hover_text("Both eyes, from the images to the places; and pairs per second");
     let number = |duration| ms(duration).trim_end_matches(" ms").to_owned();
@@ -81,6 +85,7 @@ fn timing(ui: &mut Ui, detect: &DetectView, timing: &DetectionTiming) {
         number(timing.places),
     );
     ui.label(theme::small(ui, parts)).on_hover_text(
-        "Scaling and padding; the network; reading its answer; pairing and places. Both eyes together, ms",
+        "Scaling and padding; the network; reading its answer; pairing and places. Both eyes, ms; of eyes that are \
+         looked at at once, the one that takes longer",
     );
 }

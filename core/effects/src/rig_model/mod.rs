@@ -8,6 +8,7 @@ mod error;
 mod export;
 mod eyes;
 mod file;
+mod left_out;
 mod predict;
 #[cfg(test)]
 mod predict_laws;
@@ -25,9 +26,10 @@ pub use contents::{
     Addition, Contents, ModelEffect, PlacedExternal, PlacedScreen, ReportedParameter, Step, StepGap, StepKind,
 };
 pub use error::RigModelError;
-pub use export::{ExportError, Exported};
+pub use export::{CAMERA_LINKS, ExportError, Exported};
 pub use eyes::numbers_of_eyes;
 pub use file::{FORMAT, is_rig_model};
+pub use left_out::LeftOut;
 pub(crate) use predict::Measured;
 pub use predict::predict_session_with;
 pub use reach::{Conditions, DeviatedArm, Reached, SETTLED_M};

@@ -292,7 +292,9 @@ fn a_description_holds_the_effects_that_are_origins() {
     let sag = effect("joint-sag", "r_elbow_y", &[0.02]);
     let exported =
         with(&rig, [geometric.clone(), vec![sag]].concat()).urdf_with(&rig, urdf).expect("written");
-    assert_eq!((exported.inside.len(), exported.left), (5, vec!["joint-sag@r_elbow_y".to_owned()]));
+    assert_eq!(exported.inside.len(), 5);
+    let [left_out] = &exported.left_out[..] else { panic!("{:?}", exported.left_out) };
+    assert!(left_out.effect == "joint-sag@r_elbow_y" && left_out.reason.contains("load"), "{left_out:?}");
     let description = plumbline_model::robot::Description::from_urdf(&exported.urdf).expect("a URDF");
     let other = Rig { description: std::sync::Arc::new(description), ..rig.clone() };
     let arm = with(&rig, geometric).arm(&rig, TIP).expect("a tip");
@@ -302,11 +304,74 @@ fn a_description_holds_the_effects_that_are_origins() {
         let off_m = (tip - arm.tip(&angles, &Conditions::default()).coords.coords).norm();
         assert!(off_m < 1e-9, "{off_m}");
     }
-    assert_eq!(RigModel::nominal(&rig).urdf_with(&rig, urdf).expect("written").urdf, urdf);
+    let nominal = RigModel::nominal(&rig).urdf_with(&rig, urdf).expect("written").urdf;
+    let cameras = nominal.find("  <link name=\"left_camera\"").expect("added");
+    assert_eq!(format!("{}</robot>", &nominal[..cameras]), urdf.trim_end(), "nothing else is changed");
+    let twice = RigModel::nominal(&rig).urdf_with(&rig, &nominal).expect_err("they are there").to_string();
+    assert!(twice.contains("left_camera"), "{twice}");
     let moved = urdf.replacen("xyz=\"0 0 ", "xyz=\"0.5 0 ", 400);
     let refused = elsewhere(&rig, &moved);
     assert!(refused.contains("give the URDF of this robot"), "{refused}");
     assert!(elsewhere(&rig, "<robot>").contains("give the URDF of this robot"));
+}
+
+/// Effects found on two tips of one arm and on the eyes: all are in one description, where the model has
+/// them.
+#[test]
+fn a_description_has_both_tips_and_the_cameras_where_the_model_has_them() {
+    let rig = std::sync::Arc::new(nico());
+    let urdf = include_str!("../../../../assets/robots/nico/nico.urdf");
+    let palm = |id, site, values: &[f64]| ModelEffect {
+        tip: Some("right_palm_center".to_owned()),
+        ..effect(id, site, values)
+    };
+    let of_eyes = |id, site, values: &[f64]| ModelEffect { tip: None, ..effect(id, site, values) };
+    let effects = vec![
+        effect("joint-zero", "r_elbow_y", &[0.04]),
+        palm("joint-zero", "r_elbow_y", &[-0.015]),
+        palm("axis-skew", "r_arm_x", &[0.02, -0.01]),
+        effect("axis-skew", "r_arm_x", &[-0.005, 0.03]),
+        palm("link-length", "right_upper_arm", &[0.004]),
+        effect("tip-offset", "tip", &[0.003, -0.002, 0.004]),
+        effect("base-tilt", "base", &[0.01, -0.02, 0.03, 0.005, 0.002, -0.004]),
+        of_eyes("camera-mount", "eyes", &[0.004, -0.003, 0.002, 0.02, -0.01, 0.015]),
+        of_eyes("head-joint", "head_y", &[0.02]),
+        of_eyes("eye-yaw", "right", &[0.008]),
+    ];
+    let added = with(&rig, effects.clone());
+    let exported = added.urdf_with(&rig, urdf).expect("written");
+    assert_eq!((exported.inside.len(), &exported.left_out[..]), (effects.len(), &[][..]));
+    let description = plumbline_model::robot::Description::from_urdf(&exported.urdf).expect("a URDF");
+    let own = crate::RobotModel::new(rig.clone(), std::sync::Arc::new(added)).expect("of this rig");
+    let joints: Vec<_> = rig.description.movable().map(|joint| joint.name.clone()).collect();
+    for k in 1..40u32 {
+        // Angles all over the ranges, another stride for each joint.
+        let mut posture = rig.home();
+        for (i, name) in joints.iter().enumerate() {
+            let joint = rig.description.find_joint(name).expect("it is there");
+            let limits = rig.description.limits(joint);
+            let share = (f64::from(k) * (0.618 + 0.37 * i as f64)).fract();
+            posture[joint] = limits.lower_rad + share * (limits.upper_rad - limits.lower_rad);
+        }
+        let poses = description.forward(&posture);
+        let place = |link: &str| poses.of(description.find_link(link).expect("a link")).isometry;
+        let mut wanted = vec![("left_camera", own.robot_from_left(&posture).isometry)];
+        for tip in [TIP, "right_palm_center", "left_palm_center"] {
+            let arm = own.arm(tip).expect("a tip");
+            wanted.push((tip, arm.robot_from_tip(&posture, &Conditions::default()).isometry));
+        }
+        for (link, wanted) in wanted {
+            let found = place(link);
+            let off_m = (found.translation.vector - wanted.translation.vector).norm();
+            let off_rad = found.rotation.angle_to(&wanted.rotation);
+            assert!(off_m < 1e-9 && off_rad < 1e-7, "{link}: {off_m} m, {off_rad} rad");
+        }
+        let yaw = nalgebra::UnitQuaternion::from_scaled_axis(nalgebra::Vector3::new(0.0, 0.008, 0.0));
+        let right_from_left = yaw.inverse() * rig.eyes.cameras.right_from_left.isometry;
+        let found = place("right_camera").inverse() * place("left_camera");
+        assert!((found.translation.vector - right_from_left.translation.vector).norm() < 1e-9);
+        assert!(found.rotation.angle_to(&right_from_left.rotation) < 1e-7);
+    }
 }
 
 fn elsewhere(rig: &Rig, urdf: &str) -> String {

@@ -64,6 +64,22 @@ pub trait Detects: Send {
         let _ = part;
         self.detect(image, iou, found)
     }
+
+    /// Both eyes, left first; for what can look at both at once. The time is that which passed.
+    ///
+    /// # Errors
+    /// As [`Self::detect`].
+    fn detect_eyes(
+        &mut self,
+        images: [&RgbImage; 2],
+        parts: [Part; 2],
+        iou: f32,
+        [left, right]: [&mut Vec<Detection>; 2],
+    ) -> Result<DetectionTiming, DetectorError> {
+        let of_left = self.detect_in(images[0], parts[0], iou, left)?;
+        let of_right = self.detect_in(images[1], parts[1], iou, right)?;
+        Ok(of_left.plus(&of_right))
+    }
 }
 
 /// A detector that is ready. Only the stage that runs it ever waits for it.

@@ -3,7 +3,8 @@
 use image::RgbImage;
 use plumbline_model::detection::Detection;
 use plumbline_vision::detect::{
-    ClassFilter, DetectSettings, Detector, DetectorInfo, DetectorOptions, Part, Provider, shipped_detector,
+    ClassFilter, DetectSettings, DetectTiming, DetectorInfo, DetectorOptions, EyesDetector, Part, Provider,
+    shipped_detector,
 };
 
 use super::command::DetectorChoice;
@@ -31,8 +32,10 @@ fn open(choice: &DetectorChoice, provider: Provider) -> Result<Box<dyn Detects>,
     };
     let detector = match choice {
         DetectorChoice::Off => return Err(DetectorError::NoneChosen),
-        DetectorChoice::Shipped => shipped_detector().ok_or(DetectorError::NoneShipped)?.open(&options)?,
-        DetectorChoice::File(file) => Detector::open(file, &options)?,
+        DetectorChoice::Shipped => {
+            EyesDetector::open(&shipped_detector().ok_or(DetectorError::NoneShipped)?.file, &options)?
+        }
+        DetectorChoice::File(file) => EyesDetector::open(file, &options)?,
     };
     let settings = DetectSettings {
         confidence: SHOWN_FROM,
@@ -43,14 +46,16 @@ fn open(choice: &DetectorChoice, provider: Provider) -> Result<Box<dyn Detects>,
     Ok(Box::new(FileDetector { detector, settings, shipped: *choice == DetectorChoice::Shipped }))
 }
 
-/// Cameras, disparity, the window and the bus, which moves an arm, need the processor too.
-fn threads() -> usize {
+/// Threads for both eyes. Cameras, disparity, the window and the bus, which moves an arm, need the
+/// processor too; but where there are two cores, each eye has one: a pair keeps them busy as long
+/// together as one core alone, and is known in half of the time.
+pub fn threads() -> usize {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    (cores / 2).max(1)
+    (cores / 2).max(2).min(cores)
 }
 
 struct FileDetector {
-    detector: Detector,
+    detector: EyesDetector,
     settings: DetectSettings,
     shipped: bool,
 }
@@ -77,14 +82,24 @@ impl Detects for FileDetector {
         found: &mut Vec<Detection>,
     ) -> Result<DetectionTiming, DetectorError> {
         self.settings.iou = iou;
-        let timing = self.detector.detect_in(image, part, &self.settings, found)?;
-        Ok(DetectionTiming {
-            before: timing.before,
-            network: timing.network,
-            after: timing.after,
-            ..DetectionTiming::default()
-        })
+        Ok(timing(self.detector.one().detect_in(image, part, &self.settings, found)?))
     }
+
+    fn detect_eyes(
+        &mut self,
+        images: [&RgbImage; 2],
+        parts: [Part; 2],
+        iou: f32,
+        found: [&mut Vec<Detection>; 2],
+    ) -> Result<DetectionTiming, DetectorError> {
+        self.settings.iou = iou;
+        Ok(timing(self.detector.detect_in(images, parts, &self.settings, found)?.passed()))
+    }
+}
+
+fn timing(of: DetectTiming) -> DetectionTiming {
+    let DetectTiming { before, network, after } = of;
+    DetectionTiming { before, network, after, ..DetectionTiming::default() }
 }
 
 fn facts(info: &DetectorInfo, shipped: bool) -> DetectorFacts {

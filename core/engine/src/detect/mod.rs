@@ -16,6 +16,7 @@ pub mod work;
 mod workflow;
 
 pub use detector::{DetectorError, Detects, LoadedDetector, OpenDetector, SHOWN_FROM};
+pub(crate) use file::threads as detector_threads;
 pub use objects::{Defect, FoundObjects, Objects};
 pub use stage::{DetectFailure, DetectInput, DetectOutput, DetectStage};
 pub use workflow::{DetectAround, DetectWorkflow};

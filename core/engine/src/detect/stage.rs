@@ -6,12 +6,11 @@ use std::time::Instant;
 
 use plumbline_model::detection::{ClassNames, Detection};
 use plumbline_model::{Stamp, StereoFrame};
-use plumbline_vision::detect::Part;
 use plumbline_vision::detect_places::ObjectPlace;
 
-use super::attention::{self, Attention};
-use super::view::{DetectionSettings, DetectionTiming, DetectionsView};
-use super::{DetectorError, LoadedDetector, Objects};
+use super::attention::{self, Attention, Looks};
+use super::view::{AllBecause, DetectionSettings, DetectionTiming, DetectionsView};
+use super::{LoadedDetector, Objects};
 use crate::ground::jobs::panic_message;
 use crate::ground::stage::Stage;
 use crate::ground::text::sentence;
@@ -84,7 +83,7 @@ struct Said {
     captured_at: Instant,
     detector: u64,
     iou: f32,
-    parts: [Part; 2],
+    looks: Looks,
     timing: DetectionTiming,
 }
 
@@ -119,13 +118,15 @@ impl Stage for DetectStage {
 impl DetectStage {
     fn found(&mut self, input: &DetectInput) -> (bool, Found) {
         let workspace = input.setup.as_ref().ok().filter(|_| !input.photographs);
-        let workspace = workspace.and_then(|setup| attention::workspace(&input.frame, setup));
-        let (is_new, parts, mut timing) = match self.said.filter(|said| said.is_of(input)) {
-            Some(said) => (false, said.parts, said.timing),
+        let workspace =
+            workspace.ok_or(AllBecause::Unknown).and_then(|setup| attention::workspace(&input.frame, setup));
+        let (is_new, looks, mut timing) = match self.said.filter(|said| said.is_of(input)) {
+            Some(said) => (false, said.looks, said.timing),
             None => {
-                let parts = self.attention.parts(input.opened, workspace);
-                match self.ask(input, parts) {
-                    Ok(timing) => (true, parts, timing),
+                let sizes_px = [input.frame.left.dimensions(), input.frame.right.dimensions()];
+                let looks = self.attention.looks(input.opened, workspace, sizes_px);
+                match self.ask(input, looks) {
+                    Ok(timing) => (true, looks, timing),
                     Err(failure) => {
                         self.attention.forget();
                         return (true, Err(failure));
@@ -142,7 +143,7 @@ impl DetectStage {
             left_out += all.len() - shown.len();
         }
         let boxes = [self.shown_left.as_slice(), self.shown_right.as_slice()];
-        self.attention.looked(parts, workspace, boxes);
+        self.attention.looked(&looks, workspace, boxes);
         let found = self.objects.find(&input.frame, input.setup.as_ref(), names, boxes);
         let found = match found {
             Ok(found) => found,
@@ -156,6 +157,7 @@ impl DetectStage {
             names: names.clone(),
             objects: found.objects,
             no_places_because: found.no_places_because,
+            looked_at: looks.at,
             timing,
             left_out,
         };
@@ -163,16 +165,14 @@ impl DetectStage {
     }
 
     /// Runs the network on both eyes.
-    fn ask(&mut self, input: &DetectInput, parts: [Part; 2]) -> Result<DetectionTiming, DetectFailure> {
+    fn ask(&mut self, input: &DetectInput, looks: Looks) -> Result<DetectionTiming, DetectFailure> {
         self.said = None;
         let (left, right) = (&mut self.left, &mut self.right);
         let iou = input.settings.iou;
         // A foreign file decides what is computed here: its faults end with a sentence.
         let asked = std::panic::catch_unwind(AssertUnwindSafe(|| {
-            let mut detector = input.detector.lock();
-            let of_left = detector.detect_in(&input.frame.left, parts[0], iou, left)?;
-            let of_right = detector.detect_in(&input.frame.right, parts[1], iou, right)?;
-            Ok::<_, DetectorError>(of_left.plus(&of_right))
+            let images = [&*input.frame.left, &*input.frame.right];
+            input.detector.lock().detect_eyes(images, looks.parts, iou, [left, right])
         }));
         let timing = match asked {
             Ok(Ok(timing)) => timing,
@@ -192,7 +192,7 @@ impl DetectStage {
             captured_at: input.frame.stamp.captured_at,
             detector: input.detector.id,
             iou,
-            parts,
+            looks,
             timing,
         });
         Ok(timing)

@@ -152,10 +152,56 @@ pub struct DetectionsView {
     pub objects: Vec<ObjectView>,
     /// Why no object has a place: no calibration, images of another size. A sentence.
     pub no_places_because: Option<String>,
+    /// What of the pair was looked at.
+    pub looked_at: LookedAt,
     /// Where the time went.
     pub timing: DetectionTiming,
     /// How many boxes were left out by threshold or filter, left and right together.
     pub left_out: usize,
+}
+
+/// What of a pair was looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LookedAt {
+    /// Where the workspace is in both eyes.
+    Workspace {
+        /// Share of the images, mean of both eyes, 0–1.
+        share: f64,
+        /// Whether more than that, for things that were seen beyond it.
+        with_beyond: bool,
+    },
+    /// All that the lenses show.
+    All(AllBecause),
+}
+
+impl LookedAt {
+    /// For the operator: "the workspace, 31 % of the images".
+    pub fn words(&self) -> String {
+        match self {
+            Self::Workspace { share, with_beyond } => {
+                let beyond = if *with_beyond { " and what is beyond it" } else { "" };
+                format!("the workspace{beyond}, {:.0} % of the images", 100.0 * share)
+            }
+            Self::All(why) => format!("all of the images: {why}"),
+        }
+    }
+}
+
+/// Why all of a pair was looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum AllBecause {
+    /// It is time.
+    #[error("now and then, for what is beyond the workspace")]
+    NowAndThen,
+    /// Something is looked for.
+    #[error("something moved beyond the workspace")]
+    Searching,
+    /// The head looks elsewhere.
+    #[error("the workspace is not in view")]
+    OutOfView,
+    /// No calibration fits these images, or they are photographs that have nothing to do with each other.
+    #[error("nobody knows where the workspace is")]
+    Unknown,
 }
 
 /// One thing, seen by one or both eyes.
@@ -253,7 +299,8 @@ pub struct ObjectPlaceView {
     pub model: Arc<str>,
 }
 
-/// Where the time of one result went, both eyes together.
+/// Where the time of one result went: both eyes one after the other, or of two at once the one that
+/// took longer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DetectionTiming {
     /// Scaling and padding the images.
@@ -268,6 +315,7 @@ pub struct DetectionTiming {
 
 impl DetectionTiming {
     /// Of two images, one after the other.
+    #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         Self {
             before: self.before + other.before,

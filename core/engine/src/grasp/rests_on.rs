@@ -8,9 +8,10 @@ use plumbline_grasp::see::Looker;
 use plumbline_grasp::{Corrections, Grasper, Hand, Knowledge, Method};
 use plumbline_model::StereoCalibration;
 use plumbline_model::robot::Rig;
-use plumbline_vision::detect::{DetectSettings, Detector, DetectorOptions, Provider, shipped_detector};
+use plumbline_vision::detect::{DetectSettings, DetectorOptions, EyesDetector, Provider, shipped_detector};
 
 use crate::detect::command::DetectorChoice;
+use crate::detect::detector_threads;
 use crate::ground::jobs::JobError;
 
 /// What an attempt rests on, as data.
@@ -48,25 +49,21 @@ impl RestsOn {
         }
     }
 
-    fn detector(&self) -> Result<Detector, JobError> {
+    fn detector(&self) -> Result<EyesDetector, JobError> {
         let (choice, provider) = &self.detector;
-        let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let options = DetectorOptions {
             provider: *provider,
-            threads: Some((cores / 2).max(1)),
+            threads: Some(detector_threads()),
             shares_processor: true,
             ..DetectorOptions::default()
         };
-        let opened = match choice {
-            DetectorChoice::File(file) => Detector::open(file, &options),
+        let none = || JobError::failed("No detector comes with this version: choose an ONNX file in Detect.");
+        let file = match choice {
+            DetectorChoice::File(file) => file.clone(),
             // Switched off is the live view; a grasp cannot do without.
-            DetectorChoice::Shipped | DetectorChoice::Off => shipped_detector()
-                .ok_or_else(|| {
-                    JobError::failed("No detector comes with this version: choose an ONNX file in Detect.")
-                })?
-                .open(&options),
+            DetectorChoice::Shipped | DetectorChoice::Off => shipped_detector().ok_or_else(none)?.file,
         };
-        opened.map_err(JobError::told)
+        EyesDetector::open(&file, &options).map_err(JobError::told)
     }
 
     /// What finds the hand; without it the hand goes by the model alone.

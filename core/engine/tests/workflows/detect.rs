@@ -9,7 +9,7 @@ use image::{Rgb, RgbImage};
 use plumbline_engine::detect::{DetectStage, DetectorError, Detects, OpenDetector};
 use plumbline_engine::ground::stage::{Stage, Timed};
 use plumbline_engine::state::State;
-use plumbline_engine::view::{DetectionTiming, DetectorFacts, DetectorState, SourceView};
+use plumbline_engine::view::{DetectionTiming, DetectorFacts, DetectorState, LookedAt, SourceView};
 use plumbline_engine::{
     Action, AimChoice, Command, DetectCommand, DetectorChoice, LiveCommand, Products, Skipped, SourceSpec,
     View,
@@ -276,8 +276,18 @@ fn the_workspace_is_looked_at_while_nothing_is_beyond_it() {
     let beyond = [thing(6, 0.9, (320.0, 40.0))];
     let found = (0..8).find(|_| looked(&beyond) == [Part::Lit; 2]);
     assert!(found.is_some(), "what is beyond is found after some pairs");
-    assert_eq!([looked(&beyond), looked(&[])], [[Part::Lit; 2], [Part::Lit; 2]], "and kept in view");
+    let with_it = looked(&beyond);
+    assert_eq!(with_it[0], part[0]);
+    assert!(
+        matches!(with_it[1], Part::Region(region) if region.holds(&beyond[0].area)),
+        "it is kept in view: {with_it:?}"
+    );
+    looked(&[]);
+    assert_eq!(looked(&[]), [Part::Lit; 2], "what is gone is looked for");
     assert_eq!(looked(&[]), part);
+    let at = desk.view().detect.found.as_ref().expect("found").looked_at;
+    assert!(matches!(at, LookedAt::Workspace { with_beyond: false, .. }), "{at:?}");
+    assert!(at.words().contains("the workspace"), "{}", at.words());
 }
 
 #[test]

@@ -238,6 +238,40 @@ impl Description {
         &self.joints
     }
 
+    /// Joints and links of a robot by name, wide of any limits: to look names up in what is not sound.
+    pub(super) fn of_names(robot: &urdf_rs::Robot) -> Self {
+        let link = |link: &urdf_rs::Link| Link {
+            name: link.name.clone(),
+            parent: None,
+            inertia: None,
+            visuals: vec![],
+            collisions: vec![],
+        };
+        let whole_rad = 4.0 * std::f64::consts::PI;
+        let moves = robot
+            .joints
+            .iter()
+            .filter(|joint| !matches!(joint.joint_type, urdf_rs::JointType::Fixed) && joint.mimic.is_none());
+        let joint = |(index, joint): (usize, &urdf_rs::Joint)| {
+            let (lower, upper) = (joint.limit.lower, joint.limit.upper);
+            let usable = lower < upper && lower.is_finite() && upper.is_finite();
+            let (lower_rad, upper_rad) = if usable { (lower, upper) } else { (-whole_rad, whole_rad) };
+            let limits = Limits { lower_rad, upper_rad };
+            let kind = JointKind::Revolute { axis: Vector3::z_axis(), limits, index: JointIndex(index) };
+            let name = joint.name.clone();
+            let parent_from_joint = Isometry3::identity();
+            Joint { name, parent: LinkIndex(0), child: LinkIndex(0), parent_from_joint, kind }
+        };
+        let joints: Vec<Joint> = moves.enumerate().map(joint).collect();
+        Self {
+            name: robot.name.clone(),
+            links: robot.links.iter().map(link).collect(),
+            movable: (0..joints.len()).collect(),
+            joints,
+            held: vec![],
+        }
+    }
+
     /// The joint that carries a link; `None` for the base.
     pub fn joint_above(&self, link: LinkIndex) -> Option<&Joint> {
         link.0.checked_sub(1).and_then(|i| self.joints.get(i))

@@ -10,11 +10,13 @@
 //!   numbers of a robot live in `assets/robots`, none in code.
 
 mod chain;
+mod check;
 pub mod collision;
 mod description;
 mod error;
 pub mod ik;
 mod measured;
+mod mjcf;
 mod outlines;
 mod posture;
 mod reach;
@@ -28,6 +30,7 @@ mod tests_measured;
 mod urdf;
 
 pub use chain::Chain;
+pub use check::Problem;
 pub use description::{
     Description, Inertia, Joint, JointIndex, JointKind, Limits, Link, LinkIndex, LinkPoses, Mimic, Shape,
     Visual,

@@ -23,7 +23,7 @@ use crate::session::Touchscreen;
 use crate::stereo::StereoCameras;
 
 /// Version of the format.
-const FORMAT: u32 = 1;
+pub(super) const FORMAT: u32 = 1;
 
 /// Rigs that come with the program: name, rig file, description.
 const BUILT_IN: &[(&str, &str, &str)] = &[(
@@ -59,17 +59,17 @@ struct File {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct BusPart {
+pub(super) struct BusPart {
     baud: u32,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct ServoPart {
-    id: u8,
+pub(super) struct ServoPart {
+    pub id: u8,
     model: String,
-    joint: String,
-    title: String,
+    pub joint: String,
+    pub title: String,
     direction: DirectionPart,
     offset_rad: f64,
     ratio: f64,
@@ -86,15 +86,15 @@ enum DirectionPart {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct BoardPart {
-    id: u8,
+pub(super) struct BoardPart {
+    pub id: u8,
     model: String,
-    title: String,
+    pub title: String,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct CoupledPart {
+pub(super) struct CoupledPart {
     joint: String,
     by: String,
     why: String,
@@ -176,15 +176,15 @@ struct TipPart {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct PosePart {
-    name: String,
+    pub name: String,
     title: String,
     about: String,
-    joints_rad: BTreeMap<String, f64>,
+    pub joints_rad: BTreeMap<String, f64>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct GatePart {
+pub(super) struct GatePart {
     warm_c: f64,
     hot_c: f64,
     load: f64,
@@ -232,6 +232,22 @@ impl Rig {
         let read = |path: &Path| Ok(files::read_text(path, Size::TEXT)?);
         let folder = file.parent().unwrap_or(Path::new(""));
         Self::parse(&file.display().to_string(), &read(file)?, |name| read(&folder.join(name)))
+    }
+
+    /// The name of the description that a rig file names, which lies beside it.
+    ///
+    /// # Errors
+    /// When the file cannot be read or names none.
+    pub fn description_of(file: &Path) -> Result<String, RigError> {
+        #[derive(Deserialize)]
+        struct Named {
+            description: String,
+        }
+        let text = files::read_text(file, Size::TEXT)?;
+        let not = |reason: String| RigError::NotRig { file: file.display().to_string(), reason };
+        depth::check(depth::of_toml(&text)).map_err(not)?;
+        let named: Named = toml::from_str(&text).map_err(|error| not(told(&error.to_string())))?;
+        Ok(named.description)
     }
 
     /// From the text of a rig file; `description` gives the text of the description that it names.
@@ -332,31 +348,18 @@ impl Reader<'_> {
         self.robot.find_joint(name).map_err(|error| self.unknown(place, error))
     }
 
-    fn servo(&self, part: &ServoPart) -> Result<Servo, RigError> {
-        let place = format!("servo {}", part.id);
-        self.plausible(&place, plausible::ANGLE_RAD, &[part.offset_rad])?;
-        self.plausible(&place, plausible::RATIO, &[part.ratio])?;
-        let motor_rad = [part.motor_lower_rad, part.motor_upper_rad];
-        self.plausible(&place, plausible::JOINT_LIMIT_RAD, &motor_rad)?;
-        if part.id > 252 {
-            return Err(self.value(&place, "ids go from 0 to 252".to_owned()));
+    pub(super) fn servo(&self, part: &ServoPart) -> Result<Servo, RigError> {
+        if let Some(first) = self.servo_problems(part).into_iter().next() {
+            return Err(first);
         }
-        if part.ratio <= 0.0 {
-            return Err(self.value(
-                &place,
-                format!(
-                    "ratio {} must be positive; a reversed motor has the direction \"indirect\"",
-                    part.ratio
-                ),
-            ));
-        }
-        if part.motor_lower_rad >= part.motor_upper_rad {
-            return Err(self.value(&place, "motor_lower_rad must be below motor_upper_rad".to_owned()));
-        }
-        let servo = Servo {
+        self.servo_of(part)
+    }
+
+    fn servo_of(&self, part: &ServoPart) -> Result<Servo, RigError> {
+        Ok(Servo {
             id: part.id,
             model: part.model.clone(),
-            joint: self.joint(&place, &part.joint)?,
+            joint: self.joint(&format!("servo {}", part.id), &part.joint)?,
             joint_name: part.joint.clone(),
             title: part.title.clone(),
             direction: match part.direction {
@@ -366,15 +369,46 @@ impl Reader<'_> {
             offset_rad: part.offset_rad,
             ratio: part.ratio,
             motor_limits: Limits { lower_rad: part.motor_lower_rad, upper_rad: part.motor_upper_rad },
+        })
+    }
+
+    /// All that is wrong with a servo.
+    pub(super) fn servo_problems(&self, part: &ServoPart) -> Vec<RigError> {
+        let place = format!("servo {}", part.id);
+        let motor_rad = [part.motor_lower_rad, part.motor_upper_rad];
+        let mut found: Vec<RigError> = [
+            self.plausible(&place, plausible::ANGLE_RAD, &[part.offset_rad]),
+            self.plausible(&place, plausible::RATIO, &[part.ratio]),
+            self.plausible(&place, plausible::JOINT_LIMIT_RAD, &motor_rad),
+        ]
+        .into_iter()
+        .filter_map(Result::err)
+        .collect();
+        if part.id > 252 {
+            found.push(self.value(&place, "ids go from 0 to 252".to_owned()));
+        }
+        if part.ratio <= 0.0 {
+            let what = "must be positive; a reversed motor has the direction \"indirect\"";
+            found.push(self.value(&place, format!("ratio {} {what}", part.ratio)));
+        }
+        if part.motor_lower_rad >= part.motor_upper_rad {
+            found.push(self.value(&place, "motor_lower_rad must be below motor_upper_rad".to_owned()));
+        }
+        if !found.is_empty() {
+            return found;
+        }
+        let servo = match self.servo_of(part) {
+            Ok(servo) => servo,
+            Err(error) => return vec![error],
         };
         let (by_motor, by_joint) = (servo.joint_limits(), self.robot.limits(servo.joint));
         if by_motor.lower_rad.max(by_joint.lower_rad) >= by_motor.upper_rad.min(by_joint.upper_rad) {
-            return Err(self.value(&place, format!(
+            found.push(self.value(&place, format!(
                 "its motor reaches {:.3} to {:.3} rad of {}, which the description limits to {:.3} to {:.3}: check offset and direction",
                 by_motor.lower_rad, by_motor.upper_rad, part.joint, by_joint.lower_rad, by_joint.upper_rad
             )));
         }
-        Ok(servo)
+        found
     }
 
     fn unique(&self, servos: &[Servo], boards: &[BoardPart]) -> Result<(), RigError> {
@@ -396,7 +430,7 @@ impl Reader<'_> {
         }
     }
 
-    fn coupled(&self, part: &CoupledPart) -> Result<CoupledLimit, RigError> {
+    pub(super) fn coupled(&self, part: &CoupledPart) -> Result<CoupledLimit, RigError> {
         let place = format!("coupled limit of {}", part.joint);
         self.plausible(&place, plausible::ANGLE_RAD, part.table_rad.as_flattened())?;
         let rising = part.table_rad.windows(2).all(|pair| pair[0][0] < pair[1][0]);
@@ -543,7 +577,7 @@ impl Reader<'_> {
         })
     }
 
-    fn gate(&self, p: &GatePart) -> Result<Gate, RigError> {
+    pub(super) fn gate(&self, p: &GatePart) -> Result<Gate, RigError> {
         self.finite(
             "gate",
             &[p.warm_c, p.hot_c, p.load, p.speed_rad_s, p.usual_speed_rad_s, p.step_rad, p.floor_m],

@@ -83,14 +83,14 @@ impl Description {
     }
 }
 
-fn parse(text: &str) -> Result<urdf_rs::Robot, Error> {
+pub(super) fn parse(text: &str) -> Result<urdf_rs::Robot, Error> {
     // The library works its way down by calling itself.
     depth::check(depth::of_xml(text)).map_err(|reason| Error::NotUrdf { reason })?;
     urdf_rs::read_from_string(text).map_err(|error| Error::NotUrdf { reason: told(&error.to_string()) })
 }
 
 /// Refuses a joint whose numbers cannot be.
-fn check_joint(joint: &urdf_rs::Joint) -> Result<(), Error> {
+pub(super) fn check_joint(joint: &urdf_rs::Joint) -> Result<(), Error> {
     let refuse = |what: Implausible| Error::Implausible {
         place: format!("joint {}", joint.name),
         what: Box::new(what),
@@ -114,7 +114,7 @@ fn check_joint(joint: &urdf_rs::Joint) -> Result<(), Error> {
 }
 
 /// Refuses a link whose numbers cannot be.
-fn check_link(link: &urdf_rs::Link) -> Result<(), Error> {
+pub(super) fn check_link(link: &urdf_rs::Link) -> Result<(), Error> {
     let refuse =
         |what: Implausible| Error::Implausible { place: format!("link {}", link.name), what: Box::new(what) };
     check_origin(&link.inertial.origin).map_err(refuse)?;
@@ -268,7 +268,7 @@ fn read_kind(joint: &urdf_rs::Joint, indices: &BTreeMap<&str, JointIndex>) -> Re
     Ok(JointKind::Coupled { axis, limits, mimic: Mimic { source: *source, ratio, offset_rad } })
 }
 
-fn read_link(link: &urdf_rs::Link, colors: &BTreeMap<&str, [f64; 4]>) -> Result<Link, Error> {
+pub(super) fn read_link(link: &urdf_rs::Link, colors: &BTreeMap<&str, [f64; 4]>) -> Result<Link, Error> {
     let mass_kg = link.inertial.mass.value;
     let i = &link.inertial.inertia;
     let tensor = Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz);

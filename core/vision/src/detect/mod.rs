@@ -1,4 +1,4 @@
-//! Finds things on one image with a YOLO network.
+//! Finds things on images with a YOLO network.
 //!
 //! Any detector that ultralytics exports to ONNX is run: raw heads of YOLOv8, YOLO11, YOLO12,
 //! YOLOv3 and YOLOv3-SPP, end-to-end heads of YOLO26 and of exports with `nms=True`, of any
@@ -10,10 +10,11 @@
 //! (its documentation and behavior, not its code): letterbox, class thresholds, non-maximum
 //! suppression (Dalal and Triggs, 2005), boxes back on the image and clipped to it.
 //!
-//! One detector belongs to one thread. After the first images of a size it allocates nothing.
+//! One detector belongs to one thread; both eyes are looked at at once by [`EyesDetector`]. After the first images of a size it allocates nothing.
 
 mod detector;
 mod error;
+mod eyes;
 mod filler;
 mod heads;
 mod info;
@@ -31,6 +32,7 @@ mod suppress;
 
 pub use detector::Detector;
 pub use error::DetectError;
+pub use eyes::{EyesDetector, EyesTiming};
 pub use info::{DetectorInfo, Head, InputSize, NamesFrom, Precision, Task};
 pub use letterbox::Letterbox;
 pub use library::Library;

@@ -5,6 +5,7 @@
 //! part in a fraction of the time, at the same scale and so with the same things found.
 
 use image::RgbImage;
+use plumbline_model::detection::PixelBox;
 use plumbline_model::stereo::StereoCameras;
 use plumbline_model::workspace::Workspace;
 use plumbline_model::{Eye, Pixel, Raw};
@@ -73,6 +74,35 @@ impl Region {
         let width_px = right_px.checked_sub(self.x_px).filter(|width| *width > 0)?;
         let height_px = below_px.checked_sub(self.y_px).filter(|height| *height > 0)?;
         Some(Self { width_px, height_px, ..self })
+    }
+
+    /// The smallest one that holds both, with all of a box and some pixels around it, on an image of
+    /// a size (width, height).
+    #[must_use]
+    pub fn with(self, area: &PixelBox, around_px: f32, (width, height): (u32, u32)) -> Self {
+        let along = |first: u32, length: u32, [low, high]: [f32; 2], end: u32| {
+            let within = |at: f32| at.clamp(0.0, end as f32) as u32;
+            let begin = first.min(within((low - around_px).floor()));
+            let last = (first + length).max(within((high + around_px).ceil()));
+            (begin, last - begin)
+        };
+        let (x_px, width_px) = along(self.x_px, self.width_px, [area.x0_px, area.x1_px], width);
+        let (y_px, height_px) = along(self.y_px, self.height_px, [area.y0_px, area.y1_px], height);
+        Self { x_px, y_px, width_px, height_px }
+    }
+
+    /// Whether all of a box is in it.
+    pub fn holds(self, area: &PixelBox) -> bool {
+        let (x0, y0) = (self.x_px as f32, self.y_px as f32);
+        let (x1, y1) = (x0 + self.width_px as f32, y0 + self.height_px as f32);
+        area.x0_px >= x0 && area.y0_px >= y0 && area.x1_px <= x1 && area.y1_px <= y1
+    }
+
+    /// Share of an image of a size (width, height) that it takes up, 0–1.
+    pub fn share_of(self, (width, height): (u32, u32)) -> f64 {
+        let area = |width: u32, height: u32| f64::from(width) * f64::from(height);
+        self.on_image((width, height))
+            .map_or(0.0, |part| area(part.width_px, part.height_px) / area(width, height))
     }
 
     /// Where an eye's raw image shows the workspace, up to its headroom, and what hangs over its
@@ -267,6 +297,23 @@ mod tests {
             assert_eq!(Region::lit(&image, &mut vec![]), whole);
         }
         assert_eq!(Region::lit(&RgbImage::new(0, 3), &mut vec![]), Region::whole((0, 3)));
+    }
+
+    #[test]
+    fn a_region_grows_around_what_it_is_to_hold_and_stays_on_the_image() {
+        let region = Region { x_px: 100, y_px: 200, width_px: 300, height_px: 150 };
+        let inside = PixelBox::new(120.0, 220.0, 140.0, 240.0);
+        assert!(region.holds(&inside) && region.with(&inside, 8.0, (640, 480)) == region);
+        let over = PixelBox::new(390.5, 340.0, 420.5, 370.0);
+        assert!(!region.holds(&over));
+        let grown = region.with(&over, 8.0, (640, 480));
+        assert_eq!(grown, Region { width_px: 329, height_px: 178, ..region });
+        assert!(grown.holds(&over));
+        let corner = PixelBox::new(600.0, 0.0, 640.0, 10.0);
+        let grown = region.with(&corner, 50.0, (640, 480));
+        assert_eq!(grown, Region { x_px: 100, y_px: 0, width_px: 540, height_px: 350 });
+        assert!((Region::whole((64, 48)).share_of((128, 48)) - 0.5).abs() < 1e-12);
+        assert_eq!(region.share_of((50, 50)), 0.0);
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod accumulate;
 mod confusion;
 mod csv_text;
 mod interval;
+mod look;
 mod matching;
 mod operating;
 mod run;
@@ -22,6 +23,7 @@ use plumbline_model::{ClassIndex, PixelBox};
 pub use confusion::{Cell, CellEntry, ConfusionMatrix, ConfusionOptions};
 pub use csv_text::{matrix_csv, scores_csv};
 pub use interval::{Interval, IntervalOptions, Intervals, ScoreIntervals};
+pub use look::LookedAt;
 pub use operating::OperatingPoint;
 pub use run::{
     Detect, EvaluateError, EvaluateOptions, MedianTiming, ModelEvaluation, NameAgreement, PartOfJob,

@@ -6,11 +6,12 @@ use std::time::Duration;
 use image::RgbImage;
 use plumbline_model::{Cancelled, ClassIndex, ClassNames, Detection, JobContext, files};
 
+use super::look::LookedAt;
 use super::{
-    ConfusionMatrix, ConfusionOptions, FoundBox, IntervalOptions, Intervals, IouThresholds, ScoreIntervals,
-    ScoredImage, Scores, Summary, TruthBox, average_precision,
+    ConfusionMatrix, ConfusionOptions, IntervalOptions, Intervals, IouThresholds, ScoreIntervals,
+    ScoredImage, Scores, Summary, average_precision,
 };
-use crate::detect::{DetectError, DetectSettings, DetectTiming, Detector};
+use crate::detect::{DetectError, DetectSettings, DetectTiming, Detector, Part};
 use crate::yolo_set::{LabeledImage, YoloSet};
 
 /// Something that finds things on images.
@@ -26,6 +27,21 @@ pub trait Detect {
         settings: &DetectSettings,
         found: &mut Vec<Detection>,
     ) -> Result<DetectTiming, DetectError>;
+
+    /// The same on a part of an image, as [`Detector::detect_in`]; what has no parts looks at all of it.
+    ///
+    /// # Errors
+    /// As [`Detector::detect_in`].
+    fn detect_in(
+        &mut self,
+        image: &RgbImage,
+        part: Part,
+        settings: &DetectSettings,
+        found: &mut Vec<Detection>,
+    ) -> Result<DetectTiming, DetectError> {
+        let _ = part;
+        self.detect(image, settings, found)
+    }
 }
 
 impl Detect for Detector {
@@ -45,6 +61,16 @@ impl Detect for Detector {
     ) -> Result<DetectTiming, DetectError> {
         Self::detect(self, image, settings, found)
     }
+
+    fn detect_in(
+        &mut self,
+        image: &RgbImage,
+        part: Part,
+        settings: &DetectSettings,
+        found: &mut Vec<Detection>,
+    ) -> Result<DetectTiming, DetectError> {
+        Self::detect_in(self, image, part, settings, found)
+    }
 }
 
 /// How models are judged.
@@ -58,6 +84,8 @@ pub struct EvaluateOptions {
     pub confusion: ConfusionOptions,
     /// How far scores can be trusted.
     pub interval: IntervalOptions,
+    /// What of the images is looked at, and what of them counts.
+    pub looked_at: LookedAt,
 }
 
 impl Default for EvaluateOptions {
@@ -68,6 +96,7 @@ impl Default for EvaluateOptions {
             iou: IouThresholds::coco(),
             confusion: ConfusionOptions::default(),
             interval: IntervalOptions::default(),
+            looked_at: LookedAt::default(),
         }
     }
 }
@@ -241,8 +270,12 @@ pub fn evaluate(
     let agreement = NameAgreement::new(detector.names(), &set.names);
     let ran = run(detector, set, &to_set, options, context)?;
     context.report(1.0, &format!("{model}: scoring"));
-    let scored: Vec<ScoredImage> =
-        ran.images.iter().zip(&ran.found).map(|(image, found)| scored(image, found)).collect();
+    let scored: Vec<ScoredImage> = ran
+        .images
+        .iter()
+        .zip(&ran.found)
+        .map(|(image, found)| options.looked_at.scored(image, found))
+        .collect();
     let scores = average_precision(&scored, set.names.len(), &options.iou);
     context.checkpoint()?;
     let scenes: Vec<&str> = ran.images.iter().map(|image| image.scene.as_str()).collect();
@@ -286,7 +319,7 @@ fn run(
 ) -> Result<Ran, EvaluateError> {
     let (model, count) = (detector.name(), set.images.len());
     let mut ran = Ran::default();
-    let mut found = Vec::new();
+    let (mut found, part) = (Vec::new(), options.looked_at.part);
     for (index, labeled) in set.images.iter().enumerate() {
         context.checkpoint()?;
         context.report(index as f64 / count as f64, &format!("{model}: image {} of {count}", index + 1));
@@ -299,9 +332,9 @@ fn run(
         };
         if ran.times.is_empty() {
             // What fails here fails below too, and is told there.
-            let _ = detector.detect(&image, &options.settings, &mut found);
+            let _ = detector.detect_in(&image, part, &options.settings, &mut found);
         }
-        match detector.detect(&image, &options.settings, &mut found) {
+        match detector.detect_in(&image, part, &options.settings, &mut found) {
             Ok(timing) => ran.times.push(timing),
             Err(error) => {
                 found.clear();
@@ -337,16 +370,6 @@ fn open(labeled: &LabeledImage) -> Result<RgbImage, String> {
     }
     let ((w, h), (was_w, was_h)) = (image.dimensions(), labeled.size_px);
     Err(format!("it is {w}x{h} px but was {was_w}x{was_h} px when its labels were read"))
-}
-
-fn scored(image: &LabeledImage, found: &[Detection]) -> ScoredImage {
-    let truth = image.boxes.iter().map(|labeled| TruthBox::new(labeled.class, labeled.area));
-    let found = found.iter().map(|found| FoundBox {
-        class: found.class,
-        confidence: f64::from(found.confidence),
-        area: found.area.into(),
-    });
-    ScoredImage { truth: truth.collect(), found: found.collect() }
 }
 
 fn medians(times: &[DetectTiming]) -> MedianTiming {
