@@ -115,6 +115,9 @@ pub struct Observation {
     pub commanded_rad: Option<Vec<f64>>,
     /// Encoder readings, the same way.
     pub encoder_rad: Option<Vec<f64>>,
+    /// How far each servo lags in this pose, rad, where repeats tell it from what encoders happen to read: an
+    /// expectation of commanded less encoder angle in which this row's own reading has no part.
+    pub usual_lag_rad: Option<Vec<f64>>,
     /// Last motion of each joint: −1, 0 (not known) or 1.
     pub direction: Vec<f64>,
     /// Known mass at the palm, kg.
@@ -176,6 +179,7 @@ impl Observation {
             measured: vec![0.0; what.len()],
             commanded_rad: None,
             encoder_rad: None,
+            usual_lag_rad: None,
             direction: vec![],
             payload_kg: 0.0,
             screen_height_m: 0.0,

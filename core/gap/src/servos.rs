@@ -33,6 +33,11 @@ const STANDS_OUT: f64 = 4.0;
 const PROBABILITY: f64 = 0.97;
 /// Cells further off than this many robust standard deviations do not count.
 const FAR: f64 = 5.0;
+/// From one side and with one weight a lag is that of the load when it grows from nothing in proportion to the
+/// torque, and leaves at most so many times what other joints lag by.
+const LEFT_OVER: f64 = 2.0;
+/// Rounds of leaving out what is far off.
+const ROUNDS: usize = 8;
 /// Rows that are asked how far a turn moves the tip.
 const MOST_ROWS: usize = 40;
 
@@ -44,6 +49,7 @@ struct Slope {
 }
 
 /// What a joint's servo does.
+#[derive(Clone, Copy, Debug)]
 struct Joint {
     j: usize,
     /// rad per N m.
@@ -52,6 +58,9 @@ struct Joint {
     sticks: Option<Slope>,
     /// Root mean square of the torque, N m.
     torque_nm: f64,
+    /// Root mean square of encoder less command, rad, and of what the torque leaves of it.
+    lag_rad: f64,
+    left_rad: f64,
     /// A turn of a radian moves the tip by so much, m.
     lever_m: f64,
 }
@@ -69,12 +78,13 @@ pub(crate) fn servos(
     let Some(arm) = &measurements.apparatuses[session].arm else { return (vec![], None) };
     let rows: Vec<&Observation> = logged(measurements, session).collect();
     let known = |kind: Kind| measurements.present.iter().any(|present| present.effect.kind == kind);
+    let sides = Sides::of(&rows);
     let joints: Vec<Joint> =
-        (0..arm.len()).filter_map(|j| joint(measurements, arm, &rows, assumed, j)).collect();
+        (0..arm.len()).filter_map(|j| joint(measurements, arm, &rows, assumed, &sides, j)).collect();
     let noise_m = floor.kinds.iter().filter(|kind| kind.what.is_placed());
     let noise_m = noise_m.map(|kind| kind.sd[0].hypot(kind.sd[1])).fold(LEAST_M, f64::max);
     let (mut found, words) =
-        if known(Kind::ServoDroop) { (vec![], None) } else { droops(arm, &joints, noise_m) };
+        if known(Kind::ServoDroop) { (vec![], None) } else { droops(arm, &joints, &sides, noise_m) };
     if !known(Kind::Stiction) {
         found.extend(sticking(arm, &joints, noise_m));
     }
@@ -88,20 +98,36 @@ fn logged(measurements: &Measurements, session: usize) -> impl Iterator<Item = &
     measurements.rows.iter().filter(move |row| row.session == session && row.what.is_placed()).filter(both)
 }
 
+/// From where rows come, and with what.
+struct Sides {
+    /// From both sides.
+    both: bool,
+    /// With several weights.
+    weights: bool,
+}
+
+impl Sides {
+    fn of(rows: &[&Observation]) -> Self {
+        let from = |side: &str| rows.iter().any(|row| row.approach.as_deref() == Some(side));
+        let weights = rows.iter().map(|row| (row.payload_kg * 1e3).round() as i64);
+        let weights = weights.collect::<std::collections::BTreeSet<_>>().len() > 1;
+        Self { both: from("plus") && from("minus"), weights }
+    }
+
+    /// A torque goes with the posture, and so does how fast a joint moves.
+    fn are_one(&self) -> bool {
+        !self.both && !self.weights
+    }
+}
+
 fn joint(
     measurements: &Measurements,
     arm: &Arm,
     rows: &[&Observation],
     assumed: &Assumed,
+    sides: &Sides,
     j: usize,
 ) -> Option<Joint> {
-    let sided = ["plus", "minus"].map(|side| rows.iter().any(|row| row.approach.as_deref() == Some(side)));
-    let sided = sided == [true, true];
-    // From one side and with one weight a torque goes with the posture, and so does how fast a joint moves.
-    let weights = rows.iter().map(|row| (row.payload_kg * 1e3).round() as i64);
-    if !sided && weights.collect::<std::collections::BTreeSet<_>>().len() < 2 {
-        return None;
-    }
     let mut cells = std::collections::BTreeMap::<usize, ([f64; 3], f64)>::new();
     let mut square = 0.0;
     for row in rows {
@@ -118,7 +144,11 @@ fn joint(
         *count += 1.0;
     }
     let means: Vec<[f64; 3]> = cells.values().map(|(sum, count)| sum.map(|sum| sum / count)).collect();
-    let [gives, sticks] = slopes(&means, sided)?;
+    if means.len() < FEWEST_CELLS {
+        return None;
+    }
+    let [gives, sticks] =
+        if sides.are_one() { [Some(in_proportion(&means)), None] } else { slopes(&means, sides.both)? };
     let zero = Effect::sites(Kind::JointZero, Some(arm), None);
     let zero = zero.into_iter().find(|effect| effect.site == arm.parts[j].joint)?;
     let every = rows.len().div_ceil(MOST_ROWS);
@@ -129,13 +159,35 @@ fn joint(
     });
     let moved: Vec<f64> = moved.collect();
     let lever_m = (moved.iter().sum::<f64>() / moved.len().max(1) as f64).sqrt();
-    Some(Joint { j, gives, sticks, torque_nm: (square / rows.len() as f64).sqrt(), lever_m })
+    let rms = |of: &dyn Fn(&[f64; 3]) -> f64| {
+        (means.iter().map(|cell| of(cell).powi(2)).sum::<f64>() / means.len() as f64).sqrt()
+    };
+    let slope = gives.map_or(0.0, |gives| gives.value);
+    let (lag_rad, left_rad) = (rms(&|cell| cell[0]), rms(&|cell| cell[0] - slope * cell[1]));
+    let torque_nm = (square / rows.len() as f64).sqrt();
+    Some(Joint { j, gives, sticks, torque_nm, lag_rad, left_rad, lever_m })
+}
+
+/// Slope by torque of cells whose lag is nothing without a load.
+fn in_proportion(cells: &[[f64; 3]]) -> Slope {
+    let sum = |of: &dyn Fn(&[f64; 3]) -> f64| cells.iter().map(of).sum::<f64>();
+    let torques = sum(&|cell| cell[1] * cell[1]).max(1e-12);
+    let value = sum(&|cell| cell[0] * cell[1]) / torques;
+    let left = sum(&|cell| (cell[0] - value * cell[1]).powi(2));
+    Slope { value, sd: (left / (cells.len() as f64 - 1.0).max(1.0) / torques).sqrt() }
+}
+
+/// Whether from one side, too, the lag of a joint can only be of its load.
+fn is_of_load(joint: &Joint, joints: &[Joint]) -> bool {
+    let others = joints.iter().filter(|other| other.j != joint.j).map(|other| other.lag_rad);
+    median(others)
+        .is_some_and(|usual| joint.lag_rad > STANDS_OUT * usual && joint.left_rad < LEFT_OVER * usual)
 }
 
 /// Slopes by torque and by direction of cells: (encoder less command, torque, direction).
 fn slopes(cells: &[[f64; 3]], sided: bool) -> Option<[Option<Slope>; 2]> {
     let mut kept: Vec<[f64; 3]> = cells.to_vec();
-    for _ in 0..3 {
+    for round in 1..=ROUNDS {
         if kept.len() < FEWEST_CELLS {
             return None;
         }
@@ -156,7 +208,7 @@ fn slopes(cells: &[[f64; 3]], sided: bool) -> Option<[Option<Slope>; 2]> {
             .filter(|(_, left)| left.abs() <= FAR * spread)
             .map(|(c, _)| *c)
             .collect();
-        if inside.len() == kept.len() || spread == 0.0 {
+        if inside.len() == kept.len() || spread == 0.0 || round == ROUNDS {
             let variance = left.norm_squared() / (kept.len() - columns) as f64;
             let slope = |k: usize| {
                 let place = 1 + used.iter().position(|used| *used == k)?;
@@ -171,13 +223,19 @@ fn slopes(cells: &[[f64; 3]], sided: bool) -> Option<[Option<Slope>; 2]> {
 
 /// Servos that give way more than the others, and what all of them do alike, in words: a controller without
 /// integral action gives way everywhere, and that is its way, not what is wrong with a joint.
-fn droops(arm: &Arm, joints: &[Joint], noise_m: f64) -> (Vec<NamedEffect>, Option<String>) {
+fn droops(arm: &Arm, joints: &[Joint], sides: &Sides, noise_m: f64) -> (Vec<NamedEffect>, Option<String>) {
     let size_m = |joint: &Joint, value: f64| value * joint.torque_nm * joint.lever_m;
     let (mut found, mut alike) = (vec![], vec![]);
     for joint in joints {
         let Some(slope) = joint.gives.filter(|slope| slope.value > SURE * slope.sd) else { continue };
         let size = size_m(joint, slope.value);
         if size < noise_m || slope.value > FURTHEST {
+            continue;
+        }
+        if sides.are_one() {
+            if is_of_load(joint, joints) {
+                found.extend(named(arm, Kind::ServoDroop, &arm.parts[joint.j].joint, slope, (size, noise_m)));
+            }
             continue;
         }
         let others = joints.iter().filter(|other| other.j != joint.j).filter_map(|other| other.gives);
@@ -203,11 +261,14 @@ fn droops(arm: &Arm, joints: &[Joint], noise_m: f64) -> (Vec<NamedEffect>, Optio
 }
 
 fn sticking(arm: &Arm, joints: &[Joint], noise_m: f64) -> Vec<NamedEffect> {
-    let usual = median(joints.iter().filter_map(|joint| Some(joint.sticks?.value.abs()))).unwrap_or(0.0);
-    let stands_out = |slope: &Slope| slope.value > SURE * slope.sd && slope.value > STANDS_OUT * usual;
+    let stands_out = |joint: &Joint, slope: &Slope| {
+        let others = joints.iter().filter(|other| other.j != joint.j);
+        let usual = median(others.filter_map(|other| Some(other.sticks?.value.abs()))).unwrap_or(0.0);
+        slope.value > SURE * slope.sd && slope.value > STANDS_OUT * usual
+    };
     joints
         .iter()
-        .filter_map(|joint| Some((joint, joint.sticks.filter(stands_out)?)))
+        .filter_map(|joint| Some((joint, joint.sticks.filter(|slope| stands_out(joint, slope))?)))
         .filter_map(|(joint, slope)| {
             let size_m = 0.5 * slope.value * joint.lever_m;
             let site = &arm.parts[joint.j].joint;
@@ -302,6 +363,46 @@ mod tests {
             .filter(|[gives, sticks]| sure(*gives) || sure(*sticks))
             .count();
         assert_eq!(alarms, 0);
+    }
+
+    #[test]
+    fn cells_that_are_far_off_do_not_hide_the_rest() {
+        // One far cell after the other comes out from behind the next.
+        let mut cells = cells(0.03, 0.01, 4);
+        for (k, cell) in cells.iter_mut().step_by(8).enumerate() {
+            cell[0] += 0.03 * 3.0_f64.powi(k as i32);
+        }
+        let [gives, sticks] = slopes(&cells, true).expect("most cells agree");
+        let (gives, sticks) = (gives.expect("torques differ"), sticks.expect("both sides"));
+        assert!((gives.value - 0.03).abs() < 4.0 * gives.sd, "{gives:?}");
+        assert!((sticks.value - 0.01).abs() < 4.0 * sticks.sd, "{sticks:?}");
+    }
+
+    #[test]
+    fn from_one_side_a_lag_is_of_the_load_when_it_is_nothing_without_one() {
+        let one_sided = |mut cells: Vec<[f64; 3]>| {
+            cells.iter_mut().for_each(|cell| cell[2] = 0.0);
+            cells
+        };
+        let with = |cells: &[[f64; 3]], j: usize| {
+            let gives = in_proportion(cells);
+            let rms = |slope: f64| {
+                let left = cells.iter().map(|cell| (cell[0] - slope * cell[1]).powi(2));
+                (left.sum::<f64>() / cells.len() as f64).sqrt()
+            };
+            let (lag_rad, left_rad) = (rms(0.0), rms(gives.value));
+            Joint { j, gives: Some(gives), sticks: None, torque_nm: 1.0, lag_rad, left_rad, lever_m: 0.3 }
+        };
+        let others: Vec<Joint> = (1..6).map(|j| with(&one_sided(cells(0.0, 0.0, j as u64)), j)).collect();
+        let loaded = with(&one_sided(cells(0.03, 0.0, 6)), 0);
+        let gives = loaded.gives.expect("a slope");
+        assert!((gives.value - 0.03).abs() < 0.003 && gives.value > SURE * gives.sd, "{gives:?}");
+        let joints = |first: Joint| std::iter::once(first).chain(others.iter().copied()).collect::<Vec<_>>();
+        assert!(is_of_load(&loaded, &joints(loaded)));
+        // One that lags as much wherever it is loaded is late, not soft.
+        let late: Vec<[f64; 3]> = cells(0.0, 0.0, 7).into_iter().map(|[l, t, d]| [l + 0.02, t, d]).collect();
+        let late = with(&one_sided(late), 0);
+        assert!(!is_of_load(&late, &joints(late)));
     }
 
     #[test]

@@ -75,9 +75,14 @@ impl Situation<'_> {
         self.direction.get(j).copied().unwrap_or_default()
     }
 
-    /// Commanded less encoder angle.
+    /// Commanded less encoder angle: as repeats tell it, where there are some. What the row's own reading is
+    /// off by stands in its lag and in its prediction, so that noise of encoders would look like angles that
+    /// were logged too early.
     pub(super) fn lag_rad(&self, j: usize) -> f64 {
         let Some(row) = self.row else { return 0.0 };
+        if let Some(lag_rad) = &row.usual_lag_rad {
+            return lag_rad.get(j).copied().unwrap_or(0.0);
+        }
         let (Some(commanded), Some(encoder)) = (&row.commanded_rad, &row.encoder_rad) else { return 0.0 };
         commanded.get(j).zip(encoder.get(j)).map_or(0.0, |(c, e)| c - e)
     }

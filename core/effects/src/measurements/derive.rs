@@ -1,11 +1,11 @@
 //! What follows from the order and the times of rows: how long a pose was held, how fast it was
-//! reached; and the sign of measured torques.
+//! reached; how far servos lag; and the sign of measured torques.
 
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-use super::{Apparatus, Observation};
+use super::{Apparatus, Observation, lags};
 use crate::library::Situation;
 
 /// Less than this is no motion, rad.
@@ -26,6 +26,7 @@ pub(super) fn complete(rows: &mut [Observation], apparatuses: &[Apparatus]) {
         }
         torques(rows, order, apparatuses);
     }
+    lags::complete(rows, apparatuses);
 }
 
 /// Rows of the same cell that follow each other in time without another pose in between are held.

@@ -2,6 +2,7 @@
 //! localizations of any number of sessions.
 
 mod derive;
+mod lags;
 mod read;
 #[cfg(test)]
 mod tests;
@@ -174,6 +175,12 @@ impl Measurements {
     pub fn only(&self, rows: impl IntoIterator<Item = usize>) -> Self {
         let rows = rows.into_iter().filter_map(|i| self.rows.get(i).cloned()).collect();
         Self { rows, ..self.clone() }
+    }
+
+    /// Works out anew what follows from repeats ([`Observation::usual_lag_rad`]), after angles were
+    /// changed.
+    pub fn complete_lags(&mut self) {
+        lags::complete(&mut self.rows, &self.apparatuses);
     }
 
     /// What is not as it should be although the rows can be used, in words.

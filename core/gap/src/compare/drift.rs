@@ -4,20 +4,16 @@
 //! step. What that explains is a gap; what it leaves is noise. Without this a screen that was
 //! bumped halfway, or a horn that slipped, would pass as noise of the repeats.
 
-use nalgebra::{Cholesky, DMatrix};
+use nalgebra::DMatrix;
 
-use crate::statistics::f_tail;
+use super::spread::{FEWEST, SIGNIFICANT, Spread};
 
 /// Slow courses: cosines over the whole time.
 const COURSES: usize = 3;
 /// Moments that are tried for a step.
 const MOMENTS: usize = 25;
-/// Fewer deviations than this say nothing of a course.
-const FEWEST: usize = 40;
 /// Rows must be spread over this time, s.
 const SHORTEST_S: f64 = 60.0;
-/// A course counts from this probability by chance on.
-const SIGNIFICANT: f64 = 1e-4;
 
 /// One row: its cell, its time (s) and its coordinates less the mean of its cell.
 pub struct Deviation {
@@ -47,11 +43,7 @@ pub fn drift(rows: &[Deviation], free: f64) -> Option<Drift> {
         return None;
     }
     let width = rows.first()?.off.len();
-    let values = DMatrix::from_fn(rows.len(), width, |r, c| rows[r].off[c]);
-    let before: Vec<f64> = (0..width).map(|c| values.column(c).norm_squared()).collect();
-    // A coordinate that does not spread (a height that follows from the command) has no course.
-    let widest = before.iter().copied().fold(0.0, f64::max);
-    let counted: Vec<usize> = (0..width).filter(|&c| before[c] > 1e-4 * widest).collect();
+    let spread = Spread::new(DMatrix::from_fn(rows.len(), width, |r, c| rows[r].off[c]), free);
     let share = |t: f64| (t - first) / (last - first);
     let fits = (1..MOMENTS).filter_map(|moment| {
         let at = moment as f64 / MOMENTS as f64;
@@ -61,30 +53,11 @@ pub fn drift(rows: &[Deviation], free: f64) -> Option<Drift> {
             let courses = (1..=COURSES).map(|k| (std::f64::consts::PI * k as f64 * share).cos());
             std::iter::once(step).chain(courses).collect()
         });
-        let mut normal = design.tr_mul(&design);
-        for k in 0..normal.ncols() {
-            normal[(k, k)] += 1e-9 * rows.len() as f64;
-        }
-        let fit = Cholesky::new(normal)?.solve(&design.tr_mul(&values));
-        let left = &values - design * fit;
-        let after: Vec<f64> = (0..width).map(|c| left.column(c).norm_squared()).collect();
-        let whole: f64 = counted.iter().map(|&c| (after[c] / before[c]).max(1e-12).ln()).sum();
-        Some((whole, after))
+        spread.fitted_by(&design)
     });
-    let (_, after) = fits.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let used = (COURSES + 1) as f64;
-    let tests = ((MOMENTS - 1) * counted.len()) as f64;
-    let ratio = |c: usize| (before[c] - after[c]) / used / (after[c] / (free - used)).max(1e-300);
-    let chance = |c: usize| f_tail(ratio(c), used, free - used);
-    let p_value = counted.iter().map(|&c| chance(c)).fold(1.0, f64::min) * tests;
-    if p_value > SIGNIFICANT {
-        return None;
-    }
-    let size = counted.iter().map(|&c| ((before[c] - after[c]) / after[c].max(1e-300)).sqrt());
-    let left = (0..width)
-        .map(|c| if counted.contains(&c) { after[c] / before[c] * free / (free - used) } else { 1.0 })
-        .map(|left| left.min(1.0));
-    Some(Drift { p_value, size_sigmas: size.fold(0.0, f64::max), left: left.collect() })
+    let left = fits.min_by(|a, b| a.log_share().total_cmp(&b.log_share()))?;
+    let p_value = left.p_value(MOMENTS - 1);
+    (p_value <= SIGNIFICANT).then(|| Drift { p_value, size_sigmas: left.largest(), left: left.shares() })
 }
 
 /// Columns of a function of the rows less their means within cells.

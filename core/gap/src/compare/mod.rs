@@ -9,6 +9,7 @@ mod neighbors;
 mod noise;
 mod oddities;
 mod outliers;
+mod spread;
 mod structure;
 mod turns;
 mod units;

@@ -4,12 +4,11 @@
 //! over time (or over the order of the rows), on how each joint came to its angle, and on temperature.
 //! What that explains beyond chance is a gap; what it leaves is noise.
 
-use nalgebra::{Cholesky, DMatrix};
+use nalgebra::DMatrix;
 
-use crate::statistics::{f_tail, robust_sd};
+use super::spread::{FEWEST, SIGNIFICANT, Spread};
+use crate::statistics::robust_sd;
 
-/// Fewer deviations than this say nothing.
-const FEWEST: usize = 40;
 /// Full turns of a wobble that are tried at most, and rows that each needs.
 const MOST_TURNS: usize = 60;
 const ROWS_PER_TURN: usize = 6;
@@ -19,8 +18,6 @@ const SIDE_RAD: f64 = 0.02;
 const LEAST_WITHIN: f64 = 0.05;
 /// Deviations beyond this many robust standard deviations count as that far.
 const FAR: f64 = 4.0;
-/// A dependence counts from this probability by chance on, all that were tried together.
-const SIGNIFICANT: f64 = 1e-4;
 
 /// One repeat: what is known of it, and its coordinates less the mean of its cell.
 pub struct Repeat {
@@ -63,35 +60,17 @@ pub fn structure(rows: &[Repeat], free: f64, when: &str, joints: &[String]) -> O
     if rows.len() < FEWEST || free < 0.5 * FEWEST as f64 {
         return None;
     }
-    let values = tamed(rows, width);
-    let before: Vec<f64> = (0..width).map(|c| values.column(c).norm_squared()).collect();
-    let widest = before.iter().copied().fold(0.0, f64::max);
-    let counted: Vec<usize> = (0..width).filter(|&c| before[c] > 1e-4 * widest).collect();
+    let spread = Spread::new(tamed(rows, width), free);
     let tried = covariates(rows, when, joints);
-    let tests = (tried.len() * counted.len()) as f64;
+    let fits = tried.len();
     let mut best: Option<Structure> = None;
     for (on, columns) in tried {
         let Some(design) = within_cells(rows, &columns) else { continue };
-        let used = design.ncols() as f64;
-        let mut normal = design.tr_mul(&design);
-        for k in 0..normal.ncols() {
-            normal[(k, k)] += 1e-9 * rows.len() as f64;
+        let Some(left) = spread.fitted_by(&design) else { continue };
+        let p_value = left.p_value(fits);
+        if p_value <= SIGNIFICANT && best.as_ref().is_none_or(|best| p_value < best.p_value) {
+            best = Some(Structure::new(on, p_value, left.shares()));
         }
-        let Some(normal) = Cholesky::new(normal) else { continue };
-        let left = &values - &design * normal.solve(&design.tr_mul(&values));
-        let after: Vec<f64> = (0..width).map(|c| left.column(c).norm_squared()).collect();
-        let rest = (free - used).max(1.0);
-        let chance = |c: usize| {
-            let ratio = (before[c] - after[c]) / used / (after[c] / rest).max(1e-300);
-            f_tail(ratio, used, rest)
-        };
-        let p_value = counted.iter().map(|&c| chance(c)).fold(1.0, f64::min) * tests;
-        if p_value > SIGNIFICANT || best.as_ref().is_some_and(|best| best.p_value <= p_value) {
-            continue;
-        }
-        let share = |c: usize| if counted.contains(&c) { after[c] / before[c] * free / rest } else { 1.0 };
-        let left = (0..width).map(|c| share(c).min(1.0)).collect();
-        best = Some(Structure::new(on, p_value, left));
     }
     best
 }

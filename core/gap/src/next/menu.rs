@@ -134,7 +134,10 @@ impl Menu<'_> {
             row.lag_rad()?;
             Some(vec![
                 self.with(row, |_| ()),
-                self.with(row, |row| row.commanded_rad.clone_from(&row.encoder_rad)),
+                self.with(row, |row| {
+                    row.commanded_rad.clone_from(&row.encoder_rad);
+                    row.usual_lag_rad = None;
+                }),
             ])
         };
         let repeats = |row: &Observation| Some(vec![self.with(row, |_| ()); 3]);

@@ -22,6 +22,12 @@ const SMALLEST: f64 = 0.3;
 const LARGEST_VALUE: f64 = 3.0;
 /// And whose usual size stands out of the noise by so many standard deviations.
 const SEEN_SIGMAS: f64 = 1.5;
+/// Members of a family stand out from so many standard deviations on.
+const STANDS_OUT: f64 = 2.0;
+/// A family is exchanged for so many of them at most.
+const MOST_SPLIT: usize = 3;
+/// So many of the best sets are looked around again.
+const KEPT: usize = 2;
 /// Divides log odds: see the README's section on calibration.
 pub(super) const TEMPERATURE: f64 = 2.0;
 
@@ -158,7 +164,53 @@ impl Look {
             most,
             temperature: TEMPERATURE,
         };
-        space.explore(seeds, context)
+        let explored = space.explore(seeds, context)?;
+        let split: Vec<Vec<usize>> =
+            self.split(&explored).into_iter().filter(|set| set.len() <= most).collect();
+        if split.is_empty() {
+            return Ok(explored);
+        }
+        // One member of a family is far worse than the family where two are off, so no way of single steps
+        // leads from one to the other.
+        let found = explored.models.iter().take(KEPT).map(|model| model.set.clone());
+        let seeds: Vec<Vec<usize>> = seeds.iter().cloned().chain(found).chain(split).collect();
+        space.explore(&seeds, context)
+    }
+
+    /// The best set with its families exchanged for the members that stand out most.
+    fn split(&self, explored: &Explored) -> Vec<Vec<usize>> {
+        let Some(best) = explored.models.first() else { return vec![] };
+        let Some(&family) = best.set.iter().find(|&&block| self.blocks[block].is_family) else {
+            return vec![];
+        };
+        let kind = self.blocks[family].kind;
+        let members: Vec<usize> = (0..self.effects)
+            .filter(|&block| self.blocks[block].kind == kind && !self.blocks[block].is_family)
+            .collect();
+        if members.iter().map(|&block| self.blocks[block].len).sum::<usize>() != self.blocks[family].len {
+            return vec![];
+        }
+        let (means, covariance) = self.fields[self.likely(explored)].given(&best.set, &self.packed).values();
+        let before = best.set.iter().take_while(|&&block| block != family);
+        let mut at: usize = before.map(|&block| self.blocks[block].len).sum();
+        let mut stand_out: Vec<(f64, usize)> = vec![];
+        for block in members {
+            let len = self.blocks[block].len;
+            let sigmas = (at..at + len).map(|k| means[k].abs() / covariance[(k, k)].sqrt());
+            stand_out.push((sigmas.fold(0.0, f64::max), block));
+            at += len;
+        }
+        stand_out.retain(|(sigmas, block)| *sigmas > STANDS_OUT && self.allowed.contains(block));
+        stand_out.sort_by(|a, b| b.0.total_cmp(&a.0));
+        (1..=stand_out.len().min(MOST_SPLIT))
+            .map(|count| {
+                let others = best.set.iter().copied().filter(|&block| block != family);
+                let mut set: Vec<usize> =
+                    others.chain(stand_out.iter().take(count).map(|(_, block)| *block)).collect();
+                set.sort_unstable();
+                set
+            })
+            .collect()
     }
 
     /// Root mean square of what values (usual sizes) of a block do to the rows, in floors.

@@ -89,8 +89,9 @@ impl Evidence<'_> {
             .sum();
         let vetoed = p_value < VETO_P && left > VETO_SIZE;
         let unknown = rival.max(if vetoed { 0.95 } else { 0.0 }).max(self.white()).min(1.0);
-        // Beside something unknown, what the library does best without it is what can be said of it.
-        if let Some(alone) = self.alone.filter(|_| unknown > 0.5) {
+        // Whether or not a rival counts as something unknown, it may stand where an effect belongs: what can
+        // be said of the library is what it does best without one.
+        if let Some(alone) = self.alone {
             return Self { explored: alone, alone: None, ..*self }.named(unknown, p_value);
         }
         self.named(unknown, p_value)

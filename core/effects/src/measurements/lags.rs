@@ -1,0 +1,157 @@
+//! How far servos lag, apart from what encoders happen to read.
+//!
+//! What a reading is off by stands in the lag (commanded less encoder angle) and in the prediction that starts
+//! from the encoder: rows would prefer the command to the encoder just because encoders are noisy. So the lag
+//! that effects see is its expectation without the row's own reading (regression calibration; Carroll,
+//! Ruppert, Stefanski and Crainiceanu 2006, chapter 4): what follows from direction, torque and angle,
+//! and as much of what the other repeats of its cell say beyond that as stands out of their spread.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{Cholesky, DMatrix, DVector, Vector3};
+
+use super::{Apparatus, Observation};
+use crate::library::Situation;
+
+/// What a servo's lag may follow: nothing, direction, torque, angle, and angle by direction.
+const COLUMNS: usize = 5;
+/// Fewer rows for each column follow nothing.
+const ROWS_PER_COLUMN: usize = 8;
+/// Keeps columns that do not vary from being solved for.
+const RIDGE: f64 = 1e-6;
+
+/// A row of a cell with repeats.
+struct Lag {
+    row: usize,
+    cell: usize,
+    follows: [f64; COLUMNS],
+    lag_rad: f64,
+}
+
+/// Sum and number of a cell's lags.
+type Cells = BTreeMap<usize, (f64, f64)>;
+
+/// Fills in the usual lag of every row that has repeats.
+pub(super) fn complete(rows: &mut [Observation], apparatuses: &[Apparatus]) {
+    rows.iter_mut().for_each(|row| row.usual_lag_rad = None);
+    for (session, apparatus) in apparatuses.iter().enumerate() {
+        let Some(arm) = &apparatus.arm else { continue };
+        let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
+        let has_lag = |row: &Observation| row.session == session && row.lag_rad().is_some();
+        rows.iter().filter(|row| has_lag(row)).for_each(|row| *counts.entry(row.cell).or_default() += 1);
+        let repeated: Vec<usize> =
+            (0..rows.len()).filter(|&i| has_lag(&rows[i]) && counts[&rows[i].cell] > 1).collect();
+        let torques_nm: Vec<Vec<f64>> = repeated
+            .iter()
+            .map(|&i| {
+                let (row, up) = (&rows[i], Vector3::z());
+                let at = Situation::new(arm, row.angles_rad(), &row.direction, row.payload_kg, &up);
+                at.during(row).torques_nm().to_vec()
+            })
+            .collect();
+        for j in 0..arm.len() {
+            let lags: Vec<Lag> = repeated
+                .iter()
+                .zip(&torques_nm)
+                .filter_map(|(&i, torques_nm)| {
+                    let row = &rows[i];
+                    let direction = row.direction.get(j).copied().unwrap_or_default();
+                    let angle_rad = *row.commanded_rad.as_ref()?.get(j)?;
+                    let follows = [1.0, direction, torques_nm[j], angle_rad, direction * angle_rad];
+                    Some(Lag { row: i, cell: row.cell, follows, lag_rad: *row.lag_rad()?.get(j)? })
+                })
+                .collect();
+            for (i, lag_rad) in usual(&lags) {
+                rows[i].usual_lag_rad.get_or_insert_with(|| vec![0.0; arm.len()])[j] = lag_rad;
+            }
+        }
+    }
+}
+
+/// The expected lag of each row of one joint.
+fn usual(lags: &[Lag]) -> Vec<(usize, f64)> {
+    let follows = follow(lags);
+    let mut cells: Cells = BTreeMap::new();
+    for (lag, follows) in lags.iter().zip(&follows) {
+        let (sum, count) = cells.entry(lag.cell).or_default();
+        *sum += lag.lag_rad - follows;
+        *count += 1.0;
+    }
+    // Spread of readings about the means of cells, and of these means about what the lag follows.
+    let mut within = 0.0;
+    for (lag, follows) in lags.iter().zip(&follows) {
+        let (sum, count) = cells[&lag.cell];
+        within += (lag.lag_rad - follows - sum / count).powi(2);
+    }
+    let free = (lags.len() as f64 - cells.len() as f64).max(1.0);
+    let noise = within / free;
+    let count = cells.len().max(1) as f64;
+    let between = cells.values().map(|(sum, count)| (sum / count).powi(2)).sum::<f64>() / count;
+    let of_noise = cells.values().map(|(_, count)| noise / count).sum::<f64>() / count;
+    let own = (between - of_noise).max(0.0);
+    let expected = |(lag, follows): (&Lag, &f64)| {
+        let (sum, count) = cells[&lag.cell];
+        let of_others = (sum - (lag.lag_rad - follows)) / (count - 1.0);
+        let told = own / (own + noise / (count - 1.0)).max(f64::MIN_POSITIVE);
+        (lag.row, follows + told * of_others)
+    };
+    lags.iter().zip(&follows).map(expected).collect()
+}
+
+/// What the lag of each row follows from, by least squares.
+fn follow(lags: &[Lag]) -> Vec<f64> {
+    let columns = if lags.len() < ROWS_PER_COLUMN * COLUMNS { 1 } else { COLUMNS };
+    let design = DMatrix::from_fn(lags.len(), columns, |r, c| lags[r].follows[c]);
+    let values = DVector::from_iterator(lags.len(), lags.iter().map(|lag| lag.lag_rad));
+    let normal = design.tr_mul(&design) + DMatrix::identity(columns, columns) * RIDGE;
+    let fit = Cholesky::new(normal).map(|normal| normal.solve(&design.tr_mul(&values)));
+    fit.map_or_else(|| vec![0.0; lags.len()], |fit| (design * fit).iter().copied().collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sixty cells of three rows; each cell lags by an own amount beside what follows the direction.
+    fn lags(own_rad: f64, noise_rad: f64, seed: u64) -> (Vec<Lag>, Vec<f64>, Vec<f64>) {
+        // Knuth's linear congruential generator; even numbers of spread one.
+        let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) + 1;
+        let mut even = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            1.732 * (2.0 * (state >> 11) as f64 / (1_u64 << 53) as f64 - 1.0)
+        };
+        let (mut lags, mut truth, mut noise) = (vec![], vec![], vec![]);
+        for cell in 0..60 {
+            let direction = if cell % 2 == 0 { 1.0 } else { -1.0 };
+            let (angle, torque, own) = (even(), even(), own_rad * even());
+            for _ in 0..3 {
+                let lag = 0.01 * direction + own;
+                let off = noise_rad * even();
+                let follows = [1.0, direction, torque, angle, angle * direction];
+                lags.push(Lag { row: lags.len(), cell, follows, lag_rad: lag + off });
+                truth.push(lag);
+                noise.push(off);
+            }
+        }
+        (lags, truth, noise)
+    }
+
+    #[test]
+    fn the_usual_lag_knows_nothing_of_the_rows_own_reading_and_is_near_the_truth() {
+        for (own_rad, noise_rad) in [(0.0, 2e-3), (2e-3, 2e-3), (4e-3, 1e-3)] {
+            let (mut alike, mut off, mut of_mean) = (0.0, 0.0, 0.0);
+            for seed in 0..40 {
+                let (lags, truth, noise) = lags(own_rad, noise_rad, seed);
+                for (i, lag_rad) in usual(&lags) {
+                    alike += (lag_rad - truth[i]) * noise[i];
+                    off += (lag_rad - truth[i]).powi(2);
+                    of_mean += noise_rad * noise_rad / 2.0;
+                }
+            }
+            let count = 40.0 * 180.0;
+            assert!((alike / count / (noise_rad * noise_rad)).abs() < 0.06, "{own_rad} {noise_rad} {alike}");
+            // No worse than the mean of the two others.
+            assert!(off < 1.05 * of_mean, "{own_rad} {noise_rad}: {off} {of_mean}");
+        }
+    }
+}
