@@ -1,7 +1,7 @@
 //! What is known of rows, and in which shapes an effect is looked for in them.
 
-use super::Effect;
 use super::entry::Shape;
+use super::{Effect, Kind};
 
 /// At most this many moments are tried for a step.
 pub(crate) const MOST_MOMENTS: usize = 15;
@@ -29,6 +29,8 @@ pub(crate) struct Known {
     pub(crate) arm: bool,
     pub(crate) eyes: bool,
     pub(crate) background: bool,
+    /// The eyes watched things that stood still.
+    pub(crate) watched: bool,
     /// Some row starts from commanded angles.
     pub(crate) commanded: bool,
     /// Some row has encoders that lag.
@@ -92,7 +94,8 @@ impl Known {
             }
             Shape::Growth(_) => {
                 let span_s = span(&self.eye_secs);
-                if span_s < SHORTEST_SPAN_S {
+                // Elsewhere what is constant would be taken for something that grows.
+                if span_s < SHORTEST_SPAN_S || !self.watched && effect.kind != Kind::EyeYaw {
                     return vec![effect];
                 }
                 let grown = YAW_CONSTANTS_S
