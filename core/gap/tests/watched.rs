@@ -1,5 +1,6 @@
 //! One thing that stands still, seen once a minute for a quarter of an hour: what is constant is told from
 //! what grows, and the eyes that turn are named.
+#![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
 
 use plumbline_effects::Measurements;
 use plumbline_gap::finding::{Finding, Verdict};

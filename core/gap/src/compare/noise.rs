@@ -31,6 +31,8 @@ const HEIGHT_SHARE: f64 = 0.5;
 
 /// A time law is an approximation: this share of the way that a watched thing goes counts as noise.
 const LAW_SHARE: f64 = 0.03;
+/// And this share of the longest way in the coordinates beside it: what turns one way turns a little the others.
+const BESIDE_SHARE: f64 = 0.01;
 
 /// Noise with what is known of where it comes from.
 pub struct Noise {
@@ -90,12 +92,13 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
             });
         }
         let free = repeats.as_ref().map_or(nearby.degrees_of_freedom, |repeats| repeats.degrees_of_freedom);
+        let ways: Vec<f64> = (0..what.len()).map(|c| way(measurements, residuals, what, c)).collect();
         let least = follows_command(measurements, what, &known, repeats.as_ref().unwrap_or(&nearby));
         let sd = (0..what.len())
             .map(|c| match &repeats {
                 Some(repeats) if known[c] => repeats.sd[c],
                 None if c < 3 && sigma_m.is_some() => sigma_m.unwrap_or_default(),
-                _ => nearby.sd[c].max(least[c]).hypot(LAW_SHARE * way(measurements, residuals, what, c)),
+                _ => nearby.sd[c].max(least[c]).hypot(of_law(&ways, c)),
             })
             .zip(what.coordinates())
             .map(|(sd, (_, unit))| sd.max(finest(*unit)))
@@ -104,6 +107,12 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
         repeated.push(known);
     }
     Noise { floor: Floor { kinds, source }, repeated, drift: changed, structure: depends }
+}
+
+/// What a time law may be off by in a coordinate, in its unit: places and eye points have one unit each.
+fn of_law(ways: &[f64], c: usize) -> f64 {
+    let longest = ways.iter().copied().fold(0.0, f64::max);
+    (LAW_SHARE * ways[c]).max(BESIDE_SHARE * longest)
 }
 
 /// How far a coordinate of things that were watched goes in the course of time, in its unit; 0 where none
