@@ -222,6 +222,7 @@ impl PlumblineWindow {
             Action::ToggleRecording => RecordingCommand::Start.into(),
             Action::WatchDrift if self.view.drift.is_watching => DriftCommand::Stop.into(),
             Action::WatchDrift => DriftCommand::Start.into(),
+            Action::ExplainDrift => DriftCommand::Explain.into(),
             Action::PlayLastRecording => {
                 SourceCommand::OpenPaths(vec![self.view.recording.last.as_ref()?.session.clone()]).into()
             }

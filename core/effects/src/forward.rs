@@ -6,6 +6,7 @@ use crate::arm::{Arm, Deviation};
 use crate::eyes::{EyeSituation, EyesDeviation};
 use crate::library::{Effect, Present, Situation};
 use crate::measurements::Measurements;
+use crate::nuisance;
 use crate::observation::{Observation, What};
 use crate::slopes::{ArmSlopes, At, EyesSlopes};
 
@@ -21,12 +22,15 @@ pub struct Assumed {
     /// Per session: where the marker sits at the tip's frame, `tip_from_marker`. Sessions without an
     /// entry have it where the description has it.
     pub mounts: Vec<Isometry3<f64>>,
+    /// Per stand ([`Observation::stand`]): what is added to each natural coordinate of its rows; pixels
+    /// in units of 500 px. Stands without an entry have none.
+    pub offsets: Vec<[f64; 4]>,
 }
 
 impl Assumed {
     /// The nominal model.
     pub fn nominal(measurements: &Measurements) -> Self {
-        Self { effects: vec![], placements: measurements.nominal_placements(), mounts: vec![] }
+        Self { placements: measurements.nominal_placements(), ..Self::default() }
     }
 
     /// Where the marker of a session sits: `tip_from_marker`.
@@ -40,6 +44,19 @@ impl Assumed {
             self.mounts.resize(session + 1, Isometry3::identity());
         }
         self.mounts[session] = tip_from_marker;
+    }
+
+    /// What is constant of a stand, see [`Self::offsets`].
+    pub fn offset(&self, stand: usize) -> [f64; 4] {
+        self.offsets.get(stand).copied().unwrap_or_default()
+    }
+
+    /// Moves what is constant of a stand.
+    pub fn shift_offset(&mut self, stand: usize, coordinate: usize, by: f64) {
+        if self.offsets.len() <= stand {
+            self.offsets.resize(stand + 1, [0.0; 4]);
+        }
+        self.offsets[stand][coordinate] += by;
     }
 }
 
@@ -67,7 +84,10 @@ impl Measurements {
         for present in &assumed.effects {
             scene.add(&present.effect, &present.values, &mut arm, &mut eyes);
         }
-        scene.predict(&arm, &eyes, &assumed.placements[row.session], &self.mount_of(row, assumed))
+        let mut predicted =
+            scene.predict(&arm, &eyes, &assumed.placements[row.session], &self.mount_of(row, assumed))?;
+        add_offset(row, assumed, &mut predicted);
+        Some(predicted)
     }
 
     /// Where what a row measured sits at the frame of its marker or tip.
@@ -115,7 +135,9 @@ impl Measurements {
             };
             scene.arm_tangents(&arm, &placed, candidates)
         } else {
-            scene.eye_tangents(&eyes, candidates)
+            let mut tangents = scene.eye_tangents(&eyes, candidates)?;
+            add_offset(row, assumed, &mut tangents.predicted);
+            Some(tangents)
         }
     }
 
@@ -139,6 +161,15 @@ impl Measurements {
             .arm
             .as_ref()
             .map_or(Point3::origin(), |arm| arm.tip_m(&vec![0.0; arm.len()], &Deviation::none(arm.len())))
+    }
+}
+
+/// Adds what is constant of the row's stand.
+fn add_offset(row: &Observation, assumed: &Assumed, predicted: &mut [f64]) {
+    let Some(stand) = row.stand else { return };
+    let unit = nuisance::offset_unit(row.what);
+    for (value, offset) in predicted.iter_mut().zip(assumed.offset(stand)) {
+        *value += unit * offset;
     }
 }
 

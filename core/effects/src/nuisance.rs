@@ -1,5 +1,7 @@
 //! What nobody wants to know but has to find: where screens and external devices stand, and where
-//! markers sit.
+//! markers sit, and what is constant where one thing was watched.
+
+use std::collections::BTreeMap;
 
 use nalgebra::{Translation3, UnitQuaternion, Vector3};
 
@@ -13,6 +15,15 @@ const FRAME_SD: f64 = 0.5;
 const MOUNT_SD_M: f64 = 0.05;
 /// … and is turned against where it was found at first by this, rad.
 const MOUNT_SD_RAD: f64 = 0.5;
+/// What is constant of a stand beforehand: bearings (tangents) and baseline over depth.
+const OFFSET_SD: f64 = 0.2;
+/// Pixels that count as one unit of a bearing where pixels were measured.
+const PX_PER_RAD: f64 = 500.0;
+
+/// What one unit of a stand's offset is in the natural coordinates of its rows.
+pub(crate) fn offset_unit(what: What) -> f64 {
+    if what == What::EyePoints { PX_PER_RAD } else { 1.0 }
+}
 
 /// One direction in which something moves that is found along with the effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,6 +42,14 @@ pub enum Nuisance {
         /// 0–5.
         axis: usize,
     },
+    /// What is constant of one coordinate while one thing is watched: it cannot be told there whether the
+    /// mount, a zero of the neck or the place that somebody wrote down is off.
+    Offset {
+        /// The stand, see [`Observation::stand`].
+        stand: usize,
+        /// Its natural coordinate.
+        coordinate: usize,
+    },
 }
 
 impl Nuisance {
@@ -38,6 +57,7 @@ impl Nuisance {
     pub fn prior_sd(self) -> f64 {
         match self {
             Self::Frame { .. } => FRAME_SD,
+            Self::Offset { .. } => OFFSET_SD,
             Self::Mount { axis, .. } => {
                 if axis < 3 {
                     MOUNT_SD_M
@@ -52,6 +72,7 @@ impl Nuisance {
     pub fn value(self, assumed: &Assumed) -> f64 {
         match self {
             Self::Mount { session, axis } if axis < 3 => assumed.mount(session).translation.vector[axis],
+            Self::Offset { stand, coordinate } => assumed.offset(stand)[coordinate],
             Self::Mount { .. } | Self::Frame { .. } => 0.0,
         }
     }
@@ -86,6 +107,11 @@ impl Measurements {
             let axes = if turned[session] { 6 } else { 3 };
             all.extend((0..axes).map(|axis| Nuisance::Mount { session, axis }));
         }
+        let stands: BTreeMap<usize, usize> =
+            self.rows.iter().filter_map(|row| Some((row.stand?, row.what.len()))).collect();
+        for (stand, coordinates) in stands {
+            all.extend((0..coordinates).map(|coordinate| Nuisance::Offset { stand, coordinate }));
+        }
         all
     }
 
@@ -111,6 +137,13 @@ impl Measurements {
                 let own = row.session == session && self.feels_mount(row);
                 if own { tangents.mount[(coordinate, axis)] } else { 0.0 }
             }
+            Nuisance::Offset { stand, coordinate: own } => {
+                if row.stand == Some(stand) && own == coordinate {
+                    offset_unit(row.what)
+                } else {
+                    0.0
+                }
+            }
         }
     }
 
@@ -130,6 +163,10 @@ impl Measurements {
             let (of, session, axis) = match *nuisance {
                 Nuisance::Frame { session, axis } => (&mut frames, session, axis),
                 Nuisance::Mount { session, axis } => (&mut mounts, session, axis),
+                Nuisance::Offset { stand, coordinate } => {
+                    assumed.shift_offset(stand, coordinate, *value);
+                    continue;
+                }
             };
             of[session].get_or_insert([0.0; 6])[axis] = *value;
         }

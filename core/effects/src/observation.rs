@@ -167,6 +167,10 @@ pub struct Observation {
     pub encoder_behind_gear: bool,
     /// Room temperature, °C.
     pub ambient_c: Option<f64>,
+    /// Which stand, counted from 0 over all sessions: rows of one thing that stood still while the eyes
+    /// that looked at it stood still too, seen again and again. What is constant there is found along with
+    /// the effects. `None`: nothing is known of such a thing.
+    pub stand: Option<usize>,
 }
 
 impl Observation {
@@ -202,6 +206,7 @@ impl Observation {
             marker: 0,
             encoder_behind_gear: false,
             ambient_c: None,
+            stand: None,
         }
     }
 

@@ -62,6 +62,8 @@ works! {
     Source(source / SourceWork);
     /// Part of recording.
     Recording(recording / RecordingWork);
+    /// Part of watching drift.
+    Drift(drift / DriftWork);
     /// Part of detection.
     Detect(detect / DetectWork);
     /// Part of calibrating the eyes.

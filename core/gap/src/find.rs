@@ -16,6 +16,7 @@ use crate::search::{self, Found};
 use crate::sentence;
 use crate::servos;
 use crate::show;
+use crate::watched;
 
 /// Where each stage ends, as a share of the whole.
 const COMPARED: f64 = 0.1;
@@ -47,6 +48,24 @@ pub fn find(
     options: &Options,
     context: &dyn JobContext,
 ) -> Result<Finding, GapError> {
+    let Some(watched) = watched::told(measurements) else {
+        return found_in(measurements, &[], options, context);
+    };
+    let finding = found_in(&watched.measurements, &watched.words, options, context)?;
+    // Several things that stand still are a grid as well: what is constant there has a name.
+    if finding.verdict == Verdict::NoGap && watched.places > 2 {
+        return found_in(measurements, &[], options, context);
+    }
+    Ok(finding)
+}
+
+/// The same, with what was told of the rows beforehand, in words.
+fn found_in(
+    measurements: &Measurements,
+    told_before: &[String],
+    options: &Options,
+    context: &dyn JobContext,
+) -> Result<Finding, GapError> {
     let start = Instant::now();
     context.checkpoint()?;
     // What cannot be looked at is refused with its own words, not taken for a turned marker.
@@ -54,7 +73,7 @@ pub fn find(
     let anew = marker::mounted_anew(measurements, context)?;
     let (measurements, told) = anew.as_ref().map_or((measurements, &[][..]), |(of, words)| (of, words));
     let mut compared = compare(measurements, options.seed, &Stage::new(context, 0.0, COMPARED))?;
-    compared.warnings.extend(told.iter().cloned());
+    compared.warnings.extend(told_before.iter().chain(told).cloned());
     if !compared.comparison.is_gap || !compared.is_related {
         return Ok(without_search(measurements, compared, options, start));
     }

@@ -16,6 +16,7 @@ mod sentence;
 mod servos;
 mod show;
 mod statistics;
+mod watched;
 
 pub use error::{GapError, Turns};
 pub use file::FindingFileError;

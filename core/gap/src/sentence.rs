@@ -1,6 +1,7 @@
 //! The answer in a sentence or two, for someone in the lab.
 
 use crate::finding::{Finding, FloorSource, FoundParameter, NamedEffect, Shown, ShownUnit, Verdict};
+use crate::watched::WATCHED;
 
 /// What was found, in words.
 pub(crate) fn of(finding: &Finding) -> String {
@@ -54,8 +55,13 @@ fn no_gap(finding: &Finding) -> String {
     // What servos do all alike has no name, but no gap does not mean that commands are kept.
     let servos = finding.warnings.iter().find(|words| words.starts_with("the servos give way"));
     let servos = servos.map_or(String::new(), |words| format!(" But {words}."));
+    let placed = if finding.warnings.iter().any(|words| words.contains(WATCHED)) {
+        "Beside what is constant at the place that was watched"
+    } else {
+        "Once the frame is placed"
+    };
     format!(
-        "{first} Once the frame is placed, the mean error is {}, and noise alone leaves {}{approximate}.{servos}",
+        "{first} {placed}, the mean error is {}, and noise alone leaves {}{approximate}.{servos}",
         size(shown.before, shown.unit),
         size(shown.floor, shown.unit)
     )

@@ -89,7 +89,7 @@ fn refitted(of: &Measurements, effects: Vec<Present>) -> [f64; 2] {
 fn start(of: &Measurements) -> Assumed {
     let options = Options { show: false, advise: false, most_effects: 0, ..Options::default() };
     let finding = find(of, &options, &Unattended).expect("can be looked at");
-    Assumed { placements: finding.placements, mounts: finding.mounts, effects: vec![] }
+    Assumed { placements: finding.placements, mounts: finding.mounts, ..Assumed::default() }
 }
 
 fn say(finding: &Finding) {

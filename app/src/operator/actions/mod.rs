@@ -66,6 +66,8 @@ pub enum Action {
     PlayLastRecording,
     /// Watches whether places stay where they are, or stops that.
     WatchDrift,
+    /// Names what makes the watched places wander.
+    ExplainDrift,
     /// Opens a screen.
     Go(Screen),
     /// Says which board the newest pair shows.
@@ -198,6 +200,7 @@ const ALL: &[Action] = &[
     Action::ToggleRecording,
     Action::PlayLastRecording,
     Action::WatchDrift,
+    Action::ExplainDrift,
     Action::Go(Screen::Commission),
     Action::Go(Screen::Live),
     Action::Go(Screen::Collect),
@@ -299,6 +302,7 @@ impl Action {
             Self::ToggleRecording => "Record, or stop recording",
             Self::PlayLastRecording => "Play the last recording",
             Self::WatchDrift => "Watch drift, or stop watching",
+            Self::ExplainDrift => "Explain what was watched",
             Self::RecognizeBoard => "Recognize the board",
             Self::UseSeenBoard => "Use the recognized board",
             Self::Capture => "Capture pair",
@@ -373,6 +377,8 @@ impl Action {
             ),
             Self::PlayLastRecording => when(view.recording.last.is_some(), "nothing was recorded yet"),
             Self::CollectRecording => when(view.source.replay.is_some(), "no recording is open"),
+            Self::ExplainDrift if view.gap.searching.is_some() => Some("the gap is being looked for".into()),
+            Self::ExplainDrift => view.drift.unexplained.map(Cow::Borrowed),
             Self::DeleteLast | Self::DeleteAll => when(!eyes.collected.is_empty(), "no pair is collected"),
             Self::Undo => when(eyes.can_undo, "nothing was changed"),
             Self::Solve if eyes.solving.is_some() => Some("a solution is being computed".into()),

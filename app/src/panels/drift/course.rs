@@ -5,7 +5,7 @@ use plumbline_engine::view::{DriftCourse, DriftVerdict};
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::chart::{Chart, Line};
-use super::nothing_yet;
+use super::{explain, nothing_yet};
 use crate::panels::{PanelContext, padded};
 
 /// Colors of the rows of the table, from near to far.
@@ -17,6 +17,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let Some(course) = &drift.course else { return nothing_yet(ui, cx.view) };
     padded(ui, |ui| {
         headline(ui, course, drift.is_watching);
+        explain::show(ui, cx);
         ui.add_space(space::XS);
         let height = ui.available_height();
         let minutes = |at_s: f64| at_s / 60.0;

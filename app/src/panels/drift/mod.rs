@@ -2,6 +2,7 @@
 
 mod chart;
 mod course;
+mod explain;
 mod inspector;
 mod table;
 

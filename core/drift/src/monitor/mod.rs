@@ -6,11 +6,13 @@ mod mover;
 mod tests;
 
 use nalgebra::Vector3;
+use plumbline_effects::{RobotModel, SeenUnder};
+use plumbline_model::robot::Posture;
 
 pub use band::Band;
 pub use mover::{Mover, OwnMotion};
 
-use crate::cost::Row;
+use crate::cost::{Row, errors};
 use crate::warm_up::fit_warm_up;
 use crate::watch::Look;
 
@@ -118,6 +120,26 @@ impl Monitor {
                 self.alarms.push(alarm);
             }
         }
+    }
+
+    /// What the same looks say when the robot localizes with another model; `None`: an eye does not see a part
+    /// of the table as the head stands. `knows_when`: whether times count from switching on, so that laws of
+    /// time apply.
+    pub fn retold(
+        samples: &[Sample],
+        model: &RobotModel,
+        posture: &Posture,
+        knows_when: bool,
+    ) -> Option<Self> {
+        let mut monitor = Self::default();
+        let seen =
+            |sample: &Sample| SeenUnder { t_secs: knows_when.then_some(sample.at_s), background_m: None };
+        let first = seen(samples.first()?);
+        for sample in samples {
+            let table = errors(model, posture, sample.look.turns_rad, &first, &seen(sample))?;
+            monitor.add(Sample { at_s: sample.at_s, look: Look { table, ..sample.look.clone() } });
+        }
+        Some(monitor)
     }
 
     /// Everything that was seen, oldest first.

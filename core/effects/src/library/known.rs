@@ -1,7 +1,7 @@
 //! What is known of rows, and in which shapes an effect is looked for in them.
 
-use super::Effect;
 use super::entry::Shape;
+use super::{Effect, Kind};
 
 /// At most this many moments are tried for a step.
 pub(crate) const MOST_MOMENTS: usize = 15;
@@ -10,6 +10,9 @@ const TIME_CONSTANTS_S: [f64; 6] = [60.0, 120.0, 240.0, 480.0, 900.0, 1800.0];
 /// Time constants and delays that are tried for an eye that turns, s.
 const YAW_CONSTANTS_S: [f64; 4] = [120.0, 240.0, 480.0, 960.0];
 const YAW_DELAYS_S: [f64; 3] = [0.0, 90.0, 180.0];
+/// The same where one thing was watched: its course shows them better.
+const WATCHED_CONSTANTS_S: [f64; 7] = [120.0, 170.0, 240.0, 340.0, 480.0, 680.0, 960.0];
+const WATCHED_DELAYS_S: [f64; 3] = [0.0, 60.0, 120.0];
 /// A time law needs rows over this time, s.
 const SHORTEST_SPAN_S: f64 = 60.0;
 /// A joint must be held at least so long for it to creep, s. Repeats that follow each other closely
@@ -29,6 +32,8 @@ pub(crate) struct Known {
     pub(crate) arm: bool,
     pub(crate) eyes: bool,
     pub(crate) background: bool,
+    /// The eyes watched things that stood still.
+    pub(crate) watched: bool,
     /// Some row starts from commanded angles.
     pub(crate) commanded: bool,
     /// Some row has encoders that lag.
@@ -92,13 +97,19 @@ impl Known {
             }
             Shape::Growth(_) => {
                 let span_s = span(&self.eye_secs);
-                if span_s < SHORTEST_SPAN_S {
+                // Elsewhere what is constant would be taken for something that grows.
+                if span_s < SHORTEST_SPAN_S || !self.watched && effect.kind != Kind::EyeYaw {
                     return vec![effect];
                 }
-                let grown = YAW_CONSTANTS_S
+                let (constants, delays) = if self.watched {
+                    (&WATCHED_CONSTANTS_S[..], WATCHED_DELAYS_S)
+                } else {
+                    (&YAW_CONSTANTS_S[..], YAW_DELAYS_S)
+                };
+                let grown = constants
                     .iter()
                     .filter(|constant| **constant <= 2.0 * span_s)
-                    .flat_map(|constant| YAW_DELAYS_S.map(|delay| Effect::yaw_growth(*constant, delay)));
+                    .flat_map(|constant| delays.map(|delay| Effect::yaw_growth(*constant, delay)));
                 let grown: Vec<Effect> = grown.map(|shape| effect.clone().with_shape(Some(shape))).collect();
                 [vec![effect], grown].concat()
             }

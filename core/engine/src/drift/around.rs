@@ -9,6 +9,7 @@ use plumbline_model::robot::Posture;
 use plumbline_model::{Eye, Pixel, Point, Raw, Robot, StereoFrame};
 
 use crate::detect::view::{DetectionsView, ObjectView};
+use crate::ground::World;
 use crate::robot::view::{MotionState, RobotView};
 
 /// Detections of pairs that are this far from the one that is looked at are of it still.
@@ -33,6 +34,8 @@ pub struct DriftAround {
     pub robot: Arc<RobotView>,
     /// Time since the eyes were switched on, s.
     pub eyes_on_s: Option<f64>,
+    /// The world that is shown, where the arm is of it, too.
+    pub world: Option<World>,
     /// What the detector found last.
     pub found: Option<Arc<DetectionsView>>,
 }

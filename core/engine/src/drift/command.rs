@@ -10,4 +10,6 @@ pub enum DriftCommand {
     Start,
     /// Stops; what was seen stays to be looked at.
     Stop,
+    /// Makes a session of what was watched, and looks for the gap in it.
+    Explain,
 }

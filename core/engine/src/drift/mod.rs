@@ -6,6 +6,7 @@ mod stage;
 #[cfg(test)]
 mod tests;
 pub mod view;
+pub mod work;
 mod workflow;
 
 pub use around::DriftAround;

@@ -43,6 +43,7 @@ impl Desk {
             own_eyes: false,
             robot: Arc::default(),
             eyes_on_s: Some(3600.0),
+            world: None,
             found: None,
         };
         Self {

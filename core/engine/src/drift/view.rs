@@ -1,5 +1,6 @@
 //! Drift, for the window.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 pub use plumbline_drift::{Mover as DriftMover, PlaceError, Row as TableRow, Verdict as DriftVerdict};
@@ -19,6 +20,12 @@ pub struct DriftView {
     pub failed: Option<String>,
     /// What was seen since watching began; `None`: it never did.
     pub course: Option<Arc<DriftCourse>>,
+    /// Whether a session is being made of it, or it is told with another model.
+    pub is_busy: bool,
+    /// Why it cannot be explained now, a part of a sentence; `None`: it can.
+    pub unexplained: Option<&'static str>,
+    /// The session that was made of it last, to be explained.
+    pub log: Option<PathBuf>,
 }
 
 /// What was seen since watching began.

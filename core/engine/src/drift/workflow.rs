@@ -1,21 +1,24 @@
 //! Whether it watches, when it looks, and what was seen.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use plumbline_drift::{Monitor, Sample, Verdict, WatcherSetup, words};
+use plumbline_drift::{Monitor, Sample, Verdict, WatcherSetup, is_too_short, words};
+use plumbline_effects::RobotModel;
 use plumbline_model::StereoFrame;
 
 use super::DriftAround;
 use super::command::DriftCommand;
 use super::stage::{DriftInput, DriftOutput};
 use super::view::{DriftCourse, DriftPoint, DriftView};
+pub use super::work::Context;
+use super::work::{DriftResult, DriftWork};
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
 use crate::ground::stage::Timed;
 use crate::ground::step::StepState;
-use crate::ground::{self, Moment, Nothing, Time, Workflow};
+use crate::ground::{Moment, Nothing, Time, Workflow};
 
 /// It looks no more often than this.
 const EVERY: Duration = Duration::from_secs(2);
@@ -23,9 +26,6 @@ const EVERY: Duration = Duration::from_secs(2);
 const MOST_SHARE: f64 = 0.03;
 /// The clock of the eyes goes back by more than this when they were switched off, s.
 const WENT_BACK_S: f64 = 1.0;
-
-/// What the handlers of this room may reach besides their own workflow.
-pub type Context<'a> = ground::Context<'a, Nothing>;
 
 /// Watching drift. There is one at a time, of what is shown.
 #[derive(Clone, Debug, Default)]
@@ -37,6 +37,13 @@ pub struct DriftWorkflow {
     course: Option<Arc<DriftCourse>>,
     failed: Option<String>,
     down: Option<String>,
+    data_dir: PathBuf,
+    /// A session is being made of what was watched.
+    logging: Option<JobId>,
+    /// What was watched is being told with another model.
+    retelling: Option<JobId>,
+    /// The session that was made last, and whether somebody was told of it.
+    log: Option<(PathBuf, bool)>,
 }
 
 /// A watch under way.
@@ -48,6 +55,8 @@ struct Watch {
     /// Whether the eyes' clock is known.
     from_switching_on: bool,
     monitor: Monitor,
+    /// The model that it is told with.
+    model: Arc<RobotModel>,
     due: Instant,
     pending: Option<Arc<DriftInput>>,
     told_alarms: usize,
@@ -67,8 +76,9 @@ impl DriftWorkflow {
             context.notices.add(NoticeLevel::Info, text);
             self.begin(around, now);
         }
+        self.use_model(around, context);
         let number = self.number;
-        let Some(watch) = &mut self.watch else { return };
+        let Some(watch) = self.watch.as_mut().filter(|_| self.retelling.is_none()) else { return };
         if now.instant < watch.due || watch.pending.is_some() || around.waits_because().is_some() {
             return;
         }
@@ -95,6 +105,10 @@ impl DriftWorkflow {
         let Some(watch) = self.watch.as_mut().filter(|_| number == self.number) else { return };
         watch.pending = None;
         watch.due = watch.due.max(context.time.instant + output.busy.div_f64(MOST_SHARE));
+        // It was told with the model before.
+        if self.retelling.is_some() {
+            return;
+        }
         match look {
             Err(failure) => self.failed = Some(failure.0),
             Ok(look) => {
@@ -126,6 +140,80 @@ impl DriftWorkflow {
         self.down = why;
     }
 
+    /// Something was accepted or taken back: what was seen is told as it is now.
+    fn use_model(&mut self, around: &DriftAround, context: &mut Context<'_>) {
+        let Some(watch) = &mut self.watch else { return };
+        if Arc::ptr_eq(&watch.model, &around.model) {
+            return;
+        }
+        watch.model = around.model.clone();
+        if let Some(job) = self.retelling.take() {
+            context.cancel(job);
+        }
+        if watch.monitor.samples().is_empty() {
+            return;
+        }
+        self.retelling = Some(context.start(DriftWork::Retell {
+            samples: watch.monitor.samples().into(),
+            model: around.model.clone(),
+            posture: around.posture(),
+            knows_when: watch.from_switching_on,
+        }));
+    }
+
+    fn retold(&mut self, monitor: Option<Monitor>, around: &DriftAround, context: &mut Context<'_>) {
+        let Some(watch) = &mut self.watch else { return };
+        let Some(monitor) = monitor else {
+            let text = "What was watched cannot be told with the new model as the head stands: watching begins anew.";
+            context.notices.add(NoticeLevel::Info, text);
+            return self.begin(around, context.time);
+        };
+        watch.told_alarms = monitor.alarms().len();
+        watch.told_motions = monitor.own_motions().len();
+        watch.monitor = monitor;
+        self.course = watch.course().map(Arc::new);
+    }
+
+    fn explain(&mut self, around: &DriftAround, context: &mut Context<'_>) {
+        if let Some(why) = self.unexplained(around) {
+            return context.refuse(format!("What was watched cannot be explained: {why}."));
+        }
+        let (Some(watch), Some(world)) = (&self.watch, around.world) else { return };
+        self.logging = Some(context.start(DriftWork::WriteLog {
+            sessions: world.folder(&self.data_dir).join("sessions"),
+            samples: watch.monitor.samples().into(),
+            model: around.model.clone(),
+            posture: around.posture(),
+            at: context.time.day,
+        }));
+    }
+
+    /// Why what was watched cannot be explained now, a part of a sentence; `None`: it can.
+    fn unexplained(&self, around: &DriftAround) -> Option<&'static str> {
+        let Some(watch) = &self.watch else { return Some("nothing is being watched") };
+        if self.logging.is_some() || self.retelling.is_some() {
+            return Some("it is being worked at already; wait a moment");
+        }
+        if !watch.from_switching_on {
+            return Some(
+                "nobody knows when the cameras were switched on; say it on the screen Eyes, then watch anew",
+            );
+        }
+        if around.world.is_none() {
+            return Some("the eyes that are shown are not those of the robot that is connected");
+        }
+        let samples = watch.monitor.samples();
+        let span_s = samples.first().zip(samples.last()).map_or(0.0, |(first, last)| last.at_s - first.at_s);
+        is_too_short(samples.len(), span_s)
+            .then_some("it has to be watched for at least 3 minutes, better 10")
+    }
+
+    /// The session that was made of what was watched, once.
+    pub fn next_log(&mut self) -> Option<PathBuf> {
+        let (log, told) = self.log.as_mut()?;
+        (!std::mem::replace(told, true)).then(|| log.clone())
+    }
+
     fn went_back(&self, around: &DriftAround) -> bool {
         let last = self.watch.as_ref().and_then(|watch| watch.monitor.samples().last());
         last.zip(around.eyes_on_s).is_some_and(|(last, on_s)| on_s < last.at_s - WENT_BACK_S)
@@ -133,6 +221,7 @@ impl DriftWorkflow {
 
     fn begin(&mut self, around: &DriftAround, now: Time) {
         self.number += 1;
+        self.retelling = None;
         self.failed = None;
         self.course = None;
         self.watch = Some(Watch {
@@ -140,6 +229,7 @@ impl DriftWorkflow {
             opened: around.opened,
             from_switching_on: around.eyes_on_s.is_some(),
             monitor: Monitor::default(),
+            model: around.model.clone(),
             due: now.instant,
             pending: None,
             told_alarms: 0,
@@ -201,13 +291,14 @@ impl Watch {
 
 impl Workflow for DriftWorkflow {
     type Command = DriftCommand;
-    type Work = Nothing;
+    type Work = DriftWork;
     type Control = Nothing;
     type Around = DriftAround;
     type View = DriftView;
 
-    fn new(_: &Path) -> Self {
-        Self::default()
+    /// Sessions are made in the folder of a world in `data_dir`.
+    fn new(data_dir: &Path) -> Self {
+        Self { data_dir: data_dir.to_owned(), ..Self::default() }
     }
 
     fn view(&mut self, around: &DriftAround, _: &Moment) -> Arc<DriftView> {
@@ -226,6 +317,9 @@ impl Workflow for DriftWorkflow {
             waits_because: waits.filter(|_| is_watching),
             failed: self.failed.clone().filter(|_| is_watching),
             course: self.course.clone(),
+            is_busy: self.logging.is_some() || self.retelling.is_some(),
+            unexplained: self.unexplained(around),
+            log: self.log.as_ref().map(|(log, _)| log.clone()),
         })
     }
 
@@ -236,13 +330,33 @@ impl Workflow for DriftWorkflow {
             }
             DriftCommand::Start => self.begin(around, context.time),
             DriftCommand::Stop if self.watch.is_none() => context.refuse("Nothing is being watched."),
-            DriftCommand::Stop => self.watch = None,
+            DriftCommand::Stop => {
+                self.watch = None;
+                self.retelling = None;
+            }
+            DriftCommand::Explain => self.explain(around, context),
         }
     }
 
-    fn work_done(&mut self, _: JobId, result: Nothing, _: &DriftAround, _: &mut Context<'_>) {
-        match result {}
+    fn work_done(&mut self, id: JobId, result: DriftResult, around: &DriftAround, context: &mut Context<'_>) {
+        match result {
+            DriftResult::Logged(folder) => {
+                self.logging.take_if(|logging| *logging == id);
+                self.log = Some((folder, false));
+            }
+            // What was cancelled may have been done just then.
+            DriftResult::Retold(monitor) => {
+                if self.retelling.take_if(|retelling| *retelling == id).is_some() {
+                    self.retold(monitor.map(|monitor| *monitor), around, context);
+                }
+            }
+        }
     }
 
-    fn work_ended(&mut self, _: JobId, _: Option<&str>, _: &DriftAround, _: &mut Context<'_>) {}
+    fn work_ended(&mut self, id: JobId, why: Option<&str>, around: &DriftAround, context: &mut Context<'_>) {
+        self.logging.take_if(|logging| *logging == id);
+        if self.retelling.take_if(|retelling| *retelling == id).is_some() && why.is_some() {
+            self.begin(around, context.time);
+        }
+    }
 }

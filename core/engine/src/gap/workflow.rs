@@ -190,6 +190,15 @@ impl GapWorkflow {
         self.list(context);
     }
 
+    /// What the eyes watched is explained: compared with the model in use, and nothing else beside it.
+    pub fn explain(&mut self, session: &Path, around: &GapAround, context: &mut Context<'_>) {
+        self.chosen = vec![session.to_owned()];
+        self.with = GapModel::InUse;
+        self.list(context);
+        self.find(Options::default().seed, around, context);
+        self.look();
+    }
+
     /// Why the shown finding does not tell about now any more.
     pub(super) fn stale(&self) -> Option<String> {
         let kept = &self.shown_named()?.kept;

@@ -171,7 +171,15 @@ impl Neighbors<DriftWorkflow> for State {
             own_eyes: self.shows_own_eyes() && self.shown == self.arm_of,
             robot: self.robot.clone(),
             eyes_on_s: self.eyes_on_s(),
+            world: (self.shown == self.arm_of).then_some(self.shown),
             found: self.rooms.detect.found().cloned(),
+        }
+    }
+
+    fn after(&mut self, _world: World) {
+        // What was watched is explained where all that is missing is looked for.
+        if let Some(log) = self.rooms.drift.next_log() {
+            self.with::<GapWorkflow>(self.arm_of, |gap, around, context| gap.explain(&log, around, context));
         }
     }
 }

@@ -30,6 +30,7 @@ macro_rules! all_rooms {
             scores: ScoresWorkflow, Scores;
             source: SourceWorkflow, Source;
             recording: RecordingWorkflow, Recording;
+            drift: DriftWorkflow, Drift;
         }
         per_world {
             eyes: EyesWorkflow, Eyes, shown;
@@ -43,7 +44,6 @@ macro_rules! all_rooms {
         }
         without_work {
             live: LiveWorkflow, Live;
-            drift: DriftWorkflow, Drift;
         }
         }
     };

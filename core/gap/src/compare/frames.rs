@@ -67,10 +67,18 @@ pub fn placed(
             .filter(|nuisance| match *nuisance {
                 Nuisance::Frame { session, .. } => session == leader,
                 Nuisance::Mount { session, .. } => shares(session),
+                Nuisance::Offset { .. } => false,
             })
             .collect();
         turn_mounts(measurements, &own, &free, &mut assumed);
         settle(measurements, &free, &own, &mut assumed, context)?;
+    }
+    let stands: Vec<Nuisance> =
+        all.iter().copied().filter(|nuisance| matches!(nuisance, Nuisance::Offset { .. })).collect();
+    if !stands.is_empty() {
+        let own: Vec<usize> =
+            rows.iter().copied().filter(|&i| measurements.rows[i].stand.is_some()).collect();
+        settle(measurements, &stands, &own, &mut assumed, context)?;
     }
     Ok(assumed)
 }
@@ -182,7 +190,7 @@ fn reweighted(linear: &[Linear], free: &[Nuisance], assumed: &Assumed) -> Option
         count,
         free.iter().map(|nuisance| match nuisance {
             Nuisance::Frame { .. } => LOOSE.powi(-2),
-            Nuisance::Mount { .. } => nuisance.prior_sd().powi(-2),
+            Nuisance::Mount { .. } | Nuisance::Offset { .. } => nuisance.prior_sd().powi(-2),
         }),
     );
     let stands = DVector::from_iterator(count, free.iter().map(|nuisance| nuisance.value(assumed)));

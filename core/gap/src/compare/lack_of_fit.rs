@@ -322,14 +322,34 @@ fn bases(measurements: &Measurements, all: &Standardized, covariates: &Covariate
             let rows: Vec<usize> = chosen.iter().map(|&k| all.rows[k]).collect();
             let at = chosen.iter().map(|&k| all.start[k]).collect();
             let most = MOST_COLUMNS.min(rows.len() / 4);
-            Some(Basis { what, at, projector: Projector::off(columns(covariates, &rows, most)) })
+            Some(Basis {
+                what,
+                at,
+                projector: Projector::off(columns(measurements, covariates, &rows, most)),
+            })
         })
         .collect()
 }
 
 /// The widest directions of the standardized covariates, and their squares and products.
-fn columns(covariates: &Covariates, rows: &[usize], most: usize) -> DMatrix<f64> {
+fn columns(
+    measurements: &Measurements,
+    covariates: &Covariates,
+    rows: &[usize],
+    most: usize,
+) -> DMatrix<f64> {
     let count = rows.len();
+    // What is constant of a stand is fitted: only what differs within it tells.
+    let stands = |i: usize| measurements.rows[i].stand;
+    let less_mean = |column: DVector<f64>| {
+        let mut sums = BTreeMap::<Option<usize>, (f64, f64)>::new();
+        for (value, &i) in column.iter().zip(rows) {
+            let sum = sums.entry(stands(i)).or_default();
+            *sum = (sum.0 + value, sum.1 + 1.0);
+        }
+        let mean = |i: usize| sums.get(&stands(i)).map_or(0.0, |(sum, count)| sum / count);
+        DVector::from_iterator(count, column.iter().zip(rows).map(|(value, &i)| value - mean(i)))
+    };
     let mut linear: Vec<DVector<f64>> = vec![];
     for c in 0..covariates.names.len() {
         let known: Vec<f64> = rows.iter().filter_map(|&i| covariates.values[i][c]).collect();
@@ -341,6 +361,7 @@ fn columns(covariates: &Covariates, rows: &[usize], most: usize) -> DMatrix<f64>
             count,
             rows.iter().map(|&i| covariates.values[i][c].map_or(0.0, |value| value - mean)),
         );
+        let column = if rows.iter().any(|&i| stands(i).is_some()) { less_mean(column) } else { column };
         let norm = column.norm();
         if norm > 1e-9 {
             linear.push(column / norm);
@@ -368,7 +389,7 @@ fn columns(covariates: &Covariates, rows: &[usize], most: usize) -> DMatrix<f64>
                 break 'products;
             }
             let product = directions[a].component_mul(&directions[b]);
-            columns.push(product.add_scalar(-product.mean()));
+            columns.push(less_mean(product));
         }
     }
     // The constant is part of it only where no frame takes it up; it does no harm where one does.

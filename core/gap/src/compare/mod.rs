@@ -129,6 +129,10 @@ pub(crate) fn compare(
         misfit.p_value = misfit.p_value.min(course.p_value);
         misfit.size_sigmas = misfit.size_sigmas.max(course.size_sigmas);
     }
+    if let Some(p_value) = crate::watched::course_by_chance(measurements) {
+        // Two tests: twice the smaller probability.
+        misfit.p_value = (2.0 * misfit.p_value.min(p_value)).min(1.0);
+    }
     if let Some(structure) = &noise.structure {
         misfit.p_value = misfit.p_value.min(structure.p_value);
         misfit.size_sigmas = misfit.size_sigmas.max(structure.size_sigmas);
@@ -223,12 +227,16 @@ fn warn_of_noise(floor: &Floor, warnings: &mut Vec<String>) {
 /// Whether measured places follow predicted ones.
 fn related(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> bool {
     let (mut left, mut whole) = (0.0, 0.0);
+    // Where one thing was watched nothing was to be followed.
+    if measurements.rows.iter().all(|row| row.stand.is_some()) {
+        return true;
+    }
     for what in What::ALL {
         let kept: Vec<(&Vec<f64>, &Vec<f64>)> = measurements
             .rows
             .iter()
             .zip(residuals)
-            .filter(|(row, _)| row.what == what)
+            .filter(|(row, _)| row.what == what && row.stand.is_none())
             .filter_map(|(row, residual)| Some((&row.measured, residual.as_ref()?)))
             .collect();
         // The height of a touch is always measured as zero, and so is a turn against what was measured.

@@ -15,6 +15,9 @@ const THIN: f64 = 0.15;
 /// near, m.
 const FAR_M: f64 = 0.09;
 
+/// What a second counts where one thing was watched: a minute is as far as a few centimeters, m.
+const M_PER_S: f64 = 1e-3;
+
 /// Rows of one kind as points, alike where they are near.
 pub struct Points {
     /// Rows, by place in [`Measurements::rows`].
@@ -23,6 +26,8 @@ pub struct Points {
     pub at: DMatrix<f64>,
     /// Rows of different context (session, side, weight, height) are no neighbors.
     pub context: Vec<usize>,
+    /// Whether each was watched: before and after a jump are no neighbors, however few there are.
+    watched: Vec<bool>,
     /// Spread (root mean square) along the directions that [`Self::at`] leaves out, m.
     hidden: f64,
 }
@@ -50,7 +55,8 @@ impl Points {
             })
             .collect();
         let (at, hidden) = principal(at);
-        Self { rows, at, context, hidden }
+        let watched = rows.iter().map(|&i| measurements.rows[i].stand.is_some()).collect();
+        Self { rows, at, context, watched, hidden }
     }
 
     /// Whether neighbors are near in everything that was varied.
@@ -78,7 +84,7 @@ impl Points {
         (0..self.rows.len())
             .into_par_iter()
             .map(|i| {
-                let alone = sizes[self.context[i]] <= count + 2;
+                let alone = sizes[self.context[i]] <= count + 2 && !self.watched[i];
                 let mut others: Vec<(f64, usize)> = (0..self.rows.len())
                     .filter(|&j| j != i && (alone || self.context[j] == self.context[i]))
                     .map(|j| (apart(i, j), j))
@@ -109,6 +115,10 @@ impl Points {
 
 /// What makes two rows near: joint angles, the place, the posture of the neck; all in m or so.
 fn place(row: &Observation) -> Vec<f64> {
+    // All at one place: neighbors in time are near.
+    if let (Some(_), Some(t_secs)) = (row.stand, row.t_secs) {
+        return vec![t_secs * M_PER_S];
+    }
     let mut place: Vec<f64> = row.angles_rad().iter().map(|angle| angle * REACH_M).collect();
     match (row.what, row.truth_m) {
         (What::Touch, _) => place.extend(&row.measured[..2]),
@@ -124,6 +134,7 @@ fn place(row: &Observation) -> Vec<f64> {
 fn context_key(row: &Observation) -> Vec<i64> {
     let fine = |value: f64| (value * 1e3).round() as i64;
     let mut key = vec![row.session as i64, fine(row.payload_kg), fine(row.screen_height_m)];
+    key.push(row.stand.map_or(-1, |stand| stand as i64));
     key.extend(row.direction.iter().map(|sign| fine(*sign)));
     key
 }

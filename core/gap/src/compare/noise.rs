@@ -29,6 +29,11 @@ const NOT_MEASURED: f64 = 0.02;
 /// Noise of the height of a touch against that along the glass, where only commands are known.
 const HEIGHT_SHARE: f64 = 0.5;
 
+/// A time law is an approximation: this share of the way that a watched thing goes counts as noise.
+const LAW_SHARE: f64 = 0.03;
+/// And this share of the longest way in the coordinates beside it: what turns one way turns a little the others.
+const BESIDE_SHARE: f64 = 0.01;
+
 /// Noise with what is known of where it comes from.
 pub struct Noise {
     /// Per kind and coordinate.
@@ -87,12 +92,13 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
             });
         }
         let free = repeats.as_ref().map_or(nearby.degrees_of_freedom, |repeats| repeats.degrees_of_freedom);
+        let ways: Vec<f64> = (0..what.len()).map(|c| way(measurements, residuals, what, c)).collect();
         let least = follows_command(measurements, what, &known, repeats.as_ref().unwrap_or(&nearby));
         let sd = (0..what.len())
             .map(|c| match &repeats {
                 Some(repeats) if known[c] => repeats.sd[c],
                 None if c < 3 && sigma_m.is_some() => sigma_m.unwrap_or_default(),
-                _ => nearby.sd[c].max(least[c]),
+                _ => nearby.sd[c].max(least[c]).hypot(of_law(&ways, c)),
             })
             .zip(what.coordinates())
             .map(|(sd, (_, unit))| sd.max(finest(*unit)))
@@ -101,6 +107,23 @@ pub fn floor_of(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
         repeated.push(known);
     }
     Noise { floor: Floor { kinds, source }, repeated, drift: changed, structure: depends }
+}
+
+/// What a time law may be off by in a coordinate, in its unit: places and eye points have one unit each.
+fn of_law(ways: &[f64], c: usize) -> f64 {
+    let longest = ways.iter().copied().fold(0.0, f64::max);
+    (LAW_SHARE * ways[c]).max(BESIDE_SHARE * longest)
+}
+
+/// How far a coordinate of things that were watched goes in the course of time, in its unit; 0 where none
+/// was.
+fn way(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: What, c: usize) -> f64 {
+    let rows = measurements.rows.iter().zip(residuals);
+    let watched = rows.filter(|(row, _)| row.what == what && row.stand.is_some());
+    let mut all: Vec<f64> = watched.filter_map(|(_, residual)| residual.as_ref()?.get(c).copied()).collect();
+    all.sort_by(f64::total_cmp);
+    let at = |share: f64| all.get((share * all.len().saturating_sub(1) as f64) as usize).copied();
+    at(0.95).zip(at(0.05)).map_or(0.0, |(high, low)| high - low)
 }
 
 /// The least noise of coordinates that follow from the command: the height of a touch whose

@@ -66,7 +66,8 @@ pub(super) fn score(
     let spread = 1.0 + found.doubt.dirt_sigmas.powi(2);
     // The frame of the new session is not known; its columns are nearly the same for all rivals.
     let frame = stacked(&tangents[0], &used, lines, noise, |tangents| &tangents.gauge);
-    let own = DMatrix::identity(lines, lines) * spread + &frame * frame.transpose() * FRAME_SD.powi(2);
+    let mut own = DMatrix::identity(lines, lines) * spread + &frame * frame.transpose() * FRAME_SD.powi(2);
+    add_offsets(&mut own, rows, &used, noise);
     let predicted: Vec<Predicted> = rivals
         .iter()
         .zip(&tangents)
@@ -84,6 +85,21 @@ pub(super) fn score(
     let columns = stacked(&tangents[0], &used, lines, noise, |tangents| &tangents.effects);
     let (information, doubt_left) = information(&rivals[0], &columns, &own)?;
     Some(Score { separation, pair, expected, information, doubt_left })
+}
+
+/// What is constant of each new stand is not known: in standard deviations of the noise.
+fn add_offsets(own: &mut DMatrix<f64>, rows: &[Observation], used: &[(usize, &[f64])], noise: f64) {
+    let lines: Vec<(Option<usize>, usize, f64)> = used
+        .iter()
+        .flat_map(|(i, sd)| sd.iter().enumerate().map(|(c, sd)| (rows[*i].stand, c, FRAME_SD / (sd * noise))))
+        .collect();
+    for (r, (stand, c, of_row)) in lines.iter().enumerate().filter(|(_, line)| line.0.is_some()) {
+        for (k, other) in lines.iter().enumerate() {
+            if other.0 == *stand && other.1 == *c {
+                own[(r, k)] += of_row * other.2;
+            }
+        }
+    }
 }
 
 /// The sessions and one more, and the rows to come.

@@ -27,6 +27,11 @@ const TURN_RAD: f64 = 0.21;
 const COLD_SECS: f64 = 60.0;
 const WARM_SECS: f64 = 2400.0;
 
+/// Things that are watched at once, and when they are looked at, s after power-on.
+const WATCHED_PLACES: usize = 3;
+const WATCHED_SECS: [f64; 6] = [60.0, 180.0, 300.0, 480.0, 720.0, 960.0];
+const WATCHED_MIN: f64 = 18.0;
+
 /// Time that things take, minutes.
 const TOUCH_MIN: f64 = 0.25;
 const LOOK_MIN: f64 = 0.2;
@@ -178,7 +183,41 @@ impl Menu<'_> {
         trials
     }
 
+    /// One thing was watched: others, or under another angle, over the same time.
+    fn of_watched(&self) -> Vec<Trial> {
+        let stands = self.all.iter().filter_map(|row| row.stand).max().map_or(0, |last| last + 1);
+        let trial = |kind, place: &dyn Fn(&Observation, usize) -> Option<Observation>| {
+            let mut rows = vec![];
+            for (k, row) in self.base.iter().enumerate() {
+                for other in 0..WATCHED_PLACES {
+                    let at = place(row, other)?;
+                    let stand = Some(stands + WATCHED_PLACES * k + other);
+                    rows.extend(WATCHED_SECS.map(|secs| {
+                        let timed = Observation { t_secs: Some(secs), stand, ..at.clone() };
+                        Observation { session: self.session, ..self.with(&timed, |_| ()) }
+                    }));
+                }
+            }
+            rows.iter_mut().enumerate().for_each(|(i, row)| (row.row, row.cell) = (i, i));
+            let what = words::watched(kind)?.to_owned();
+            Some(Trial { kind, what, rows, minutes: WATCHED_MIN, like: self.like })
+        };
+        let distances = trial(Experiment::OtherDistance, &|row, other| {
+            let (head, truth) = (self.head_m(row)?, row.truth_m?);
+            let share = [2.0 / 3.0, 1.0, 1.5][other];
+            Some(self.with(row, |row| row.truth_m = Some((head + (truth.coords - head) * share).into())))
+        });
+        let turned = trial(Experiment::HeadTurned, &|row, other| {
+            let turn_rad = [-TURN_RAD, 0.0, TURN_RAD][other];
+            (!row.neck_rad.is_empty()).then(|| self.with(row, |row| row.neck_rad[0] += turn_rad))
+        });
+        distances.into_iter().chain(turned).collect()
+    }
+
     fn of_eyes(&self) -> Vec<Trial> {
+        if self.base.iter().any(|row| row.stand.is_some()) {
+            return self.of_watched();
+        }
         let range_m = |row: &Observation| self.range_m(row);
         let card = |row: &Observation| {
             row.background_m?;

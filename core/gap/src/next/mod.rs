@@ -143,7 +143,7 @@ fn is_pinned(rivals: &[Rival]) -> bool {
 
 /// No name is right: more of the same shows better what the rest depends on.
 fn off_library(found: &Found, trials: &[Trial]) -> Option<NextExperiment> {
-    let trial = trials.iter().find(|trial| trial.kind == Experiment::MorePlaces)?;
+    let trial = trials.iter().find(|trial| trial.kind == Experiment::MorePlaces).or(trials.first())?;
     let why = found.unexplained.depends_on.first().map_or_else(
         || "It shows better what the unknown error depends on".to_owned(),
         |on| format!("It shows better how the {} depends on the {}", on.of, on.on),

@@ -132,7 +132,9 @@ fn swapped(measurements: &Measurements, found: &Found, effect: &NamedEffect) -> 
         .iter()
         .filter_map(|member| {
             let name = name_of(&member.id, &member.site);
-            let other = candidates.iter().find(|candidate| candidate.name() == name)?;
+            let mut named = candidates.iter().filter(|candidate| candidate.name() == name);
+            let alike = |candidate: &&Effect| candidate.shape == effect.shape;
+            let other = named.clone().find(alike).or_else(|| named.next())?;
             let mut assumed = found.assumed.clone();
             if assumed.effects.iter().any(|present| present.effect == *other) {
                 return None;

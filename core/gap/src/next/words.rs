@@ -29,6 +29,21 @@ pub(super) fn what(kind: Experiment, places: usize, verb: &str, noun: &str) -> S
     }
 }
 
+/// The same where one thing was watched; `None`: that is no experiment then.
+pub(super) fn watched(kind: Experiment) -> Option<&'static str> {
+    match kind {
+        Experiment::OtherDistance => Some(
+            "switch the cameras off, let them cool, and watch three things from switching on for a quarter of an \
+             hour: one where it was, one at two thirds and one at one and a half times the distance",
+        ),
+        Experiment::HeadTurned => Some(
+            "switch the cameras off, let them cool, and watch the thing from switching on for a quarter of an hour, \
+             each minute with the head straight ahead and turned by 12° to either side",
+        ),
+        _ => None,
+    }
+}
+
 /// Which names it tells apart.
 pub(super) fn tells(a: &Rival, b: &Rival) -> String {
     let only = |a: &Rival, b: &Rival| -> Vec<String> {

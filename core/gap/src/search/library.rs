@@ -18,6 +18,9 @@ pub(super) struct Block {
     pub kind: Option<Kind>,
     /// Whether it stands for every joint or link at once.
     pub is_family: bool,
+    /// Whether it turns or shifts the right eye in the course of time: such act alike, and two of them
+    /// would cancel each other.
+    pub grows_right: bool,
     /// Number of its name. Two blocks of one name (shapes of one effect) are never in together.
     pub name: usize,
     /// How much it is trusted beforehand, log of the odds.
@@ -29,7 +32,9 @@ impl Block {
     /// its members.
     pub fn excludes(&self, other: &Self) -> bool {
         let of_one_kind = self.kind.is_some() && self.kind == other.kind;
-        self.name == other.name || of_one_kind && self.is_family != other.is_family
+        self.name == other.name
+            || self.grows_right && other.grows_right
+            || of_one_kind && self.is_family != other.is_family
     }
 
     /// Its columns.
@@ -79,7 +84,8 @@ impl Library {
             });
             let len = effect.parameters().len();
             let (kind, is_family) = (Some(effect.kind), effect.is_of_every_site());
-            blocks.push(Block { start, len, kind, is_family, name, log_prior: 0.0 });
+            let grows_right = effect.growth_s().is_some() && effect.site == "right";
+            blocks.push(Block { start, len, kind, is_family, grows_right, name, log_prior: 0.0 });
             start += len;
         }
         let mut shapes = vec![0_usize; names.len()];

@@ -30,6 +30,8 @@ const RIVAL_SHARE: f64 = 0.15;
 const RIVAL_P: f64 = 0.02;
 /// Effects that do more to the rows than this many times the whole gap cancel each other: no name.
 const CANCELLING: f64 = 1.5;
+/// Eyes that each turn their own way with their heat: what they do together is less than what each does.
+const CANCELLING_GROWN: f64 = 4.0;
 /// Beyond this many usual sizes a fit is at its bound.
 const BOUND: f64 = 3.0;
 /// One name stands for its class from this probability on.
@@ -112,7 +114,9 @@ impl Evidence<'_> {
             let (own, covariance) = &values[place];
             let size = self.look.does(block, own);
             let least = noise * if size >= largest { SMALLEST_FIRST } else { SMALLEST };
-            if size < least || size > CANCELLING * self.look.gap() + SMALLEST {
+            let grows = self.library.effects[block].growth_s().is_some();
+            let cancelling = if grows { CANCELLING_GROWN } else { CANCELLING };
+            if size < least || size > cancelling * self.look.gap() + SMALLEST {
                 continue;
             }
             let effect = self.effect(&top, block, own, covariance, size, &names);

@@ -37,7 +37,11 @@ pub(super) fn folds(measurements: &Measurements, chosen: &[usize], seed: u64, on
             block: of_row.clone(),
             of_row,
             count,
-            words: format!("{count} folds, one place at a time"),
+            words: if chosen.iter().all(|&i| measurements.rows[i].stand.is_some()) {
+                format!("{count} folds, every {count}th look")
+            } else {
+                format!("{count} folds, one place at a time")
+            },
         };
     }
     if let Some(folds) = by_set(measurements, chosen) {

@@ -254,7 +254,7 @@ mod tests {
         let truth = Assumed {
             effects: vec![Present { effect: zero, values: vec![ZERO_RAD] }],
             placements: vec![Isometry3::identity()],
-            mounts: vec![],
+            ..Assumed::default()
         };
         let rows =
             postures(rig, TIP, &on_glass).into_iter().map(|angles| row(What::Touch, angles, vec![1.0; 6]));

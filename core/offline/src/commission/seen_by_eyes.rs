@@ -66,7 +66,8 @@ impl SeenHands {
         beside_m: &Vector3<f64>,
     ) -> Option<Vec<Against>> {
         let of_palm = assumed.effects.iter().filter(|present| moves_palm(&present.effect)).cloned().collect();
-        let assumed = Assumed { effects: of_palm, placements: vec![Isometry3::identity()], mounts: vec![] };
+        let assumed =
+            Assumed { effects: of_palm, placements: vec![Isometry3::identity()], ..Assumed::default() };
         let mut all = vec![];
         for (row, hand) in self.arm.rows.iter().zip(&self.seen) {
             let tangents = self.arm.tangents(row, &assumed, effects)?;

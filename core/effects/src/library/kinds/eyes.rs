@@ -1,25 +1,35 @@
 //! What can be wrong with the eyes, and with what they make of an image.
 
-use super::{Act, Effect, Entry, EyeSite, Shape, Site, TILT, parameter, vector};
+use super::{Act, Effect, Entry, EyeSite, Parameter, Shape, Site, TILT, parameter, vector};
+use crate::eyes::EyeSituation;
+
+const MOUNT: [Parameter; 6] = [
+    parameter("x_m", 0.02),
+    parameter("y_m", 0.02),
+    parameter("z_m", 0.02),
+    parameter("rot_x_rad", TILT),
+    parameter("rot_y_rad", TILT),
+    parameter("rot_z_rad", TILT),
+];
+const SHIFT: [Parameter; 2] = [parameter("du_px", 1.5), parameter("dv_px", 1.5)];
+
+/// How much of it is there at the time of a row: all, unless it grows.
+fn part(effect: &Effect, situation: &EyeSituation) -> f64 {
+    if effect.shape.is_some() { effect.grown(situation.t_secs) } else { 1.0 }
+}
 
 pub(super) static CAMERA_MOUNT: Entry = Entry {
     about: "eyes sit elsewhere in the head than in the model",
     meaning: "The eyes sit elsewhere on the head than in the model.",
     remedy: "Check the screws of the eyes; calibrate the mount again.",
-    parameters: &[
-        parameter("x_m", 0.02),
-        parameter("y_m", 0.02),
-        parameter("z_m", 0.02),
-        parameter("rot_x_rad", TILT),
-        parameter("rot_y_rad", TILT),
-        parameter("rot_z_rad", TILT),
-    ],
+    parameters: &MOUNT,
     site: Site::OfEyes(EyeSite::Both),
-    shape: Shape::None,
+    shape: Shape::Growth(&MOUNT),
     shown: |rows| rows.eyes,
-    act: Act::Eyes(|_, _, values, deviation| {
-        deviation.mount_m += vector(values);
-        deviation.mount_rad += vector(&values[3..]);
+    act: Act::Eyes(|effect, situation, values, deviation| {
+        let part = part(effect, situation);
+        deviation.mount_m += vector(values) * part;
+        deviation.mount_rad += vector(&values[3..]) * part;
     }),
     reported: Effect::plain,
     is: &[],
@@ -51,8 +61,7 @@ pub(super) static EYE_YAW: Entry = Entry {
     shape: Shape::Growth(&[parameter("amplitude_rad", 0.01)]),
     shown: |rows| rows.eyes,
     act: Act::Eyes(|effect, situation, values, deviation| {
-        let part = if effect.shape.is_some() { effect.grown(situation.t_secs) } else { 1.0 };
-        deviation.right_rad.y += values[0] * part;
+        deviation.right_rad.y += values[0] * part(effect, situation);
     }),
     reported: Effect::plain,
     is: &[],
@@ -62,13 +71,14 @@ pub(super) static IMAGE_SHIFT: Entry = Entry {
     about: "image of the right eye shifted",
     meaning: "The image of one eye is shifted on its sensor.",
     remedy: "Check that the lens is screwed tight; calibrate warm.",
-    parameters: &[parameter("du_px", 1.5), parameter("dv_px", 1.5)],
+    parameters: &SHIFT,
     site: Site::OfEyes(EyeSite::Right),
-    shape: Shape::None,
+    shape: Shape::Growth(&SHIFT),
     shown: |rows| rows.eyes,
-    act: Act::Eyes(|_, _, values, deviation| {
-        deviation.right_shift_px[0] += values[0];
-        deviation.right_shift_px[1] += values[1];
+    act: Act::Eyes(|effect, situation, values, deviation| {
+        let part = part(effect, situation);
+        deviation.right_shift_px[0] += values[0] * part;
+        deviation.right_shift_px[1] += values[1] * part;
     }),
     reported: Effect::plain,
     is: &[],

@@ -130,7 +130,7 @@ impl Bench {
 
     fn made(&self, effects: Vec<Present>, random: &mut StdRng) -> Option<(Measurements, Floor)> {
         let mut made = self.nominal.clone();
-        let truth = Assumed { effects, placements: vec![random_place(random)], mounts: vec![] };
+        let truth = Assumed { effects, placements: vec![random_place(random)], ..Assumed::default() };
         for i in 0..made.rows.len() {
             let mut row = made.rows[i].clone();
             let seen = touch(&made, &mut row, &truth, NOISE_M[2] * normal(random))?;
