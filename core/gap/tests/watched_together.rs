@@ -89,6 +89,7 @@ fn corrected(rig: &Arc<Rig>, finding: &Finding) -> RobotModel {
     };
     let mut model = RigModel::nominal(rig);
     let addition = Addition {
+        together: vec![],
         effects: finding.addable().into_iter().map(effect).collect(),
         screens: vec![],
         externals: vec![],
