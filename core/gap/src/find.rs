@@ -112,6 +112,7 @@ fn found_in(
     }
     flag_outliers(&mut compared, &kept, &found);
     still_structured(&mut found, &used, &compared);
+    bound_by_own_rows(&mut found, &used);
     if let Some(words) = no_help(&found, &shown, options) {
         compared.warnings.push(words);
     }
@@ -182,6 +183,28 @@ fn bound_by_held_out(found: &mut Found, shown: &Shown, warnings: &mut Vec<String
     let addable =
         !found.effects.is_empty() && found.effects.iter().all(|effect| effect.not_addable.is_none());
     found.verdict == Verdict::NotInLibrary && closure > LEAST_PART && is_certain && holds_elsewhere && addable
+}
+
+/// What leaves most of the gap open on the very rows that it was fitted to has no name, and cannot be expected
+/// to hold elsewhere.
+fn bound_by_own_rows(found: &mut Found, used: &Measurements) {
+    let named = matches!(found.verdict, Verdict::Named | Verdict::Class);
+    if !named || found.unexplained.share < MOSTLY_OPEN {
+        return;
+    }
+    let left = compare::residuals(used, &found.assumed);
+    let (mut square, mut count) = (0.0, 0.0);
+    for ((row, left), weight) in used.rows.iter().zip(&left).zip(&found.weights) {
+        let Some(left) = left else { continue };
+        for (c, left) in left.iter().enumerate() {
+            let Some(sd) = found.floor.of(row.what).map(|floor| floor.of_row(row, c)) else { continue };
+            square += weight * (left / sd).powi(2);
+            count += weight;
+        }
+    }
+    if square > FAR_ABOVE * FAR_ABOVE * count {
+        misled(found, 0.5);
+    }
 }
 
 /// Where repeats still depend on something that was logged, with all that was found in the model, that is

@@ -261,14 +261,11 @@ fn droops(arm: &Arm, joints: &[Joint], sides: &Sides, noise_m: f64) -> (Vec<Name
 }
 
 fn sticking(arm: &Arm, joints: &[Joint], noise_m: f64) -> Vec<NamedEffect> {
-    let stands_out = |joint: &Joint, slope: &Slope| {
-        let others = joints.iter().filter(|other| other.j != joint.j);
-        let usual = median(others.filter_map(|other| Some(other.sticks?.value.abs()))).unwrap_or(0.0);
-        slope.value > SURE * slope.sd && slope.value > STANDS_OUT * usual
-    };
+    let usual = median(joints.iter().filter_map(|joint| Some(joint.sticks?.value.abs()))).unwrap_or(0.0);
+    let stands_out = |slope: &Slope| slope.value > SURE * slope.sd && slope.value > STANDS_OUT * usual;
     joints
         .iter()
-        .filter_map(|joint| Some((joint, joint.sticks.filter(|slope| stands_out(joint, slope))?)))
+        .filter_map(|joint| Some((joint, joint.sticks.filter(stands_out)?)))
         .filter_map(|(joint, slope)| {
             let size_m = 0.5 * slope.value * joint.lever_m;
             let site = &arm.parts[joint.j].joint;
