@@ -60,6 +60,7 @@ impl Known {
             arm: !of_arm.is_empty(),
             eyes: !of_eyes.is_empty(),
             watched: of_eyes.iter().any(|row| row.stand.is_some()),
+            only_watched: !of_eyes.is_empty() && of_eyes.iter().all(|row| row.stand.is_some()),
             background: of_eyes.iter().any(|row| row.background_m.is_some()),
             commanded: of_arm.iter().any(|row| row.encoder_rad.is_none()),
             lag: of_arm.iter().filter_map(|row| row.lag_rad()).flatten().any(|lag| lag.abs() > 1e-4),

@@ -34,6 +34,8 @@ pub(crate) struct Known {
     pub(crate) background: bool,
     /// The eyes watched things that stood still.
     pub(crate) watched: bool,
+    /// And nothing else: what is constant there has no name.
+    pub(crate) only_watched: bool,
     /// Some row starts from commanded angles.
     pub(crate) commanded: bool,
     /// Some row has encoders that lag.
@@ -75,6 +77,10 @@ impl Known {
 
     /// The effect in every shape that is tried.
     pub(crate) fn shapes(&self, effect: Effect) -> Vec<Effect> {
+        if self.only_watched && effect.kind.is_of_eyes() {
+            let Shape::Growth(_) = effect.kind.entry().shape else { return vec![] };
+            return self.grown(&effect);
+        }
         match effect.kind.entry().shape {
             Shape::None => vec![effect],
             Shape::OnceOrTwice => vec![effect.clone(), effect.with_shape(Some(2.0))],
@@ -95,26 +101,34 @@ impl Known {
                 let ends = [all.first(), all.last()].map(|end| end.copied().unwrap_or(0.0));
                 with_shapes(&effect, &thinned(&all, MOST_MOMENTS), ends)
             }
-            Shape::Growth(_) => {
-                let span_s = span(&self.eye_secs);
-                // Elsewhere what is constant would be taken for something that grows.
-                if span_s < SHORTEST_SPAN_S || !self.watched && effect.kind != Kind::EyeYaw {
-                    return vec![effect];
-                }
-                let (constants, delays) = if self.watched {
-                    (&WATCHED_CONSTANTS_S[..], WATCHED_DELAYS_S)
-                } else {
-                    (&YAW_CONSTANTS_S[..], YAW_DELAYS_S)
-                };
-                let grown = constants
-                    .iter()
-                    .filter(|constant| **constant <= 2.0 * span_s)
-                    .flat_map(|constant| delays.map(|delay| Effect::yaw_growth(*constant, delay)));
-                let grown: Vec<Effect> = grown.map(|shape| effect.clone().with_shape(Some(shape))).collect();
+            // Elsewhere what is constant would be taken for something that grows.
+            Shape::Growth(_) if self.watched || effect.kind == Kind::EyeYaw => {
+                let grown = self.grown(&effect);
                 [vec![effect], grown].concat()
             }
+            Shape::Growth(_) => vec![effect],
             Shape::Either(_) => vec![effect.clone(), effect.with_shape(Some(1.0))],
         }
+    }
+}
+
+impl Known {
+    /// An effect of the eyes with every time law that is tried.
+    fn grown(&self, effect: &Effect) -> Vec<Effect> {
+        let span_s = span(&self.eye_secs);
+        if span_s < SHORTEST_SPAN_S {
+            return vec![];
+        }
+        let (constants, delays) = if self.watched {
+            (&WATCHED_CONSTANTS_S[..], WATCHED_DELAYS_S)
+        } else {
+            (&YAW_CONSTANTS_S[..], YAW_DELAYS_S)
+        };
+        let fitting = constants.iter().filter(|constant| **constant <= 2.0 * span_s);
+        fitting
+            .flat_map(|constant| delays.map(|delay| Effect::yaw_growth(*constant, delay)))
+            .map(|shape| effect.clone().with_shape(Some(shape)))
+            .collect()
     }
 }
 

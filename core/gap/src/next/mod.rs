@@ -71,7 +71,17 @@ pub(crate) fn advise(
             scored.push((trial, score));
         }
     }
-    Ok(if settled { pin_down(scored, &rivals, now) } else { tell_apart(scored, &rivals, now) })
+    if settled {
+        return Ok(pin_down(scored, &rivals, now));
+    }
+    // Of what was watched a turn and a shift of the image are told apart by little else than more of the view.
+    let watched = measurements.rows.iter().any(|row| row.stand.is_some());
+    let most = scored.iter().max_by(|a, b| a.1.separation.total_cmp(&b.1.separation));
+    let most = most.filter(|_| watched).map(|(trial, score)| {
+        let why = score.pair.map_or(String::new(), |(a, b)| words::tells(&rivals[a], &rivals[b]));
+        answer(trial, why, score.expected, &[])
+    });
+    Ok(tell_apart(scored, &rivals, now).or(most))
 }
 
 /// Fills [`NamedEffect::split_by`] of every effect that may have another name.

@@ -3,15 +3,11 @@
 use super::{Act, Effect, Entry, EyeSite, Parameter, Shape, Site, TILT, parameter, vector};
 use crate::eyes::EyeSituation;
 
-const MOUNT: [Parameter; 6] = [
-    parameter("x_m", 0.02),
-    parameter("y_m", 0.02),
-    parameter("z_m", 0.02),
-    parameter("rot_x_rad", TILT),
-    parameter("rot_y_rad", TILT),
-    parameter("rot_z_rad", TILT),
-];
-const SHIFT: [Parameter; 2] = [parameter("du_px", 1.5), parameter("dv_px", 1.5)];
+/// Eyes that warm up turn; they do not wander through the head.
+const TURN: [Parameter; 3] =
+    [parameter("rot_x_rad", TILT), parameter("rot_y_rad", TILT), parameter("rot_z_rad", TILT)];
+/// What grows is told along the rows alone: across them it would stand for any turn of both eyes.
+const SHIFT_ALONG: [Parameter; 1] = [parameter("du_px", 1.5)];
 
 /// How much of it is there at the time of a row: all, unless it grows.
 fn part(effect: &Effect, situation: &EyeSituation) -> f64 {
@@ -22,14 +18,24 @@ pub(super) static CAMERA_MOUNT: Entry = Entry {
     about: "eyes sit elsewhere in the head than in the model",
     meaning: "The eyes sit elsewhere on the head than in the model.",
     remedy: "Check the screws of the eyes; calibrate the mount again.",
-    parameters: &MOUNT,
+    parameters: &[
+        parameter("x_m", 0.02),
+        parameter("y_m", 0.02),
+        parameter("z_m", 0.02),
+        parameter("rot_x_rad", TILT),
+        parameter("rot_y_rad", TILT),
+        parameter("rot_z_rad", TILT),
+    ],
     site: Site::OfEyes(EyeSite::Both),
-    shape: Shape::Growth(&MOUNT),
+    shape: Shape::Growth(&TURN),
     shown: |rows| rows.eyes,
     act: Act::Eyes(|effect, situation, values, deviation| {
-        let part = part(effect, situation);
-        deviation.mount_m += vector(values) * part;
-        deviation.mount_rad += vector(&values[3..]) * part;
+        if effect.shape.is_some() {
+            deviation.mount_rad += vector(values) * part(effect, situation);
+        } else {
+            deviation.mount_m += vector(values);
+            deviation.mount_rad += vector(&values[3..]);
+        }
     }),
     reported: Effect::plain,
     is: &[],
@@ -71,14 +77,14 @@ pub(super) static IMAGE_SHIFT: Entry = Entry {
     about: "image of the right eye shifted",
     meaning: "The image of one eye is shifted on its sensor.",
     remedy: "Check that the lens is screwed tight; calibrate warm.",
-    parameters: &SHIFT,
+    parameters: &[parameter("du_px", 1.5), parameter("dv_px", 1.5)],
     site: Site::OfEyes(EyeSite::Right),
-    shape: Shape::Growth(&SHIFT),
+    shape: Shape::Growth(&SHIFT_ALONG),
     shown: |rows| rows.eyes,
     act: Act::Eyes(|effect, situation, values, deviation| {
         let part = part(effect, situation);
         deviation.right_shift_px[0] += values[0] * part;
-        deviation.right_shift_px[1] += values[1] * part;
+        deviation.right_shift_px[1] += values.get(1).copied().unwrap_or(0.0) * part;
     }),
     reported: Effect::plain,
     is: &[],
