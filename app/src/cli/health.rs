@@ -11,11 +11,11 @@ use super::output::Output;
 /// Arguments of `health`.
 #[derive(Debug, Args)]
 pub struct Health {
-    /// Session with ordinary pairs under stereo/left and stereo/right; no board is needed, but something
-    /// with texture.
+    /// Session with ordinary pairs under stereo/left and stereo/right, or in its log.mcap; no board is needed,
+    /// but something with texture.
     #[arg(long, value_name = "DIR")]
     session: PathBuf,
-    /// Calibration in use; the cameras.yaml of the session without it.
+    /// Calibration in use; without it the cameras.yaml of the session, or the rig-cameras.yaml of a recording.
     #[arg(long, value_name = "FILE")]
     cameras: Option<PathBuf>,
     /// Calibration that might take its place: both are judged on the same images.

@@ -10,6 +10,7 @@ use plumbline_model::predict::PredictError;
 use plumbline_model::robot::ik::{IkError, SolverError};
 use plumbline_model::robot::{DescriptionError, RigError};
 use plumbline_model::{AimError, BoardError, Cancelled, FormatError, PlacementError, SessionError};
+use plumbline_recording::RecordingError;
 use plumbline_report::ReportError;
 use plumbline_vision::calibrate::SolveError;
 use plumbline_vision::detect::DetectError;
@@ -104,8 +105,26 @@ pub enum OfflineError {
         calibrated: String,
     },
     /// A session without pairs.
-    #[error("{0} has no pairs of images: they belong into stereo/left and stereo/right, by the same names")]
+    #[error(
+        "{0} has no pairs of images: they belong into stereo/left and stereo/right, by the same names, or into its \
+         recording log.mcap"
+    )]
     NoPairs(PathBuf),
+    /// An image of a recording that is none.
+    #[error(
+        "the images of pair {pair} in {log} cannot be read ({reason}): the file was changed or damaged; record again"
+    )]
+    RecordedImage {
+        /// The recording.
+        log: PathBuf,
+        /// From 1.
+        pair: usize,
+        /// Why.
+        reason: String,
+    },
+    /// A recording that cannot be read.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
     /// A session without places to judge.
     #[error(
         "{0} has no localizations.csv with true places and estimates that count: give a session that has"

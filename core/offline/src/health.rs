@@ -8,7 +8,8 @@ use nalgebra::Point3;
 use plumbline_engine::ground::text::sentence;
 use plumbline_model::robot::{Rig, RigPart};
 use plumbline_model::session::StereoImagePair;
-use plumbline_model::{JobContext, LeftCamera, Point, StereoCameras};
+use plumbline_model::{JobContext, LeftCamera, Point, Session, StereoCameras};
+use plumbline_recording::{Jpeg, Recording};
 use plumbline_vision::calibration_file;
 use plumbline_vision::health::{Match, Turn, cost, epipolar_px, find_matches, fit_turn, fits_better_by};
 use serde::Serialize;
@@ -34,9 +35,10 @@ const ACROSS: [f64; 3] = [-0.6, 0.0, 0.6];
 /// Whose health.
 #[derive(Clone, Debug)]
 pub struct HealthArgs {
-    /// Session with ordinary pairs under `stereo/`.
+    /// Session with ordinary pairs under `stereo/`, or in its recording `log.mcap`.
     pub session: PathBuf,
-    /// The calibration in use; `None`: the `cameras.yaml` of the session.
+    /// The calibration in use; `None`: the `cameras.yaml` of the session, or the `rig-cameras.yaml` of a
+    /// recording.
     pub cameras: Option<PathBuf>,
     /// One that might take its place.
     pub proposed: Option<PathBuf>,
@@ -92,11 +94,12 @@ pub struct CalibrationHealth {
 pub fn health(args: &HealthArgs, context: &dyn JobContext) -> Result<HealthReport, OfflineError> {
     let began = Instant::now();
     let (session, rig) = session::open(&args.session)?;
-    let pairs = spread(&session.stereo.pairs);
-    if pairs.is_empty() {
+    let mut pairs = Pairs::of(&session)?;
+    let wanted = spread(pairs.count());
+    if wanted.is_empty() {
         return Err(OfflineError::NoPairs(args.session.clone()));
     }
-    let in_use = args.cameras.clone().unwrap_or_else(|| args.session.join("cameras.yaml"));
+    let in_use = args.cameras.clone().unwrap_or_else(|| of_session(&args.session));
     let cameras = calibration_file::load(std::slice::from_ref(&in_use))?.cameras;
     let proposed = match &args.proposed {
         Some(file) => Some((file.clone(), calibration_file::load(std::slice::from_ref(file))?.cameras)),
@@ -104,10 +107,10 @@ pub fn health(args: &HealthArgs, context: &dyn JobContext) -> Result<HealthRepor
     };
     let mut notes = vec![];
     let mut images: Vec<(GrayImage, GrayImage)> = vec![];
-    for pair in &pairs {
+    for index in &wanted {
         context.checkpoint()?;
-        context.report(0.3 * images.len() as f64 / pairs.len() as f64, "reading images");
-        images.push(read_pair(pair, &mut notes)?);
+        context.report(0.3 * images.len() as f64 / wanted.len() as f64, "reading images");
+        images.push(pairs.read(*index, &mut notes)?);
         let (left, right) = images.last().map_or(((0, 0), (0, 0)), |(l, r)| (l.dimensions(), r.dimensions()));
         for cameras in std::iter::once(&cameras).chain(proposed.iter().map(|(_, cameras)| cameras)) {
             check_sizes(cameras, [left, right])?;
@@ -135,27 +138,74 @@ pub fn health(args: &HealthArgs, context: &dyn JobContext) -> Result<HealthRepor
         proposed: proposed_health,
         better,
         seconds: began.elapsed().as_secs_f64(),
-        pairs: pairs.len(),
+        pairs: wanted.len(),
         matches: matches.len(),
         sentence: said,
         notes: notes.iter().map(|note: &String| sentence(note)).collect(),
     })
 }
 
-/// Pairs spread evenly over a session.
-fn spread(pairs: &[StereoImagePair]) -> Vec<StereoImagePair> {
-    let count = pairs.len().min(PAIRS);
-    (0..count).map(|k| pairs[k * pairs.len() / count].clone()).collect()
+/// The calibration that lies in a session: beside images, else what was in use when it was recorded.
+fn of_session(session: &Path) -> PathBuf {
+    let [beside_images, recorded] = ["cameras.yaml", "rig-cameras.yaml"].map(|name| session.join(name));
+    if !beside_images.is_file() && recorded.is_file() { recorded } else { beside_images }
 }
 
-fn read_pair(
-    pair: &StereoImagePair,
-    notes: &mut Vec<String>,
-) -> Result<(GrayImage, GrayImage), OfflineError> {
-    let mut gray = |file: &Path| -> Result<GrayImage, OfflineError> {
-        Ok(image::imageops::grayscale(&read_image(file, notes)?))
-    };
-    Ok((gray(&pair.left)?, gray(&pair.right)?))
+/// Numbers of pairs that are spread evenly over so many.
+fn spread(pairs: usize) -> Vec<usize> {
+    let count = pairs.min(PAIRS);
+    (0..count).map(|k| k * pairs / count).collect()
+}
+
+/// Ordinary pairs of a session: images under `stereo/`, else those of its recording.
+enum Pairs<'a> {
+    Files(&'a [StereoImagePair]),
+    Log(PathBuf, Box<Recording>),
+}
+
+impl<'a> Pairs<'a> {
+    fn of(session: &'a Session) -> Result<Self, OfflineError> {
+        Ok(match &session.log {
+            Some(log) if session.stereo.pairs.is_empty() => {
+                Self::Log(log.clone(), Box::new(Recording::open(log)?))
+            }
+            _ => Self::Files(&session.stereo.pairs),
+        })
+    }
+
+    fn count(&self) -> usize {
+        match self {
+            Self::Files(pairs) => pairs.len(),
+            Self::Log(_, recording) => recording.pair_count(),
+        }
+    }
+
+    fn read(
+        &mut self,
+        index: usize,
+        notes: &mut Vec<String>,
+    ) -> Result<(GrayImage, GrayImage), OfflineError> {
+        match self {
+            Self::Files(pairs) => {
+                let mut gray = |file: &Path| -> Result<GrayImage, OfflineError> {
+                    Ok(image::imageops::grayscale(&read_image(file, notes)?))
+                };
+                Ok((gray(&pairs[index].left)?, gray(&pairs[index].right)?))
+            }
+            Self::Log(log, recording) => {
+                let [left, right] = recording.pair(index)?.images;
+                let gray = |Jpeg(bytes): &Jpeg| match image::load_from_memory(bytes) {
+                    Ok(image) => Ok(image.to_luma8()),
+                    Err(error) => Err(OfflineError::RecordedImage {
+                        log: log.clone(),
+                        pair: index + 1,
+                        reason: error.to_string(),
+                    }),
+                };
+                Ok((gray(&left)?, gray(&right)?))
+            }
+        }
+    }
 }
 
 /// Places on the table, in the left eye: near, in the middle, far.

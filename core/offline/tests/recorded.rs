@@ -7,12 +7,17 @@ mod common;
 
 use std::path::{Path, PathBuf};
 
+use image::RgbImage;
+use image::codecs::jpeg::JpegEncoder;
 use plumbline_model::camera::ModelKind;
-use plumbline_model::{InnerCorners, Unattended};
+use plumbline_model::formats::native;
+use plumbline_model::{InnerCorners, StereoCalibration, Unattended};
 use plumbline_offline::{
-    CalibrateArgs, CheckArgs, DisparityArgs, LocateArgs, LocateReport, LocateRobot, OfflineError,
-    calibrate_stereo, check, disparity, locate,
+    CalibrateArgs, CheckArgs, DisparityArgs, HealthArgs, LocateArgs, LocateReport, LocateRobot, OfflineError,
+    calibrate_stereo, check, disparity, health, locate,
 };
+use plumbline_recording::{About, Jpeg, RecordingWriter};
+
 use serde_json::Value;
 
 use common::{WALL_M, board, board_pairs, eyes, wall_pair, write_pairs};
@@ -228,4 +233,51 @@ fn a_calibration_of_other_images_is_refused() {
     let error =
         disparity(&DisparityArgs { left, right, cameras, max_disparity_px: 64, out: None }, &Unattended);
     assert!(matches!(error, Err(OfflineError::OtherSize { .. })), "{error:?}");
+}
+
+/// A session of one pair of a wall, as images under `stereo/` or as a recording.
+fn session(folder: &Path, as_recording: bool) {
+    let manifest = "format = 1\nrig = \"nico\"\nstarted = 2026-05-01T10:00:00Z\n";
+    std::fs::create_dir_all(folder).expect("a folder");
+    std::fs::write(folder.join("session.toml"), manifest).expect("written");
+    let calibration = StereoCalibration::bare(eyes());
+    let wall = wall_pair();
+    if !as_recording {
+        native::write(&calibration, &folder.join("cameras.yaml")).expect("written");
+        return write_pairs(&folder.join("stereo"), &[wall]);
+    }
+    native::write(&calibration, &folder.join("rig-cameras.yaml")).expect("written");
+    let jpeg = |image: &RgbImage| {
+        let mut bytes = vec![];
+        JpegEncoder::new_with_quality(&mut bytes, 98).encode_image(image).expect("an image");
+        Jpeg(bytes)
+    };
+    let at: jiff::Timestamp = "2026-05-01T10:00:01Z".parse().expect("a time");
+    let mut writer = RecordingWriter::create(&folder.join("log.mcap"), at, &About::default()).expect("begun");
+    writer.pair(at, 0, [jpeg(&wall.left), jpeg(&wall.right)], None).expect("written");
+    writer.finish().expect("ended");
+}
+
+#[test]
+fn the_eyes_of_a_recording_are_judged_as_those_of_images() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let judged = |name: &str, as_recording: bool| {
+        let session_folder = folder.path().join(name);
+        session(&session_folder, as_recording);
+        let args = HealthArgs { session: session_folder, cameras: None, proposed: None };
+        health(&args, &Unattended).expect("judged")
+    };
+    let (images, recording) = (judged("images", false), judged("recording", true));
+    assert!(images.in_use.ok && recording.in_use.ok, "{images:?} {recording:?}");
+    assert_eq!((images.pairs, recording.pairs), (1, 1));
+    assert!(recording.matches > images.matches / 2, "{} {}", recording.matches, images.matches);
+    // What JPEG changes is little against how well one pair tells a turn.
+    assert!(recording.in_use.turn_deg < 0.1, "{:?}", recording.in_use);
+
+    let nothing = folder.path().join("nothing");
+    session(&nothing, false);
+    std::fs::remove_dir_all(nothing.join("stereo")).expect("removed");
+    std::fs::write(nothing.join("touches.csv"), "").expect("written");
+    let args = HealthArgs { session: nothing, cameras: None, proposed: None };
+    assert!(health(&args, &Unattended).is_err(), "nothing to look at");
 }
