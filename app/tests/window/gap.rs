@@ -4,7 +4,8 @@
 use egui_kittest::Harness;
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::gap::sample;
-use plumbline_engine::{Command, GapCommand, GapModel, View};
+use plumbline_engine::{Command, Correction, GapCommand, GapModel, TouchCommand, View};
+use plumbline_model::touch_plan::Purpose;
 
 use crate::fake::{Fake, click, says, shows};
 use crate::made_up_gap::{added, failed, found, nothing, recorded, searching, stale, with};
@@ -149,6 +150,24 @@ fn what_was_added_is_in_the_top_line_and_can_be_taken_back() {
     assert!(shows(&window, "Side by side"));
     click(&mut window, "Back to the model before");
     assert_eq!(asked(&fake), [GapCommand::Undo]);
+}
+
+#[test]
+fn what_was_added_is_proven_by_touching_with_and_without_it() {
+    let (fake, mut window) = window_of(with(added()));
+    click(&mut window, "Name and add");
+    fake.take_sent();
+    click(&mut window, "Prove it");
+    let sent = fake.take_sent();
+    let corrected = Command::Touch(TouchCommand::CorrectWith(Some(Correction::Effects)));
+    assert_eq!(sent.first(), Some(&corrected), "{sent:?}");
+    let Some(Command::Touch(TouchCommand::Plan(plan))) = sent.get(1) else { panic!("no plan: {sent:?}") };
+    assert!(plan.beside_described && plan.purpose == Purpose::Check, "{plan:?}");
+    assert!(shows(&window, "Targets corrected by"), "the plan is seen before the arm moves");
+    // Without an effect there is nothing to prove.
+    let (_, mut window) = window_of(with(nothing()));
+    click(&mut window, "Name and add");
+    assert!(!shows(&window, "Prove it"));
 }
 
 #[test]

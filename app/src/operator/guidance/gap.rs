@@ -72,9 +72,6 @@ fn added(view: &View, shown: &ShownFinding, experiment: bool) -> Guidance {
         format!(" On held-out rows {} of the gap is closed.", format::percent(closure))
     });
     let guidance = say(format!("The model in use is {}.{closed}", view.gap.model.name));
-    if GapAction::Prove.refusal(view).is_none() && view.touch.figures_described.is_none() {
-        return guidance.then("Prove it", Action::Gap(GapAction::Prove));
-    }
     if experiment {
         return guidance.then(touch_label(view), Action::Gap(GapAction::NextExperiment));
     }

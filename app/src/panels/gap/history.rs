@@ -26,9 +26,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                     action_button(ui, cx, GapAction::Undo, "Back to the model before");
                 }
                 if !gap.model.effects.is_empty() {
-                    action_button(ui, cx, GapAction::Prove, "Prove it").on_hover_text(
-                        "Plans touches of ten new places, each by the robot as described and with the effects",
-                    );
+                    action_button(ui, cx, GapAction::Prove, "Prove it");
                     action_button(ui, cx, GapAction::UseNominal, "Take all effects out");
                 }
             });

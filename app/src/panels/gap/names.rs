@@ -238,10 +238,13 @@ fn add(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding) {
     } else if shown.added.iter().any(|added| *added) {
         ui.label(theme::small(
             ui,
-            "Its effects are in the model. Look for what is left, or touch new targets with it.",
+            "Its effects are in the model. Look for what is left, or prove it by touching new targets.",
         ));
     }
     ui.horizontal_wrapped(|ui| {
+        if !cx.view.gap.model.effects.is_empty() {
+            action_button(ui, cx, GapAction::Prove, "Prove it");
+        }
         if cx.view.gap.model.can_undo {
             action_button(ui, cx, GapAction::Undo, "Back to the model before");
         }
