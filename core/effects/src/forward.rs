@@ -6,7 +6,6 @@ use crate::arm::{Arm, Deviation};
 use crate::eyes::{EyeSituation, EyesDeviation};
 use crate::library::{Effect, Present, Situation};
 use crate::measurements::Measurements;
-use crate::nuisance;
 use crate::observation::{Observation, What};
 use crate::slopes::{ArmSlopes, At, EyesSlopes};
 
@@ -167,7 +166,7 @@ impl Measurements {
 /// Adds what is constant of the row's stand.
 fn add_offset(row: &Observation, assumed: &Assumed, predicted: &mut [f64]) {
     let Some(stand) = row.stand else { return };
-    let unit = nuisance::offset_unit(row.what);
+    let unit = row.what.offset_unit();
     for (value, offset) in predicted.iter_mut().zip(assumed.offset(stand)) {
         *value += unit * offset;
     }

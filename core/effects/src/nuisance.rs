@@ -17,13 +17,6 @@ const MOUNT_SD_M: f64 = 0.05;
 const MOUNT_SD_RAD: f64 = 0.5;
 /// What is constant of a stand beforehand: bearings (tangents) and baseline over depth.
 const OFFSET_SD: f64 = 0.2;
-/// Pixels that count as one unit of a bearing where pixels were measured.
-const PX_PER_RAD: f64 = 500.0;
-
-/// What one unit of a stand's offset is in the natural coordinates of its rows.
-pub(crate) fn offset_unit(what: What) -> f64 {
-    if what == What::EyePoints { PX_PER_RAD } else { 1.0 }
-}
 
 /// One direction in which something moves that is found along with the effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,7 +132,7 @@ impl Measurements {
             }
             Nuisance::Offset { stand, coordinate: own } => {
                 if row.stand == Some(stand) && own == coordinate {
-                    offset_unit(row.what)
+                    row.what.offset_unit()
                 } else {
                     0.0
                 }

@@ -31,7 +31,15 @@ pub enum Unit {
     Pixel,
 }
 
+/// Pixels that count as one unit of a bearing where pixels were measured.
+const PX_PER_RAD: f64 = 500.0;
+
 impl What {
+    /// What one unit of a stand's offset is in the natural coordinates of such rows.
+    pub(crate) fn offset_unit(self) -> f64 {
+        if self == Self::EyePoints { PX_PER_RAD } else { 1.0 }
+    }
+
     /// All of them.
     pub const ALL: [Self; 5] = [Self::Touch, Self::Pose, Self::OrientedPose, Self::Place, Self::EyePoints];
 

@@ -12,6 +12,7 @@ mod marker;
 mod next;
 mod options;
 mod search;
+mod seen;
 mod sentence;
 mod servos;
 mod show;

@@ -20,7 +20,7 @@ use plumbline_model::JobContext;
 use rayon::prelude::*;
 
 pub(crate) use crate::statistics::{NORMAL_95, f_tail, median, robust_sd};
-pub(crate) use displacement::{at_m, nominal_place_m, of_arm};
+pub(crate) use displacement::{at_m, of_arm};
 pub(crate) use frames::placed;
 pub(crate) use noise::structure_of;
 
@@ -28,6 +28,7 @@ use crate::covariates::Covariates;
 use crate::error::GapError;
 use crate::finding::{Comparison, CoordinateComparison, FloorSource, KindComparison, Residual};
 use crate::floor::Floor;
+use crate::seen::nominal_place_m;
 
 /// With fewer rows nothing can be told from noise.
 pub const FEWEST_ROWS: usize = 12;

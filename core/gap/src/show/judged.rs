@@ -5,8 +5,9 @@ use plumbline_effects::Assumed;
 use plumbline_effects::measurements::{Measurements, Observation, What};
 use plumbline_model::decompose;
 
-use crate::compare::{nominal_place_m, of_arm};
+use crate::compare::of_arm;
 use crate::floor::Floor;
+use crate::seen::nominal_place_m;
 
 /// Steps of the search for a place, at most.
 const STEPS: usize = 20;

@@ -3,7 +3,8 @@
 use nalgebra::{Cholesky, DMatrix, DVector};
 use plumbline_effects::Measurements;
 
-use crate::compare::{f_tail, nominal_place_m};
+use crate::seen::nominal_place_m;
+use crate::statistics::f_tail;
 
 /// Rows before and after a jump.
 const LEAST_ROWS: usize = 3;

@@ -13,7 +13,8 @@ use nalgebra::Point3;
 use plumbline_effects::Measurements;
 use plumbline_effects::measurements::Observation;
 
-use crate::compare::{median, nominal_place_m};
+use crate::seen::nominal_place_m;
+use crate::statistics::median;
 use jump::{Jump, jumps};
 
 /// A thing is watched that was seen at least so many times …
