@@ -132,9 +132,10 @@ fn against(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &Arc<ShownFinding>) {
         response
             .response
             .widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Residuals against"));
-        let options = [(Along::X, "Forward"), (Along::Y, "Left"), (Along::Z, "Up")];
-        choice(ui, "Part of the residual", &mut cx.state.gap.along, &options);
     });
+    // Beside the list it would not fit where the tile is narrow.
+    let options = [(Along::X, "Forward"), (Along::Y, "Left"), (Along::Z, "Up")];
+    ui.horizontal(|ui| choice(ui, "Part of the residual", &mut cx.state.gap.along, &options));
     cx.state.gap.covariate = Some(chosen);
     let along = cx.state.gap.along;
     let key = (Seen::of(shown), chosen, along);
