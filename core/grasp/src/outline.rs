@@ -1,9 +1,10 @@
 //! Where a thing on the table stands, by the boxes in which both eyes see it.
 //!
 //! A box is drawn around an outline, and the middle of an outline is not where the middle of the thing is
-//! seen: near the border of an image by a pixel or two. So the outline is what is compared: that of an
-//! ellipsoid of the thing's size which stands on the table. How high it stands there is known, which tells
-//! more of its distance than two eyes so near to each other.
+//! seen: near the border of an image by a pixel or two, and a mushroom's is that of its cap, high over the
+//! table. So the outline is what is compared: that around the ellipsoids of which the thing consists,
+//! standing on the table. How high it stands there is known, which tells more of its distance than two eyes
+//! so near to each other.
 
 use std::f64::consts::TAU;
 
@@ -13,7 +14,7 @@ use plumbline_model::robot::Posture;
 use plumbline_model::{Eye, Pixel, Point, Raw};
 
 use crate::knowledge::Knowledge;
-use crate::things::Thing;
+use crate::things::{Round, Thing};
 
 /// Points of an outline.
 const POINTS: usize = 24;
@@ -125,8 +126,7 @@ impl Boxes<'_> {
         xy_m: Vector2<f64>,
         higher_m: f64,
     ) -> Option<Vec<f64>> {
-        let z_m = knowledge.support_m(xy_m.x, xy_m.y) + 0.5 * thing.height_m + higher_m;
-        let middle = Point3::new(xy_m.x, xy_m.y, z_m);
+        let stands_on_m = knowledge.support_m(xy_m.x, xy_m.y) + higher_m;
         let robot_from_left = knowledge.robot_from_left(self.posture).isometry;
         let right_from_left = knowledge.calibration.cameras.right_from_left.isometry;
         let mut residuals = vec![];
@@ -137,12 +137,14 @@ impl Boxes<'_> {
                 Eye::Right => robot_from_left * right_from_left.inverse() * Point3::origin(),
             };
             let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-            for point in outline(&middle, thing, &eye_at)? {
-                let point = Point::new(point.x, point.y, point.z);
-                let (left, right) = knowledge.model.project(&point, self.posture, &self.under)?;
-                let Pixel::<Raw> { u_px, v_px, .. } = if eye == Eye::Left { left } else { right };
-                for (k, at_px) in [u_px, v_px].into_iter().enumerate() {
-                    (low[k], high[k]) = (low[k].min(at_px), high[k].max(at_px));
+            for round in thing.rounds {
+                for point in outline(round, &Point3::new(xy_m.x, xy_m.y, stands_on_m), &eye_at)? {
+                    let point = Point::new(point.x, point.y, point.z);
+                    let (left, right) = knowledge.model.project(&point, self.posture, &self.under)?;
+                    let Pixel::<Raw> { u_px, v_px, .. } = if eye == Eye::Left { left } else { right };
+                    for (k, at_px) in [u_px, v_px].into_iter().enumerate() {
+                        (low[k], high[k]) = (low[k].min(at_px), high[k].max(at_px));
+                    }
                 }
             }
             for k in 0..2 {
@@ -155,9 +157,11 @@ impl Boxes<'_> {
     }
 }
 
-/// Outline of an upright ellipsoid, seen from somewhere outside of it, m.
-fn outline(middle: &Point3<f64>, thing: &Thing, eye: &Point3<f64>) -> Option<Vec<Point3<f64>>> {
-    let half = Vector3::new(0.5 * thing.width_m, 0.5 * thing.width_m, 0.5 * thing.height_m);
+/// Outline of an ellipsoid over a place on which it stands, seen from somewhere outside of it, m.
+fn outline(round: &Round, stands: &Point3<f64>, eye: &Point3<f64>) -> Option<Vec<Point3<f64>>> {
+    let wide = 0.5 * round.width_m;
+    let half = Vector3::new(wide, wide, 0.5 * (round.to_m - round.from_m));
+    let middle = stands + Vector3::z() * (0.5 * (round.from_m + round.to_m));
     // Where the ellipsoid is a ball of radius 1, its outline is a circle.
     let toward = (eye - middle).component_div(&half);
     let far = toward.norm();
@@ -217,20 +221,35 @@ mod tests {
         let knowledge = knowledge();
         let posture = knowledge.described.home();
         let tomato = Thing::of_class("Tomato").expect("known");
-        for at_m in crate::PLACES_M {
+        for (at_m, thing) in crate::PLACES_M.into_iter().zip(Thing::held().cycle()) {
             let truly = Vector2::from(at_m);
-            let both = boxes_of(&knowledge, &tomato, truly);
+            let both = boxes_of(&knowledge, &thing, truly);
             let off = Vector2::new(0.02, -0.015);
             for seen in [both, [both[0], None], [None, both[1]]] {
                 let boxes = Boxes { boxes_px: &seen, posture: &posture, under: SeenUnder::default() };
-                let found = boxes.on_table(&knowledge, &tomato, truly + off).expect("found");
-                assert!((found.xy_m - truly).norm() < 1e-4, "{at_m:?}: {found:?}");
+                let found = boxes.on_table(&knowledge, &thing, truly + off).expect("found");
+                assert!((found.xy_m - truly).norm() < 1e-4, "{thing:?} at {at_m:?}: {found:?}");
                 let sigma_m = found.covariance_m2.trace().sqrt();
                 assert!((0.001..0.02).contains(&sigma_m), "{at_m:?}: {sigma_m}");
             }
         }
         let unseen = Boxes { boxes_px: &[None, None], posture: &posture, under: SeenUnder::default() };
         assert_eq!(unseen.on_table(&knowledge, &tomato, Vector2::new(0.3, 0.0)), None);
+    }
+
+    #[test]
+    fn a_mushroom_is_seen_by_its_cap() {
+        let knowledge = knowledge();
+        let posture = knowledge.described.home();
+        let mushroom = Thing::of_class("Mushroom").expect("known");
+        let truly = Vector2::new(0.3, 0.1);
+        let seen = boxes_of(&knowledge, &mushroom, truly);
+        let boxes = Boxes { boxes_px: &seen, posture: &posture, under: SeenUnder::default() };
+        // Taken for one ellipsoid of its height it would stand farther from the eyes.
+        const ONE: [Round; 1] = [Round { width_m: 0.044, from_m: 0.0, to_m: 0.040 }];
+        let one = Thing { rounds: &ONE, ..mushroom };
+        let taken = boxes.on_table(&knowledge, &one, truly).expect("found");
+        assert!(taken.xy_m.norm() - truly.norm() > 0.005, "{taken:?}");
     }
 
     #[test]

@@ -47,6 +47,31 @@ const TURN_SIGMA_M: f64 = 0.008;
 struct ArmError {
     m: Vector3<f64>,
     covariance_m2: Matrix3<f64>,
+    /// What was known of it before the hand was looked at, m².
+    by_arm_m2: Matrix3<f64>,
+    /// What each look has made of that, m.
+    looks_m: Vec<Vector3<f64>>,
+}
+
+impl ArmError {
+    fn unseen(covariance_m2: Matrix3<f64>) -> Self {
+        Self { m: Vector3::zeros(), covariance_m2, by_arm_m2: covariance_m2, looks_m: vec![] }
+    }
+
+    /// One more look. What the eyes are wrong by (how the hand is shaped, how lenses bend the rim of an
+    /// image) is nearly the same at each, so looks are averaged against their noise, and the arm's word
+    /// counts as much after five of them as after the first.
+    fn looked(&mut self, palm_off_m: Vector3<f64>, covariance_m2: Matrix3<f64>) {
+        self.looks_m.push(palm_off_m);
+        self.m = self.looks_m.iter().sum::<Vector3<f64>>() / self.looks_m.len() as f64;
+        self.covariance_m2 = covariance_m2;
+    }
+
+    /// A move makes all of it a little less known.
+    fn moved(&mut self, drift_m2: f64) {
+        self.covariance_m2 += Matrix3::identity() * drift_m2;
+        self.by_arm_m2 += Matrix3::identity() * drift_m2;
+    }
 }
 
 /// Where the hand of an attempt is.
@@ -79,7 +104,7 @@ impl Running<'_> {
         let commanded = self.body.commanded()?;
         let arm = self.grasper.arm.known.arm();
         let covariance_m2 = arm.covariance_m2(&commanded) + Matrix3::identity() * arm.rest_sigma_m().powi(2);
-        let mut error = ArmError { m: Vector3::zeros(), covariance_m2 };
+        let mut error = ArmError::unseen(covariance_m2);
         let mut over = Over { plan, lowered: None };
         for look in 1..=LOOKS {
             let Some(missing_m) = self.look_at_hand(finder, &mut error, &over.plan, before)? else { break };
@@ -106,12 +131,11 @@ impl Running<'_> {
         self.body.wait(STILL_S)?;
         let sight = self.body.look()?;
         let commanded = self.body.commanded()?;
-        let mut robot_from_palm = self.grasper.arm.known.arm().robot_from_palm(&commanded);
+        let robot_from_palm = self.grasper.arm.known.arm().robot_from_palm(&commanded);
         let modeled = robot_from_palm.translation_m();
         let sent = modeled + error.m;
-        robot_from_palm.isometry.translation.vector = sent;
         let knowledge = &self.grasper.knowledge;
-        let covariance_m2 = &error.covariance_m2;
+        let covariance_m2 = &error.by_arm_m2;
         let found = finder.find(knowledge, before, &sight, &commanded, &robot_from_palm, covariance_m2);
         self.watch.saw(Step::Align, &sight, &[]);
         let found = match found {
@@ -122,7 +146,8 @@ impl Running<'_> {
             }
         };
         let (palm, covariance_m2) = at_height(&found, modeled.z);
-        *error = ArmError { m: palm - modeled, covariance_m2 };
+        error.looked(palm - modeled, covariance_m2);
+        let palm = modeled + error.m;
         let missing_m = (plan.palm_m - palm).xy().norm();
         self.looked(sent, Ok(palm), Some(missing_m), Some(over_table_m(&error.covariance_m2)));
         if error.m.norm() > FARTHEST_M {
@@ -185,7 +210,7 @@ impl Running<'_> {
         let turned_rad = way.last().map_or(0.0, |to| from.distance_rad(to));
         self.follow(Step::Align, way, SPEED_RAD_S)?;
         let drift_m2 = PLAY_SIGMA_M.powi(2) + (TURN_SIGMA_M * turned_rad).powi(2);
-        error.covariance_m2 += Matrix3::identity() * drift_m2;
+        error.moved(drift_m2);
         Ok(())
     }
 
@@ -216,4 +241,27 @@ fn over_table_m(covariance_m2: &Matrix3<f64>) -> f64 {
     let (a, b, c) = (covariance_m2[(0, 0)], covariance_m2[(0, 1)], covariance_m2[(1, 1)]);
     let (mean, half) = (0.5 * (a + c), 0.5 * (a - c));
     (mean + half.hypot(b)).max(0.0).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_eyes_are_wrong_by_at_every_look_does_not_add_up() {
+        let by_arm_m2 = Matrix3::identity() * 0.002f64.powi(2);
+        let mut error = ArmError::unseen(by_arm_m2);
+        // Each look on its own, against the arm's word: half of 6 mm that are not there.
+        for _ in 0..LOOKS {
+            error.looked(Vector3::new(0.0, 0.003, 0.0), 0.5 * by_arm_m2);
+        }
+        assert!((error.m - Vector3::new(0.0, 0.003, 0.0)).norm() < 1e-12, "{}", error.m);
+        assert_eq!(error.by_arm_m2, by_arm_m2);
+        // Noise is averaged.
+        error.looked(Vector3::new(0.0, -0.003, 0.0), 0.5 * by_arm_m2);
+        assert!((error.m.y - 0.002).abs() < 1e-12, "{}", error.m);
+        // A move makes the arm less sure, and what is known of it now.
+        error.moved(0.001f64.powi(2));
+        assert!(error.by_arm_m2[(0, 0)] > by_arm_m2[(0, 0)] && error.covariance_m2[(0, 0)] > 2e-6);
+    }
 }

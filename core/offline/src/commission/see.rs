@@ -2,7 +2,7 @@
 
 use plumbline_effects::{PlaceInRobot, RobotModel, SeenUnder};
 use plumbline_model::{Detection, StereoCalibration};
-use plumbline_vision::detect::{DetectSettings, Detector, DetectorOptions, shipped_detector};
+use plumbline_vision::detect::{DetectSettings, DetectorOptions, EyesDetector, Part, shipped_detector};
 use plumbline_vision::detect_places::{ObjectPlace, PlaceFinder, PlaceOptions};
 
 use super::error::CommissionError;
@@ -10,7 +10,7 @@ use super::robot::{Robot, Sight};
 
 /// The detector that comes with the program, and places by what was commissioned.
 pub(super) struct Seer {
-    detector: Detector,
+    detector: EyesDetector,
     finder: PlaceFinder,
     model: RobotModel,
 }
@@ -19,7 +19,7 @@ impl Seer {
     /// With the eyes and the model in use.
     pub fn new(calibration: &StereoCalibration, model: RobotModel) -> Result<Self, CommissionError> {
         let shipped = shipped_detector().ok_or(CommissionError::NoDetector)?;
-        let detector = shipped.open(&DetectorOptions::default())?;
+        let detector = EyesDetector::open(&shipped.file, &DetectorOptions::default())?;
         let options = PlaceOptions::for_classes(&detector.info().names);
         let finder = PlaceFinder::new(Some(calibration), options);
         Ok(Self { detector, finder, model })
@@ -47,8 +47,8 @@ impl Seer {
         let wanted = self.detector.info().names.index_of(class);
         let settings = DetectSettings::default();
         let (mut left, mut right): (Vec<Detection>, Vec<Detection>) = (vec![], vec![]);
-        self.detector.detect(&sight.left, &settings, &mut left)?;
-        self.detector.detect(&sight.right, &settings, &mut right)?;
+        let whole = [Part::Lit; 2];
+        self.detector.detect_in([&sight.left, &sight.right], whole, &settings, [&mut left, &mut right])?;
         let mut found: Vec<ObjectPlace> = vec![];
         self.finder.find((&sight.left, &left), (&sight.right, &right), &mut found);
         let of_class = found.iter().filter(|object| Some(object.class) == wanted);

@@ -59,6 +59,9 @@ fn smaller_things_are_held_or_said_not_to_be() {
     for toy in [Toy::Mushroom, Toy::Onion, Toy::Orange] {
         let (record, judged) = bench.attempt(&task(Method::M5, toy, EASY_M)).expect("done");
         assert_honest(toy.name(), &record, &judged);
+        // By its outline, not by the middle of its box: a mushroom's is that of its cap.
+        let off_m = judged.camera_error_m.expect("seen");
+        assert!(off_m < 0.004, "{toy:?} is {off_m} m from where it was seen");
     }
 }
 
