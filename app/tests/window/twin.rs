@@ -54,6 +54,7 @@ fn board_clock_and_faults_ask_for_what_they_say() {
         ("Show at all 24 places", TwinCommand::TourBoard(true)),
         ("Put away", TwinCommand::HideBoard),
         ("+10 min", TwinCommand::AdvanceWarmUp { minutes: 10.0 }),
+        ("×20", TwinCommand::WarmUpPace { times: 20.0 }),
         ("Cool", TwinCommand::CoolEyes),
     ] {
         click(&mut window, label);

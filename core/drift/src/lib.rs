@@ -18,5 +18,5 @@ pub use cost::{PlaceError, Row, TableError, errors};
 pub use grid::{GridErrors, GridPlace, PivotCorrection, grid_places};
 pub use log::{LogError, is_too_short, log_of};
 pub use monitor::{Alarm, Band, Monitor, Mover, OwnMotion, Sample, Verdict};
-pub use warm_up::{WarmUp, fit_warm_up};
+pub use warm_up::{Approach, WarmUp, fit_warm_up};
 pub use watch::{Look, Reference, ReferenceKind, ReferenceSeen, WatchError, Watcher, WatcherSetup};

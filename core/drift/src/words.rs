@@ -13,13 +13,13 @@ pub fn verdict(verdict: &Verdict) -> String {
         Verdict::Steady { cost_m } => {
             format!("Places stay where they were: {} at the far end of the table.", off(cost_m[2]))
         }
-        Verdict::Warming { to_go_s: Some(to_go_s), cost_m, what, .. } if *to_go_s <= 0.0 => {
+        Verdict::Warming { to_go_s: Some([_, most_s]), cost_m, what, .. } if *most_s <= 0.0 => {
             let turned = has_turned(*what).trim_end_matches(',');
             format!("Warmed up. {turned}. {} Calibrate the eyes again, warm.", costs(cost_m))
         }
         Verdict::Warming { to_go_s, cost_m, what, .. } => {
             let to_go = match to_go_s {
-                Some(to_go_s) => format!("about {} to go", minutes(to_go_s.max(60.0))),
+                Some([least_s, most_s]) => to_go(least_s.max(60.0), most_s.max(60.0)),
                 None => "how long it takes cannot be told yet".to_owned(),
             };
             format!("Still warming up, {to_go}: {} slowly. {}", turns(*what), costs(cost_m))
@@ -78,6 +78,20 @@ fn turns(what: Mover) -> &'static str {
         Mover::OneEye => "one eye turns against the other",
         Mover::Head => "the head turns",
     }
+}
+
+/// What is known to a quarter, or to a minute and a half, is said as one number.
+fn to_go(least_s: f64, most_s: f64) -> String {
+    let middle_s = 0.5 * (least_s + most_s);
+    if most_s - least_s < (0.25 * middle_s).max(90.0) {
+        return format!("about {} to go", whole_minutes(middle_s));
+    }
+    let [least, most] = [least_s, most_s].map(whole_minutes);
+    format!("{} to {most} to go", least.trim_end_matches(" min"))
+}
+
+fn whole_minutes(s: f64) -> String {
+    format!("{:.0} min", s / 60.0)
 }
 
 fn costs(cost_m: &[f64; 3]) -> String {

@@ -17,6 +17,11 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let Some(course) = &drift.course else { return nothing_yet(ui, cx.view) };
     padded(ui, |ui| {
         headline(ui, course, drift.is_watching);
+        let times = cx.view.twin.warm_up_pace;
+        if cx.view.twin.running && times > 1.0 {
+            let text = format!("The twin's eyes warm up {times} times as fast as everything else.");
+            ui.label(theme::small(ui, text));
+        }
         explain::show(ui, cx);
         ui.add_space(space::XS);
         let height = ui.available_height();

@@ -16,6 +16,9 @@ use plumbline_widgets::theme::{self, Role, group_heading, space};
 use super::{PanelContext, padded};
 use crate::operator::{Action, RobotAction, default_scenario};
 
+/// How many times as fast as everything else the clock of the eyes can run.
+const PACES: [f64; 3] = [1.0, 10.0, 20.0];
+
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let view = cx.view;
     let twin = &view.twin;
@@ -75,6 +78,16 @@ fn clock(ui: &mut Ui, cx: &mut PanelContext<'_>, twin: &TwinView) {
         for (text, minutes) in [("+5 min", 5.0), ("+10 min", 10.0)] {
             if ui.button(text).clicked() {
                 cx.outbox.send(TwinCommand::AdvanceWarmUp { minutes });
+            }
+        }
+        for times in PACES {
+            let is_chosen = (twin.warm_up_pace.max(1.0) - times).abs() < 0.5;
+            let chip = ui.selectable_label(is_chosen, format!("×{times}"));
+            if chip
+                .on_hover_text("How many times as fast their clock runs: at ×20 twenty minutes take one")
+                .clicked()
+            {
+                cx.outbox.send(TwinCommand::WarmUpPace { times });
             }
         }
         if ui.button("Cool").on_hover_text("Switches the eyes off and on: they are cold again").clicked() {

@@ -125,9 +125,9 @@ fn eyes_that_warm_up_are_told_from_a_knock_and_how_long_it_takes() {
     while course.at_s < 2000.0 {
         let share = 1.0 - (-course.at_s / tau_s).exp();
         course.look(-0.6 * most * share, most * share, vec![]);
-        if let Verdict::Warming { to_go_s: Some(to_go_s), what, .. } = course.monitor.verdict() {
+        if let Verdict::Warming { to_go_s: Some([least_s, most_s]), what, .. } = course.monitor.verdict() {
             assert_eq!(what, Mover::BothEyes);
-            told_s.push((course.at_s, to_go_s));
+            told_s.push((course.at_s, 0.5 * (least_s + most_s)));
         }
     }
     assert_eq!(course.monitor.alarms(), &[], "nobody knocked");

@@ -34,6 +34,8 @@ pub struct DriftAround {
     pub robot: Arc<RobotView>,
     /// Time since the eyes were switched on, s.
     pub eyes_on_s: Option<f64>,
+    /// How many times faster than a clock the eyes' one runs; 1 but for a twin that was asked to.
+    pub clock_pace: f64,
     /// The world that is shown, where the arm is of it, too.
     pub world: Option<World>,
     /// What the detector found last.

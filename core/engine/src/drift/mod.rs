@@ -6,6 +6,7 @@ mod stage;
 #[cfg(test)]
 mod tests;
 pub mod view;
+mod watch;
 pub mod work;
 mod workflow;
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use image::{GrayImage, RgbImage};
 use nalgebra::{Isometry3, Vector3};
@@ -43,6 +43,7 @@ impl Desk {
             own_eyes: false,
             robot: Arc::default(),
             eyes_on_s: Some(3600.0),
+            clock_pace: 1.0,
             world: None,
             found: None,
         };
@@ -75,7 +76,7 @@ impl Desk {
         self.pairs += 1;
         self.time = self.time.after(EVERY);
         self.around.eyes_on_s = self.around.eyes_on_s.map(|on_s| on_s + EVERY.as_secs_f64());
-        let stamp = Stamp { seq: self.pairs, captured_at: Instant::now() };
+        let stamp = Stamp { seq: self.pairs, captured_at: self.time.instant };
         let [left, right] = images.clone();
         let frame = StereoFrame { stamp, left, right, time_difference_s: None, name: None };
         self.with(|room, around, context| room.saw(&frame, around, context));
@@ -181,7 +182,7 @@ fn it_looks_seldom_and_waits_while_the_thread_is_at_work() {
     assert!(desk.see(&still));
     let [left, right] = still;
     let frame = StereoFrame {
-        stamp: Stamp { seq: 99, captured_at: Instant::now() },
+        stamp: Stamp { seq: 99, captured_at: desk.time.instant },
         left,
         right,
         time_difference_s: None,
@@ -194,7 +195,7 @@ fn it_looks_seldom_and_waits_while_the_thread_is_at_work() {
     desk.with(|room, around, context| room.saw(&frame, around, context));
     let waits = desk.room.input().expect("it is time");
     desk.time = desk.time.after(EVERY);
-    let later = StereoFrame { stamp: Stamp { seq: 100, captured_at: Instant::now() }, ..frame };
+    let later = StereoFrame { stamp: Stamp { seq: 100, captured_at: desk.time.instant }, ..frame };
     desk.with(|room, around, context| room.saw(&later, around, context));
     assert!(Arc::ptr_eq(&waits, &desk.room.input().expect("the same")), "one at a time");
 }

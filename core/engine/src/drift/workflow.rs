@@ -2,16 +2,15 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
-use plumbline_drift::{Monitor, Sample, Verdict, WatcherSetup, is_too_short, words};
-use plumbline_effects::RobotModel;
+use plumbline_drift::{Monitor, Sample, Verdict, is_too_short};
 use plumbline_model::StereoFrame;
 
 use super::DriftAround;
 use super::command::DriftCommand;
 use super::stage::{DriftInput, DriftOutput};
-use super::view::{DriftCourse, DriftPoint, DriftView};
+use super::view::{DriftCourse, DriftView};
+use super::watch::{EVERY, Watch};
 pub use super::work::Context;
 use super::work::{DriftResult, DriftWork};
 use crate::ground::jobs::JobId;
@@ -19,13 +18,6 @@ use crate::ground::notice::NoticeLevel;
 use crate::ground::stage::Timed;
 use crate::ground::step::StepState;
 use crate::ground::{Moment, Nothing, Time, Workflow};
-
-/// It looks no more often than this.
-const EVERY: Duration = Duration::from_secs(2);
-/// It takes no more than this share of the time that passes.
-const MOST_SHARE: f64 = 0.03;
-/// The clock of the eyes goes back by more than this when they were switched off, s.
-const WENT_BACK_S: f64 = 1.0;
 
 /// Watching drift. There is one at a time, of what is shown.
 #[derive(Clone, Debug, Default)]
@@ -46,24 +38,6 @@ pub struct DriftWorkflow {
     log: Option<(PathBuf, bool)>,
 }
 
-/// A watch under way.
-#[derive(Clone, Debug)]
-struct Watch {
-    began: Instant,
-    /// Of which source, counted.
-    opened: u64,
-    /// Whether the eyes' clock is known.
-    from_switching_on: bool,
-    monitor: Monitor,
-    /// The model that it is told with.
-    model: Arc<RobotModel>,
-    due: Instant,
-    pending: Option<Arc<DriftInput>>,
-    told_alarms: usize,
-    told_motions: usize,
-    epipolar_px: Option<f64>,
-}
-
 impl DriftWorkflow {
     /// A pair has come.
     pub fn saw(&mut self, frame: &StereoFrame, around: &DriftAround, context: &mut Context<'_>) {
@@ -71,7 +45,7 @@ impl DriftWorkflow {
         let Some(watch) = &self.watch else { return };
         if watch.opened != around.opened || watch.from_switching_on != around.eyes_on_s.is_some() {
             self.begin(around, now);
-        } else if self.went_back(around) {
+        } else if watch.went_back(around) {
             let text = "The cameras were switched on again: watching drift begins anew.";
             context.notices.add(NoticeLevel::Info, text);
             self.begin(around, now);
@@ -79,19 +53,7 @@ impl DriftWorkflow {
         self.use_model(around, context);
         let number = self.number;
         let Some(watch) = self.watch.as_mut().filter(|_| self.retelling.is_none()) else { return };
-        if now.instant < watch.due || watch.pending.is_some() || around.waits_because().is_some() {
-            return;
-        }
-        let since = now.instant.saturating_duration_since(watch.began).as_secs_f64();
-        let setup = WatcherSetup {
-            model: around.model.clone(),
-            posture: around.posture(),
-            eyes_on_s: around.eyes_on_s,
-            references: around.references(frame),
-        };
-        let at_s = around.eyes_on_s.unwrap_or(since);
-        watch.pending = Some(Arc::new(DriftInput { watch: number, frame: frame.clone(), setup, at_s }));
-        watch.due = now.instant + EVERY;
+        watch.take(number, frame, around, now.instant);
     }
 
     /// What the thread is to look at, if anything.
@@ -103,8 +65,7 @@ impl DriftWorkflow {
     pub fn looked(&mut self, output: Timed<DriftOutput>, context: &mut Context<'_>) {
         let DriftOutput { watch: number, at_s, look } = output.result;
         let Some(watch) = self.watch.as_mut().filter(|_| number == self.number) else { return };
-        watch.pending = None;
-        watch.due = watch.due.max(context.time.instant + output.busy.div_f64(MOST_SHARE));
+        watch.rest(output.busy, context.time.instant);
         // It was told with the model before.
         if self.retelling.is_some() {
             return;
@@ -214,78 +175,12 @@ impl DriftWorkflow {
         (!std::mem::replace(told, true)).then(|| log.clone())
     }
 
-    fn went_back(&self, around: &DriftAround) -> bool {
-        let last = self.watch.as_ref().and_then(|watch| watch.monitor.samples().last());
-        last.zip(around.eyes_on_s).is_some_and(|(last, on_s)| on_s < last.at_s - WENT_BACK_S)
-    }
-
     fn begin(&mut self, around: &DriftAround, now: Time) {
         self.number += 1;
         self.retelling = None;
         self.failed = None;
         self.course = None;
-        self.watch = Some(Watch {
-            began: now.instant,
-            opened: around.opened,
-            from_switching_on: around.eyes_on_s.is_some(),
-            monitor: Monitor::default(),
-            model: around.model.clone(),
-            due: now.instant,
-            pending: None,
-            told_alarms: 0,
-            told_motions: 0,
-            epipolar_px: None,
-        });
-    }
-}
-
-impl Watch {
-    /// What the operator is told once.
-    fn tell(&mut self, context: &mut Context<'_>) {
-        for alarm in &self.monitor.alarms()[self.told_alarms..] {
-            context.notices.add(NoticeLevel::Warning, words::alarm(alarm));
-        }
-        for motion in &self.monitor.own_motions()[self.told_motions..] {
-            context.notices.add(NoticeLevel::Info, words::own_motion(motion));
-        }
-        self.told_alarms = self.monitor.alarms().len();
-        self.told_motions = self.monitor.own_motions().len();
-    }
-
-    /// `None`: nothing was seen yet.
-    fn course(&self) -> Option<DriftCourse> {
-        let monitor = &self.monitor;
-        let newest = monitor.samples().last()?;
-        let point = |sample: &Sample| {
-            let table = &sample.look.table;
-            DriftPoint {
-                at_s: sample.at_s,
-                off_m: monitor.off_m(sample),
-                along_m: plumbline_drift::Row::ALL.map(|row| table.along_m(row)),
-                across_m: plumbline_drift::Row::ALL.map(|row| table.across_m(row)),
-            }
-        };
-        let verdict = monitor.verdict();
-        let reference = |seen: &plumbline_drift::ReferenceSeen| {
-            (seen.name.clone(), seen.drift_m.filter(|_| !seen.is_lost).map(|drift_m| drift_m.norm()))
-        };
-        Some(DriftCourse {
-            from_switching_on: self.from_switching_on,
-            points: monitor.samples().iter().map(point).collect(),
-            band_m: monitor.band().map(|band| band.half_m),
-            verdict,
-            sentence: words::verdict(&verdict),
-            table: newest.look.table.rows,
-            turns_rad: newest.look.turns_rad.map(Into::into),
-            epipolar_px: self.epipolar_px,
-            references: newest.look.references.iter().map(reference).collect(),
-            alarms: monitor.alarms().iter().map(|alarm| (alarm.since_s, words::alarm(alarm))).collect(),
-            own_motions: monitor
-                .own_motions()
-                .iter()
-                .map(|motion| (motion.since_s, words::own_motion(motion)))
-                .collect(),
-        })
+        self.watch = Some(Watch::new(around, now));
     }
 }
 

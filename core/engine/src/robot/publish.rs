@@ -24,7 +24,8 @@ impl Worker {
             let same_state = told.robot.is_same_state(&robot)
                 && told.twin.is_same_state(&twin)
                 && told.twins_started == self.twins_started;
-            let every = if matches!(robot.motion, MotionState::Moving { .. }) { MOVING } else { STANDING };
+            let moves = matches!(robot.motion, MotionState::Moving { .. });
+            let every = if moves || twin.warm_up_pace > 1.0 { MOVING } else { STANDING };
             let soon = self.told_at.is_some_and(|at| at.elapsed() < every);
             if same_state && (soon || (*told.twin == twin && told.robot.has_same_readings(&robot))) {
                 return None;
@@ -162,7 +163,7 @@ impl Worker {
     }
 }
 
-/// Readings are shown this often while something moves, and while nothing does.
+/// Readings are shown this often while something moves or a clock runs fast, and while nothing does.
 const MOVING: Duration = Duration::from_millis(66);
 const STANDING: Duration = Duration::from_millis(500);
 /// Smaller changes than these are not worth drawing the window again.
@@ -235,6 +236,7 @@ impl TwinView {
             && self.failed == other.failed
             && self.scenario == other.scenario
             && self.board == other.board
+            && (self.warm_up_pace - other.warm_up_pace).abs() < f64::EPSILON
             && self.faults == other.faults
             && self.toys.len() == other.toys.len()
             && self.toys.iter().zip(&other.toys).all(|(a, b)| a.place.is_some() == b.place.is_some())

@@ -51,6 +51,11 @@ pub enum TwinCommand {
         /// Minutes.
         minutes: f64,
     },
+    /// Lets the clock of the eyes' warming up run faster than everything else.
+    WarmUpPace {
+        /// Times, 1–60.
+        times: f64,
+    },
     /// Switches the eyes off and on: they are cold again.
     CoolEyes,
     /// Switches a fault on or off.

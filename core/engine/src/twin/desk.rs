@@ -176,6 +176,7 @@ impl TwinDesk {
                 }
                 send(To::AdvanceWarmUp { minutes })
             }
+            TwinCommand::WarmUpPace { times } => send(To::WarmUpPace { times }),
             TwinCommand::CoolEyes => send(To::CoolEyes),
             TwinCommand::Fault { name, on } => {
                 let fault = Fault::from_name(&name).ok_or_else(|| TwinUnable::NoFault(name.clone()))?;
@@ -304,6 +305,7 @@ impl TwinDesk {
             // Whole seconds: the window need not be drawn again for less.
             time_s: state.time_s.floor(),
             eyes_on_s: state.eyes_on_s.floor(),
+            warm_up_pace: state.warm_up_pace,
             real_time_factor: (state.real_time_factor * 20.0).round() / 20.0,
             toys: Toy::ALL.into_iter().map(toy).collect(),
             board: state.board,

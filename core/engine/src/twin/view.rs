@@ -20,6 +20,8 @@ pub struct TwinView {
     pub real_time_factor: f64,
     /// Time since the eyes were switched on, s.
     pub eyes_on_s: f64,
+    /// How many times faster than everything else the eyes' clock runs; 1 unless it was asked for.
+    pub warm_up_pace: f64,
     /// Toys: name, and where it stands now (`None`: put away).
     pub toys: Vec<ToyView>,
     /// The chessboard, if it is out.

@@ -53,6 +53,8 @@ pub struct World {
     board: Option<Pose<Robot, Board>>,
     eyes: EyePlaces,
     warm_up: WarmUp,
+    /// Seconds that the eyes warm up in a simulated second.
+    warm_up_pace: f64,
     eyes_body: usize,
     board_body: usize,
     touch: TouchWatch,
@@ -122,6 +124,7 @@ impl World {
             board_body: find(data.model(), MjtObjBase::mjOBJ_BODY, "board")?,
             eyes: EyePlaces::of(&rig, scenario),
             warm_up: WarmUp::cold(scenario.eyes.heat),
+            warm_up_pace: 1.0,
             toy_size: scenario.contact.toy_size,
             rig,
             places,
@@ -150,6 +153,7 @@ impl World {
         (self.raised_m, self.load_kg) = (0.0, 0.0);
         self.steps = 0;
         self.warm_up.reset();
+        self.warm_up_pace = 1.0;
         self.servos.iter_mut().for_each(ServoMotor::cool);
         self.touch.forget();
         self.board = None;
@@ -193,7 +197,7 @@ impl World {
         self.touch.look(&self.data, &self.places);
         if self.steps.is_multiple_of(HEAT_EVERY) {
             let dt_s = HEAT_EVERY as f64 * Self::STEP_S;
-            self.warm_up.pass(dt_s);
+            self.warm_up.pass(dt_s * self.warm_up_pace);
             self.servos.iter_mut().for_each(|servo| servo.warm(dt_s));
         }
     }
@@ -417,6 +421,16 @@ impl World {
     /// Lets the eyes' clock run ahead.
     pub fn advance_warm_up(&mut self, duration_s: f64) {
         self.warm_up.pass(duration_s);
+    }
+
+    /// Lets the eyes' clock run so many times faster than everything else; their warming up goes with it.
+    pub fn set_warm_up_pace(&mut self, times: f64) {
+        self.warm_up_pace = times;
+    }
+
+    /// How many times faster than everything else the eyes' clock runs.
+    pub fn warm_up_pace(&self) -> f64 {
+        self.warm_up_pace
     }
 
     /// The eyes are cold again.

@@ -42,6 +42,11 @@ pub enum TwinCommand {
         /// Minutes.
         minutes: f64,
     },
+    /// Lets the clock of the eyes' warming up run faster than everything else.
+    WarmUpPace {
+        /// Times, 1–60.
+        times: f64,
+    },
     /// Switches the eyes off until they are cold, and on again: their clock starts anew.
     CoolEyes,
     /// Switches a fault of the servo bus on or off.
@@ -66,6 +71,8 @@ pub struct TwinState {
     pub time_s: f64,
     /// Since when the eyes are on, s.
     pub eyes_on_s: f64,
+    /// How many times faster than everything else the eyes' clock runs.
+    pub warm_up_pace: f64,
     /// Simulated seconds per second, over the last second.
     pub real_time_factor: f64,
     /// Toys and the place of their middle; `None`: put away.

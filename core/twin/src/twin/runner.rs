@@ -22,6 +22,9 @@ const MOST_BEHIND_S: f64 = 0.1;
 /// Longest stretch of physics between two looks at commands.
 const STRETCH: Duration = Duration::from_millis(20);
 
+/// How many times faster than everything else the eyes' clock may run.
+const WARM_UP_PACES: std::ops::RangeInclusive<f64> = 1.0..=60.0;
+
 /// Steps, obeys, publishes.
 pub(super) struct Runner {
     shared: Arc<Shared>,
@@ -115,6 +118,7 @@ impl Runner {
                 world.raise_screen(screen_height_m).and_then(|()| world.load_hand(payload_kg))
             }
             TwinCommand::AdvanceWarmUp { minutes } => self.advance(minutes),
+            TwinCommand::WarmUpPace { times } => self.warm_up_pace(times),
             TwinCommand::CoolEyes => {
                 lock(&self.shared.world).cool_eyes();
                 Ok(())
@@ -181,6 +185,18 @@ impl Runner {
         Ok(())
     }
 
+    fn warm_up_pace(&self, times: f64) -> Result<(), TwinError> {
+        if !WARM_UP_PACES.contains(&times) {
+            return Err(TwinError::Value {
+                what: "the pace of the eyes' clock",
+                value: times.to_string(),
+                remedy: "give 1 to 60 times as fast as everything else",
+            });
+        }
+        lock(&self.shared.world).set_warm_up_pace(times);
+        Ok(())
+    }
+
     /// What of the movable things is out: the scenery changes with it.
     fn visible(&self) -> Vec<bool> {
         let world = lock(&self.shared.world);
@@ -196,6 +212,7 @@ impl Runner {
         let mut state = TwinState {
             time_s: world.time_s(),
             eyes_on_s: world.eyes_on_s(),
+            warm_up_pace: world.warm_up_pace(),
             real_time_factor: self.factor,
             toys: Toy::ALL.into_iter().map(|t| (t, world.toy(t).map(|p| p.translation.vector))).collect(),
             board: world.board(),

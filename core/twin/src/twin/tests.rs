@@ -124,6 +124,13 @@ fn eyes_warm_up_and_cool() {
     twin.send(TwinCommand::AdvanceWarmUp { minutes: 30.0 });
     soon("the eyes are warm", || twin.state().eyes_on_s > 1800.0);
     soon("they turned", || cold.angle_to(&turn(&twin)) > 3e-3);
+    twin.send(TwinCommand::WarmUpPace { times: 0.0 });
+    soon("no clock stands still", || twin.state().refusal.is_some_and(|why| why.contains("1 to 60")));
+    let (before_s, time_s) = (twin.state().eyes_on_s, twin.state().time_s);
+    twin.send(TwinCommand::WarmUpPace { times: 30.0 });
+    soon("their clock runs faster", || twin.state().eyes_on_s > before_s + 30.0);
+    assert!(twin.state().time_s < time_s + 20.0, "everything else goes on as it does");
+    twin.send(TwinCommand::WarmUpPace { times: 1.0 });
     twin.send(TwinCommand::CoolEyes);
     soon("they turned back", || cold.angle_to(&turn(&twin)) < 1e-4 && twin.state().eyes_on_s < 60.0);
 }
