@@ -24,5 +24,5 @@ pub use guidance::{
 };
 pub use outbox::Outbox;
 pub use screens::{Pane, Screen};
-pub use shortcuts::shortcut_text;
+pub use shortcuts::{StopKeys, shortcut_text};
 pub use touch_monitor::{Monitor, window_problem};

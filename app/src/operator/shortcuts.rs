@@ -105,35 +105,51 @@ pub fn shortcut_text(ctx: &egui::Context, action: Action) -> Option<String> {
     Some(text.replace("Escape", "Esc").replace("Period", ".").replace("Comma", ","))
 }
 
-/// Whether what stops was pressed in this frame: space, and Esc where it does; takes nothing away.
-pub fn stop_asked(ctx: &egui::Context, escape_stops: bool) -> bool {
-    let typing = ctx.text_edit_focused();
-    ctx.input(|input| {
-        escape_stops && input.key_pressed(Key::Escape) || !typing && input.key_pressed(Key::Space)
-    })
+/// What the keys that stop mean just now.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StopKeys {
+    /// Esc stops, and closes nothing.
+    pub escape: bool,
+    /// Something moves: space stops while a text is typed as well.
+    pub moves: bool,
 }
 
-/// Whether what stops was pressed, with whatever other keys are held. Where Esc stops it does so while a
-/// text is typed as well: who presses it in alarm must not be asked where the cursor is. Space is
-/// taken away, so that it does not press the button that has the focus too.
-fn take_stop_keys(ctx: &egui::Context, typing: bool, escape_stops: bool) -> bool {
+impl StopKeys {
+    /// Both keys stop, whatever lies open.
+    pub const ALWAYS: Self = Self { escape: true, moves: true };
+
+    fn are_pressed(self, input: &egui::InputState, typing: bool) -> bool {
+        self.escape && input.key_pressed(Key::Escape)
+            || (self.moves || !typing) && input.key_pressed(Key::Space)
+    }
+}
+
+/// Whether what stops was pressed in this frame; takes nothing away.
+pub fn stop_asked(ctx: &egui::Context, keys: StopKeys) -> bool {
+    let typing = ctx.text_edit_focused();
+    ctx.input(|input| keys.are_pressed(input, typing))
+}
+
+/// Whether what stops was pressed, with whatever other keys are held. Where something moves that counts
+/// while a text is typed as well: who presses it in alarm must not be asked where the cursor is. Space is
+/// taken away where it is not typed, so that it does not press the button that has the focus too.
+fn take_stop_keys(ctx: &egui::Context, typing: bool, keys: StopKeys) -> bool {
     ctx.input_mut(|input| {
-        let escape = escape_stops && input.key_pressed(Key::Escape);
-        let space = !typing && input.key_pressed(Key::Space);
-        if space {
+        let pressed = keys.are_pressed(input, typing);
+        if !typing && input.key_pressed(Key::Space) {
             input.events.retain(|event| !matches!(event, Event::Key { key: Key::Space, .. }));
         }
-        escape || space
+        pressed
     })
 }
 
 /// Takes the shortcuts out of this frame's input and returns their actions. While a text is
-/// being typed only those with Ctrl count (and Esc, where it stops), so that letters and space reach
+/// being typed only those with Ctrl count (and what stops, where it does), so that letters and space reach
 /// the text.
-pub fn take_shortcuts(ctx: &egui::Context, escape_stops: bool) -> Vec<Action> {
+pub fn take_shortcuts(ctx: &egui::Context, stop_keys: StopKeys) -> Vec<Action> {
     let typing = ctx.text_edit_focused();
     let mut taken = Vec::new();
-    if take_stop_keys(ctx, typing, escape_stops) {
+    if take_stop_keys(ctx, typing, stop_keys) {
         taken.push(Action::Stop);
     }
     let mut shortcuts: Vec<(KeyboardShortcut, Action)> = actions::all()

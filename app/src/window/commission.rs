@@ -28,11 +28,21 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
     let frame = frame.fill(theme::tokens(ui).raised);
     let strip = Panel::top("commission").frame(frame).exact_size(HEIGHT).show_separator_line(false);
     strip.show(ui, |ui| {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        // Accepting is never where collecting was.
+        let layout = match accepts(&course) {
+            true => Layout::left_to_right(Align::Center),
+            false => Layout::right_to_left(Align::Center),
+        };
+        ui.with_layout(layout, |ui| {
             next(window, &course, ui, outbox);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| words(window, &course, ui, outbox));
         });
     });
+}
+
+/// Whether its button puts something in use.
+fn accepts(course: &Course) -> bool {
+    matches!(&course.press, Press::Do { actions, .. } if actions.iter().any(|action| action.puts_in_use()))
 }
 
 /// Where it is, and what it took.

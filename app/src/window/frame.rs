@@ -10,7 +10,7 @@ use super::{
     Ask, PlumblineWindow, apply, commission, drop, frame_time, frame_times_overlay, health, inspector,
     jogging, rail, status_line, tiles, transport,
 };
-use crate::operator::{Outbox, Screen, shortcuts};
+use crate::operator::{Outbox, Screen, StopKeys, shortcuts};
 
 /// The arm holds without a sign of life from the window; this often it gets one while something
 /// moves.
@@ -21,7 +21,7 @@ const BEGINS_WITHIN: Duration = Duration::from_secs(2);
 impl PlumblineWindow {
     fn before_frame(&mut self, ctx: &egui::Context) {
         // Before anything that takes time.
-        if shortcuts::stop_asked(ctx, self.escape_stops(ctx)) {
+        if shortcuts::stop_asked(ctx, self.stop_keys(ctx)) {
             self.backend.stop();
         }
         self.hold_before_closing(ctx);
@@ -58,13 +58,15 @@ impl PlumblineWindow {
         runs || self.may_move()
     }
 
-    /// Esc closes what lies on top; it stops where nothing does, and always where something moves.
-    fn escape_stops(&self, ctx: &egui::Context) -> bool {
+    /// Esc closes what lies on top; it stops where nothing does, and always where something moves. Space
+    /// always stops, but where nothing moves a text that is typed gets it.
+    fn stop_keys(&self, ctx: &egui::Context) -> StopKeys {
         let lies_on_top = self.ask.is_some()
             || self.palette.is_open()
             || self.notices.is_history_open()
             || egui::Popup::is_any_open(ctx);
-        self.moves() || !lies_on_top
+        let moves = self.moves();
+        StopKeys { escape: moves || !lies_on_top, moves }
     }
 
     /// A window that closes would leave what moves to itself.
@@ -123,8 +125,7 @@ impl PlumblineWindow {
                 outbox.act(action);
             }
         }
-        let escape_stops = self.escape_stops(&ctx);
-        for action in shortcuts::take_shortcuts(&ctx, escape_stops) {
+        for action in shortcuts::take_shortcuts(&ctx, self.stop_keys(&ctx)) {
             outbox.act(action);
         }
         self.draw_frame(ui, &mut outbox);

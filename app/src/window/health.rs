@@ -20,6 +20,9 @@ use crate::panels::source_age;
 
 /// Below this width, points, the lamps take a row of their own.
 const NARROW: f32 = 1400.0;
+/// Below this width, points, the program's name and the keys of buttons give way to buttons; beside *Release
+/// STOP* below the second one.
+const TIGHT: [f32; 2] = [900.0, 1500.0];
 const LAMPS_HEIGHT: f32 = 30.0;
 /// A live picture older than this is worth a warning.
 const OLD: Duration = Duration::from_millis(500);
@@ -27,7 +30,10 @@ const OLD: Duration = Duration::from_millis(500);
 const WARM_AFTER_MINUTES: f64 = 20.0;
 
 pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
-    let narrow = ui.available_width() < NARROW;
+    let width = ui.available_width();
+    let narrow = width < NARROW;
+    let tight = width < TIGHT[0];
+    let is_named = width >= TIGHT[usize::from(robot_lamps::can_be_released(&window.view.robot))];
     let margin = egui::Margin { left: 16, right: 8, top: 6, bottom: 6 };
     let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(margin);
     let height = STOP_SIZE.y + 12.0 + if narrow { LAMPS_HEIGHT } else { 0.0 };
@@ -43,13 +49,15 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
                 outbox.act(Action::Stop);
             }
             ui.add_space(space::S);
-            robot_lamps::release_button(&window.view, ui, outbox);
+            robot_lamps::release_button(tight, &window.view, ui, outbox);
             view_menu(window, ui, outbox);
             messages_button(window, ui, outbox);
-            commands_button(ui, outbox);
+            commands_button(tight, ui, outbox);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.heading("Plumbline");
-                ui.add_space(space::S);
+                if is_named {
+                    ui.heading("Plumbline");
+                    ui.add_space(space::S);
+                }
                 world_menu::show(&window.view, &window.settings.recent_sources, ui, outbox);
                 if !narrow {
                     lamps(window, ui, outbox);
@@ -74,9 +82,10 @@ fn lamps(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     lamps::show(&all, window, ui, outbox);
 }
 
-fn commands_button(ui: &mut Ui, outbox: &mut Outbox) {
-    let keys = shortcut_text(ui.ctx(), Action::Palette).unwrap_or_default();
-    let button = Button::new("Commands").shortcut_text(keys);
+fn commands_button(tight: bool, ui: &mut Ui, outbox: &mut Outbox) {
+    let keys = shortcut_text(ui.ctx(), Action::Palette).filter(|_| !tight).unwrap_or_default();
+    let button = Button::new("Commands");
+    let button = if keys.is_empty() { button } else { button.shortcut_text(keys) };
     if ui.add(button).on_hover_text("Everything that can be done, by name").clicked() {
         outbox.act(Action::Palette);
     }

@@ -35,9 +35,14 @@ pub(super) fn arm_state(robot: &RobotView) -> ArmState {
     }
 }
 
-/// Beside STOP while it is latched. Space never reaches it: it stops.
-pub(super) fn release_button(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
-    if !view.robot.stopped || view.robot.connection == Connection::None {
+/// Whether STOP was pressed, so that *Release STOP* stands beside it.
+pub(super) fn can_be_released(robot: &RobotView) -> bool {
+    robot.stopped && robot.connection != Connection::None
+}
+
+/// Beside STOP while it is latched; where it is tight, STOP's own words say that it is. Space never reaches it: it stops.
+pub(super) fn release_button(tight: bool, view: &View, ui: &mut Ui, outbox: &mut Outbox) {
+    if !can_be_released(&view.robot) {
         return;
     }
     let color = Role::Warning.color(theme::tokens(ui));
@@ -45,7 +50,9 @@ pub(super) fn release_button(view: &View, ui: &mut Ui, outbox: &mut Outbox) {
     if ui.button(text).on_hover_text("Moves may be asked for again; nothing moves by this").clicked() {
         outbox.act(Action::Robot(RobotAction::ReleaseStop));
     }
-    ui.label(RichText::new("Stopped.").color(color));
+    if !tight {
+        ui.label(RichText::new("Stopped.").color(color));
+    }
     ui.add_space(space::S);
 }
 

@@ -162,6 +162,22 @@ fn the_mount_is_planned_after_the_board_lies() {
     assert!(!says(&Fake::over(view).window(on(Screen::Mount)), "Next: "));
 }
 
+/// Where the one button stands, by its middle.
+fn button_x(view: View) -> f32 {
+    let window = Fake::over(view).window(on(Screen::Commission));
+    window.get_by_label_contains("Next: ").rect().center().x
+}
+
+#[test]
+fn accepting_is_never_where_collecting_was() {
+    let mut view = at(CommissionStep::Mount);
+    view.eyes = Arc::new(eyes_in_use());
+    let collecting = button_x(view.clone());
+    view.mount = Arc::new(crate::made_up::mount());
+    let accepting = button_x(view);
+    assert!(collecting > 800.0 && accepting < 480.0, "{collecting} and {accepting} of 1280");
+}
+
 #[test]
 fn touches_are_planned_begun_and_waited_for() {
     let (label, window, sent) = press(at(CommissionStep::Screen));

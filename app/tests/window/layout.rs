@@ -10,7 +10,7 @@ use crate::fake::Fake;
 use crate::{made_up, made_up_gap, made_up_labels, made_up_models, made_up_objects, made_up_touch};
 
 /// What letters may stand over, pt: overhanging letters and rounding.
-const SLACK: f32 = 2.0;
+pub(super) const SLACK: f32 = 2.0;
 
 /// How high the bar of tabs is, pt.
 const TAB_BAR: f32 = 32.0;
@@ -18,13 +18,15 @@ const TAB_BAR: f32 = 32.0;
 const SIZES: [[f32; 2]; 2] = [[1024.0, 700.0], [1440.0, 900.0]];
 
 /// A line of text as it is painted.
-struct Line {
-    text: String,
-    rect: Rect,
-    clip: Rect,
+pub(super) struct Line {
+    pub text: String,
+    pub rect: Rect,
+    pub clip: Rect,
+    /// It ends with dots for want of room.
+    pub is_elided: bool,
 }
 
-fn lines(window: &egui_kittest::Harness<'static, PlumblineWindow>) -> Vec<Line> {
+pub(super) fn lines(window: &egui_kittest::Harness<'static, PlumblineWindow>) -> Vec<Line> {
     let mut lines = Vec::new();
     for ClippedShape { clip_rect, shape, .. } in &window.output().shapes {
         collect(shape, *clip_rect, &mut lines);
@@ -45,13 +47,14 @@ fn lines_of(text: &TextShape, clip: Rect) -> impl Iterator<Item = Line> {
         text: row.text(),
         rect: row.rect().translate(text.pos.to_vec2()),
         clip,
+        is_elided: text.galley.elided,
     });
     rows.filter(|line| !line.text.trim().is_empty() && line.rect.intersects(line.clip))
 }
 
 /// What is scrolled away above or below is no fault; what ends at the side is. Of more tabs than there
 /// is room for an arrow leads to the next.
-fn cut(lines: &[Line]) -> Vec<String> {
+pub(super) fn cut(lines: &[Line]) -> Vec<String> {
     let is_cut = |line: &&Line| {
         let is_tab = line.rect.bottom() <= line.clip.top() + TAB_BAR;
         if is_tab {
@@ -66,7 +69,7 @@ fn cut(lines: &[Line]) -> Vec<String> {
         .collect()
 }
 
-fn overlapping(lines: &[Line]) -> Vec<String> {
+pub(super) fn overlapping(lines: &[Line]) -> Vec<String> {
     let visible: Vec<_> = lines.iter().map(|line| line.rect.intersect(line.clip)).collect();
     let mut faults = Vec::new();
     for (i, a) in visible.iter().enumerate() {
@@ -120,9 +123,9 @@ fn no_text_is_cut_or_covered_on_any_screen() {
     assert_none(&all);
 }
 
-#[test]
-fn no_text_is_cut_or_covered_where_there_is_much_to_show() {
-    let views = [
+/// Screens that show much.
+pub(super) fn much_to_show() -> [(Screen, View); 11] {
+    [
         (Screen::Mount, View { mount: made_up::mount().into(), ..made_up::everything() }),
         (Screen::Touch, made_up_touch::with_touch(made_up_touch::running())),
         (Screen::Touch, made_up_touch::with_touch(made_up_touch::after(12, made_up_touch::running().phase))),
@@ -134,9 +137,13 @@ fn no_text_is_cut_or_covered_where_there_is_much_to_show() {
         (Screen::Live, made_up_objects::live(made_up_objects::detect())),
         (Screen::Images, made_up_labels::labeling(made_up_labels::proposed())),
         (Screen::Scores, made_up_labels::judging(made_up_labels::judged())),
-    ];
+    ]
+}
+
+#[test]
+fn no_text_is_cut_or_covered_where_there_is_much_to_show() {
     let mut all = Vec::new();
-    for (screen, view) in views {
+    for (screen, view) in much_to_show() {
         for size in SIZES {
             all.extend(faults(&view, screen, size, 1.0));
         }

@@ -113,6 +113,21 @@ fn escape_stops_what_moves_while_a_text_is_typed_and_with_other_keys_held() {
 }
 
 #[test]
+fn space_stops_what_moves_while_a_text_is_typed() {
+    for (view, stops_it) in [(moving(), true), (everything_runs(), false)] {
+        let fake = Fake::over(view);
+        let mut window = fake.window(WindowSettings::default());
+        window.key_press_modifiers(Modifiers::COMMAND, Key::K);
+        window.run_steps(3);
+        fake.take_stops();
+        window.key_press(Key::Space);
+        window.run_steps(3);
+        assert_eq!(fake.take_stops() > 0, stops_it);
+        assert_eq!(fake.take_sent() == stopped(), stops_it, "where nothing moves the text gets it");
+    }
+}
+
+#[test]
 fn where_nothing_moves_escape_closes_what_lies_on_top_and_stops_only_then() {
     assert_eq!(escape_in_the_palette(everything_runs(), Modifiers::NONE), (Vec::new(), 0, false));
     for key in [Key::L, Key::M] {

@@ -5,7 +5,7 @@ use plumbline_engine::{Command, ScreenWindow, TouchCommand};
 use plumbline_model::session::Touchscreen;
 
 use super::{TouchSurface, prompt, touch_surface};
-use crate::operator::{Action, Monitor, Screen, screen_of, shortcuts};
+use crate::operator::{Action, Monitor, Screen, StopKeys, screen_of, shortcuts};
 use crate::window::{PlumblineWindow, icon};
 
 /// Size of the window where it is only tried out, points.
@@ -42,7 +42,8 @@ impl PlumblineWindow {
                 Some(prompt) => (vec![], prompt::show(ui, &prompt)),
                 None => (touch_surface(ui, &view.touch, screen.as_ref(), &window, surface), None),
             };
-            let stop = class != ViewportClass::EmbeddedWindow && shortcuts::stop_asked(ui.ctx(), true);
+            let stop =
+                class != ViewportClass::EmbeddedWindow && shortcuts::stop_asked(ui.ctx(), StopKeys::ALWAYS);
             keys(ui, class, window.full_screen);
             let close = ui.input(|input| input.viewport().close_requested());
             Asked {
