@@ -3,6 +3,7 @@
 
 #![allow(clippy::print_stdout, reason = "figures of the run, with --nocapture")]
 
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
@@ -24,7 +25,10 @@ fn commission(scenario: &str) {
         return;
     }
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let mut window = window(&folder.path().join("data"), Some(scenario));
+    // What was commissioned can be kept, for `plumbline grasp-trials --lab`.
+    let kept = std::env::var_os("PLUMBLINE_KEEP_LAB").map(PathBuf::from);
+    let data = kept.unwrap_or_else(|| folder.path().join("data"));
+    let mut window = window(&data, Some(scenario));
     until(&mut window, "the twin's joints", |window| view(window).robot.measured.is_some());
     until(&mut window, "what was done before", |window| view(window).commission.is_known);
     assert!(view(&window).commission.is_untouched());

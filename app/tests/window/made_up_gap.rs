@@ -125,6 +125,7 @@ pub fn stale() -> GapView {
 pub fn added() -> GapView {
     let finding = sample::named();
     let effects = finding.effects.iter().map(|effect| AddedEffect {
+        is_named: true,
         name: format!("{}@{}", effect.id, effect.site),
         title: effect.title.clone(),
         parameters: effect.parameters.iter().map(|p| (p.name.clone(), p.value, [p.low, p.high])).collect(),

@@ -25,6 +25,8 @@ pub enum GapAction {
     Find,
     /// Adds all effects of the shown finding that can be added.
     Add,
+    /// Corrects the arm by all usual effects, although none has a name.
+    Size,
     /// Plans new touches, each with the effects and without them.
     Prove,
     /// Takes over the next experiment as a plan of touches.
@@ -43,13 +45,14 @@ pub enum GapAction {
 
 impl GapAction {
     /// All of them, in the palette's order.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::ListSessions,
         Self::OpenSession,
         Self::CompareInUse,
         Self::CompareNominal,
         Self::Find,
         Self::Add,
+        Self::Size,
         Self::Prove,
         Self::NextExperiment,
         Self::ReportHtml,
@@ -68,6 +71,7 @@ impl GapAction {
             Self::CompareInUse => "Compare with the model in use",
             Self::Find => "Find what is missing",
             Self::Add => "Add the found effects to the model",
+            Self::Size => "Correct the arm without a name",
             Self::Prove => "Plan touches with and without the effects",
             Self::NextExperiment => "Plan the next experiment",
             Self::ReportHtml => "Report of the gap (HTML)…",
@@ -90,6 +94,7 @@ impl GapAction {
                 Some(why) => Some(why.clone().into()),
                 None => when(!gap.addable().is_empty(), "nothing was found that could be added"),
             },
+            Self::Size => when(gap.sizes_arm, "nothing was found in touches that could correct the arm"),
             Self::Prove if gap.model.effects.is_empty() => Some("no effect is in the model".into()),
             Self::NextExperiment if plan(view).is_none() => Some("no experiment is waiting".into()),
             Self::NextExperiment | Self::Prove => TouchAction::Plan(Preset::Check).refusal(view),
@@ -110,6 +115,7 @@ impl GapAction {
                 Self::CompareInUse => GapCommand::CompareWith(GapModel::InUse),
                 Self::Find => GapCommand::Find { seed: 1 },
                 Self::Add => GapCommand::Add { effects: view.gap.addable() },
+                Self::Size => GapCommand::Add { effects: vec![] },
                 Self::Delete => GapCommand::Delete { id: view.gap.shown.as_ref()?.entry.id.clone() },
                 Self::Undo => GapCommand::Undo,
                 Self::UseNominal => GapCommand::UseNominal,

@@ -2,7 +2,7 @@
 
 use egui::{Button, RichText, ScrollArea, Ui, vec2};
 use plumbline_engine::GapCommand;
-use plumbline_engine::view::{FindingEntry, GapModelView};
+use plumbline_engine::view::{AddedEffect, FindingEntry, GapModelView};
 use plumbline_widgets::format::Quantity;
 use plumbline_widgets::intervals::{IntervalRow, Intervals, Level};
 use plumbline_widgets::parameter;
@@ -52,14 +52,31 @@ fn model(ui: &mut Ui, model: &GapModelView) {
     } else {
         format!("{}:", crate::operator::words::capitalized(&model.name))
     });
-    for effect in &model.effects {
-        let sizes: Vec<String> = effect
-            .parameters
-            .iter()
-            .map(|(name, value, _)| format!("{} {}", parameter::words(name), parameter::value(name, *value)))
-            .collect();
-        ui.label(format!("{}: {}", effect.title, sizes.join(", "))).on_hover_text(&effect.name);
+    let (named, shares): (Vec<_>, Vec<_>) = model.effects.iter().partition(|effect| effect.is_named);
+    named.into_iter().for_each(|effect| sizes(ui, effect));
+    if shares.is_empty() {
+        return;
     }
+    let title = format!("Small shares of {}", plumbline_model::counted(shares.len(), "effect"));
+    let help = "No name is due to these. Each is drawn to zero as far as robots usually have it; together they let the arm err less on touches held out.";
+    let header = egui::CollapsingHeader::new(title).id_salt("small shares");
+    let response = header.show(ui, |ui| shares.into_iter().for_each(|effect| sizes(ui, effect)));
+    response.header_response.on_hover_text(help);
+}
+
+/// An effect and its parameters on a line.
+fn sizes(ui: &mut Ui, effect: &AddedEffect) {
+    let sizes: Vec<String> = effect
+        .parameters
+        .iter()
+        .map(|(name, value, _)| format!("{} {}", parameter::words(name), parameter::value(name, *value)))
+        .collect();
+    let text = if sizes.is_empty() {
+        effect.title.clone()
+    } else {
+        format!("{}: {}", effect.title, sizes.join(", "))
+    };
+    ui.label(text).on_hover_text(&effect.name);
 }
 
 /// The gap of each model on the data that it was found on.

@@ -241,6 +241,11 @@ fn add(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding) {
             "Its effects are in the model. Look for what is left, or prove it by touching new targets.",
         ));
     }
+    if addable.is_empty() && cx.view.gap.sizes_arm {
+        let what = "No name can be added. Small shares of all that usually is wrong with arms may still correct this one; touches held out tell whether they do. Nothing moves.";
+        ui.label(theme::small(ui, what));
+        action_button(ui, cx, GapAction::Size, GapAction::Size.label());
+    }
     ui.horizontal_wrapped(|ui| {
         if !cx.view.gap.model.effects.is_empty() {
             action_button(ui, cx, GapAction::Prove, "Prove it");

@@ -6,7 +6,7 @@ use nalgebra::Point3;
 use plumbline_model::Session;
 use plumbline_model::robot::servo::TICK_RAD;
 use plumbline_model::robot::{DescriptionError, Rig, RigPart};
-use plumbline_model::session::{EncoderSide, LocalizationRow, PoseRow, TouchRow};
+use plumbline_model::session::{EncoderSide, LocalizationRow, PoseRow, TouchRow, TouchTable};
 
 use super::derive;
 use super::{Apparatus, LeftOut, Marker, Measurements, MeasurementsError, Observation, What};
@@ -78,6 +78,25 @@ impl Columns {
     fn of(&self, logged: &[Option<f64>]) -> Option<Vec<f64>> {
         self.order.iter().map(|place| logged.get(*place).copied().flatten()).collect()
     }
+
+    /// Columns `dir_<joint>` of the arm's joints, which runs of touches write beside the format's: 1 or −1, as the
+    /// joint moved last.
+    fn signs(&self, table: &TouchTable) -> Option<Vec<Vec<Option<f64>>>> {
+        let of_joint = |place: &usize| table.extra_numbers(&format!("dir_{}", table.joints().get(*place)?));
+        self.order.iter().map(of_joint).collect()
+    }
+}
+
+/// What was logged of the joints' last motions is surer than what friction tells of them.
+fn with_signs(touch: Observation, signs: Option<&[Vec<Option<f64>>]>) -> Observation {
+    let of_row = |column: &Vec<Option<f64>>| {
+        column.get(touch.row).copied().flatten().filter(|sign| [-1.0, 0.0, 1.0].contains(sign))
+    };
+    let direction: Option<Vec<f64>> = signs.and_then(|signs| signs.iter().map(of_row).collect());
+    match direction {
+        Some(direction) => Observation { direction, ..touch },
+        None => touch,
+    }
 }
 
 impl Reader<'_> {
@@ -127,9 +146,11 @@ impl Reader<'_> {
         self.apparatuses.push(apparatus);
         let first = self.rows.len();
         if let Some(table) = &session.touches {
+            let signs = columns.signs(table);
             for (i, row) in table.rows().enumerate() {
                 let read = can_be(table.implausible(), i)
-                    .and_then(|()| self.touch(number, i, &row, &columns, session));
+                    .and_then(|()| self.touch(number, i, &row, &columns, session))
+                    .map(|touch| with_signs(touch, signs.as_deref()));
                 self.take(number, What::Touch, i, read);
             }
         }

@@ -57,6 +57,18 @@ impl RigModel {
         &self.contents.effects
     }
 
+    /// Whether an effect was named. Others came with those of their arm for the arm's sake: small shares of
+    /// all that usually is wrong with arms, fitted together.
+    pub fn is_named(&self, effect: &ModelEffect) -> bool {
+        effect.probability.is_some() || self.contents.together.iter().all(|fit| fit.tip != effect.tip)
+    }
+
+    /// How many effects were named by a search, and how many came with them for the arm's sake, drawn to zero.
+    pub fn named_and_shares(&self) -> (usize, usize) {
+        let named = self.contents.effects.iter().filter(|effect| self.is_named(effect)).count();
+        (named, self.contents.effects.len() - named)
+    }
+
     /// Whether nothing is added: predictions are nominal.
     pub fn is_nominal(&self) -> bool {
         self.contents.effects.is_empty()

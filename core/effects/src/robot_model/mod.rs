@@ -96,12 +96,14 @@ impl RobotModel {
         self.added.is_nominal()
     }
 
-    /// For people, short: "as described", "with 2 effects".
+    /// For people, short: "as described", "with 2 effects", "with 2 effects and small shares".
     pub fn title(&self) -> String {
-        match self.added.effects().len() {
-            0 => "as described".to_owned(),
-            1 => "with 1 effect".to_owned(),
-            count => format!("with {count} effects"),
+        let effects = |count: usize| plumbline_model::counted(count, "effect");
+        match self.added.named_and_shares() {
+            (0, 0) => "as described".to_owned(),
+            (0, shares) => format!("with small shares of {}", effects(shares)),
+            (named, 0) => format!("with {}", effects(named)),
+            (named, _) => format!("with {} and small shares", effects(named)),
         }
     }
 

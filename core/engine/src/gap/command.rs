@@ -39,7 +39,7 @@ pub enum GapCommand {
     },
     /// Adds effects of the finding that is shown to the model in use. Nothing moves.
     Add {
-        /// By place in its list of effects.
+        /// By place in its list of effects; none: the arm is corrected without a name, where that helps.
         effects: Vec<usize>,
     },
     /// Goes back to the model before.

@@ -7,12 +7,28 @@ use plumbline_report::HistoryEntry;
 use super::view::{AddedEffect, GapModelView, ModelStep};
 use crate::rig_models;
 
-/// "nominal", "nominal + 2 effects".
+/// "nominal", "nominal + 2 effects", "nominal + 2 effects and small shares".
 pub fn name(model: &RigModel) -> String {
-    match model.effects().len() {
-        0 => "nominal".to_owned(),
-        1 => "nominal + 1 effect".to_owned(),
-        n => format!("nominal + {n} effects"),
+    let counted = |n: usize| plumbline_model::counted(n, "effect");
+    match model.named_and_shares() {
+        (0, 0) => "nominal".to_owned(),
+        (0, shares) => format!("nominal + small shares of {}", counted(shares)),
+        (named, 0) => format!("nominal + {}", counted(named)),
+        (named, _) => format!("nominal + {} and small shares", counted(named)),
+    }
+}
+
+/// Those that were named in this model, and how many others came with them.
+fn titles(step: &Step, model: &RigModel) -> String {
+    let has_name = |name: &&String| {
+        let mut effects = model.effects().iter();
+        effects.find(|effect| effect.name() == **name).is_none_or(|effect| model.is_named(effect))
+    };
+    let named: Vec<&str> = step.effects.iter().filter(has_name).map(String::as_str).collect();
+    match (named.len(), step.effects.len() - named.len()) {
+        (_, 0) => named.join(", "),
+        (0, shares) => format!("small shares of {}", plumbline_model::counted(shares, "effect")),
+        (_, shares) => format!("{} and small shares of {shares}", named.join(", ")),
     }
 }
 
@@ -28,7 +44,7 @@ pub fn report_history(model: &RigModel) -> Vec<HistoryEntry> {
         if history.is_empty() {
             history.push(HistoryEntry { name: "nominal".to_owned(), gap: gap.before });
         }
-        history.push(HistoryEntry { name: format!("{} added", step.effects.join(", ")), gap: gap.after });
+        history.push(HistoryEntry { name: format!("{} added", titles(step, model)), gap: gap.after });
     }
     history
 }
@@ -37,18 +53,19 @@ pub fn report_history(model: &RigModel) -> Vec<HistoryEntry> {
 pub fn view(model: &RigModel) -> GapModelView {
     let effects = model.effects().iter().map(|effect| AddedEffect {
         name: effect.name(),
+        is_named: model.is_named(effect),
         title: if effect.title.is_empty() { effect.name() } else { effect.title.clone() },
         parameters: effect.parameters.iter().map(|p| (p.name.clone(), p.value, [p.low, p.high])).collect(),
     });
     GapModelView {
         name: name(model),
         effects: effects.collect(),
-        history: model.history.iter().map(step).collect(),
+        history: model.history.iter().map(|of| step(of, model)).collect(),
         can_undo: model.can_undo(),
     }
 }
 
-fn step(step: &Step) -> ModelStep {
+fn step(step: &Step, model: &RigModel) -> ModelStep {
     let what = match step.kind {
         StepKind::Added => "added",
         StepKind::Removed => "taken out",
@@ -56,7 +73,7 @@ fn step(step: &Step) -> ModelStep {
     };
     ModelStep {
         at: step.at,
-        title: format!("{} {what}", step.effects.join(", ")),
+        title: format!("{} {what}", titles(step, model)),
         undone: step.undone || step.kind == StepKind::Undone,
         errors: step.gap.as_ref().map(|gap| [gap.before, gap.after, gap.floor]),
         in_pixels: step.gap.as_ref().is_some_and(|gap| gap.unit == "px"),

@@ -2,11 +2,16 @@
 
 use std::sync::Arc;
 
+use plumbline_effects::rig_model::ModelEffect;
+use plumbline_effects::{RigModel, What};
+use plumbline_gap::Finding;
+
 use super::model;
 use super::store::Named;
 use super::view::{GapView, ShownFinding};
 use super::workflow::{GapAround, GapWorkflow, Seen};
 use crate::ground::step::StepState;
+use crate::rig_models::LEAST_TOUCHES;
 
 impl GapWorkflow {
     /// What the window shows.
@@ -23,6 +28,7 @@ impl GapWorkflow {
             beside: self.seen.beside.clone(),
             stale: self.stale(),
             model: self.seen.model.clone(),
+            sizes_arm: self.seen.sizes_arm,
             rig: Some(around.rig.clone()),
         }
     }
@@ -35,14 +41,32 @@ impl GapWorkflow {
             shown: self.shown_named().map(|named| Arc::new(self.shown_finding(named))),
             beside: beside.map(|named| Arc::new(self.shown_finding(named))),
             model: self.model.as_ref().map(|model| model::view(model)).unwrap_or_default(),
+            sizes_arm: self.sizes_arm(),
         };
+    }
+
+    /// Whether the arm can be corrected by what was shown although it has no name: touches of one session,
+    /// compared with the robot as described, and not tried yet.
+    fn sizes_arm(&self) -> bool {
+        let Some(named) = self.shown_named().filter(|_| self.stale().is_none()) else { return false };
+        let finding = &named.kept.finding;
+        let [kind] = finding.comparison.kinds.as_slice() else { return false };
+        let of_touches = kind.what == What::Touch && finding.comparison.rows >= LEAST_TOUCHES;
+        let of_touches = of_touches && finding.sessions.len() == 1;
+        let is_open = named.kept.model_effects.is_empty() && !self.not_sized.contains(&named.id);
+        let is_in_use = self.model.as_ref().is_some_and(|model| is_of(model, finding));
+        of_touches && is_open && !is_in_use && finding.comparison.is_gap
     }
 
     fn shown_finding(&self, named: &Named) -> ShownFinding {
         let finding = &named.kept.finding;
         let in_model = |id: &str, site: &str, values: &[f64]| {
-            let effects = self.model.iter().flat_map(|model| model.effects());
-            effects.into_iter().any(|e| e.id == id && e.site == site && e.values == values)
+            let Some(model) = &self.model else { return false };
+            let is_it = |e: &&ModelEffect| e.id == id && e.site == site;
+            // With small shares of others beside it, an effect of the same search has another size.
+            let is_same =
+                |e: &ModelEffect| e.values == values || (is_of(model, finding) && model.is_named(e));
+            model.effects().iter().filter(is_it).any(is_same)
         };
         ShownFinding {
             entry: named.entry(),
@@ -62,4 +86,10 @@ impl GapWorkflow {
             (Some(_), None) => StepState::Done,
         }
     }
+}
+
+/// Whether the last that was added to a model came of this finding.
+fn is_of(model: &RigModel, finding: &Finding) -> bool {
+    let last = model.history.iter().rfind(|step| step.can_be_undone());
+    last.is_some_and(|last| last.sentence == finding.sentence && last.sessions == finding.sessions)
 }

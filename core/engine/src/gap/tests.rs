@@ -185,3 +185,25 @@ fn a_session_chosen_while_the_start_still_reads_stands_in_the_list() {
     assert!(view.sessions.iter().any(|listed| listed.folder == elsewhere), "{:?}", view.sessions);
     assert_eq!(view.sessions.len(), 2, "the program's own session is listed, too");
 }
+
+#[test]
+fn an_arm_that_small_shares_do_not_help_keeps_its_model_and_is_not_offered_them_again() {
+    let lab = Lab::new();
+    let mut finding = sample::named();
+    finding.effects.clear();
+    finding.rig = nico().name;
+    finding.sessions = vec!["2026-05-01T10-00-00_touch".to_owned()];
+    finding.placements.truncate(1);
+    let session = Lab::session_in(lab.folder.path());
+    let kept = KeptSession { tables: super::sessions::stamps(&session), folder: session };
+    let kept = KeptFinding::new(finding, vec![kept], ("nominal".to_owned(), vec![]), jiff::Timestamp::now());
+    Store::new(lab.folder.path().join("gap")).keep(kept).expect("kept");
+    let mut lab = Lab::on(lab.folder);
+    let view = lab.view();
+    assert!(view.addable().is_empty() && view.sizes_arm);
+    // Touches at one posture tell nothing of an arm: the screen's place takes all of it.
+    let view = lab.tell(GapCommand::Add { effects: vec![] });
+    assert!(view.model.effects.is_empty(), "{}", view.model.name);
+    assert!(lab.last_notice().contains("Nothing was added"), "{}", lab.last_notice());
+    assert!(!view.sizes_arm);
+}

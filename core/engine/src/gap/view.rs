@@ -36,6 +36,8 @@ pub struct GapView {
     pub stale: Option<String>,
     /// What is in the model in use.
     pub model: GapModelView,
+    /// Whether the arm can be corrected by the shown finding although it names nothing that could be added.
+    pub sizes_arm: bool,
     /// The rig that all of it belongs to.
     pub rig: Option<Arc<Rig>>,
 }
@@ -111,6 +113,8 @@ pub struct GapModelView {
 pub struct AddedEffect {
     /// Its name, `id@site`.
     pub name: String,
+    /// Whether a search has given it a name; others have small shares, for the arm's sake.
+    pub is_named: bool,
     /// What it is and where, for people.
     pub title: String,
     /// Parameters with their 95 % intervals, as the command line names them.

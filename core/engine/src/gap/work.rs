@@ -121,6 +121,8 @@ pub enum GapResult {
     Deleted(String),
     /// A model is in use.
     InUse(Arc<RigModel>),
+    /// The arm is no better off with small shares of all usual effects: the model stays. Id of the finding.
+    NotSized(String),
     /// Written there.
     Written(PathBuf),
 }
@@ -155,6 +157,7 @@ impl LongWork for GapWork {
                 several => format!("Find what is missing: {} sessions", several.len()),
             },
             Self::Delete { .. } => "Delete a finding".to_owned(),
+            Self::Add { effects, .. } if effects.is_empty() => "Correct the arm without a name".to_owned(),
             Self::Add { effects, .. } if effects.len() == 1 => "Add an effect to the model".to_owned(),
             Self::Add { effects, .. } => format!("Add {} effects to the model", effects.len()),
             Self::Use { title, .. } => title.clone(),
@@ -198,9 +201,19 @@ impl LongWork for GapWork {
             }
             Self::Add { finding, effects, replaces, model, rig, folder, at } => {
                 let sessions = sessions_of(&finding)?;
-                let of = (&finding.kept.finding, sessions.as_slice());
-                let next =
-                    rig_models::with(&model, &rig, of, &effects, replaces, at).map_err(JobError::failed)?;
+                let named = &finding.kept.finding;
+                // Names that come in addition leave what is in the model as it is.
+                let whole = if replaces {
+                    whole(&finding, &sessions, &effects, (&model, &rig), at, context)?
+                } else {
+                    None
+                };
+                let next = match whole {
+                    Some(next) => next,
+                    None if effects.is_empty() => return Ok(GapResult::NotSized(finding.id.clone())),
+                    None => rig_models::with(&model, &rig, (named, &sessions), &effects, replaces, at)
+                        .map_err(JobError::failed)?,
+                };
                 rig_models::save(&folder, &next, &rig).map_err(JobError::failed)?;
                 Ok(GapResult::InUse(Arc::new(next)))
             }
@@ -222,6 +235,27 @@ fn failed(error: SearchError) -> JobError {
         SearchError::Gap(plumbline_gap::GapError::Cancelled(cancelled)) => cancelled.into(),
         other => JobError::Failed(sentence(&other.to_string())),
     }
+}
+
+/// The arm with all usual effects beside those that were chosen, where the finding's rows are touches of one
+/// session and that errs less.
+fn whole(
+    finding: &Named,
+    sessions: &[Session],
+    effects: &[usize],
+    (model, rig): (&RigModel, &Rig),
+    at: jiff::Timestamp,
+    context: &dyn JobContext,
+) -> Result<Option<RigModel>, JobError> {
+    let folders: Vec<PathBuf> = finding.kept.sessions.iter().map(|session| session.folder.clone()).collect();
+    let measurements = measured(&folders, rig).map_err(failed)?;
+    let Some(touches) = rig_models::ArmTouches::of(sessions, &measurements) else { return Ok(None) };
+    rig_models::whole(model, rig, &touches, &finding.kept.finding, effects, at, context).map_err(|error| {
+        match error {
+            rig_models::WholeError::Cancelled(cancelled) => cancelled.into(),
+            other => JobError::failed(other),
+        }
+    })
 }
 
 /// The sessions of a finding, as they are on disk.
@@ -292,6 +326,7 @@ impl GapResult {
             Self::Found(named) => named.kept.finding.sentence.clone(),
             Self::Deleted(_) => "The finding was deleted.".to_owned(),
             Self::InUse(model) => format!("The model in use is {}.", model::name(model)),
+            Self::NotSized(_) => "The model in use stays as it is.".to_owned(),
             Self::Written(file) => format!("The report was written to {}.", file.display()),
         }
     }

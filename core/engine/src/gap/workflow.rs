@@ -43,8 +43,14 @@ pub struct GapWorkflow {
     /// `None`: not read yet, or the file cannot be used, so nothing is written over it.
     pub(super) model: Option<Arc<RigModel>>,
     changing: Option<JobId>,
+    /// Findings whose arm is no better off with small shares of all usual effects.
+    pub(super) not_sized: Vec<String>,
     pub(super) seen: Seen,
 }
+
+/// Said once, where the operator asked for it.
+const NOT_SIZED: &str =
+    "Nothing was added: on touches held out the arm errs no less with small shares of all usual effects.";
 
 /// What is shown, made only when it changes.
 #[derive(Clone, Debug, Default)]
@@ -53,6 +59,7 @@ pub(super) struct Seen {
     pub shown: Option<Arc<ShownFinding>>,
     pub beside: Option<Arc<ShownFinding>>,
     pub model: GapModelView,
+    pub sizes_arm: bool,
 }
 
 impl GapWorkflow {
@@ -106,7 +113,7 @@ impl GapWorkflow {
         self.searching = Some(context.start(work));
     }
 
-    fn add(&mut self, effects: Vec<usize>, around: &GapAround, context: &mut Context<'_>) {
+    fn add(&mut self, mut effects: Vec<usize>, around: &GapAround, context: &mut Context<'_>) {
         let Some(finding) = self.shown_named().cloned() else {
             return context.refuse("Find what is missing first, then add it.");
         };
@@ -114,7 +121,10 @@ impl GapWorkflow {
             return context.refuse(why);
         }
         let named = &finding.kept.finding;
-        if named.verdict == Verdict::NotInLibrary && !named.partial {
+        if effects.is_empty() && !self.seen.sizes_arm {
+            return context.refuse("Choose what to add first.");
+        }
+        if !effects.is_empty() && named.verdict == Verdict::NotInLibrary && !named.partial {
             return context
                 .refuse("What is missing is not in the library, so there is nothing to add by name.");
         }
@@ -125,11 +135,16 @@ impl GapWorkflow {
                 None => return context.refuse("The finding has no such effect."),
             }
         }
-        if effects.is_empty() {
-            return context.refuse("Choose what to add first.");
-        }
         let Some(model) = self.model_for_change(context) else { return };
         let replaces = finding.kept.model_effects.is_empty();
+        if replaces && let Some(shown) = &self.seen.shown {
+            // What of this finding is in the model stays there.
+            let added =
+                (0..shown.added.len()).filter(|i| shown.added[*i] && named.effects[*i].not_addable.is_none());
+            effects.extend(added);
+            effects.sort_unstable();
+            effects.dedup();
+        }
         let (rig, folder) = (around.rig.clone(), self.folder.clone());
         let work = GapWork::Add { finding, effects, replaces, model, rig, folder, at: context.time.day };
         self.changing = Some(context.start(work));
@@ -274,6 +289,7 @@ impl Workflow for GapWorkflow {
             beside: None,
             model: None,
             changing: None,
+            not_sized: Vec::new(),
             seen: Seen::default(),
         }
     }
@@ -351,6 +367,10 @@ impl Workflow for GapWorkflow {
                 }
             }
             GapResult::InUse(model) => self.model = Some(model),
+            GapResult::NotSized(id) => {
+                context.notices.add(NoticeLevel::Info, NOT_SIZED);
+                self.not_sized.push(id);
+            }
             GapResult::Written(_) => {}
         }
         self.look();

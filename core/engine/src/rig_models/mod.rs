@@ -21,9 +21,11 @@ mod in_use;
 pub(crate) mod made_up;
 #[cfg(test)]
 mod tests;
+mod whole;
 
 pub use error::ModelInUseError;
 pub use in_use::{Accepted, in_use, mount_in, mounted, other_eyes, screen_in};
+pub use whole::{ArmTouches, LEAST_TOUCHES, WholeError, library_of, whole};
 
 /// The file, in the folder of a world.
 pub const FILE: &str = "rig-model.toml";

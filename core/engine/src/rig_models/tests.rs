@@ -1,6 +1,10 @@
 //! The model in use on disk, and what a finding adds to it.
 
+use plumbline_effects::arm::Arm;
+use plumbline_effects::{Assumed, Effect, Measurements, Present, Surface, What};
 use plumbline_gap::finding::{ClassMember, Comparison, FORMAT, FoundParameter, Unexplained, Verdict};
+use plumbline_model::Unattended;
+use plumbline_model::robot::ik::{Options, Solver, Target};
 use plumbline_model::session::{Manifest, RigReference, TouchTable};
 
 use super::made_up::model_with;
@@ -210,4 +214,82 @@ fn all_that_was_accepted_is_put_together() {
     std::fs::write(mount_in(folder.path()).file(), "format = 1\n").expect("written");
     let said = in_use(folder.path(), &rig).expect_err("no mount").to_string();
     assert!(said.contains("mount.toml") && said.ends_with('.'), "{said}");
+}
+
+/// Touches by an arm with small errors, and its session as [`ArmTouches`] wants them.
+fn touches_with_errors(rig: &Rig) -> Measurements {
+    let arm = Arm::of_rig(rig, "right_index_tip").expect("an arm");
+    let solver = Solver::of_rig(rig, "right_index_tip").expect("a tip");
+    let hidden = [
+        ("joint-zero", "r_elbow_y", 0.03),
+        ("joint-zero", "r_shoulder_y", 0.02),
+        ("joint-sag", "r_arm_x", 0.02),
+    ];
+    let effects = hidden.map(|(id, site, value)| Present {
+        effect: Effect::find(id, site, None, Some(&arm), None).expect("known"),
+        values: vec![value],
+    });
+    let truth = Assumed {
+        effects: effects.to_vec(),
+        placements: vec![nalgebra::Isometry3::identity()],
+        ..Assumed::default()
+    };
+    let (screen, home) = (&rig.touchscreen, rig.home());
+    let mut rows = vec![];
+    for i in 0..24_u32 {
+        let pixel =
+            plumbline_model::Pixel::new(500.0 + 220.0 * f64::from(i % 6), 150.0 + 240.0 * f64::from(i / 6));
+        let target = Target::Position(screen.point_at(pixel));
+        let Ok(answer) = solver.solve_from(&target, &home, &Options::default()) else { continue };
+        if answer.is_reached() {
+            let directions = vec![if i % 2 == 0 { 1.0 } else { -1.0 }; arm.len()];
+            let mut row = plumbline_fit::row(What::Touch, answer.best().joints.to_vec(), directions);
+            (row.row, row.cell) = (rows.len(), rows.len());
+            rows.push(row);
+        }
+    }
+    let mut touches = plumbline_fit::measurements(rig, arm, Some(Surface::of(screen)), rows);
+    touches.apparatuses[0].tip = Some("right_index_tip".to_owned());
+    touches.apparatuses[0].title = "morning".to_owned();
+    for k in 0..touches.rows.len() {
+        touches.rows[k].measured = touches.predict(&touches.rows[k], &truth).expect("predicted");
+    }
+    touches
+}
+
+#[test]
+fn the_arm_takes_small_shares_of_all_effects_beside_the_names_and_one_step_takes_them_back() {
+    let rig = nico();
+    let (measurements, sessions) = (touches_with_errors(&rig), [session(&rig)]);
+    assert!(measurements.rows.len() >= 20, "{}", measurements.rows.len());
+    let found = finding(vec![named("joint-zero", "r_elbow_y", 0.03)]);
+    let touches = ArmTouches::of(&sessions, &measurements).expect("touches of one session");
+    let before = RigModel::nominal(&rig);
+    let model = whole(&before, &rig, &touches, &found, &[0], Timestamp::now(), &Unattended)
+        .expect("it fits")
+        .expect("it errs less");
+    let named: Vec<String> =
+        model.effects().iter().filter(|e| e.probability.is_some()).map(ModelEffect::name).collect();
+    assert_eq!(named, ["joint-zero@r_elbow_y"]);
+    assert!(model.effects().len() > 40 && model.contents.together.len() == 1, "{}", model.effects().len());
+    let (_, gap) = history(&model).next().expect("its gap");
+    assert!(gap.after < 0.5 * gap.before, "{gap:?}");
+    // It is a model like any other: written, read, taken back in one step.
+    let folder = tempfile::tempdir().expect("a folder for the test");
+    save(folder.path(), &model, &rig).expect("written");
+    assert_eq!(load(folder.path(), &rig).expect("read").effects().len(), model.effects().len());
+    assert!(undo(folder.path(), &rig).expect("one step").is_nominal());
+}
+
+#[test]
+fn an_arm_is_sized_from_enough_touches_of_one_session_only() {
+    let rig = nico();
+    let (mut measurements, sessions) = (touches_with_errors(&rig), [session(&rig), session(&rig)]);
+    assert!(ArmTouches::of(&sessions, &measurements).is_none(), "of two sessions");
+    assert!(ArmTouches::of(&sessions[..1], &measurements).is_some());
+    let mut other = measurements.clone();
+    other.rows[0].what = What::Pose;
+    assert!(ArmTouches::of(&sessions[..1], &other).is_none(), "not touches alone");
+    measurements.rows.truncate(11);
+    assert!(ArmTouches::of(&sessions[..1], &measurements).is_none(), "too few");
 }

@@ -10,6 +10,7 @@ use nalgebra::{
     DMatrix, DVector, Isometry3, Matrix6, Point3, Translation3, UnitQuaternion, Vector2, Vector3,
 };
 use plumbline_engine::eyes::work::gray;
+use plumbline_fit::NECK_SD_RAD;
 use plumbline_model::files::{self, Size};
 use plumbline_model::robot::{BodyEdges, Posture, Rig};
 use plumbline_model::{Eye, JobContext};
@@ -18,7 +19,6 @@ use serde::{Deserialize, Serialize};
 
 use super::edges::{profile, steepest};
 use super::error::CommissionError;
-use super::estimate::NECK_SD_RAD;
 use super::lab::Lab;
 use super::robot::{Robot, Sight};
 

@@ -7,6 +7,7 @@
 use image::GrayImage;
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix6, Point3, UnitQuaternion, Vector2, Vector3};
 use plumbline_engine::eyes::work::gray;
+use plumbline_fit::pose;
 use plumbline_model::files::{self, Size};
 use plumbline_model::robot::{Posture, Rig, ScreenFrame};
 use plumbline_model::session::Touchscreen;
@@ -138,6 +139,12 @@ pub(super) fn see(
 }
 
 impl SeenScreen {
+    /// Where it is, and how well that is known.
+    pub fn by_eyes(&self) -> plumbline_fit::SeenScreen {
+        let Self { robot_from_screen, covariance, .. } = self;
+        plumbline_fit::SeenScreen { robot_from_screen: *robot_from_screen, covariance: *covariance }
+    }
+
     /// Keeps it for the steps that follow.
     pub fn write(&self, lab: &Lab) -> Result<(), CommissionError> {
         let file = lab.folder.join(FILE);
@@ -175,16 +182,6 @@ fn outline(scene: &Scene<'_>, scale: f64) -> Vec<(Vector3<f64>, Vector3<f64>)> {
         points.push((Vector3::new(0.95 * share(k) * half_u, near, below), Vector3::y()));
     }
     points
-}
-
-/// Places the outline's axes: u, v, into the glass.
-pub(super) fn pose(screen: &Touchscreen) -> Isometry3<f64> {
-    let (u, v) = (screen.u_axis.vector(), screen.v_axis.vector());
-    let into = -screen.normal().vector();
-    let turn = nalgebra::Matrix3::from_columns(&[u, into.cross(&u), into]);
-    let rotation = UnitQuaternion::from_rotation_matrix(&nalgebra::Rotation3::from_matrix_unchecked(turn));
-    debug_assert!((into.cross(&u) - v).norm() < 0.05);
-    Isometry3::from_parts(screen.point_at(screen.middle()).coords.coords.into(), rotation)
 }
 
 /// Fits all unknowns to the edges; the head comes to rest to within `rest_sd_rad` (turn, tilt) of where its

@@ -11,6 +11,7 @@ use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use plumbline_effects::arm::Arm;
 use plumbline_effects::measurements::{Observation, What};
 use plumbline_effects::{Kind, Measurements, RobotModel};
+use plumbline_fit::{Looked, SeenHand, SeenHands, measurements, row};
 use plumbline_grasp::attempt::{HandFinder as _, RenderedHand};
 use plumbline_grasp::plan::{GraspPlanner, Standing};
 use plumbline_grasp::{Corrections, Hand, Knowledge, PalmArm, Sight};
@@ -20,9 +21,7 @@ use plumbline_model::{JobContext, StereoCalibration};
 use super::effects;
 use super::error::CommissionError;
 use super::lab::Lab;
-use super::plan::{measurements, row};
 use super::robot::Robot;
-use super::seen_by_eyes::{Looked, SeenHand, SeenHands};
 use super::steps::Step;
 
 /// Where the right hand is held open over the table, the left one at their mirror images: x, y, m.

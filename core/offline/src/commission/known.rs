@@ -1,19 +1,19 @@
 //! What is known besides the touches: what the eyes saw, and how far this robot is from what is described.
 
 use nalgebra::Matrix6;
+use plumbline_fit::{Known, NECK_SD_RAD, SeenScreen as ByEyes};
 use plumbline_model::files::{self, Size};
 use plumbline_model::robot::Rig;
 use serde::{Deserialize, Serialize};
 
 use super::body::SeenBody;
 use super::error::CommissionError;
-use super::estimate::{Known, NECK_SD_RAD};
 use super::glass::SeenScreen;
 use super::lab::Lab;
 
 /// What the eyes saw of body and screen, and how well they sit.
 pub(super) struct Seen {
-    screen: Option<SeenScreen>,
+    screen: Option<ByEyes>,
     neck_rad: (f64, f64),
     mount: Matrix6<f64>,
 }
@@ -22,7 +22,7 @@ impl Seen {
     pub fn read(lab: &Lab) -> Result<Self, CommissionError> {
         let body = SeenBody::read(lab)?;
         Ok(Self {
-            screen: SeenScreen::read(lab)?,
+            screen: SeenScreen::read(lab)?.map(|seen| seen.by_eyes()),
             neck_rad: body.map_or((0.0, NECK_SD_RAD), |body| (body.neck_rad, body.neck_sd_rad)),
             mount: lab.mount()?.covariance,
         })

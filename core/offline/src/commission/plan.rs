@@ -4,10 +4,11 @@
 
 use nalgebra::{DMatrix, Isometry3};
 use plumbline_effects::arm::Arm;
-use plumbline_effects::measurements::{Apparatus, Observation, What};
-use plumbline_effects::{Assumed, Effect, Kind, Measurements, Surface};
+use plumbline_effects::measurements::{Observation, What};
+use plumbline_effects::{Assumed, Effect, Surface};
 use plumbline_engine::motion::{Hold, Planner, TouchPath};
 use plumbline_engine::touch::plan::TIP;
+use plumbline_fit::{NOISE_M, SCREEN_SD, measurements, moves_palm, row, usual};
 use plumbline_model::robot::ik::{Options, Solver, Target};
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::touch_plan::{Side, TouchArea};
@@ -22,16 +23,12 @@ const REPEATS: usize = 3;
 /// Candidates across and down.
 const GRID: [usize; 2] = [7, 4];
 /// The middle of the palm.
-pub(super) const PALM: &str = "right_palm_center";
+const PALM: &str = "right_palm_center";
 /// The hand is turned or leaned by so much, rad.
 const TURN_RAD: f64 = 0.4;
 const LEAN_RAD: f64 = 0.4;
 /// Share of the reachable area that stays untouched at each side, so that the judge has places outside.
 const MARGIN: f64 = 0.1;
-/// Standard deviation of a contact along the glass and of the tip's height there, m.
-pub(super) const NOISE_M: [f64; 3] = [0.8e-3, 0.8e-3, 0.6e-3];
-/// A person lays the screen where it belongs to within, m and rad.
-pub(super) const SCREEN_SD: [f64; 2] = [0.01, 0.02];
 /// Heights over the table at which the palm will work, m.
 const WORK_HEIGHTS_M: [f64; 2] = [0.04, 0.10];
 
@@ -104,7 +101,7 @@ fn ways() -> Vec<(Side, Hold)> {
 /// Chooses among the candidates; some are chosen twice, to tell the noise.
 pub(super) fn choose(rig: &Rig, candidates: &[Candidate]) -> Result<Vec<Chosen>, CommissionError> {
     let arm = Arm::of_rig(rig, TIP)?;
-    let effects = effects_of(&arm);
+    let effects = usual(&arm);
     let tangents = touch_tangents(rig, &arm, &effects, candidates);
     let wanted = palm_tangents(rig, &effects)?;
     let count = wanted.ncols();
@@ -142,12 +139,6 @@ pub(super) fn choose(rig: &Rig, candidates: &[Candidate]) -> Result<Vec<Chosen>,
         .collect();
     chosen.extend(again);
     Ok(chosen)
-}
-
-/// Effects that touches are looked at with: those of usual size at every site.
-pub(super) fn effects_of(arm: &Arm) -> Vec<Effect> {
-    // Encoders are logged: what they see needs no effect.
-    Effect::all(arm).into_iter().filter(|effect| !effect.kind.is_seen_by_encoder()).collect()
 }
 
 /// What a touch shows, in units of its noise: frame first, then each effect of usual size.
@@ -206,21 +197,6 @@ fn palm_tangents(rig: &Rig, effects: &[Effect]) -> Result<DMatrix<f64>, Commissi
     Ok(stacked)
 }
 
-/// Whether an effect moves the palm too, or only the fingertip on its screen.
-pub(super) fn moves_palm(effect: &Effect) -> bool {
-    !matches!(
-        effect.kind,
-        Kind::TipOffset
-            | Kind::FingerBend
-            | Kind::FingerRoll
-            | Kind::TouchDrag
-            | Kind::ScreenScale
-            | Kind::ScreenTilt
-            | Kind::ScreenBow
-            | Kind::PanelEdge
-    )
-}
-
 /// The arm with its palm over places of the table, angles of its chain, rad.
 fn palm_postures(rig: &Rig) -> Result<Vec<Vec<f64>>, CommissionError> {
     let solver = Solver::of_rig(rig, PALM)?;
@@ -240,31 +216,6 @@ fn palm_postures(rig: &Rig) -> Result<Vec<Vec<f64>>, CommissionError> {
         }
     }
     Ok(found)
-}
-
-pub(super) fn measurements(
-    rig: &Rig,
-    arm: Arm,
-    surface: Option<Surface>,
-    rows: Vec<Observation>,
-) -> Measurements {
-    let apparatus = Apparatus { arm: Some(arm), surface, ..Apparatus::default() };
-    Measurements {
-        rig: rig.name.clone(),
-        apparatuses: vec![apparatus],
-        rows,
-        left_out: vec![],
-        present: vec![],
-    }
-}
-
-pub(super) fn row(what: What, encoder_rad: Vec<f64>, direction: Vec<f64>) -> Observation {
-    Observation {
-        commanded_rad: Some(encoder_rad.clone()),
-        encoder_rad: Some(encoder_rad),
-        direction,
-        ..Observation::imagined(what)
-    }
 }
 
 /// One matrix to the right of another one.

@@ -137,7 +137,7 @@ mod tests {
     fn places_lie_on_the_table_and_beside_the_frame() {
         let rig = Rig::built_in("nico").expect("valid");
         let screen = &rig.touchscreen;
-        let at = super::super::glass::pose(screen);
+        let at = plumbline_fit::pose(screen);
         let found = places(&rig, &at, screen);
         assert!(found.len() > 200, "{}", found.len());
         for place in found {

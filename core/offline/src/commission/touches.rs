@@ -10,6 +10,7 @@ use plumbline_engine::robot::TouchMeasurement;
 use plumbline_engine::touch::plan::{Aim, FORMAT, RunPlan, TIP};
 use plumbline_engine::touch::record::{Ended, Progress, TouchRecord};
 use plumbline_engine::touch::{placement, store};
+use plumbline_fit::pose;
 use plumbline_model::robot::{Chain, Rig};
 use plumbline_model::session::Screen;
 use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, PlannedTouch, Purpose, Side, Sides};
@@ -18,7 +19,7 @@ use plumbline_twin::Touched;
 
 use super::body;
 use super::error::CommissionError;
-use super::glass::{pose, see};
+use super::glass::see;
 use super::lab::{Lab, TOUCH_SESSION};
 use super::plan::{Candidate, Chosen, TOUCHES, area, candidates, choose};
 use super::robot::{Robot, SPEED_RAD_S};

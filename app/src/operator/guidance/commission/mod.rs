@@ -191,6 +191,13 @@ fn effects(view: &View) -> Said {
         let sentence = gap_view.finding().map_or_else(String::new, |finding| in_short(finding, &addable));
         return Said::press(sentence, label, vec![Action::Gap(GapAction::Add)]);
     }
+    if gap::is_of_choice(gap_view) && gap_view.sizes_arm {
+        return Said::press(
+            "What makes the arm miss has no name that could be added. The arm can still be corrected by small shares of all that usually is wrong with arms; touches held out tell whether that helps. Nothing moves.",
+            GapAction::Size.label(),
+            vec![Action::Gap(GapAction::Size)],
+        );
+    }
     Said::press(
         "The touches are held against the robot's model: what makes the arm miss is looked for, by name. Nothing moves.",
         "Find what makes the arm miss",

@@ -3,17 +3,17 @@
 //! priors). The screen's place is fitted with them; where the eyes have seen it, it ties the arm to the
 //! eyes, and the zero of the neck's turn is fitted, too.
 
-use nalgebra::{DMatrix, DVector, Isometry3, Matrix6, Vector3, Vector6};
+use nalgebra::{DMatrix, DVector, Isometry3, Matrix3, Matrix6, Rotation3, UnitQuaternion, Vector3, Vector6};
 use plumbline_effects::measurements::Observation;
-use plumbline_effects::{Assumed, Effect, Kind, Measurements, Present};
-use plumbline_model::robot::{Arm, Rig};
+use plumbline_effects::{Assumed, Effect, Measurements, Present};
+use plumbline_model::robot::Rig;
+use plumbline_model::session::Touchscreen;
 
-use super::glass::{SeenScreen, pose};
-use super::plan::{NOISE_M, SCREEN_SD, moves_palm};
-use super::seen_by_eyes::{Looked, SeenHands};
+use crate::seen::{Looked, SeenHands};
+use crate::usual::{NOISE_M, SCREEN_SD, is_first_zero, moves_palm};
 
 /// What the neck's zero is off by, usually, rad: as the library of effects has it.
-pub(super) const NECK_SD_RAD: f64 = 0.026;
+pub const NECK_SD_RAD: f64 = 0.026;
 /// What all hands are seen beside where they are, standard deviation per axis, m: no hand is quite of the shape
 /// that the rig file gives it.
 const BESIDE_SD_M: f64 = 0.0015;
@@ -28,7 +28,8 @@ const ROBUST: f64 = 2.5;
 
 /// What is known besides the touches.
 #[derive(Clone, Copy)]
-pub(super) struct Known<'a> {
+pub struct Known<'a> {
+    /// The robot as described.
     pub rig: &'a Rig,
     /// The screen, as the eyes see it.
     pub screen: Option<&'a SeenScreen>,
@@ -45,7 +46,7 @@ pub(super) struct Known<'a> {
 }
 
 /// A fit.
-pub(super) struct Fit {
+pub struct Fit {
     /// Effects with their values, and where the screen lies.
     pub assumed: Assumed,
     /// Covariance of the values, in units of the parameters, effects in turn.
@@ -55,10 +56,24 @@ pub(super) struct Fit {
     pub neck_rad: Option<(f64, f64)>,
 }
 
-/// Whether it is the zero of the joint that an arm begins with.
-pub(super) fn is_first_zero(effect: &Effect, rig: &Rig) -> bool {
-    let first = |arm: &Arm| arm.joints.first().is_some_and(|j| rig.description.joint(*j).name == effect.site);
-    effect.kind == Kind::JointZero && rig.arms.iter().any(first)
+/// The screen as the eyes see it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeenScreen {
+    /// Middle of its image and its axes (u, v, into the glass) by the eyes, their neck's zeros taken for
+    /// right.
+    pub robot_from_screen: Isometry3<f64>,
+    /// Covariance of shift and turn of its middle, robot axes, m and rad.
+    pub covariance: Matrix6<f64>,
+}
+
+/// Where a screen lies: the middle of its image, axes u, v and into the glass, robot frame.
+pub fn pose(screen: &Touchscreen) -> Isometry3<f64> {
+    let (u, v) = (screen.u_axis.vector(), screen.v_axis.vector());
+    let into = -screen.normal().vector();
+    let turn = Matrix3::from_columns(&[u, into.cross(&u), into]);
+    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn));
+    debug_assert!((into.cross(&u) - v).norm() < 0.05);
+    Isometry3::from_parts(screen.point_at(screen.middle()).coords.coords.into(), rotation)
 }
 
 /// Rounds of linearizing.
@@ -66,7 +81,7 @@ const ROUNDS: usize = 6;
 
 /// Fits effects to rows of one session of touches, and to what the eyes saw. `None` when the rows cannot be
 /// predicted.
-pub(super) fn fit(
+pub fn fit(
     measurements: &Measurements,
     rows: &[&Observation],
     effects: &[Effect],
@@ -201,7 +216,7 @@ fn tie(
 
 /// Error on rows that were not fitted, each group of repeats held out once: rms of the distance along
 /// the glass and of the height together, m.
-pub(super) fn held_out_m(measurements: &Measurements, effects: &[Effect], known: &Known<'_>) -> Option<f64> {
+pub fn held_out_m(measurements: &Measurements, effects: &[Effect], known: &Known<'_>) -> Option<f64> {
     let mut squares = 0.0;
     for cell in 0..measurements.cell_count() {
         let (back, used): (Vec<&Observation>, Vec<&Observation>) =
@@ -222,25 +237,18 @@ mod tests {
     use plumbline_effects::arm::Arm;
     use plumbline_effects::measurements::What;
     use plumbline_model::Pixel;
-    use plumbline_model::robot::ik::{Options, Solver, Target};
 
-    use super::super::plan::{PALM, measurements, row};
-    use super::super::seen_by_eyes::SeenHand;
+    use plumbline_effects::Kind;
+
     use super::*;
+    use crate::made_up::postures;
+    use crate::seen::SeenHand;
+    use crate::usual::{measurements, row};
+
+    const PALM: &str = "right_palm_center";
 
     const TIP: &str = "right_index_tip";
     const ZERO_RAD: f64 = 0.03;
-
-    /// Angles with which a tip comes to points.
-    fn postures(rig: &Rig, tip: &str, points: &[Vector3<f64>]) -> Vec<Vec<f64>> {
-        let solver = Solver::of_rig(rig, tip).expect("a tip");
-        let solved = points.iter().filter_map(|point| {
-            let target = Target::Position(nalgebra::Point3::from(*point).into());
-            let answer = solver.solve_from(&target, &rig.home(), &Options::default()).ok()?;
-            answer.is_reached().then(|| answer.best().joints.to_vec())
-        });
-        solved.collect()
-    }
 
     /// Touches on a grid and hands over the table of a robot whose first joint alone is off, and what the
     /// eyes see of its screen, without noise.
@@ -273,8 +281,7 @@ mod tests {
         });
         let seen = seen.collect();
         let covariance = Matrix6::from_diagonal(&Vector6::new(1e-6, 1e-6, 1e-6, 6e-6, 6e-6, 6e-6));
-        let screen =
-            SeenScreen { robot_from_screen: pose(screen), covariance, rms_px: 0.2, edges: 800, table: None };
+        let screen = SeenScreen { robot_from_screen: pose(screen), covariance };
         (touches, screen, SeenHands { arm, seen })
     }
 

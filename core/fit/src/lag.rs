@@ -10,7 +10,7 @@ use plumbline_effects::{Effect, Kind, Measurements, Present, Situation};
 const NOISE_RAD: f64 = 1.5e-3;
 
 /// Effects of the servos and the covariance of their values, row by row.
-pub(super) fn fit(measurements: &Measurements, arm: &Arm) -> Vec<(Present, Vec<f64>)> {
+pub fn lag(measurements: &Measurements, arm: &Arm) -> Vec<(Present, Vec<f64>)> {
     let of_kind = |kind: Kind| Effect::sites(kind, Some(arm), None);
     let all: Vec<Effect> = of_kind(Kind::ServoDroop).into_iter().chain(of_kind(Kind::Stiction)).collect();
     let mut found = vec![];

@@ -5,16 +5,17 @@ use nalgebra::{DMatrix, Isometry3, Matrix3, Point3, Translation3, UnitQuaternion
 use plumbline_effects::{Assumed, Effect, Measurements};
 use plumbline_model::robot::Rig;
 
-use super::plan::moves_palm;
+use crate::usual::moves_palm;
 
 /// How places that are seen from home move with the neck and with the eyes in the head.
-pub(super) struct Looked<'a> {
+pub struct Looked<'a> {
     rig: &'a Rig,
     /// The head at home.
     robot_from_head: Isometry3<f64>,
 }
 
 impl<'a> Looked<'a> {
+    /// By a robot as described.
     pub fn new(rig: &'a Rig) -> Self {
         let left = rig.robot_from_left(&rig.home()).isometry;
         Self { rig, robot_from_head: left * rig.eyes.head_from_left.isometry.inverse() }
@@ -34,7 +35,7 @@ impl<'a> Looked<'a> {
 
 /// A hand that was seen.
 #[derive(Clone, Debug)]
-pub(super) struct SeenHand {
+pub struct SeenHand {
     /// Place of the palm by the eyes, their neck's zero taken for right, robot frame, m.
     pub palm_m: Vector3<f64>,
     /// Inverse of its covariance, robot axes, 1/m².
@@ -43,15 +44,16 @@ pub(super) struct SeenHand {
 
 /// Hands over the table.
 #[derive(Clone, Debug)]
-pub(super) struct SeenHands {
+pub struct SeenHands {
     /// The arm that ends in the palm, and its angles, one row per hand.
     pub arm: Measurements,
+    /// What was seen of each.
     pub seen: Vec<SeenHand>,
 }
 
 /// How one of them changes with all unknowns, how far it is seen from where the arm has it, and what that
 /// is worth.
-pub(super) type Against = (DMatrix<f64>, Vector3<f64>, Matrix3<f64>);
+pub type Against = (DMatrix<f64>, Vector3<f64>, Matrix3<f64>);
 
 impl SeenHands {
     /// All of them against the arm with effects; the unknowns of neck and eyes begin at `neck`, after
