@@ -120,6 +120,30 @@ fn cold_eyes_are_warmed_then_shown_the_board() {
 }
 
 #[test]
+fn a_joint_that_fell_silent_is_taken_hold_of_before_the_way_goes_on() {
+    let silent = |is_back: bool| {
+        let mut view = at(CommissionStep::Mount);
+        let mut joints = view.robot.joints.to_vec();
+        joints[0].let_go = true;
+        joints[0].problem = Some("servo 1 did not answer for a while".to_owned());
+        let robot = Arc::make_mut(&mut view.robot);
+        if !is_back {
+            robot.unknown = Arc::from([joints[0].joint]);
+        }
+        robot.joints = joints.into();
+        view
+    };
+    let (label, window, sent) = press(silent(true));
+    assert_eq!(label, "Next: hold all joints");
+    assert!(says(&window, "did not answer for a while"));
+    assert!(matches!(sent.as_slice(), [Command::Robot(_)]), "{sent:?}");
+    // Until it answers there is nothing to take hold of.
+    let fake = Fake::over(silent(false));
+    let window = fake.window(on(Screen::Mount));
+    assert!(!says(&window, "Next: ") && shows(&window, "Wait"));
+}
+
+#[test]
 fn while_the_board_is_shown_there_is_nothing_to_press() {
     let mut view = at(CommissionStep::Eyes);
     Arc::make_mut(&mut view.twin).board = Some(lying_board());

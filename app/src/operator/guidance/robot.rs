@@ -49,6 +49,14 @@ fn joint_trouble(robot: &RobotView) -> Option<Guidance> {
     })
 }
 
+/// A joint that was held and fell silent: it is waited for until it answers, then taken hold of.
+pub(super) fn let_go(robot: &RobotView) -> Option<Guidance> {
+    let joint = robot.joints.iter().find(|joint| joint.let_go)?;
+    let guidance = say(format!("{}: {}", joint.title, closed(joint.problem.as_deref()?))).warn();
+    let answers = !robot.unknown.contains(&joint.joint);
+    Some(if answers { guidance.then("Hold all joints", Action::Robot(RobotAction::TorqueOn)) } else { guidance })
+}
+
 fn moving(motion: &MotionState) -> Option<Guidance> {
     let MotionState::Moving { what, fraction, remaining } = motion else { return None };
     let far = fraction.map_or_else(String::new, |part| format!(", {}", format::percent(part)));

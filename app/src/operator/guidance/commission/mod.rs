@@ -9,7 +9,7 @@ mod touch;
 pub use title::{done_in_words, name, spent};
 
 use plumbline_engine::View;
-use plumbline_engine::view::{CommissionStep, GraspPhase, JobState};
+use plumbline_engine::view::{CommissionStep, GraspPhase, JobState, MotionState};
 use plumbline_widgets::format;
 
 use super::sentence::Guidance;
@@ -119,6 +119,9 @@ fn said(view: &View, step: Option<CommissionStep>, screen: Screen) -> Said {
     if let Some(running) = running(view) {
         return running;
     }
+    if let Some(troubled) = troubled(view, step) {
+        return troubled;
+    }
     match step {
         CommissionStep::Eyes => eyes::said(view),
         CommissionStep::Mount => mount(view),
@@ -128,6 +131,13 @@ fn said(view: &View, step: Option<CommissionStep>, screen: Screen) -> Said {
         CommissionStep::Check => touch::checking(view),
         CommissionStep::Grasp => grasp::said(view),
     }
+}
+
+/// A joint that did not answer for a while is taken hold of before anything goes on.
+fn troubled(view: &View, step: CommissionStep) -> Option<Said> {
+    let moves = !matches!(step, CommissionStep::Eyes | CommissionStep::Effects);
+    let stands = view.robot.connection.is_connected() && !matches!(view.robot.motion, MotionState::Moving { .. });
+    robot::let_go(&view.robot).filter(|_| moves && stands).map(Said::from)
 }
 
 /// Whatever runs is waited for.
