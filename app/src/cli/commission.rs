@@ -61,6 +61,11 @@ fn text(report: &CommissionReport) -> String {
         mm(touches.outside),
         mm(touches.uncorrected)
     ));
+    text.push_str(&format!(
+        "        M3 from the same touches misses by {} inside, {} outside\n",
+        mm(touches.m3_inside),
+        mm(touches.m3_outside)
+    ));
     text
 }
 

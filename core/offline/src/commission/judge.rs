@@ -3,7 +3,11 @@
 
 use std::sync::Arc;
 
+use plumbline_correction::train::FEWEST_FOR_A_NETWORK;
+use plumbline_correction::{CorrectionModel, Method};
 use plumbline_effects::rig_model::Conditions;
+use plumbline_engine::models::learn::{learn, options};
+use plumbline_engine::models::losses::Losses;
 use plumbline_engine::motion::{Hold, Planner, ScreenPlace};
 use plumbline_engine::touch::plan::{Aim, Corrector, PlanRequest, TIP, make};
 use plumbline_engine::touch::store;
@@ -27,9 +31,9 @@ use super::touches::{Depths, rms, session};
 const GRID_X_M: [f64; 4] = [0.2, 0.3, 0.4, 0.5];
 const GRID_Y_M: [f64; 9] = [-0.4, -0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3, 0.4];
 /// New touches inside and outside.
-const CHECKED: usize = 6;
+const CHECKED: usize = 12;
 /// So many are planned, so that there are enough of both kinds.
-const DRAWN: usize = 48;
+const DRAWN: usize = 96;
 /// The palm is sent so high over the table, m.
 const PALM_HEIGHT_M: f64 = 0.1;
 /// A toy that was put down comes to rest, s.
@@ -160,44 +164,79 @@ pub(super) fn palm(
     })
 }
 
-/// Touches new places, corrected by what was accepted, inside and outside of what was touched before.
+/// Touches new places, corrected by what was accepted, inside and outside of what was touched before; and the
+/// same with M3 from the same touches.
 pub(super) fn touches(
     lab: &Lab,
     robot: &mut Robot,
     context: &dyn JobContext,
 ) -> Result<TouchError, CommissionError> {
-    let stored = store::read(&session(lab))?;
-    let touched: Vec<Pixel<Screen>> = stored.progress.counted().map(|record| record.touched).collect();
     let rig = lab.rig_with_screen()?;
     let corrector =
         if lab.model()?.is_nominal() { Corrector::None } else { Corrector::Effects(Arc::new(lab.known()?)) };
     let aims = new_aims(lab, &rig, corrector, context)?;
-    let mut depths = Depths::new(&rig, ScreenPlace::Measured)?;
+    let [inside, outside] = missed_mm(lab, robot, &rig, &aims, (0.6, context))?;
+    let by_m3 = match m3(lab, &rig, context)? {
+        Some(m3) => {
+            let aims = new_aims(lab, &rig, Corrector::Model(m3), context)?;
+            missed_mm(lab, robot, &rig, &aims, (0.8, context))?
+        }
+        None => [vec![], vec![]],
+    };
+    let uncorrected = uncorrected(lab, robot, &aims)?;
+    Ok(TouchError {
+        inside: rms(&inside),
+        outside: rms(&outside),
+        inside_touches: inside.len(),
+        outside_touches: outside.len(),
+        m3_inside: rms(&by_m3[0]),
+        m3_outside: rms(&by_m3[1]),
+        uncorrected,
+    })
+}
+
+/// How far touches miss inside and outside of what was touched before, mm.
+fn missed_mm(
+    lab: &Lab,
+    robot: &mut Robot,
+    rig: &Arc<Rig>,
+    aims: &[Aim],
+    (begin, context): (f64, &dyn JobContext),
+) -> Result<[Vec<f64>; 2], CommissionError> {
+    let stored = store::read(&session(lab))?;
+    let touched: Vec<Pixel<Screen>> = stored.progress.counted().map(|record| record.touched).collect();
+    let mut depths = Depths::new(rig, ScreenPlace::Measured)?;
     let mut errors = [vec![], vec![]];
-    for aim in &aims {
+    for aim in aims {
         context.checkpoint()?;
         let side = usize::from(!is_among(aim.touch.target, &touched));
         if errors[side].len() == CHECKED {
             continue;
         }
-        context.report(
-            0.6 + 0.4 * (errors[0].len() + errors[1].len()) as f64 / (2 * CHECKED) as f64,
-            "judging where new touches land",
-        );
+        let done = (errors[0].len() + errors[1].len()) as f64 / (2 * CHECKED) as f64;
+        context.report(begin + 0.2 * done, "judging where new touches land");
         let met = depths.touch(robot, aim.touch.target, aim.sent(), aim.touch.side, Hold::default());
         if let Ok(measured) = met {
-            errors[side].push(miss_mm(&rig, measured.pixel, aim.touch.target));
+            errors[side].push(miss_mm(rig, measured.pixel, aim.touch.target));
         }
     }
-    let uncorrected = uncorrected(lab, robot, &aims)?;
-    let [inside, outside] = &errors;
-    Ok(TouchError {
-        inside: rms(inside),
-        outside: rms(outside),
-        inside_touches: inside.len(),
-        outside_touches: outside.len(),
-        uncorrected,
-    })
+    Ok(errors)
+}
+
+/// The best published model without feedback, learned from the touches of the commissioning; `None`: they are
+/// too few for it.
+fn m3(
+    lab: &Lab,
+    rig: &Arc<Rig>,
+    context: &dyn JobContext,
+) -> Result<Option<Arc<CorrectionModel>>, CommissionError> {
+    let folder = session(lab);
+    if store::read(&folder)?.progress.counted().count() < FEWEST_FOR_A_NETWORK {
+        return Ok(None);
+    }
+    let how = options(&folder, rig, lab.seed, false);
+    let trained = learn(&folder, rig, &[Method::M3], &how, &Losses::default(), context)?;
+    Ok(trained.models.into_iter().next())
 }
 
 /// Random targets that can be reached, with the points that are sent for them.

@@ -74,6 +74,12 @@ pub struct TouchError {
     pub inside_touches: usize,
     /// Touches outside.
     pub outside_touches: usize,
+    /// Inside, with M3 from the same touches.
+    #[serde(default)]
+    pub m3_inside: Option<f64>,
+    /// Outside, with M3 from the same touches.
+    #[serde(default)]
+    pub m3_outside: Option<f64>,
     /// The same touches without any effect and with the nominal screen would have missed by, rms.
     pub uncorrected: Option<f64>,
 }
