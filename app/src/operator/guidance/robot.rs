@@ -54,7 +54,11 @@ pub(super) fn let_go(robot: &RobotView) -> Option<Guidance> {
     let joint = robot.joints.iter().find(|joint| joint.let_go)?;
     let guidance = say(format!("{}: {}", joint.title, closed(joint.problem.as_deref()?))).warn();
     let answers = !robot.unknown.contains(&joint.joint);
-    Some(if answers { guidance.then("Hold all joints", Action::Robot(RobotAction::TorqueOn)) } else { guidance })
+    Some(if answers {
+        guidance.then("Hold all joints", Action::Robot(RobotAction::TorqueOn))
+    } else {
+        guidance
+    })
 }
 
 fn moving(motion: &MotionState) -> Option<Guidance> {

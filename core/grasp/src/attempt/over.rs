@@ -43,6 +43,10 @@ const ARM_HEIGHT_SIGMA_M: f64 = 0.001;
 const PLAY_SIGMA_M: f64 = 0.0005;
 const TURN_SIGMA_M: f64 = 0.008;
 
+/// A servo that stands farther than this short of where it was sent is held up by something, rad: what gives
+/// way under the arm's own weight and what rubs is less than half of it.
+const HELD_UP_RAD: f64 = 0.08;
+
 /// What is known of an arm's error: real palm less where the model has it.
 struct ArmError {
     m: Vector3<f64>,
@@ -131,6 +135,7 @@ impl Running<'_> {
         self.body.wait(STILL_S)?;
         let sight = self.body.look()?;
         let commanded = self.body.commanded()?;
+        self.not_held_up(&sight.posture, &commanded)?;
         let robot_from_palm = self.grasper.arm.known.arm().robot_from_palm(&commanded);
         let modeled = robot_from_palm.translation_m();
         let sent = modeled + error.m;
@@ -155,6 +160,19 @@ impl Running<'_> {
             return Err(End::Failed(Failure::HandWrong, why.to_owned()));
         }
         Ok(Some(missing_m))
+    }
+
+    /// An arm that something holds up is not pushed on.
+    fn not_held_up(&self, encoders: &Posture, commanded: &Posture) -> Result<(), End> {
+        let arm = self.grasper.arm.known.arm();
+        let short = |joint: &&JointIndex| (encoders[**joint] - commanded[**joint]).abs() > HELD_UP_RAD;
+        let Some(joint) = arm.joints().iter().find(short) else { return Ok(()) };
+        let name = arm.rig().servo_of(*joint).map_or("a joint", |servo| servo.title.as_str());
+        let why = format!(
+            "{name} stands {:.0}° short of where it was sent: something holds the arm up; look what it touches, or put the object elsewhere",
+            (encoders[*joint] - commanded[*joint]).abs().to_degrees()
+        );
+        Err(End::Failed(Failure::ReachWrong, why))
     }
 
     /// The plan with the arm's error undone. Where the hand cannot be sent so with this heading, nearly

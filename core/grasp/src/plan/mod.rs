@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector3;
 use plumbline_model::robot::Posture;
-use plumbline_model::robot::collision::{CollisionError, CollisionModel};
+use plumbline_model::robot::collision::{Allowance, Body, CollisionError, CollisionModel};
 use plumbline_model::{Point, Robot};
 
 use crate::arm::PalmArm;
@@ -42,6 +42,10 @@ const TURNED_M: f64 = 0.0005;
 /// A way with less room than this between any two bodies, m, counts as this much more turning, rad.
 const ROOM_M: f64 = 0.008;
 const CRAMPED_RAD: f64 = 2.0;
+
+/// The table stands where it is described to within so much at the most, to each side and in height, m: a
+/// forearm that would pass its edge by less may meet it. The hand itself goes by what the eyes see.
+const TABLE_OFF_M: f64 = 0.015;
 
 /// Why a grasp cannot be made. Reads as a sentence.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -110,6 +114,21 @@ impl GraspPlan {
     }
 }
 
+/// The robot before a table that stands as far off as tables do.
+fn at_a_larger_table(arm: &PalmArm) -> (CollisionModel, Allowance) {
+    let mut rig = (**arm.rig()).clone();
+    let table = &mut rig.table;
+    table.height_m += TABLE_OFF_M;
+    for range_m in [&mut table.x_range_m, &mut table.y_range_m] {
+        *range_m = [range_m[0] - TABLE_OFF_M, range_m[1] + TABLE_OFF_M];
+    }
+    let bodies = CollisionModel::of_rig(&rig);
+    let links = arm.joints().last().map_or_else(Vec::new, |wrist| bodies.links_moved_by(*wrist));
+    // All of the hand may go on as at the table that is described.
+    let hand = Allowance { links, body: Body::Table, depth_m: f64::INFINITY };
+    (bodies, hand)
+}
+
 /// Above what stands somewhere, and down.
 struct WayDown {
     palm_m: Vector3<f64>,
@@ -123,6 +142,8 @@ struct WayDown {
 pub struct GraspPlanner {
     arm: PalmArm,
     bodies: CollisionModel,
+    /// The same with a table that is larger and higher by [`TABLE_OFF_M`], and what the hand may do there.
+    at_a_larger_table: (CollisionModel, Allowance),
     /// What is left as it is.
     others: Vec<Beside>,
 }
@@ -131,7 +152,8 @@ impl GraspPlanner {
     /// For a hand as a model has it.
     pub fn new(arm: PalmArm) -> Self {
         let bodies = CollisionModel::of_rig(arm.rig());
-        Self { arm, bodies, others: vec![] }
+        let at_a_larger_table = at_a_larger_table(&arm);
+        Self { arm, bodies, at_a_larger_table, others: vec![] }
     }
 
     /// The hand.
@@ -200,7 +222,9 @@ impl GraspPlanner {
             let free = self.room(&above, &down).and_then(|room_m| Ok((room_m, self.free_way(from, &above)?)));
             match free {
                 Ok((room_m, approach)) => {
-                    let cost = turn_rad(&above, &down) + CRAMPED_RAD * f64::from(room_m < ROOM_M);
+                    let cost = turn_rad(&above, &down)
+                        + CRAMPED_RAD * f64::from(room_m < ROOM_M)
+                        + CRAMPED_RAD * f64::from(self.may_meet_table(&above, &down)?);
                     if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                         let standing = *standing;
                         best = Some((

@@ -74,6 +74,20 @@ impl GraspPlanner {
         Ok(room_m)
     }
 
+    /// Whether the arm behind its hand comes so near to the table on the way down that it may meet it.
+    pub(super) fn may_meet_table(&self, above: &Posture, down: &[Posture]) -> Result<bool, NoPlan> {
+        let (bodies, hand) = &self.at_a_larger_table;
+        let mut before = above;
+        for next in down {
+            let check = bodies.check_path(before, next, std::slice::from_ref(hand))?;
+            if matches!(check, PathCheck::Collides { .. }) {
+                return Ok(true);
+            }
+            before = next;
+        }
+        Ok(false)
+    }
+
     fn ways(&self, from: &Posture, above: &Posture) -> Vec<Vec<Posture>> {
         let arm = self.arm();
         let home = self.open(above).with(arm.joints(), &arm.rig().home().of(arm.joints()));

@@ -136,7 +136,8 @@ fn said(view: &View, step: Option<CommissionStep>, screen: Screen) -> Said {
 /// A joint that did not answer for a while is taken hold of before anything goes on.
 fn troubled(view: &View, step: CommissionStep) -> Option<Said> {
     let moves = !matches!(step, CommissionStep::Eyes | CommissionStep::Effects);
-    let stands = view.robot.connection.is_connected() && !matches!(view.robot.motion, MotionState::Moving { .. });
+    let stands =
+        view.robot.connection.is_connected() && !matches!(view.robot.motion, MotionState::Moving { .. });
     robot::let_go(&view.robot).filter(|_| moves && stands).map(Said::from)
 }
 
