@@ -25,3 +25,4 @@ pub use find::find;
 pub use finding::{Finding, Verdict};
 pub use next::plan_for;
 pub use options::Options;
+pub use plumbline_model::parameter_words;

@@ -2,6 +2,7 @@
 
 use crate::finding::{Finding, FloorSource, FoundParameter, NamedEffect, Shown, ShownUnit, Verdict};
 use crate::watched::WATCHED;
+use plumbline_model::parameter_words;
 
 /// What was found, in words.
 pub(crate) fn of(finding: &Finding) -> String {
@@ -171,32 +172,28 @@ fn effect(effect: &NamedEffect) -> String {
     format!("{title}{sized}; the data cannot tell it from: {}.{split}", others.join("; "))
 }
 
+/// Ends of names with what is told of an SI unit, and its unit; the longest come first.
+const UNITS: [(&str, f64, &str); 10] = [
+    ("_rad_per_nm", DEGREES, "° per N m"),
+    ("_nm_per_rad", 1.0, " N m/rad"),
+    ("_rad", DEGREES, "°"),
+    // How far bowed glass is off at 100 mm from its middle.
+    ("_per_m", 10.0, " mm at 100 mm"),
+    ("_m_per_n", 1e3, " mm per N"),
+    ("_m", 1e3, " mm"),
+    ("_kg", 1e3, " g"),
+    ("_px", 1.0, " px"),
+    ("_secs", 1.0, " s"),
+    ("_s", 1.0, " s"),
+];
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
 /// A parameter in the units of the lab, as far as its name says its unit.
 fn parameter(parameter: &FoundParameter) -> Option<String> {
     let FoundParameter { name, value, low, high, .. } = parameter;
-    let (scale, unit, what) = if let Some(what) = name.strip_suffix("_rad_per_nm") {
-        (1f64.to_degrees(), "° per N m", what)
-    } else if let Some(what) = name.strip_suffix("_nm_per_rad") {
-        (1.0, " N m/rad", what)
-    } else if let Some(what) = name.strip_suffix("_rad") {
-        (1f64.to_degrees(), "°", what)
-    } else if let Some(what) = name.strip_suffix("_per_m") {
-        (1.0, " per m", what)
-    } else if let Some(what) = name.strip_suffix("_m_per_n") {
-        (1e3, " mm per N", what)
-    } else if let Some(what) = name.strip_suffix("_m") {
-        (1e3, " mm", what)
-    } else if let Some(what) = name.strip_suffix("_kg") {
-        (1e3, " g", what)
-    } else if let Some(what) = name.strip_suffix("_px") {
-        (1.0, " px", what)
-    } else if let Some(what) = name.strip_suffix("_secs").or_else(|| name.strip_suffix("_s")) {
-        (1.0, " s", what)
-    } else if name.starts_with("scale") || name == "ratio" || name == "fraction" || name == "weight" {
-        (100.0, " %", name.as_str())
-    } else {
-        return None;
-    };
+    let is_share = name.starts_with("scale") || matches!(name.as_str(), "ratio" | "fraction" | "weight");
+    let of_end = UNITS.iter().find(|(end, ..)| name.ends_with(end)).map(|&(_, scale, unit)| (scale, unit));
+    let (scale, unit) = of_end.or(is_share.then_some((100.0, " %")))?;
     let (low, high) = (low * scale, high * scale);
     let digits = digits(high - low);
     let number = |value: f64| {
@@ -208,26 +205,7 @@ fn parameter(parameter: &FoundParameter) -> Option<String> {
             text
         }
     };
-    Some(format!("{} {}{unit} ({} to {})", quantity(what), number(value * scale), number(low), number(high)))
-}
-
-/// The name of a parameter without its unit, in words.
-pub(crate) fn quantity(name: &str) -> String {
-    let units = [
-        "_rad_per_nm",
-        "_nm_per_rad",
-        "_m_per_n",
-        "_per_m",
-        "_rad",
-        "_kg",
-        "_px",
-        "_secs",
-        "_nm",
-        "_m",
-        "_s",
-    ];
-    let bare = units.iter().find_map(|unit| name.strip_suffix(unit)).unwrap_or(name);
-    bare.replace('_', " ")
+    Some(format!("{} {}{unit} ({} to {})", parameter_words::said(name), number(value * scale), number(low), number(high)))
 }
 
 /// Decimals that show two digits of an interval.
