@@ -161,8 +161,8 @@ fn effect(effect: &NamedEffect) -> String {
     let others: Vec<&str> = effect.class.iter().skip(1).map(|member| member.title.as_str()).take(3).collect();
     let family = if is_family(effect) { " (no single one explains it)" } else { "" };
     let title = format!("{}{family}", capital(&effect.title));
-    if effect.not_addable.is_some() {
-        return format!("{title}: further off than is plausible, so something else is probably at work.");
+    if let Some(why) = &effect.not_addable {
+        return format!("{title}{sized}; {why}.");
     }
     if others.is_empty() {
         return format!("{title}{sized}.");
@@ -241,4 +241,31 @@ fn size(value: f64, unit: ShownUnit) -> String {
 fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(name: &str, value: f64, low: f64, high: f64) -> FoundParameter {
+        FoundParameter { name: name.to_owned(), value, low, high, text: None }
+    }
+
+    #[test]
+    fn sizes_are_told_in_the_words_and_units_of_the_lab() {
+        let told = |name: &str, value: f64, low: f64, high: f64| parameter(&found(name, value, low, high));
+        let said = [
+            (told("rot_x_rad", 0.02, 0.018, 0.022), "turned about its x axis by 1.1° (1.0 to 1.3)"),
+            (told("amplitude_rad", 0.01, 0.008, 0.012), "moves by up to 0.57° (0.46 to 0.69)"),
+            (told("width_rad", 0.01, 0.0, 0.02), "from side to side 0.6° (0.0 to 1.1)"),
+            (told("length_m", -4e-3, -5e-3, -3e-3), "longer by -4.0 mm (-5.0 to -3.0)"),
+            (told("r_elbow_y_offset_rad", 0.02, 0.018, 0.022), "r elbow y off by 1.1° (1.0 to 1.3)"),
+            (told("scale_u", 0.02, 0.01, 0.03), "wider by 2.0 % (1.0 to 3.0)"),
+        ];
+        for (told, words) in said {
+            assert_eq!(told.as_deref(), Some(words));
+        }
+        // A number without a unit of its own is on the page, not in the sentence.
+        assert_eq!(told("order", 2.0, 2.0, 2.0), None);
+    }
 }

@@ -25,7 +25,7 @@ mod judge;
 use judge::AnyError;
 
 /// Cases are made anew when the physics changes.
-const PHYSICS: &str = "v6";
+const PHYSICS: &str = "v7";
 const THREADS: usize = 2;
 
 struct Arguments {
@@ -169,7 +169,8 @@ fn list(answer: &Answer, verdict: &Result<Verdict, String>) {
                 .iter()
                 .map(|f| {
                     let others: Vec<&str> = f.class.iter().skip(1).map(String::as_str).collect();
-                    format!("{}@{} {:.2} {others:?}", f.id, f.site, f.probability)
+                    let size = f.size_sigmas.map_or_else(String::new, |size| format!(" {size:.1}σ"));
+                    format!("{}@{} {:.2}{size} {others:?}", f.id, f.site, f.probability)
                 })
                 .collect();
             format!("{} {} ({:.1} s)", verdict.verdict, names.join(", "), verdict.seconds.unwrap_or(f64::NAN))

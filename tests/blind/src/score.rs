@@ -41,6 +41,9 @@ pub struct Found {
     /// Parameters: numbers with `low` and `high`, or text.
     #[serde(default)]
     pub parameters: BTreeMap<String, Value>,
+    /// What it does to the rows, in units of their noise, where it says so.
+    #[serde(default)]
+    pub size_sigmas: Option<f64>,
     /// Every `id@site` that it could be, too.
     #[serde(default)]
     pub class: Vec<String>,

@@ -172,7 +172,7 @@ impl Sums {
 }
 
 /// Standard deviation that a coordinate is weighed by.
-fn standard(what: What, coordinate: usize, floor: f64) -> f64 {
+pub(crate) fn standard(what: What, coordinate: usize, floor: f64) -> f64 {
     if what == What::Touch && coordinate == 2 { floor.hypot(CONTACT_M) } else { floor }
 }
 

@@ -17,6 +17,7 @@ mod knowledge;
 mod library;
 mod linear;
 mod look;
+mod masses;
 mod naming;
 mod refit;
 #[cfg(test)]
@@ -39,6 +40,7 @@ use crate::options::Options;
 use explore::Explored;
 use finish::Finish;
 use library::Library;
+pub(crate) use linear::standard;
 use look::Look;
 pub(crate) use naming::MISLED;
 use refit::refit;
