@@ -146,6 +146,9 @@ fn with_servos(finding: &mut Finding, (servos, words): (Vec<NamedEffect>, Option
     if finding.verdict == Verdict::NoGap && !servos.is_empty() {
         finding.verdict = Verdict::Named;
     }
+    if finding.verdict == Verdict::Named && servos.iter().any(|servo| servo.class.len() > 1) {
+        finding.verdict = Verdict::Class;
+    }
     finding
         .effects
         .retain(|effect| servos.iter().all(|servo| (&servo.id, &servo.site) != (&effect.id, &effect.site)));

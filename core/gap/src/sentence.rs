@@ -205,7 +205,13 @@ fn parameter(parameter: &FoundParameter) -> Option<String> {
             text
         }
     };
-    Some(format!("{} {}{unit} ({} to {})", parameter_words::said(name), number(value * scale), number(low), number(high)))
+    Some(format!(
+        "{} {}{unit} ({} to {})",
+        parameter_words::said(name),
+        number(value * scale),
+        number(low),
+        number(high)
+    ))
 }
 
 /// Decimals that show two digits of an interval.

@@ -61,19 +61,8 @@ const SHIFTS: [(&str, &str); 8] = [
 ];
 
 /// Ends of names that say a unit.
-const UNITS: [&str; 11] = [
-    "_rad_per_nm",
-    "_nm_per_rad",
-    "_m_per_n",
-    "_per_m",
-    "_rad",
-    "_kg",
-    "_px",
-    "_secs",
-    "_nm",
-    "_m",
-    "_s",
-];
+const UNITS: [&str; 11] =
+    ["_rad_per_nm", "_nm_per_rad", "_m_per_n", "_per_m", "_rad", "_kg", "_px", "_secs", "_nm", "_m", "_s"];
 
 /// What is said before a value: "off by", "turned about its x axis by". A site before the name, where one
 /// effect stands for every joint, is kept: "r elbow y off by".

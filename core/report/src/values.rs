@@ -181,8 +181,14 @@ mod tests {
     fn parameters_are_printed_with_the_digits_that_their_interval_leaves() {
         let offset = found("offset_rad", 0.031, 0.028, 0.034);
         assert_eq!(with_interval(&offset, false), "1.78 ± 0.17°");
-        assert_eq!(with_interval(&found("x_m", -0.0042, -0.0047, -0.0037), true), "shifted along its x axis by −4.20 ± 0.50 mm");
-        assert_eq!(with_interval(&found("rot_x_rad", 0.01, 0.0, 0.03), true), "turned about its x axis by 0.57° (0.00 to 1.72)");
+        assert_eq!(
+            with_interval(&found("x_m", -0.0042, -0.0047, -0.0037), true),
+            "shifted along its x axis by −4.20 ± 0.50 mm"
+        );
+        assert_eq!(
+            with_interval(&found("rot_x_rad", 0.01, 0.0, 0.03), true),
+            "turned about its x axis by 0.57° (0.00 to 1.72)"
+        );
         let sag = found("compliance_rad_per_nm", 0.02, 0.018, 0.022);
         assert_eq!(with_interval(&sag, false), "1.15 ± 0.11°/N m");
         assert_eq!(with_interval(&found("mass_kg", 0.118, 0.106, 0.13), false), "118 ± 12 g");

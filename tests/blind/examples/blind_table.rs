@@ -177,12 +177,32 @@ fn list(answer: &Answer, verdict: &Result<Verdict, String>) {
         }
         Err(why) => why.clone(),
     };
+    let outside = verdict.as_ref().map_or_else(|_| vec![], |verdict| outside(answer, verdict));
+    let outside = if outside.is_empty() { String::new() } else { format!(" OUTSIDE {}", outside.join(", ")) };
     println!(
-        "{:03} {} {}{}: {} → {said}",
+        "{:03} {} {}{}: {} → {said}{outside}",
         answer.case,
         words::word(answer.family),
         words::word(answer.design),
         if answer.dirt.is_empty() { "" } else { " dirt" },
         hidden.join(", ")
     );
+}
+
+/// Parameters of rightly named effects whose interval does not hold the truth.
+fn outside(answer: &Answer, verdict: &Verdict) -> Vec<String> {
+    let mut outside = vec![];
+    for hidden in &answer.hidden {
+        let same =
+            |found: &&plumbline_blind::score::Found| found.id == hidden.id && found.site == hidden.site;
+        let Some(found) = verdict.effects.iter().find(same) else { continue };
+        for (name, truth) in &hidden.parameters {
+            let number = |end: &str| found.parameters.get(name)?.get(end)?.as_f64();
+            let (Some(low), Some(high)) = (number("low"), number("high")) else { continue };
+            if *truth < low || *truth > high {
+                outside.push(format!("{}.{name} {truth:.4} not in {low:.4} to {high:.4}", hidden.id));
+            }
+        }
+    }
+    outside
 }

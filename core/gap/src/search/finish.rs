@@ -127,8 +127,7 @@ impl Finish<'_> {
     ) -> Result<(), GapError> {
         let variant = self.look.fields.get(self.look.likely(self.explored)).map(|field| field.variant);
         let scale = variant.map_or((1.0, 0.0), |variant| (variant.noise, variant.cell));
-        let added =
-            masses::doubt(self.measurements, self.floor, assumed, weights, scale, sds, context)?;
+        let added = masses::doubt(self.measurements, self.floor, assumed, weights, scale, sds, context)?;
         let Some(added) = added else { return Ok(()) };
         let mut at = 0;
         for (effect, present) in named.effects.iter_mut().zip(&assumed.effects) {

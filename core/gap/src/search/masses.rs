@@ -4,13 +4,14 @@
 //! free beside what was found, within what descriptions are usually off by; a known weight that hangs on some
 //! rows only tells compliances from masses, and then little is added.
 
-use nalgebra::{Cholesky, DMatrix};
+use nalgebra::{Cholesky, DMatrix, DVector};
 use plumbline_effects::Assumed;
 use plumbline_effects::measurements::Measurements;
 use plumbline_model::JobContext;
 use rayon::prelude::*;
 
 use super::linear::{Linear, standard};
+use super::refit::usual;
 use crate::error::GapError;
 use crate::floor::Floor;
 use crate::servos::MASS_SD;
@@ -51,15 +52,23 @@ pub(super) fn doubt(
     let own = linear.gauge + count;
     let mut normal = gram.view((0, 0), (own, own)).clone_owned();
     for k in 0..own {
-        let sd = linear.nuisances.get(k).map_or_else(|| sds[k - linear.gauge], |nuisance| nuisance.prior_sd());
+        let sd =
+            linear.nuisances.get(k).map_or_else(|| sds[k - linear.gauge], |nuisance| nuisance.prior_sd());
         normal[(k, k)] += sd.powi(-2);
     }
     let mixed = gram.view((0, own), (own, masses)).clone_owned();
     let mut rest = gram.view((own, own), (masses, masses)).clone_owned();
-    let toward = gram.view((own, own + masses), (masses, 1)).clone_owned();
+    // What the values still want, were they alone, is not what masses want.
+    let last = own + masses;
+    let values = usual(assumed);
+    let pull = DVector::from_fn(own, |k, _| match k.checked_sub(linear.gauge) {
+        Some(k_own) => gram[(k, last)] - values[k_own] * sds[k_own].powi(-2),
+        None => gram[(k, last)],
+    });
     let Some(normal) = Cholesky::new(normal) else { return Ok(None) };
     // How values follow masses, the rows given.
     let follow = normal.solve(&mixed);
+    let toward = gram.view((own, last), (masses, 1)).clone_owned() - follow.tr_mul(&pull);
     rest -= mixed.tr_mul(&follow);
     for k in 0..masses {
         rest[(k, k)] += MASS_SD.powi(-2);

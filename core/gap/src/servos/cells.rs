@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
+use plumbline_effects::Situation;
 use plumbline_effects::arm::Arm;
 use plumbline_effects::measurements::{Measurements, Observation};
-use plumbline_effects::Situation;
 
 /// The mean of the rows of a cell, per joint.
 #[derive(Clone, Debug)]
@@ -52,8 +52,11 @@ pub(super) fn logged(measurements: &Measurements, session: usize) -> impl Iterat
 pub(super) fn cells(arm: &Arm, rows: &[&Observation]) -> Vec<Cell> {
     let joints = arm.len();
     let measured = rows.iter().any(|row| row.torque_nm.is_some());
-    let alone: Vec<Arm> =
-        if measured || arm.masses_made_up { vec![] } else { (0..joints).map(|l| with_only(arm, l)).collect() };
+    let alone: Vec<Arm> = if measured || arm.masses_made_up {
+        vec![]
+    } else {
+        (0..joints).map(|l| with_only(arm, l)).collect()
+    };
     let mut sums: BTreeMap<usize, (Cell, f64)> = BTreeMap::new();
     for row in rows {
         let Some(lag_rad) = row.lag_rad().filter(|lag| lag.len() == joints) else { continue };
@@ -90,7 +93,8 @@ pub(super) fn cells(arm: &Arm, rows: &[&Observation]) -> Vec<Cell> {
 
 impl Cell {
     fn add(&mut self, other: &Self) {
-        let add = |to: &mut Vec<f64>, from: &[f64]| to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
+        let add =
+            |to: &mut Vec<f64>, from: &[f64]| to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
         add(&mut self.lag_rad, &other.lag_rad);
         add(&mut self.back, &other.back);
         add(&mut self.torque_nm, &other.torque_nm);

@@ -34,6 +34,9 @@ pub(super) struct Lag {
     pub rms_rad: f64,
     /// What is left of it, one standard deviation, rad.
     pub sd_rad: f64,
+    /// How far masses that are each off by a share, independently, change the torque: as a share of it, per
+    /// share.
+    pub mass_share: f64,
     /// Cells that are not far off.
     pub used: Vec<usize>,
 }
@@ -79,6 +82,7 @@ pub(super) fn lag(cells: &[Cell], j: usize, sided: bool) -> Option<Lag> {
                 in_proportion: in_proportion(cells, &used, j),
                 rms_rad: (lags.norm_squared() / used.len() as f64).sqrt(),
                 sd_rad: variance.sqrt().max(1e-6),
+                mass_share: mass_share(cells, &used, j),
                 used,
             });
         }
@@ -94,6 +98,17 @@ fn in_proportion(cells: &[Cell], used: &[usize], j: usize) -> Slope {
     let value = sum(&|cell| cell.lag_rad[j] * cell.torque_nm[j]) / torques;
     let left = sum(&|cell| (cell.lag_rad[j] - value * cell.torque_nm[j]).powi(2));
     Slope { value, sd: (left / (used.len() as f64 - 1.0).max(1.0) / torques).sqrt() }
+}
+
+/// Root of the sum of squares of what each link has of the torque.
+fn mass_share(cells: &[Cell], used: &[usize], j: usize) -> f64 {
+    let links = cells.first().and_then(|cell| cell.of_links_nm.get(j)).map_or(0, Vec::len);
+    let square = used.iter().map(|&cell| cells[cell].torque_nm[j].powi(2)).sum::<f64>().max(1e-12);
+    let part = |l: usize| {
+        let along = used.iter().map(|&cell| cells[cell].torque_nm[j] * cells[cell].of_links_nm[j][l]);
+        along.sum::<f64>() / square
+    };
+    (0..links).map(|l| part(l).powi(2)).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]

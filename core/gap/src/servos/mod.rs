@@ -24,8 +24,8 @@ use crate::finding::NamedEffect;
 use crate::floor::Floor;
 use cells::Sides;
 use lag::{FEWEST_CELLS, Lag, Slope};
-use name::{Size, named, named_mass};
 pub(crate) use masses::MASS_SD;
+use name::{Size, named, named_mass, or_friction};
 use size::Levers;
 
 /// A slope counts from so many standard deviations on.
@@ -43,13 +43,16 @@ const KNOWN: f64 = 0.2;
 const FURTHEST: f64 = 0.3;
 /// Every joint lags a little behind while it moves; one that sticks does so by this many times more.
 const STANDS_OUT: f64 = 2.5;
-/// From one side and with one weight a lag is that of the load when what it grows by, with the torque and in
-/// proportion to it, agrees to this share, and the torque leaves no more than this share of it.
-const AGREE: f64 = 0.5;
+/// From one side and with one weight a servo lags by so many times what others do, always by nearly as much …
+const MORE_FROM_ONE_SIDE: f64 = 3.0;
 const LEFT_OVER: f64 = 0.5;
+/// … and more with a larger load, by so many standard deviations. It is surely the load where what the lag
+/// grows by and what it is in proportion to the torque agree to this share.
+const HARDLY: f64 = 2.0;
+const AGREE: f64 = 0.5;
 /// A mass is another one when it is known to this share of the description's, is off by this share, and by
 /// so many standard deviations.
-const MASS_KNOWN: f64 = 0.08;
+const MASS_KNOWN: f64 = 0.1;
 const LEAST_MASS: f64 = 0.1;
 const SURE_OF_MASS: f64 = 4.0;
 
@@ -143,30 +146,21 @@ impl<'a> Servos<'a> {
     /// Servos that give way more than the others, and what all of them do alike, in words: a controller
     /// without integral action gives way everywhere, and that is its way, not what is wrong with a joint.
     fn droops(&self) -> (Vec<NamedEffect>, Option<String>) {
+        if self.sides.are_one() {
+            return (self.joints.iter().filter_map(|joint| self.from_one_side(joint)).collect(), None);
+        }
         let (mut found, mut alike) = (vec![], vec![]);
         for joint in &self.joints {
             let Some((slope, alone)) = joint.gives.zip(joint.lag.gives) else { continue };
-            if slope.value <= 0.0 || slope.value > FURTHEST {
+            if slope.value <= 0.0 || slope.value > FURTHEST || alone.value < SURE * alone.sd {
                 continue;
             }
-            let own = |row: &Observation| {
-                let nm = row.torque_nm.as_ref().map_or_else(
-                    || torques_nm(self.arm, row, row.payload_kg)[joint.j],
-                    |nm| nm.get(joint.j).copied().unwrap_or_default(),
-                );
-                slope.value * nm
-            };
-            let sure = if self.sides.are_one() { 0.5 * SURE } else { SURE };
-            if alone.value < sure * alone.sd {
-                continue;
-            }
-            let size = self.size(joint.j, own);
+            let size = self.size(joint.j, |row| slope.value * self.torque_nm(row, joint.j));
             if size.sigmas > SMALLEST && self.has_own_fault(joint, slope) {
-                let slope = if self.sides.are_one() { joint.lag.doubtful(slope) } else { slope };
                 found.extend(named(self.arm, Kind::ServoDroop, joint.j, slope, &size));
             } else {
                 let tip_m = slope.value * joint.torque_nm * self.levers.tip_m[joint.j];
-                if !self.sides.are_one() && tip_m > self.floor_m.max(LEAST_M) {
+                if tip_m > self.floor_m.max(LEAST_M) {
                     alike.push((slope.value, tip_m));
                 }
             }
@@ -174,15 +168,18 @@ impl<'a> Servos<'a> {
         (found, give_way(&alike))
     }
 
-    /// Whether a servo gives way more than the others. From one side and with one weight the lag must be of
-    /// the load, too.
-    fn has_own_fault(&self, joint: &Joint, slope: Slope) -> bool {
-        let others = || self.joints.iter().filter(|other| other.j != joint.j);
-        if self.sides.are_one() {
-            let usual = median(others().map(|other| other.lag.rms_rad));
-            return joint.lag.is_of_load() && usual.is_some_and(|usual| joint.lag.rms_rad > MORE * usual);
+    /// Torque about a joint in a row, N m.
+    fn torque_nm(&self, row: &Observation, j: usize) -> f64 {
+        match &row.torque_nm {
+            Some(measured) => measured.get(j).copied().unwrap_or_default(),
+            None => torques_nm(self.arm, row, row.payload_kg)[j],
         }
-        let known: Vec<f64> = others()
+    }
+
+    /// Whether a servo gives way more than the others.
+    fn has_own_fault(&self, joint: &Joint, slope: Slope) -> bool {
+        let others = self.joints.iter().filter(|other| other.j != joint.j);
+        let known: Vec<f64> = others
             .filter_map(|other| other.gives)
             .filter(|other| other.sd < KNOWN * slope.value)
             .map(|other| other.value.abs())
@@ -191,13 +188,35 @@ impl<'a> Servos<'a> {
         usual.is_some_and(|usual| slope.value > MORE * usual)
     }
 
+    /// From one side and with one weight: a servo that lags more than the others, and the more the larger its
+    /// load. Where the load hardly varies, friction that stops it short looks the same.
+    fn from_one_side(&self, joint: &Joint) -> Option<NamedEffect> {
+        let others = self.joints.iter().filter(|other| other.j != joint.j);
+        let usual = median(others.map(|other| other.lag.rms_rad))?;
+        let (lag, grows) = (&joint.lag, joint.lag.gives?);
+        let stands_out = lag.rms_rad > MORE_FROM_ONE_SIDE * usual && lag.sd_rad < LEFT_OVER * lag.rms_rad;
+        let slope = lag.of_load_slope();
+        let is_positive = grows.value > HARDLY * grows.sd && slope.value > 0.0 && slope.value < FURTHEST;
+        if !stands_out || !is_positive {
+            return None;
+        }
+        let size = self.size(joint.j, |row| slope.value * self.torque_nm(row, joint.j));
+        if size.sigmas < SMALLEST {
+            return None;
+        }
+        let found = named(self.arm, Kind::ServoDroop, joint.j, slope, &size)?;
+        if lag.is_of_load() { Some(found) } else { or_friction(self.arm, joint.j, found) }
+    }
+
     fn sticking(&self) -> Vec<NamedEffect> {
         let all = self.joints.iter().filter_map(|joint| Some(joint.sticks?.value.abs()));
         let usual = median(all).unwrap_or(0.0);
         let stands_out = |slope: &Slope| slope.value > SURE * slope.sd && slope.value > STANDS_OUT * usual;
+        // All lag alike while they move; what one does beyond that is its own.
+        let own = |slope: Slope| Slope { value: slope.value - usual, sd: slope.sd.hypot(0.5 * usual) };
         self.joints
             .iter()
-            .filter_map(|joint| Some((joint.j, joint.sticks.filter(stands_out)?)))
+            .filter_map(|joint| Some((joint.j, own(joint.sticks.filter(stands_out)?))))
             .filter_map(|(j, slope)| {
                 let back = |row: &Observation| {
                     -0.5 * slope.value * row.direction.get(j).copied().unwrap_or_default()
@@ -215,9 +234,7 @@ impl<'a> Servos<'a> {
             return vec![];
         }
         let is_other = |mass: &Slope| {
-            mass.sd < MASS_KNOWN
-                && mass.value.abs() > LEAST_MASS
-                && mass.value.abs() > SURE_OF_MASS * mass.sd
+            mass.sd < MASS_KNOWN && mass.value.abs() > LEAST_MASS && mass.value.abs() > SURE_OF_MASS * mass.sd
         };
         let links = self.masses.iter().enumerate().filter(|(_, mass)| is_other(mass));
         links
@@ -239,18 +256,20 @@ impl<'a> Servos<'a> {
 }
 
 impl Lag {
-    /// Whether from one side, too, the lag can only be of the load: it grows with the torque by as much as
-    /// were it nothing without one.
+    /// Whether from one side, too, the lag can only be of the load: it surely grows with the torque, and by as
+    /// much as were it nothing without one.
     fn is_of_load(&self) -> bool {
         let Some(grows) = self.gives else { return false };
-        let (grows, whole) = (grows.value, self.in_proportion.value);
-        (grows - whole).abs() < AGREE * whole && self.sd_rad < LEFT_OVER * self.rms_rad
+        let whole = self.in_proportion.value;
+        grows.value > 0.5 * SURE * grows.sd && (grows.value - whole).abs() < AGREE * whole
     }
 
-    /// A slope that two ways of looking at it give differently is known no better than that.
-    fn doubtful(&self, slope: Slope) -> Slope {
-        let apart = self.gives.map_or(0.0, |grows| 0.5 * (grows.value - self.in_proportion.value));
-        Slope { value: slope.value, sd: slope.sd.hypot(apart) }
+    /// By how much it gives way, had it no offset. Two ways of looking at it that differ say how well that is
+    /// known, and so do masses that nobody weighed.
+    fn of_load_slope(&self) -> Slope {
+        let Slope { value, sd } = self.in_proportion;
+        let apart = self.gives.map_or(0.0, |grows| 0.5 * (grows.value - value));
+        Slope { value, sd: sd.hypot(apart).hypot(self.mass_share * MASS_SD * value) }
     }
 }
 
@@ -301,8 +320,9 @@ mod tests {
 
     #[test]
     fn two_ways_that_differ_make_a_slope_less_sure() {
-        let lag = one_sided(0.004, 0.03, 1);
-        let slope = lag.gives.expect("torques differ");
-        assert!(lag.doubtful(slope).sd > slope.sd);
+        let lag = one_sided(0.01, 0.03, 1);
+        let slope = lag.of_load_slope();
+        assert!(slope.sd > 2.0 * lag.in_proportion.sd, "{slope:?}");
+        assert!((slope.value - 0.03).abs() < 2.0 * slope.sd, "{slope:?}");
     }
 }

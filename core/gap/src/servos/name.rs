@@ -26,6 +26,21 @@ pub(super) fn named(arm: &Arm, kind: Kind, joint: usize, slope: Slope, size: &Si
     Some(of_effect(&effect, slope, size, PROBABILITY))
 }
 
+/// The same where friction could do as much: both are in its class, with equal shares.
+pub(super) fn or_friction(arm: &Arm, joint: usize, mut found: NamedEffect) -> Option<NamedEffect> {
+    let other = Effect::find(Kind::Stiction.id(), &arm.parts[joint].joint, None, Some(arm), None)?;
+    found.probability *= 0.5;
+    found.class.iter_mut().for_each(|member| member.probability = 0.5);
+    found.class.push(ClassMember {
+        id: other.id().to_owned(),
+        site: other.site.clone(),
+        title: other.title.clone(),
+        probability: 0.5,
+    });
+    found.split_by = Some("approach from the other side, or repeat with a known weight".to_owned());
+    Some(found)
+}
+
 /// A mass that is off by a share of the description's.
 pub(super) fn named_mass(arm: &Arm, link: usize, share: Slope, size: &Size) -> Option<NamedEffect> {
     let part = &arm.parts[link];
