@@ -196,8 +196,10 @@ impl<'a> Servos<'a> {
         let (lag, grows) = (&joint.lag, joint.lag.gives?);
         let stands_out = lag.rms_rad > MORE_FROM_ONE_SIDE * usual && lag.sd_rad < LEFT_OVER * lag.rms_rad;
         let slope = lag.of_load_slope();
-        let is_positive = grows.value > HARDLY * grows.sd && slope.value > 0.0 && slope.value < FURTHEST;
-        if !stands_out || !is_positive {
+        // What lags far more than the others need not be seen to grow, only not to fall.
+        let far = lag.rms_rad > 2.0 * MORE_FROM_ONE_SIDE * usual;
+        let grows = if far { grows.value > -HARDLY * grows.sd } else { grows.value > HARDLY * grows.sd };
+        if !stands_out || !grows || slope.value <= 0.0 || slope.value > FURTHEST {
             return None;
         }
         let size = self.size(joint.j, |row| slope.value * self.torque_nm(row, joint.j));
