@@ -1,6 +1,7 @@
 //! Finds where measurement and model disagree, names the missing effect, sizes it, and shows the
 //! gap shrink.
 
+mod beforehand;
 mod compare;
 mod covariates;
 mod error;

@@ -219,7 +219,7 @@ fn digits(width: f64) -> usize {
     if !(width > 0.0) || !width.is_finite() {
         return 2;
     }
-    (1.0 - width.log10()).floor().clamp(0.0, 4.0) as usize
+    (1.0 - width.log10().floor()).clamp(0.0, 4.0) as usize
 }
 
 fn shrink(shown: &Shown) -> String {
@@ -261,11 +261,11 @@ mod tests {
     fn sizes_are_told_in_the_words_and_units_of_the_lab() {
         let told = |name: &str, value: f64, low: f64, high: f64| parameter(&found(name, value, low, high));
         let said = [
-            (told("rot_x_rad", 0.02, 0.018, 0.022), "turned about its x axis by 1.1° (1.0 to 1.3)"),
-            (told("amplitude_rad", 0.01, 0.008, 0.012), "moves by up to 0.6° (0.5 to 0.7)"),
+            (told("rot_x_rad", 0.02, 0.018, 0.022), "turned about its x axis by 1.15° (1.03 to 1.26)"),
+            (told("amplitude_rad", 0.01, 0.008, 0.012), "moves by up to 0.57° (0.46 to 0.69)"),
             (told("width_rad", 0.01, 0.0, 0.02), "from side to side 0.6° (0.0 to 1.1)"),
             (told("length_m", -4e-3, -5e-3, -3e-3), "longer by -4.0 mm (-5.0 to -3.0)"),
-            (told("r_elbow_y_offset_rad", 0.02, 0.018, 0.022), "r elbow y off by 1.1° (1.0 to 1.3)"),
+            (told("r_elbow_y_offset_rad", 0.02, 0.018, 0.022), "r elbow y off by 1.15° (1.03 to 1.26)"),
             (told("scale_u", 0.02, 0.01, 0.03), "wider by 2.0 % (1.0 to 3.0)"),
         ];
         for (told, words) in said {

@@ -10,11 +10,11 @@ use plumbline_effects::measurements::Measurements;
 use plumbline_model::JobContext;
 use rayon::prelude::*;
 
-use super::linear::{Linear, standard};
+use super::linear::Linear;
 use super::refit::usual;
+use crate::beforehand::{MASS_SD, standard};
 use crate::error::GapError;
 use crate::floor::Floor;
-use crate::servos::MASS_SD;
 
 /// Share of a mass by which the tangent is taken.
 const STEP: f64 = 0.1;

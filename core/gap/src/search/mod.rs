@@ -40,7 +40,6 @@ use crate::options::Options;
 use explore::Explored;
 use finish::Finish;
 use library::Library;
-pub(crate) use linear::standard;
 use look::Look;
 pub(crate) use naming::MISLED;
 use refit::refit;

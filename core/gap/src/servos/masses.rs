@@ -8,9 +8,8 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 use super::cells::Cell;
 use super::lag::{Lag, Slope};
+use crate::beforehand::MASS_SD;
 
-/// Masses of a description are off by this share (printed parts, cables, screws that nobody weighed).
-pub(crate) const MASS_SD: f64 = 0.2;
 /// Steps of Gauss and Newton: compliance times mass is not linear.
 const ROUNDS: usize = 12;
 /// A step smaller than this ends them.

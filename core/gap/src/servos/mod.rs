@@ -19,12 +19,12 @@ use plumbline_effects::arm::Arm;
 use plumbline_effects::measurements::{Measurements, Observation};
 use plumbline_effects::{Assumed, Kind, Situation};
 
+use crate::beforehand::MASS_SD;
 use crate::compare::median;
 use crate::finding::NamedEffect;
 use crate::floor::Floor;
 use cells::Sides;
 use lag::{FEWEST_CELLS, Lag, Slope};
-pub(crate) use masses::MASS_SD;
 use name::{Size, named, named_mass, or_friction};
 use size::Levers;
 

@@ -4,8 +4,8 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use plumbline_effects::measurements::{Measurements, Observation};
 use plumbline_effects::{Assumed, Effect, Kind};
 
+use crate::beforehand::standard;
 use crate::floor::Floor;
-use crate::search::standard;
 
 /// Rows that are asked.
 const MOST_ROWS: usize = 120;
