@@ -147,7 +147,7 @@ impl<'a> Servos<'a> {
     /// without integral action gives way everywhere, and that is its way, not what is wrong with a joint.
     fn droops(&self) -> (Vec<NamedEffect>, Option<String>) {
         if self.sides.are_one() {
-            return (self.joints.iter().filter_map(|joint| self.from_one_side(joint)).collect(), None);
+            return (self.joints.iter().filter_map(|joint| self.seen_from_one_side(joint)).collect(), None);
         }
         let (mut found, mut alike) = (vec![], vec![]);
         for joint in &self.joints {
@@ -190,7 +190,7 @@ impl<'a> Servos<'a> {
 
     /// From one side and with one weight: a servo that lags more than the others, and the more the larger its
     /// load. Where the load hardly varies, friction that stops it short looks the same.
-    fn from_one_side(&self, joint: &Joint) -> Option<NamedEffect> {
+    fn seen_from_one_side(&self, joint: &Joint) -> Option<NamedEffect> {
         let others = self.joints.iter().filter(|other| other.j != joint.j);
         let usual = median(others.map(|other| other.lag.rms_rad))?;
         let (lag, grows) = (&joint.lag, joint.lag.gives?);
