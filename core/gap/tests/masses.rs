@@ -42,7 +42,6 @@ fn weigh(made: &mut Measurements, masses: [f64; 6]) {
 fn sag(made: &Measurements) -> Option<NamedEffect> {
     let options = Options { show: false, advise: false, ..Options::default() };
     let finding = find(made, &options, &Unattended).expect("can be looked at");
-    println!("{}", finding.sentence);
     finding.effects.into_iter().find(|effect| effect.id == "joint-sag" && effect.site == "r_shoulder_y")
 }
 
@@ -52,7 +51,6 @@ fn a_compliance_found_from_loads_is_known_no_better_than_masses() {
     let found = sag(&made).expect("it is found");
     let of = &found.parameters[0];
     assert!(of.low < 0.04 && 0.04 < of.high, "{of:?}");
-    println!("{of:?}");
     // One weight: masses and compliance act alike, and masses are known to a fifth.
     assert!(of.high - of.low > 0.2 * of.value, "{of:?}");
 }
