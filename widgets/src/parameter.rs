@@ -1,5 +1,7 @@
 //! Parameters of effects in units that people use: the end of a parameter's name says its SI unit.
 
+use plumbline_model::parameter_words;
+
 use crate::format::{fixed, significant};
 
 /// How a parameter is shown.
@@ -56,35 +58,9 @@ pub fn interval(name: &str, low: f64, high: f64) -> String {
     with_unit(&format!("{} to {}", fixed(low, decimals), fixed(high, decimals)), unit)
 }
 
-/// What a parameter is, in words, from its name: "offset", "about x", "to the side".
+/// What is said before its value, in words, from its name: "off by", "turned about its x axis by".
 pub fn words(name: &str) -> String {
-    let known = match name {
-        "rot_x_rad" => "turn about x",
-        "rot_y_rad" => "turn about y",
-        "rot_z_rad" => "turn about z",
-        "x_m" => "shift along x",
-        "y_m" => "shift along y",
-        "z_m" => "shift along z",
-        "dx_m" => "shift along x",
-        "dy_m" => "shift along y",
-        "du_px" => "shift along u",
-        "dv_px" => "shift along v",
-        "compliance_rad_per_nm" | "compliance_m_per_n" => "gives way by",
-        "stiffness_nm_per_rad" => "stiffness",
-        "lean_rad_per_nm" => "leans by",
-        "t_secs" => "at",
-        "time_constant_s" => "time constant",
-        "early_secs" => "logged too early by",
-        _ => "",
-    };
-    if !known.is_empty() {
-        return known.to_owned();
-    }
-    let unitless = ["_per_m", "_rad", "_nm", "_kg", "_px", "_m", "_secs", "_s"]
-        .iter()
-        .find_map(|end| name.strip_suffix(end))
-        .unwrap_or(name);
-    unitless.replace('_', " ")
+    parameter_words::said(name)
 }
 
 fn with_unit(number: &str, unit: &str) -> String {
@@ -115,8 +91,8 @@ mod tests {
 
     #[test]
     fn words_have_no_unit() {
-        assert_eq!(words("offset_rad"), "offset");
-        assert_eq!(words("rot_x_rad"), "turn about x");
-        assert_eq!(words("scale_u"), "scale u");
+        assert_eq!(words("offset_rad"), "off by");
+        assert_eq!(words("rot_x_rad"), "turned about its x axis by");
+        assert_eq!(words("scale_u"), "wider by");
     }
 }

@@ -130,7 +130,7 @@ fn names_are_those_of_the_command_line() {
     let known = "joint-zero joint-scale joint-eccentricity tooth-ripple backlash gravity-backlash stiction \
         servo-droop joint-sag sideways-give link-bending creep early-log torque-limit servo-warm-up slipped-horn \
         joint-coupling axis-skew link-length tip-offset finger-bend finger-roll touch-drag base-tilt torso-lean \
-        payload-mass screen-bumped screen-scale screen-tilt screen-bow panel-edge camera-mount head-joint eye-yaw \
+        payload-mass link-mass screen-bumped screen-scale screen-tilt screen-bow panel-edge camera-mount head-joint eye-yaw \
         image-shift focal-or-baseline eye-roll lens-distortion disparity-steps background-bleed \
         foreground-fattening seen-surface box-bias eye-latency speed-overshoot";
     let known: Vec<&str> = known.split_whitespace().collect();

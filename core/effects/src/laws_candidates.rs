@@ -88,7 +88,7 @@ fn every_kind_is_a_candidate_where_rows_can_show_it() {
     let measurements = everything(60);
     let candidates = Effect::candidates(&measurements);
     let kinds: BTreeSet<Kind> = candidates.iter().map(|effect| effect.kind).collect();
-    let never = [Kind::DisparitySteps, Kind::EyeLatency];
+    let never = [Kind::DisparitySteps, Kind::EyeLatency, Kind::LinkMass];
     for kind in Kind::ALL {
         let known_not = never.contains(kind);
         assert_eq!(kinds.contains(kind), !known_not, "{}", kind.id());

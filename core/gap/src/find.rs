@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use plumbline_effects::Measurements;
+use plumbline_effects::{Kind, Measurements};
 use plumbline_model::{Cancelled, JobContext};
 
 use crate::compare::{self, Compared, compare};
@@ -135,8 +135,19 @@ fn with_servos(finding: &mut Finding, (servos, words): (Vec<NamedEffect>, Option
     if servos.is_empty() || unrelated {
         return;
     }
-    if finding.verdict == Verdict::NoGap {
+    // Where the finger is where the joint was sent, an encoder that stays behind has play in its drive: nothing
+    // holds the joint back.
+    let plays = |servo: &NamedEffect| {
+        let named = matches!(finding.verdict, Verdict::Named | Verdict::Class);
+        let same = |effect: &NamedEffect| effect.id == Kind::Backlash.id() && effect.site == servo.site;
+        named && servo.id == Kind::Stiction.id() && finding.effects.iter().any(same)
+    };
+    let servos: Vec<NamedEffect> = servos.into_iter().filter(|servo| !plays(servo)).collect();
+    if finding.verdict == Verdict::NoGap && !servos.is_empty() {
         finding.verdict = Verdict::Named;
+    }
+    if finding.verdict == Verdict::Named && servos.iter().any(|servo| servo.class.len() > 1) {
+        finding.verdict = Verdict::Class;
     }
     finding
         .effects

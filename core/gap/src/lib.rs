@@ -1,6 +1,7 @@
 //! Finds where measurement and model disagree, names the missing effect, sizes it, and shows the
 //! gap shrink.
 
+mod beforehand;
 mod compare;
 mod covariates;
 mod error;
@@ -25,3 +26,4 @@ pub use find::find;
 pub use finding::{Finding, Verdict};
 pub use next::plan_for;
 pub use options::Options;
+pub use plumbline_model::parameter_words;

@@ -2,6 +2,7 @@
 
 use crate::finding::{Finding, FloorSource, FoundParameter, NamedEffect, Shown, ShownUnit, Verdict};
 use crate::watched::WATCHED;
+use plumbline_model::parameter_words;
 
 /// What was found, in words.
 pub(crate) fn of(finding: &Finding) -> String {
@@ -160,8 +161,8 @@ fn effect(effect: &NamedEffect) -> String {
     let others: Vec<&str> = effect.class.iter().skip(1).map(|member| member.title.as_str()).take(3).collect();
     let family = if is_family(effect) { " (no single one explains it)" } else { "" };
     let title = format!("{}{family}", capital(&effect.title));
-    if effect.not_addable.is_some() {
-        return format!("{title}: further off than is plausible, so something else is probably at work.");
+    if let Some(why) = &effect.not_addable {
+        return format!("{title}{sized}; {why}.");
     }
     if others.is_empty() {
         return format!("{title}{sized}.");
@@ -171,32 +172,28 @@ fn effect(effect: &NamedEffect) -> String {
     format!("{title}{sized}; the data cannot tell it from: {}.{split}", others.join("; "))
 }
 
+/// Ends of names with what is told of an SI unit, and its unit; the longest come first.
+const UNITS: [(&str, f64, &str); 10] = [
+    ("_rad_per_nm", DEGREES, "° per N m"),
+    ("_nm_per_rad", 1.0, " N m/rad"),
+    ("_rad", DEGREES, "°"),
+    // How far bowed glass is off at 100 mm from its middle.
+    ("_per_m", 10.0, " mm at 100 mm"),
+    ("_m_per_n", 1e3, " mm per N"),
+    ("_m", 1e3, " mm"),
+    ("_kg", 1e3, " g"),
+    ("_px", 1.0, " px"),
+    ("_secs", 1.0, " s"),
+    ("_s", 1.0, " s"),
+];
+const DEGREES: f64 = 180.0 / std::f64::consts::PI;
+
 /// A parameter in the units of the lab, as far as its name says its unit.
 fn parameter(parameter: &FoundParameter) -> Option<String> {
     let FoundParameter { name, value, low, high, .. } = parameter;
-    let (scale, unit, what) = if let Some(what) = name.strip_suffix("_rad_per_nm") {
-        (1f64.to_degrees(), "° per N m", what)
-    } else if let Some(what) = name.strip_suffix("_nm_per_rad") {
-        (1.0, " N m/rad", what)
-    } else if let Some(what) = name.strip_suffix("_rad") {
-        (1f64.to_degrees(), "°", what)
-    } else if let Some(what) = name.strip_suffix("_per_m") {
-        (1.0, " per m", what)
-    } else if let Some(what) = name.strip_suffix("_m_per_n") {
-        (1e3, " mm per N", what)
-    } else if let Some(what) = name.strip_suffix("_m") {
-        (1e3, " mm", what)
-    } else if let Some(what) = name.strip_suffix("_kg") {
-        (1e3, " g", what)
-    } else if let Some(what) = name.strip_suffix("_px") {
-        (1.0, " px", what)
-    } else if let Some(what) = name.strip_suffix("_secs").or_else(|| name.strip_suffix("_s")) {
-        (1.0, " s", what)
-    } else if name.starts_with("scale") || name == "ratio" || name == "fraction" || name == "weight" {
-        (100.0, " %", name.as_str())
-    } else {
-        return None;
-    };
+    let is_share = name.starts_with("scale") || matches!(name.as_str(), "ratio" | "fraction" | "weight");
+    let of_end = UNITS.iter().find(|(end, ..)| name.ends_with(end)).map(|&(_, scale, unit)| (scale, unit));
+    let (scale, unit) = of_end.or(is_share.then_some((100.0, " %")))?;
     let (low, high) = (low * scale, high * scale);
     let digits = digits(high - low);
     let number = |value: f64| {
@@ -208,26 +205,13 @@ fn parameter(parameter: &FoundParameter) -> Option<String> {
             text
         }
     };
-    Some(format!("{} {}{unit} ({} to {})", quantity(what), number(value * scale), number(low), number(high)))
-}
-
-/// The name of a parameter without its unit, in words.
-pub(crate) fn quantity(name: &str) -> String {
-    let units = [
-        "_rad_per_nm",
-        "_nm_per_rad",
-        "_m_per_n",
-        "_per_m",
-        "_rad",
-        "_kg",
-        "_px",
-        "_secs",
-        "_nm",
-        "_m",
-        "_s",
-    ];
-    let bare = units.iter().find_map(|unit| name.strip_suffix(unit)).unwrap_or(name);
-    bare.replace('_', " ")
+    Some(format!(
+        "{} {}{unit} ({} to {})",
+        parameter_words::said(name),
+        number(value * scale),
+        number(low),
+        number(high)
+    ))
 }
 
 /// Decimals that show two digits of an interval.
@@ -235,7 +219,7 @@ fn digits(width: f64) -> usize {
     if !(width > 0.0) || !width.is_finite() {
         return 2;
     }
-    (1.0 - width.log10()).floor().clamp(0.0, 4.0) as usize
+    (1.0 - width.log10().floor()).clamp(0.0, 4.0) as usize
 }
 
 fn shrink(shown: &Shown) -> String {
@@ -263,4 +247,31 @@ fn size(value: f64, unit: ShownUnit) -> String {
 fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(name: &str, value: f64, low: f64, high: f64) -> FoundParameter {
+        FoundParameter { name: name.to_owned(), value, low, high, text: None }
+    }
+
+    #[test]
+    fn sizes_are_told_in_the_words_and_units_of_the_lab() {
+        let told = |name: &str, value: f64, low: f64, high: f64| parameter(&found(name, value, low, high));
+        let said = [
+            (told("rot_x_rad", 0.02, 0.018, 0.022), "turned about its x axis by 1.15° (1.03 to 1.26)"),
+            (told("amplitude_rad", 0.01, 0.008, 0.012), "moves by up to 0.57° (0.46 to 0.69)"),
+            (told("width_rad", 0.01, 0.0, 0.02), "from side to side 0.6° (0.0 to 1.1)"),
+            (told("length_m", -4e-3, -5e-3, -3e-3), "longer by -4.0 mm (-5.0 to -3.0)"),
+            (told("r_elbow_y_offset_rad", 0.02, 0.018, 0.022), "r elbow y off by 1.15° (1.03 to 1.26)"),
+            (told("scale_u", 0.02, 0.01, 0.03), "wider by 2.0 % (1.0 to 3.0)"),
+        ];
+        for (told, words) in said {
+            assert_eq!(told.as_deref(), Some(words));
+        }
+        // A number without a unit of its own is on the page, not in the sentence.
+        assert_eq!(told("order", 2.0, 2.0, 2.0), None);
+    }
 }

@@ -93,7 +93,7 @@ fn eyes_that_turn_as_they_warm_up_are_named_with_their_time_constant() {
         let turn = finding.effects.iter().find(|effect| effect.shape.is_some()).expect("grows");
         let told = turn.parameters.iter().find(|one| one.name == "time_constant_s").expect("told");
         assert!((told.value / constant_s).ln().abs() < 0.75, "{told:?}");
-        assert!(finding.sentence.contains("time constant"), "{}", finding.sentence);
+        assert!(finding.sentence.contains("two thirds of it within"), "{}", finding.sentence);
         // The noise is the noise, not what grows.
         let floor = finding.shown.floor;
         assert!((0.4e-3..3.0e-3).contains(&floor), "{floor}");

@@ -18,6 +18,7 @@ pub mod frame;
 pub mod image_pair;
 pub mod job;
 pub mod measured_data;
+pub mod parameter_words;
 pub mod pixel;
 pub mod plausible;
 pub mod predict;

@@ -2,6 +2,7 @@
 //! leaves.
 
 use plumbline_gap::finding::FoundParameter;
+use plumbline_gap::parameter_words;
 
 /// A unit that is printed, and how much of it an SI unit is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,17 +32,12 @@ const ENDINGS: [(&str, Printed); 14] = [
     ("weight", Printed { unit: "%", per_si: 100.0 }),
 ];
 
-/// Unit of a parameter, and its name without it.
+/// What is said before a parameter, and its unit.
 pub fn parameter(name: &str) -> (String, Printed) {
-    if name.starts_with("scale") {
-        return (name.replace('_', " "), Printed { unit: "%", per_si: 100.0 });
-    }
-    let found = ENDINGS.iter().find(|(ending, _)| name.ends_with(ending));
-    let Some((ending, printed)) = found else {
-        return (name.replace('_', " "), Printed { unit: "", per_si: 1.0 });
-    };
-    let stem = name.strip_suffix(ending).filter(|stem| !stem.is_empty()).unwrap_or(name);
-    (stem.replace('_', " ").replace("rot ", "about "), *printed)
+    let share = name.starts_with("scale").then_some(Printed { unit: "%", per_si: 100.0 });
+    let of_end = ENDINGS.iter().find(|(ending, _)| name.ends_with(ending)).map(|(_, printed)| *printed);
+    let printed = share.or(of_end).unwrap_or(Printed { unit: "", per_si: 1.0 });
+    (parameter_words::said(name), printed)
 }
 
 /// A parameter with its interval, `offset 1.78 ± 0.17°`; the name only where there are several.
@@ -49,7 +45,7 @@ pub fn with_interval(found: &FoundParameter, named: bool) -> String {
     let (name, Printed { unit, per_si }) = parameter(&found.name);
     let label = if named { format!("{name} ") } else { String::new() };
     if let Some(text) = &found.text {
-        return format!("{} {text}", name.replace(" joint", ""));
+        return format!("{name} {text}");
     }
     let [value, low, high] = [found.value, found.low, found.high].map(|value| value * per_si);
     if !(low.is_finite() && high.is_finite()) {
@@ -185,12 +181,18 @@ mod tests {
     fn parameters_are_printed_with_the_digits_that_their_interval_leaves() {
         let offset = found("offset_rad", 0.031, 0.028, 0.034);
         assert_eq!(with_interval(&offset, false), "1.78 ± 0.17°");
-        assert_eq!(with_interval(&found("x_m", -0.0042, -0.0047, -0.0037), true), "x −4.20 ± 0.50 mm");
-        assert_eq!(with_interval(&found("rot_x_rad", 0.01, 0.0, 0.03), true), "about x 0.57° (0.00 to 1.72)");
+        assert_eq!(
+            with_interval(&found("x_m", -0.0042, -0.0047, -0.0037), true),
+            "shifted along its x axis by −4.20 ± 0.50 mm"
+        );
+        assert_eq!(
+            with_interval(&found("rot_x_rad", 0.01, 0.0, 0.03), true),
+            "turned about its x axis by 0.57° (0.00 to 1.72)"
+        );
         let sag = found("compliance_rad_per_nm", 0.02, 0.018, 0.022);
         assert_eq!(with_interval(&sag, false), "1.15 ± 0.11°/N m");
         assert_eq!(with_interval(&found("mass_kg", 0.118, 0.106, 0.13), false), "118 ± 12 g");
-        assert_eq!(with_interval(&found("scale_u", 0.012, 0.010, 0.014), true), "scale u 1.20 ± 0.20 %");
+        assert_eq!(with_interval(&found("scale_u", 0.012, 0.010, 0.014), true), "wider by 1.20 ± 0.20 %");
         assert!(with_interval(&found("odd", f64::NAN, f64::NAN, 1.0), false).contains("not known"));
     }
 

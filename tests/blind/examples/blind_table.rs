@@ -25,7 +25,7 @@ mod judge;
 use judge::AnyError;
 
 /// Cases are made anew when the physics changes.
-const PHYSICS: &str = "v6";
+const PHYSICS: &str = "v7";
 const THREADS: usize = 2;
 
 struct Arguments {
@@ -169,19 +169,40 @@ fn list(answer: &Answer, verdict: &Result<Verdict, String>) {
                 .iter()
                 .map(|f| {
                     let others: Vec<&str> = f.class.iter().skip(1).map(String::as_str).collect();
-                    format!("{}@{} {:.2} {others:?}", f.id, f.site, f.probability)
+                    let size = f.size_sigmas.map_or_else(String::new, |size| format!(" {size:.1}σ"));
+                    format!("{}@{} {:.2}{size} {others:?}", f.id, f.site, f.probability)
                 })
                 .collect();
             format!("{} {} ({:.1} s)", verdict.verdict, names.join(", "), verdict.seconds.unwrap_or(f64::NAN))
         }
         Err(why) => why.clone(),
     };
+    let outside = verdict.as_ref().map_or_else(|_| vec![], |verdict| outside(answer, verdict));
+    let outside = if outside.is_empty() { String::new() } else { format!(" OUTSIDE {}", outside.join(", ")) };
     println!(
-        "{:03} {} {}{}: {} → {said}",
+        "{:03} {} {}{}: {} → {said}{outside}",
         answer.case,
         words::word(answer.family),
         words::word(answer.design),
         if answer.dirt.is_empty() { "" } else { " dirt" },
         hidden.join(", ")
     );
+}
+
+/// Parameters of rightly named effects whose interval does not hold the truth.
+fn outside(answer: &Answer, verdict: &Verdict) -> Vec<String> {
+    let mut outside = vec![];
+    for hidden in &answer.hidden {
+        let same =
+            |found: &&plumbline_blind::score::Found| found.id == hidden.id && found.site == hidden.site;
+        let Some(found) = verdict.effects.iter().find(same) else { continue };
+        for (name, truth) in &hidden.parameters {
+            let number = |end: &str| found.parameters.get(name)?.get(end)?.as_f64();
+            let (Some(low), Some(high)) = (number("low"), number("high")) else { continue };
+            if *truth < low || *truth > high {
+                outside.push(format!("{}.{name} {truth:.4} not in {low:.4} to {high:.4}", hidden.id));
+            }
+        }
+    }
+    outside
 }

@@ -38,6 +38,7 @@ fn verdict(finding: &Finding) -> Verdict {
             .iter()
             .map(|p| (p.name.clone(), json!({"value": p.value, "low": p.low, "high": p.high})))
             .collect(),
+        size_sigmas: Some(effect.size_sigmas),
         class: effect.class.iter().map(|member| format!("{}@{}", member.id, member.site)).collect(),
     });
     let word = serde_json::to_value(finding.verdict).ok();

@@ -97,7 +97,7 @@ pub fn make(bench: &Bench, planner: &Planner<'_>, recipe: &Recipe) -> Result<Cas
         family: recipe.family,
         design: recipe.design,
         generator: recipe.generator,
-        also: maker.physics.servo_names(&bench.joints()),
+        also: maker.physics.usual_names(&bench.joints(), &bench.links()),
         dirt: dirt.iter().map(|secret| maker.hidden(secret, f64::NAN).named()).collect(),
         hidden,
         sigma_m: [bare.x, bare.y, bare.z],

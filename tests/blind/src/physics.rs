@@ -21,6 +21,9 @@ pub enum Generator {
     Worn,
 }
 
+/// A mass is another one when it is off by this share.
+const OTHER_MASS: f64 = 0.05;
+
 /// How servos hold their goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Servo {
@@ -166,10 +169,17 @@ impl Physics {
         }
     }
 
-    /// True names of what these servos do in every case, whatever else is hidden: a proportional servo
-    /// gives way, and friction holds all of them back. `id@site`.
-    pub fn servo_names(&self, joints: &[String]) -> Vec<String> {
+    /// True names of what servos and masses do in every case, whatever else is hidden: a proportional servo
+    /// gives way, friction holds all of them back, and links weigh other than described. `id@site`.
+    pub fn usual_names(&self, joints: &[String], links: &[String]) -> Vec<String> {
         let mut names: Vec<String> = joints.iter().map(|joint| format!("stiction@{joint}")).collect();
+        let masses = links.iter().zip(self.mass_factors).enumerate();
+        names.extend(masses.filter(|(_, (_, factor))| (factor - 1.0).abs() >= OTHER_MASS).map(
+            |(l, (link, _))| {
+                let kind = if l + 1 == links.len() { "payload-mass" } else { "link-mass" };
+                format!("{kind}@{link}")
+            },
+        ));
         if !matches!(self.servo, Servo::Integral { .. }) {
             names.push("servo-droop@".to_owned());
             names.extend(joints.iter().map(|joint| format!("servo-droop@{joint}")));

@@ -41,6 +41,9 @@ pub struct Found {
     /// Parameters: numbers with `low` and `high`, or text.
     #[serde(default)]
     pub parameters: BTreeMap<String, Value>,
+    /// What it does to the rows, in units of their noise, where it says so.
+    #[serde(default)]
+    pub size_sigmas: Option<f64>,
     /// Every `id@site` that it could be, too.
     #[serde(default)]
     pub class: Vec<String>,
@@ -147,6 +150,8 @@ pub struct Score {
     pub closures: Vec<f64>,
     /// Per bin of stated probability: sum of the stated, names, right names.
     pub stated: [(f64, usize, usize); BINS],
+    /// Per bin, sum of p (1 − p): the variance of the number of right names, were the stated ones right.
+    pub stated_variance: [f64; BINS],
     /// Seconds per case.
     pub seconds: Vec<f64>,
     /// Cases.
@@ -240,6 +245,7 @@ impl Score {
             *sum += found.probability;
             *names += 1;
             *right += usize::from(exact);
+            self.stated_variance[bin] += found.probability * (1.0 - found.probability);
         }
     }
 
@@ -289,6 +295,14 @@ impl Score {
         let names: usize = self.stated.iter().map(|(_, names, _)| names).sum();
         let off: f64 = self.stated.iter().map(|(sum, _, right)| (sum - *right as f64).abs()).sum();
         (names > 0).then(|| off / names as f64)
+    }
+
+    /// What [`Self::calibration_error`] would be on average, were every stated probability right: few names in
+    /// a bin are off by chance (each bin's count taken as normal).
+    pub fn calibration_error_by_chance(&self) -> Option<f64> {
+        let names: usize = self.stated.iter().map(|(_, names, _)| names).sum();
+        let usual = self.stated_variance.iter().map(|variance| variance.sqrt()).sum::<f64>();
+        (names > 0).then(|| (2.0 / std::f64::consts::PI).sqrt() * usual / names as f64)
     }
 }
 
@@ -450,6 +464,14 @@ mod tests {
         boast.count(&truth, &verdict("named", wrong));
         assert!((boast.calibration_error().expect("names") - 0.75).abs() < 1e-9);
         assert!(Score::default().calibration_error().is_none());
+        // A thousand names at 0.75, three quarters of them right, and what chance does to as many.
+        let mut many = Score::default();
+        for k in 0..1000 {
+            let effects = if k % 4 == 0 { wrong } else { right };
+            many.count(&truth, &verdict("named", effects));
+        }
+        let by_chance = many.calibration_error_by_chance().expect("names");
+        assert!((by_chance - 0.0109).abs() < 1e-4, "{by_chance}");
     }
 
     #[test]

@@ -36,13 +36,14 @@ pub fn markdown(score: &Score) -> String {
     line("95 % intervals that hold the truth", "90–98 %", &score.coverage);
     let _ = writeln!(
         text,
-        "| parameter error at 2 σ, median | ≤ 10 % | {} | of {} |\n| gap closed on held-out rows, median | ≥ 0.90 | {} | of {} |\n| stated probabilities off by (ECE) | ≤ 0.05 | {} | of {} names |\n| time of a search, median and longest | ≤ 5 s | {} s, {:.1} s | of {} |",
+        "| parameter error at 2 σ, median | ≤ 10 % | {} | of {} |\n| gap closed on held-out rows, median | ≥ 0.90 | {} | of {} |\n| stated probabilities off by (ECE) | ≤ 0.05 | {} | of {} names; {} by chance |\n| time of a search, median and longest | ≤ 5 s | {} s, {:.1} s | of {} |",
         median(&score.parameter_errors).map_or_else(|| "–".to_owned(), |e| format!("{:.1} %", 100.0 * e)),
         score.parameter_errors.len(),
         median(&score.closures).map_or_else(|| "–".to_owned(), |c| format!("{c:.2}")),
         score.closures.len(),
         score.calibration_error().map_or_else(|| "–".to_owned(), |e| format!("{e:.3}")),
         score.stated.iter().map(|(_, names, _)| names).sum::<usize>(),
+        score.calibration_error_by_chance().map_or_else(|| "–".to_owned(), |e| format!("{e:.3}")),
         median(&score.seconds).map_or_else(|| "–".to_owned(), |s| format!("{s:.1}")),
         score.seconds.iter().copied().fold(0.0, f64::max),
         score.seconds.len(),

@@ -133,6 +133,8 @@ pub(crate) enum Is {
     Planned,
     /// An encoder sees it, so that a prediction from encoder angles already holds it.
     SeenByEncoder,
+    /// It goes with a load, and so with masses.
+    OfLoad,
     /// A robot's description can hold it, as the place of a joint or of the tip.
     Origin,
 }

@@ -63,6 +63,8 @@ pub enum Kind {
     TorsoLean,
     /// Hand or weight heavier than thought.
     PayloadMass,
+    /// A link of the arm heavier than thought.
+    LinkMass,
     /// Screen pushed at a moment.
     ScreenBumped,
     /// Wrong size of the image.
@@ -156,6 +158,11 @@ impl Kind {
     /// Whether an encoder sees it, so that a prediction from encoder angles already holds it.
     pub fn is_seen_by_encoder(self) -> bool {
         self.entry().is(Is::SeenByEncoder)
+    }
+
+    /// Whether its size is told from loads, and so is known no better than masses are.
+    pub fn is_of_load(self) -> bool {
+        self.entry().is(Is::OfLoad)
     }
 
     /// Whether a plan of touches is scored by it: it does not depend on time, speed or logging.

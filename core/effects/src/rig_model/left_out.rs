@@ -30,6 +30,7 @@ pub(super) fn why(effect: &ModelEffect) -> &'static str {
         K::ServoDroop | K::JointSag | K::SidewaysGive | K::LinkBending | K::TorsoLean | K::PayloadMass => {
             LOAD
         }
+        K::LinkMass => "is a mass: write it into the description",
         K::Backlash | K::GravityBacklash | K::Stiction | K::TorqueLimit | K::EarlyLog | K::SpeedOvershoot => {
             DIRECTION
         }

@@ -12,7 +12,7 @@ use super::look::{Look, TEMPERATURE};
 use super::naming::{Evidence, Named, WIDER, parameters};
 use super::refit::{Fitted, frames, refit};
 use super::undetermined::undetermined;
-use super::{Doubt, Found, Hypothesis, knowledge};
+use super::{Doubt, Found, Hypothesis, knowledge, masses};
 use crate::error::GapError;
 use crate::finding::{Dependence, Unexplained, Verdict};
 use crate::floor::Floor;
@@ -90,6 +90,7 @@ impl Finish<'_> {
             }
             (own.assumed, doubt, own.sds)
         };
+        self.widen_by_masses(&mut named, &assumed, &fitted.weights, &sds, context)?;
         let undetermined = undetermined(self.measurements, &assumed.effects, &doubt.covariance, &sds);
         let hypotheses = self.hypotheses(&assumed, context)?;
         let after = self.misses(&assumed, context)?;
@@ -113,6 +114,36 @@ impl Finish<'_> {
             undetermined,
             floor: self.floor.clone(),
         })
+    }
+
+    /// Masses are not quite those of the description: what was found from loads is known no better.
+    fn widen_by_masses(
+        &self,
+        named: &mut Named,
+        assumed: &Assumed,
+        weights: &[f64],
+        sds: &[f64],
+        context: &dyn JobContext,
+    ) -> Result<(), GapError> {
+        let variant = self.look.fields.get(self.look.likely(self.explored)).map(|field| field.variant);
+        let scale = variant.map_or((1.0, 0.0), |variant| (variant.noise, variant.cell));
+        let added = masses::doubt(self.measurements, self.floor, assumed, weights, scale, sds, context)?;
+        let Some(added) = added else { return Ok(()) };
+        let mut at = 0;
+        for (effect, present) in named.effects.iter_mut().zip(&assumed.effects) {
+            let typical = present.effect.parameters();
+            let count = typical.len();
+            let own = DMatrix::from_row_slice(count, count, &effect.covariance);
+            let wider = DMatrix::from_fn(count, count, |r, c| {
+                own[(r, c)] + typical[r].typical * typical[c].typical * added[(at + r, at + c)]
+            });
+            at += count;
+            if present.effect.kind.is_of_load() {
+                effect.covariance = wider.transpose().iter().copied().collect();
+                effect.parameters = parameters(&present.effect, &effect.values, &wider);
+            }
+        }
+        Ok(())
     }
 
     fn misses(&self, assumed: &Assumed, context: &dyn JobContext) -> Result<Vec<Option<f64>>, GapError> {

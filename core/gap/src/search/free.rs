@@ -111,6 +111,7 @@ pub(super) fn rivals(
             len: FUNCTIONS,
             kind: None,
             is_family: false,
+            is_of_all: false,
             grows_right: false,
             name: library.names.len(),
             log_prior: (UNKNOWN / count).ln(),

@@ -18,6 +18,8 @@ pub(super) struct Block {
     pub kind: Option<Kind>,
     /// Whether it stands for every joint or link at once.
     pub is_family: bool,
+    /// Whether every encoder was logged early by it: one joint early beside all of them is no other thing.
+    pub is_of_all: bool,
     /// Whether it turns or shifts the right eye in the course of time: such act alike, and two of them
     /// would cancel each other.
     pub grows_right: bool,
@@ -34,7 +36,7 @@ impl Block {
         let of_one_kind = self.kind.is_some() && self.kind == other.kind;
         self.name == other.name
             || self.grows_right && other.grows_right
-            || of_one_kind && self.is_family != other.is_family
+            || of_one_kind && (self.is_family != other.is_family || self.is_of_all != other.is_of_all)
     }
 
     /// Its columns.
@@ -45,6 +47,11 @@ impl Block {
 
 /// How much less probable it is beforehand that every joint is wrong than that one is.
 const EVERY_SITE: f64 = 0.05;
+
+/// How much less probable it is beforehand that one joint was logged too early while the others were not: all
+/// encoders are read in one pass. What lags behind its command by the same amount in every pose, and the finger
+/// does not, is the play of an encoder's drive.
+const ONE_LOGGED_EARLY: f64 = 0.002;
 
 /// The candidates of a search.
 #[derive(Clone, Debug)]
@@ -85,7 +92,9 @@ impl Library {
             let len = effect.parameters().len();
             let (kind, is_family) = (Some(effect.kind), effect.is_of_every_site());
             let grows_right = effect.growth_s().is_some() && effect.site == "right";
-            blocks.push(Block { start, len, kind, is_family, grows_right, name, log_prior: 0.0 });
+            let is_of_all = effect.kind == Kind::EarlyLog && effect.site.is_empty();
+            let log_prior = 0.0;
+            blocks.push(Block { start, len, kind, is_family, is_of_all, grows_right, name, log_prior });
             start += len;
         }
         let mut shapes = vec![0_usize; names.len()];
@@ -93,7 +102,12 @@ impl Library {
         // One expected effect in all; an effect with many shapes is not more probable for it.
         let odds = 1.0 / (names.len() as f64).max(2.0);
         for (block, effect) in blocks.iter_mut().zip(&effects) {
-            let many = if effect.is_of_every_site() { EVERY_SITE } else { 1.0 };
+            let alone = effect.kind == Kind::EarlyLog && !effect.site.is_empty();
+            let many = match (effect.is_of_every_site(), alone) {
+                (true, _) => EVERY_SITE,
+                (_, true) => ONE_LOGGED_EARLY,
+                (false, false) => 1.0,
+            };
             block.log_prior = (many * odds / shapes[block.name] as f64).ln();
         }
         Self { effects, blocks, names, columns: start }

@@ -7,14 +7,12 @@ use plumbline_effects::{Assumed, Effect, Tangents};
 use plumbline_model::JobContext;
 use rayon::prelude::*;
 
+use crate::beforehand::standard;
 use crate::error::GapError;
 use crate::floor::Floor;
 
 /// Rows between two looks at whether to stop.
 const CHUNK: usize = 256;
-/// A fingertip's pad gives way and the angles are logged a moment before or after: the height at
-/// contact is off by this whatever repeats say, m.
-const CONTACT_M: f64 = 0.45e-3;
 
 /// Whitened by the floor: one line per coordinate of every row that is predicted.
 pub(super) struct Linear {
@@ -169,11 +167,6 @@ impl Sums {
         };
         (gram, log_det)
     }
-}
-
-/// Standard deviation that a coordinate is weighed by.
-fn standard(what: What, coordinate: usize, floor: f64) -> f64 {
-    if what == What::Touch && coordinate == 2 { floor.hypot(CONTACT_M) } else { floor }
 }
 
 /// Names of coordinates, for people.

@@ -17,6 +17,7 @@ mod knowledge;
 mod library;
 mod linear;
 mod look;
+mod masses;
 mod naming;
 mod refit;
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! From sets with probabilities to names, classes and a verdict.
 
 use nalgebra::DMatrix;
-use plumbline_effects::Effect;
+use plumbline_effects::{Effect, Kind};
 
 use super::explore::{Explored, Model};
 use super::field::log_sum;
@@ -22,7 +22,7 @@ const SMALLEST: f64 = 0.5;
 const SMALLEST_FIRST: f64 = 0.4;
 /// Standard deviations of values are larger by this than the linear model says: what real joints do
 /// is not quite what the library says (seen on development cases of the blind test).
-pub(super) const WIDER: f64 = 1.25;
+pub(super) const WIDER: f64 = 1.5;
 /// A rival counts as something unknown when it does this to the rows, and this share of all.
 const RIVAL_SIZE: f64 = 0.4;
 const RIVAL_SHARE: f64 = 0.15;
@@ -46,6 +46,9 @@ const VETO_SIZE: f64 = 0.45;
 const NO_DIRT: f64 = 0.4;
 /// Cells off by this, dirt, are no lack of fit.
 const TOLERATED_CELL: f64 = 0.2;
+
+/// How probable play is that may be what the formula of a drag leaves.
+const PLAY_OR_DRAG: f64 = 0.5;
 
 /// What the sets say together.
 pub(super) struct Named {
@@ -105,22 +108,27 @@ impl Evidence<'_> {
         let top: Vec<usize> = self.explored.models.first().map_or(vec![], |model| self.of_library(model));
         let values = self.values(&top);
         let mut found = vec![];
-        let sizes = top.iter().zip(&values).map(|(&block, (own, _))| self.look.does(block, own));
-        let largest = sizes.fold(0.0, f64::max);
+        let sizes: Vec<f64> =
+            top.iter().zip(&values).map(|(&block, (own, _))| self.look.does(block, own)).collect();
+        let largest = sizes.iter().copied().fold(0.0, f64::max);
         // Without repeats the floor may be off; what matters is the noise that was found.
         let likely = self.look.fields.get(self.look.likely(self.explored));
         let noise = likely.map_or(1.0, |field| field.variant.noise.min(1.0));
         for (place, &block) in top.iter().enumerate() {
             let (own, covariance) = &values[place];
-            let size = self.look.does(block, own);
+            let size = sizes[place];
             let least = noise * if size >= largest { SMALLEST_FIRST } else { SMALLEST };
             let grows = self.library.effects[block].growth_s().is_some();
             let cancelling = if grows { CANCELLING_GROWN } else { CANCELLING };
             if size < least || size > cancelling * self.look.gap() + SMALLEST {
                 continue;
             }
-            let effect = self.effect(&top, block, own, covariance, size, &names);
+            let mut effect = self.effect(&top, block, own, covariance, size, &names);
             if effect.class_probability >= NAMED_FROM {
+                if self.is_left_of_a_drag(&top, &sizes, place) {
+                    effect.probability *= PLAY_OR_DRAG;
+                    effect.class_probability *= PLAY_OR_DRAG;
+                }
                 found.push((block, effect));
             }
         }
@@ -146,6 +154,17 @@ impl Evidence<'_> {
             }
         }
         Named { verdict, effects, blocks, names, unknown, p_value }
+    }
+
+    /// Whether it is play beside a finger that drags, or angles that were read early, and smaller. How far those
+    /// go depends on speeds that no log holds, so what a formula leaves of them goes with the direction of
+    /// motion as well, and cannot be told from play.
+    fn is_left_of_a_drag(&self, set: &[usize], sizes: &[f64], place: usize) -> bool {
+        let kind = |place: usize| self.look.blocks[set[place]].kind;
+        let goes_with_speed = |other: &usize| {
+            matches!(kind(*other), Some(Kind::TouchDrag | Kind::EarlyLog)) && sizes[*other] >= sizes[place]
+        };
+        kind(place) == Some(Kind::Backlash) && (0..set.len()).any(|other| goes_with_speed(&other))
     }
 
     /// Probability by noise alone of what frames leave.

@@ -6,7 +6,7 @@
 use nalgebra::DMatrix;
 use plumbline_effects::measurements::{Measurements, What};
 use plumbline_effects::{Effect, Present};
-use plumbline_model::decompose;
+use plumbline_model::{decompose, parameter_words};
 
 use crate::finding::Undetermined;
 
@@ -91,7 +91,7 @@ fn names(effect: &Effect) -> Vec<(String, String)> {
     (0..count)
         .map(|k| {
             let name = own(k);
-            let words = format!("{site}{}", crate::sentence::quantity(&name));
+            let words = format!("{site}{}", parameter_words::called(&name));
             (format!("{}.{name}", effect.name()), words)
         })
         .collect()

@@ -106,7 +106,7 @@ pub(super) static TORSO_LEAN: Entry = Entry {
     shown: |rows| rows.arm,
     act: Act::Arm(|_, situation, values, deviation| deviation.base_rad += situation.lean_nm * values[0]),
     reported: Effect::plain,
-    is: &[Is::Planned],
+    is: &[Is::Planned, Is::OfLoad],
 };
 
 pub(super) static PAYLOAD_MASS: Entry = Entry {
@@ -123,7 +123,22 @@ pub(super) static PAYLOAD_MASS: Entry = Entry {
         }
     }),
     reported: Effect::plain,
-    is: &[Is::Planned],
+    is: &[Is::Planned, Is::OfLoad],
+};
+
+pub(super) static LINK_MASS: Entry = Entry {
+    about: "heavier or lighter than in the model",
+    meaning: "The link weighs more, or less, than the model says.",
+    remedy: "Weigh it, cables and screws included, and put its mass into the description.",
+    parameters: &[parameter("mass_kg", 0.1)],
+    site: Site::Link,
+    shape: Shape::None,
+    // A touch feels a mass only through what gives way under it, and takes it for that; servos that give
+    // way beside a known weight tell it.
+    shown: |_| false,
+    act: Act::Unseen,
+    reported: Effect::plain,
+    is: &[],
 };
 
 pub(super) static SPEED_OVERSHOOT: Entry = Entry {

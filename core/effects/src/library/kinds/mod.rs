@@ -62,6 +62,7 @@ impl Kind {
             Self::BaseTilt => &body::BASE_TILT,
             Self::TorsoLean => &body::TORSO_LEAN,
             Self::PayloadMass => &body::PAYLOAD_MASS,
+            Self::LinkMass => &body::LINK_MASS,
             Self::ScreenBumped => &screen::SCREEN_BUMPED,
             Self::ScreenScale => &screen::SCREEN_SCALE,
             Self::ScreenTilt => &screen::SCREEN_TILT,

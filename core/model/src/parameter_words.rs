@@ -1,0 +1,132 @@
+//! Parameters of effects in the words of somebody who stands before the robot.
+//!
+//! Files and the command line call a parameter by its name with the unit (`rot_x_rad`). What people read is
+//! said in one place, for the sentence of a finding, its page and the window alike.
+
+/// A name, what is said before its value ("off by 1.8°"), and what it is called ("zero").
+const KNOWN: [(&str, &str, &str); 41] = [
+    ("offset_rad", "off by", "zero"),
+    ("scale", "too large by", "scale"),
+    ("scale_u", "wider by", "width of the image"),
+    ("scale_v", "higher by", "height of the image"),
+    ("amplitude_rad", "moves by up to", "largest swing"),
+    ("phase_rad", "swing shifted by", "start of the swing"),
+    ("order", "swings per turn", "swings per turn"),
+    ("width_rad", "from side to side", "width of the play"),
+    ("step_rad", "jumped by", "jump"),
+    ("t_secs", "at", "moment"),
+    ("time_constant_s", "two thirds of it within", "pace"),
+    ("delay_s", "begins after", "delay"),
+    ("ratio", "follows by", "share that it follows"),
+    ("from_joint", "pulled by", "joint that pulls"),
+    ("which", "namely the", "which of the two"),
+    ("fraction", "share of the remaining way", "share of the remaining way"),
+    ("early_secs", "too early by", "time that it was too early"),
+    ("compliance_rad_per_nm", "gives way by", "how far it gives way"),
+    ("compliance_m_per_n", "gives way by", "how far it gives way"),
+    ("give_rad_per_nm", "gives way beyond it by", "how far it gives way"),
+    ("stiffness_nm_per_rad", "stiffness", "stiffness"),
+    ("lean_rad_per_nm", "leans by", "how far it leans"),
+    ("torque_nm", "holds up to", "largest torque"),
+    ("rot_x_rad", "turned about its x axis by", "turn about its x axis"),
+    ("rot_y_rad", "turned about its y axis by", "turn about its y axis"),
+    ("rot_z_rad", "turned about its z axis by", "turn about its z axis"),
+    ("rot_a_rad", "turned across its axis by", "turn across its axis"),
+    ("rot_b_rad", "turned the other way across its axis by", "other turn across its axis"),
+    ("yaw_rad", "turned sideways by", "turn sideways"),
+    ("roll_rad", "rolled by", "roll"),
+    ("pitch_rad", "tilted up by", "tilt"),
+    ("length_m", "longer by", "length"),
+    ("radius_m", "radius", "radius"),
+    ("drag_m", "drags by", "drag"),
+    ("mass_kg", "heavier by", "mass"),
+    ("latency_s", "late by", "delay"),
+    ("bow_u_per_m", "bowed across by", "bow across"),
+    ("bow_v_per_m", "bowed from far to near by", "bow from far to near"),
+    ("edge_m", "off at the border by", "error at the border"),
+    ("k_px", "off at the border by", "error at the border"),
+    ("weight", "share of the background", "share of the background"),
+];
+
+/// Names of shifts: along which axis, and the unit.
+const SHIFTS: [(&str, &str); 8] = [
+    ("dx_m", "forward"),
+    ("dy_m", "to the robot's left"),
+    ("du_px", "to the right in the image"),
+    ("dv_px", "down in the image"),
+    ("x_m", "along its x axis"),
+    ("y_m", "along its y axis"),
+    ("z_m", "along its z axis"),
+    ("shift_px", "outward"),
+];
+
+/// Ends of names that say a unit.
+const UNITS: [&str; 11] =
+    ["_rad_per_nm", "_nm_per_rad", "_m_per_n", "_per_m", "_rad", "_kg", "_px", "_secs", "_nm", "_m", "_s"];
+
+/// What is said before a value: "off by", "turned about its x axis by". A site before the name, where one
+/// effect stands for every joint, is kept: "r elbow y off by".
+pub fn said(name: &str) -> String {
+    with_site(name, |(_, said, _)| (*said).to_owned(), |along| format!("shifted {along} by"))
+}
+
+/// What a parameter is called inside of a sentence: "zero", "turn about its x axis".
+pub fn called(name: &str) -> String {
+    with_site(name, |(_, _, called)| (*called).to_owned(), |along| format!("shift {along}"))
+}
+
+type Known = (&'static str, &'static str, &'static str);
+
+fn with_site(name: &str, known: impl Fn(&Known) -> String, shift: impl Fn(&str) -> String) -> String {
+    let of_name = |bare: &str| {
+        let listed = KNOWN.iter().find(|(one, ..)| *one == bare).map(&known);
+        listed.or_else(|| SHIFTS.iter().find(|(one, _)| *one == bare).map(|(_, along)| shift(along)))
+    };
+    // The longest end that is known decides; what stands before it is a site.
+    let cuts = std::iter::once(0).chain(name.match_indices('_').map(|(at, _)| at + 1));
+    for at in cuts {
+        if let Some(words) = of_name(&name[at..]) {
+            let site = name[..at].trim_end_matches('_').replace('_', " ");
+            return if site.is_empty() { words } else { format!("{site} {words}") };
+        }
+    }
+    let bare = UNITS.iter().find_map(|unit| name.strip_suffix(unit)).unwrap_or(name);
+    bare.replace('_', " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_are_those_of_a_person_and_hold_no_unit() {
+        assert_eq!(said("rot_x_rad"), "turned about its x axis by");
+        assert_eq!(called("rot_x_rad"), "turn about its x axis");
+        assert_eq!(said("amplitude_rad"), "moves by up to");
+        assert_eq!(said("x_m"), "shifted along its x axis by");
+        assert_eq!(said("dx_m"), "shifted forward by");
+    }
+
+    #[test]
+    fn a_site_stays_before_the_words() {
+        assert_eq!(said("r_elbow_y_offset_rad"), "r elbow y off by");
+        assert_eq!(called("r_wrist_x_rot_z_rad"), "r wrist x turn about its z axis");
+        assert_eq!(said("right_forearm_length_m"), "right forearm longer by");
+    }
+
+    #[test]
+    fn what_is_not_known_loses_its_unit() {
+        assert_eq!(said("step_px"), "step");
+        assert_eq!(called("odd_nm_per_rad"), "odd");
+    }
+
+    #[test]
+    fn every_name_is_there_once() {
+        let mut names: Vec<&str> =
+            KNOWN.iter().map(|(name, ..)| *name).chain(SHIFTS.iter().map(|(name, _)| *name)).collect();
+        let all = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), all);
+    }
+}
