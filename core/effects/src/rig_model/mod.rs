@@ -7,6 +7,7 @@ mod contents;
 mod error;
 mod export;
 mod eyes;
+mod eyes_left;
 mod file;
 mod left_out;
 mod predict;
@@ -26,6 +27,7 @@ pub use contents::{
     Addition, Contents, ModelEffect, PlacedExternal, PlacedScreen, ReportedParameter, Step, StepGap, StepKind,
 };
 pub use error::RigModelError;
+pub use eyes_left::EyesLeft;
 pub use export::{CAMERA_LINKS, ExportError, Exported};
 pub use eyes::numbers_of_eyes;
 pub use file::{FORMAT, is_rig_model};
@@ -81,6 +83,7 @@ impl RigModel {
         if !addition.eyes.is_empty() {
             if !eyes::are_same(&contents.eyes, &addition.eyes) && !contents.eyes.is_empty() {
                 contents.effects.retain(|effect| !eyes::is_of_eyes(effect));
+                contents.eyes_left = None;
             }
             contents.eyes = addition.eyes;
         }

@@ -2,6 +2,9 @@
 
 mod around;
 pub mod command;
+mod figures;
+mod grid;
+mod grid_room;
 mod stage;
 #[cfg(test)]
 mod tests;
