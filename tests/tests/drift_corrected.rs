@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use image::GrayImage;
 use nalgebra::{Matrix2, Matrix3, Point3, Vector3};
-use plumbline_drift::{Monitor, Sample, Watcher, WatcherSetup, log_of};
+use plumbline_drift::{Monitor, Sample, Verdict, Watcher, WatcherSetup, log_of};
 use plumbline_effects::{Measurements, RigModel, RobotModel, SeenUnder};
 use plumbline_gap::{Finding, Options, find};
 use plumbline_model::measured_data::left_out;
@@ -137,12 +137,52 @@ fn world(rig: &Arc<Rig>, scenario: &Scenario) -> Lockstep {
     twin
 }
 
+/// When places of the far row are within 2 mm of where they end, s since switching on.
+fn warm_s(twin: &mut Lockstep, model: &RobotModel) -> f64 {
+    let mut course = Vec::new();
+    while twin.eyes_on_s() < 5400.0 {
+        course.push((twin.eyes_on_s(), errors(twin, model)));
+        twin.advance_warm_up(10.0);
+    }
+    let end = errors(twin, model);
+    let away_m = |errors: &Errors| (27..36).map(|k| (errors[k].0 - end[k].0).norm()).sum::<f64>() / 9.0;
+    course.iter().find(|(_, errors)| away_m(errors) <= 0.002).map_or(f64::INFINITY, |(at_s, _)| *at_s)
+}
+
+/// What was said of the time to go, after so many minutes each.
+fn told_to_go(monitor: &Monitor) -> Vec<(f64, [f64; 2])> {
+    let mut told = Vec::new();
+    let mut so_far = Monitor::default();
+    let mut next =
+        [2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 15.0, 19.0].into_iter().map(|min: f64| 60.0 * min).peekable();
+    for sample in monitor.samples() {
+        so_far.add(sample.clone());
+        if next.peek().is_some_and(|at_s| sample.at_s >= *at_s) {
+            next.next();
+            if let Verdict::Warming { to_go_s: Some(to_go_s), .. } = so_far.verdict() {
+                told.push((sample.at_s, to_go_s));
+            }
+        }
+    }
+    told
+}
+
 /// Watched for so many minutes, explained, corrected; judged with the head as it stood and turned.
 fn judged(name: &str, scenario: &Scenario, watched_min: f64) -> Option<Vec<(f64, bool, Off, Off)>> {
     let rig = default_rig();
     let nominal = Arc::new(RobotModel::nominal(rig.clone()));
     let mut twin = world(&rig, scenario);
     let monitor = watched(&mut twin, &nominal, watched_min)?;
+    let warm_s = warm_s(&mut world(&rig, scenario), &nominal);
+    for (at_s, [least_s, most_s]) in told_to_go(&monitor) {
+        println!(
+            "{name}: after {:.0} min {:.0} to {:.0} min to go; truly {:.1}",
+            at_s / 60.0,
+            least_s / 60.0,
+            most_s / 60.0,
+            (warm_s - at_s).max(0.0) / 60.0
+        );
+    }
     let (session, finding) = explained(&rig, &twin, &monitor);
     println!("{name}: {:?} in {:.1} s: {}", finding.verdict, finding.seconds, finding.sentence);
     for effect in &finding.effects {
@@ -170,8 +210,8 @@ fn judged(name: &str, scenario: &Scenario, watched_min: f64) -> Option<Vec<(f64,
         let cold = [&*nominal, &corrected].map(|model| errors(&mut twin, model));
         for minutes in JUDGED_MIN {
             twin.advance_warm_up(60.0 * minutes - twin.eyes_on_s());
-            let [before, after] =
-                [(&*nominal, &cold[0]), (&corrected, &cold[0])].map(|(model, cold)| off(&errors(&mut twin, model), cold));
+            let [before, after] = [(&*nominal, &cold[0]), (&corrected, &cold[0])]
+                .map(|(model, cold)| off(&errors(&mut twin, model), cold));
             println!(
                 "{name:>8} {:>6} {minutes:>4} min: mean {:>4.1} → {:.1} mm, worst {:>4.1} → {:.1} mm, {:>2} of 36 inside the \
                  stated 95 % ({:.1} mm)",

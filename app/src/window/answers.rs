@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use plumbline_engine::{
-    Command, DetectCommand, DetectorChoice, DriftCommand, EyesCommand, FileLength, GapCommand,
-    GridCommand, GridCorrection, GridSide, LabelsCommand,
-    ModelsCommand, ScoresCommand, SourceCommand, TablesCommand, TrialsCommand,
+    Command, DetectCommand, DetectorChoice, DriftCommand, EyesCommand, FileLength, GapCommand, GridCommand,
+    GridCorrection, GridSide, LabelsCommand, ModelsCommand, ScoresCommand, SourceCommand, TablesCommand,
+    TrialsCommand,
 };
 
 use super::PlumblineWindow;

@@ -16,8 +16,8 @@ use super::jogging::RENEW;
 use super::settings::ThemeChoice;
 use crate::operator::guidance::guidance;
 use crate::operator::{
-    Action, CommissionAction, DetectAction, GapAction, LabelsAction, ModelsAction, Outbox, Preset,
-    GridAction, RobotAction, ScoresAction, Screen, TouchAction, TrialsAction, gap_plan, gap_proof,
+    Action, CommissionAction, DetectAction, GapAction, GridAction, LabelsAction, ModelsAction, Outbox,
+    Preset, RobotAction, ScoresAction, Screen, TouchAction, TrialsAction, gap_plan, gap_proof,
 };
 
 /// A message of the window itself.

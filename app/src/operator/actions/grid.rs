@@ -76,10 +76,7 @@ mod tests {
     #[test]
     fn without_an_evaluation_the_reason_is_said() {
         for action in [GridAction::LeaveOut, GridAction::End] {
-            assert_eq!(
-                action.refusal(&View::default()).as_deref(),
-                Some("no evaluation is under way")
-            );
+            assert_eq!(action.refusal(&View::default()).as_deref(), Some("no evaluation is under way"));
         }
         assert_eq!(GridAction::Open.command(), None);
     }

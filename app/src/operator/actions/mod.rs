@@ -176,7 +176,8 @@ pub fn all() -> impl Iterator<Item = Action> {
     let labels = LabelsAction::ALL.into_iter().map(Action::Labels);
     let scores = ScoresAction::ALL.into_iter().map(Action::Scores);
     let grid = GridAction::ALL.into_iter().map(Action::Grid);
-    let steps = robot.chain(mount).chain(touch).chain(models).chain(gap).chain(grasp).chain(trials).chain(grid);
+    let steps =
+        robot.chain(mount).chain(touch).chain(models).chain(gap).chain(grasp).chain(trials).chain(grid);
     let threads = WatchedThread::ALL.into_iter().map(Action::StartAgain);
     ALL.iter()
         .copied()

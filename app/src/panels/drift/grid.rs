@@ -84,8 +84,16 @@ fn under_way(ui: &mut Ui, cx: &mut PanelContext<'_>, run: &GridRunView) {
         }
         GridDoing::NotSeen => warning(
             ui,
-            &format!("the eyes do not find the {thing} there: lay it again and press Placed, or leave the place out"),
+            &format!(
+                "the eyes do not find the {thing} there: lay it again and press Placed, or leave the place out"
+            ),
         ),
+        GridDoing::NoDetector => {
+            warning(
+                ui,
+                "nothing is being detected: choose a detector at the right of the screen Live, then it goes on",
+            );
+        }
         GridDoing::Ended => {}
     }
     ui.horizontal_wrapped(|ui| {
@@ -127,7 +135,11 @@ fn figures(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             ui.add_space(space::S);
         }
     }
-    let scale = if times > 1.0 { format!("{times:.0} times as long as the error") } else { "in true length".to_owned() };
+    let scale = if times > 1.0 {
+        format!("{times:.0} times as long as the error")
+    } else {
+        "in true length".to_owned()
+    };
     let text = format!(
         "Rings: targets. Dots: where they come out, arrows {scale}, the same in both. Numbers: too high (+) or too low, mm."
     );

@@ -60,8 +60,7 @@ fn on(rect: Rect, [x_m, y_m]: [f64; 2]) -> Pos2 {
 fn draw(ui: &Ui, painter: &Painter, tokens: &Tokens, rect: Rect, place: &GridPlace, times: f64, near: bool) {
     let target = flat(&place.target);
     let error = place.error_m();
-    let (from, to) =
-        (on(rect, target), on(rect, [target[0] + times * error.x, target[1] + times * error.y]));
+    let (from, to) = (on(rect, target), on(rect, [target[0] + times * error.x, target[1] + times * error.y]));
     let color = Role::Measured.color(tokens);
     let width = if near { 2.5 } else { 1.2 };
     painter.circle_stroke(from, TARGET, Stroke::new(1.2, Role::Predicted.color(tokens)));

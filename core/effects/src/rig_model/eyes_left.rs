@@ -24,11 +24,14 @@ impl EyesLeft {
     /// Whether it can be; else why not.
     pub(super) fn check(&self) -> Result<(), String> {
         let own = [0, 4, 8].map(|k| self.covariance[k]);
-        if self.covariance.iter().all(|number| number.is_finite()) && own.iter().all(|square| *square >= 0.0) {
+        if self.covariance.iter().all(|number| number.is_finite()) && own.iter().all(|square| *square >= 0.0)
+        {
             return Ok(());
         }
         let all = &self.covariance;
-        Err(format!("what its effects of the eyes leave cannot be ({all:?}): search the gap and add them again"))
+        Err(format!(
+            "what its effects of the eyes leave cannot be ({all:?}): search the gap and add them again"
+        ))
     }
 
     /// Covariance (m²) that it means at a place of the left camera (m), for eyes so far apart (m).

@@ -27,9 +27,9 @@ pub use contents::{
     Addition, Contents, ModelEffect, PlacedExternal, PlacedScreen, ReportedParameter, Step, StepGap, StepKind,
 };
 pub use error::RigModelError;
-pub use eyes_left::EyesLeft;
 pub use export::{CAMERA_LINKS, ExportError, Exported};
 pub use eyes::numbers_of_eyes;
+pub use eyes_left::EyesLeft;
 pub use file::{FORMAT, is_rig_model};
 pub use left_out::LeftOut;
 pub(crate) use predict::Measured;

@@ -34,9 +34,8 @@ impl RobotModel {
         let (left, right) = self.project(&row.truth?, &posture, &seen)?;
         let predicted = self.rig.eyes.cameras.triangulate(left, right)?;
         let measured = self.rig.robot_from_left(&posture).inverse() * row.estimate?;
-        let natural = |at: Point<LeftCamera>| {
-            (at.coords.z > 0.0).then(|| Vector3::from(self.eyes.natural(&at.coords)))
-        };
+        let natural =
+            |at: Point<LeftCamera>| (at.coords.z > 0.0).then(|| Vector3::from(self.eyes.natural(&at.coords)));
         Some(natural(measured)? - natural(predicted)?)
     }
 

@@ -54,6 +54,8 @@ pub(super) struct GridRun {
     /// The session, once it is on disk.
     pub folder: Option<PathBuf>,
     keeping: Option<JobId>,
+    /// No detector has looked for as long as one is waited for.
+    is_blind: bool,
     /// Rows that the session on disk does not hold yet.
     is_newer: bool,
 }
@@ -71,6 +73,7 @@ impl GridRun {
             looked_at: None,
             folder: None,
             keeping: None,
+            is_blind: false,
             is_newer: false,
         };
         if let Some(twin) = &around.twin {
@@ -129,6 +132,11 @@ impl GridRun {
             self.looks.push(row);
         }
         let is_over = now.saturating_duration_since(since) > SEEN_WITHIN;
+        // Where nobody looks nothing is missing.
+        self.is_blind = is_over && around.found.as_ref().is_none_or(|found| found.stamp.captured_at <= since);
+        if self.is_blind {
+            return;
+        }
         if self.looks.len() >= LOOKS || is_over && !self.looks.is_empty() {
             let looks = std::mem::take(&mut self.looks);
             self.rows.extend(looks);
@@ -245,6 +253,7 @@ impl GridRun {
         let doing = match self.stage {
             Stage::Asks => GridDoing::Asks,
             Stage::Lies(_) => GridDoing::Lays,
+            Stage::Looks(_) if self.is_blind => GridDoing::NoDetector,
             Stage::Looks(_) => GridDoing::Looks { looks: self.looks.len(), of: LOOKS },
             Stage::NotSeen => GridDoing::NotSeen,
             Stage::Ended => GridDoing::Ended,

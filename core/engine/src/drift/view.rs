@@ -86,6 +86,8 @@ pub enum GridDoing {
         /// Of so many.
         of: usize,
     },
+    /// Nothing is being detected: there is no detector, or it hangs.
+    NoDetector,
     /// It was not found there: it is to be laid again, or the place left out.
     NotSeen,
     /// No more places.

@@ -7,8 +7,8 @@ use plumbline_drift::{Monitor, Sample, Verdict, is_too_short};
 use plumbline_model::StereoFrame;
 
 use super::DriftAround;
-use super::grid_room::GridRoom;
 use super::command::DriftCommand;
+use super::grid_room::GridRoom;
 use super::stage::{DriftInput, DriftOutput};
 use super::view::{DriftCourse, DriftView};
 use super::watch::{EVERY, Watch};
