@@ -218,7 +218,7 @@ fn toys_that_are_moved_and_an_arm_that_moves_are_no_fault_of_the_eyes() {
 /// Hours, and time between looks, s: the window looks more often, but at an arm that moves as often it would look
 /// after each motion, as here.
 const HOURS: f64 = 8.0;
-const BETWEEN_S: f64 = 60.0;
+const BETWEEN_S: f64 = 120.0;
 
 #[test]
 fn in_eight_hours_of_an_arm_and_toys_that_move_there_is_at_most_one_alarm() {
