@@ -1,6 +1,7 @@
 //! The rows: a Parquet file with a column per feature.
 
 use std::fs::File;
+use std::io::{self, BufWriter};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -10,6 +11,8 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::parser::parse_message_type;
+use parquet::schema::types::Type;
+use plumbline_model::files;
 
 use crate::error::ExportError;
 
@@ -49,7 +52,10 @@ impl Column {
         }
     }
 
-    fn write(&self, group: &mut SerializedRowGroupWriter<'_, File>) -> Result<(), ParquetError> {
+    fn write(
+        &self,
+        group: &mut SerializedRowGroupWriter<'_, &mut BufWriter<File>>,
+    ) -> Result<(), ParquetError> {
         let texts =
             |all: &[String]| -> Vec<ByteArray> { all.iter().map(|text| text.as_str().into()).collect() };
         match self {
@@ -71,7 +77,7 @@ impl Column {
 
 /// A value per row, none missing.
 fn flat<T: DataType>(
-    group: &mut SerializedRowGroupWriter<'_, File>,
+    group: &mut SerializedRowGroupWriter<'_, &mut BufWriter<File>>,
     values: &[T::T],
 ) -> Result<(), ParquetError> {
     nested::<T>(group, values, 1)
@@ -79,7 +85,7 @@ fn flat<T: DataType>(
 
 /// A value per row inside so many optional groups, none missing.
 fn nested<T: DataType>(
-    group: &mut SerializedRowGroupWriter<'_, File>,
+    group: &mut SerializedRowGroupWriter<'_, &mut BufWriter<File>>,
     values: &[T::T],
     depth: i16,
 ) -> Result<(), ParquetError> {
@@ -91,7 +97,7 @@ fn nested<T: DataType>(
 
 /// So many values per row.
 fn lists<T: DataType>(
-    group: &mut SerializedRowGroupWriter<'_, File>,
+    group: &mut SerializedRowGroupWriter<'_, &mut BufWriter<File>>,
     length: usize,
     values: &[T::T],
 ) -> Result<(), ParquetError> {
@@ -107,55 +113,73 @@ fn one_too_many() -> ParquetError {
 }
 
 /// A table that is written group by group of rows.
-pub(crate) struct TableWriter {
-    path: std::path::PathBuf,
-    names: Vec<String>,
+pub(crate) struct TableWriter<'a> {
+    path: &'a Path,
+    names: &'a [&'a str],
     about: Vec<(String, String)>,
-    writer: Option<SerializedFileWriter<File>>,
+    /// Until the first rows say what the columns are.
+    out: Option<&'a mut BufWriter<File>>,
+    writer: Option<SerializedFileWriter<&'a mut BufWriter<File>>>,
 }
 
-impl TableWriter {
-    /// Nothing is written before the first rows come. `about`: keys and values that the file carries.
-    pub fn new(path: &Path, names: &[&str], about: Vec<(String, String)>) -> Self {
-        let names = names.iter().map(|name| (*name).to_owned()).collect();
-        Self { path: path.to_owned(), names, about, writer: None }
+/// Writes a table in one step: `fill` gives it its rows. `about`: keys and values that the file carries.
+pub(crate) fn write_table(
+    path: &Path,
+    names: &[&str],
+    about: Vec<(String, String)>,
+    fill: impl FnOnce(&mut TableWriter<'_>) -> Result<(), ExportError>,
+) -> Result<(), ExportError> {
+    if let Some(folder) = path.parent() {
+        files::make_folder(folder)?;
     }
+    let mut failed = None;
+    let written = files::write_with(path, |out| {
+        let mut table = TableWriter { path, names, about, out: Some(out), writer: None };
+        let filled = fill(&mut table).and_then(|()| table.finish());
+        filled.map_err(|error| {
+            failed = Some(error);
+            io::Error::other("not all of its rows could be written")
+        })
+    });
+    match failed {
+        Some(error) => Err(error),
+        None => Ok(written?),
+    }
+}
 
+impl TableWriter<'_> {
     /// A group of rows: columns in the order of the names.
     pub fn rows(&mut self, columns: &[Column]) -> Result<(), ExportError> {
-        let path = self.path.clone();
-        if self.writer.is_none() {
-            self.writer = Some(self.begin(columns)?);
+        let path = self.path;
+        let filled = |writer: &mut SerializedFileWriter<&mut BufWriter<File>>| {
+            let mut group = writer.next_row_group()?;
+            for column in columns {
+                column.write(&mut group)?;
+            }
+            group.close().map(|_| ())
+        };
+        if let Some(out) = self.out.take() {
+            let (schema, properties) = self.head(columns).map_err(ExportError::table(path))?;
+            let writer = SerializedFileWriter::new(out, schema, properties);
+            self.writer = Some(writer.map_err(ExportError::table(path))?);
         }
-        let Some(writer) = &mut self.writer else { return Ok(()) };
-        let mut group = writer.next_row_group().map_err(ExportError::table(&path))?;
-        for column in columns {
-            column.write(&mut group).map_err(ExportError::table(&path))?;
-        }
-        group.close().map_err(ExportError::table(&path))?;
-        Ok(())
+        self.writer.as_mut().map_or(Ok(()), filled).map_err(ExportError::table(path))
     }
 
-    fn begin(&self, columns: &[Column]) -> Result<SerializedFileWriter<File>, ExportError> {
-        let wrong = || ExportError::table(&self.path);
+    fn head(&self, columns: &[Column]) -> Result<(Arc<Type>, Arc<WriterProperties>), ParquetError> {
         let parts: Vec<String> =
             self.names.iter().zip(columns).map(|(name, column)| column.schema(name)).collect();
-        let schema =
-            parse_message_type(&format!("message schema {{ {} }}", parts.join(" "))).map_err(wrong())?;
+        let schema = parse_message_type(&format!("message schema {{ {} }}", parts.join(" ")))?;
         let about = self.about.iter().map(|(key, value)| KeyValue::new(key.clone(), value.clone())).collect();
         let properties = WriterProperties::builder().set_key_value_metadata(Some(about)).build();
-        if let Some(folder) = self.path.parent() {
-            std::fs::create_dir_all(folder).map_err(ExportError::io(folder))?;
-        }
-        let file = File::create(&self.path).map_err(ExportError::io(&self.path))?;
-        SerializedFileWriter::new(file, Arc::new(schema), Arc::new(properties)).map_err(wrong())
+        Ok((Arc::new(schema), Arc::new(properties)))
     }
 
     /// No more rows.
-    pub fn finish(self) -> Result<(), ExportError> {
-        if let Some(writer) = self.writer {
-            writer.close().map_err(ExportError::table(&self.path))?;
+    fn finish(self) -> Result<(), ExportError> {
+        match self.writer {
+            Some(writer) => writer.close().map(|_| ()).map_err(ExportError::table(self.path)),
+            None => Ok(()),
         }
-        Ok(())
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use plumbline_model::files::FileError;
 use plumbline_recording::RecordingError;
 
 /// Why a recording cannot be exported, and what to do.
@@ -16,14 +17,9 @@ pub enum ExportError {
     /// What is there is not touched.
     #[error("{} is not empty: choose another folder, or empty it", .0.display())]
     NotEmpty(PathBuf),
-    /// The file system says no.
-    #[error("{}: {error}; check that the disk is there and has room", .file.display())]
-    Io {
-        /// Which file.
-        file: PathBuf,
-        /// What the system says.
-        error: std::io::Error,
-    },
+    /// A file cannot be written.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// An image is none.
     #[error("pair {pair} of {} has an image that cannot be read ({reason}): record anew", .recording.display())]
     Image {
@@ -48,11 +44,6 @@ pub enum ExportError {
 }
 
 impl ExportError {
-    pub(crate) fn io(file: &Path) -> impl FnOnce(std::io::Error) -> Self {
-        let file = file.to_owned();
-        move |error| Self::Io { file, error }
-    }
-
     pub(crate) fn table(file: &Path) -> impl FnOnce(parquet::errors::ParquetError) -> Self {
         let file = file.to_owned();
         move |error| Self::Table { file, reason: error.to_string() }

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use jiff::Timestamp;
-use plumbline_model::{Eye, JobContext, StereoCameras};
+use plumbline_model::{Eye, JobContext, StereoCameras, files};
 use plumbline_recording::{JointReading, RecordedPair, Recording, Told};
 use serde_json::json;
 
-use crate::data::{Column, TableWriter};
+use crate::data::{Column, TableWriter, write_table};
 use crate::error::ExportError;
 use crate::meta::{self, About, FIRST_DATA, FIRST_EPISODES};
 use crate::statistics::Statistics;
@@ -64,14 +64,19 @@ pub fn export(
     let image = dimensions(recording, &opened.pair(frames[0].pair)?, frames[0].pair)?;
     let robot = opened.whose().rig.clone().unwrap_or_else(|| "unknown".to_owned());
     let about = About { robot: &robot, joints: &names, image, frames: frames.len(), rate_hz };
-    let mut rows = Rows::new(folder, recording, &about);
-    for group in frames.chunks(GROUP) {
-        context.checkpoint()?;
-        context.report(rows.written as f64 / frames.len() as f64, "writing rows");
-        rows.write(&mut opened, &readings, &names, group)?;
-    }
+    let mut rows = Rows::new(recording, &about);
+    let features = json!({ "info": { "features": hugging_face(&about) } }).to_string();
+    let told = vec![("huggingface".to_owned(), features)];
+    write_table(&folder.join(FIRST_DATA), &ORDER, told, |table| {
+        for group in frames.chunks(GROUP) {
+            context.checkpoint()?;
+            context.report(rows.written as f64 / frames.len() as f64, "writing rows");
+            rows.write(table, &mut opened, &readings, &names, group)?;
+        }
+        Ok(())
+    })?;
     let left_out = opened.pair_count() - frames.len();
-    let statistics = rows.finish()?;
+    let statistics = rows.statistics();
     tables(folder, options.task, frames.len())?;
     meta::write_json(&folder.join("meta/info.json"), &meta::info(&about))?;
     meta::write_json(&folder.join("meta/stats.json"), &statistics)?;
@@ -83,7 +88,7 @@ pub fn export(
         let Some(name) = Path::new(&attached.name).file_name() else { continue };
         let file = folder.join("meta").join(name);
         if !file.exists() {
-            std::fs::write(&file, &attached.bytes).map_err(ExportError::io(&file))?;
+            files::write(&file, &attached.bytes)?;
         }
     }
     Ok(Exported { frames: frames.len(), left_out, rate_hz, joints: names })
@@ -138,7 +143,6 @@ fn decoded(recording: &Path, jpeg: &[u8], number: usize) -> Result<image::RgbIma
 
 /// The rows, group by group.
 struct Rows<'a> {
-    table: TableWriter,
     recording: &'a Path,
     rate_hz: f64,
     every: usize,
@@ -153,16 +157,8 @@ struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    fn new(folder: &Path, recording: &'a Path, about: &About<'_>) -> Self {
-        let names: Vec<String> = meta::features(about).keys().cloned().collect();
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let features = json!({ "info": { "features": hugging_face(about) } }).to_string();
+    fn new(recording: &'a Path, about: &About<'_>) -> Self {
         Self {
-            table: TableWriter::new(
-                &folder.join(FIRST_DATA),
-                &ordered(&names),
-                vec![("huggingface".to_owned(), features)],
-            ),
             recording,
             rate_hz: about.rate_hz.round().max(1.0),
             every: about.frames.div_ceil(LOOKED_AT).max(1),
@@ -179,6 +175,7 @@ impl<'a> Rows<'a> {
 
     fn write(
         &mut self,
+        table: &mut TableWriter<'_>,
         recording: &mut Recording,
         readings: &[Told<Vec<JointReading>>],
         names: &[String],
@@ -212,7 +209,7 @@ impl<'a> Rows<'a> {
         }
         let zeros = vec![0; group.len()];
         let [left, right] = images;
-        self.table.rows(&[
+        table.rows(&[
             Column::Images(left),
             Column::Images(right),
             Column::FloatLists(names.len(), state),
@@ -233,13 +230,12 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    fn finish(self) -> Result<serde_json::Value, ExportError> {
-        self.table.finish()?;
+    fn statistics(&self) -> serde_json::Value {
         let number = |value: f64| json!(value);
-        let [left, right] = self.of_images.map(|image| image.json(|value| json!([[value]])));
-        Ok(json!({
-            meta::image_key(Eye::Left): left,
-            meta::image_key(Eye::Right): right,
+        let image = |eye: usize| self.of_images[eye].json(|value| json!([[value]]));
+        json!({
+            meta::image_key(Eye::Left): image(0),
+            meta::image_key(Eye::Right): image(1),
             "observation.state": self.of_state.json(number),
             "observation.captured_s": self.of_captured.json(number),
             "timestamp": self.of_time.json(number),
@@ -247,7 +243,7 @@ impl<'a> Rows<'a> {
             "index": self.of_number.json(number),
             "episode_index": self.of_zero.json(number),
             "task_index": self.of_zero.json(number),
-        }))
+        })
     }
 }
 
@@ -263,10 +259,6 @@ const ORDER: [&str; 9] = [
     "index",
     "task_index",
 ];
-
-fn ordered<'a>(names: &[&'a str]) -> Vec<&'a str> {
-    ORDER.iter().filter_map(|wanted| names.iter().find(|name| *name == wanted).copied()).collect()
-}
 
 /// Angles of joints as each was read last, rad.
 fn angles(readings: &[Told<Vec<JointReading>>], names: &[String]) -> Vec<f32> {
@@ -305,9 +297,9 @@ fn tables(folder: &Path, task: &str, frames: usize) -> Result<(), ExportError> {
         "pandas_version": "2.0.0",
     });
     let about = vec![("pandas".to_owned(), index.to_string())];
-    let mut tasks = TableWriter::new(&folder.join("meta/tasks.parquet"), &["task_index", "task"], about);
-    tasks.rows(&[Column::Integers(vec![0]), Column::Texts(vec![task.to_owned()])])?;
-    tasks.finish()?;
+    write_table(&folder.join("meta/tasks.parquet"), &["task_index", "task"], about, |table| {
+        table.rows(&[Column::Integers(vec![0]), Column::Texts(vec![task.to_owned()])])
+    })?;
     let names = [
         "episode_index",
         "tasks",
@@ -320,9 +312,8 @@ fn tables(folder: &Path, task: &str, frames: usize) -> Result<(), ExportError> {
         "meta/episodes/file_index",
     ];
     let frames = frames as i64;
-    let mut episodes = TableWriter::new(&folder.join(FIRST_EPISODES), &names, vec![]);
     let number = |value: i64| Column::Integers(vec![value]);
-    episodes.rows(&[
+    let columns = [
         number(0),
         Column::TextLists(vec![task.to_owned()]),
         number(frames),
@@ -332,6 +323,6 @@ fn tables(folder: &Path, task: &str, frames: usize) -> Result<(), ExportError> {
         number(frames),
         number(0),
         number(0),
-    ])?;
-    episodes.finish()
+    ];
+    write_table(&folder.join(FIRST_EPISODES), &names, vec![], |table| table.rows(&columns))
 }

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
+use plumbline_model::files::{self, FileError};
 use plumbline_model::{Camera, CameraModel, Eye, StereoCameras};
 use serde_json::{Map, Value, json};
 
 use crate::VERSION;
-use crate::error::ExportError;
 
 /// Where rows are, as the layout writes it.
 pub(crate) const DATA: &str = "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet";
@@ -100,10 +100,9 @@ pub(crate) fn cameras(cameras: &StereoCameras) -> Value {
 }
 
 /// Writes JSON to be read by people, too.
-pub(crate) fn write_json(file: &Path, value: &Value) -> Result<(), ExportError> {
+pub(crate) fn write_json(file: &Path, value: &Value) -> Result<(), FileError> {
     if let Some(folder) = file.parent() {
-        std::fs::create_dir_all(folder).map_err(ExportError::io(folder))?;
+        files::make_folder(folder)?;
     }
-    let text = serde_json::to_string_pretty(value).unwrap_or_default();
-    std::fs::write(file, text).map_err(ExportError::io(file))
+    files::write(file, format!("{value:#}"))
 }

@@ -12,7 +12,7 @@ use crate::panels::parts::{action_button, warning};
 use crate::panels::{PanelContext, padded};
 
 /// Figures stand side by side from this width on, points.
-const SIDE_BY_SIDE: f32 = 560.0;
+const SIDE_BY_SIDE: f32 = 440.0;
 /// The longest arrow is drawn no longer than this on the table, m.
 const LONGEST_M: f64 = 0.09;
 /// Errors are blown up no further, times.
@@ -170,7 +170,7 @@ fn figure(ui: &mut Ui, cx: &mut PanelContext<'_>, side: GridSide, times: f64) {
                 ui.label("Is being judged.");
             });
         }
-        Some(Err(why)) => warning(ui, why),
+        Some(Err(why)) => warning(ui, &why.to_string()),
         Some(Ok(judged)) => {
             let errors = &judged.errors;
             let [mean, median, worst] = [errors.mean_m, errors.median_m, errors.worst_m].map(format::mm);

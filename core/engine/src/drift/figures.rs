@@ -6,6 +6,7 @@ use std::sync::Arc;
 use plumbline_drift::{GridCorrection, Judged};
 use plumbline_effects::RobotModel;
 
+use super::Unjudged;
 use super::command::GridSide;
 use super::view::GridFigure;
 use super::work::{Context, DriftWork};
@@ -68,7 +69,7 @@ impl Figures {
     }
 
     /// Judged, or why not.
-    pub fn judged(&mut self, id: JobId, judged: &Result<Arc<Judged>, String>) {
+    pub fn judged(&mut self, id: JobId, judged: &Result<Arc<Judged>, Unjudged>) {
         for (judging, shown) in self.judging.iter_mut().zip(&mut self.shown) {
             if judging.take_if(|judging| *judging == id).is_some()
                 && let Some(shown) = shown
@@ -81,7 +82,7 @@ impl Figures {
     /// Nothing came of judging.
     pub fn not_judged(&mut self, id: JobId, why: Option<&str>) {
         if let Some(why) = why {
-            self.judged(id, &Err(why.to_owned()));
+            self.judged(id, &Err(Unjudged::Ended { said: why.to_owned() }));
         } else {
             self.judging.iter_mut().for_each(|judging| {
                 judging.take_if(|judging| *judging == id);

@@ -6,6 +6,8 @@ use std::sync::Arc;
 pub use plumbline_drift::{GridCorrection, GridErrors, GridPlace, Judged};
 pub use plumbline_drift::{Mover as DriftMover, PlaceError, Row as TableRow, Verdict as DriftVerdict};
 
+pub use super::Unjudged as GridUnjudged;
+use super::Unjudged;
 use crate::ground::step::StepState;
 
 /// Watching drift.
@@ -104,7 +106,7 @@ pub struct GridFigure {
     /// What was made of its places.
     pub correction: GridCorrection,
     /// What came out, or why nothing did (a sentence); `None`: it is being judged.
-    pub judged: Option<Result<Arc<Judged>, String>>,
+    pub judged: Option<Result<Arc<Judged>, Unjudged>>,
 }
 
 /// What was seen since watching began.

@@ -12,6 +12,7 @@ use plumbline_model::session::{
     LocalizationRow, LocalizationTable, Manifest, RigReference, Session, StereoImages, names,
 };
 
+use super::Unjudged;
 use crate::ground::jobs::JobError;
 use crate::ground::sessions::{folders, free_folder, rig_of, title_of};
 use crate::ground::text::sentence;
@@ -86,7 +87,7 @@ pub enum DriftResult {
     /// Evaluations, newest first.
     Grids(Vec<PathBuf>),
     /// How far off places are, or why that cannot be told, a sentence.
-    GridJudged(Result<Arc<Judged>, String>),
+    GridJudged(Result<Arc<Judged>, Unjudged>),
 }
 
 /// What the handlers of this room may reach besides their own workflow.
@@ -183,17 +184,16 @@ fn grids(sessions: &[PathBuf]) -> Result<Vec<PathBuf>, JobError> {
     Ok(found)
 }
 
-fn judged(folder: &Path, correction: GridCorrection, model: &RobotModel) -> Result<Arc<Judged>, String> {
+fn judged(folder: &Path, correction: GridCorrection, model: &RobotModel) -> Result<Arc<Judged>, Unjudged> {
     let title = title_of(folder);
-    let session = Session::read(folder).map_err(|error| sentence(&error.to_string()))?;
-    let rig = rig_of(&session, folder).map_err(|error| sentence(&error.to_string()))?;
+    let unread = |said: String| Unjudged::Unread { said: sentence(&said) };
+    let session = Session::read(folder).map_err(|error| unread(error.to_string()))?;
+    let rig = rig_of(&session, folder).map_err(|error| unread(error.to_string()))?;
     if rig.name != model.rig().name {
-        return Err(format!("{title} was made with another robot ({}): choose one of this robot.", rig.name));
+        return Err(Unjudged::OtherRobot { session: title, rig: rig.name.clone() });
     }
-    let table = session.localizations.as_ref();
-    let table = table.ok_or_else(|| format!("{title} has no localizations.csv: choose an evaluation."))?;
-    let judged = judge(table, model, correction).map_err(|error| format!("{title}: {error}."))?;
-    Ok(Arc::new(judged))
+    let Some(table) = session.localizations.as_ref() else { return Err(Unjudged::NoTable(title)) };
+    judge(table, model, correction).map(Arc::new).map_err(|why| Unjudged::Places { session: title, why })
 }
 
 fn manifest(rig: &Rig, started: Timestamp, purpose: &str, notes: &str) -> Manifest {
@@ -221,7 +221,7 @@ impl DriftResult {
             Self::GridJudged(Ok(judged)) => {
                 format!("{:.1} mm off on average.", 1e3 * judged.errors.mean_m)
             }
-            Self::GridJudged(Err(why)) => why.clone(),
+            Self::GridJudged(Err(why)) => why.to_string(),
             Self::Retold(Some(_)) => "What was watched is told with the new model.".to_owned(),
             Self::Retold(None) => {
                 "What was watched cannot be told with the new model as the head stands: watching begins anew."
