@@ -50,7 +50,7 @@ pub(crate) fn places_by(
 ) -> Vec<GridPlace> {
     let joints: Vec<_> =
         table.head_joints().iter().map(|name| rig.description.find_joint(name).ok()).collect();
-    let mut looks: Vec<(Option<String>, Point<Robot>, Posture, Vec<Vector3<f64>>)> = Vec::new();
+    let mut all: Vec<Looks> = Vec::new();
     for row in table.rows().filter(|row| row.valid) {
         let mut posture = rig.home();
         for (joint, angle_rad) in joints.iter().zip(&row.head_rad) {
@@ -59,22 +59,30 @@ pub(crate) fn places_by(
             }
         }
         let (Some(target), Some(seen)) = (row.truth, estimate(&row, &posture)) else { continue };
-        let seen = seen.coords.coords;
-        let again = |look: &&mut (Option<String>, Point<Robot>, Posture, Vec<Vector3<f64>>)| {
-            look.0.is_some() && look.0 == row.group && look.1 == target
-        };
-        match looks.iter_mut().find(again) {
-            Some(look) => look.3.push(seen),
-            None => looks.push((row.group.clone(), target, posture, vec![seen])),
+        let seen_m = seen.coords.coords;
+        let again =
+            |looks: &&mut Looks| looks.group.is_some() && looks.group == row.group && looks.target == target;
+        match all.iter_mut().find(again) {
+            Some(looks) => looks.seen_m.push(seen_m),
+            None => all.push(Looks { group: row.group.clone(), target, posture, seen_m: vec![seen_m] }),
         }
     }
-    let place = |(_, target, posture, seen): (_, Point<Robot>, Posture, Vec<Vector3<f64>>)| {
-        let mean = seen.iter().sum::<Vector3<f64>>() / seen.len() as f64;
-        let estimate = Point::new(mean.x, mean.y, mean.z);
-        let range_m = (rig.robot_from_left(&posture).inverse() * estimate).range_m();
-        GridPlace { target, estimate, range_m }
+    let place = |looks: Looks| {
+        let mean_m = looks.seen_m.iter().sum::<Vector3<f64>>() / looks.seen_m.len() as f64;
+        let estimate = Point::new(mean_m.x, mean_m.y, mean_m.z);
+        let range_m = (rig.robot_from_left(&looks.posture).inverse() * estimate).range_m();
+        GridPlace { target: looks.target, estimate, range_m }
     };
-    looks.into_iter().map(place).collect()
+    all.into_iter().map(place).collect()
+}
+
+/// Looks at one place.
+struct Looks {
+    group: Option<String>,
+    target: Point<Robot>,
+    posture: Posture,
+    /// Where it came out each time, robot frame.
+    seen_m: Vec<Vector3<f64>>,
 }
 
 /// Mean, median and largest error in the plane of the table, m.

@@ -102,7 +102,8 @@ fn a_recording_becomes_an_episode_that_is_read_through_the_layout() {
     let columns: Vec<&String> = rows[0].get_column_iter().map(|(name, _)| name).collect();
     let mut features: Vec<&String> = info["features"].as_object().expect("an object").keys().collect();
     let mut sorted = columns.clone();
-    (sorted.sort(), features.sort());
+    sorted.sort();
+    features.sort();
     assert_eq!(sorted, features, "every feature is a column, and nothing else");
     for (number, row) in rows.iter().enumerate() {
         assert_eq!(value(row, "index"), &Field::Long(number as i64));
