@@ -122,7 +122,10 @@ fn off(now: &Errors, cold: &Errors) -> Off {
         let flat: Matrix2<f64> = covariance_m2.fixed_view::<2, 2>(0, 0).into();
         let distance = flat.try_inverse().map_or(f64::INFINITY, |inverse| drift.dot(&(inverse * drift)));
         off.inside += usize::from(distance <= INSIDE_95);
-        off.stated_m += (INSIDE_95 * flat.symmetric_eigenvalues().max().max(0.0)).sqrt() / 36.0;
+        // The larger of the two eigenvalues.
+        let apart = (0.5 * (flat.m11 - flat.m22)).hypot(flat.m12);
+        let largest_m2 = 0.5 * flat.trace() + apart;
+        off.stated_m += (INSIDE_95 * largest_m2.max(0.0)).sqrt() / 36.0;
     }
     off
 }
