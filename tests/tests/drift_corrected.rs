@@ -1,12 +1,15 @@
-//! Twenty minutes of warm-up of the twin's eyes are watched, explained by the gap search and corrected by name.
+//! The warm-up of the twin's eyes is watched, explained by the gap search and corrected by name: in the laboratory and
+//! in two worlds drawn by chance, with the head as it stood and turned, and whether the stated uncertainty holds.
+//!
+//! `cargo test --release -p plumbline-tests --test drift_corrected -- --nocapture` prints the table.
 //! What watches, explains and corrects reads images, encoders and the eyes' clock; only the judge reads the truth.
 #![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
 
 use std::sync::Arc;
 
 use image::GrayImage;
-use nalgebra::{Matrix3, Point3, Vector3};
-use plumbline_drift::{Monitor, Sample, Watcher, WatcherSetup, log_of};
+use nalgebra::{Matrix2, Matrix3, Point3, Vector3};
+use plumbline_drift::{Monitor, Sample, Verdict, Watcher, WatcherSetup, log_of};
 use plumbline_effects::{Measurements, RigModel, RobotModel, SeenUnder};
 use plumbline_gap::{Finding, Options, find};
 use plumbline_model::measured_data::left_out;
@@ -69,17 +72,31 @@ fn explained(rig: &Rig, twin: &Lockstep, monitor: &Monitor) -> (Session, Finding
     (session, finding)
 }
 
-/// Mean and largest error (m) in the plane of the table over 9 by 4 places beside what cold eyes are off by;
-/// where they stand is what the twin hides. `None`: of what drifts alone.
-fn judged(twin: &mut Lockstep, model: &RobotModel, cold_m: &[Option<Vector3<f64>>]) -> [f64; 2] {
-    let errors = errors(twin, model);
-    let sizes: Vec<f64> =
-        errors.iter().zip(cold_m).filter_map(|(now, cold)| Some(((*now)? - (*cold)?).xy().norm())).collect();
-    assert_eq!(sizes.len(), 36, "all places are seen");
-    [sizes.iter().sum::<f64>() / 36.0, sizes.iter().copied().fold(0.0, f64::max)]
+/// A quantile of the squared distance of two normal numbers: 95 %.
+const INSIDE_95: f64 = 5.991;
+/// When it is judged, minutes since switching on.
+const JUDGED_MIN: [f64; 4] = [3.0, 6.0, 10.0, 20.0];
+/// What is said of the time to go holds the truth to so much, s.
+const TO_GO_WITHIN_S: f64 = 90.0;
+/// So far the head is turned to the side for the second half of the table, rad.
+const TURNED_RAD: f64 = 0.26;
+
+/// How far off the 9 by 4 places are, in the plane of the table, beside what they are off by with cold eyes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Off {
+    mean_m: f64,
+    worst_m: f64,
+    /// Places that lie in the stated 95 % around where they came out.
+    inside: usize,
+    /// Mean of the stated 95 % along the worst direction, m.
+    stated_m: f64,
 }
 
-fn errors(twin: &mut Lockstep, model: &RobotModel) -> Vec<Option<Vector3<f64>>> {
+/// Where each of the 36 places comes out minus where it is, and the stated covariance.
+type Errors = Vec<(Vector3<f64>, Matrix3<f64>)>;
+
+/// Where places stand is what the twin hides.
+fn errors(twin: &mut Lockstep, model: &RobotModel) -> Errors {
     let (seen, posture) = (SeenUnder { t_secs: Some(twin.eyes_on_s()), background_m: None }, twin.encoders());
     let rig = model.rig().clone();
     let eyes = twin.truth_for_judging().eyes;
@@ -89,60 +106,201 @@ fn errors(twin: &mut Lockstep, model: &RobotModel) -> Vec<Option<Vector3<f64>>> 
         let right = eyes.right.project(&(eyes.robot_from_right.isometry.inverse() * at).coords).ok()?;
         let in_left = rig.eyes.cameras.triangulate(left, right)?;
         let put = model.place(&in_left, &Matrix3::zeros(), &posture, &seen)?;
-        Some(put.point.coords.coords - at.coords)
+        Some((put.point.coords.coords - at.coords, put.covariance_m2))
     };
-    (0..36).map(place).collect()
+    let all: Errors = (0..36).filter_map(place).collect();
+    assert_eq!(all.len(), 36, "all places are seen");
+    all
 }
 
-#[test]
-fn twenty_minutes_of_warming_up_are_watched_explained_and_corrected() {
-    let rig = default_rig();
-    let scenario = Scenario::built_in("lab").expect("a scenario");
-    let world = || {
-        let mut twin = Lockstep::new(rig.clone(), &scenario, 5).expect("a world");
-        for toy in Toy::ALL {
-            twin.remove_toy(toy);
+fn off(now: &Errors, cold: &Errors) -> Off {
+    let mut off = Off::default();
+    for ((error, covariance_m2), (cold, _)) in now.iter().zip(cold) {
+        let drift = (error - cold).xy();
+        off.mean_m += drift.norm() / 36.0;
+        off.worst_m = off.worst_m.max(drift.norm());
+        let flat: Matrix2<f64> = covariance_m2.fixed_view::<2, 2>(0, 0).into();
+        let distance = flat.try_inverse().map_or(f64::INFINITY, |inverse| drift.dot(&(inverse * drift)));
+        off.inside += usize::from(distance <= INSIDE_95);
+        // The larger of the two eigenvalues.
+        let apart = (0.5 * (flat.m11 - flat.m22)).hypot(flat.m12);
+        let largest_m2 = 0.5 * flat.trace() + apart;
+        off.stated_m += (INSIDE_95 * largest_m2.max(0.0)).sqrt() / 36.0;
+    }
+    off
+}
+
+fn world(rig: &Arc<Rig>, scenario: &Scenario) -> Lockstep {
+    let mut twin = Lockstep::new(rig.clone(), scenario, 5).expect("a world");
+    for toy in Toy::ALL {
+        twin.remove_toy(toy);
+    }
+    twin.place_toy(Toy::Tomato, 0.32, 0.12).expect("on the table");
+    twin.place_toy(Toy::Banana, 0.42, -0.18).expect("on the table");
+    twin.wait(1.0);
+    twin.cool_eyes();
+    twin
+}
+
+/// When places of the far row are within 2 mm of where they end, s since switching on.
+fn warm_s(twin: &mut Lockstep, model: &RobotModel) -> f64 {
+    let mut course = Vec::new();
+    while twin.eyes_on_s() < 5400.0 {
+        course.push((twin.eyes_on_s(), errors(twin, model)));
+        twin.advance_warm_up(10.0);
+    }
+    let end = errors(twin, model);
+    let away_m = |errors: &Errors| (27..36).map(|k| (errors[k].0 - end[k].0).norm()).sum::<f64>() / 9.0;
+    course.iter().find(|(_, errors)| away_m(errors) <= 0.002).map_or(f64::INFINITY, |(at_s, _)| *at_s)
+}
+
+/// What was said of the time to go, after so many minutes each.
+fn told_to_go(monitor: &Monitor) -> Vec<(f64, [f64; 2])> {
+    let mut told = Vec::new();
+    let mut so_far = Monitor::default();
+    let mut next =
+        [2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 15.0, 19.0].into_iter().map(|min: f64| 60.0 * min).peekable();
+    for sample in monitor.samples() {
+        so_far.add(sample.clone());
+        if next.peek().is_some_and(|at_s| sample.at_s >= *at_s) {
+            next.next();
+            if let Verdict::Warming { to_go_s: Some(to_go_s), .. } = so_far.verdict() {
+                told.push((sample.at_s, to_go_s));
+            }
         }
-        twin.place_toy(Toy::Tomato, 0.32, 0.12).expect("on the table");
-        twin.place_toy(Toy::Banana, 0.42, -0.18).expect("on the table");
-        twin.wait(1.0);
-        twin.cool_eyes();
-        twin
-    };
+    }
+    told
+}
+
+/// With what was found; as it was where nothing was.
+fn corrected(rig: &Arc<Rig>, finding: &Finding, session: Session) -> RobotModel {
+    let addable = finding.addable();
+    if addable.is_empty() {
+        return RobotModel::nominal(rig.clone());
+    }
+    let nominal = RigModel::nominal(rig);
+    let at = jiff::Timestamp::UNIX_EPOCH;
+    let added = plumbline_engine::rig_models::with(&nominal, rig, (finding, &[session]), &addable, true, at);
+    RobotModel::new(rig.clone(), Arc::new(added.expect("can be added"))).expect("fits")
+}
+
+/// Watched for so many minutes, explained, corrected; judged with the head as it stood and turned.
+fn judged(name: &str, scenario: &Scenario, watched_min: f64) -> Option<Vec<(f64, bool, Off, Off)>> {
+    let rig = default_rig();
     let nominal = Arc::new(RobotModel::nominal(rig.clone()));
-    let mut twin = world();
-    let Some(monitor) = watched(&mut twin, &nominal, 20.0) else { return };
+    let mut twin = world(&rig, scenario);
+    let monitor = watched(&mut twin, &nominal, watched_min)?;
+    let warm_s = warm_s(&mut world(&rig, scenario), &nominal);
+    for (at_s, [least_s, most_s]) in told_to_go(&monitor) {
+        println!(
+            "{name}: after {:.0} min {:.0} to {:.0} min to go; truly {:.1}",
+            at_s / 60.0,
+            least_s / 60.0,
+            most_s / 60.0,
+            (warm_s - at_s).max(0.0) / 60.0
+        );
+        // Before that the bend hardly shows.
+        let truly_s = (warm_s - at_s).max(0.0);
+        let held = least_s - TO_GO_WITHIN_S <= truly_s && truly_s <= most_s + TO_GO_WITHIN_S;
+        assert!(held || at_s < 300.0, "{name}: {truly_s} s to go after {at_s} s");
+    }
     let (session, finding) = explained(&rig, &twin, &monitor);
-    println!("{:?} in {:.1} s: {}", finding.verdict, finding.seconds, finding.sentence);
+    println!("{name}: {:?} in {:.1} s: {}", finding.verdict, finding.seconds, finding.sentence);
     for effect in &finding.effects {
         println!("  {} {:?} {:?}", effect.id, effect.shape, effect.values);
     }
-    let added = plumbline_engine::rig_models::with(
-        &RigModel::nominal(&rig),
-        &rig,
-        (&finding, &[session]),
-        &finding.addable(),
-        true,
-        jiff::Timestamp::UNIX_EPOCH,
-    )
-    .expect("can be added");
-    let corrected = RobotModel::new(rig.clone(), Arc::new(added)).expect("fits");
-    // The same robot, cold again.
-    let mut twin = world();
-    let cold_m = errors(&mut twin, &nominal);
-    let mut last = [0.0; 2];
-    for minutes in [0.0, 3.0, 6.0, 10.0, 20.0] {
-        twin.advance_warm_up(60.0 * minutes - twin.eyes_on_s());
-        let [before, after] = [&*nominal, &corrected].map(|model| judged(&mut twin, model, &cold_m));
-        println!(
-            "{minutes:>4} min: mean {:.1} → {:.1} mm, worst {:.1} → {:.1} mm",
-            before[0] * 1e3,
-            after[0] * 1e3,
-            before[1] * 1e3,
-            after[1] * 1e3
-        );
-        assert!(after[0] <= 6e-3 && after[1] <= 15e-3, "{minutes} min: {after:?}");
-        last = before;
+    let corrected = corrected(&rig, &finding, session);
+    if corrected.is_nominal() {
+        println!("{name}: nothing is worth a correction");
     }
-    assert!(last[0] > 0.02, "there was something to correct: {last:?}");
+    let mut table = Vec::new();
+    for is_turned in [false, true] {
+        // The same robot, cold again.
+        let mut twin = world(&rig, scenario);
+        if is_turned {
+            let posture = twin.encoders().with(&[rig.eyes.pan], &[TURNED_RAD]);
+            twin.follow(&[posture], 0.5);
+            twin.cool_eyes();
+        }
+        let cold = [&*nominal, &corrected].map(|model| errors(&mut twin, model));
+        for minutes in JUDGED_MIN {
+            twin.advance_warm_up(60.0 * minutes - twin.eyes_on_s());
+            let [before, after] = [(&*nominal, &cold[0]), (&corrected, &cold[0])]
+                .map(|(model, cold)| off(&errors(&mut twin, model), cold));
+            println!(
+                "{name:>8} {:>6} {minutes:>4} min: mean {:>4.1} → {:.1} mm, worst {:>4.1} → {:.1} mm, {:>2} of 36 inside the \
+                 stated 95 % ({:.1} mm)",
+                if is_turned { "turned" } else { "fixed" },
+                before.mean_m * 1e3,
+                after.mean_m * 1e3,
+                before.worst_m * 1e3,
+                after.worst_m * 1e3,
+                after.inside,
+                after.stated_m * 1e3
+            );
+            table.push((minutes, is_turned, before, after));
+        }
+    }
+    Some(table)
+}
+
+fn scenario(name: &str) -> Scenario {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../core/offline/tests/scenarios");
+    let file = folder.join(format!("{name}.toml"));
+    let text = std::fs::read_to_string(&file).expect("a scenario of the repository");
+    Scenario::from_toml(name, &text).expect("a scenario")
+}
+
+/// The share of places inside the stated 95 % over all rows of a table.
+fn inside(table: &[(f64, bool, Off, Off)]) -> f64 {
+    let inside: usize = table.iter().map(|(.., after)| after.inside).sum();
+    inside as f64 / (36 * table.len()) as f64
+}
+
+fn holds(name: &str, table: &[(f64, bool, Off, Off)]) {
+    for (minutes, is_turned, _, after) in table {
+        let about = format!("{name}, {minutes} min, turned: {is_turned}: {after:?}");
+        assert!(after.mean_m <= 6e-3 && after.worst_m <= 15e-3, "{about}");
+    }
+    let share = inside(table);
+    println!("{name}: {:.1} % inside the stated 95 %", 100.0 * share);
+    assert!(share >= 0.95, "{name}: the stated 95 % hold for {share}");
+}
+
+#[test]
+fn in_the_laboratory_twenty_minutes_of_warming_up_are_explained_and_corrected() {
+    let lab = Scenario::built_in("lab").expect("a scenario");
+    let Some(table) = judged("lab", &lab, 20.0) else { return };
+    holds("lab", &table);
+    let raw_m = table.iter().map(|(_, _, before, _)| before.mean_m).fold(0.0, f64::max);
+    assert!(raw_m > 0.02, "there was something to correct: {raw_m}");
+}
+
+#[test]
+fn in_a_world_drawn_by_chance() {
+    let Some(table) = judged("drawn-1", &scenario("drawn-1"), 20.0) else { return };
+    holds("drawn-1", &table);
+}
+
+/// There the right eye nods and rolls against the left one, which no effect of the library is: places go by
+/// millimeters only, nothing is named and nothing corrected. What that leaves at the corners with the head turned
+/// (17.6 mm after 20 minutes) is more than is wanted.
+#[test]
+fn in_another_world_drawn_by_chance_nothing_is_named_and_places_stay_on_average() {
+    let Some(table) = judged("drawn-2", &scenario("drawn-2"), 20.0) else { return };
+    for (minutes, is_turned, before, after) in &table {
+        let about = format!("{minutes} min, turned: {is_turned}: {after:?}");
+        assert!(after.mean_m <= 6e-3 && after.mean_m <= before.mean_m, "{about}");
+    }
+}
+
+#[test]
+fn after_ten_minutes_only() {
+    let lab = Scenario::built_in("lab").expect("a scenario");
+    let Some(table) = judged("lab, 10", &lab, 10.0) else { return };
+    let later = table.iter().filter(|(minutes, ..)| *minutes > 10.0);
+    for (minutes, is_turned, before, after) in later {
+        assert!(after.mean_m < 0.4 * before.mean_m, "{minutes} {is_turned}: {after:?}");
+    }
+    holds("lab, 10", &table);
 }

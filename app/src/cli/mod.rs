@@ -16,6 +16,7 @@ mod grasp;
 mod grid;
 mod health;
 mod ik;
+mod lerobot;
 mod locate;
 mod output;
 mod predict;
@@ -81,6 +82,8 @@ enum Verb {
     Health(WithJson<health::Health>),
     /// Judges places on a grid of known targets, and what the published correction makes of them.
     Grid(WithJson<grid::Grid>),
+    /// Writes a recording as a LeRobot data set, version 3.
+    Lerobot(WithJson<lerobot::Lerobot>),
     /// Says whether a rig file is sound, or writes the robot with its effects for other programs.
     #[command(subcommand)]
     Rig(Rig),
@@ -156,6 +159,7 @@ pub fn run() -> ExitCode {
                 Verb::GraspTrials(verb) => verb.run(grasp::trials),
                 Verb::Health(verb) => verb.run(health::run),
                 Verb::Grid(verb) => verb.run(grid::run),
+                Verb::Lerobot(verb) => verb.run(lerobot::run),
                 Verb::Rig(Rig::Check(verb)) => verb.run(rig::check),
                 Verb::Rig(Rig::Export(verb)) => verb.run(rig::export),
                 Verb::Disparity(verb) => verb.run(disparity::run),

@@ -161,6 +161,8 @@ pub enum Pane {
     DriftCourse,
     /// How far they have wandered over the table.
     DriftTable,
+    /// The 9 by 4 evaluation.
+    DriftGrid,
     /// Which detectors are judged on what.
     ScoreChoice,
     /// Detectors compared.
@@ -230,6 +232,7 @@ impl Pane {
             Self::GraspExperiment => "Experiment",
             Self::DriftCourse => "Drift",
             Self::DriftTable => "Drift over the table",
+            Self::DriftGrid => "9×4 evaluation",
             Self::ScoreChoice => "Detectors and data set",
             Self::ScoreTable => "Detectors compared",
             Self::ScoreClasses => "Per class",

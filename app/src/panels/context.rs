@@ -64,6 +64,8 @@ pub struct PanelState {
     pub gap: GapPanels,
     /// Grasping.
     pub grasp: GraspPanels,
+    /// The thing of the 9 by 4 evaluation, where one was chosen.
+    pub grid_object: Option<String>,
     /// The lab's own data sets.
     pub labels: LabelsPanels,
     /// Judging detectors.
@@ -93,6 +95,7 @@ impl Default for PanelState {
             models: ModelsPanels::default(),
             gap: GapPanels::default(),
             grasp: GraspPanels::default(),
+            grid_object: None,
             labels: LabelsPanels::default(),
             scores: ScoresPanels::default(),
         }

@@ -109,6 +109,7 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
         Pane::GraspExperiment => grasp::show_experiment(ui, cx),
         Pane::DriftCourse => drift::show_course(ui, cx),
         Pane::DriftTable => drift::show_table(ui, cx),
+        Pane::DriftGrid => drift::show_grid(ui, cx),
         Pane::ScoreChoice
         | Pane::ScoreTable
         | Pane::ScoreClasses

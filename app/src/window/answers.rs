@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use plumbline_engine::{
-    Command, DetectCommand, DetectorChoice, EyesCommand, FileLength, GapCommand, LabelsCommand,
-    ModelsCommand, ScoresCommand, SourceCommand, TablesCommand, TrialsCommand,
+    Command, DetectCommand, DetectorChoice, DriftCommand, EyesCommand, FileLength, GapCommand, GridCommand,
+    GridCorrection, GridSide, LabelsCommand, ModelsCommand, ScoresCommand, SourceCommand, TablesCommand,
+    TrialsCommand,
 };
 
 use super::PlumblineWindow;
@@ -38,6 +39,12 @@ impl PlumblineWindow {
             Question::Detector => DetectCommand::Use(DetectorChoice::File(file)).into(),
             Question::TouchSession => ModelsCommand::ChooseSession { session: file }.into(),
             Question::GapSession => GapCommand::Choose { sessions: vec![file] }.into(),
+            Question::GridSession => DriftCommand::Grid(GridCommand::Show {
+                side: GridSide::Right,
+                session: file,
+                correction: GridCorrection::Described,
+            })
+            .into(),
             Question::GapReport { pdf } => GapCommand::Report { file, pdf }.into(),
             Question::LabelSet => {
                 self.settings.screen = Screen::Images;

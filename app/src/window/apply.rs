@@ -16,8 +16,8 @@ use super::jogging::RENEW;
 use super::settings::ThemeChoice;
 use crate::operator::guidance::guidance;
 use crate::operator::{
-    Action, CommissionAction, DetectAction, GapAction, LabelsAction, ModelsAction, Outbox, Preset,
-    RobotAction, ScoresAction, Screen, TouchAction, TrialsAction, gap_plan, gap_proof,
+    Action, CommissionAction, DetectAction, GapAction, GridAction, LabelsAction, ModelsAction, Outbox,
+    Preset, RobotAction, ScoresAction, Screen, TouchAction, TrialsAction, gap_plan, gap_proof,
 };
 
 /// A message of the window itself.
@@ -87,6 +87,7 @@ impl PlumblineWindow {
                 self.panels.touch.window_open = !self.panels.touch.window_open;
             }
             Action::Trials(TrialsAction::Export(format)) => self.ask_for(ctx, Question::Trials(format)),
+            Action::Grid(GridAction::Open) => self.ask_for(ctx, Question::GridSession),
             Action::Commission(action) => self.act_on_commission(ctx, action),
             Action::Next if self.view.commission.is_on && self.commission_rest.is_on(ctx) => {}
             Action::Next if self.view.commission.is_on => {
@@ -248,6 +249,7 @@ impl PlumblineWindow {
             Action::Gap(action) => return action.command(&self.view),
             Action::Grasp(action) => return action.command(&self.view),
             Action::Trials(action) => return action.command(),
+            Action::Grid(action) => return action.command(),
             Action::Labels(action) => return action.command(&self.view),
             Action::Scores(action) => return action.command(&self.view),
             Action::Detect(action) => return action.command(),

@@ -124,7 +124,7 @@ fn grasp(tiles: &mut Tiles<Pane>) -> TileId {
 }
 
 fn drift(tiles: &mut Tiles<Pane>) -> TileId {
-    let course = tabs(tiles, &[Pane::DriftCourse]);
+    let course = tabs(tiles, &[Pane::DriftCourse, Pane::DriftGrid]);
     let table = tabs(tiles, &[Pane::DriftTable]);
     let eye = tabs(tiles, &[Pane::LeftEye, Pane::RightEye, Pane::Twin]);
     let right = column(tiles, &[(table, 1.25), (eye, 1.0)]);

@@ -29,6 +29,8 @@ pub enum Question {
     TouchSession,
     /// The folder of a session to compare with the model.
     GapSession,
+    /// The folder of a 9 by 4 evaluation.
+    GridSession,
     /// Where a page about the gap is written, as PDF or as HTML.
     GapReport {
         /// As PDF.
@@ -88,6 +90,7 @@ impl Question {
             Self::Detector => "Choose a detector",
             Self::TouchSession => "Open a session with touches",
             Self::GapSession => "Open a session to compare",
+            Self::GridSession => "Open an evaluation",
             Self::GapReport { .. } => "Write the report of the gap",
             Self::ImportModel => "Import a correction model",
             Self::ExportModel(..) => "Export the correction model",
@@ -125,6 +128,7 @@ impl Question {
             Self::Folder
                 | Self::TouchSession
                 | Self::GapSession
+                | Self::GridSession
                 | Self::LabelSet
                 | Self::ExportLabels
                 | Self::ImportLabels

@@ -6,9 +6,11 @@ use egui::Key;
 use nalgebra::Vector3;
 use plumbline::{Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::view::{
-    DriftCourse, DriftPoint, DriftVerdict, DriftView, PlaceError, SourceStatus, SourceView, StepState,
+    DriftCourse, DriftPoint, DriftVerdict, DriftView, GridCorrection, GridDoing, GridErrors, GridFigure,
+    GridPlace, GridRunView, GridView, Judged, PlaceError, SourceStatus, SourceView, StepState,
 };
-use plumbline_engine::{Command, DriftCommand, View};
+use plumbline_engine::{Command, DriftCommand, GridCommand, View};
+use plumbline_model::Point;
 
 use crate::fake::{Fake, click, says, shows};
 use crate::made_up::everything;
@@ -112,6 +114,101 @@ fn curves_and_map_tell_their_newest_values_to_who_cannot_see_them() {
     assert!(says(&window, "Vertical error"));
 }
 
+/// Places of the grid that come out farther away than they are, by so many times what the paper saw.
+fn judged(times: f64) -> Arc<Judged> {
+    let place = |k: usize| {
+        let (x_m, y_m) = (0.2 + 0.1 * (k / 9) as f64, 0.1 * ((k % 9) as f64 - 4.0));
+        let off_m = times * 0.05 * x_m;
+        let estimate = Point::new(x_m + off_m, y_m + 0.4 * off_m * y_m, 0.05 + 0.3 * off_m);
+        GridPlace { target: Point::new(x_m, y_m, 0.05), estimate, range_m: 0.6 }
+    };
+    let places: Vec<GridPlace> = (0..35).map(place).collect();
+    let errors = GridErrors::of(&places).expect("places");
+    Arc::new(Judged { places, errors, not_seen: 1 })
+}
+
+fn evaluated() -> GridView {
+    let session = std::path::PathBuf::from("/lab/sessions/2026-05-01T10-00-00_grid");
+    let figure = |correction, judged| {
+        Some(GridFigure {
+            session: session.clone(),
+            title: "2026-05-01T10-00-00_grid".to_owned(),
+            correction,
+            judged: Some(judged),
+        })
+    };
+    GridView {
+        figures: [
+            figure(GridCorrection::Described, Ok(judged(1.5))),
+            figure(GridCorrection::Model, Ok(judged(0.2))),
+        ],
+        sessions: [(session.clone(), "2026-05-01T10-00-00_grid".to_owned())].into(),
+        ..GridView::default()
+    }
+}
+
+fn run(doing: GridDoing, places_by_itself: bool) -> GridView {
+    let run = GridRunView {
+        object: "Tomato",
+        place: 12,
+        of: 36,
+        at_m: [0.3, -0.2],
+        places_by_itself,
+        doing,
+        measured: 11,
+        session: None,
+    };
+    GridView { run: Some(run), unable: Some("one is under way"), ..evaluated() }
+}
+
+/// The screen with the evaluation in front.
+fn on_the_grid(grid: GridView) -> (Fake, egui_kittest::Harness<'static, plumbline::PlumblineWindow>) {
+    let fake = Fake::over(with(DriftView { grid, ..watching(Some(course(12.0))) }));
+    let mut window = fake.window(on(Screen::Drift));
+    click(&mut window, "9×4 evaluation");
+    fake.take_sent();
+    (fake, window)
+}
+
+#[test]
+fn an_operator_is_led_from_place_to_place_of_the_grid() {
+    let (fake, mut window) = on_the_grid(GridView { unable: None, ..evaluated() });
+    click(&mut window, "Begin 36 places");
+    let begin = DriftCommand::Grid(GridCommand::Begin { object: "Tomato".to_owned() });
+    assert_eq!(fake.take_sent(), [Command::from(begin)]);
+    let (fake, mut window) = on_the_grid(run(GridDoing::Asks, false));
+    assert!(
+        says(&window, "Place 12 of 36: x 300, y -200 mm")
+            || says(&window, "Place 12 of 36: x 300, y −200 mm")
+    );
+    assert!(says(&window, "200 mm to the robot's right"));
+    for (label, command) in
+        [("Placed", GridCommand::Placed), ("Leave out", GridCommand::LeaveOut), ("End", GridCommand::End)]
+    {
+        click(&mut window, label);
+        assert_eq!(fake.take_sent(), [Command::from(DriftCommand::Grid(command))], "{label}");
+    }
+    let (_, window) = on_the_grid(run(GridDoing::NotSeen, false));
+    assert!(says(&window, "lay it again and press Placed, or leave the place out"));
+    let (_, window) = on_the_grid(run(GridDoing::Looks { looks: 2, of: 5 }, true));
+    assert!(says(&window, "2 of 5") && !shows(&window, "Placed"), "the twin lays it by itself");
+}
+
+#[test]
+fn two_corrections_stand_side_by_side_with_one_scale() {
+    let (_, window) = on_the_grid(evaluated());
+    let all =
+        |k: usize| evaluated().figures[k].clone().expect("a figure").judged.expect("judged").expect("places");
+    for k in 0..2 {
+        let mean = plumbline_widgets::format::mm(all(k).errors.mean_m);
+        assert!(shows(&window, &format!("Mean {mean}")), "{mean}");
+    }
+    assert!(says(&window, "35 places, 1 not seen"));
+    assert!(says(&window, "the same in both"));
+    let (_, window) = on_the_grid(GridView::default());
+    assert!(says(&window, "No evaluation yet"));
+}
+
 /// For people: `PLUMBLINE_WINDOW_PICTURES=FOLDER`.
 #[test]
 #[ignore = "draws pictures for people"]
@@ -121,6 +218,11 @@ fn pictures_of_drift() {
         let settings = WindowSettings { theme, ..on(Screen::Drift) };
         let mut window = fake.window_with(settings, [1280.0, 800.0], true);
         let file = crate::fake::picture_folder().join(format!("drift-{name}.png"));
+        window.render().expect("drawn").save(file).expect("written");
+        click(&mut window, "9×4 evaluation");
+        fake.show(with(DriftView { grid: run(GridDoing::Asks, false), ..watching(Some(course(12.0))) }));
+        window.run_steps(4);
+        let file = crate::fake::picture_folder().join(format!("grid-{name}.png"));
         window.render().expect("drawn").save(file).expect("written");
     }
 }

@@ -6,7 +6,7 @@
 //! it learned at one height and one temperature is not so at others.
 
 use nalgebra::{Matrix3, Point2, Vector2, Vector3};
-use plumbline_model::robot::Rig;
+use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::session::{LocalizationRow, LocalizationTable};
 use plumbline_model::{Point, Robot};
 
@@ -36,22 +36,53 @@ impl GridPlace {
     }
 }
 
-/// Rows of a session with target and estimate that count; a head whose angles are not told stands as usual.
+/// Places of a session with target and estimate that count; a head whose angles are not told stands as usual.
+/// Rows of one group are looks at one place: their mean counts.
 pub fn grid_places(table: &LocalizationTable, rig: &Rig) -> Vec<GridPlace> {
+    places_by(table, rig, |row, _| row.estimate)
+}
+
+/// The same with estimates of one's own: `estimate` says where a row comes out as the robot stands in it.
+pub(crate) fn places_by(
+    table: &LocalizationTable,
+    rig: &Rig,
+    estimate: impl Fn(&LocalizationRow, &Posture) -> Option<Point<Robot>>,
+) -> Vec<GridPlace> {
     let joints: Vec<_> =
         table.head_joints().iter().map(|name| rig.description.find_joint(name).ok()).collect();
-    let place = |row: LocalizationRow| {
-        let (target, estimate) = (row.truth?, row.estimate?);
+    let mut all: Vec<Looks> = Vec::new();
+    for row in table.rows().filter(|row| row.valid) {
         let mut posture = rig.home();
         for (joint, angle_rad) in joints.iter().zip(&row.head_rad) {
             if let (Some(joint), Some(angle_rad)) = (joint, angle_rad) {
                 posture[*joint] = *angle_rad;
             }
         }
-        let range_m = (rig.robot_from_left(&posture).inverse() * estimate).range_m();
-        row.valid.then_some(GridPlace { target, estimate, range_m })
+        let (Some(target), Some(seen)) = (row.truth, estimate(&row, &posture)) else { continue };
+        let seen_m = seen.coords.coords;
+        let again =
+            |looks: &&mut Looks| looks.group.is_some() && looks.group == row.group && looks.target == target;
+        match all.iter_mut().find(again) {
+            Some(looks) => looks.seen_m.push(seen_m),
+            None => all.push(Looks { group: row.group.clone(), target, posture, seen_m: vec![seen_m] }),
+        }
+    }
+    let place = |looks: Looks| {
+        let mean_m = looks.seen_m.iter().sum::<Vector3<f64>>() / looks.seen_m.len() as f64;
+        let estimate = Point::new(mean_m.x, mean_m.y, mean_m.z);
+        let range_m = (rig.robot_from_left(&looks.posture).inverse() * estimate).range_m();
+        GridPlace { target: looks.target, estimate, range_m }
     };
-    table.rows().filter_map(place).collect()
+    all.into_iter().map(place).collect()
+}
+
+/// Looks at one place.
+struct Looks {
+    group: Option<String>,
+    target: Point<Robot>,
+    posture: Posture,
+    /// Where it came out each time, robot frame.
+    seen_m: Vec<Vector3<f64>>,
 }
 
 /// Mean, median and largest error in the plane of the table, m.

@@ -7,6 +7,7 @@
 //! reads images, encoders and detections and nothing else.
 
 mod cost;
+mod evaluation;
 mod grid;
 mod log;
 mod monitor;
@@ -15,6 +16,7 @@ mod watch;
 pub mod words;
 
 pub use cost::{PlaceError, Row, TableError, errors};
+pub use evaluation::{GridCorrection, Judged, NotJudged, evaluation_places_m, judge};
 pub use grid::{GridErrors, GridPlace, PivotCorrection, grid_places};
 pub use log::{LogError, is_too_short, log_of};
 pub use monitor::{Alarm, Band, Monitor, Mover, OwnMotion, Sample, Verdict};

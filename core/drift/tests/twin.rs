@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use image::GrayImage;
+use nalgebra::Vector3;
 use plumbline_drift::{
     Monitor, Mover, Reference, ReferenceKind, Sample, Verdict, Watcher, WatcherSetup, words,
 };
@@ -17,6 +18,9 @@ use plumbline_twin::{Lockstep, Scenario, Toy};
 
 const EVERY_S: f64 = 3.0;
 const SEED: u64 = 5;
+/// An eye that was turned by half a degree is told of within this, s, and how far it turned to so much.
+const NOTICED_WITHIN_S: f64 = 10.0;
+const RECOVERED_TO_DEG: f64 = 0.02;
 const TOYS: [(Toy, [f64; 2]); 2] = [(Toy::Tomato, [0.32, 0.12]), (Toy::Banana, [0.42, -0.18])];
 
 struct Bench {
@@ -143,14 +147,24 @@ fn an_eye_that_is_knocked_is_noticed_and_named() {
         // The same robot a moment later.
         knocked.twin.advance_warm_up(bench.twin.eyes_on_s() - knocked.twin.eyes_on_s());
         std::mem::swap(&mut bench.twin, &mut knocked.twin);
-        bench.watch(3);
-        let Verdict::Moved(alarm) = bench.monitor.verdict() else {
-            panic!("{turn_deg:?} is not noticed: {:?}", bench.newest().look.turns_rad)
+        let knocked_s = bench.twin.eyes_on_s();
+        let alarm = loop {
+            bench.watch(1);
+            let after_s = bench.twin.eyes_on_s() - knocked_s;
+            if let Verdict::Moved(alarm) = bench.monitor.verdict() {
+                println!("{turn_deg:?}: told after {after_s:.1} s");
+                break alarm;
+            }
+            let seen = bench.newest().look.turns_rad;
+            assert!(after_s + EVERY_S <= NOTICED_WITHIN_S, "{turn_deg:?} is not noticed in time: {seen:?}");
         };
         assert_eq!(alarm.what, Mover::RightEye, "{turn_deg:?}");
-        let turned_deg = bench.newest().look.turns_rad[1].norm().to_degrees();
-        println!("{turn_deg:?}: {turned_deg:.4}°; {}", words::alarm(&alarm));
-        assert!((turned_deg - 0.5).abs() < 0.02, "{turned_deg}");
+        let expected_rad = Vector3::from(turn_rad);
+        let found_rad = bench.newest().look.turns_rad[1];
+        // What was seen turns the other way round than what sees it.
+        let off_deg = (found_rad + expected_rad).norm().min((found_rad - expected_rad).norm()).to_degrees();
+        println!("{turn_deg:?}: {off_deg:.4}° off; {}", words::alarm(&alarm));
+        assert!(off_deg <= RECOVERED_TO_DEG, "{turn_deg:?}: {found_rad:?} is {off_deg}° off");
         std::mem::swap(&mut bench.twin, &mut knocked.twin);
         bench.watch(4);
         assert!(
@@ -199,4 +213,43 @@ fn toys_that_are_moved_and_an_arm_that_moves_are_no_fault_of_the_eyes() {
     }
     assert_eq!(bench.monitor.alarms(), &[]);
     assert!(matches!(bench.monitor.verdict(), Verdict::Steady { .. }), "{:?}", bench.monitor.verdict());
+}
+
+/// Hours, and time between looks, s: the window looks more often, but at an arm that moves as often it would look
+/// after each motion, as here.
+const HOURS: f64 = 8.0;
+const BETWEEN_S: f64 = 120.0;
+
+#[test]
+fn in_eight_hours_of_an_arm_and_toys_that_move_there_is_at_most_one_alarm() {
+    let Some(mut bench) = warm(&with_right_eye([0.0; 3])) else { return };
+    bench.watch(18);
+    let rig = bench.twin.rig().clone();
+    let arm = &rig.arms[0].joints;
+    let looks = (HOURS * 3600.0 / BETWEEN_S) as usize;
+    let mut worst_m = [0.0_f64; 3];
+    for k in 0..looks {
+        let share = |step: usize| (k * step % 17) as f64 / 17.0;
+        let posture = rig.home().with(arm, &[0.5 * share(3), 0.3 * share(5), 0.2 + 0.4 * share(7)]);
+        bench.twin.follow(&[posture], 1.5);
+        if k % 10 == 0 {
+            let (toy, [x_m, y_m]) = TOYS[k / 10 % 2];
+            let put = bench.twin.place_toy(toy, x_m + 0.05 * share(11), y_m + 0.04 * share(13));
+            put.expect("on the table");
+        }
+        bench.twin.wait(0.1);
+        bench.twin.advance_warm_up(BETWEEN_S);
+        bench.look();
+        let off_m = bench.monitor.off_m(bench.newest());
+        worst_m = [0, 1, 2].map(|row: usize| worst_m[row].max(off_m[row]));
+    }
+    let told = bench.monitor.alarms();
+    println!(
+        "{looks} looks in {HOURS} h: at most {:.1?} mm off, band {:.1?} mm, {} alarms, {:.0} ms a look",
+        worst_m.map(|m| m * 1e3),
+        bench.monitor.band().expect("learned").half_m.map(|m| m * 1e3),
+        told.len(),
+        1e3 * bench.busy_s / bench.looks as f64
+    );
+    assert!(told.len() <= 1, "{told:?}");
 }

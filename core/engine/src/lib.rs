@@ -36,10 +36,11 @@ pub mod engine;
 pub use command::{
     AimChoice, BoxEdit, Command, CommissionCommand, ConfusionCell, ContactWith, Correction, Destination,
     DetectCommand, DetectorChoice, DriftCommand, ExportFormat, Exported, EyesCommand, FileLength, GapCommand,
-    GapModel, GraspCommand, GraspTable, GraspTarget, HandStep, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId,
-    JogRates, LabelsCommand, LiveCommand, ModelsCommand, MountCommand, NoticeCommand, ProbePoint, Products,
-    Provider, RecordingCommand, RobotCommand, ScoresCommand, ScreenContact, ScreenWindow, SetPart,
-    SourceCommand, TablesCommand, TouchCommand, TrialsCommand, TrialsFormat, TwinCommand, WatchCommand,
+    GapModel, GraspCommand, GraspTable, GraspTarget, GridCommand, GridCorrection, GridSide, HandStep,
+    HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LabelsCommand, LiveCommand, ModelsCommand,
+    MountCommand, NoticeCommand, ProbePoint, Products, Provider, RecordingCommand, RobotCommand,
+    ScoresCommand, ScreenContact, ScreenWindow, SetPart, SourceCommand, TablesCommand, TouchCommand,
+    TrialsCommand, TrialsFormat, TwinCommand, WatchCommand,
 };
 pub use engine::settings::{self, EngineSettings};
 pub use engine::{Engine, Wake, journal, replay};

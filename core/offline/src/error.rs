@@ -130,6 +130,9 @@ pub enum OfflineError {
         "{0} has no localizations.csv with true places and estimates that count: give a session that has"
     )]
     NoGrid(PathBuf),
+    /// The recording cannot be exported.
+    #[error(transparent)]
+    Lerobot(#[from] plumbline_lerobot::ExportError),
     /// The eyes cannot be judged.
     #[error(transparent)]
     Health(#[from] HealthError),

@@ -21,6 +21,7 @@ mod grasp;
 mod grid;
 mod health;
 mod ik;
+mod lerobot;
 mod locate;
 mod pairs;
 mod predict;
@@ -55,6 +56,7 @@ pub use grasp::{
 pub use grid::{GridArgs, GridCorrection, GridReport, GridRow, grid};
 pub use health::{CalibrationHealth, HealthArgs, HealthReport, health};
 pub use ik::{IkArgs, IkReport, IkSolution, ik};
+pub use lerobot::{LerobotArgs, LerobotReport, lerobot};
 pub use locate::{LocateArgs, LocateReport, LocateRobot, LocatedPoint, PointInRobot, locate};
 pub use plumbline_twin::training_set::SetWorld;
 pub use plumbline_vision::detect as detector;

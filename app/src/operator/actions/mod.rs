@@ -4,6 +4,7 @@ mod commission;
 mod detect;
 mod gap;
 mod grasp;
+mod grid;
 mod labels;
 mod models;
 mod robot;
@@ -14,6 +15,7 @@ pub use commission::{CommissionAction, FIRST_CLASS, FIRST_PLACE_M};
 pub use detect::DetectAction;
 pub use gap::{GapAction, plan as gap_plan, proof as gap_proof};
 pub use grasp::GraspAction;
+pub use grid::{GridAction, USUAL_THING};
 pub use labels::{LabelsAction, ScoresAction};
 pub use models::ModelsAction;
 pub use robot::{MountAction, RobotAction, default_scenario};
@@ -110,6 +112,8 @@ pub enum Action {
     Grasp(GraspAction),
     /// Of the experiment with grasps.
     Trials(TrialsAction),
+    /// Of the 9 by 4 evaluation.
+    Grid(GridAction),
     /// Of commissioning.
     Commission(CommissionAction),
     /// Of the lab's own data sets.
@@ -155,7 +159,7 @@ macro_rules! into_action {
 }
 into_action!(
     Robot: RobotAction, Mount: MountAction, Touch: TouchAction, Models: ModelsAction, Gap: GapAction,
-    Grasp: GraspAction, Trials: TrialsAction, Commission: CommissionAction, Labels: LabelsAction, Scores: ScoresAction, Detect: DetectAction
+    Grasp: GraspAction, Trials: TrialsAction, Grid: GridAction, Commission: CommissionAction, Labels: LabelsAction, Scores: ScoresAction, Detect: DetectAction
 );
 
 /// All actions with a place in the palette, in its order.
@@ -171,7 +175,9 @@ pub fn all() -> impl Iterator<Item = Action> {
     let detect = DetectAction::ALL.into_iter().map(Action::Detect);
     let labels = LabelsAction::ALL.into_iter().map(Action::Labels);
     let scores = ScoresAction::ALL.into_iter().map(Action::Scores);
-    let steps = robot.chain(mount).chain(touch).chain(models).chain(gap).chain(grasp).chain(trials);
+    let grid = GridAction::ALL.into_iter().map(Action::Grid);
+    let steps =
+        robot.chain(mount).chain(touch).chain(models).chain(gap).chain(grasp).chain(trials).chain(grid);
     let threads = WatchedThread::ALL.into_iter().map(Action::StartAgain);
     ALL.iter()
         .copied()
@@ -295,6 +301,7 @@ impl Action {
             Self::Gap(action) => action.label(),
             Self::Grasp(action) => action.label(),
             Self::Trials(action) => action.label(),
+            Self::Grid(action) => action.label(),
             Self::Commission(action) => action.label(),
             Self::Labels(action) => action.label(),
             Self::Scores(action) => action.label(),
@@ -393,6 +400,7 @@ impl Action {
             Self::Gap(action) => action.refusal(view),
             Self::Grasp(action) => action.refusal(view),
             Self::Trials(action) => action.refusal(view),
+            Self::Grid(action) => action.refusal(view),
             Self::Commission(action) => action.refusal(view),
             Self::Labels(action) => action.refusal(view),
             Self::Scores(action) => action.refusal(view),

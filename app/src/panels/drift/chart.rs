@@ -14,6 +14,8 @@ const RIGHT: f32 = 48.0;
 const LEAST_RANGE_MM: f64 = 6.0;
 /// More points than these are not told apart.
 const MOST_POINTS: usize = 600;
+/// Names stand at least so far below each other.
+const NAME_HEIGHT: f32 = 12.0;
 
 /// A curve.
 pub struct Line {
@@ -86,13 +88,13 @@ impl Chart<'_> {
             let band = Rect::from_x_y_ranges(plot.x_range(), y(high)..=y(low));
             painter.rect_filled(band.intersect(plot), 0.0, tokens.raised);
         }
-        let rows = axis::ticks(least, most, ((plot.height() / 28.0) as usize).max(2));
+        let rows = axis::ticks(least, most, ((plot.height() / 24.0) as usize).max(3));
         for (mm, text) in rows.iter().zip(axis::labels(&rows)) {
             painter.hline(plot.x_range(), y(*mm), Stroke::new(0.5, tokens.text_weak.gamma_multiply(0.4)));
             let at = pos2(plot.left() - 4.0, y(*mm));
             painter.text(at, Align2::RIGHT_CENTER, text, small.clone(), tokens.text_weak);
         }
-        let columns = axis::ticks(from, to, ((plot.width() / 70.0) as usize).max(2));
+        let columns = axis::ticks(from, to, ((plot.width() / 60.0) as usize).max(3));
         for (minute, text) in columns.iter().zip(axis::labels(&columns)) {
             let at = pos2(x(*minute), plot.bottom() + 2.0);
             painter.text(at, Align2::CENTER_TOP, text, small.clone(), tokens.text_weak);
@@ -102,16 +104,26 @@ impl Chart<'_> {
         for minute in self.marks.iter().filter(|minute| (from..=to).contains(*minute)) {
             painter.vline(x(*minute), plot.y_range(), Stroke::new(1.0, Role::Warning.color(tokens)));
         }
-        let mut taken: Vec<f32> = Vec::new();
         for line in self.lines {
             self.curve(painter, tokens, plot, line, |[minute, mm]| pos2(x(minute), y(mm)));
-            let Some([_, mm]) = line.points.last() else { continue };
-            // Names stay apart where the curves do not.
-            let mut at = y(*mm);
-            while taken.iter().any(|other| (other - at).abs() < 12.0) {
-                at -= 12.0;
-            }
-            taken.push(at);
+        }
+        self.names(painter, tokens, plot, &small, y);
+    }
+
+    /// Names beside the ends of their curves, in the order of these and apart from each other.
+    fn names(
+        &self,
+        painter: &egui::Painter,
+        tokens: &Tokens,
+        plot: Rect,
+        small: &egui::FontId,
+        y: impl Fn(f64) -> f32,
+    ) {
+        let mut ends: Vec<(f32, &Line)> =
+            self.lines.iter().filter_map(|line| Some((y(line.points.last()?[1]), line))).collect();
+        ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let places: Vec<f32> = ends.iter().map(|(at, _)| *at).collect();
+        for ((_, line), at) in ends.iter().zip(apart(&places, [plot.top() - 4.0, plot.bottom() + 4.0])) {
             let name = pos2(plot.right() + 4.0, at);
             painter.text(name, Align2::LEFT_CENTER, &line.name, small.clone(), line.role.color(tokens));
         }
@@ -134,5 +146,37 @@ impl Chart<'_> {
             painter.circle_filled(*only, 2.0, color);
         }
         painter.add(Shape::line(points, Stroke::new(1.5, color)));
+    }
+}
+
+/// Ascending places moved as little as keeps them apart and inside.
+fn apart(places: &[f32], [top, bottom]: [f32; 2]) -> Vec<f32> {
+    let mut moved: Vec<f32> = Vec::with_capacity(places.len());
+    for (k, at) in places.iter().enumerate() {
+        let above = moved.last().map_or(top, |last| last + NAME_HEIGHT);
+        let below = bottom - NAME_HEIGHT * (places.len() - 1 - k) as f32;
+        moved.push(at.max(above).min(below.max(above)));
+    }
+    // Those that were pushed down take the ones above them along, halfway.
+    let pushed = moved.iter().zip(places).map(|(now, was)| now - was).fold(0.0, f32::max);
+    let room = moved.first().map_or(0.0, |first| first - top);
+    moved.iter().map(|at| at - (0.5 * pushed).min(room.max(0.0))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stay_apart_and_inside() {
+        for places in [[50.0, 50.0, 50.0], [0.0, 1.0, 2.0], [98.0, 99.0, 100.0], [10.0, 50.0, 90.0]] {
+            let moved = apart(&places, [0.0, 100.0]);
+            assert!(
+                moved.windows(2).all(|two| two[1] - two[0] > NAME_HEIGHT - 0.01),
+                "{places:?}: {moved:?}"
+            );
+            assert!(moved.iter().all(|at| (-0.01..=100.01).contains(at)), "{places:?}: {moved:?}");
+        }
+        assert_eq!(apart(&[10.0, 50.0, 90.0], [0.0, 100.0]), [10.0, 50.0, 90.0], "far ones stay");
     }
 }

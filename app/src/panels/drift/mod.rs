@@ -3,10 +3,13 @@
 mod chart;
 mod course;
 mod explain;
+mod grid;
+mod grid_map;
 mod inspector;
 mod table;
 
 pub use course::show as show_course;
+pub use grid::show as show_grid;
 pub use inspector::show as show_inspector;
 pub use table::show as show_table;
 

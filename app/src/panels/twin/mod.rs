@@ -81,7 +81,7 @@ fn clock(ui: &mut Ui, cx: &mut PanelContext<'_>, twin: &TwinView) {
             }
         }
         for times in PACES {
-            let is_chosen = (twin.warm_up_pace.max(1.0) - times).abs() < 0.5;
+            let is_chosen = (twin.warm_up_pace - times).abs() < 0.5;
             let chip = ui.selectable_label(is_chosen, format!("×{times}"));
             if chip
                 .on_hover_text("How many times as fast their clock runs: at ×20 twenty minutes take one")

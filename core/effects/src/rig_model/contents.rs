@@ -7,6 +7,7 @@ use plumbline_model::robot::{DescriptionError, Rig};
 use plumbline_model::session::Touchscreen;
 use serde::{Deserialize, Serialize};
 
+use super::eyes_left::EyesLeft;
 use super::file::{isometry_part, screen_part};
 use super::together::Together;
 use crate::arm::Arm;
@@ -34,6 +35,9 @@ pub struct Contents {
     /// The eyes that effects on the eyes were found with ([`super::numbers_of_eyes`]); empty: not known.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub eyes: Vec<f64>,
+    /// What those on the eyes leave of the rows that they were found in; `None`: not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub eyes_left: Option<EyesLeft>,
     /// Effects, the oldest first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<ModelEffect>,
@@ -371,6 +375,7 @@ impl Contents {
                 }
             }
         }
+        self.eyes_left.iter().try_for_each(EyesLeft::check)?;
         self.together.iter().try_for_each(Together::check)?;
         for placed in &self.screens {
             [&placed.nominal, &placed.screen].into_iter().try_for_each(usable_screen)?;

@@ -7,6 +7,7 @@ mod contents;
 mod error;
 mod export;
 mod eyes;
+mod eyes_left;
 mod file;
 mod left_out;
 mod predict;
@@ -28,6 +29,8 @@ pub use contents::{
 pub use error::RigModelError;
 pub use export::{CAMERA_LINKS, ExportError, Exported};
 pub use eyes::numbers_of_eyes;
+pub use eyes_left::EyesLeft;
+pub(crate) use eyes_left::tangents_per_angle;
 pub use file::{FORMAT, is_rig_model};
 pub use left_out::LeftOut;
 pub(crate) use predict::Measured;
@@ -93,6 +96,7 @@ impl RigModel {
         if !addition.eyes.is_empty() {
             if !eyes::are_same(&contents.eyes, &addition.eyes) && !contents.eyes.is_empty() {
                 contents.effects.retain(|effect| !eyes::is_of_eyes(effect));
+                contents.eyes_left = None;
             }
             contents.eyes = addition.eyes;
         }

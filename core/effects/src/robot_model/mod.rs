@@ -7,6 +7,7 @@
 mod arm;
 #[cfg(test)]
 mod laws;
+mod left;
 mod mounted;
 mod place;
 mod uncertainty;

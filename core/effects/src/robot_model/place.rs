@@ -29,8 +29,8 @@ pub struct SeenUnder {
 pub struct PlaceInRobot {
     /// Robot frame.
     pub point: Point<Robot>,
-    /// Covariance in the robot's axes, m²: that of what was seen, that of the effects' values, and that of
-    /// the mount of the eyes where it is known.
+    /// Covariance in the robot's axes, m²: that of what was seen, that of the effects' values with what they
+    /// leave of the rows that they were found in, and that of the mount of the eyes where it is known.
     pub covariance_m2: Matrix3<f64>,
 }
 
@@ -106,7 +106,12 @@ impl RobotModel {
             let mut at = |step: f64| undone(&(seen_at + Vector3::ith(k, step)), present);
             slopes.set_column(k, &slope(&mut at, &here, STEP_M)?);
         }
-        let by_sight = slopes * covariance_m2 * slopes.transpose();
+        // What the effects leave is not known of what is seen.
+        let left_m2 =
+            self.added.contents.eyes_left.map_or_else(Matrix3::zeros, |left| {
+                left.covariance_m2(&seen_at, self.eyes.cameras.baseline_m())
+            });
+        let by_sight = slopes * (covariance_m2 + left_m2) * slopes.transpose();
         let by_values = of_values(&self.of_eyes, |effects| undone(&seen_at, effects))?;
         let covariance_m2 = by_sight + by_values + by_mount;
         Some(PlaceInRobot { point: Point::new(here.x, here.y, here.z), covariance_m2 })

@@ -11,6 +11,7 @@ use plumbline_model::{Eye, Pixel, Point, Raw, Robot, StereoFrame};
 use crate::detect::view::{DetectionsView, ObjectView};
 use crate::ground::World;
 use crate::robot::view::{MotionState, RobotView};
+use crate::twin::view::TwinView;
 
 /// Detections of pairs that are this far from the one that is looked at are of it still.
 const SAME_MOMENT: Duration = Duration::from_secs(2);
@@ -38,6 +39,8 @@ pub struct DriftAround {
     pub clock_pace: f64,
     /// The world that is shown, where the arm is of it, too.
     pub world: Option<World>,
+    /// The twin, where it is what is shown.
+    pub twin: Option<Arc<TwinView>>,
     /// What the detector found last.
     pub found: Option<Arc<DetectionsView>>,
 }

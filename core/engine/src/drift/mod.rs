@@ -2,9 +2,13 @@
 
 mod around;
 pub mod command;
+mod figures;
+mod grid;
+mod grid_room;
 mod stage;
 #[cfg(test)]
 mod tests;
+mod unjudged;
 pub mod view;
 mod watch;
 pub mod work;
@@ -12,4 +16,5 @@ mod workflow;
 
 pub use around::DriftAround;
 pub use stage::{DriftInput, DriftOutput, DriftStage};
+pub use unjudged::Unjudged;
 pub use workflow::DriftWorkflow;

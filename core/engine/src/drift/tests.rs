@@ -45,6 +45,7 @@ impl Desk {
             eyes_on_s: Some(3600.0),
             clock_pace: 1.0,
             world: None,
+            twin: None,
             found: None,
         };
         Self {

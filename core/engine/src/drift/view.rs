@@ -3,8 +3,11 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+pub use plumbline_drift::{GridCorrection, GridErrors, GridPlace, Judged};
 pub use plumbline_drift::{Mover as DriftMover, PlaceError, Row as TableRow, Verdict as DriftVerdict};
 
+pub use super::Unjudged as GridUnjudged;
+use super::Unjudged;
 use crate::ground::step::StepState;
 
 /// Watching drift.
@@ -26,6 +29,84 @@ pub struct DriftView {
     pub unexplained: Option<&'static str>,
     /// The session that was made of it last, to be explained.
     pub log: Option<PathBuf>,
+    /// The 9 by 4 evaluation.
+    pub grid: GridView,
+}
+
+/// The 9 by 4 evaluation: a thing at known places, and how far off it comes out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GridView {
+    /// Why it cannot begin now, a part of a sentence; `None`: it can.
+    pub unable: Option<&'static str>,
+    /// The one under way, else the last one; `None`: there was none.
+    pub run: Option<GridRunView>,
+    /// Left and right.
+    pub figures: [Option<GridFigure>; 2],
+    /// Sessions that can be shown and their names, newest first.
+    pub sessions: Arc<[(PathBuf, String)]>,
+}
+
+impl GridView {
+    /// The evaluation under way.
+    pub fn under_way(&self) -> Option<&GridRunView> {
+        self.run.as_ref().filter(|run| run.doing != GridDoing::Ended)
+    }
+}
+
+/// How far it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GridRunView {
+    /// Class of the thing.
+    pub object: &'static str,
+    /// Number of the place where it is, from 1.
+    pub place: usize,
+    /// Of so many.
+    pub of: usize,
+    /// Where that is (x, y), robot frame, m.
+    pub at_m: [f64; 2],
+    /// Whether nobody has to lay it.
+    pub places_by_itself: bool,
+    /// What is done just now.
+    pub doing: GridDoing,
+    /// Places at which it was seen.
+    pub measured: usize,
+    /// The session, once it is on disk.
+    pub session: Option<PathBuf>,
+}
+
+/// What is done at a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GridDoing {
+    /// A person is to lay the thing down, and to say so.
+    Asks,
+    /// It comes to rest.
+    Lays,
+    /// It is looked at.
+    Looks {
+        /// So often by now.
+        looks: usize,
+        /// Of so many.
+        of: usize,
+    },
+    /// Nothing is being detected: there is no detector, or it hangs.
+    NoDetector,
+    /// It was not found there: it is to be laid again, or the place left out.
+    NotSeen,
+    /// No more places.
+    Ended,
+}
+
+/// An evaluation with a correction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GridFigure {
+    /// The session.
+    pub session: PathBuf,
+    /// Its name.
+    pub title: String,
+    /// What was made of its places.
+    pub correction: GridCorrection,
+    /// What came out, or why nothing did (a sentence); `None`: it is being judged.
+    pub judged: Option<Result<Arc<Judged>, Unjudged>>,
 }
 
 /// What was seen since watching began.

@@ -8,6 +8,7 @@ use plumbline_model::StereoFrame;
 
 use super::DriftAround;
 use super::command::DriftCommand;
+use super::grid_room::GridRoom;
 use super::stage::{DriftInput, DriftOutput};
 use super::view::{DriftCourse, DriftView};
 use super::watch::{EVERY, Watch};
@@ -17,7 +18,8 @@ use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
 use crate::ground::stage::Timed;
 use crate::ground::step::StepState;
-use crate::ground::{Moment, Nothing, Time, Workflow};
+use crate::ground::{Moment, Time, Workflow};
+use crate::robot::RobotControl;
 
 /// Watching drift. There is one at a time, of what is shown.
 #[derive(Clone, Debug, Default)]
@@ -36,12 +38,14 @@ pub struct DriftWorkflow {
     retelling: Option<JobId>,
     /// The session that was made last, and whether somebody was told of it.
     log: Option<(PathBuf, bool)>,
+    grid: GridRoom,
 }
 
 impl DriftWorkflow {
     /// A pair has come.
     pub fn saw(&mut self, frame: &StereoFrame, around: &DriftAround, context: &mut Context<'_>) {
         let now = context.time;
+        self.grid.saw(&self.data_dir, around, context);
         let Some(watch) = &self.watch else { return };
         if watch.opened != around.opened || watch.from_switching_on != around.eyes_on_s.is_some() {
             self.begin(around, now);
@@ -187,13 +191,17 @@ impl DriftWorkflow {
 impl Workflow for DriftWorkflow {
     type Command = DriftCommand;
     type Work = DriftWork;
-    type Control = Nothing;
+    type Control = RobotControl;
     type Around = DriftAround;
     type View = DriftView;
 
     /// Sessions are made in the folder of a world in `data_dir`.
     fn new(data_dir: &Path) -> Self {
         Self { data_dir: data_dir.to_owned(), ..Self::default() }
+    }
+
+    fn restore(&mut self, _: &DriftAround, context: &mut Context<'_>) {
+        self.grid.list(&self.data_dir, context);
     }
 
     fn view(&mut self, around: &DriftAround, _: &Moment) -> Arc<DriftView> {
@@ -215,6 +223,7 @@ impl Workflow for DriftWorkflow {
             is_busy: self.logging.is_some() || self.retelling.is_some(),
             unexplained: self.unexplained(around),
             log: self.log.as_ref().map(|(log, _)| log.clone()),
+            grid: self.grid.view(around),
         })
     }
 
@@ -230,6 +239,7 @@ impl Workflow for DriftWorkflow {
                 self.retelling = None;
             }
             DriftCommand::Explain => self.explain(around, context),
+            DriftCommand::Grid(command) => self.grid.apply(command, &self.data_dir, around, context),
         }
     }
 
@@ -245,6 +255,7 @@ impl Workflow for DriftWorkflow {
                     self.retold(monitor.map(|monitor| *monitor), around, context);
                 }
             }
+            of_grid => self.grid.work_done(id, of_grid, &self.data_dir, around, context),
         }
     }
 
@@ -253,5 +264,6 @@ impl Workflow for DriftWorkflow {
         if self.retelling.take_if(|retelling| *retelling == id).is_some() && why.is_some() {
             self.begin(around, context.time);
         }
+        self.grid.work_ended(id, why);
     }
 }

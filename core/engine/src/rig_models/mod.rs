@@ -2,12 +2,13 @@
 //! file; [`in_use`] puts them together with what was calibrated.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use jiff::Timestamp;
 use plumbline_effects::rig_model::{
     Addition, ModelEffect, PlacedExternal, PlacedScreen, ReportedParameter, Step, StepGap, numbers_of_eyes,
 };
-use plumbline_effects::{Kind, RigModel};
+use plumbline_effects::{Kind, RigModel, RobotModel};
 use plumbline_gap::Finding;
 use plumbline_gap::finding::{NamedEffect, Shown, ShownUnit};
 use plumbline_model::Session;
@@ -138,8 +139,15 @@ pub fn with(
         version: finding.version.clone(),
         gap: gap(&finding.shown),
     };
+    let of_eyes = !addition.eyes.is_empty();
     let mut next = model.clone();
     next.add(rig, addition)?;
+    if of_eyes {
+        let robot = RobotModel::new(Arc::new(rig.clone()), Arc::new(next.clone()))?;
+        let tables = sessions.iter().filter_map(|session| session.localizations.as_ref());
+        let left = tables.filter_map(|table| robot.left_of(table)).next_back();
+        next.contents.eyes_left = left.or(next.contents.eyes_left);
+    }
     Ok(next)
 }
 

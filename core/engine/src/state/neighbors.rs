@@ -171,8 +171,9 @@ impl Neighbors<DriftWorkflow> for State {
             own_eyes: self.shows_own_eyes() && self.shown == self.arm_of,
             robot: self.robot.clone(),
             eyes_on_s: self.eyes_on_s(),
-            clock_pace: if self.shown == World::Twin { self.twin.warm_up_pace.max(1.0) } else { 1.0 },
+            clock_pace: if self.shown == World::Twin { self.twin.warm_up_pace } else { 1.0 },
             world: (self.shown == self.arm_of).then_some(self.shown),
+            twin: (self.shown == World::Twin && self.twin.running).then(|| self.twin.clone()),
             found: self.rooms.detect.found().cloned(),
         }
     }

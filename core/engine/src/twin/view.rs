@@ -4,7 +4,7 @@
 use plumbline_model::frame::{Board, Point, Pose, Robot};
 
 /// The twin.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TwinView {
     /// Whether it runs.
     pub running: bool,
@@ -34,6 +34,28 @@ pub struct TwinView {
     pub payload_kg: f64,
     /// Faults of the servo bus: name, sentence, whether it is on.
     pub faults: Vec<FaultView>,
+}
+
+impl Default for TwinView {
+    /// Not running.
+    fn default() -> Self {
+        Self {
+            running: false,
+            failed: None,
+            scenarios: Vec::new(),
+            scenario: String::new(),
+            time_s: 0.0,
+            real_time_factor: 0.0,
+            eyes_on_s: 0.0,
+            warm_up_pace: 1.0,
+            toys: Vec::new(),
+            board: None,
+            board_places: 0,
+            screen_height_m: 0.0,
+            payload_kg: 0.0,
+            faults: Vec::new(),
+        }
+    }
 }
 
 /// A toy.

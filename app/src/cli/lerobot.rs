@@ -1,0 +1,48 @@
+//! `plumbline lerobot`: a recording as a LeRobot data set.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use plumbline_offline::{self as offline, LerobotArgs, LerobotReport};
+
+use super::output::Output;
+
+/// Arguments of `lerobot`.
+#[derive(Debug, Args)]
+pub struct Lerobot {
+    /// Session with a recording, log.mcap.
+    #[arg(long, value_name = "DIR")]
+    session: PathBuf,
+    /// Folder that receives the data set; empty or new.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// What was being done, a sentence.
+    #[arg(long, value_name = "TEXT", default_value = "Recorded with Plumbline.")]
+    task: String,
+}
+
+/// Writes it.
+pub fn run(arguments: Lerobot, output: &Output) -> anyhow::Result<()> {
+    let Lerobot { session, out, task } = arguments;
+    let report = offline::lerobot(&LerobotArgs { session, out, task }, output)?;
+    output.result(&report, text)
+}
+
+fn text(report: &LerobotReport) -> String {
+    let mut text = format!(
+        "{} frames at {:.1} Hz with {} joints: {}\n",
+        report.frames,
+        report.rate_hz,
+        report.joints.len(),
+        report.out.display()
+    );
+    if report.left_out > 0 {
+        text.push_str(&format!("{} pairs from before angles were read are not in it.\n", report.left_out));
+    }
+    if !report.has_cameras {
+        text.push_str(
+            "The recording has no calibration of the eyes: intrinsics and extrinsics are not in it.\n",
+        );
+    }
+    text
+}

@@ -1,0 +1,106 @@
+//! What the effects of the eyes leave of rows in which things were watched that stand still.
+
+use nalgebra::Vector3;
+use plumbline_model::robot::Posture;
+use plumbline_model::session::{LocalizationRow, LocalizationTable};
+use plumbline_model::{LeftCamera, Point};
+
+use super::{RobotModel, SeenUnder};
+use crate::rig_model::{EyesLeft, tangents_per_angle};
+
+/// A place that was seen at fewer times was not watched: how the eyes find it anew each time is in the rows, too,
+/// and that is in the uncertainty of what is seen already.
+const LEAST_TIMES: usize = 8;
+/// Rows that are no farther apart are of one look, s.
+const SAME_LOOK_S: f64 = 0.5;
+
+impl RobotModel {
+    /// What this model leaves of rows in which things were watched, at the time at which that is most: it is no
+    /// scatter, but the same from look to look. `None`: nothing was watched.
+    pub fn left_of(&self, table: &LocalizationTable) -> Option<EyesLeft> {
+        let rows: Vec<(f64, LocalizationRow)> =
+            table.rows().filter(|row| row.valid).filter_map(|row| Some((row.t_secs?, row))).collect();
+        let times = |row: &LocalizationRow| rows.iter().filter(|(_, other)| other.truth == row.truth).count();
+        let watched = rows.iter().filter(|(_, row)| times(row) >= LEAST_TIMES);
+        let left: Vec<(f64, Vector3<f64>)> =
+            watched.filter_map(|(at_s, row)| Some((*at_s, self.left_of_row(table, row)?))).collect();
+        if left.len() < LEAST_TIMES {
+            return None;
+        }
+        // Places of one look together.
+        let square_at = |at_s: f64| {
+            let of_it = left.iter().filter(|(other_s, _)| (other_s - at_s).abs() < SAME_LOOK_S);
+            let (sum, count) = of_it.fold((Vector3::zeros(), 0.0), |(sum, count), (_, left)| {
+                (sum + left.component_mul(left), count + 1.0)
+            });
+            sum / count
+        };
+        let most = left.iter().map(|(at_s, _)| square_at(*at_s)).fold(Vector3::zeros(), |a, b| a.sup(&b));
+        Some(EyesLeft { bearing_rad: most.x.max(most.y).sqrt(), disparity_rad: most.z.sqrt() })
+    }
+
+    /// What the eyes made of a row minus what they make of it by the model: to the right, down, and between the
+    /// rays of both eyes, rad.
+    fn left_of_row(&self, table: &LocalizationTable, row: &LocalizationRow) -> Option<Vector3<f64>> {
+        let posture = self.posture_of(table, row);
+        let seen = SeenUnder { t_secs: row.t_secs, background_m: row.background_m };
+        let (left, right) = self.project(&row.truth?, &posture, &seen)?;
+        let predicted = self.rig.eyes.cameras.triangulate(left, right)?;
+        let measured = self.rig.robot_from_left(&posture).inverse() * row.estimate?;
+        let natural =
+            |at: Point<LeftCamera>| (at.coords.z > 0.0).then(|| Vector3::from(self.eyes.natural(&at.coords)));
+        let (measured, predicted) = (natural(measured)?, natural(predicted)?);
+        Some((measured - predicted) / tangents_per_angle(predicted.x, predicted.y))
+    }
+
+    fn posture_of(&self, table: &LocalizationTable, row: &LocalizationRow) -> Posture {
+        let mut posture = self.rig.home();
+        for (name, angle_rad) in table.head_joints().iter().zip(&row.head_rad) {
+            if let (Ok(joint), Some(angle_rad)) = (self.rig.description.find_joint(name), angle_rad) {
+                posture[joint] = *angle_rad;
+            }
+        }
+        posture
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_model::Robot;
+    use plumbline_model::robot::{Rig, default_rig};
+
+    use super::*;
+
+    /// A place that wanders away and that no effect explains.
+    fn watched(rig: &Rig, by_m: f64, times: usize) -> LocalizationTable {
+        let row = |k: usize| LocalizationRow {
+            truth: Some(Point::new(0.4, 0.0, rig.table.height_m)),
+            estimate: Some(Point::new(0.4 + by_m, 0.0, rig.table.height_m)),
+            t_secs: Some(60.0 * k as f64),
+            ..LocalizationRow::default()
+        };
+        LocalizationTable::from_rows(vec![], &(0..times).map(row).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn what_is_left_comes_back_as_a_distance() {
+        let rig = default_rig();
+        let model = RobotModel::nominal(rig.clone());
+        let left = model.left_of(&watched(&rig, 0.004, 12)).expect("watched");
+        let robot_from_left = rig.robot_from_left(&rig.home());
+        let at = robot_from_left.inverse() * Point::<Robot>::new(0.4, 0.0, rig.table.height_m);
+        let covariance = left.covariance_m2(&at.coords.coords, rig.eyes.cameras.baseline_m());
+        let turn = robot_from_left.rotation();
+        let in_robot = turn * covariance * turn.transpose();
+        // How bearing and disparity go together is not kept: the way off lies inside the 95 %, whichever way it is.
+        let sigma_m = in_robot[(0, 0)].sqrt();
+        assert!(1.96 * sigma_m > 0.004 && sigma_m < 0.006, "{sigma_m}: {in_robot}");
+    }
+
+    #[test]
+    fn what_was_seen_a_few_times_only_was_not_watched() {
+        let rig = default_rig();
+        let model = RobotModel::nominal(rig.clone());
+        assert_eq!(model.left_of(&watched(&rig, 0.004, 5)), None);
+    }
+}
