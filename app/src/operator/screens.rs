@@ -29,6 +29,8 @@ pub enum Screen {
     Grasp,
     /// Watching whether places stay where they are.
     Drift,
+    /// Everything that was put in use, taken back, found and checked.
+    Timeline,
     /// The robot: its joints, moving it.
     Robot,
     /// Detectors judged on a labeled data set.
@@ -39,7 +41,7 @@ pub enum Screen {
 
 impl Screen {
     /// All of them, in the order of work.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Commission,
         Self::Live,
         Self::Collect,
@@ -51,6 +53,7 @@ impl Screen {
         Self::Gap,
         Self::Grasp,
         Self::Drift,
+        Self::Timeline,
         Self::Robot,
         Self::Scores,
         Self::Images,
@@ -161,6 +164,12 @@ pub enum Pane {
     DriftCourse,
     /// How far they have wandered over the table.
     DriftTable,
+    /// Everything that was put in use, taken back, found and checked, on one line.
+    TimelineLine,
+    /// What is in use.
+    TimelineInUse,
+    /// Two entries of the timeline.
+    TimelineCompared,
     /// Which detectors are judged on what.
     ScoreChoice,
     /// Detectors compared.
@@ -230,6 +239,9 @@ impl Pane {
             Self::GraspExperiment => "Experiment",
             Self::DriftCourse => "Drift",
             Self::DriftTable => "Drift over the table",
+            Self::TimelineLine => "Timeline",
+            Self::TimelineInUse => "In use",
+            Self::TimelineCompared => "Two compared",
             Self::ScoreChoice => "Detectors and data set",
             Self::ScoreTable => "Detectors compared",
             Self::ScoreClasses => "Per class",

@@ -18,7 +18,8 @@ use super::probe_state::ProbeState;
 use super::{
     gap::state::GapPanels, grasp::state::GraspPanels, labels::state::LabelsPanels,
     models::state::ModelsPanels, objects::state::ObjectsPanels, robot::state::RobotPanels,
-    scores::state::ScoresPanels, touch::state::TouchPanels, twin::state::TwinPanels,
+    scores::state::ScoresPanels, timeline::state::TimelinePanels, touch::state::TouchPanels,
+    twin::state::TwinPanels,
 };
 use crate::operator::{Outbox, Screen};
 
@@ -68,6 +69,8 @@ pub struct PanelState {
     pub labels: LabelsPanels,
     /// Judging detectors.
     pub scores: ScoresPanels,
+    /// The timeline of results.
+    pub timeline: TimelinePanels,
 }
 
 impl Default for PanelState {
@@ -95,6 +98,7 @@ impl Default for PanelState {
             grasp: GraspPanels::default(),
             labels: LabelsPanels::default(),
             scores: ScoresPanels::default(),
+            timeline: TimelinePanels::default(),
         }
     }
 }

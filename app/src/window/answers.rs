@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use plumbline_engine::{
     Command, DetectCommand, DetectorChoice, EyesCommand, FileLength, GapCommand, LabelsCommand,
-    ModelsCommand, ScoresCommand, SourceCommand, TablesCommand, TrialsCommand,
+    ModelsCommand, ScoresCommand, SourceCommand, TablesCommand, TimelineCommand, TrialsCommand,
 };
 
 use super::PlumblineWindow;
@@ -50,6 +50,7 @@ impl PlumblineWindow {
             Question::ScoreModels => ScoresCommand::AddModels { files: paths }.into(),
             Question::ScoreSet => ScoresCommand::ChooseSet { path: file }.into(),
             Question::Trials(format) => TrialsCommand::Export { file, format }.into(),
+            Question::SetupReport(format) => TimelineCommand::Report { file, format }.into(),
             Question::ScoresCsv => ScoresCommand::ExportCsv { file }.into(),
             Question::ImportModel => ModelsCommand::Import { file }.into(),
             Question::ExportModel(method, onnx) => ModelsCommand::Export { method, onnx, file }.into(),

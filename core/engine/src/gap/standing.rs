@@ -13,6 +13,11 @@ impl GapWorkflow {
         Some((shown, !shown.addable().is_empty()))
     }
 
+    /// Findings that are kept, newest first.
+    pub fn entries(&self) -> Arc<[super::view::FindingEntry]> {
+        self.seen.entries.clone()
+    }
+
     /// Titles of the effects in the model in use.
     pub fn effects_in_use(&self) -> Vec<String> {
         self.seen.model.effects.iter().map(|effect| effect.title.clone()).collect()

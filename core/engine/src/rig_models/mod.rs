@@ -23,7 +23,9 @@ pub(crate) mod made_up;
 mod tests;
 
 pub use error::ModelInUseError;
-pub use in_use::{Accepted, in_use, mount_in, mounted, other_eyes, screen_in};
+pub use in_use::{
+    Accepted, in_use, made_at, mount_in, mounted, mounts_in, other_eyes, screen_in, screens_in,
+};
 
 /// The file, in the folder of a world.
 pub const FILE: &str = "rig-model.toml";
