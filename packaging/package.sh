@@ -71,17 +71,23 @@ Description: desk tool for the humanoid robot NICO
  model of the robot is missing. With a simulated robot, so that everything can
  be tried without one.
 CONTROL
-    dpkg-deb --root-owner-group --build "$root" "$deb" >/dev/null
+    dpkg-deb -Zgzip --root-owner-group --build "$root" "$deb" >/dev/null
     echo "$deb"
 }
 
-# Libraries that belong to the system that it runs on: the C library and its loader, and whatever talks to
-# the graphics driver or to the display.
-is_of_the_system() {
+# The C library and its loader are always the system's.
+is_of_the_c_library() {
     case $1 in
-    ld-linux* | libc.so* | libm.so* | libdl.so* | libpthread.so* | librt.so* | libresolv.so* | libutil.so* | \
-        libGL.so* | libEGL.so* | libGLdispatch.so* | libGLX.so* | libOpenGL.so* | libdrm.so* | libgbm.so* | \
-        libvulkan.so* | libX11.so* | libX11-xcb.so* | libxcb.so*) return 0 ;;
+    ld-linux* | libc.so* | libm.so* | libdl.so* | libpthread.so* | librt.so* | libresolv.so* | libutil.so*) return 0 ;;
+    esac
+    return 1
+}
+
+# What talks to the graphics driver or to the display is the system's where it has it; else it stands by.
+stands_by() {
+    case $1 in
+    libGL.so* | libEGL.so* | libGLdispatch.so* | libGLX.so* | libOpenGL.so* | libdrm*.so* | libgbm.so* | libva*.so* | \
+        libvdpau.so* | libOpenCL.so* | libvulkan.so* | libX*.so* | libxcb*.so*) return 0 ;;
     esac
     return 1
 }
@@ -90,15 +96,19 @@ make_folder() {
     local name=plumbline-$version-$machine root
     root=$work/$name
     put_program "$root/lib"
-    LD_LIBRARY_PATH="$root/lib" ldd "$root/lib/plumbline" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }' |
-        while read -r library; do
-            is_of_the_system "$(basename -- "$library")" || [[ -e $root/lib/$(basename -- "$library") ]] ||
-                install -m 644 "$(readlink -f -- "$library")" "$root/lib/$(basename -- "$library")"
-        done
+    local library base into
+    mkdir -p "$root/standby"
+    while read -r library; do
+        base=$(basename -- "$library")
+        if is_of_the_c_library "$base"; then continue; fi
+        into=$root/lib
+        if stands_by "$base"; then into=$root/standby; fi
+        [[ -e $into/$base ]] || install -m 644 "$(readlink -f -- "$library")" "$into/$base"
+    done < <(LD_LIBRARY_PATH="$root/lib" ldd "$root/lib/plumbline" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }')
     # Opened by their names when the window is.
     local opened
     for opened in libxkbcommon.so.0 libxkbcommon-x11.so.0 libXcursor.so.1 libXrandr.so.2 libXi.so.6; do
-        library=$(ldconfig -p | awk -v name="$opened" '$1 == name { print $NF; exit }')
+        library=$(ldconfig -p | awk -v name="$opened" '$1 == name && !found { print $NF; found = 1 }')
         [[ -z $library ]] || install -m 644 "$(readlink -f -- "$library")" "$root/lib/$opened"
     done
     install -m 755 "$here/AppRun" "$root/plumbline"

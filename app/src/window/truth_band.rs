@@ -12,9 +12,9 @@ use crate::operator::words::truth::{axes, off, summary};
 /// Nothing else in the window has this ground.
 const GROUND: Color32 = Color32::from_rgb(0x6B, 0x1F, 0x7A);
 const TEXT: Color32 = Color32::from_rgb(0xFF, 0xF3, 0xFF);
-const HEIGHT: f32 = 30.0;
-/// Room that the buttons at the right take, and one figure, pt.
-const BUTTONS: f32 = 150.0;
+const HEIGHT: f32 = 38.0;
+/// Room that the buttons at the right take, pt.
+const BUTTONS: f32 = 180.0;
 const TITLE: &str = "TRUTH of the simulation";
 
 pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
@@ -26,7 +26,7 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let frame = egui::Frame::NONE.fill(GROUND).inner_margin(margin);
     let panel = Panel::top("truth").frame(frame).exact_size(HEIGHT).show_separator_line(false);
     panel.show(ui, |ui| {
-        ui.horizontal(|ui| {
+        ui.horizontal_centered(|ui| {
             ui.spacing_mut().item_spacing.x = space::M;
             ui.label(RichText::new(TITLE).color(TEXT).strong());
             let room = ui.available_width() - BUTTONS;

@@ -7,7 +7,9 @@ use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::View;
 
 use crate::fake::Fake;
-use crate::{made_up, made_up_gap, made_up_labels, made_up_models, made_up_objects, made_up_touch, timeline, truth};
+use crate::{
+    made_up, made_up_gap, made_up_labels, made_up_models, made_up_objects, made_up_touch, timeline, truth,
+};
 
 /// What letters may stand over, pt: overhanging letters and rounding.
 pub(super) const SLACK: f32 = 2.0;

@@ -90,7 +90,8 @@ fn it_is_reached_by_the_rail_and_says_when_there_is_nothing() {
 #[test]
 fn each_entry_says_its_error_and_what_is_in_use_is_listed() {
     let (_, window) = window_of(results());
-    for text in ["5.88 mm → 0.97 mm", "5.93 mm → 0.93 mm", "0.214 px → 0.082 px", "calibration of 31 pairs"]
+    for text in
+        ["5.88 mm → 0.970 mm", "5.93 mm → 0.930 mm", "0.214 px → 0.0820 px", "calibration of 31 pairs"]
     {
         assert!(says(&window, text), "{text}");
     }
@@ -138,7 +139,7 @@ fn two_entries_are_compared() {
             .click();
         window.run_steps(3);
     }
-    assert!(says(&window, "0.214 px → 0.082 px: 38 % of the error, each on its own data."));
+    assert!(says(&window, "0.214 px → 0.0820 px: 38 % of the error, each on its own data."));
 }
 
 #[test]

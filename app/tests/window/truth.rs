@@ -46,7 +46,7 @@ fn while_it_is_on_every_screen_says_so_and_hides_it_by_one_button() {
         let settings = WindowSettings { screen, ..WindowSettings::default() };
         let mut window = fake.window_of_size(settings, [1440.0, 900.0]);
         assert!(shows(&window, TITLE), "{screen:?}");
-        assert!(says(&window, "measured − true: Toys up to 2.7 mm"), "{screen:?}");
+        assert!(says(&window, "measured − true: Toys up to 2.73 mm"), "{screen:?}");
         click(&mut window, "Hide the truth");
         assert_eq!(fake.take_sent(), [Command::from(TruthCommand::Show(false))], "{screen:?}");
     }
@@ -82,6 +82,8 @@ fn pictures_of_truth_mode() {
         let mut window = fake.window_with(settings, size, true);
         window.run_steps(2);
         let image = window.render().expect("the test renderer draws");
-        image.save(folder.join(format!("truth-{theme:?}.png").to_lowercase())).expect("the folder can be written");
+        image
+            .save(folder.join(format!("truth-{theme:?}.png").to_lowercase()))
+            .expect("the folder can be written");
     }
 }

@@ -66,7 +66,7 @@ mod tests {
             id_after: None,
             outside: true,
         };
-        assert_eq!(errors(&entry), "5.88 mm → 0.93 mm");
+        assert_eq!(errors(&entry), "5.88 mm → 0.930 mm");
         assert!(about(&entry).contains("while this program was closed"));
         (entry.before, entry.after) = (None, Some(Figure::Pixels(0.0824)));
         assert!(errors(&entry).ends_with(" px"), "{}", errors(&entry));

@@ -52,7 +52,7 @@ mod tests {
         };
         let rows = vec![zero("right elbow", -0.0175), zero("left elbow", 0.002), toy.clone()];
         let truth = TruthView { is_on: true, waits_because: None, rows: rows.into() };
-        assert_eq!(summary(&truth, TruthOf::Toy).as_deref(), Some("Toys 5.0 mm"));
+        assert_eq!(summary(&truth, TruthOf::Toy).as_deref(), Some("Toys 5.00 mm"));
         let zeros = summary(&truth, TruthOf::Zero).expect("two");
         assert!(zeros.starts_with("Zeros up to 1.0"), "{zeros}");
         assert_eq!(summary(&truth, TruthOf::Axis), None);

@@ -1,6 +1,7 @@
 //! The line itself, the newest on top: when, what, error before and after, and how it is taken back.
 
-use egui::{Align, Button, Layout, RichText, ScrollArea, Ui, vec2};
+use egui::text::{LayoutJob, TextWrapping};
+use egui::{Align, Button, Layout, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
 use plumbline_engine::view::{EntryKind, Figure, TimelineEntry};
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::theme::{self, Role, space};
@@ -44,12 +45,8 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry, ends: (boo
         ui.set_height(ROW_HEIGHT);
         dot(ui, cx, entry, ends);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let button = ui.allocate_ui_with_layout(
-                vec2(BUTTON, ROW_HEIGHT),
-                Layout::right_to_left(Align::Center),
-                |ui| undo_button(ui, cx, entry),
-            );
-            let _ = button;
+            let layout = Layout::right_to_left(Align::Center);
+            ui.allocate_ui_with_layout(vec2(BUTTON, ROW_HEIGHT), layout, |ui| undo_button(ui, cx, entry));
             text(ui, cx, entry);
         });
     });
@@ -58,7 +55,7 @@ fn row(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry, ends: (boo
 /// The line, and a dot on it: filled where it changed what is in use, a ring where it was only measured.
 fn dot(ui: &mut Ui, cx: &PanelContext<'_>, entry: &TimelineEntry, (newest, oldest): (bool, bool)) {
     let tokens = theme::tokens(ui);
-    let (rect, _) = ui.allocate_exact_size(vec2(RAIL, ROW_HEIGHT), egui::Sense::hover());
+    let (rect, _) = ui.allocate_exact_size(vec2(RAIL, ROW_HEIGHT), Sense::hover());
     let x = rect.left() + 7.0;
     let from = if newest { rect.center().y } else { rect.top() };
     let to = if oldest { rect.center().y } else { rect.bottom() };
@@ -78,27 +75,38 @@ fn dot(ui: &mut Ui, cx: &PanelContext<'_>, entry: &TimelineEntry, (newest, oldes
     }
 }
 
+/// When and of what, with its errors, and below it what it is. A click chooses it.
 fn text(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry) {
     let chosen = cx.state.timeline.chosen.contains(&entry.number);
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), ROW_HEIGHT - 4.0), Sense::click());
+    let (errors, title) = (words::errors(entry), words::title(entry));
+    response.widget_info(|| {
+        let label = [title.as_str(), errors.as_str()].join(" ");
+        WidgetInfo::selected(egui::Role::Button, true, chosen, label.trim())
+    });
     let tokens = theme::tokens(ui);
-    let weak = Role::Weak.color(tokens);
-    let mut job = egui::text::LayoutJob::default();
-    let small = egui::TextStyle::Small.resolve(ui.style());
-    let body = egui::TextStyle::Body.resolve(ui.style());
-    let format = |font: &egui::FontId, color| egui::TextFormat::simple(font.clone(), color);
-    let errors = words::errors(entry);
-    let heading = format!("{} · {}", clock(entry.at), entry.subject.name());
-    job.append(&heading, 0.0, format(&small, weak));
-    if !errors.is_empty() {
-        let color = if is_better(entry) { Role::Accepted.color(tokens) } else { tokens.text_strong };
-        job.append(&errors, space::M, format(&small, color));
+    if chosen || response.hovered() {
+        ui.painter().rect_filled(rect, 4.0, tokens.raised);
     }
-    job.append(&format!("\n{}", words::title(entry)), 0.0, format(&body, tokens.text));
-    job.wrap.max_rows = 2;
-    let button = Button::selectable(chosen, job).truncate();
-    let button = button.min_size(vec2(ui.available_width(), ROW_HEIGHT - 4.0));
-    let response = ui.add(button).on_hover_text(words::about(entry));
-    if response.clicked() {
+    let line = |text: String, style: TextStyle, color| {
+        let mut job = LayoutJob::simple_singleline(text, style.resolve(ui.style()), color);
+        job.wrap = TextWrapping::truncate_at_width((rect.width() - 2.0 * space::S).max(1.0));
+        ui.painter().layout_job(job)
+    };
+    let at = rect.left_top() + vec2(space::S, 4.0);
+    let heading = format!("{} · {}", clock(entry.at), entry.subject.name());
+    let heading = line(heading, TextStyle::Small, tokens.text_weak);
+    let beside = at + vec2(heading.size().x + space::M, 0.0);
+    let color = if is_better(entry) { Role::Accepted.color(tokens) } else { tokens.text_strong };
+    ui.painter().galley(at, heading, tokens.text);
+    let errors = line(errors, TextStyle::Small, color);
+    if beside.x + errors.size().x <= rect.right() {
+        ui.painter().galley(beside, errors, tokens.text);
+    }
+    let title = line(title, TextStyle::Body, tokens.text);
+    ui.painter().galley(at + vec2(0.0, 18.0), title, tokens.text);
+    if response.on_hover_text(words::about(entry)).clicked() {
         cx.state.timeline.toggle(entry.number);
     }
 }
@@ -119,7 +127,7 @@ fn undo_button(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry) {
         (None, Some(command)) => (command, "Use again", "Puts this in use again. Nothing is deleted."),
         (None, None) => return,
     };
-    let button = Button::new(RichText::new(label).text_style(egui::TextStyle::Small));
+    let button = Button::new(RichText::new(label).text_style(TextStyle::Small));
     if ui.add(button).on_hover_text(help).clicked() {
         cx.outbox.send(command);
     }
