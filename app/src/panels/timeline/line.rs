@@ -89,22 +89,23 @@ fn text(ui: &mut Ui, cx: &mut PanelContext<'_>, entry: &TimelineEntry) {
     if chosen || response.hovered() {
         ui.painter().rect_filled(rect, 4.0, tokens.raised);
     }
-    let line = |text: String, style: TextStyle, color| {
+    let whole = rect.width() - 2.0 * space::S;
+    let line = |text: String, style: TextStyle, color, width: f32| {
         let mut job = LayoutJob::simple_singleline(text, style.resolve(ui.style()), color);
-        job.wrap = TextWrapping::truncate_at_width((rect.width() - 2.0 * space::S).max(1.0));
+        job.wrap = TextWrapping::truncate_at_width(width.max(1.0));
         ui.painter().layout_job(job)
     };
     let at = rect.left_top() + vec2(space::S, 4.0);
-    let heading = format!("{} · {}", clock(entry.at), entry.subject.name());
-    let heading = line(heading, TextStyle::Small, tokens.text_weak);
-    let beside = at + vec2(heading.size().x + space::M, 0.0);
     let color = if is_better(entry) { Role::Accepted.color(tokens) } else { tokens.text_strong };
+    // The errors keep their room; when and of what gives way.
+    let errors = line(errors, TextStyle::Small, color, whole);
+    let heading = format!("{} · {}", entry.subject.name(), clock(entry.at));
+    let room = whole - errors.size().x - space::M;
+    let heading = line(heading, TextStyle::Small, tokens.text_weak, room);
+    let beside = at + vec2(heading.size().x + space::M, 0.0);
     ui.painter().galley(at, heading, tokens.text);
-    let errors = line(errors, TextStyle::Small, color);
-    if beside.x + errors.size().x <= rect.right() {
-        ui.painter().galley(beside, errors, tokens.text);
-    }
-    let title = line(title, TextStyle::Body, tokens.text);
+    ui.painter().galley(beside, errors, tokens.text);
+    let title = line(title, TextStyle::Body, tokens.text, whole);
     ui.painter().galley(at + vec2(0.0, 18.0), title, tokens.text);
     if response.on_hover_text(words::about(entry)).clicked() {
         cx.state.timeline.toggle(entry.number);
