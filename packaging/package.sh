@@ -33,6 +33,8 @@ put_program() {
     install -m 644 "$mujoco" "$folder/$(basename -- "$mujoco")"
     # ONNX Runtime is opened by its plain name.
     install -m 644 "$onnxruntime" "$folder/libonnxruntime.so"
+    install -D -m 644 "$here/../assets/detector/plumbline-detector.onnx" \
+        "$folder/assets/detector/plumbline-detector.onnx"
 }
 
 # What of the system's libraries the .deb needs, by the packages that they come from, and what is opened

@@ -57,12 +57,12 @@ inside() {
 try_out() {
     local root=$1 program=$2 board check
     inside "$root" "$program" --version >&2 || fail "$program does not start"
-    inside "$root" "$program" sample --out /tmp/sample --pairs 12 >"$work/out" 2>&1 ||
+    inside "$root" "$program" sample --out /srv/sample --pairs 12 >"$work/out" 2>&1 ||
         fail "sample: $(tail -n 5 "$work/out")"
     board=$(sed -n 's/.* of \([0-9]*x[0-9]*\) inner corners, \([0-9.]*\) mm.*/\1 --square-mm \2/p' "$work/out")
     # shellcheck disable=SC2086  # two arguments
-    inside "$root" "$program" calibrate stereo --left /tmp/sample/board/left --right /tmp/sample/board/right \
-        --board $board --out /tmp/eyes.yaml >"$work/out" 2>&1 || fail "calibrate: $(tail -n 5 "$work/out")"
+    inside "$root" "$program" calibrate stereo --left /srv/sample/board/left --right /srv/sample/board/right \
+        --board $board --out /srv/eyes.yaml >"$work/out" 2>&1 || fail "calibrate: $(tail -n 5 "$work/out")"
     # Cameras and displays are missing here, which it says; these must be there.
     inside "$root" "$program" doctor >"$work/out" 2>&1 || true
     for check in OpenCV twin "ONNX Runtime" detector; do
@@ -78,9 +78,9 @@ try_out "$work/folder" "$unpacked/plumbline"
 
 say "the .deb, installed by apt in a bare Debian"
 copy_of_bare "$work/installed"
-cp -- "$deb" "$work/installed/tmp/plumbline.deb"
+cp -- "$deb" "$work/installed/srv/plumbline.deb"
 inside "$work/installed" DEBIAN_FRONTEND=noninteractive sh -c \
-    'apt-get -qq update && apt-get -qq install --yes --no-install-recommends /tmp/plumbline.deb' \
+    'apt-get -qq update && apt-get -qq install --yes --no-install-recommends /srv/plumbline.deb' \
     >"$work/out" 2>&1 || fail "apt could not install it: $(tail -n 8 "$work/out")"
 try_out "$work/installed" plumbline
 say "both start and compute in a bare Debian"
