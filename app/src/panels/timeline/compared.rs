@@ -9,6 +9,9 @@ use crate::operator::words::clock;
 use crate::operator::words::timeline::{errors, figure, title};
 use crate::panels::{PanelContext, padded};
 
+/// What is compared, and what an entry says of it.
+type Row = (&'static str, fn(&TimelineEntry) -> String);
+
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let timeline = &cx.view.timeline;
     let mut chosen: Vec<&TimelineEntry> =
@@ -23,7 +26,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             let width = ((ui.available_width() - 64.0 - 2.0 * space::M) * 0.5).max(60.0);
             Grid::new("timeline compared").num_columns(3).spacing([space::M, 4.0]).show(ui, |ui| {
-                let rows: [(&str, fn(&TimelineEntry) -> String); 5] = [
+                let rows: [Row; 5] = [
                     ("when", |entry| clock(entry.at)),
                     ("of", |entry| entry.subject.name().to_owned()),
                     ("what", title),

@@ -14,9 +14,6 @@ pub enum TableError {
     /// In the words of its writer.
     #[error("the table cannot be written ({0}): save the report as HTML")]
     Csv(#[from] csv::Error),
-    /// Its end.
-    #[error("the table cannot be written ({0}): save the report as HTML")]
-    End(#[from] csv::IntoInnerError<csv::Writer<Vec<u8>>>),
 }
 
 const HEADINGS: [&str; 12] = [
@@ -59,7 +56,7 @@ pub fn csv(entries: &[TimelineEntry]) -> Result<Vec<u8>, TableError> {
             entry.outside.to_string(),
         ])?;
     }
-    Ok(table.into_inner()?)
+    Ok(table.into_inner().map_err(|end| csv::Error::from(end.into_error()))?)
 }
 
 fn happened(kind: EntryKind) -> &'static str {

@@ -180,7 +180,7 @@ mod tests {
         let more = UnitQuaternion::from_scaled_axis(axis.into_inner() * 0.03 + across);
         let elbow = facts.robot_from_link[joint.child.0].as_mut().expect("there");
         elbow.rotation *= more;
-        facts.robot_from_left = facts.robot_from_left * Translation3::new(0.002, 0.0, 0.0);
+        facts.robot_from_left *= Translation3::new(0.002, 0.0, 0.0);
         let title = &rig.servo_of(*index).expect("a servo").title;
 
         let unknown = rows(&facts, &around(RobotModel::nominal(rig.clone())));
