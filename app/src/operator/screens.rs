@@ -29,6 +29,8 @@ pub enum Screen {
     Grasp,
     /// Watching whether places stay where they are.
     Drift,
+    /// Everything that was put in use, taken back, found and checked.
+    Timeline,
     /// The robot: its joints, moving it.
     Robot,
     /// Detectors judged on a labeled data set.
@@ -39,7 +41,7 @@ pub enum Screen {
 
 impl Screen {
     /// All of them, in the order of work.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Commission,
         Self::Live,
         Self::Collect,
@@ -51,6 +53,7 @@ impl Screen {
         Self::Gap,
         Self::Grasp,
         Self::Drift,
+        Self::Timeline,
         Self::Robot,
         Self::Scores,
         Self::Images,
@@ -163,6 +166,12 @@ pub enum Pane {
     DriftTable,
     /// The 9 by 4 evaluation.
     DriftGrid,
+    /// Everything that was put in use, taken back, found and checked, on one line.
+    TimelineLine,
+    /// What is in use.
+    TimelineInUse,
+    /// Two entries of the timeline.
+    TimelineCompared,
     /// Which detectors are judged on what.
     ScoreChoice,
     /// Detectors compared.
@@ -233,6 +242,9 @@ impl Pane {
             Self::DriftCourse => "Drift",
             Self::DriftTable => "Drift over the table",
             Self::DriftGrid => "9×4 evaluation",
+            Self::TimelineLine => "Timeline",
+            Self::TimelineInUse => "In use",
+            Self::TimelineCompared => "Two compared",
             Self::ScoreChoice => "Detectors and data set",
             Self::ScoreTable => "Detectors compared",
             Self::ScoreClasses => "Per class",

@@ -33,6 +33,7 @@ impl Action {
             Self::Go(Screen::Images) => command(Key::D),
             Self::Go(Screen::Scores) => shift(Key::D),
             Self::Go(Screen::Drift) => shift(Key::W),
+            Self::Go(Screen::Timeline) => shift(Key::T),
             Self::WatchDrift => plain(Key::W),
             Self::ToggleRecording => plain(Key::R),
             Self::Capture => plain(Key::C),

@@ -18,7 +18,8 @@ use super::probe_state::ProbeState;
 use super::{
     gap::state::GapPanels, grasp::state::GraspPanels, labels::state::LabelsPanels,
     models::state::ModelsPanels, objects::state::ObjectsPanels, robot::state::RobotPanels,
-    scores::state::ScoresPanels, touch::state::TouchPanels, twin::state::TwinPanels,
+    scores::state::ScoresPanels, timeline::state::TimelinePanels, touch::state::TouchPanels,
+    twin::state::TwinPanels,
 };
 use crate::operator::{Outbox, Screen};
 
@@ -70,6 +71,8 @@ pub struct PanelState {
     pub labels: LabelsPanels,
     /// Judging detectors.
     pub scores: ScoresPanels,
+    /// The timeline of results.
+    pub timeline: TimelinePanels,
 }
 
 impl Default for PanelState {
@@ -98,6 +101,7 @@ impl Default for PanelState {
             grid_object: None,
             labels: LabelsPanels::default(),
             scores: ScoresPanels::default(),
+            timeline: TimelinePanels::default(),
         }
     }
 }

@@ -33,6 +33,7 @@ mod scores;
 mod source_state;
 mod start;
 mod table;
+mod timeline;
 mod touch;
 mod twin;
 mod verdict_line;
@@ -54,6 +55,7 @@ pub(crate) use robot::show_inspector as show_robot_inspector;
 pub(crate) use scores::show_inspector as show_scores_inspector;
 pub(crate) use source_state::source_age;
 pub(crate) use start::show as show_start;
+pub(crate) use timeline::show_inspector as show_timeline_inspector;
 pub(crate) use touch::parts::{ghost as touch_ghost, next_touch};
 pub(crate) use touch::show_inspector as show_touch_inspector;
 
@@ -110,6 +112,9 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
         Pane::DriftCourse => drift::show_course(ui, cx),
         Pane::DriftTable => drift::show_table(ui, cx),
         Pane::DriftGrid => drift::show_grid(ui, cx),
+        Pane::TimelineLine => timeline::show_line(ui, cx),
+        Pane::TimelineInUse => timeline::show_in_use(ui, cx),
+        Pane::TimelineCompared => timeline::show_compared(ui, cx),
         Pane::ScoreChoice
         | Pane::ScoreTable
         | Pane::ScoreClasses

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use plumbline_engine::{
     Command, DetectCommand, DetectorChoice, DriftCommand, EyesCommand, FileLength, GapCommand, GridCommand,
     GridCorrection, GridSide, LabelsCommand, ModelsCommand, ScoresCommand, SourceCommand, TablesCommand,
-    TrialsCommand,
+    TimelineCommand, TrialsCommand,
 };
 
 use super::PlumblineWindow;
@@ -57,6 +57,7 @@ impl PlumblineWindow {
             Question::ScoreModels => ScoresCommand::AddModels { files: paths }.into(),
             Question::ScoreSet => ScoresCommand::ChooseSet { path: file }.into(),
             Question::Trials(format) => TrialsCommand::Export { file, format }.into(),
+            Question::SetupReport(format) => TimelineCommand::Report { file, format }.into(),
             Question::ScoresCsv => ScoresCommand::ExportCsv { file }.into(),
             Question::ImportModel => ModelsCommand::Import { file }.into(),
             Question::ExportModel(method, onnx) => ModelsCommand::Export { method, onnx, file }.into(),

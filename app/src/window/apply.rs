@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use plumbline_engine::{
     Command, DriftCommand, EyesCommand, JobCommand, LiveCommand, MountCommand, NoticeCommand, NoticeLevel,
-    RecordingCommand, RobotCommand, SourceCommand, TouchCommand, TwinCommand, WatchCommand,
+    RecordingCommand, RobotCommand, SourceCommand, TouchCommand, TruthCommand, TwinCommand, WatchCommand,
 };
 
 use super::PlumblineWindow;
@@ -17,7 +17,8 @@ use super::settings::ThemeChoice;
 use crate::operator::guidance::guidance;
 use crate::operator::{
     Action, CommissionAction, DetectAction, GapAction, GridAction, LabelsAction, ModelsAction, Outbox,
-    Preset, RobotAction, ScoresAction, Screen, TouchAction, TrialsAction, gap_plan, gap_proof,
+    Preset, RobotAction, ScoresAction, Screen, TimelineAction, TouchAction, TrialsAction, gap_plan,
+    gap_proof,
 };
 
 /// A message of the window itself.
@@ -128,6 +129,9 @@ impl PlumblineWindow {
             Action::Scores(ScoresAction::AddModels) => self.ask_for(ctx, Question::ScoreModels),
             Action::Scores(ScoresAction::ChooseSet) => self.ask_for(ctx, Question::ScoreSet),
             Action::Scores(ScoresAction::ExportCsv) => self.ask_for(ctx, Question::ScoresCsv),
+            Action::Timeline(TimelineAction::Report(format)) => {
+                self.ask_for(ctx, Question::SetupReport(format));
+            }
             Action::Go(screen) => {
                 self.settings.screen = screen;
                 self.may_open_commissioning = false;
@@ -224,6 +228,7 @@ impl PlumblineWindow {
             Action::WatchDrift if self.view.drift.is_watching => DriftCommand::Stop.into(),
             Action::WatchDrift => DriftCommand::Start.into(),
             Action::ExplainDrift => DriftCommand::Explain.into(),
+            Action::ToggleTruth => TruthCommand::Show(!self.view.truth.is_on).into(),
             Action::PlayLastRecording => {
                 SourceCommand::OpenPaths(vec![self.view.recording.last.as_ref()?.session.clone()]).into()
             }
@@ -250,6 +255,7 @@ impl PlumblineWindow {
             Action::Grasp(action) => return action.command(&self.view),
             Action::Trials(action) => return action.command(),
             Action::Grid(action) => return action.command(),
+            Action::Timeline(action) => return action.command(&self.view),
             Action::Labels(action) => return action.command(&self.view),
             Action::Scores(action) => return action.command(&self.view),
             Action::Detect(action) => return action.command(),

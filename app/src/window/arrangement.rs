@@ -19,6 +19,7 @@ pub fn default_arrangement(screen: Screen) -> Tree<Pane> {
         Screen::Gap => gap(&mut tiles),
         Screen::Grasp => grasp(&mut tiles),
         Screen::Drift => drift(&mut tiles),
+        Screen::Timeline => timeline(&mut tiles),
         Screen::Robot => robot(&mut tiles),
         Screen::Scores => scores(&mut tiles),
         Screen::Images => images(&mut tiles),
@@ -129,6 +130,14 @@ fn drift(tiles: &mut Tiles<Pane>) -> TileId {
     let eye = tabs(tiles, &[Pane::LeftEye, Pane::RightEye, Pane::Twin]);
     let right = column(tiles, &[(table, 1.25), (eye, 1.0)]);
     row(tiles, &[(course, 1.35), (right, 1.0)])
+}
+
+fn timeline(tiles: &mut Tiles<Pane>) -> TileId {
+    let line = tabs(tiles, &[Pane::TimelineLine]);
+    let in_use = tabs(tiles, &[Pane::TimelineInUse]);
+    let compared = tabs(tiles, &[Pane::TimelineCompared]);
+    let right = column(tiles, &[(in_use, 1.35), (compared, 1.0)]);
+    row(tiles, &[(line, 1.5), (right, 1.0)])
 }
 
 fn robot(tiles: &mut Tiles<Pane>) -> TileId {

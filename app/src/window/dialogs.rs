@@ -6,7 +6,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Sender, bounded};
-use plumbline_engine::{ExportFormat, Exported, GraspTable, TrialsFormat};
+use plumbline_engine::{ExportFormat, Exported, GraspTable, TimelineFormat, TrialsFormat};
 
 use crate::operator::snapshot::models::Method;
 
@@ -58,6 +58,8 @@ pub enum Question {
     ScoresCsv,
     /// Where an experiment with grasps is written.
     Trials(TrialsFormat),
+    /// Where the report of the setup is written.
+    SetupReport(TimelineFormat),
     /// Where a picture of the window is saved.
     SaveWindow,
     /// Where a picture of one view is saved.
@@ -105,6 +107,7 @@ impl Question {
             Self::ScoreSet => "Choose the data set to judge on",
             Self::ScoresCsv => "Export the scores",
             Self::Trials(_) => "Export the experiment",
+            Self::SetupReport(_) => "Write the report of the setup",
             Self::SaveWindow => "Save a picture of the window",
             Self::SaveView => "Save a picture of the view",
         }
@@ -162,6 +165,9 @@ impl Question {
             Self::Trials(TrialsFormat::Csv) => "experiment.csv",
             Self::Trials(TrialsFormat::Html) => "experiment.html",
             Self::Trials(TrialsFormat::Pdf) => "experiment.pdf",
+            Self::SetupReport(TimelineFormat::Csv) => "timeline.csv",
+            Self::SetupReport(TimelineFormat::Html) => "setup.html",
+            Self::SetupReport(TimelineFormat::Pdf) => "setup.pdf",
             Self::SaveWindow => "plumbline.png",
             Self::SaveView => "view.png",
             _ => "",
@@ -179,6 +185,7 @@ impl Question {
                 | Self::GapReport { .. }
                 | Self::ScoresCsv
                 | Self::Trials(_)
+                | Self::SetupReport(_)
                 | Self::SaveWindow
                 | Self::SaveView
         )

@@ -8,7 +8,7 @@ use plumbline_model::duration;
 
 use super::{
     Ask, PlumblineWindow, apply, commission, drop, frame_time, frame_times_overlay, health, inspector,
-    jogging, rail, status_line, tiles, transport,
+    jogging, rail, status_line, tiles, transport, truth_band,
 };
 use crate::operator::{Outbox, Screen, StopKeys, shortcuts};
 
@@ -138,6 +138,7 @@ impl PlumblineWindow {
 
     fn draw_frame(&mut self, ui: &mut egui::Ui, outbox: &mut Outbox) {
         health::show(self, ui, outbox);
+        truth_band::show(self, ui, outbox);
         commission::show(self, ui, outbox);
         status_line::show(self, ui, outbox);
         if self.settings.log_open {

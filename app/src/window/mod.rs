@@ -42,6 +42,7 @@ mod status_line;
 mod tiles;
 mod touch_window;
 mod transport;
+mod truth_band;
 mod world_menu;
 
 use std::path::PathBuf;

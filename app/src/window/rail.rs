@@ -1,6 +1,6 @@
 //! The rail: the steps in the order of work, and how far each one is.
 
-use egui::{Panel, TextStyle, Ui};
+use egui::{Panel, ScrollArea, TextStyle, Ui};
 use plumbline_engine::View;
 use plumbline_engine::view::{Connection, EyesView, JobState, StepState as EngineStep, TouchPhase};
 use plumbline_widgets::format;
@@ -15,7 +15,7 @@ use crate::panels::shown_calibration;
 const WIDTH: f32 = 176.0;
 /// Height of all steps with the parts of "Eyes"; where there is less, the parts stand only on their own
 /// screens.
-const ALL_ROWS: f32 = 534.0;
+const ALL_ROWS: f32 = 568.0;
 /// Height of what belongs to "Detect".
 const DETECT_ROWS: f32 = 52.0;
 
@@ -23,59 +23,67 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let screen = window.settings.screen;
     let view = &window.view;
     let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(space::S);
-    Panel::left("rail").frame(frame).resizable(false).exact_size(WIDTH).show_separator_line(false).show(
-        ui,
-        |ui| {
-            ui.spacing_mut().item_spacing.y = 2.0;
-            let wanted = if screen.is_detect() { ALL_ROWS + DETECT_ROWS } else { ALL_ROWS };
-            let parts = screen.is_eyes() || ui.available_height() >= wanted;
-            let commission = RailStep::new("Commission", commission_state(view));
-            if commission.selected(screen == Screen::Commission).show(ui).clicked() {
-                outbox.act(Action::Go(Screen::Commission));
-            }
-            if RailStep::new("Live", StepState::Always).selected(screen == Screen::Live).show(ui).clicked() {
-                outbox.act(Action::Go(Screen::Live));
-            }
-            let step = RailStep::new("Eyes", eyes_state(view)).number(1).selected(screen.is_eyes()).show(ui);
-            if step.clicked() {
-                outbox.act(Action::Go(eyes_screen(&view.eyes)));
-            }
-            for part in Part::ALL.into_iter().filter(|_| parts) {
-                part_row(ui, view, part, screen, outbox);
-            }
-            let mount = RailStep::new("Mount", step_state(&view.mount.step)).number(2);
-            if mount.selected(screen == Screen::Mount).show(ui).clicked() {
-                outbox.act(Action::Go(Screen::Mount));
-            }
-            for (name, number, state, target) in [
-                ("Touch", 3, touch_state(view), Screen::Touch),
-                ("Models", 4, models_state(view), Screen::Models),
-                ("Gap", 5, gap_state(view), Screen::Gap),
-                ("Grasp", 6, step_state(&view.grasp.step), Screen::Grasp),
-            ] {
-                let step = RailStep::new(name, state).number(number).selected(screen == target);
-                if step.show(ui).clicked() {
-                    outbox.act(Action::Go(target));
-                }
-            }
-            ui.add_space(space::S);
-            let drift = RailStep::new("Drift", drift_state(view)).selected(screen == Screen::Drift).show(ui);
-            if drift.clicked() {
-                outbox.act(Action::Go(Screen::Drift));
-            }
-            let robot = RailStep::new("Robot", robot_state(view)).selected(screen == Screen::Robot).show(ui);
-            if robot.clicked() {
-                outbox.act(Action::Go(Screen::Robot));
-            }
-            let detect = RailStep::new("Detect", detect_state(view)).selected(screen.is_detect()).show(ui);
-            if detect.clicked() && !screen.is_detect() {
-                outbox.act(Action::Go(Screen::Images));
-            }
-            if screen.is_detect() {
-                detect_rows(ui, view, screen, outbox);
-            }
-        },
-    );
+    let panel = Panel::left("rail").frame(frame).resizable(false).exact_size(WIDTH);
+    panel.show_separator_line(false).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let wanted = if screen.is_detect() { ALL_ROWS + DETECT_ROWS } else { ALL_ROWS };
+        let parts = screen.is_eyes() || ui.available_height() >= wanted;
+        // Where the window is low, no step is out of reach.
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| steps(ui, view, screen, parts, outbox));
+    });
+}
+
+/// `parts`: whether the parts of "Eyes" stand below it.
+fn steps(ui: &mut Ui, view: &View, screen: Screen, parts: bool, outbox: &mut Outbox) {
+    let commission = RailStep::new("Commission", commission_state(view));
+    if commission.selected(screen == Screen::Commission).show(ui).clicked() {
+        outbox.act(Action::Go(Screen::Commission));
+    }
+    if RailStep::new("Live", StepState::Always).selected(screen == Screen::Live).show(ui).clicked() {
+        outbox.act(Action::Go(Screen::Live));
+    }
+    let step = RailStep::new("Eyes", eyes_state(view)).number(1).selected(screen.is_eyes()).show(ui);
+    if step.clicked() {
+        outbox.act(Action::Go(eyes_screen(&view.eyes)));
+    }
+    for part in Part::ALL.into_iter().filter(|_| parts) {
+        part_row(ui, view, part, screen, outbox);
+    }
+    let mount = RailStep::new("Mount", step_state(&view.mount.step)).number(2);
+    if mount.selected(screen == Screen::Mount).show(ui).clicked() {
+        outbox.act(Action::Go(Screen::Mount));
+    }
+    for (name, number, state, target) in [
+        ("Touch", 3, touch_state(view), Screen::Touch),
+        ("Models", 4, models_state(view), Screen::Models),
+        ("Gap", 5, gap_state(view), Screen::Gap),
+        ("Grasp", 6, step_state(&view.grasp.step), Screen::Grasp),
+    ] {
+        let step = RailStep::new(name, state).number(number).selected(screen == target);
+        if step.show(ui).clicked() {
+            outbox.act(Action::Go(target));
+        }
+    }
+    ui.add_space(space::S);
+    let drift = RailStep::new("Drift", drift_state(view)).selected(screen == Screen::Drift).show(ui);
+    if drift.clicked() {
+        outbox.act(Action::Go(Screen::Drift));
+    }
+    let timeline = RailStep::new("Timeline", StepState::Always).selected(screen == Screen::Timeline);
+    if timeline.show(ui).clicked() {
+        outbox.act(Action::Go(Screen::Timeline));
+    }
+    let robot = RailStep::new("Robot", robot_state(view)).selected(screen == Screen::Robot).show(ui);
+    if robot.clicked() {
+        outbox.act(Action::Go(Screen::Robot));
+    }
+    let detect = RailStep::new("Detect", detect_state(view)).selected(screen.is_detect()).show(ui);
+    if detect.clicked() && !screen.is_detect() {
+        outbox.act(Action::Go(Screen::Images));
+    }
+    if screen.is_detect() {
+        detect_rows(ui, view, screen, outbox);
+    }
 }
 
 /// The order of work within the step "Eyes".

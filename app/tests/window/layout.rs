@@ -7,7 +7,9 @@ use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
 use plumbline_engine::View;
 
 use crate::fake::Fake;
-use crate::{made_up, made_up_gap, made_up_labels, made_up_models, made_up_objects, made_up_touch};
+use crate::{
+    made_up, made_up_gap, made_up_labels, made_up_models, made_up_objects, made_up_touch, timeline, truth,
+};
 
 /// What letters may stand over, pt: overhanging letters and rounding.
 pub(super) const SLACK: f32 = 2.0;
@@ -124,7 +126,7 @@ fn no_text_is_cut_or_covered_on_any_screen() {
 }
 
 /// Screens that show much.
-pub(super) fn much_to_show() -> [(Screen, View); 11] {
+pub(super) fn much_to_show() -> [(Screen, View); 13] {
     [
         (Screen::Mount, View { mount: made_up::mount().into(), ..made_up::everything() }),
         (Screen::Touch, made_up_touch::with_touch(made_up_touch::running())),
@@ -134,6 +136,8 @@ pub(super) fn much_to_show() -> [(Screen, View); 11] {
         (Screen::Gap, made_up_gap::searching()),
         (Screen::Gap, made_up_gap::with(made_up_gap::failed())),
         (Screen::Gap, made_up_gap::with(made_up_gap::added())),
+        (Screen::Timeline, View { timeline: timeline::results().into(), ..made_up::everything() }),
+        (Screen::Touch, View { truth: truth::truth().into(), ..made_up::everything() }),
         (Screen::Live, made_up_objects::live(made_up_objects::detect())),
         (Screen::Images, made_up_labels::labeling(made_up_labels::proposed())),
         (Screen::Scores, made_up_labels::judging(made_up_labels::judged())),

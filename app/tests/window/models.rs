@@ -148,7 +148,8 @@ fn a_training_that_failed_says_why() {
 fn methods_are_compared_in_figures_and_in_words() {
     let fake = Fake::over(with(trained()));
     let window = on_comparison(&fake);
-    assert!(says(&window, "is best:"), "a headline");
+    let headline = ["M3 is best: ", "M2 is best: ", " is simpler and cannot be told apart from it"];
+    assert!(headline.into_iter().any(|words| says(&window, words)), "a headline");
     assert!(says(&window, "95 %"), "whether the others can be told apart");
     for method in Method::ALL {
         let row = format!("{}: ", method.name());

@@ -138,7 +138,7 @@ fn an_object_that_is_gone_is_said_to_be_gone() {
     click(&mut window, "Tomato, 331, -118, 82 ± 4 mm");
     fake.show(live(DetectView { found: Some(Arc::new(found(vec![banana()]))), ..detect() }));
     window.run_steps(3);
-    assert!(says(&window, "Tomato is not seen on this pair."));
+    assert!(says(&window, "The tomato that was chosen is not seen on this pair."));
     fake.show(live(detect()));
     window.run_steps(3);
     assert!(says(&window, "x: 331.0 ± 4.0 mm"), "it is chosen again when it is back");

@@ -55,6 +55,8 @@ commands! {
     Robot(robot / RobotCommand);
     /// The twin's table, clock and faults.
     Twin(twin / TwinCommand);
+    /// The twin's truth beside what is measured.
+    Truth(truth / TruthCommand);
     /// Calibrating how the eyes sit in the head.
     Mount(mount / MountCommand);
     /// Touching the screen.
@@ -69,6 +71,8 @@ commands! {
     Trials(trials / TrialsCommand);
     /// The way from a robot that was just switched on to its first good grasp.
     Commission(commission / CommissionCommand);
+    /// Everything that was put in use, taken back, found and checked.
+    Timeline(timeline / TimelineCommand);
     /// The lab's own data sets: images with boxes.
     Labels(labels / LabelsCommand);
     /// Judging detectors.

@@ -22,8 +22,10 @@ pub mod rig_models;
 pub mod robot;
 mod scores;
 mod source;
+pub mod timeline;
 pub mod touch;
 pub mod trials;
+mod truth;
 mod twin;
 
 pub mod command;
@@ -39,8 +41,8 @@ pub use command::{
     GapModel, GraspCommand, GraspTable, GraspTarget, GridCommand, GridCorrection, GridSide, HandStep,
     HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LabelsCommand, LiveCommand, ModelsCommand,
     MountCommand, NoticeCommand, ProbePoint, Products, Provider, RecordingCommand, RobotCommand,
-    ScoresCommand, ScreenContact, ScreenWindow, SetPart, SourceCommand, TablesCommand, TouchCommand,
-    TrialsCommand, TrialsFormat, TwinCommand, WatchCommand,
+    ScoresCommand, ScreenContact, ScreenWindow, SetPart, SourceCommand, TablesCommand, TimelineCommand,
+    TimelineFormat, TouchCommand, TrialsCommand, TrialsFormat, TruthCommand, TwinCommand, WatchCommand,
 };
 pub use engine::settings::{self, EngineSettings};
 pub use engine::{Engine, Wake, journal, replay};

@@ -54,6 +54,8 @@ views! {
     robot: robot / RobotView;
     /// The twin.
     twin: twin / TwinView;
+    /// The twin's truth beside what is measured, for the window alone.
+    truth: truth / TruthView;
     /// Calibrating how the eyes sit in the head.
     mount: mount / MountView;
     /// Touching the screen.
@@ -68,6 +70,8 @@ views! {
     trials: trials / TrialsView;
     /// The way to the first good grasp.
     commission: commission / CommissionView;
+    /// Everything that was put in use, taken back, found and checked.
+    timeline: timeline / TimelineView;
     /// The lab's own data sets.
     labels: labels / LabelsView;
     /// Scores of detectors.

@@ -82,6 +82,8 @@ works! {
     Trials(trials / TrialsWork);
     /// Part of commissioning.
     Commission(commission / CommissionWork);
+    /// Part of the timeline of results.
+    Timeline(timeline / TimelineWork);
     /// Part of the lab's own data sets.
     Labels(labels / LabelsWork);
     /// Part of judging detectors.

@@ -1,4 +1,4 @@
-//! The gap, or an experiment with grasps, on one page for a colleague, as HTML and PDF.
+//! The gap, an experiment with grasps, or a whole setup, on one page for a colleague, as HTML and PDF.
 //!
 //! One drawing of an A4 page is laid out (`page`) and written twice: as an inline SVG in an HTML
 //! file that needs no other file, and as a PDF. Lengths on the page are points (1/72 inch).
@@ -10,6 +10,7 @@ mod html;
 mod page;
 mod pdf;
 pub mod sample;
+pub mod setup;
 mod svg;
 mod values;
 

@@ -211,7 +211,7 @@ fn no_file_names_a_place_of_one_machine() {
 #[test]
 fn the_scripts_can_be_run() {
     use std::os::unix::fs::PermissionsExt;
-    for script in ["plumbline", ".ci/run"] {
+    for script in ["plumbline", ".ci/run", "packaging/package.sh", "packaging/test.sh", "packaging/AppRun"] {
         let path = repository().join(script);
         let mode = std::fs::metadata(&path).expect(script).permissions().mode();
         assert_eq!(mode & 0o111, 0o111, "{script} is not executable");

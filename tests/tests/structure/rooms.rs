@@ -69,6 +69,45 @@ fn modules_of_the_engine_use_only_what_the_table_allows() {
 }
 
 #[test]
+fn what_the_truth_shows_is_seen_by_nobody_who_calibrates_searches_touches_or_grasps() {
+    let uses = rooms_of("core/engine");
+    // The twin's room hands itself in; the sums put it into the view and take its switch.
+    let may = ["truth", "twin", "command", "view", "work", "state", "engine"];
+    let using: BTreeSet<&str> =
+        uses.iter().filter(|(_, used)| used.contains("truth")).map(|(module, _)| module.as_str()).collect();
+    assert!(
+        using.contains("twin") && using.contains("state"),
+        "this test must be able to see who uses it: {using:?}"
+    );
+    let others: Vec<&&str> = using.iter().filter(|module| !may.contains(module)).collect();
+    assert!(others.is_empty(), "these can see the truth: {others:?}");
+    // Past the view nothing of it goes: within the sums only these name it, and no other package but the
+    // window's does.
+    let room = ["plumbline_engine::", "crate::"].map(|from| from.to_owned() + "truth");
+    let shown = ["Truth".to_owned() + "View", "Truth".to_owned() + "Row"];
+    let (mut seen, mut past) = (0, Vec::new());
+    for (name, text) in tracked_text_files().into_iter().filter(|(name, _)| name.ends_with(".rs")) {
+        // The twin's own room of that name is what judges alone may read, which another test holds.
+        let is_of_twin = name.starts_with("core/twin/");
+        if is_of_twin || !room.iter().chain(&shown).any(|word| text.contains(word.as_str())) {
+            continue;
+        }
+        seen += 1;
+        let of_sums =
+            ["command.rs", "view.rs", "state/mod.rs", "state/rooms.rs", "state/neighbors.rs", "lib.rs"];
+        let of_engine = ["truth/", "twin/desk.rs", "engine/pipeline.rs", "engine/hub.rs"];
+        let inside =
+            |part: &&str| name.strip_prefix("core/engine/src/").is_some_and(|rest| rest.starts_with(part));
+        let allowed = name.starts_with("app/") || of_sums.iter().chain(&of_engine).any(|part| inside(&part));
+        if !allowed {
+            past.push(name);
+        }
+    }
+    assert!(seen > 5, "this test must be able to see who names it");
+    assert!(past.is_empty(), "these name what only the window may show: {past:?}");
+}
+
+#[test]
 fn floors_of_the_window_know_only_those_below() {
     let text = architecture();
     let table = Table::with_header(&text, &["floor of `app/src`", "what stands there", "knows"]);

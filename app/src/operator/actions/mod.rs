@@ -8,6 +8,7 @@ mod grid;
 mod labels;
 mod models;
 mod robot;
+pub mod timeline;
 mod touch;
 mod trials;
 
@@ -19,6 +20,7 @@ pub use grid::{GridAction, USUAL_THING};
 pub use labels::{LabelsAction, ScoresAction};
 pub use models::ModelsAction;
 pub use robot::{MountAction, RobotAction, default_scenario};
+pub use timeline::TimelineAction;
 pub use touch::{Preset, TouchAction, is_under_way, needs_window, screen_of, usual_area};
 pub use trials::TrialsAction;
 
@@ -70,6 +72,8 @@ pub enum Action {
     WatchDrift,
     /// Names what makes the watched places wander.
     ExplainDrift,
+    /// Shows the twin's truth beside what is measured, or stops that.
+    ToggleTruth,
     /// Opens a screen.
     Go(Screen),
     /// Says which board the newest pair shows.
@@ -116,6 +120,8 @@ pub enum Action {
     Grid(GridAction),
     /// Of commissioning.
     Commission(CommissionAction),
+    /// Of the timeline of results.
+    Timeline(TimelineAction),
     /// Of the lab's own data sets.
     Labels(LabelsAction),
     /// Of judging detectors.
@@ -159,7 +165,8 @@ macro_rules! into_action {
 }
 into_action!(
     Robot: RobotAction, Mount: MountAction, Touch: TouchAction, Models: ModelsAction, Gap: GapAction,
-    Grasp: GraspAction, Trials: TrialsAction, Grid: GridAction, Commission: CommissionAction, Labels: LabelsAction, Scores: ScoresAction, Detect: DetectAction
+    Grasp: GraspAction, Trials: TrialsAction, Grid: GridAction, Commission: CommissionAction,
+    Timeline: TimelineAction, Labels: LabelsAction, Scores: ScoresAction, Detect: DetectAction
 );
 
 /// All actions with a place in the palette, in its order.
@@ -172,6 +179,7 @@ pub fn all() -> impl Iterator<Item = Action> {
     let grasp = GraspAction::ALL.into_iter().map(Action::Grasp);
     let trials = TrialsAction::ALL.into_iter().map(Action::Trials);
     let commission = CommissionAction::ALL.into_iter().map(Action::Commission);
+    let timeline = TimelineAction::ALL.into_iter().map(Action::Timeline);
     let detect = DetectAction::ALL.into_iter().map(Action::Detect);
     let labels = LabelsAction::ALL.into_iter().map(Action::Labels);
     let scores = ScoresAction::ALL.into_iter().map(Action::Scores);
@@ -185,6 +193,7 @@ pub fn all() -> impl Iterator<Item = Action> {
         .chain(detect)
         .chain(steps)
         .chain(labels)
+        .chain(timeline)
         .chain(scores)
         .chain(threads)
 }
@@ -207,6 +216,7 @@ const ALL: &[Action] = &[
     Action::PlayLastRecording,
     Action::WatchDrift,
     Action::ExplainDrift,
+    Action::ToggleTruth,
     Action::Go(Screen::Commission),
     Action::Go(Screen::Live),
     Action::Go(Screen::Collect),
@@ -218,6 +228,7 @@ const ALL: &[Action] = &[
     Action::Go(Screen::Gap),
     Action::Go(Screen::Grasp),
     Action::Go(Screen::Drift),
+    Action::Go(Screen::Timeline),
     Action::Go(Screen::Robot),
     Action::Go(Screen::Images),
     Action::Go(Screen::Scores),
@@ -291,6 +302,7 @@ impl Action {
             Self::Go(Screen::Gap) => "Go to Gap",
             Self::Go(Screen::Grasp) => "Go to Grasp",
             Self::Go(Screen::Drift) => "Go to Drift",
+            Self::Go(Screen::Timeline) => "Go to Timeline",
             Self::Go(Screen::Robot) => "Go to Robot",
             Self::Go(Screen::Images) => "Go to Detect: images",
             Self::Go(Screen::Scores) => "Go to Detect: scores",
@@ -303,6 +315,7 @@ impl Action {
             Self::Trials(action) => action.label(),
             Self::Grid(action) => action.label(),
             Self::Commission(action) => action.label(),
+            Self::Timeline(action) => action.label(),
             Self::Labels(action) => action.label(),
             Self::Scores(action) => action.label(),
             Self::Detect(action) => action.label(),
@@ -310,6 +323,7 @@ impl Action {
             Self::PlayLastRecording => "Play the last recording",
             Self::WatchDrift => "Watch drift, or stop watching",
             Self::ExplainDrift => "Explain what was watched",
+            Self::ToggleTruth => "Show the twin's truth, or hide it",
             Self::RecognizeBoard => "Recognize the board",
             Self::UseSeenBoard => "Use the recognized board",
             Self::Capture => "Capture pair",
@@ -382,6 +396,11 @@ impl Action {
                 view.source.status == SourceStatus::Running && !view.source.photographs,
                 "no eyes are live",
             ),
+            Self::ToggleTruth if view.truth.is_on => None,
+            Self::ToggleTruth => when(
+                view.twin.running && view.robot.connection.is_connected(),
+                "no twin is connected: of a real robot nobody knows the truth",
+            ),
             Self::PlayLastRecording => when(view.recording.last.is_some(), "nothing was recorded yet"),
             Self::CollectRecording => when(view.source.replay.is_some(), "no recording is open"),
             Self::ExplainDrift if view.gap.searching.is_some() => Some("the gap is being looked for".into()),
@@ -402,6 +421,7 @@ impl Action {
             Self::Trials(action) => action.refusal(view),
             Self::Grid(action) => action.refusal(view),
             Self::Commission(action) => action.refusal(view),
+            Self::Timeline(action) => action.refusal(view),
             Self::Labels(action) => action.refusal(view),
             Self::Scores(action) => action.refusal(view),
             Self::Detect(action) => action.refusal(view),

@@ -9,6 +9,7 @@ mod models;
 mod robot;
 mod sentence;
 mod standing;
+mod timeline;
 mod touch;
 
 pub use commission::{Course, Press, course, done_in_words, name as commission_name, spent};
@@ -50,6 +51,7 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
         Screen::Gap => gap::gap(view),
         Screen::Grasp => grasp::grasp(view),
         Screen::Drift => drift::drift(view),
+        Screen::Timeline => timeline::timeline(view),
         Screen::Robot => robot::robot(view),
         Screen::Scores => detect::scores(view),
         Screen::Images => detect::images(view),

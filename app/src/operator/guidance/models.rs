@@ -31,7 +31,7 @@ fn proposed(method: Method, error_m: Option<f64>) -> Guidance {
     let name = method.name();
     let said = match error_m {
         Some(error_m) => format!(
-            "{name} is best: {} on touches that it had not seen. Look at its map, then use it.",
+            "{name} is the one to use: {} on touches that it had not seen. Look at its map, then use it.",
             format::mm(error_m)
         ),
         None => format!("{name} was imported. How well it fits this robot is not known: check it after use."),

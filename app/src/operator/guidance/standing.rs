@@ -1,5 +1,7 @@
 //! Where the work on models stands.
 
+use std::sync::Arc;
+
 use plumbline_engine::view::ModelsView;
 
 use crate::operator::snapshot::models::{CorrectionModel, Method};
@@ -61,5 +63,13 @@ fn best_proposal(models: &ModelsView) -> Option<Standing> {
     };
     let or_last = |model: &CorrectionModel| error_m(model).unwrap_or(f64::INFINITY);
     let best = models.proposals.iter().min_by(|a, b| or_last(a).total_cmp(&or_last(b)))?;
-    Some(Standing::Proposed(best.method(), error_m(best)))
+    // What is simpler and cannot be told apart from it is as good.
+    let is_alike = |model: &&Arc<CorrectionModel>| {
+        let compared = models.comparison.as_ref();
+        let difference = compared.and_then(|compared| compared.difference_m(model.method(), best.method()));
+        model.method() < best.method() && difference.is_some_and(|(_, [low, _])| low <= 0.0)
+    };
+    let simplest = models.proposals.iter().filter(is_alike).min_by_key(|model| model.method());
+    let chosen = simplest.unwrap_or(best);
+    Some(Standing::Proposed(chosen.method(), error_m(chosen)))
 }

@@ -148,8 +148,7 @@ fn finished(view: &View) -> Guidance {
             say("The place of the screen is in use. Next: touch targets to train models.")
                 .then("Plan a first calibration", Action::Touch(TouchAction::Plan(Preset::First)))
         }
-        Some(Purpose::Check) => say(format!("{touched} checked; the figures say how well the finger lands."))
-            .then("Plan new targets", Action::Touch(TouchAction::Plan(Preset::Check))),
+        Some(Purpose::Check) => checked(view, &touched),
         Some(Purpose::Train) if finger == Some(Finger::Left) => {
             say(format!("{touched} of the left finger are on disk. Next: look what makes its arm miss."))
                 .then("Go to Gap", Action::Go(Screen::Gap))
@@ -157,6 +156,31 @@ fn finished(view: &View) -> Guidance {
         Some(Purpose::Train) | None => say(format!("{touched} are on disk. Next: train models on them."))
             .then("Train models", Action::Go(Screen::Models)),
     }
+}
+
+/// How well the finger lands: before → after where some were sent as the robot is described.
+fn checked(view: &View, touched: &str) -> Guidance {
+    let touch = &view.touch;
+    let again = Action::Touch(TouchAction::Plan(Preset::Check));
+    let Some(after) = touch.figures else {
+        return say(format!("{touched} checked: too few to say how well the finger lands."))
+            .then("Plan new targets", again);
+    };
+    let after = format::mm(after.mean_m);
+    let said = match touch.figures_described {
+        Some(before) => {
+            format!(
+                "{touched} checked: {} → {after} beside the target, on average.",
+                format::mm(before.mean_m)
+            )
+        }
+        None => format!("{touched} checked: the finger lands {after} beside the target, on average."),
+    };
+    if touch.correct_with.is_some() {
+        return say(format!("{said} It stands on the timeline. Next: grasp."))
+            .then("Go to Grasp", Action::Go(Screen::Grasp));
+    }
+    say(format!("{said} Nothing corrected these targets.")).then("Plan new targets", again)
 }
 
 fn first(view: &View) -> Guidance {

@@ -3,7 +3,9 @@
 pub mod gap;
 pub mod grasp;
 pub mod robot;
+pub mod timeline;
 pub mod trials;
+pub mod truth;
 
 use std::path::Path;
 

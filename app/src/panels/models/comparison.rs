@@ -173,7 +173,7 @@ fn decide(ui: &mut Ui, cx: &mut PanelContext<'_>, facts: &Facts) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        let best = facts.best.map(|best| facts.judged[best].method);
+        let best = facts.simplest().or(facts.best.map(|best| facts.judged[best].method));
         let mut proposals: Vec<_> = models.proposals.iter().collect();
         proposals.sort_by_key(|model| (Some(model.method()) != best, std::cmp::Reverse(model.method())));
         for model in proposals {

@@ -30,6 +30,8 @@ pub struct Facts {
     pub without_m: Option<f64>,
     /// Spread of repeats: the noise floor.
     pub noise: Option<Repeats>,
+    /// Methods that cannot be told apart from the best.
+    pub alike: Vec<Method>,
     /// A sentence per method that is not the best: whether it can be told apart.
     pub apart: Vec<String>,
 }
@@ -67,13 +69,24 @@ impl Facts {
             (Some(comparison), Some(best)) => apart(comparison, judged[best].method),
             _ => Vec::new(),
         };
+        let alike = match (&models.comparison, best) {
+            (Some(comparison), Some(best)) => alike(comparison, judged[best].method),
+            _ => Vec::new(),
+        };
         Self {
             best,
+            alike,
             without_m: models.map.as_ref().and_then(|map| without_model_m(&map.touches)),
             noise: data.and_then(|data| spread_of_repeats(data)),
             apart,
             judged,
         }
+    }
+
+    /// The simplest method that cannot be told apart from the best; `None`: the best one is.
+    pub fn simplest(&self) -> Option<Method> {
+        let best = self.judged[self.best?].method;
+        self.alike.iter().copied().min().filter(|simplest| *simplest < best)
     }
 
     /// "M3 is best: 4.40 mm on touches that it had not seen, against 21.3 mm without a model."
@@ -86,7 +99,18 @@ impl Facts {
         Some(if self.judged.len() == 1 {
             format!("{} misses by {mean} on touches that it had not seen{against}.", best.method.name())
         } else {
-            format!("{} is best: {mean} on touches that it had not seen{against}.", best.method.name())
+            match self.simplest() {
+                Some(simpler) => format!(
+                    "{} errs least, {mean} on touches that it had not seen{against}; {} is simpler and cannot be told \
+                     apart from it: use that one.",
+                    best.method.name(),
+                    simpler.name()
+                ),
+                None => format!(
+                    "{} is best: {mean} on touches that it had not seen{against}.",
+                    best.method.name()
+                ),
+            }
         })
     }
 }
@@ -111,6 +135,14 @@ fn judged(models: &ModelsView) -> Vec<Judged> {
 fn without_model_m(touches: &[MapTouch]) -> Option<f64> {
     let sum: f64 = touches.iter().map(|touch| touch.before_m[0].hypot(touch.before_m[1])).sum();
     (!touches.is_empty()).then(|| sum / touches.len() as f64)
+}
+
+/// Methods that cannot be told apart from the best one: the interval of the difference holds nothing.
+fn alike(comparison: &Comparison, best: Method) -> Vec<Method> {
+    let is_alike = |other: &Method| {
+        *other != best && comparison.difference_m(*other, best).is_some_and(|(_, [low, _])| low <= 0.0)
+    };
+    Method::ALL.into_iter().filter(is_alike).collect()
 }
 
 /// Whether the other methods can be told apart from the best one, a sentence each.

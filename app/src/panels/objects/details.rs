@@ -14,7 +14,10 @@ use super::state::ObjectsPanels;
 pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
     let Some(object) = panels.described(view) else {
         match &panels.chosen {
-            Some(gone) => ui.label(theme::weak(ui, format!("{} is not seen on this pair.", gone.name))),
+            Some(gone) => ui.label(theme::weak(
+                ui,
+                format!("The {} that was chosen is not seen on this pair.", gone.name.to_lowercase()),
+            )),
             None => ui.label(theme::weak(
                 ui,
                 "Point at a box to see its partner in the other eye; click to keep it.",

@@ -1,5 +1,5 @@
 //! The twin: what stands on its table, the board, the clock of its eyes, its faults. Nothing of
-//! what its scenario hides is here.
+//! what its scenario hides is here, but the switch of truth mode is.
 
 mod board;
 pub mod state;
@@ -13,6 +13,7 @@ use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
+use super::parts::action_button;
 use super::{PanelContext, padded};
 use crate::operator::{Action, RobotAction, default_scenario};
 
@@ -31,6 +32,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             table::show(ui, cx);
             board::show(ui, cx);
             clock(ui, cx, twin);
+            truth(ui, cx);
             scenario(ui, cx, twin);
             faults(ui, cx, twin);
         });
@@ -94,6 +96,15 @@ fn clock(ui: &mut Ui, cx: &mut PanelContext<'_>, twin: &TwinView) {
             cx.outbox.send(TwinCommand::CoolEyes);
         }
     });
+}
+
+/// For who wants to know how good it really is; marked on every screen while it is on.
+fn truth(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    group_heading(ui, "Truth mode");
+    let label = if cx.view.truth.is_on { "Hide the truth" } else { "Show the truth" };
+    action_button(ui, cx, Action::ToggleTruth, label).on_hover_text(
+        "Shows measured − true on every screen. Nothing that calibrates, searches, touches or grasps sees it.",
+    );
 }
 
 fn scenario(ui: &mut Ui, cx: &mut PanelContext<'_>, twin: &TwinView) {

@@ -315,6 +315,11 @@ impl ModelEffect {
 }
 
 impl Contents {
+    /// Whether an effect was named: see [`super::RigModel::is_named`].
+    pub fn is_named(&self, effect: &ModelEffect) -> bool {
+        effect.probability.is_some() || self.together.iter().all(|fit| fit.tip != effect.tip)
+    }
+
     /// Whether every effect is one of the library and has a place in the rig; else why not.
     pub(crate) fn check(&self, rig: &Rig) -> Result<(), String> {
         for effect in &self.effects {

@@ -63,7 +63,7 @@ impl RigModel {
     /// Whether an effect was named. Others came with those of their arm for the arm's sake: small shares of
     /// all that usually is wrong with arms, fitted together.
     pub fn is_named(&self, effect: &ModelEffect) -> bool {
-        effect.probability.is_some() || self.contents.together.iter().all(|fit| fit.tip != effect.tip)
+        self.contents.is_named(effect)
     }
 
     /// How many effects were named by a search, and how many came with them for the arm's sake, drawn to zero.

@@ -115,7 +115,7 @@ impl<'a> Hub<'a> {
         if let Some(problem) = &folder.problem {
             state.notify(NoticeLevel::Warning, problem.as_str());
         }
-        let pipeline = Pipeline::start(&bell, &folder.path, shared)?;
+        let pipeline = Pipeline::start(&bell, &folder.path, shared, state.truth_plug())?;
         let mut hub = Self {
             shared,
             state,

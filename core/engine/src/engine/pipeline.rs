@@ -1,11 +1,9 @@
 //! The threads of the live side, and what goes in and out of them.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Sender};
-use plumbline_effects::RobotModel;
 use plumbline_model::StereoFrame;
 use plumbline_model::robot::default_rig;
 
@@ -24,6 +22,7 @@ use crate::robot::{News, RobotControl, RobotThread, RobotWires, Switches, TouchN
 use crate::source::view::SourceView;
 use crate::source::{Control, Note, Player, SourceThread, Wires};
 use crate::state::{Serves, State};
+use crate::truth::TruthPlug;
 use crate::twin::{TwinDesk, TwinEyesPlug};
 
 /// A point that stays is measured anew at most this often; a new one at once.
@@ -139,13 +138,18 @@ impl<S: Stage> Line<S> {
 }
 
 impl Pipeline {
-    pub(super) fn start(bell: &Bell, data_dir: &Path, shared: &Shared) -> std::io::Result<Self> {
+    pub(super) fn start(
+        bell: &Bell,
+        data_dir: &Path,
+        shared: &Shared,
+        truth: TruthPlug,
+    ) -> std::io::Result<Self> {
         let start = Start { bell, trial: &shared.trial };
         let (frames_in, frames) = newest_value_slot();
         let (notes_in, notes) = crossbeam_channel::bounded(NOTES_WAITING);
         let eyes = TwinEyesPlug::default();
-        let worker =
-            Worker::new(default_rig(), data_dir, shared.switches.clone(), TwinDesk::new(eyes.clone()));
+        let desk = TwinDesk::new(eyes.clone()).with_truth(truth);
+        let worker = Worker::new(default_rig(), data_dir, shared.switches.clone(), desk);
         let player = Player::with_opener(eyes.opener());
         let (source, views) = start.source(player, frames_in.clone(), notes_in.clone())?;
         let (robot, news, touches) = start.robot(worker, notes_in.clone())?;
@@ -207,7 +211,7 @@ impl Pipeline {
         let start = Start { bell: &bell, trial: &trial };
         match thread {
             WatchedThread::Robot => {
-                let worker = self.another_worker(state.model_of_the_arm(), state.twins_started());
+                let worker = self.another_worker(state);
                 (self.robot, self.news, self.touches) = start.robot(worker, self.notes_in.clone())?;
             }
             WatchedThread::Source => {
@@ -228,8 +232,9 @@ impl Pipeline {
     }
 
     /// Not connected; it knows where eyes and screen lie, and counts on.
-    fn another_worker(&self, model: Arc<RobotModel>, twins_started: u64) -> Worker {
-        let desk = TwinDesk::new(self.eyes.clone());
+    fn another_worker(&self, state: &State) -> Worker {
+        let (model, twins_started) = (state.model_of_the_arm(), state.twins_started());
+        let desk = TwinDesk::new(self.eyes.clone()).with_truth(state.truth_plug());
         let rig = model.rig().clone();
         let mut worker = Worker::new(rig, &self.data_dir, self.switches.clone(), desk)
             .in_place_of_one_that_started(twins_started);

@@ -10,6 +10,7 @@ use super::command::{ExportFormat, Exported};
 use super::view::CollectedPair;
 use super::work::{
     Accept, Capture, CollectRecording, Context, Export, EyesWork, Open, OpenWhat, Recognize, Solve,
+    UseEarlier,
 };
 use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::notice::NoticeLevel;
@@ -145,6 +146,14 @@ impl EyesWorkflow {
             accepted: context.time.day,
         };
         self.busy.accepting = Some(context.start(EyesWork::Accept(work)));
+    }
+
+    pub(super) fn use_earlier(&mut self, id: Option<String>, context: &mut Context<'_>) {
+        if self.busy.accepting.is_some() {
+            return context.refuse("Another calibration is being put in use. Wait for it.");
+        }
+        let work = UseEarlier { id, store: self.store.clone(), workspace: self.workspace };
+        self.busy.accepting = Some(context.start(EyesWork::UseEarlier(work)));
     }
 
     pub(super) fn open(&mut self, what: OpenWhat, context: &mut Context<'_>) {

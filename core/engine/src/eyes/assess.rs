@@ -2,7 +2,7 @@
 //! and what speaks against it.
 
 use plumbline_model::{
-    Cancelled, JobContext, LeftCamera, Point, StereoCalibration, StereoCameras, Workspace,
+    Cancelled, JobContext, LeftCamera, Point, StereoCalibration, StereoCameras, Workspace, counted,
 };
 
 use super::geometry::{depth_per_px_m, point_sigma_m, project_both};
@@ -93,8 +93,8 @@ fn doubts(calibration: &StereoCalibration, in_use: Option<&StereoCalibration>) -
     }
     if calibration.per_pair.len() < 10 && calibration.evidence.is_some() {
         doubts.push(format!(
-            "It rests on {} pairs only; 15 to 40 make a good calibration.",
-            calibration.per_pair.len()
+            "It rests on {} only; 15 to 40 make a good calibration.",
+            counted(calibration.per_pair.len(), "pair")
         ));
     }
     if let Some(in_use) = in_use {

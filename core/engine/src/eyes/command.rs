@@ -78,6 +78,12 @@ pub enum EyesCommand {
     /// Collects, in place of what is collected, the pairs that the proposal (or else the
     /// calibration in use) was solved from, to solve them again.
     CollectEvidence,
+    /// Puts a calibration that was accepted earlier in use again; `None`: none, as the description has
+    /// the eyes. Nothing is deleted.
+    UseEarlier {
+        /// Its id in [`crate::view::EyesView::earlier`].
+        id: Option<String>,
+    },
     /// Proposes a calibration that was accepted earlier.
     ProposeEarlier {
         /// Its id in [`crate::view::EyesView::earlier`].

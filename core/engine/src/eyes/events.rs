@@ -159,6 +159,7 @@ impl EyesWorkflow {
         for problem in restored.problems {
             context.notices.add(NoticeLevel::Warning, problem);
         }
+        self.is_known = true;
         if self.in_use.is_none() {
             self.in_use = restored.in_use.map(Arc::new);
             if let Some(evidence) = self.in_use().and_then(|in_use| in_use.evidence.as_ref())

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use jiff::Timestamp;
 use plumbline_model::files::{self, FileError, Size};
 use plumbline_model::formats::native;
-use plumbline_model::{FormatError, StereoCalibration};
+use plumbline_model::{FormatError, StereoCalibration, counted};
 use serde::{Deserialize, Serialize};
 
 use super::view::EarlierCalibration;
@@ -56,6 +56,8 @@ pub struct Entry {
 }
 
 const IN_USE: &str = "in-use.txt";
+/// What stands there when none is in use, although there are some; no id begins like this.
+const NONE: &str = "none";
 const ENTRY: &str = "toml";
 
 impl Store {
@@ -81,13 +83,38 @@ impl Store {
         Ok(entry)
     }
 
+    /// Puts one of those that are kept in use; `None`: none.
+    ///
+    /// # Errors
+    /// When there is none of that id, or it cannot be read or written; then what was in use stays.
+    pub fn use_earlier(&self, id: Option<&str>) -> Result<(), StoreError> {
+        if let Some(id) = id {
+            self.load(id)?;
+        }
+        self.shelf.make_folder().map_err(self.io())?;
+        Ok(files::write(&self.shelf.folder().join(IN_USE), id.unwrap_or(NONE))?)
+    }
+
+    /// Whether it was said that none is in use.
+    ///
+    /// # Errors
+    /// When there is a file that cannot be read.
+    pub fn is_none_in_use(&self) -> Result<bool, StoreError> {
+        Ok(self.said()?.trim() == NONE)
+    }
+
+    /// What is said to be in use; empty where nothing is said.
+    fn said(&self) -> Result<String, StoreError> {
+        match files::read_text(&self.shelf.folder().join(IN_USE), Size::SHORT) {
+            Err(error) if !error.is_absent() => Err(error.into()),
+            read => Ok(read.unwrap_or_default()),
+        }
+    }
+
     /// All that were accepted, newest first.
     pub fn list(&self) -> Result<Vec<EarlierCalibration>, StoreError> {
         let ids = self.shelf.names().map_err(self.io())?;
-        let in_use = match files::read_text(&self.shelf.folder().join(IN_USE), Size::SHORT) {
-            Err(error) if !error.is_absent() => return Err(error.into()),
-            read => read.unwrap_or_default(),
-        };
+        let in_use = self.said()?;
         let mut found: Vec<EarlierCalibration> = ids
             .into_iter()
             .map(|id| {
@@ -109,11 +136,14 @@ impl Store {
     }
 
     /// The calibration in use; if its file is damaged, the newest that is not. `None` when none was
-    /// ever accepted.
+    /// ever accepted, or none is to be used.
     ///
     /// # Errors
     /// When none of those that were accepted can be read.
     pub fn in_use(&self) -> Result<Option<StereoCalibration>, StoreError> {
+        if self.is_none_in_use()? {
+            return Ok(None);
+        }
         let mut entries = self.list()?;
         entries.sort_by_key(|entry| !entry.in_use);
         let mut first_error = None;
@@ -155,7 +185,8 @@ pub fn describe(calibration: &StereoCalibration) -> String {
     let baseline = format!("eyes {:.2} mm apart", calibration.cameras.baseline_m() * 1000.0);
     match &calibration.summary {
         Some(summary) => {
-            format!("{} pairs, {:.3} px, {baseline}", calibration.per_pair.len(), summary.rms_stereo_px)
+            let pairs = counted(calibration.per_pair.len(), "pair");
+            format!("{pairs}, {:.3} px, {baseline}", summary.rms_stereo_px)
         }
         None => baseline,
     }
@@ -185,6 +216,22 @@ mod tests {
         assert_eq!(list.iter().map(|entry| entry.in_use).collect::<Vec<_>>(), [true, false, false]);
         let (first, _) = store.load(&ids[0]).expect("still there");
         assert_eq!(first.cameras, calibration(640).cameras);
+    }
+
+    #[test]
+    fn an_earlier_one_and_none_can_be_used_again_and_nothing_is_deleted() {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let store = Store::new(folder.path().join("calibrations"));
+        let ids = [640, 800]
+            .map(|width_px| store.accept(&calibration(width_px), Timestamp::now()).expect("kept").id);
+        store.use_earlier(Some(&ids[0])).expect("there");
+        assert_eq!(store.in_use().expect("read").map(|c| c.cameras.left.width_px), Some(640));
+        store.use_earlier(None).expect("written");
+        assert_eq!(store.in_use().expect("read"), None);
+        assert!(store.list().expect("a list").iter().all(|entry| !entry.in_use));
+        assert!(matches!(store.use_earlier(Some("../x")), Err(StoreError::NoSuchCalibration(_))));
+        store.use_earlier(Some(&ids[1])).expect("still there");
+        assert_eq!(store.in_use().expect("read").map(|c| c.cameras.left.width_px), Some(800));
     }
 
     #[test]

@@ -59,6 +59,8 @@ pub struct EyesWorkflow {
     /// Collection and options that the proposal was solved from.
     pub(super) solved_from: Option<(u64, CalibrationOptions)>,
     pub(super) in_use: Option<Arc<AcceptedCalibration>>,
+    /// Whether what was accepted before has been read.
+    pub(super) is_known: bool,
     pub(super) earlier: Arc<[EarlierCalibration]>,
     pub(super) busy: Busy,
     pub(super) image_size_px: Option<(u32, u32)>,
@@ -133,6 +135,11 @@ impl EyesWorkflow {
     /// The calibration in use.
     pub fn in_use(&self) -> Option<&Arc<StereoCalibration>> {
         self.in_use.as_ref().map(|in_use| &in_use.calibration)
+    }
+
+    /// The calibration in use as it was accepted; `None`: not read yet. Inside `None`: none is in use.
+    pub fn accepted(&self) -> Option<Option<&Arc<AcceptedCalibration>>> {
+        self.is_known.then_some(self.in_use.as_ref())
     }
 
     /// Pairs that are collected.
@@ -250,6 +257,7 @@ impl Workflow for EyesWorkflow {
             proposal: None,
             solved_from: None,
             in_use: None,
+            is_known: false,
             earlier: Arc::from([]),
             busy: Busy::default(),
             image_size_px: None,
@@ -293,6 +301,7 @@ impl Workflow for EyesWorkflow {
             EyesCommand::Discard => (self.proposal, self.solved_from) = (None, None),
             EyesCommand::Import { files, length } => self.open(OpenWhat::Files { files, length }, context),
             EyesCommand::ProposeEarlier { id } => self.open(OpenWhat::Earlier { id }, context),
+            EyesCommand::UseEarlier { id } => self.use_earlier(id, context),
             EyesCommand::CollectEvidence => self.collect_evidence(context),
             EyesCommand::Export { what, format, file } => self.export(what, format, file, context),
         }
@@ -317,10 +326,15 @@ impl Workflow for EyesWorkflow {
                     (self.proposal, self.solved_from) = (None, None);
                 }
                 self.in_use = Some(Arc::new(accepted.in_use));
+                self.is_known = true;
                 self.earlier = accepted.earlier.into();
             }
             EyesResult::Exported(_) => {}
             EyesResult::Restored(restored) => self.restored(restored, context),
+            EyesResult::UsedEarlier(restored) => {
+                self.in_use = None;
+                self.restored(restored, context);
+            }
         }
         self.refresh();
     }

@@ -1,7 +1,7 @@
 //! The model in use for people: its name, its effects, its steps.
 
 use plumbline_effects::RigModel;
-use plumbline_effects::rig_model::{Step, StepKind};
+use plumbline_effects::rig_model::{Contents, Step, StepKind};
 use plumbline_report::HistoryEntry;
 
 use super::view::{AddedEffect, GapModelView, ModelStep};
@@ -18,20 +18,6 @@ pub fn name(model: &RigModel) -> String {
     }
 }
 
-/// Those that were named in this model, and how many others came with them.
-fn titles(step: &Step, model: &RigModel) -> String {
-    let has_name = |name: &&String| {
-        let mut effects = model.effects().iter();
-        effects.find(|effect| effect.name() == **name).is_none_or(|effect| model.is_named(effect))
-    };
-    let named: Vec<&str> = step.effects.iter().filter(has_name).map(String::as_str).collect();
-    match (named.len(), step.effects.len() - named.len()) {
-        (_, 0) => named.join(", "),
-        (0, shares) => format!("small shares of {}", plumbline_model::counted(shares, "effect")),
-        (_, shares) => format!("{} and small shares of {shares}", named.join(", ")),
-    }
-}
-
 /// Every effect with its values, so that it can be told whether a model is still the same.
 pub fn parts(model: &RigModel) -> Vec<String> {
     model.effects().iter().map(|effect| format!("{} {:?}", effect.name(), effect.values)).collect()
@@ -44,7 +30,7 @@ pub fn report_history(model: &RigModel) -> Vec<HistoryEntry> {
         if history.is_empty() {
             history.push(HistoryEntry { name: "nominal".to_owned(), gap: gap.before });
         }
-        history.push(HistoryEntry { name: format!("{} added", titles(step, model)), gap: gap.after });
+        history.push(HistoryEntry { name: format!("{} added", titles(model, step)), gap: gap.after });
     }
     history
 }
@@ -60,12 +46,47 @@ pub fn view(model: &RigModel) -> GapModelView {
     GapModelView {
         name: name(model),
         effects: effects.collect(),
-        history: model.history.iter().map(|of| step(of, model)).collect(),
+        history: model.history.iter().map(|taken| step(model, taken)).collect(),
         can_undo: model.can_undo(),
     }
 }
 
-fn step(step: &Step, model: &RigModel) -> ModelStep {
+/// What a step was done to, for people: titles as the search gave them, and how many effects came beside the
+/// named ones.
+fn titles(model: &RigModel, step: &Step) -> String {
+    let before = model.history.iter().map(|step| &step.before);
+    let contents: Vec<&Contents> = std::iter::once(&model.contents).chain(before).collect();
+    let known = |name: &str| {
+        let of =
+            |contents: &'_ &Contents| contents.effects.iter().find(|effect| effect.name() == name).cloned();
+        contents.iter().find_map(|contents| Some((of(contents)?, contents)))
+    };
+    let (mut named, mut shares) = (vec![], 0);
+    for name in &step.effects {
+        match known(name) {
+            Some((effect, contents)) if !contents.is_named(&effect) => shares += 1,
+            Some((effect, _)) if !effect.title.is_empty() => named.push(effect.title),
+            _ => named.push(plain(name)),
+        }
+    }
+    let of_shares = format!("small shares of {}", plumbline_model::counted(shares, "effect"));
+    match (named.is_empty(), shares) {
+        (_, 0) => named.join("; "),
+        (true, _) => of_shares,
+        (false, _) => format!("{} and {of_shares}", named.join("; ")),
+    }
+}
+
+/// `joint-zero@r_elbow_y` where nobody kept a title: "joint zero of r elbow y".
+fn plain(name: &str) -> String {
+    let words = |text: &str| text.replace(['-', '_'], " ");
+    match name.split_once('@') {
+        Some((id, site)) if !site.is_empty() => format!("{} of {}", words(id), words(site)),
+        _ => words(name.trim_end_matches('@')),
+    }
+}
+
+fn step(model: &RigModel, step: &Step) -> ModelStep {
     let what = match step.kind {
         StepKind::Added => "added",
         StepKind::Removed => "taken out",
@@ -73,10 +94,27 @@ fn step(step: &Step, model: &RigModel) -> ModelStep {
     };
     ModelStep {
         at: step.at,
-        title: format!("{} {what}", titles(step, model)),
+        title: format!("{} {what}", titles(model, step)),
         undone: step.undone || step.kind == StepKind::Undone,
         errors: step.gap.as_ref().map(|gap| [gap.before, gap.after, gap.floor]),
         in_pixels: step.gap.as_ref().is_some_and(|gap| gap.unit == "px"),
         sessions: step.sessions.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_model::robot::default_rig;
+
+    use super::*;
+    use crate::rig_models::made_up::model_with;
+
+    #[test]
+    fn steps_are_told_in_words_and_not_by_ids() {
+        let model = model_with(&default_rig(), &[("axis-skew", "r_elbow_y", &[0.01, 0.0])]);
+        assert_eq!(view(&model).history[0].title, "axis skew of r elbow y added");
+        let mut titled = model;
+        titled.contents.effects[0].title = "Right elbow: axis not square".to_owned();
+        assert_eq!(view(&titled).history[0].title, "Right elbow: axis not square added");
     }
 }

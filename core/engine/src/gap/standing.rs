@@ -13,6 +13,11 @@ impl GapWorkflow {
         Some((shown, !shown.addable().is_empty() || self.seen.sizes_arm))
     }
 
+    /// Findings that are kept, newest first.
+    pub fn entries(&self) -> Arc<[super::view::FindingEntry]> {
+        self.seen.entries.clone()
+    }
+
     /// Titles of the named effects in the model in use.
     pub fn effects_in_use(&self) -> Vec<String> {
         let named = self.seen.model.effects.iter().filter(|effect| effect.is_named);

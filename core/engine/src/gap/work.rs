@@ -159,7 +159,7 @@ impl LongWork for GapWork {
             Self::Delete { .. } => "Delete a finding".to_owned(),
             Self::Add { effects, .. } if effects.is_empty() => "Correct the arm without a name".to_owned(),
             Self::Add { effects, .. } if effects.len() == 1 => "Add an effect to the model".to_owned(),
-            Self::Add { effects, .. } => format!("Add {} effects to the model", effects.len()),
+            Self::Add { effects, .. } => format!("Add {} to the model", counted(effects.len(), "effect")),
             Self::Use { title, .. } => title.clone(),
             Self::Report { file, .. } => format!("Write {}", title_of(file)),
         }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use plumbline_correction::Method;
+use plumbline_model::counted;
 
 use super::screen::{corners, moved_m};
 use super::sessions::is_for_training;
@@ -102,7 +103,9 @@ impl ModelsWorkflow {
             None if self.session.is_some() => "The touches are being read.".to_owned(),
             None => "Touch the screen first, step 3, or choose a session with touches.".to_owned(),
             Some(Err(reason)) => reason.to_string(),
-            Some(Ok(data)) => format!("Train models on the {} touches of this session.", data.len()),
+            Some(Ok(data)) => {
+                format!("Train models on the {} of this session.", counted(data.len(), "touch"))
+            }
         }
     }
 

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use plumbline_correction::{CorrectionModel, Method, TouchData};
-use plumbline_model::JobContext;
 use plumbline_model::robot::Rig;
+use plumbline_model::{JobContext, counted};
 
 use super::error::ModelError;
 use super::files;
@@ -232,8 +232,8 @@ impl ModelsResult {
     pub fn summary(&self) -> String {
         match self {
             Self::Restored(_) => "The models in use were read.".to_owned(),
-            Self::Listed(sessions) => format!("{} sessions with touches.", sessions.len()),
-            Self::Read { data: Ok(data), .. } => format!("{} touches can be learned from.", data.len()),
+            Self::Listed(sessions) => format!("{} with touches.", counted(sessions.len(), "session")),
+            Self::Read { data: Ok(data), .. } => format!("{} to learn from.", counted(data.len(), "touch")),
             Self::Read { data: Err(reason), .. } => reason.to_string(),
             Self::Trained(trained) => trained_summary(trained),
             Self::InUse { model: Some(model), .. } => format!("{} is in use.", model.method().name()),
@@ -256,7 +256,8 @@ fn trained_summary(trained: &Trained) -> String {
         }
     };
     let models: Vec<String> = trained.models.iter().map(|model| of(model)).collect();
-    format!("Trained on {} touches; mean error on held-out ones: {}.", trained.data.len(), models.join(", "))
+    let touches = counted(trained.data.len(), "touch");
+    format!("Trained on {touches}; mean error on held-out ones: {}.", models.join(", "))
 }
 
 /// Everything that can be read is; what cannot is told.

@@ -86,6 +86,19 @@ impl ModelsWorkflow {
         self.in_use.as_ref().map(|in_use| &in_use.model)
     }
 
+    /// The name of the model in use on its shelf, and the model; `None`: not read yet, or it cannot be.
+    pub fn accepted(&self) -> Option<(Option<String>, Option<&Arc<CorrectionModel>>)> {
+        let history = self.history.as_ref()?;
+        Some((history.in_use().map(|kept| kept.file.clone()), self.in_use()))
+    }
+
+    /// Mean error in the plane without a model at the touches that the one in use was judged on, m.
+    pub fn mean_before_m(&self) -> Option<f64> {
+        let touches = &self.in_use.as_ref()?.map.touches;
+        let sum_m: f64 = touches.iter().map(|touch| touch.before_m[0].hypot(touch.before_m[1])).sum();
+        (!touches.is_empty()).then(|| sum_m / touches.len() as f64)
+    }
+
     /// Proposals, then the one in use.
     pub fn usable(&self) -> Vec<Arc<CorrectionModel>> {
         self.proposals.values().map(|proposal| &proposal.model).chain(self.in_use()).cloned().collect()

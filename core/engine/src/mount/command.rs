@@ -25,6 +25,11 @@ pub enum MountCommand {
     Accept,
     /// Forgets the proposal.
     Discard,
+    /// Puts a mount that was in use earlier in use again.
+    UseEarlier {
+        /// Its id on the timeline.
+        id: String,
+    },
     /// Goes back to the nominal mount.
     UseNominal,
 }

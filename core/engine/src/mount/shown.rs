@@ -1,9 +1,9 @@
 //! What the window shows of the workflow.
 
-use std::sync::Arc;
-
+use plumbline_model::counted;
 use plumbline_vision::mount::{HeadView, MountCalibration, MountChange};
 
+use super::tour::Tour;
 use super::view::{HeadViewSummary, MountSummary, MountView};
 use super::workflow::{LEAST_VIEWS, MountAround, MountWorkflow};
 use crate::ground::step::StepState;
@@ -14,11 +14,17 @@ impl MountWorkflow {
         MountView {
             step: self.step_state(around),
             views: self.views.iter().map(|view| self.summary(view, around)).collect(),
-            planned: Arc::from(self.planned.as_slice()),
+            planned: self.still_to_be_seen().into(),
             next: self.next(around),
             proposal: self.proposal.as_deref().map(summary),
             in_use: self.in_use.as_deref().map(summary),
         }
+    }
+
+    /// Those of the planned poses that the tour has not been to.
+    fn still_to_be_seen(&self) -> &[(f64, f64)] {
+        let left = self.tour.as_ref().map_or(self.planned.len(), Tour::remaining);
+        &self.planned[self.planned.len().saturating_sub(left)..]
     }
 
     fn step_state(&self, around: &MountAround) -> StepState {
@@ -37,8 +43,8 @@ impl MountWorkflow {
     fn next(&self, around: &MountAround) -> String {
         if let Some(tour) = &self.tour {
             return format!(
-                "The head turns and looks: {} poses left. Only the head moves.",
-                tour.remaining()
+                "The head turns and looks: {} left. Only the head moves.",
+                counted(tour.remaining(), "pose")
             );
         }
         if self.waiting.is_some() {
@@ -57,13 +63,13 @@ impl MountWorkflow {
             return "Connect to the robot or the twin: the head's angles have to be known.".to_owned();
         }
         if self.views.len() >= LEAST_VIEWS && self.planned.is_empty() {
-            return format!("{} views are there. Solve the mount.", self.views.len());
+            return format!("{} taken. Solve the mount.", counted(self.views.len(), "view"));
         }
         if self.planned.is_empty() {
             return "Lay the board flat on the table where both eyes see all of it, then plan the head poses."
                 .to_owned();
         }
-        format!("Turn the head to {} poses. Only the head moves.", self.planned.len())
+        format!("Turn the head to {}. Only the head moves.", counted(self.planned.len(), "pose"))
     }
 
     fn summary(&self, view: &HeadView, around: &MountAround) -> HeadViewSummary {

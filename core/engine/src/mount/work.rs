@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use plumbline_model::robot::Rig;
-use plumbline_model::{Cancelled, JobContext, StereoCalibration};
+use plumbline_model::{Cancelled, JobContext, StereoCalibration, counted};
 use plumbline_vision::mount::{
     HeadView, MountCalibration, MountError, MountOptions, Target, calibrate_mount,
 };
@@ -11,8 +11,9 @@ use plumbline_vision::mount::{
 use crate::ground;
 use crate::ground::LongWork;
 use crate::ground::jobs::JobError;
-use crate::ground::shelf::InUse;
+use crate::ground::shelf::{InUse, Shelf};
 use crate::ground::text::sentence;
+use crate::rig_models::made_at;
 use crate::robot::RobotControl;
 
 /// Work of this workflow.
@@ -33,12 +34,27 @@ pub enum MountWork {
     Save {
         /// Where to.
         kept: InUse,
+        /// Where it stays when another one takes its place.
+        shelf: Shelf,
         /// What.
         mount: Arc<MountCalibration>,
     },
     /// Reads the mount that was accepted last.
     Restore {
         /// Where from.
+        kept: InUse,
+        /// Where it stays when another one takes its place.
+        shelf: Shelf,
+        /// The robot that it must be of.
+        rig: Arc<Rig>,
+    },
+    /// Puts one that was in use earlier in use again.
+    UseEarlier {
+        /// Its name on the shelf.
+        id: String,
+        /// The shelf.
+        shelf: Shelf,
+        /// Where to.
         kept: InUse,
         /// The robot that it must be of.
         rig: Arc<Rig>,
@@ -71,9 +87,10 @@ impl LongWork for MountWork {
 
     fn title(&self) -> String {
         match self {
-            Self::Solve { views, .. } => format!("Solve the mount from {} views", views.len()),
+            Self::Solve { views, .. } => format!("Solve the mount from {}", counted(views.len(), "view")),
             Self::Save { .. } => "Use this mount".to_owned(),
             Self::Restore { .. } => "Read the mount in use".to_owned(),
+            Self::UseEarlier { .. } => "Go back to an earlier mount".to_owned(),
             Self::Forget { .. } => "Go back to the nominal mount".to_owned(),
         }
     }
@@ -93,13 +110,26 @@ impl LongWork for MountWork {
                     Err(error) => Err(JobError::failed(sentence(&error.to_string()))),
                 }
             }
-            Self::Save { kept, mount } => {
+            Self::Save { kept, shelf, mount } => {
+                keep(&shelf, &mount)?;
                 kept.put(JobError::failed, |file| mount.write(file).map_err(JobError::told))?;
                 Ok(MountResult::Saved(mount))
             }
-            Self::Restore { kept, rig } => {
+            Self::Restore { kept, shelf, rig } => {
                 let mount = kept.read(|file| MountCalibration::read(file, &rig).map_err(JobError::told))?;
+                if let Some(mount) = &mount {
+                    keep(&shelf, mount)?;
+                }
                 Ok(MountResult::Restored(mount.map(Arc::new)))
+            }
+            Self::UseEarlier { id, shelf, kept, rig } => {
+                let file = shelf.file_inside(&id).filter(|file| file.is_file());
+                let file = file.ok_or_else(|| {
+                    JobError::failed("This mount is not kept any more. Solve the mount again.")
+                })?;
+                let mount = MountCalibration::read(&file, &rig).map_err(JobError::told)?;
+                kept.put(JobError::failed, |file| mount.write(file).map_err(JobError::told))?;
+                Ok(MountResult::Saved(Arc::new(mount)))
             }
             Self::Forget { kept } => {
                 kept.forget().map_err(|error| JobError::not_removed(kept.file(), &error))?;
@@ -109,12 +139,23 @@ impl LongWork for MountWork {
     }
 }
 
+/// Writes a mount to its shelf, unless it stands there.
+fn keep(shelf: &Shelf, mount: &MountCalibration) -> Result<(), JobError> {
+    let file = shelf.file(&made_at(mount.evidence.created));
+    if file.is_file() {
+        return Ok(());
+    }
+    shelf.make_folder().map_err(JobError::failed)?;
+    mount.write(&file).map_err(JobError::told)
+}
+
 impl MountResult {
     /// The result in a sentence.
     pub fn summary(&self) -> String {
         match self {
             Self::Solved(mount) => {
-                format!("The mount is solved from {} views: {:.2} px.", mount.per_view.len(), mount.rms_px)
+                let views = counted(mount.per_view.len(), "view");
+                format!("The mount is solved from {views}: {:.2} px.", mount.rms_px)
             }
             Self::Saved(_) => "The calibrated mount is in use.".to_owned(),
             Self::Restored(_) => "The mount in use was read.".to_owned(),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_model::robot::{Posture, Rig};
-use plumbline_model::{Chessboard, PairObservation, StereoCalibration};
+use plumbline_model::{Chessboard, PairObservation, StereoCalibration, counted};
 use plumbline_vision::mount::{
     HeadView, MountCalibration, MountError, PlannedTarget, Target, place_of_board, plan_head_views,
 };
@@ -16,11 +16,11 @@ use super::work::{Context, MountResult, MountWork};
 use crate::eyes::Look;
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
-use crate::ground::shelf::InUse;
+use crate::ground::shelf::{InUse, Shelf};
 use crate::ground::text::sentence;
 use crate::ground::{Moment, Workflow};
 use crate::mount::view::MountView;
-use crate::rig_models::mount_in;
+use crate::rig_models::{mount_in, mounts_in};
 use crate::robot::RobotControl;
 use crate::robot::view::RobotView;
 
@@ -70,12 +70,15 @@ pub struct MountAround {
 #[derive(Clone, Debug)]
 pub struct MountWorkflow {
     kept: InUse,
+    shelf: Shelf,
     pub(super) views: Vec<HeadView>,
     pub(super) board: Option<Chessboard>,
     pub(super) planned: Vec<(f64, f64)>,
     pub(super) tour: Option<Tour>,
     pub(super) proposal: Option<Arc<MountCalibration>>,
     pub(super) in_use: Option<Arc<MountCalibration>>,
+    /// Whether what was accepted before has been read.
+    is_known: bool,
     pub(super) solving: Option<JobId>,
     last_look: Option<Look>,
     counted: usize,
@@ -96,6 +99,11 @@ impl MountWorkflow {
     /// The mount in use; `None`: nominal.
     pub fn in_use(&self) -> Option<&Arc<MountCalibration>> {
         self.in_use.as_ref()
+    }
+
+    /// The mount in use; `None`: not read yet. Inside `None`: the nominal one is.
+    pub fn accepted(&self) -> Option<Option<&Arc<MountCalibration>>> {
+        self.is_known.then_some(self.in_use.as_ref())
     }
 
     /// Views that are collected.
@@ -181,7 +189,8 @@ impl MountWorkflow {
             }
             Wish::Finished => {
                 (self.tour, self.planned) = (None, Vec::new());
-                let text = format!("The head was in all planned poses: {} views.", self.views.len());
+                let text =
+                    format!("The head was in all planned poses: {}.", counted(self.views.len(), "view"));
                 context.notices.add(NoticeLevel::Success, text);
             }
             Wish::GiveUp(reason) => {
@@ -216,6 +225,8 @@ impl Workflow for MountWorkflow {
     fn new(folder: &Path) -> Self {
         Self {
             kept: mount_in(folder),
+            shelf: mounts_in(folder),
+            is_known: false,
             views: Vec::new(),
             board: None,
             planned: Vec::new(),
@@ -234,7 +245,8 @@ impl Workflow for MountWorkflow {
     }
 
     fn restore(&mut self, around: &MountAround, context: &mut Context<'_>) {
-        context.start(MountWork::Restore { kept: self.kept.clone(), rig: around.rig.clone() });
+        let (kept, shelf) = (self.kept.clone(), self.shelf.clone());
+        context.start(MountWork::Restore { kept, shelf, rig: around.rig.clone() });
     }
 
     fn apply(&mut self, command: MountCommand, around: &MountAround, context: &mut Context<'_>) {
@@ -256,11 +268,16 @@ impl Workflow for MountWorkflow {
             MountCommand::Solve => self.solve(around, context),
             MountCommand::Accept => match self.proposal.clone() {
                 Some(mount) => {
-                    context.start(MountWork::Save { kept: self.kept.clone(), mount });
+                    let (kept, shelf) = (self.kept.clone(), self.shelf.clone());
+                    context.start(MountWork::Save { kept, shelf, mount });
                 }
                 None => context.refuse("Nothing waits to be accepted. Solve first."),
             },
             MountCommand::Discard => self.proposal = None,
+            MountCommand::UseEarlier { id } => {
+                let (kept, shelf) = (self.kept.clone(), self.shelf.clone());
+                context.start(MountWork::UseEarlier { id, shelf, kept, rig: around.rig.clone() });
+            }
             MountCommand::UseNominal => {
                 context.start(MountWork::Forget { kept: self.kept.clone() });
             }
@@ -269,6 +286,7 @@ impl Workflow for MountWorkflow {
 
     fn work_done(&mut self, id: JobId, result: MountResult, _: &MountAround, _: &mut Context<'_>) {
         self.solving.take_if(|solving| *solving == id);
+        self.is_known |= !matches!(result, MountResult::Solved(_));
         match result {
             MountResult::Solved(mount) => self.proposal = Some(mount),
             MountResult::Saved(mount) => {

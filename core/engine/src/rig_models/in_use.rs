@@ -4,6 +4,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use jiff::Timestamp;
 use plumbline_effects::rig_model::ModelEffect;
 use plumbline_effects::robot_model::Mounted;
 use plumbline_effects::{RigModel, RigModelError, RobotModel};
@@ -16,7 +17,7 @@ use plumbline_vision::mount::MountCalibration;
 
 use super::{ModelInUseError, load};
 use crate::eyes::store::Store;
-use crate::ground::shelf::InUse;
+use crate::ground::shelf::{InUse, Shelf};
 
 /// What was accepted in a world. What is `None` is as the description has it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -123,6 +124,21 @@ pub fn in_use(folder: &Path, described: &Rig) -> Result<RobotModel, ModelInUseEr
 /// The mount in use, in the folder of a world.
 pub fn mount_in(folder: &Path) -> InUse {
     InUse::new(folder.join("mount.toml"))
+}
+
+/// All mounts that were in use, in the folder of a world.
+pub fn mounts_in(folder: &Path) -> Shelf {
+    Shelf::new(folder.join("mounts"), "toml")
+}
+
+/// All places of the screen that were in use, in the folder of a world.
+pub fn screens_in(folder: &Path) -> Shelf {
+    Shelf::new(folder.join("screens"), "toml")
+}
+
+/// The name of what was made at this time, on its shelf and on the timeline.
+pub fn made_at(at: Timestamp) -> String {
+    at.to_string().replace(':', "-")
 }
 
 /// The place of the screen in use, in the folder of a world.

@@ -25,7 +25,9 @@ mod tests;
 mod whole;
 
 pub use error::ModelInUseError;
-pub use in_use::{Accepted, in_use, mount_in, mounted, other_eyes, screen_in};
+pub use in_use::{
+    Accepted, in_use, made_at, mount_in, mounted, mounts_in, other_eyes, screen_in, screens_in,
+};
 pub use whole::{ArmTouches, LEAST_TOUCHES, WholeError, library_of, whole};
 
 /// The file, in the folder of a world.

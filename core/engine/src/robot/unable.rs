@@ -160,11 +160,7 @@ pub enum InTheWay {
         at_fraction: f64,
     },
     /// A joint ends.
-    #[error(
-        "{joint} would turn {:.1}° too far {} ({why}). Choose another pose.",
-        .by_rad.to_degrees(),
-        at(*.at_fraction)
-    )]
+    #[error("{joint} would turn {} {} ({why}). Choose another pose.", too_far(*.by_rad), at(*.at_fraction))]
     BeyondLimit {
         /// Which.
         joint: String,
@@ -236,6 +232,14 @@ pub enum Interrupted {
 impl From<InTheWay> for Interrupted {
     fn from(way: InTheWay) -> Self {
         Self::Unable(way.into())
+    }
+}
+
+/// "2.4° too far"; what would be written as nothing is no number.
+fn too_far(by_rad: f64) -> String {
+    match by_rad.to_degrees() {
+        by_deg if by_deg < 0.05 => "just past its end".to_owned(),
+        by_deg => format!("{by_deg:.1}° too far"),
     }
 }
 

@@ -3,6 +3,7 @@
 mod actions;
 mod commissioned;
 mod neighbors;
+mod results;
 mod rooms;
 mod stages;
 mod threads;
@@ -46,6 +47,7 @@ use crate::source::view::SourceView;
 use crate::source::{Control, Note};
 use crate::touch::TouchWorkflow;
 use crate::trials::TrialsWorkflow;
+use crate::truth::TruthPlug;
 use crate::twin::view::TwinView;
 use crate::work::{Work, WorkResult};
 
@@ -85,6 +87,8 @@ pub struct State {
     /// The same of the source.
     source_before_silence: Option<Arc<SourceView>>,
     kept: Arc<KeptView>,
+    /// What was in use when the timelines looked last.
+    results: PerWorld<results::Results>,
 }
 
 impl State {
@@ -114,6 +118,7 @@ impl State {
             before_silence: None,
             source_before_silence: None,
             kept: Arc::default(),
+            results: PerWorld::default(),
         };
         state.restore();
         state
@@ -145,6 +150,7 @@ impl State {
             });
         }
         Neighbors::<W>::after(self, world);
+        self.watch_results(world);
     }
 
     /// Takes it to be this time, until told otherwise; `None`: the time of the system. What happens at
@@ -188,6 +194,11 @@ impl State {
         self.with::<RecordingWorkflow>(World::default(), |recording, _, context| {
             recording.look_after(context);
         });
+    }
+
+    /// What the owner of the twin shows it with, for truth mode.
+    pub fn truth_plug(&self) -> TruthPlug {
+        self.rooms.truth.plug()
     }
 
     /// The recording under way, to be finished before the program ends.

@@ -29,8 +29,10 @@ use crate::recording::{RecordingAround, RecordingWorkflow};
 use crate::scores::ScoresWorkflow;
 use crate::source::SourceWorkflow;
 use crate::source::view::SourceStatus;
+use crate::timeline::TimelineWorkflow;
 use crate::touch::{TouchAround, TouchWorkflow};
 use crate::trials::TrialsWorkflow;
+use crate::truth::{Seen, TruthAround, TruthWorkflow};
 use crate::view::View;
 use crate::work::WorkResult;
 
@@ -193,6 +195,25 @@ impl Neighbors<LiveWorkflow> for State {
         self.use_workspace();
         let wanted = self.rooms.live.wants_detections();
         self.with::<DetectWorkflow>(World::default(), |detect, _, context| detect.want(wanted, context));
+    }
+}
+
+/// It sees what all others know, and none of them sees it.
+impl Neighbors<TruthWorkflow> for State {
+    fn around(&self, _world: World) -> TruthAround {
+        let robot = &self.robot;
+        let found = self.rooms.detect.found().filter(|_| self.shown == World::Twin && self.shows_own_eyes());
+        let seen = found.iter().flat_map(|found| &found.objects).filter_map(|object| {
+            let place = object.place.as_ref().ok()?;
+            Some(Seen { name: object.name.clone(), place: place.point_in_robot })
+        });
+        TruthAround {
+            is_twin: self.twin.running && robot.connection.is_connected() && self.arm_of == World::Twin,
+            model: self.models.of(World::Twin).clone(),
+            measured: robot.measured.clone(),
+            tip: robot.tip_place.as_ref().map(|place| (robot.tip.clone(), place.point)),
+            seen: seen.collect(),
+        }
     }
 }
 

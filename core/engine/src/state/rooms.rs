@@ -16,8 +16,10 @@ use crate::mount::MountWorkflow;
 use crate::recording::RecordingWorkflow;
 use crate::scores::ScoresWorkflow;
 use crate::source::SourceWorkflow;
+use crate::timeline::TimelineWorkflow;
 use crate::touch::TouchWorkflow;
 use crate::trials::TrialsWorkflow;
+use crate::truth::TruthWorkflow;
 
 /// All workflows, in the order in which they are restored and told: field, type, name in the sums,
 /// and for those that there are once per world whose the operator speaks to.
@@ -41,9 +43,11 @@ macro_rules! all_rooms {
             grasp: GraspWorkflow, Grasp, arm_of;
             trials: TrialsWorkflow, Trials, arm_of;
             commission: CommissionWorkflow, Commission, arm_of;
+            timeline: TimelineWorkflow, Timeline, arm_of;
         }
         without_work {
             live: LiveWorkflow, Live;
+            truth: TruthWorkflow, Truth;
         }
         }
     };

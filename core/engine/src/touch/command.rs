@@ -110,6 +110,11 @@ pub enum TouchCommand {
     AcceptPlacement,
     /// Forgets the proposed place of the screen.
     DiscardPlacement,
+    /// Puts a place of the screen that was in use earlier in use again.
+    UseEarlierPlacement {
+        /// Its id on the timeline.
+        id: String,
+    },
     /// Goes back to the place in the rig file.
     UseNominalPlacement,
     /// The touch window was touched, or clicked with the mouse.

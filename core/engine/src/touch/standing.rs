@@ -41,6 +41,18 @@ impl TouchWorkflow {
         })
     }
 
+    /// The place of the screen in use; `None`: not read yet. Inside `None`: the nominal one is.
+    pub fn accepted(&self) -> Option<Option<&std::sync::Arc<plumbline_model::touchscreen::ScreenPlacement>>> {
+        self.is_known.then_some(self.placement.as_ref())
+    }
+
+    /// With what the targets of the run that is under way or shown were corrected, and how far those of it
+    /// miss that were sent as the robot is described, m.
+    pub fn run_corrected(&self) -> (Option<super::command::Correction>, Option<f64>) {
+        let with = self.run.as_ref().and_then(|run| run.plan.corrected_with);
+        (with, self.seen.figures_described.map(|figures| figures.mean_m))
+    }
+
     /// The place of the screen in use; `None`: nominal.
     pub fn placement(&self) -> Option<&plumbline_model::touchscreen::ScreenPlacement> {
         self.placement.as_deref()

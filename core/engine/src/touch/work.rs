@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use jiff::Timestamp;
-use plumbline_model::JobContext;
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::touch_plan::{Finger, TouchArea};
 use plumbline_model::touchscreen::ScreenPlacement;
+use plumbline_model::{JobContext, counted};
 
 use super::choice::{self, NoChoice};
 use super::command::Correction;
@@ -19,9 +19,9 @@ use super::store::{self, Runs, Stored};
 use crate::ground;
 use crate::ground::LongWork;
 use crate::ground::jobs::JobError;
-use crate::ground::shelf::InUse;
+use crate::ground::shelf::{InUse, Shelf};
 use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
-use crate::rig_models::screen_in;
+use crate::rig_models::{made_at, screen_in, screens_in};
 use crate::robot::{RobotControl, TouchOrder};
 
 /// Work of this workflow.
@@ -84,8 +84,21 @@ pub enum TouchWork {
     Accept {
         /// Where it is kept.
         kept: InUse,
+        /// Where it stays when another one takes its place.
+        shelf: Shelf,
         /// The place.
         placement: Arc<ScreenPlacement>,
+    },
+    /// Puts a place that was in use earlier in use again.
+    UseEarlier {
+        /// Its name on the shelf.
+        id: String,
+        /// The shelf.
+        shelf: Shelf,
+        /// Where the one in use is kept.
+        kept: InUse,
+        /// The robot that it must be of.
+        rig: Arc<Rig>,
     },
     /// Keeps what targets are corrected with.
     KeepChoice {
@@ -194,8 +207,11 @@ impl LongWork for TouchWork {
             Self::Open { .. } => "Open the run".to_owned(),
             Self::Write { .. } => "Write the touches".to_owned(),
             Self::Route(request) => format!("Look for the way to target {}", request.aim.touch.number),
-            Self::Place { touches, .. } => format!("Place the screen from {} touches", touches.len()),
+            Self::Place { touches, .. } => {
+                format!("Place the screen from {}", counted(touches.len(), "touch"))
+            }
             Self::Accept { .. } => "Use this place of the screen".to_owned(),
+            Self::UseEarlier { .. } => "Go back to an earlier place of the screen".to_owned(),
             Self::KeepChoice { .. } => "Keep what targets are corrected with".to_owned(),
             Self::Forget { .. } => "Go back to the nominal place of the screen".to_owned(),
         }
@@ -240,9 +256,21 @@ impl LongWork for TouchWork {
                 let proposal = |placement| Proposal { placement: Arc::new(placement), session };
                 Ok(TouchResult::Placed(placed.map(proposal).map_err(Arc::new)))
             }
-            Self::Accept { kept, placement } => {
+            Self::Accept { kept, shelf, placement } => {
+                keep(&shelf, &placement)?;
                 kept.put(JobError::told, |file| placement.write(file).map_err(JobError::told))?;
                 Ok(TouchResult::Saved(placement))
+            }
+            Self::UseEarlier { id, shelf, kept, rig } => {
+                let file = shelf.file_inside(&id).filter(|file| file.is_file());
+                let file = file.ok_or_else(|| {
+                    JobError::failed(
+                        "This place of the screen is not kept any more. Touch its corners again.",
+                    )
+                })?;
+                let placement = ScreenPlacement::read(&file, &rig.name).map_err(JobError::told)?;
+                kept.put(JobError::told, |file| placement.write(file).map_err(JobError::told))?;
+                Ok(TouchResult::Saved(Arc::new(placement)))
             }
             Self::KeepChoice { kept, correct_with } => {
                 choice::write(&kept, correct_with).map_err(JobError::told)?;
@@ -260,11 +288,26 @@ fn restore(folder: &std::path::Path, rig: &Rig) -> TouchResult {
     let kept = screen_in(folder)
         .read(|file| ScreenPlacement::read(file, &rig.name).map_err(NotRestored::from))
         .transpose();
+    if let Some(Ok(placement)) = &kept
+        && let Err(reason) = keep(&screens_in(folder), placement)
+    {
+        log::warn!("the place of the screen in use is not kept for later: {reason}");
+    }
     let placement = kept.map(|placement| placement.map(Arc::new).map_err(Arc::new));
     // A rig without this finger cannot touch anyway; planning says so.
     let reach = Finger::BOTH.map(|finger| TouchArea::reached_by(rig, finger.tip()).ok().flatten());
     let choice = choice::read(&choice::choice_in(folder)).map_err(Arc::new);
     TouchResult::Restored { placement, runs: store::list(&folder.join("sessions")), reach, choice }
+}
+
+/// Writes a place of the screen to its shelf, unless it stands there.
+fn keep(shelf: &Shelf, placement: &ScreenPlacement) -> Result<(), JobError> {
+    let file = shelf.file(&made_at(placement.at));
+    if file.is_file() {
+        return Ok(());
+    }
+    shelf.make_folder().map_err(JobError::failed)?;
+    placement.write(&file).map_err(JobError::told)
 }
 
 fn begin(

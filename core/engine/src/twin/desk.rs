@@ -14,6 +14,7 @@ use super::eyes::TwinEyesPlug;
 use super::unable::TwinUnable;
 use super::view::{FaultView, ToyView, TwinView};
 use crate::ground::notice::NoticeLevel;
+use crate::truth::TruthPlug;
 
 /// While the board is shown at all places it stays at each for this long: long enough to be
 /// found still, sharp and new.
@@ -58,6 +59,7 @@ impl Tour {
 /// The twin and what the operator does with it.
 pub struct TwinDesk {
     eyes: TwinEyesPlug,
+    truth: TruthPlug,
     twin: Option<Twin>,
     scenario: String,
     failed: Option<String>,
@@ -71,6 +73,7 @@ impl TwinDesk {
     pub fn new(eyes: TwinEyesPlug) -> Self {
         Self {
             eyes,
+            truth: TruthPlug::default(),
             twin: None,
             scenario: String::new(),
             failed: None,
@@ -78,6 +81,12 @@ impl TwinDesk {
             tour: None,
             notes: Vec::new(),
         }
+    }
+
+    /// Shows the twin to truth mode, which nobody asked for at first.
+    #[must_use]
+    pub fn with_truth(self, truth: TruthPlug) -> Self {
+        Self { truth, ..self }
     }
 
     /// Whether a twin runs.
@@ -243,6 +252,7 @@ impl TwinDesk {
         if self.twin.as_ref().is_some_and(Twin::has_failed) {
             return self.let_go_of_the_failed();
         }
+        self.truth.look(self.twin.as_ref(), now);
         let looks = self.eyes.looks();
         let (Some(twin), Some(tour)) = (&self.twin, &mut self.tour) else { return };
         if !tour.is_seen(now, looks) {

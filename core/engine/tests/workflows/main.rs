@@ -9,3 +9,4 @@ mod journal;
 mod measured;
 mod model_in_use;
 mod threads;
+mod timeline;

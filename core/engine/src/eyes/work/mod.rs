@@ -22,7 +22,7 @@ pub use export::Export;
 pub use keep::Keep;
 pub use open::{Open, OpenWhat, Opened};
 pub use recording::{CollectRecording, Collected, collect_folder};
-pub use restore::{Restore, Restored};
+pub use restore::{Restore, Restored, UseEarlier};
 pub use solve::{Solve, Solved};
 
 /// Something to do beside the window.
@@ -46,6 +46,8 @@ pub enum EyesWork {
     Export(Export),
     /// Read what was accepted before.
     Restore(Restore),
+    /// Put what was accepted earlier in use again.
+    UseEarlier(UseEarlier),
 }
 
 /// What came out.
@@ -69,6 +71,8 @@ pub enum EyesResult {
     Exported(Vec<std::path::PathBuf>),
     /// What was accepted before.
     Restored(Restored),
+    /// What is in use again.
+    UsedEarlier(Restored),
 }
 
 /// What the handlers of this room may reach besides their own workflow.
@@ -88,6 +92,8 @@ impl LongWork for EyesWork {
             Self::Accept(_) => "Accept calibration".to_owned(),
             Self::Export(export) => format!("Write {}", export.file.display()),
             Self::Restore(_) => "Read the calibration in use".to_owned(),
+            Self::UseEarlier(UseEarlier { id: None, .. }) => "Use no calibration".to_owned(),
+            Self::UseEarlier(_) => "Go back to an earlier calibration".to_owned(),
         }
     }
 
@@ -96,7 +102,11 @@ impl LongWork for EyesWork {
             Self::Capture(_) | Self::Recognize(_) | Self::Keep(_) | Self::Restore(_) | Self::Accept(_) => {
                 true
             }
-            Self::CollectRecording(_) | Self::Solve(_) | Self::Open(_) | Self::Export(_) => false,
+            Self::CollectRecording(_)
+            | Self::Solve(_)
+            | Self::Open(_)
+            | Self::Export(_)
+            | Self::UseEarlier(_) => false,
         }
     }
 
@@ -111,6 +121,7 @@ impl LongWork for EyesWork {
             Self::Accept(work) => EyesResult::Accepted(work.run()?),
             Self::Export(work) => EyesResult::Exported(work.run()?),
             Self::Restore(work) => EyesResult::Restored(work.run(context)?),
+            Self::UseEarlier(work) => EyesResult::UsedEarlier(work.run(context)?),
         })
     }
 }
@@ -131,6 +142,10 @@ impl EyesResult {
                 format!("Wrote {}.", names.join(" and "))
             }
             Self::Restored(_) => "Read the calibration in use.".to_owned(),
+            Self::UsedEarlier(Restored { in_use: None, .. }) => {
+                "No calibration is in use: the eyes are as their description has them.".to_owned()
+            }
+            Self::UsedEarlier(_) => "The earlier calibration is in use again.".to_owned(),
         }
     }
 }

@@ -8,6 +8,25 @@ use crate::eyes::store::Store;
 use crate::eyes::view::{AcceptedCalibration, EarlierCalibration};
 use crate::ground::jobs::JobError;
 
+/// Put what was accepted earlier in use again.
+#[derive(Clone, Debug)]
+pub struct UseEarlier {
+    /// Which; `None`: none.
+    pub id: Option<String>,
+    /// Where it is kept.
+    pub store: Store,
+    /// Where the eyes are over the table.
+    pub workspace: Workspace,
+}
+
+impl UseEarlier {
+    /// What is in use afterwards.
+    pub fn run(self, context: &dyn JobContext) -> Result<Restored, JobError> {
+        self.store.use_earlier(self.id.as_deref()).map_err(JobError::failed)?;
+        Restore { store: self.store, workspace: self.workspace }.run(context)
+    }
+}
+
 /// Read what was accepted before.
 #[derive(Clone, Debug)]
 pub struct Restore {
@@ -20,7 +39,7 @@ pub struct Restore {
 /// What was accepted before.
 #[derive(Clone, Debug)]
 pub struct Restored {
-    /// The one in use; `None` when none was ever accepted.
+    /// The one in use; `None` when none was ever accepted, or none is to be used.
     pub in_use: Option<AcceptedCalibration>,
     /// All that are kept, newest first.
     pub earlier: Vec<EarlierCalibration>,
@@ -33,6 +52,9 @@ impl Restore {
     pub fn run(self, context: &dyn JobContext) -> Result<Restored, JobError> {
         let mut earlier = self.store.list().map_err(JobError::failed)?;
         let mut problems = Vec::new();
+        if self.store.is_none_in_use().map_err(JobError::failed)? {
+            return Ok(Restored { in_use: None, earlier, problems });
+        }
         let wished = earlier.iter().find(|entry| entry.in_use).map(|entry| entry.id.clone());
         let others = earlier.iter().map(|entry| entry.id.clone());
         let mut found = None;

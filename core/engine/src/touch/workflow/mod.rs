@@ -49,6 +49,8 @@ pub struct TouchWorkflow {
     /// The part of the screen that the finger reaches, once that was looked for.
     pub(super) reach: [Option<TouchArea>; 2],
     pub(super) placement: Option<Arc<ScreenPlacement>>,
+    /// Whether what was accepted before has been read.
+    pub(super) is_known: bool,
     pub(super) proposal: Option<Proposal>,
     pub(super) correct_with: Option<Correction>,
     /// The effects that targets were corrected by, or not, last.
@@ -179,6 +181,7 @@ impl Workflow for TouchWorkflow {
                 self.proposal = None;
                 Ok(())
             }
+            TouchCommand::UseEarlierPlacement { id } => self.use_earlier(id, around, context),
             TouchCommand::UseNominalPlacement => self.use_nominal(context),
             TouchCommand::Contact(contact) => {
                 self.contact(contact, around, context);
@@ -234,11 +237,11 @@ impl Workflow for TouchWorkflow {
             }
             TouchResult::Saved(placement) => {
                 self.proposal = self.proposal.take().filter(|p| !Arc::ptr_eq(&p.placement, &placement));
-                self.placement = Some(placement);
+                (self.placement, self.is_known) = (Some(placement), true);
                 self.plan_anew(around, context);
             }
             TouchResult::Forgotten => {
-                self.placement = None;
+                (self.placement, self.is_known) = (None, true);
                 self.plan_anew(around, context);
             }
             TouchResult::Written { .. } | TouchResult::Routed { .. } => {

@@ -11,18 +11,30 @@ use super::super::placement::Proposal;
 use super::super::refusal::{NotRestored, Refusal, Unplaced};
 use super::super::store::Runs;
 use super::super::work::{Context, TouchWork};
-use super::TouchWorkflow;
+use super::{TouchAround, TouchWorkflow};
 use crate::ground::notice::NoticeLevel;
 use crate::motion::ScreenPlace;
-use crate::rig_models::screen_in;
+use crate::rig_models::{screen_in, screens_in};
 
 impl TouchWorkflow {
     pub(super) fn accept_placement(&mut self, context: &mut Context<'_>) -> Result<(), Refusal> {
         self.no_run_under_way()?;
         let proposal = self.proposal.as_ref();
         let proposal = proposal.ok_or(Refusal::NoPlacement)?;
-        let kept = screen_in(&self.folder);
-        context.start(TouchWork::Accept { kept, placement: proposal.placement.clone() });
+        let (kept, shelf) = (screen_in(&self.folder), screens_in(&self.folder));
+        context.start(TouchWork::Accept { kept, shelf, placement: proposal.placement.clone() });
+        Ok(())
+    }
+
+    pub(super) fn use_earlier(
+        &mut self,
+        id: String,
+        around: &TouchAround,
+        context: &mut Context<'_>,
+    ) -> Result<(), Refusal> {
+        self.no_run_under_way()?;
+        let (kept, shelf) = (screen_in(&self.folder), screens_in(&self.folder));
+        context.start(TouchWork::UseEarlier { id, shelf, kept, rig: around.rig.clone() });
         Ok(())
     }
 
@@ -40,8 +52,8 @@ impl TouchWorkflow {
     ) {
         self.runs = runs;
         match placement {
-            None => {}
-            Some(Ok(placement)) => self.placement = Some(placement),
+            None => self.is_known = true,
+            Some(Ok(placement)) => (self.placement, self.is_known) = (Some(placement), true),
             Some(Err(reason)) => context.notices.add(NoticeLevel::Warning, reason.to_string()),
         }
     }

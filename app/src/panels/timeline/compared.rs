@@ -1,0 +1,67 @@
+//! Two entries side by side.
+
+use egui::{Grid, ScrollArea, Ui};
+use plumbline_engine::view::TimelineEntry;
+use plumbline_widgets::empty::{EmptyState, Message};
+use plumbline_widgets::theme::{self, space};
+
+use crate::operator::words::clock;
+use crate::operator::words::timeline::{errors, figure, title};
+use crate::panels::{PanelContext, padded};
+
+/// What is compared, and what an entry says of it.
+type Row = (&'static str, fn(&TimelineEntry) -> String);
+
+pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let timeline = &cx.view.timeline;
+    let mut chosen: Vec<&TimelineEntry> =
+        cx.state.timeline.chosen.iter().filter_map(|number| timeline.entry(*number)).collect();
+    chosen.sort_by_key(|entry| entry.number);
+    let [first, second] = chosen[..] else {
+        let message = Message::new("Nothing to compare", "Click two entries of the timeline.");
+        EmptyState::empty(message).show(ui);
+        return;
+    };
+    padded(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            let width = ((ui.available_width() - 64.0 - 2.0 * space::M) * 0.5).max(60.0);
+            Grid::new("timeline compared").num_columns(3).spacing([space::M, 4.0]).show(ui, |ui| {
+                let rows: [Row; 5] = [
+                    ("when", |entry| clock(entry.at)),
+                    ("of", |entry| entry.subject.name().to_owned()),
+                    ("what", title),
+                    ("error", errors),
+                    ("of what", |entry| entry.basis.clone()),
+                ];
+                for (name, of) in rows {
+                    ui.label(theme::weak(ui, name));
+                    for entry in [first, second] {
+                        ui.vertical(|ui| {
+                            ui.set_width(width);
+                            ui.add(egui::Label::new(of(entry)).wrap());
+                        });
+                    }
+                    ui.end_row();
+                }
+            });
+            ui.add_space(space::S);
+            ui.label(difference(first, second));
+        });
+    });
+}
+
+/// What became of the error from the older to the newer.
+fn difference(first: &TimelineEntry, second: &TimelineEntry) -> String {
+    match (first.after, second.after) {
+        (Some(a), Some(b)) if a.is_like(b) && a.value() > 0.0 => {
+            let share = b.value() / a.value();
+            let data =
+                if first.subject == second.subject { "each on its own data" } else { "of different things" };
+            format!("{} → {}: {:.0} % of the error, {data}.", figure(a), figure(b), share * 100.0)
+        }
+        (Some(_), Some(_)) => {
+            "One error is a length, the other is in pixels: they cannot be compared.".to_owned()
+        }
+        _ => "One of them has no error that is known.".to_owned(),
+    }
+}

@@ -1,0 +1,168 @@
+//! The timeline of results: every entry says its error before and after, the last change of a kind is
+//! taken back by its button, two are compared, and the report asks where to.
+
+use std::sync::Arc;
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
+use plumbline_engine::view::{EntryKind, Figure, InUseNow, Subject, TimelineEntry, TimelineView};
+use plumbline_engine::{
+    Command, EyesCommand, MountCommand, TimelineCommand, TimelineFormat, TouchCommand, View,
+};
+
+use crate::fake::{Fake, click, picture_folder, says, shows};
+use crate::made_up;
+
+fn on_timeline() -> WindowSettings {
+    WindowSettings { screen: Screen::Timeline, ..WindowSettings::default() }
+}
+
+fn entry(number: u64, subject: Subject, title: &str, errors: [Option<Figure>; 2]) -> TimelineEntry {
+    TimelineEntry {
+        number,
+        at: format!("2026-09-14T1{number}:02:00Z").parse().expect("a time"),
+        subject,
+        kind: EntryKind::PutInUse,
+        title: title.to_owned(),
+        before: errors[0],
+        after: errors[1],
+        basis: "mean error on the same held-out touches; before: without a model".to_owned(),
+        id_before: None,
+        id_after: Some(format!("id-{number}")),
+        outside: false,
+    }
+}
+
+/// Two calibrations, a mount, a screen, a model, and a check of it.
+pub fn results() -> TimelineView {
+    let px = |px: f64| Some(Figure::Pixels(px));
+    let mm = |mm: f64| Some(Figure::Meters(mm * 1e-3));
+    let mut entries = vec![
+        entry(1, Subject::Eyes, "calibration of 14 pairs", [None, px(0.214)]),
+        entry(2, Subject::Eyes, "calibration of 31 pairs", [px(0.214), px(0.082)]),
+        entry(3, Subject::Mount, "mount from 14 views", [None, px(0.121)]),
+        entry(4, Subject::Screen, "place from 8 touches", [None, mm(1.9)]),
+        entry(5, Subject::Correction, "M3 from 245 touches", [mm(5.88), mm(0.97)]),
+        entry(6, Subject::Check, "25 touches at new targets, corrected with M3", [mm(5.93), mm(0.93)]),
+    ];
+    entries[1].id_before = Some("id-1".to_owned());
+    entries[5].kind = EntryKind::Measured;
+    let now = |at: usize| InUseNow {
+        subject: entries[at].subject,
+        title: entries[at].title.clone(),
+        figure: entries[at].after,
+        since: Some(entries[at].at),
+        entry: Some(entries[at].number),
+    };
+    let nominal = InUseNow {
+        subject: Subject::Effects,
+        title: "the robot as it is described".to_owned(),
+        figure: None,
+        since: None,
+        entry: None,
+    };
+    let in_use = [1, 2, 3, 4].map(now).into_iter().chain([nominal]).collect();
+    TimelineView { is_known: true, in_use, entries: entries.into() }
+}
+
+fn window_of(timeline: TimelineView) -> (Fake, Harness<'static, PlumblineWindow>) {
+    let fake = Fake::over(View { timeline: Arc::new(timeline), ..made_up::everything() });
+    let window = fake.window_of_size(on_timeline(), [1440.0, 900.0]);
+    (fake, window)
+}
+
+#[test]
+fn it_is_reached_by_the_rail_and_says_when_there_is_nothing() {
+    let fake = Fake::over(View::default());
+    let mut window = fake.window(WindowSettings::default());
+    click(&mut window, "Timeline");
+    assert!(says(&window, "The timeline is being read"));
+    fake.show(View {
+        timeline: Arc::new(TimelineView { is_known: true, ..TimelineView::default() }),
+        ..View::default()
+    });
+    window.run_steps(3);
+    assert!(shows(&window, "Nothing was put in use yet"));
+    assert!(shows(&window, "Go to Commission"));
+}
+
+#[test]
+fn each_entry_says_its_error_and_what_is_in_use_is_listed() {
+    let (_, window) = window_of(results());
+    for text in
+        ["5.88 mm → 0.970 mm", "5.93 mm → 0.930 mm", "0.214 px → 0.0820 px", "calibration of 31 pairs"]
+    {
+        assert!(says(&window, text), "{text}");
+    }
+    assert!(says(&window, "the robot as it is described"));
+    assert!(says(&window, "6 results. The newest, measured: 25 touches"));
+}
+
+#[test]
+fn what_was_put_in_use_last_of_a_kind_is_taken_back_and_an_earlier_one_is_used_again() {
+    let (fake, mut window) = window_of(results());
+    // From the newest down: the check changes nothing; model (it went with no other), screen, mount, eyes.
+    let buttons = window.get_all_by_label("Take back").count();
+    assert_eq!(
+        buttons, 3,
+        "screen, mount and eyes; the order of models is its workflow's, which knows none here"
+    );
+    let mut sent = vec![];
+    for button in 0..buttons {
+        let found = window.get_all_by_label("Take back").nth(button).expect("a button");
+        found.click();
+        window.run_steps(3);
+        sent.extend(fake.take_sent());
+    }
+    assert_eq!(
+        sent,
+        [
+            Command::from(TouchCommand::UseNominalPlacement),
+            Command::from(MountCommand::UseNominal),
+            Command::from(EyesCommand::UseEarlier { id: Some("id-1".to_owned()) }),
+        ]
+    );
+    click(&mut window, "Use again");
+    assert_eq!(fake.take_sent(), [Command::from(EyesCommand::UseEarlier { id: Some("id-1".to_owned()) })]);
+}
+
+#[test]
+fn two_entries_are_compared() {
+    let (_, mut window) = window_of(results());
+    assert!(shows(&window, "Nothing to compare"));
+    for title in ["calibration of 14 pairs", "calibration of 31 pairs"] {
+        let rows: Vec<_> = window.get_all_by_label_contains(title).collect();
+        rows.iter()
+            .find(|row| row.accesskit_node().role() == egui::accesskit::Role::Button)
+            .expect("a row")
+            .click();
+        window.run_steps(3);
+    }
+    assert!(says(&window, "0.214 px → 0.0820 px: 38 % of the error, each on its own data."));
+}
+
+#[test]
+fn the_report_asks_where_to() {
+    let (fake, mut window) = window_of(results());
+    click(&mut window, "PDF…");
+    assert!(shows(&window, "Write the report of the setup"));
+    click(&mut window, "Save");
+    let report = TimelineCommand::Report { file: "setup.pdf".into(), format: TimelineFormat::Pdf };
+    assert_eq!(fake.take_sent(), [Command::from(report)]);
+}
+
+/// Pictures for people: `PLUMBLINE_WINDOW_PICTURES=FOLDER`.
+#[test]
+#[ignore = "draws pictures for people"]
+fn pictures_of_the_timeline() {
+    let folder = picture_folder();
+    for (theme, size) in [(ThemeChoice::Light, [1440.0, 900.0]), (ThemeChoice::Dark, [1024.0, 700.0])] {
+        let fake = Fake::over(View { timeline: Arc::new(results()), ..made_up::everything() });
+        let mut window = fake.window_with(WindowSettings { theme, ..on_timeline() }, size, true);
+        window.run_steps(2);
+        let image = window.render().expect("the test renderer draws");
+        let file = format!("timeline-{theme:?}.png").to_lowercase();
+        image.save(folder.join(file)).expect("the folder can be written");
+    }
+}

@@ -1,0 +1,30 @@
+//! Commands of the timeline of results. What is on it is taken back by the workflow that made it.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+/// The timeline of results.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TimelineCommand {
+    /// Writes what is in use and how it came to that.
+    Report {
+        /// Where to.
+        file: PathBuf,
+        /// As what.
+        format: TimelineFormat,
+    },
+}
+
+/// As what the timeline is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TimelineFormat {
+    /// Every entry, a line each.
+    Csv,
+    /// A page that a browser shows.
+    Html,
+    /// The same as PDF.
+    Pdf,
+}

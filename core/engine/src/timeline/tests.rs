@@ -1,0 +1,223 @@
+//! The line driven by what it is handed, its file written and read on the spot.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use plumbline_model::Unattended;
+
+use super::command::{TimelineCommand, TimelineFormat};
+use super::kept::FILE;
+use super::view::{EntryKind, Figure, Subject, TimelineView};
+use super::work::Context;
+use super::{Check, Finding, Standing, TimelineAround, TimelineWorkflow};
+use crate::Skipped;
+use crate::ground::jobs::JobError;
+use crate::ground::jobs::list::JobList;
+use crate::ground::notice::Notices;
+use crate::ground::{Asked, LongWork as _, Moment, Time, Workflow as _};
+
+struct Lab {
+    room: TimelineWorkflow,
+    around: TimelineAround,
+    notices: Notices,
+    jobs: JobList,
+    time: Time,
+}
+
+impl Lab {
+    fn on(folder: &Path, around: TimelineAround) -> Self {
+        let room = TimelineWorkflow::new(folder);
+        let mut lab =
+            Self { room, around, notices: Notices::default(), jobs: JobList::default(), time: Time::now() };
+        lab.with(|room, around, context| room.restore(around, context));
+        lab
+    }
+
+    fn with(&mut self, act: impl FnOnce(&mut TimelineWorkflow, &TimelineAround, &mut Context<'_>)) {
+        let mut asked = vec![];
+        let Self { room, around, notices, jobs, time } = self;
+        act(room, around, &mut Context::new(notices, jobs, *time, &mut asked));
+        while !asked.is_empty() {
+            for one in std::mem::take(&mut asked) {
+                let Asked::Start(id, work) = one else { panic!("it only reads and writes") };
+                let outcome = work.run(&Unattended);
+                let mut context = Context::new(notices, jobs, *time, &mut asked);
+                match outcome {
+                    Ok(result) => room.work_done(id, result, around, &mut context),
+                    Err(JobError::Failed(why)) => {
+                        context.refuse(&why);
+                        room.work_ended(id, Some(&why), around, &mut context);
+                    }
+                    Err(JobError::Cancelled(_)) => room.work_ended(id, None, around, &mut context),
+                }
+            }
+        }
+    }
+
+    /// So it is now.
+    fn now(&mut self, in_use: Vec<Standing>) -> Arc<TimelineView> {
+        self.around.in_use = in_use;
+        self.with(|room, around, context| room.look(around, context));
+        self.view()
+    }
+
+    fn view(&mut self) -> Arc<TimelineView> {
+        let moment = Moment { now: self.time.instant, skipped: Skipped::default() };
+        self.room.view(&self.around, &moment)
+    }
+
+    fn said(&mut self) -> String {
+        self.notices.view().last().map(|notice| notice.text.clone()).unwrap_or_default()
+    }
+}
+
+fn eyes(id: Option<&str>, error_px: Option<f64>) -> Standing {
+    Standing {
+        subject: Subject::Eyes,
+        id: id.map(str::to_owned),
+        title: format!("calibration {id:?}"),
+        before: None,
+        after: error_px.map(Figure::Pixels),
+        basis: String::new(),
+        accepted: None,
+    }
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+#[test]
+fn each_change_is_an_entry_with_the_error_before_and_after() {
+    let folder = folder();
+    let mut lab = Lab::on(folder.path(), TimelineAround::default());
+    assert!(lab.view().is_known && lab.view().entries.is_empty());
+    assert!(lab.now(vec![eyes(None, None)]).entries.is_empty(), "nothing is in use, as in the beginning");
+    lab.now(vec![eyes(Some("a"), Some(0.2))]);
+    lab.now(vec![eyes(Some("a"), Some(0.2))]);
+    let view = lab.now(vec![eyes(Some("b"), Some(0.08))]);
+    assert_eq!(view.entries.len(), 2, "what stays the same is no entry");
+    let [first, second] = &view.entries[..] else { unreachable!("two") };
+    assert_eq!(
+        (first.kind, first.before, first.after),
+        (EntryKind::PutInUse, None, Some(Figure::Pixels(0.2)))
+    );
+    assert_eq!((second.before, second.after), (Some(Figure::Pixels(0.2)), Some(Figure::Pixels(0.08))));
+    assert_eq!((second.id_before.as_deref(), second.id_after.as_deref()), (Some("a"), Some("b")));
+    assert!(view.is_newest(second) && !view.is_newest(first));
+
+    let view = lab.now(vec![eyes(Some("a"), Some(0.2))]);
+    let back = view.entries.last().expect("an entry");
+    assert_eq!((back.kind, back.before, back.after), (EntryKind::TakenBack, second.after, first.after));
+    let view = lab.now(vec![eyes(None, None)]);
+    assert_eq!(view.entries.last().map(|entry| entry.kind), Some(EntryKind::TakenBack));
+    assert_eq!(view.in_use.len(), 1);
+}
+
+#[test]
+fn what_another_program_changed_meanwhile_is_told_as_that() {
+    let folder = folder();
+    let mut lab = Lab::on(folder.path(), TimelineAround::default());
+    lab.now(vec![eyes(Some("a"), Some(0.2))]);
+    let mut again = Lab::on(folder.path(), TimelineAround::default());
+    assert_eq!(again.view().entries, lab.view().entries, "it was kept");
+    // The eyes are read later than the timeline: until then nothing is known of them.
+    assert_eq!(again.now(vec![]).entries.len(), 1);
+    let view = again.now(vec![eyes(Some("c"), Some(0.1))]);
+    let entry = view.entries.last().expect("an entry");
+    assert!(entry.outside && entry.kind == EntryKind::PutInUse && entry.number == 2);
+    let view = again.now(vec![eyes(Some("d"), Some(0.1))]);
+    assert!(!view.entries.last().expect("an entry").outside);
+}
+
+#[test]
+fn what_is_in_use_when_the_line_begins_stands_at_its_beginning() {
+    let folder = folder();
+    let accepted = "2026-09-14T10:00:00Z".parse().expect("a time");
+    let mut lab = Lab::on(folder.path(), TimelineAround::default());
+    let view = lab.now(vec![Standing { accepted: Some(accepted), ..eyes(Some("a"), Some(0.2)) }]);
+    assert_eq!((view.entries[0].kind, view.entries[0].at), (EntryKind::Found, accepted));
+    assert!(!view.entries[0].outside);
+    assert_eq!(view.in_use[0].since, Some(accepted));
+}
+
+#[test]
+fn findings_and_checks_stand_there_once() {
+    let folder = folder();
+    let finding = |id: &str, made: &str| Finding {
+        id: id.to_owned(),
+        made: made.parse().expect("a time"),
+        title: "found: joint zero of the elbow".to_owned(),
+        before: Figure::Meters(6.7e-3),
+        after: Figure::Meters(3.6e-3),
+    };
+    let check = |mean_m: f64| Check {
+        id: "2026-09-14T12-00-00_check".to_owned(),
+        touches: 1,
+        with: Some("M3".to_owned()),
+        described_m: Some(5.88e-3),
+        mean_m: Some(mean_m),
+    };
+    let mut lab = Lab::on(folder.path(), TimelineAround::default());
+    lab.around.findings =
+        vec![finding("late", "2026-09-14T11:00:00Z"), finding("early", "2026-09-14T10:00:00Z")];
+    lab.around.check = Some(check(0.93e-3));
+    lab.now(vec![]);
+    lab.around.check = Some(check(0.91e-3));
+    let view = lab.now(vec![]);
+    let ids: Vec<_> = view.entries.iter().filter_map(|entry| entry.id_after.as_deref()).collect();
+    assert_eq!(ids, ["early", "late", "2026-09-14T12-00-00_check"]);
+    let checked = &view.entries[2];
+    assert_eq!(checked.title, "1 touch at new targets, corrected with M3");
+    let both = (checked.before, checked.after);
+    assert_eq!(both, (Some(Figure::Meters(5.88e-3)), Some(Figure::Meters(0.91e-3))), "brought up to date");
+}
+
+#[test]
+fn what_cannot_be_read_is_not_written_over() {
+    let folder = folder();
+    let file = folder.path().join(FILE);
+    for (text, why) in [
+        ("{}", "is no timeline of results"),
+        (r#"{"format":9,"entries":[]}"#, "format 9"),
+        (
+            r#"{"format":1,"entries":[{"number":1,"at":"2026-09-14T11:00:00Z","subject":"eyes","kind":"measured","title":"","after":{"meters":-1.0}}]}"#,
+            "an error of -1 is none",
+        ),
+    ] {
+        std::fs::write(&file, text).expect("written");
+        let mut lab = Lab::on(folder.path(), TimelineAround::default());
+        assert!(lab.said().contains(why), "{}", lab.said());
+        let view = lab.now(vec![eyes(Some("a"), None)]);
+        assert!(!view.is_known && view.entries.is_empty());
+        assert_eq!(std::fs::read_to_string(&file).expect("there"), text);
+        let report =
+            TimelineCommand::Report { file: folder.path().join("r.csv"), format: TimelineFormat::Csv };
+        lab.with(|room, around, context| room.apply(report, around, context));
+        assert!(lab.said().contains("not read yet"), "{}", lab.said());
+    }
+}
+
+#[test]
+fn the_whole_setup_is_written_as_table_and_as_page() {
+    let folder = folder();
+    let mut lab =
+        Lab::on(folder.path(), TimelineAround { rig: "nico".to_owned(), ..TimelineAround::default() });
+    lab.now(vec![eyes(Some("a, \"the first\""), Some(0.2))]);
+    lab.now(vec![eyes(Some("b"), Some(0.08))]);
+    let mut written = |name: &str, format: TimelineFormat| {
+        let file = folder.path().join(name);
+        let command = TimelineCommand::Report { file: file.clone(), format };
+        lab.with(|room, around, context| room.apply(command, around, context));
+        std::fs::read(file).expect("written")
+    };
+    let table = written("setup.csv", TimelineFormat::Csv);
+    let mut rows = csv::Reader::from_reader(&table[..]);
+    let rows: Vec<csv::StringRecord> = rows.records().map(|row| row.expect("a row")).collect();
+    assert_eq!(rows.len(), 2);
+    assert_eq!((&rows[1][5], &rows[1][6], &rows[1][7]), ("0.200000000", "0.080000000", "px"));
+    assert_eq!(&rows[0][10], "a, \"the first\"");
+    let page = String::from_utf8(written("setup.html", TimelineFormat::Html)).expect("text");
+    assert!(page.contains("Setup of nico") && page.contains("0.080 px") && page.contains("0.200 px"));
+    assert!(written("setup.pdf", TimelineFormat::Pdf).starts_with(b"%PDF"));
+}

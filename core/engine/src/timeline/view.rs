@@ -1,0 +1,154 @@
+//! The timeline of results, for the window.
+
+use std::sync::Arc;
+
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+
+/// Everything that was put in use, taken back, found or checked.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TimelineView {
+    /// Whether what was kept has been read.
+    pub is_known: bool,
+    /// Oldest first.
+    pub entries: Arc<[TimelineEntry]>,
+    /// What is in use now, one per kind of result, in the order of work.
+    pub in_use: Arc<[InUseNow]>,
+}
+
+/// A kind of result of which one is in use at a time, or of which there are many.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Subject {
+    /// Lenses, and how the eyes sit to each other.
+    Eyes,
+    /// How the eyes sit in the head.
+    Mount,
+    /// Where the touchscreen lies.
+    Screen,
+    /// The correction model.
+    Correction,
+    /// Effects in the model of the robot.
+    Effects,
+    /// What a search for effects found, whether it was added or not.
+    Finding,
+    /// Touches at new targets.
+    Check,
+}
+
+impl Subject {
+    /// Those of which one is in use at a time, in the order of work.
+    pub const IN_USE: [Self; 5] = [Self::Eyes, Self::Mount, Self::Screen, Self::Correction, Self::Effects];
+
+    /// For people.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Eyes => "Eyes",
+            Self::Mount => "Mount",
+            Self::Screen => "Screen",
+            Self::Correction => "Correction model",
+            Self::Effects => "Robot model",
+            Self::Finding => "Finding",
+            Self::Check => "Check",
+        }
+    }
+}
+
+/// What happened to a result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EntryKind {
+    /// It was put in use.
+    PutInUse,
+    /// What was in use before is in use again.
+    TakenBack,
+    /// It was in use already when the timeline began.
+    Found,
+    /// Something was measured; nothing was put in use.
+    Measured,
+}
+
+/// An error with its unit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Figure {
+    /// A length, m.
+    Meters(f64),
+    /// Pixels.
+    Pixels(f64),
+}
+
+impl Figure {
+    /// The number, m or px.
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Meters(value) | Self::Pixels(value) => value,
+        }
+    }
+
+    /// Whether two can be compared.
+    pub fn is_like(self, other: Self) -> bool {
+        matches!((self, other), (Self::Meters(_), Self::Meters(_)) | (Self::Pixels(_), Self::Pixels(_)))
+    }
+}
+
+/// Something on the line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TimelineEntry {
+    /// Counts up; no two have the same.
+    pub number: u64,
+    /// When.
+    pub at: Timestamp,
+    /// Of which kind.
+    pub subject: Subject,
+    /// What happened.
+    pub kind: EntryKind,
+    /// What it is, for people: "calibration of 31 pairs".
+    pub title: String,
+    /// The error before; `None`: not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub before: Option<Figure>,
+    /// The error after.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub after: Option<Figure>,
+    /// What these are errors of, and on what: a sentence without its period.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub basis: String,
+    /// What was in use before: its id in its workflow; `None`: nothing, as the description has it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id_before: Option<String>,
+    /// What is in use since, or the id of what was measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id_after: Option<String>,
+    /// Whether this program was closed when it happened: another one, or the command line, did it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub outside: bool,
+}
+
+/// What is in use of a kind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct InUseNow {
+    /// Which kind.
+    pub subject: Subject,
+    /// What it is, for people.
+    pub title: String,
+    /// Its error.
+    pub figure: Option<Figure>,
+    /// Since when, if that is on the line.
+    pub since: Option<Timestamp>,
+    /// Number of the entry since which it is in use.
+    pub entry: Option<u64>,
+}
+
+impl TimelineView {
+    /// An entry by its number.
+    pub fn entry(&self, number: u64) -> Option<&TimelineEntry> {
+        self.entries.iter().find(|entry| entry.number == number)
+    }
+
+    /// Whether an entry is the last change of what is in use of its kind, so that it can be taken back.
+    pub fn is_newest(&self, entry: &TimelineEntry) -> bool {
+        self.in_use.iter().any(|now| now.subject == entry.subject && now.entry == Some(entry.number))
+    }
+}

@@ -1,0 +1,249 @@
+//! What was in use, what is, and what is written down of it.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use jiff::Timestamp;
+use plumbline_model::counted;
+
+use super::around::{Check, Standing, TimelineAround};
+use super::command::TimelineCommand;
+use super::kept::FILE;
+use super::page;
+use super::view::{EntryKind, Figure, InUseNow, Subject, TimelineEntry, TimelineView};
+use super::work::{Context, TimelineResult, TimelineWork};
+use crate::ground::jobs::JobId;
+use crate::ground::notice::NoticeLevel;
+use crate::ground::{Moment, Nothing, Workflow};
+
+/// The whole workflow, of one world.
+#[derive(Clone, Debug)]
+pub struct TimelineWorkflow {
+    file: PathBuf,
+    /// Oldest first; `None`: not read yet, or its file cannot be used, so nothing is written over it.
+    entries: Option<Arc<[TimelineEntry]>>,
+    /// Whether the first look has been taken at a kind since the program began: what differs then was
+    /// changed by another program.
+    looked_at: Vec<Subject>,
+    writing: Option<JobId>,
+    /// Whether something came since it was written last.
+    is_behind: bool,
+}
+
+impl TimelineWorkflow {
+    /// Something may have been put in use, taken back, found or checked.
+    pub fn look(&mut self, around: &TimelineAround, context: &mut Context<'_>) {
+        let Some(known) = &self.entries else { return };
+        let mut entries = known.to_vec();
+        for standing in &around.in_use {
+            let is_first = !self.looked_at.contains(&standing.subject);
+            if is_first {
+                self.looked_at.push(standing.subject);
+            }
+            take_standing(&mut entries, standing, is_first, context.time.day);
+        }
+        take_findings(&mut entries, around);
+        if let Some(check) = &around.check {
+            take_check(&mut entries, check, context.time.day);
+        }
+        if entries[..] != known[..] {
+            self.entries = Some(entries.into());
+            self.is_behind = true;
+        }
+        self.keep(context);
+    }
+
+    fn keep(&mut self, context: &mut Context<'_>) {
+        let Some(entries) = self.entries.as_ref().filter(|_| self.is_behind && self.writing.is_none()) else {
+            return;
+        };
+        let work = TimelineWork::Keep { file: self.file.clone(), entries: entries.clone() };
+        self.writing = Some(context.start(work));
+        self.is_behind = false;
+    }
+}
+
+/// The number of the next entry.
+fn next_number(entries: &[TimelineEntry]) -> u64 {
+    entries.last().map_or(1, |entry| entry.number + 1)
+}
+
+/// The last entry that says what is in use of a kind.
+fn last_of(entries: &[TimelineEntry], subject: Subject) -> Option<&TimelineEntry> {
+    entries.iter().rev().find(|entry| entry.subject == subject)
+}
+
+fn take_standing(entries: &mut Vec<TimelineEntry>, standing: &Standing, is_first: bool, now: Timestamp) {
+    let last = last_of(entries, standing.subject);
+    let id_before = last.and_then(|last| last.id_after.clone());
+    if id_before == standing.id {
+        return;
+    }
+    let was_in_use = |id: &Option<String>| {
+        let of_subject = entries.iter().filter(|entry| entry.subject == standing.subject);
+        id.is_none() || of_subject.into_iter().any(|entry| entry.id_after == *id || entry.id_before == *id)
+    };
+    let kind = match last {
+        None if is_first => EntryKind::Found,
+        _ if was_in_use(&standing.id) => EntryKind::TakenBack,
+        _ => EntryKind::PutInUse,
+    };
+    // What was known of the one before, unless this one knows better, on its own data.
+    let error_before = last.and_then(|last| last.after);
+    let before = match kind {
+        EntryKind::TakenBack => error_before,
+        _ => standing
+            .before
+            .or(error_before.filter(|before| standing.after.is_some_and(|a| a.is_like(*before)))),
+    };
+    let accepted = standing.accepted.filter(|_| is_first && kind != EntryKind::TakenBack);
+    let entry = TimelineEntry {
+        number: next_number(entries),
+        at: accepted.unwrap_or(now),
+        subject: standing.subject,
+        kind,
+        title: standing.title.clone(),
+        before,
+        after: standing.after,
+        basis: standing.basis.clone(),
+        id_before,
+        id_after: standing.id.clone(),
+        outside: is_first && kind != EntryKind::Found,
+    };
+    entries.push(entry);
+}
+
+fn take_findings(entries: &mut Vec<TimelineEntry>, around: &TimelineAround) {
+    let is_known = |entries: &[TimelineEntry], id: &str| {
+        let of = |entry: &&TimelineEntry| entry.subject == Subject::Finding;
+        entries.iter().filter(of).any(|entry| entry.id_after.as_deref() == Some(id))
+    };
+    let mut new: Vec<_> = around.findings.iter().filter(|found| !is_known(entries, &found.id)).collect();
+    new.sort_by_key(|found| found.made);
+    for found in new {
+        entries.push(TimelineEntry {
+            number: next_number(entries),
+            at: found.made,
+            subject: Subject::Finding,
+            kind: EntryKind::Measured,
+            title: found.title.clone(),
+            before: Some(found.before),
+            after: Some(found.after),
+            basis: "mean error on rows that were not used; only found, not in use".to_owned(),
+            id_before: None,
+            id_after: Some(found.id.clone()),
+            outside: false,
+        });
+    }
+}
+
+/// A check that is there already is brought up to date: touches may be taken out of it later.
+fn take_check(entries: &mut Vec<TimelineEntry>, check: &Check, now: Timestamp) {
+    let Some(mean_m) = check.mean_m else { return };
+    let what = match &check.with {
+        Some(with) => format!("{} at new targets, corrected with {with}", counted(check.touches, "touch")),
+        None => format!("{} at new targets, without a correction", counted(check.touches, "touch")),
+    };
+    let (before, basis) = match check.described_m {
+        Some(described_m) => (
+            Some(Figure::Meters(described_m)),
+            "mean distance from the target; before: touches of the same run as the robot is described",
+        ),
+        None => (None, "mean distance from the target"),
+    };
+    let is_same = |entry: &&mut TimelineEntry| {
+        entry.subject == Subject::Check && entry.id_after.as_deref() == Some(&check.id)
+    };
+    if let Some(known) = entries.iter_mut().find(is_same) {
+        (known.title, known.before, known.after) = (what, before, Some(Figure::Meters(mean_m)));
+        return;
+    }
+    entries.push(TimelineEntry {
+        number: next_number(entries),
+        at: now,
+        subject: Subject::Check,
+        kind: EntryKind::Measured,
+        title: what,
+        before,
+        after: Some(Figure::Meters(mean_m)),
+        basis: basis.to_owned(),
+        id_before: None,
+        id_after: Some(check.id.clone()),
+        outside: false,
+    });
+}
+
+/// What is in use, with the entries since which it is.
+pub(super) fn in_use(entries: &[TimelineEntry], around: &TimelineAround) -> Vec<InUseNow> {
+    let standings = around.in_use.iter().map(|standing| {
+        let entry = last_of(entries, standing.subject).filter(|entry| entry.id_after == standing.id);
+        InUseNow {
+            subject: standing.subject,
+            title: standing.title.clone(),
+            figure: standing.after,
+            since: entry.map(|entry| entry.at),
+            entry: entry.map(|entry| entry.number),
+        }
+    });
+    standings.collect()
+}
+
+impl Workflow for TimelineWorkflow {
+    type Command = TimelineCommand;
+    type Work = TimelineWork;
+    type Control = Nothing;
+    type Around = TimelineAround;
+    type View = TimelineView;
+
+    fn new(folder: &Path) -> Self {
+        Self {
+            file: folder.join(FILE),
+            entries: None,
+            looked_at: Vec::new(),
+            writing: None,
+            is_behind: false,
+        }
+    }
+
+    fn restore(&mut self, _: &TimelineAround, context: &mut Context<'_>) {
+        context.start(TimelineWork::Restore { file: self.file.clone() });
+    }
+
+    fn view(&mut self, around: &TimelineAround, _: &Moment) -> Arc<TimelineView> {
+        let entries = self.entries.clone().unwrap_or_default();
+        let in_use = in_use(&entries, around).into();
+        Arc::new(TimelineView { is_known: self.entries.is_some(), in_use, entries })
+    }
+
+    fn apply(&mut self, command: TimelineCommand, around: &TimelineAround, context: &mut Context<'_>) {
+        let TimelineCommand::Report { file, format } = command;
+        let Some(entries) = self.entries.clone() else {
+            return context.refuse("The timeline was not read yet, or cannot be: the messages say why.");
+        };
+        let setup = Box::new(page::setup(&entries, around, context.time.day));
+        context.start(TimelineWork::Report { file, format, entries, setup });
+    }
+
+    fn work_done(
+        &mut self,
+        id: JobId,
+        result: TimelineResult,
+        around: &TimelineAround,
+        context: &mut Context<'_>,
+    ) {
+        self.writing.take_if(|writing| *writing == id);
+        if let TimelineResult::Restored(entries) = result {
+            self.entries = Some(entries.into());
+        }
+        self.look(around, context);
+    }
+
+    fn work_ended(&mut self, id: JobId, why: Option<&str>, _: &TimelineAround, context: &mut Context<'_>) {
+        if self.writing.take_if(|writing| *writing == id).is_some()
+            && let Some(why) = why
+        {
+            // Written with the next entry; tried again at once it would say the same again.
+            context.notices.add(NoticeLevel::Warning, format!("{why} The timeline goes on."));
+        }
+    }
+}
