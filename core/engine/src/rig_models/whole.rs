@@ -104,7 +104,7 @@ pub fn whole(
         gap: gap(&chosen, finding, measurements.rows.len()),
     };
     let mut next = model.clone();
-    next.add(rig, addition).map_err(ModelInUseError::from)?;
+    next.add(rig, addition).map_err(|error| WholeError::Model(Box::new(error.into())))?;
     Ok(Some(next))
 }
 
@@ -120,7 +120,7 @@ fn gap(chosen: &Chosen, finding: &Finding, rows: usize) -> Option<StepGap> {
 pub enum WholeError {
     /// The model cannot be.
     #[error(transparent)]
-    Model(#[from] ModelInUseError),
+    Model(Box<ModelInUseError>),
     /// It was cancelled.
     #[error("cancelled")]
     Cancelled(plumbline_model::Cancelled),

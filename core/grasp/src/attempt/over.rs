@@ -3,7 +3,7 @@
 //! that error, weighted by how sure each is.
 
 use nalgebra::{Matrix3, Vector3};
-use plumbline_model::robot::Posture;
+use plumbline_model::robot::{JointIndex, Posture};
 
 use super::align::{FARTHEST_M, FoundHand, HandFinder, HandMissing, SPEED_RAD_S, near_enough};
 use super::{Chosen, End, Running, STILL_S};
