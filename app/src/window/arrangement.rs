@@ -136,7 +136,7 @@ fn timeline(tiles: &mut Tiles<Pane>) -> TileId {
     let line = tabs(tiles, &[Pane::TimelineLine]);
     let in_use = tabs(tiles, &[Pane::TimelineInUse]);
     let compared = tabs(tiles, &[Pane::TimelineCompared]);
-    let right = column(tiles, &[(in_use, 1.35), (compared, 1.0)]);
+    let right = column(tiles, &[(in_use, 1.9), (compared, 1.0)]);
     row(tiles, &[(line, 1.5), (right, 1.0)])
 }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use plumbline_effects::RigModel;
-use plumbline_gap::Options;
+use plumbline_gap::{Options, Verdict};
 use plumbline_model::robot::Rig;
 use plumbline_model::{JobContext, Session, counted, files};
 use plumbline_report::ReportContext;
@@ -237,6 +237,9 @@ fn failed(error: SearchError) -> JobError {
     }
 }
 
+/// Names that leave what noise alone leaves at least so often need no small shares beside them.
+const NOISE_P: f64 = 0.05;
+
 /// The arm with all usual effects beside those that were chosen, where the finding's rows are touches of one
 /// session and that errs less.
 fn whole(
@@ -247,14 +250,16 @@ fn whole(
     at: jiff::Timestamp,
     context: &dyn JobContext,
 ) -> Result<Option<RigModel>, JobError> {
+    let found = &finding.kept.finding;
+    if !effects.is_empty() && found.verdict == Verdict::Named && found.unexplained.p_value > NOISE_P {
+        return Ok(None);
+    }
     let folders: Vec<PathBuf> = finding.kept.sessions.iter().map(|session| session.folder.clone()).collect();
     let measurements = measured(&folders, rig).map_err(failed)?;
     let Some(touches) = rig_models::ArmTouches::of(sessions, &measurements) else { return Ok(None) };
-    rig_models::whole(model, rig, &touches, &finding.kept.finding, effects, at, context).map_err(|error| {
-        match error {
-            rig_models::WholeError::Cancelled(cancelled) => cancelled.into(),
-            other => JobError::failed(other),
-        }
+    rig_models::whole(model, rig, &touches, found, effects, at, context).map_err(|error| match error {
+        rig_models::WholeError::Cancelled(cancelled) => cancelled.into(),
+        other => JobError::failed(other),
     })
 }
 
