@@ -45,7 +45,7 @@ pub fn touches(rig: &Rig, effects: &[(&str, &str, &[f64])]) -> Measurements {
         placements: vec![Isometry3::identity()],
         ..Assumed::default()
     };
-    let directions = |i: usize| vec![if i % 2 == 0 { 1.0 } else { -1.0 }; arm.len()];
+    let directions = |i: usize| vec![if i.is_multiple_of(2) { 1.0 } else { -1.0 }; arm.len()];
     let postures = postures(rig, TIP, &on_glass).into_iter().enumerate();
     let rows = postures.map(|(i, angles)| {
         let mut touch = row(What::Touch, angles, directions(i));

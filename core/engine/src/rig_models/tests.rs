@@ -242,7 +242,7 @@ fn touches_with_errors(rig: &Rig) -> Measurements {
         let target = Target::Position(screen.point_at(pixel));
         let Ok(answer) = solver.solve_from(&target, &home, &Options::default()) else { continue };
         if answer.is_reached() {
-            let directions = vec![if i % 2 == 0 { 1.0 } else { -1.0 }; arm.len()];
+            let directions = vec![if i.is_multiple_of(2) { 1.0 } else { -1.0 }; arm.len()];
             let mut row = plumbline_fit::row(What::Touch, answer.best().joints.to_vec(), directions);
             (row.row, row.cell) = (rows.len(), rows.len());
             rows.push(row);
