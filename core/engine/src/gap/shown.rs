@@ -62,10 +62,11 @@ impl GapWorkflow {
         let finding = &named.kept.finding;
         let in_model = |id: &str, site: &str, values: &[f64]| {
             let Some(model) = &self.model else { return false };
-            let is_it = |e: &&ModelEffect| e.id == id && e.site == site;
-            // With small shares of others beside it, an effect of the same search has another size.
-            let is_same =
-                |e: &ModelEffect| e.values == values || (is_of(model, finding) && model.is_named(e));
+            // With small shares of others beside it, an effect of the same search has another size, and a
+            // family of joints stands there joint by joint.
+            let of_search = is_of(model, finding);
+            let is_it = |e: &&ModelEffect| e.id == id && (e.site == site || of_search && site.is_empty());
+            let is_same = |e: &ModelEffect| e.values == values || (of_search && model.is_named(e));
             model.effects().iter().filter(is_it).any(is_same)
         };
         ShownFinding {

@@ -268,12 +268,21 @@ fn the_arm_takes_small_shares_of_all_effects_beside_the_names_and_one_step_takes
     let model = whole(&before, &rig, &touches, &found, &[0], Timestamp::now(), &Unattended)
         .expect("it fits")
         .expect("it errs less");
-    let named: Vec<String> =
+    let has_name: Vec<String> =
         model.effects().iter().filter(|e| e.probability.is_some()).map(ModelEffect::name).collect();
-    assert_eq!(named, ["joint-zero@r_elbow_y"]);
+    assert_eq!(has_name, ["joint-zero@r_elbow_y"]);
     assert!(model.effects().len() > 40 && model.contents.together.len() == 1, "{}", model.effects().len());
     let (_, gap) = history(&model).next().expect("its gap");
     assert!(gap.after < 0.5 * gap.before, "{gap:?}");
+    // A family of joints is named joint by joint; what encoders see in another way is not lost among shares.
+    let family = finding(vec![named("joint-zero", "", 0.03)]);
+    let model_of = |found: &Finding| {
+        whole(&before, &rig, &touches, found, &[0], Timestamp::now(), &Unattended).expect("it fits")
+    };
+    let of_family = model_of(&family).expect("it errs less");
+    let of_joints = |e: &&ModelEffect| e.id == "joint-zero" && e.probability.is_some();
+    assert!(of_family.effects().iter().filter(of_joints).count() >= 5, "each joint of the arm");
+    assert!(model_of(&finding(vec![named("gone", "r_elbow_y", 0.1)])).is_none());
     // It is a model like any other: written, read, taken back in one step.
     let folder = tempfile::tempdir().expect("a folder for the test");
     save(folder.path(), &model, &rig).expect("written");

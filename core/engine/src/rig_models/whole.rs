@@ -28,6 +28,15 @@ pub fn library_of<'a>(named: impl Iterator<Item = &'a NamedEffect>, arm: &Arm) -
         .collect()
 }
 
+/// Whether an effect that was named is among those that are sized together: else it would be lost.
+fn is_sized(named: &NamedEffect, arm: &Arm) -> bool {
+    match Kind::of_id(&named.id) {
+        Some(Kind::ServoDroop | Kind::Stiction) => true,
+        Some(kind) if kind.is_seen_by_encoder() => false,
+        _ => Effect::find(&named.id, &named.site, named.shape, Some(arm), None).is_some(),
+    }
+}
+
 /// Touches of one session with one finger, from which an arm can be sized.
 pub struct ArmTouches<'a> {
     /// The session as it is on disk.
@@ -65,16 +74,28 @@ pub fn whole(
     context: &dyn JobContext,
 ) -> Result<Option<RigModel>, WholeError> {
     let ArmTouches { session, measurements, arm, tip } = touches;
+    let wanted: Vec<&NamedEffect> = effects.iter().filter_map(|i| finding.effects.get(*i)).collect();
+    // A family of joints is sized joint by joint.
     let is_chosen = |effect: &Effect| {
-        let mut chosen = effects.iter().filter_map(|i| finding.effects.get(*i));
-        chosen.find(|named| named.id == effect.id() && named.site == effect.site)
+        let is_it = |named: &&&NamedEffect| {
+            named.id == effect.id() && (named.site == effect.site || named.site.is_empty())
+        };
+        wanted.iter().find(is_it).copied()
     };
-    let named = library_of(effects.iter().filter_map(|i| finding.effects.get(*i)), arm);
+    if !wanted.iter().all(|named| is_sized(named, arm)) {
+        return Ok(None);
+    }
+    let named = library_of(wanted.iter().copied(), arm);
     // Nothing that the eyes saw ties arm and head: the mount counts for nothing here.
     let mount = Matrix6::identity();
     let known =
         Known { rig, screen: None, hands: None, neck_rad: (0.0, NECK_SD_RAD), mount: &mount, share: 1.0 };
-    let chosen = choose(measurements, arm, named, &known, context)?;
+    let mut chosen = choose(measurements, arm, named.clone(), &known, context)?;
+    // One that was named in another shape than the usual one is sized in its own.
+    for effect in named.into_iter().filter(|effect| !effect.is_of_every_site()) {
+        chosen.effects.retain(|usual| (usual.kind, &usual.site) != (effect.kind, &effect.site));
+        chosen.effects.push(effect);
+    }
     let known = Known { share: chosen.share, ..known };
     let rows: Vec<_> = measurements.rows.iter().collect();
     if chosen.which != Which::All {
