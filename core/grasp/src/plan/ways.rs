@@ -129,3 +129,36 @@ impl GraspPlanner {
         (1..SAMPLES).any(|i| height_m(&from.toward(to, i as f64 / SAMPLES as f64)) < least_m)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use plumbline_effects::RobotModel;
+    use plumbline_model::robot::Rig;
+
+    use super::super::Standing;
+    use super::*;
+    use crate::arm::PalmArm;
+
+    fn planner(rig: &Arc<Rig>) -> GraspPlanner {
+        GraspPlanner::new(PalmArm::new(&RobotModel::nominal(rig.clone()), "right").expect("an arm"))
+    }
+
+    #[test]
+    fn a_forearm_keeps_away_from_a_table_that_may_stand_nearer_and_higher() {
+        let rig = Arc::new(Rig::built_in("nico").expect("valid"));
+        let mut other = (*rig).clone();
+        // So near and high that the forearm is in it, wherever the hand is.
+        other.table.height_m += 0.1;
+        other.table.x_range_m[0] -= 0.3;
+        let (here, there) = (planner(&rig), planner(&Arc::new(other)));
+        for xy_m in [[0.2, -0.2], [0.3, -0.2], [0.3, -0.1]] {
+            let standing = Standing { xy_m, support_m: rig.table.height_m, height_m: 0.054 };
+            let plan = here.plan(&standing, &Vector3::zeros(), &rig.home()).expect("a plan");
+            let above = plan.above().expect("a way");
+            assert!(!here.may_meet_table(above, &plan.down).expect("postures"), "{xy_m:?}");
+            assert!(there.may_meet_table(above, &plan.down).expect("postures"), "{xy_m:?}");
+        }
+    }
+}
