@@ -8,7 +8,9 @@
 //! - [`fit()`]: least squares with priors, of one arm and one screen, with hands that the eyes saw beside it.
 //! - [`choose()`]: whether nothing, the named effects or all of them err least on touches held out.
 //! - [`lag()`]: how far servos stop from where they are sent.
-//! - [`arm_effects`], [`together`], [`placed`], [`neck_effect`]: what was fitted, as a model takes it.
+//! - [`ArmTouches`], [`sized_by_hands`]: both for touches of one session, with the names that a search gave, and
+//!   for an arm that touched nothing.
+//! - [`neck_effect`]: the zero of the neck's turn, as a model takes it.
 
 mod added;
 mod choose;
@@ -17,11 +19,12 @@ mod lag;
 #[cfg(test)]
 mod made_up;
 mod seen;
+mod size;
 mod usual;
 
-pub use added::{arm_effects, effect_of, neck_effect, placed, together};
-pub use choose::{Chosen, HeldOut, Which, choose};
-pub use fit::{Fit, Known, NECK_SD_RAD, SeenScreen, fit, held_out_m, pose};
-pub use lag::lag;
+pub use added::neck_effect;
+pub use choose::{Chosen, HeldOut, Which};
+pub use fit::{Fit, Known, NECK_SD_RAD, SeenScreen, pose};
 pub use seen::{Looked, SeenHand, SeenHands};
+pub use size::{ArmTouches, LEAST_TOUCHES, Name, SizedArm, sized_by_hands};
 pub use usual::{NOISE_M, SCREEN_SD, is_first_zero, measurements, moves_palm, row, usual};

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use plumbline_effects::rig_model::ModelEffect;
 use plumbline_effects::{RigModel, What};
+use plumbline_fit::LEAST_TOUCHES;
 use plumbline_gap::Finding;
 
 use super::model;
@@ -11,7 +12,6 @@ use super::store::Named;
 use super::view::{GapView, ShownFinding};
 use super::workflow::{GapAround, GapWorkflow, Seen};
 use crate::ground::step::StepState;
-use crate::rig_models::LEAST_TOUCHES;
 
 impl GapWorkflow {
     /// What the window shows.
@@ -89,8 +89,9 @@ impl GapWorkflow {
     }
 }
 
-/// Whether the last that was added to a model came of this finding.
+/// Whether the last that was added to a model came of this finding; a look at the hands keeps its names.
 fn is_of(model: &RigModel, finding: &Finding) -> bool {
-    let last = model.history.iter().rfind(|step| step.can_be_undone());
+    let mut added = model.history.iter().filter(|step| step.can_be_undone());
+    let last = added.rfind(|step| step.sentence != plumbline_handeye::SENTENCE);
     last.is_some_and(|last| last.sentence == finding.sentence && last.sessions == finding.sessions)
 }

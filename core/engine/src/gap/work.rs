@@ -256,7 +256,7 @@ fn whole(
     }
     let folders: Vec<PathBuf> = finding.kept.sessions.iter().map(|session| session.folder.clone()).collect();
     let measurements = measured(&folders, rig).map_err(failed)?;
-    let Some(touches) = rig_models::ArmTouches::of(sessions, &measurements) else { return Ok(None) };
+    let Some(touches) = plumbline_fit::ArmTouches::of(sessions, &measurements) else { return Ok(None) };
     rig_models::whole(model, rig, &touches, found, effects, at, context).map_err(|error| match error {
         rig_models::WholeError::Cancelled(cancelled) => cancelled.into(),
         other => JobError::failed(other),

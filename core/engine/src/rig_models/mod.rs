@@ -28,7 +28,7 @@ pub use error::ModelInUseError;
 pub use in_use::{
     Accepted, in_use, made_at, mount_in, mounted, mounts_in, other_eyes, screen_in, screens_in,
 };
-pub use whole::{ArmTouches, LEAST_TOUCHES, WholeError, library_of, whole};
+pub use whole::{WholeError, name_of, whole};
 
 /// The file, in the folder of a world.
 pub const FILE: &str = "rig-model.toml";

@@ -2,6 +2,7 @@
 
 use plumbline_effects::arm::Arm;
 use plumbline_effects::{Assumed, Effect, Measurements, Present, Surface, What};
+use plumbline_fit::ArmTouches;
 use plumbline_gap::finding::{ClassMember, Comparison, FORMAT, FoundParameter, Unexplained, Verdict};
 use plumbline_model::Unattended;
 use plumbline_model::robot::ik::{Options, Solver, Target};

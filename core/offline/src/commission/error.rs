@@ -7,6 +7,7 @@ use plumbline_engine::ground::jobs::JobError;
 use plumbline_engine::models::ModelError;
 use plumbline_engine::motion::NoWay;
 use plumbline_engine::touch::refusal::{RunError, Unplaced};
+use plumbline_handeye::HandEyeError;
 use plumbline_model::files::FileError;
 use plumbline_model::robot::DescriptionError;
 use plumbline_model::robot::ik::SolverError;
@@ -127,6 +128,15 @@ impl From<JobError> for CommissionError {
         match error {
             JobError::Cancelled(cancelled) => Self::Cancelled(cancelled),
             JobError::Failed(why) => Self::Room(why),
+        }
+    }
+}
+
+impl From<HandEyeError> for CommissionError {
+    fn from(error: HandEyeError) -> Self {
+        match error {
+            HandEyeError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            other => Self::room(other),
         }
     }
 }

@@ -7,12 +7,9 @@
 //! miss (`effects`); correction models (`models`); the eyes look at the hand (`hand`); and a judge
 //! measures what came of it (`check`). The judge alone knows what the twin hides.
 
-mod body;
-mod edges;
 mod effects;
 mod error;
 mod eyes;
-mod glass;
 mod hand;
 mod hand_heights;
 mod judge;
@@ -26,7 +23,6 @@ pub(crate) mod published;
 mod robot;
 mod see;
 mod steps;
-mod table_beside;
 #[cfg(test)]
 mod tests;
 mod touches;

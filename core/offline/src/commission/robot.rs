@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use image::RgbImage;
-use plumbline_model::robot::Posture;
+use plumbline_grasp::{Body, Halt, ServoState, Sight as BodySight};
+use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::{Board, Pose, Robot as RobotFrame};
 use plumbline_twin::eyes::EyeRenderer;
 use plumbline_twin::{Lockstep, Toy};
@@ -84,5 +85,47 @@ impl Robot {
     /// The renderer, for the next step.
     pub fn into_eyes(mut self) -> Option<EyeRenderer> {
         self.lockstep.take_eyes()
+    }
+}
+
+impl Body for Robot {
+    fn rig(&self) -> &Arc<Rig> {
+        self.lockstep.rig()
+    }
+
+    fn now_s(&self) -> f64 {
+        self.lockstep.now_s()
+    }
+
+    fn servos(&mut self) -> Result<Vec<ServoState>, Halt> {
+        let servos = self.lockstep.servos().into_iter().map(|servo| ServoState {
+            joint: servo.joint,
+            angle_rad: servo.angle_rad,
+            load: Some(servo.load),
+            current_a: None,
+            temperature_c: Some(servo.temperature_c),
+        });
+        Ok(servos.collect())
+    }
+
+    fn commanded(&mut self) -> Result<Posture, Halt> {
+        Ok(self.lockstep.commanded().clone())
+    }
+
+    fn follow(&mut self, way: &[Posture], speed_rad_s: f64) -> Result<(), Halt> {
+        self.lockstep.follow(way, speed_rad_s);
+        Ok(())
+    }
+
+    fn wait(&mut self, duration_s: f64) -> Result<(), Halt> {
+        self.lockstep.wait(duration_s);
+        Ok(())
+    }
+
+    fn look(&mut self) -> Result<BodySight, Halt> {
+        let Sight { left, right, posture } =
+            Self::look(self).map_err(|error| Halt::Blind(error.to_string()))?;
+        let (at_s, eyes_on_s) = (self.on_s(), Some(self.on_s()));
+        Ok(BodySight { left, right, posture, at_s, eyes_on_s, seq: 0 })
     }
 }

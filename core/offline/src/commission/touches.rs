@@ -6,25 +6,24 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_engine::motion::{Hold, Planner, ScreenPlace, TouchPath};
+use plumbline_engine::rig_models;
 use plumbline_engine::robot::TouchMeasurement;
 use plumbline_engine::touch::plan::{Aim, FORMAT, RunPlan, TIP};
 use plumbline_engine::touch::record::{Ended, Progress, TouchRecord};
 use plumbline_engine::touch::{placement, store};
 use plumbline_fit::pose;
+use plumbline_handeye::{Tie, body, screen, table};
 use plumbline_model::robot::{Chain, Rig};
-use plumbline_model::session::Screen;
+use plumbline_model::session::{Screen, Touchscreen};
 use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, PlannedTouch, Purpose, Side, Sides};
 use plumbline_model::{JobContext, Pixel, Point, Robot as RobotFrame};
 use plumbline_twin::Touched;
 
-use super::body;
 use super::error::CommissionError;
-use super::glass::see;
 use super::lab::{Lab, TOUCH_SESSION};
 use super::plan::{Candidate, Chosen, TOUCHES, area, candidates, choose};
 use super::robot::{Robot, SPEED_RAD_S};
 use super::steps::Step;
-use super::table_beside;
 
 /// The tip comes down with this speed, m/s.
 const LOWER_M_S: f64 = 0.02;
@@ -185,51 +184,61 @@ pub(super) fn place(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> R
     step.after_mm = rms(&left_out);
     step.notes.extend(placed.remarks.iter().cloned());
     lab.accept_placement(&placed)?;
-    let rig = lab.rig_with_eyes()?;
-    let mount = lab.mount()?;
-    match body::see(robot, &rig, &mount, context)? {
-        Some(body) => {
-            step.notes.push(format!(
-                "By the robot's body the neck's turn is off by {:.2}° ± {:.2}° ({} edge points, {:.2} px).",
-                body.neck_rad.to_degrees(),
-                body.neck_sd_rad.to_degrees(),
-                body.points,
-                body.rms_px
-            ));
-            body.write(lab)?;
-        }
-        None => step.notes.push("The eyes do not see the edges of the robot's body.".to_owned()),
-    }
-    match see(robot, &rig, &mount, &placed.screen, context)? {
-        Some(mut seen) => {
-            let off = seen.robot_from_screen * pose(&placed.screen).inverse();
-            let middle = placed.screen.point_at(placed.screen.middle()).coords;
-            let shift_mm = 1e3 * ((off * middle) - middle);
-            step.notes.push(format!(
-                "The eyes see it {:.1} {:.1} {:.1} mm beside and {:.2}° turned ({} edges, {:.2} px).",
-                shift_mm.x,
-                shift_mm.y,
-                shift_mm.z,
-                off.rotation.angle().to_degrees(),
-                seen.edges,
-                seen.rms_px
-            ));
-            seen.table = table_beside::see(robot, &rig, &lab.calibration()?, &seen, &placed.screen)?;
-            step.notes.push(match &seen.table {
-                Some(table) => format!(
-                    "Its glass lies {:.1} ± {:.1} mm over the table around it ({} places).",
-                    1e3 * table.glass_over_m,
-                    1e3 * table.sd_m,
-                    table.places
-                ),
-                None => "The table around it shows the eyes too little to match: its glass is taken to lie 2 mm over it."
-                    .to_owned(),
-            });
-            seen.write(lab)?;
-        }
-        None => step.notes.push("The eyes do not see its edges.".to_owned()),
-    }
+    lab.keep_tie(&look_around(lab, robot, &placed.screen, &mut step, context)?)?;
     Ok(step)
+}
+
+/// Looks at the robot's body, the screen and the table around it.
+fn look_around(
+    lab: &Lab,
+    robot: &mut Robot,
+    placed: &Touchscreen,
+    step: &mut Step,
+    context: &dyn JobContext,
+) -> Result<Tie, CommissionError> {
+    let (rig, mounted) = (lab.rig_with_eyes()?, rig_models::mounted(&lab.mount()?));
+    let body = body::see(robot, &rig, &mounted, &mut |_| {}, context)?;
+    step.notes.push(match &body {
+        Some(body) => format!(
+            "By the robot's body the neck's turn is off by {:.2}° ± {:.2}° ({} edge points, {:.2} px).",
+            body.neck_rad.to_degrees(),
+            body.neck_sd_rad.to_degrees(),
+            body.points,
+            body.rms_px
+        ),
+        None => "The eyes do not see the edges of the robot's body.".to_owned(),
+    });
+    let mut screen = screen::see(robot, &rig, mounted.rest_sigma_rad, placed, &mut |_| {}, context)?;
+    let Some(seen) = &mut screen else {
+        step.notes.push("The eyes do not see its edges.".to_owned());
+        return Ok(Tie { body, screen });
+    };
+    let off = seen.robot_from_screen * pose(placed).inverse();
+    let middle = placed.point_at(placed.middle()).coords;
+    let shift_mm = 1e3 * ((off * middle) - middle);
+    step.notes.push(format!(
+        "The eyes see it {:.1} {:.1} {:.1} mm beside and {:.2}° turned ({} edges, {:.2} px).",
+        shift_mm.x,
+        shift_mm.y,
+        shift_mm.z,
+        off.rotation.angle().to_degrees(),
+        seen.edges,
+        seen.rms_px
+    ));
+    seen.table = table::see(robot, &rig, &lab.calibration()?, seen, placed)?;
+    step.notes.push(match &seen.table {
+        Some(table) => format!(
+            "Its glass lies {:.1} ± {:.1} mm over the table around it ({} places).",
+            1e3 * table.glass_over_m,
+            1e3 * table.sd_m,
+            table.places
+        ),
+        None => {
+            "The table around it shows the eyes too little to match: its glass is taken to lie 2 mm over it."
+                .to_owned()
+        }
+    });
+    Ok(Tie { body, screen })
 }
 
 /// Rms distance of the fingertip, by encoders and the nominal arm, from the pixel it touched on a screen

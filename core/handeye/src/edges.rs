@@ -4,11 +4,11 @@ use image::GrayImage;
 use nalgebra::Vector2;
 
 /// Step along a profile, px.
-pub(super) const STEP_PX: f64 = 0.2;
+pub(crate) const STEP_PX: f64 = 0.2;
 
 /// Gray levels along a line through `pixel`, from `window_px` before it to as far behind it, in steps of
 /// [`STEP_PX`]; each is the mean over places beside the line, px. `None` where the image ends.
-pub(super) fn profile(
+pub(crate) fn profile(
     image: &GrayImage,
     pixel: &Vector2<f64>,
     toward: &Vector2<f64>,
@@ -46,7 +46,7 @@ const WEAKEST: f64 = 15.0;
 
 /// Where along a profile it gets brighter (`sign` 1) or darker (−1) the most, px from its middle: the
 /// middle of the step that is steepest there. `None`: there is no such step, or it lies at the end.
-pub(super) fn steepest(profile: &[f64], sign: f64) -> Option<f64> {
+pub(crate) fn steepest(profile: &[f64], sign: f64) -> Option<f64> {
     let half = (HALF_PX / STEP_PX).round() as usize;
     let slope = |i: usize| sign * (profile[i + half] - profile[i - half]);
     let inner = half..profile.len().checked_sub(half)?;

@@ -6,20 +6,17 @@
 
 use image::GrayImage;
 use nalgebra::{DMatrix, DVector, Isometry3, Matrix6, Point3, UnitQuaternion, Vector2, Vector3};
-use plumbline_engine::eyes::work::gray;
 use plumbline_fit::pose;
-use plumbline_model::files::{self, Size};
-use plumbline_model::robot::{Posture, Rig, ScreenFrame};
+use plumbline_grasp::Body;
+use plumbline_model::robot::{Rig, ScreenFrame};
 use plumbline_model::session::Touchscreen;
 use plumbline_model::{Eye, JobContext};
-use plumbline_vision::mount::MountCalibration;
 use serde::{Deserialize, Serialize};
 
-use super::edges::{STEP_PX, profile};
-use super::error::CommissionError;
-use super::lab::Lab;
-use super::robot::{Robot, Sight};
-use super::table_beside::TableBeside;
+use crate::HandEyeError;
+use crate::edges::{STEP_PX, profile};
+use crate::picture::{Picture, from_head_poses};
+use crate::table::TableBeside;
 
 /// Turns of the head from home from which it is looked at, rad.
 const LOOKS_RAD: [f64; 3] = [0.0, 0.2, -0.2];
@@ -45,12 +42,9 @@ const SCALE_SD: f64 = 0.02;
 /// What the outline cannot know better than this: the frame's width, the picture of an edge; m and rad.
 const LEAST_SD: [f64; 2] = [0.001, 0.0025];
 
-/// What was seen, in the lab's folder.
-const FILE: &str = "seen-screen.json";
-
 /// The screen as the eyes see it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct SeenScreen {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SeenScreen {
     /// Middle of its image and its axes (u, v, into the glass) by the eyes, their neck's zeros taken for
     /// right.
     pub robot_from_screen: Isometry3<f64>,
@@ -63,15 +57,6 @@ pub(super) struct SeenScreen {
     /// The table around it.
     #[serde(default)]
     pub table: Option<TableBeside>,
-}
-
-/// An image of one eye, and where the head stood by its encoders.
-struct Picture {
-    image: GrayImage,
-    eye: Eye,
-    posture: Posture,
-    /// Number of the head pose.
-    head: usize,
 }
 
 /// What the edges are compared with.
@@ -113,56 +98,35 @@ impl Guess {
     }
 }
 
-/// Looks at the screen from some head poses and fits its outline. `rig` has its eyes where they sit, `mount`
-/// says how well the head comes to rest; `start` is about where the screen lies. `None` when the rig does not describe its frame, or its edges are
-/// not seen.
-pub(super) fn see(
-    robot: &mut Robot,
+/// Looks at the screen from some head poses and fits its outline. `rig` has its eyes where they sit, and
+/// `rest_sd_rad` says how well its head comes to rest (turn, nod); `start` is about where the screen lies.
+/// `None` when the rig does not describe its frame, or its edges are not seen. Only the head moves.
+///
+/// # Errors
+/// When the robot does not carry it out, or it is cancelled.
+pub fn see(
+    body: &mut dyn Body,
     rig: &Rig,
-    mount: &MountCalibration,
+    rest_sd_rad: [f64; 2],
     start: &Touchscreen,
+    looks: &mut dyn FnMut(usize),
     context: &dyn JobContext,
-) -> Result<Option<SeenScreen>, CommissionError> {
+) -> Result<Option<SeenScreen>, HandEyeError> {
     let Some(frame) = &rig.outlines.screen_frame else { return Ok(None) };
-    let mut pictures = vec![];
     let home = rig.home();
-    for (head, turn_rad) in LOOKS_RAD.into_iter().enumerate() {
-        context.checkpoint()?;
-        robot.go(&home.with(&[rig.eyes.pan], &[home[rig.eyes.pan] + turn_rad]));
-        let Sight { left, right, posture } = robot.look()?;
-        for (image, eye) in [(gray(&left), Eye::Left), (gray(&right), Eye::Right)] {
-            pictures.push(Picture { image, eye, posture: posture.clone(), head });
-        }
-    }
-    robot.go(&home);
-    Ok(fit(&Scene { rig, frame, screen: start }, mount.angle_sigma_rad, &pictures))
+    let poses = LOOKS_RAD.map(|turn_rad| [home[rig.eyes.pan] + turn_rad, home[rig.eyes.tilt]]);
+    let pictures = from_head_poses(body, &poses, looks, context)?;
+    Ok(fit(&Scene { rig, frame, screen: start }, rest_sd_rad, &pictures))
 }
 
 impl SeenScreen {
+    /// Head poses from which it is looked at.
+    pub const LOOKS: usize = LOOKS_RAD.len();
+
     /// Where it is, and how well that is known.
     pub fn by_eyes(&self) -> plumbline_fit::SeenScreen {
         let Self { robot_from_screen, covariance, .. } = self;
         plumbline_fit::SeenScreen { robot_from_screen: *robot_from_screen, covariance: *covariance }
-    }
-
-    /// Keeps it for the steps that follow.
-    pub fn write(&self, lab: &Lab) -> Result<(), CommissionError> {
-        let file = lab.folder.join(FILE);
-        let text = serde_json::to_string(self)
-            .map_err(|error| CommissionError::Steps { file: file.clone(), reason: error.to_string() })?;
-        Ok(files::write(&file, text)?)
-    }
-
-    /// What was kept; `None` when the screen was not seen.
-    pub fn read(lab: &Lab) -> Result<Option<Self>, CommissionError> {
-        let file = lab.folder.join(FILE);
-        if !files::present(&file)? {
-            return Ok(None);
-        }
-        let text = files::read_text(&file, Size::SHORT)?;
-        let seen = serde_json::from_str(&text)
-            .map_err(|error| CommissionError::Steps { file, reason: error.to_string() })?;
-        Ok(Some(seen))
     }
 }
 

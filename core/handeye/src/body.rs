@@ -5,22 +5,19 @@
 //! the neck's axis, everything would look the same. The body does not turn with the head, and it is near:
 //! a tenth of a degree moves its edges by as much as it moves an object on the table by half a millimeter.
 
-use image::GrayImage;
 use nalgebra::{
     DMatrix, DVector, Isometry3, Matrix6, Point3, Translation3, UnitQuaternion, Vector2, Vector3,
 };
-use plumbline_engine::eyes::work::gray;
+use plumbline_effects::robot_model::Mounted;
 use plumbline_fit::NECK_SD_RAD;
-use plumbline_model::files::{self, Size};
-use plumbline_model::robot::{BodyEdges, Posture, Rig};
+use plumbline_grasp::Body;
+use plumbline_model::robot::{BodyEdges, Rig};
 use plumbline_model::{Eye, JobContext};
-use plumbline_vision::mount::MountCalibration;
 use serde::{Deserialize, Serialize};
 
-use super::edges::{profile, steepest};
-use super::error::CommissionError;
-use super::lab::Lab;
-use super::robot::{Robot, Sight};
+use crate::HandEyeError;
+use crate::edges::{profile, steepest};
+use crate::picture::{Picture, from_head_poses};
 
 /// Turns and nod of the head (rad) from which it looks down at the body: as low as its counterweights let it
 /// turn.
@@ -52,12 +49,9 @@ const BODY: usize = 7;
 /// What the description says of how far bodies are off counts as so many numbers that were measured.
 const DESCRIBED: f64 = 1.0;
 
-/// What was seen, in the lab's folder.
-const FILE: &str = "seen-body.json";
-
 /// The head as it stands on the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct SeenBody {
+pub struct SeenBody {
     /// Zero of the neck's turn: true less encoder, rad.
     pub neck_rad: f64,
     /// One standard deviation, rad.
@@ -72,67 +66,37 @@ pub(super) struct SeenBody {
 }
 
 impl SeenBody {
-    /// Keeps it for the steps that follow.
-    pub fn write(&self, lab: &Lab) -> Result<(), CommissionError> {
-        let file = lab.folder.join(FILE);
-        let text = serde_json::to_string(self)
-            .map_err(|error| CommissionError::Steps { file: file.clone(), reason: error.to_string() })?;
-        Ok(files::write(&file, text)?)
-    }
-
-    /// What was kept; `None` when the body was not seen.
-    pub fn read(lab: &Lab) -> Result<Option<Self>, CommissionError> {
-        let file = lab.folder.join(FILE);
-        if !files::present(&file)? {
-            return Ok(None);
-        }
-        let text = files::read_text(&file, Size::SHORT)?;
-        let seen = serde_json::from_str(&text)
-            .map_err(|error| CommissionError::Steps { file, reason: error.to_string() })?;
-        Ok(Some(seen))
-    }
+    /// Head poses from which it is looked at, at most.
+    pub const LOOKS: usize = TURNS_RAD.len();
 }
 
-/// An image of one eye, and where the head stood.
-struct Picture {
-    image: GrayImage,
-    eye: Eye,
-    posture: Posture,
-}
-
-/// Looks down at the body from some head poses. `rig` has its eyes as calibrated, `mount` says how well that
-/// is known. `None` when the rig describes no edges, they are not seen, or they do not fit.
-pub(super) fn see(
-    robot: &mut Robot,
+/// Looks down at the body from some head poses. `rig` has its eyes as calibrated, `mounted` says how well that
+/// is known. `None` when the rig describes no edges, they are not seen, or they do not fit. Only the head moves.
+///
+/// # Errors
+/// When the robot does not carry it out, or it is cancelled.
+pub fn see(
+    body: &mut dyn Body,
     rig: &Rig,
-    mount: &MountCalibration,
+    mounted: &Mounted,
+    looks: &mut dyn FnMut(usize),
     context: &dyn JobContext,
-) -> Result<Option<SeenBody>, CommissionError> {
-    let pictures = look(robot, rig, context)?;
-    Ok(fit(rig, &mount.covariance, mount.angle_sigma_rad[0], &pictures))
+) -> Result<Option<SeenBody>, HandEyeError> {
+    if rig.outlines.body.is_none() {
+        return Ok(None);
+    }
+    let pictures = from_head_poses(body, &poses_rad(rig), looks, context)?;
+    Ok(fit(rig, &mounted.covariance, mounted.rest_sigma_rad[0], &pictures))
 }
 
-/// Images of both eyes from all head poses that look down and are allowed; none without edges to look at.
-fn look(robot: &mut Robot, rig: &Rig, context: &dyn JobContext) -> Result<Vec<Picture>, CommissionError> {
-    if rig.outlines.body.is_none() {
-        return Ok(vec![]);
-    }
+/// Head poses (turn and nod) that look down and are allowed.
+fn poses_rad(rig: &Rig) -> Vec<[f64; 2]> {
     let (home, head) = (rig.home(), [rig.eyes.pan, rig.eyes.tilt]);
-    let mut pictures = vec![];
-    for turn_rad in TURNS_RAD {
-        context.checkpoint()?;
-        let wanted = home.with(&head, &[turn_rad, NOD_RAD]);
-        if !head.iter().all(|joint| rig.limits_in(*joint, &wanted).contain(wanted[*joint])) {
-            continue;
-        }
-        robot.go(&wanted);
-        let Sight { left, right, posture } = robot.look()?;
-        for (image, eye) in [(gray(&left), Eye::Left), (gray(&right), Eye::Right)] {
-            pictures.push(Picture { image, eye, posture: posture.clone() });
-        }
-    }
-    robot.go(&home);
-    Ok(pictures)
+    let is_allowed = |pose_rad: &[f64; 2]| {
+        let wanted = home.with(&head, pose_rad);
+        head.iter().all(|joint| rig.limits_in(*joint, &wanted).contain(wanted[*joint]))
+    };
+    TURNS_RAD.map(|turn_rad| [turn_rad, NOD_RAD]).into_iter().filter(is_allowed).collect()
 }
 
 /// Fits the head's zero to the edges of the body. The neck comes to rest to within `rest_sd_rad`.
@@ -297,12 +261,10 @@ impl Looking<'_> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use plumbline_model::Unattended;
-    use plumbline_twin::Scenario;
 
     use super::*;
+    use crate::twin::TwinBody;
 
     /// What is seen of a twin whose head stands so far from where its encoder says.
     fn looked(rig: &Rig, zero_rad: f64) -> Option<SeenBody> {
@@ -310,14 +272,11 @@ mod tests {
             "format = 1\nname = \"head\"\ntitle = \"Head\"\nabout = \"A head that is turned.\"\n\
              [joint.head_z]\nencoder_zero_rad = {zero_rad}\n"
         );
-        let scenario = Scenario::from_toml("head", &text).expect("a scenario");
-        let folder = std::env::temp_dir();
-        let lab = Lab { folder, rig: Arc::new(rig.clone()), scenario, seed: 1 };
-        let mut robot = Robot::new(&lab, 1200.0, None).expect("a twin");
-        let pictures = look(&mut robot, rig, &Unattended).expect("looked");
+        let mut body = TwinBody::new(rig, &text);
         let sd = nalgebra::Vector6::new(1e-3, 1e-3, 1e-3, 5e-4, 5e-4, 5e-4);
-        let mount = Matrix6::from_diagonal(&sd.map(|sd| sd * sd));
-        fit(rig, &mount, 1e-3, &pictures)
+        let covariance = Matrix6::from_diagonal(&sd.map(|sd| sd * sd));
+        let mounted = Mounted { covariance, rest_sigma_rad: [1e-3; 2] };
+        see(&mut body, rig, &mounted, &mut |_| {}, &Unattended).expect("looked")
     }
 
     #[test]

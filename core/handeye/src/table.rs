@@ -3,16 +3,16 @@
 //! Glass is nothing that eyes can match, and a table without any pattern neither: then nobody knows it.
 
 use nalgebra::{Isometry3, Point3};
-use plumbline_engine::eyes::work::gray;
+use plumbline_grasp::Body;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::Touchscreen;
 use plumbline_model::{Pixel, StereoCalibration};
 use plumbline_vision::locate::Locator;
 use serde::{Deserialize, Serialize};
 
-use super::error::CommissionError;
-use super::glass::SeenScreen;
-use super::robot::{Robot, Sight};
+use crate::HandEyeError;
+use crate::picture::{grays, still};
+use crate::screen::SeenScreen;
 
 /// Places that are looked at lie so far apart, m.
 const STEP_M: f64 = 0.012;
@@ -35,7 +35,7 @@ const LEAST_SD_M: f64 = 0.0005;
 
 /// The table around the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct TableBeside {
+pub struct TableBeside {
     /// So much higher the glass lies, m.
     pub glass_over_m: f64,
     /// One standard deviation, m.
@@ -44,18 +44,22 @@ pub(super) struct TableBeside {
     pub places: usize,
 }
 
-/// Looks at the table from home. `rig` has its eyes where they sit, `placed` has the screen's size. `None`
-/// when too few places are matched.
-pub(super) fn see(
-    robot: &mut Robot,
+/// Looks at the table from where the head stands, which is home. `rig` has its eyes where they sit, `placed` has
+/// the screen's size. `None` when too few places are matched. Nothing moves.
+///
+/// # Errors
+/// When there is no pair, or the calibration cannot be used.
+pub fn see(
+    body: &mut dyn Body,
     rig: &Rig,
     calibration: &StereoCalibration,
     screen: &SeenScreen,
     placed: &Touchscreen,
-) -> Result<Option<TableBeside>, CommissionError> {
-    robot.go(&rig.home());
-    let Sight { left, right, posture } = robot.look()?;
-    let locator = Locator::new(calibration).map_err(CommissionError::room)?;
+) -> Result<Option<TableBeside>, HandEyeError> {
+    let sight = still(body)?;
+    let [(left, _), (right, _)] = grays(&sight);
+    let posture = sight.posture;
+    let locator = Locator::new(calibration)?;
     let robot_from_left = rig.robot_from_left(&posture).isometry;
     let pixels: Vec<Pixel<plumbline_model::Raw>> = places(rig, &screen.robot_from_screen, placed)
         .into_iter()
@@ -64,7 +68,7 @@ pub(super) fn see(
             calibration.cameras.left.project(&in_left.coords).ok()
         })
         .collect();
-    let located = locator.locate(&gray(&left), &gray(&right), &pixels);
+    let located = locator.locate(&left, &right, &pixels);
     let screen_from_left = screen.robot_from_screen.inverse() * robot_from_left;
     let under_m = located.into_iter().flatten().map(|found| (screen_from_left * found.point.coords).z);
     Ok(middle(under_m.filter(|under_m| under_m.abs() < PLAUSIBLE_M).collect()))
