@@ -13,9 +13,10 @@ mod touch_monitor;
 pub mod words;
 
 pub use actions::{
-    Action, CommissionAction, DetectAction, GapAction, GraspAction, GridAction, LabelsAction, ModelsAction,
-    MountAction, Preset, RobotAction, ScoresAction, TimelineAction, TouchAction, TrialsAction, USUAL_THING,
-    default_scenario, format_name, gap_plan, gap_proof, is_under_way, needs_window, screen_of, usual_area,
+    Action, CommissionAction, DetectAction, GapAction, GraspAction, GridAction, HandEyeAction, LabelsAction,
+    ModelsAction, MountAction, Preset, RobotAction, ScoresAction, TimelineAction, TouchAction, TrialsAction,
+    USUAL_THING, default_scenario, format_name, gap_plan, gap_proof, is_under_way, needs_window, screen_of,
+    usual_area,
 };
 pub use gamepad::{GamepadState, STOP_BUTTONS};
 pub use guidance::{

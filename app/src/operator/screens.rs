@@ -25,6 +25,8 @@ pub enum Screen {
     Models,
     /// The gap between model and measurement: compare, find, name, add, show.
     Gap,
+    /// Tying the arms to the eyes.
+    HandEye,
     /// Grasping things.
     Grasp,
     /// Watching whether places stay where they are.
@@ -41,7 +43,7 @@ pub enum Screen {
 
 impl Screen {
     /// All of them, in the order of work.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Commission,
         Self::Live,
         Self::Collect,
@@ -51,6 +53,7 @@ impl Screen {
         Self::Touch,
         Self::Models,
         Self::Gap,
+        Self::HandEye,
         Self::Grasp,
         Self::Drift,
         Self::Timeline,
@@ -112,6 +115,10 @@ pub enum Pane {
     Files,
     /// Robot, table and objects in three dimensions.
     Scene,
+    /// What is looked at so that the arms are tied to the eyes, and what was seen.
+    HandEyeParts,
+    /// Where the hands are seen over the table.
+    HandEyeMap,
     /// The joints: where they are, where they should be.
     Joints,
     /// Moving a tip while a key is held.
@@ -236,6 +243,8 @@ impl Pane {
             Self::GapShown => "Before and after",
             Self::GapNext => "Next experiment",
             Self::GapHistory => "History",
+            Self::HandEyeParts => "Hand-eye",
+            Self::HandEyeMap => "Hands over the table",
             Self::GraspRun => "Grasp",
             Self::GraspAttempts => "Attempts",
             Self::GraspExperiment => "Experiment",

@@ -16,7 +16,7 @@ use plumbline_widgets::texture::TextureCache;
 use super::board_draft::BoardDraft;
 use super::probe_state::ProbeState;
 use super::{
-    gap::state::GapPanels, grasp::state::GraspPanels, labels::state::LabelsPanels,
+    gap::state::GapPanels, grasp::state::GraspPanels, handeye::HandEyePanels, labels::state::LabelsPanels,
     models::state::ModelsPanels, objects::state::ObjectsPanels, robot::state::RobotPanels,
     scores::state::ScoresPanels, timeline::state::TimelinePanels, touch::state::TouchPanels,
     twin::state::TwinPanels,
@@ -63,6 +63,8 @@ pub struct PanelState {
     pub models: ModelsPanels,
     /// The gap between model and measurement.
     pub gap: GapPanels,
+    /// Tying the arms to the eyes.
+    pub handeye: HandEyePanels,
     /// Grasping.
     pub grasp: GraspPanels,
     /// The thing of the 9 by 4 evaluation, where one was chosen.
@@ -97,6 +99,7 @@ impl Default for PanelState {
             touch: TouchPanels::default(),
             models: ModelsPanels::default(),
             gap: GapPanels::default(),
+            handeye: HandEyePanels::default(),
             grasp: GraspPanels::default(),
             grid_object: None,
             labels: LabelsPanels::default(),

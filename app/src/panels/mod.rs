@@ -16,7 +16,9 @@ mod eye;
 mod figures;
 mod files;
 mod gap;
+mod gates;
 mod grasp;
+mod handeye;
 mod labels;
 mod models;
 mod mount;
@@ -43,8 +45,10 @@ pub use context::{PanelContext, PanelState};
 pub(crate) use context::{padded, shown_calibration, shown_calibration_ref};
 pub(crate) use drift::show_inspector as show_drift_inspector;
 pub(crate) use gap::show_inspector as show_gap_inspector;
+pub(crate) use gates::show as show_gates;
 pub(crate) use grasp::parts::{ghost as grasp_ghost, palm_way};
 pub(crate) use grasp::show_inspector as show_grasp_inspector;
+pub(crate) use handeye::show_inspector as show_handeye_inspector;
 pub(crate) use labels::show_inspector as show_labels_inspector;
 pub(crate) use models::show_inspector as show_models_inspector;
 pub(crate) use objects::show_inspector as show_objects_inspector;
@@ -106,6 +110,8 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
         | Pane::GapShown
         | Pane::GapNext
         | Pane::GapHistory => gap::show(ui, pane, cx),
+        Pane::HandEyeParts => handeye::show_parts(ui, cx),
+        Pane::HandEyeMap => handeye::show_map(ui, cx),
         Pane::GraspRun => grasp::show_run(ui, cx),
         Pane::GraspAttempts => grasp::show_attempts(ui, cx),
         Pane::GraspExperiment => grasp::show_experiment(ui, cx),

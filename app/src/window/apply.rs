@@ -4,8 +4,9 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_engine::{
-    Command, DriftCommand, EyesCommand, JobCommand, LiveCommand, MountCommand, NoticeCommand, NoticeLevel,
-    RecordingCommand, RobotCommand, SourceCommand, TouchCommand, TruthCommand, TwinCommand, WatchCommand,
+    Command, DriftCommand, EyesCommand, HandEyeCommand, JobCommand, LiveCommand, MountCommand, NoticeCommand,
+    NoticeLevel, RecordingCommand, RobotCommand, SourceCommand, TouchCommand, TruthCommand, TwinCommand,
+    WatchCommand,
 };
 
 use super::PlumblineWindow;
@@ -61,6 +62,7 @@ impl PlumblineWindow {
             command,
             Command::Robot(RobotCommand::RunPreview)
                 | Command::Mount(MountCommand::Tour)
+                | Command::HandEye(HandEyeCommand::Look)
                 | Command::Touch(TouchCommand::Start | TouchCommand::Resume)
         ) {
             self.motion_asked = Some(Instant::now());
@@ -249,6 +251,7 @@ impl PlumblineWindow {
             Action::Discard => EyesCommand::Discard.into(),
             Action::Robot(action) => return action.command(&self.view),
             Action::Mount(action) => action.command(),
+            Action::HandEye(action) => action.command(),
             Action::Touch(action) => return action.command(&self.view),
             Action::Models(action) => return action.command(&self.view),
             Action::Gap(action) => return action.command(&self.view),

@@ -17,6 +17,7 @@ pub fn default_arrangement(screen: Screen) -> Tree<Pane> {
         Screen::Touch => touch(&mut tiles),
         Screen::Models => models(&mut tiles),
         Screen::Gap => gap(&mut tiles),
+        Screen::HandEye => handeye(&mut tiles),
         Screen::Grasp => grasp(&mut tiles),
         Screen::Drift => drift(&mut tiles),
         Screen::Timeline => timeline(&mut tiles),
@@ -110,6 +111,16 @@ fn gap(tiles: &mut Tiles<Pane>) -> TileId {
     let shown = tabs(tiles, &[Pane::GapShown, Pane::GapNext, Pane::GapHistory]);
     let right = column(tiles, &[(map, 1.0), (shown, 1.15)]);
     row(tiles, &[(work, 1.0), (right, 1.1)])
+}
+
+fn handeye(tiles: &mut Tiles<Pane>) -> TileId {
+    let left = tabs(tiles, &[Pane::LeftEye]);
+    let right = tabs(tiles, &[Pane::RightEye]);
+    let parts = tabs(tiles, &[Pane::HandEyeParts]);
+    let map = tabs(tiles, &[Pane::HandEyeMap, Pane::Scene]);
+    let eyes = row(tiles, &[(left, 1.0), (right, 1.0)]);
+    let seen = column(tiles, &[(eyes, 0.7), (map, 1.0)]);
+    row(tiles, &[(seen, 1.6), (parts, 1.0)])
 }
 
 fn grasp(tiles: &mut Tiles<Pane>) -> TileId {

@@ -14,9 +14,9 @@ use super::PlumblineWindow;
 use crate::operator::{Outbox, Screen, hint_text};
 use crate::panels::{
     PanelState, chosen_fit, probe_readout, show_commission_inspector, show_drift_inspector,
-    show_gap_inspector, show_grasp_inspector, show_labels_inspector, show_models_inspector,
-    show_objects_inspector, show_robot_inspector, show_scores_inspector, show_timeline_inspector,
-    show_touch_inspector,
+    show_gap_inspector, show_grasp_inspector, show_handeye_inspector, show_labels_inspector,
+    show_models_inspector, show_objects_inspector, show_robot_inspector, show_scores_inspector,
+    show_timeline_inspector, show_touch_inspector,
 };
 
 /// In a window that is not wider than this the tiles need what the inspector can spare, pt.
@@ -40,6 +40,7 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
             Screen::Touch => show_touch_inspector(ui, &view, state, outbox),
             Screen::Models => show_models_inspector(ui, &view, state, outbox),
             Screen::Gap => show_gap_inspector(ui, &view, state, outbox),
+            Screen::HandEye => show_handeye_inspector(ui, &view),
             Screen::Grasp => show_grasp_inspector(ui, &view, state),
             Screen::Scores => show_scores_inspector(ui, &view, state, outbox),
             Screen::Images => show_labels_inspector(ui, &view, state, outbox),

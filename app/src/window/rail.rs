@@ -15,7 +15,7 @@ use crate::panels::shown_calibration;
 const WIDTH: f32 = 176.0;
 /// Height of all steps with the parts of "Eyes"; where there is less, the parts stand only on their own
 /// screens.
-const ALL_ROWS: f32 = 568.0;
+const ALL_ROWS: f32 = 602.0;
 /// Height of what belongs to "Detect".
 const DETECT_ROWS: f32 = 52.0;
 
@@ -57,7 +57,8 @@ fn steps(ui: &mut Ui, view: &View, screen: Screen, parts: bool, outbox: &mut Out
         ("Touch", 3, touch_state(view), Screen::Touch),
         ("Models", 4, models_state(view), Screen::Models),
         ("Gap", 5, gap_state(view), Screen::Gap),
-        ("Grasp", 6, step_state(&view.grasp.step), Screen::Grasp),
+        ("Hand-eye", 6, step_state(&view.handeye.step), Screen::HandEye),
+        ("Grasp", 7, step_state(&view.grasp.step), Screen::Grasp),
     ] {
         let step = RailStep::new(name, state).number(number).selected(screen == target);
         if step.show(ui).clicked() {

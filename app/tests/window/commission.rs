@@ -8,17 +8,18 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
     AcceptedCalibration, CommissionDone, CommissionFigure, CommissionSpent, CommissionState, CommissionStep,
-    CommissionStepView, CommissionView, EyesView, MountView, SourceStatus, SourceView, StepState, TouchPhase,
+    CommissionStepView, CommissionView, EyesView, Gate, GateState, MountView, SourceStatus, SourceView,
+    StepState, TouchPhase,
 };
 use plumbline_engine::{
-    Command, CommissionCommand, EyesCommand, GraspCommand, MountCommand, SourceSpec, TouchCommand,
-    TwinCommand, View,
+    Command, CommissionCommand, EyesCommand, GraspCommand, HandEyeCommand, MountCommand, SourceSpec,
+    TouchCommand, TwinCommand, View,
 };
 use plumbline_model::StereoCalibration;
 use plumbline_model::touch_plan::{PlanOptions, Purpose};
 
 use crate::fake::{Fake, says, shows};
-use crate::made_up::{everything, lying_board, rig, twin};
+use crate::made_up::{everything, looked_at_hands, lying_board, rig, twin};
 use crate::made_up_touch;
 
 /// The steps before this one are done.
@@ -115,7 +116,7 @@ fn cold_eyes_are_warmed_then_shown_the_board() {
         [Command::from(EyesCommand::AutoCapture(true)), Command::from(TwinCommand::TourBoard(true))]
     );
     is_on(&window, "Coverage");
-    assert!(says(&window, "Commissioning 1 of 7: calibrate the eyes"));
+    assert!(says(&window, "Commissioning 1 of 8: calibrate the eyes"));
     assert!(shows(&window, "9 min · 8 touches · 14 views"));
 }
 
@@ -267,6 +268,33 @@ fn the_tomato_is_laid_out_then_grasped_then_judged_by_a_person() {
 }
 
 #[test]
+fn the_hands_are_looked_at_then_what_was_learned_is_accepted() {
+    let mut view = at(CommissionStep::Hands);
+    let (label, window, sent) = press(view.clone());
+    assert_eq!(label, "Next: look at the hands");
+    assert_eq!(sent, [Command::from(HandEyeCommand::Look)]);
+    is_on(&window, "Hands over the table");
+    let window = Fake::over(view.clone()).window(on(Screen::HandEye));
+    assert!(says(&window, "The head turns, then each open hand is held over the table"), "what moves");
+
+    Arc::make_mut(&mut view.handeye).proposal = Some(Arc::new(looked_at_hands()));
+    let (label, window, sent) = press(view.clone());
+    assert_eq!(label, "Next: tie the arms to the eyes");
+    assert_eq!(sent, [Command::from(HandEyeCommand::Accept)]);
+    assert!(says(&window, "12.1 mm beside its arm, 1.40 mm with what was learned"));
+    assert!(says(&window, "found at 11 of 12 places"));
+    assert!(says(&window, "its arm stays as it was: it was not seen"));
+
+    // What lacks is said, and where it is made.
+    Arc::make_mut(&mut view.handeye).proposal = None;
+    let text = "No touches were learned from: touch the screen.".to_owned();
+    let gate = Gate { name: "Touches", state: GateState::Shut, text };
+    Arc::make_mut(&mut view.handeye).gates = Arc::from([gate]);
+    let window = Fake::over(view).window(on(Screen::HandEye));
+    assert!(says(&window, "No touches were learned from"));
+}
+
+#[test]
 fn stop_leaves_nothing_to_press() {
     let mut view = at(CommissionStep::Touches);
     Arc::make_mut(&mut view.robot).stopped = true;
@@ -277,7 +305,7 @@ fn stop_leaves_nothing_to_press() {
 #[test]
 fn looking_elsewhere_that_screen_says_its_own() {
     let window = Fake::over(at(CommissionStep::Screen)).window(on(Screen::Robot));
-    assert!(says(&window, "Commissioning 3 of 7: place the screen"));
+    assert!(says(&window, "Commissioning 3 of 8: place the screen"));
     assert!(says(&window, "Drag a joint or choose a pose"));
 }
 

@@ -126,7 +126,7 @@ fn no_text_is_cut_or_covered_on_any_screen() {
 }
 
 /// Screens that show much.
-pub(super) fn much_to_show() -> [(Screen, View); 13] {
+pub(super) fn much_to_show() -> [(Screen, View); 14] {
     [
         (Screen::Mount, View { mount: made_up::mount().into(), ..made_up::everything() }),
         (Screen::Touch, made_up_touch::with_touch(made_up_touch::running())),
@@ -136,6 +136,7 @@ pub(super) fn much_to_show() -> [(Screen, View); 13] {
         (Screen::Gap, made_up_gap::searching()),
         (Screen::Gap, made_up_gap::with(made_up_gap::failed())),
         (Screen::Gap, made_up_gap::with(made_up_gap::added())),
+        (Screen::HandEye, made_up::with_hands_looked_at()),
         (Screen::Timeline, View { timeline: timeline::results().into(), ..made_up::everything() }),
         (Screen::Touch, View { truth: truth::truth().into(), ..made_up::everything() }),
         (Screen::Live, made_up_objects::live(made_up_objects::detect())),

@@ -7,8 +7,9 @@ use jiff::Timestamp;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use plumbline_engine::View;
 use plumbline_engine::view::{
-    BusView, Connection, FaultView, HeadViewSummary, InTheWay, JointSample, JointView, MotionState,
-    MountSummary, MountView, PathCheck, PoseView, Preview, RobotView, StepState, TipPlace, ToyView, TwinView,
+    BusView, Connection, FaultView, GraspHand, HandEyeBody, HandEyeSummary, HandFigures, HandMiss,
+    HeadViewSummary, InTheWay, JointSample, JointView, MotionState, MountSummary, MountView, PathCheck,
+    PoseView, Preview, RobotView, StepState, TipPlace, ToyView, TwinView,
 };
 use plumbline_model::frame::{Point, Pose};
 use plumbline_model::robot::{JointIndex, Posture, Rig};
@@ -218,4 +219,39 @@ pub fn everything() -> View {
 /// The same with another robot.
 pub fn with_robot(robot: RobotView) -> View {
     View { robot: Arc::new(robot), ..everything() }
+}
+
+/// What came of a look at the hands: one arm is tied, the other was not seen.
+pub fn looked_at_hands() -> HandEyeSummary {
+    let miss = |k: usize, off_m: Option<[f64; 2]>| HandMiss {
+        at_m: [0.22 + 0.05 * (k % 4) as f64, -0.3 + 0.12 * (k / 4) as f64],
+        off_m,
+    };
+    let figures = HandFigures {
+        looked: 12,
+        found: 11,
+        before_m: Some(0.0121),
+        after_m: Some(0.0014),
+        before: (0..12).map(|k| miss(k, (k > 0).then_some([0.011, -0.005]))).collect(),
+        after: (0..12).map(|k| miss(k, (k > 0).then_some([0.001, -0.001]))).collect(),
+    };
+    HandEyeSummary {
+        at: jiff::Timestamp::now(),
+        body: Some(HandEyeBody {
+            neck_rad: 0.02,
+            neck_sd_rad: 0.0016,
+            rms_px: 0.17,
+            points: 1380,
+            share_of_described: None,
+        }),
+        screen: None,
+        hands: vec![(GraspHand::Right, Ok(figures)), (GraspHand::Left, Err("it was not seen".to_owned()))],
+    }
+}
+
+/// Everything, and what came of a look at the hands.
+pub fn with_hands_looked_at() -> View {
+    let mut view = everything();
+    Arc::make_mut(&mut view.handeye).proposal = Some(Arc::new(looked_at_hands()));
+    view
 }

@@ -67,6 +67,8 @@ commands! {
     Gap(gap / GapCommand);
     /// Grasping.
     Grasp(grasp / GraspCommand);
+    /// Tying the arms to the eyes.
+    HandEye(handeye / HandEyeCommand);
     /// The experiment with grasps.
     Trials(trials / TrialsCommand);
     /// The way from a robot that was just switched on to its first good grasp.

@@ -12,6 +12,7 @@ pub mod drift;
 pub mod eyes;
 pub mod gap;
 pub mod grasp;
+pub mod handeye;
 pub mod labels;
 pub mod live;
 pub mod models;
@@ -38,11 +39,12 @@ pub mod engine;
 pub use command::{
     AimChoice, BoxEdit, Command, CommissionCommand, ConfusionCell, ContactWith, Correction, Destination,
     DetectCommand, DetectorChoice, DriftCommand, ExportFormat, Exported, EyesCommand, FileLength, GapCommand,
-    GapModel, GraspCommand, GraspTable, GraspTarget, GridCommand, GridCorrection, GridSide, HandStep,
-    HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LabelsCommand, LiveCommand, ModelsCommand,
-    MountCommand, NoticeCommand, ProbePoint, Products, Provider, RecordingCommand, RobotCommand,
-    ScoresCommand, ScreenContact, ScreenWindow, SetPart, SourceCommand, TablesCommand, TimelineCommand,
-    TimelineFormat, TouchCommand, TrialsCommand, TrialsFormat, TruthCommand, TwinCommand, WatchCommand,
+    GapModel, GraspCommand, GraspTable, GraspTarget, GridCommand, GridCorrection, GridSide, HandEyeCommand,
+    HandStep, HeadPose, JOG_DEADLINE_MS, JobCommand, JobId, JogRates, LabelsCommand, LiveCommand,
+    ModelsCommand, MountCommand, NoticeCommand, ProbePoint, Products, Provider, RecordingCommand,
+    RobotCommand, ScoresCommand, ScreenContact, ScreenWindow, SetPart, SourceCommand, TablesCommand,
+    TimelineCommand, TimelineFormat, TouchCommand, TrialsCommand, TrialsFormat, TruthCommand, TwinCommand,
+    WatchCommand,
 };
 pub use engine::settings::{self, EngineSettings};
 pub use engine::{Engine, Wake, journal, replay};

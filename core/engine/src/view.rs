@@ -66,6 +66,8 @@ views! {
     gap: gap / GapView;
     /// Grasping.
     grasp: grasp / GraspView;
+    /// Tying the arms to the eyes.
+    handeye: handeye / HandEyeView;
     /// The experiment with grasps.
     trials: trials / TrialsView;
     /// The way to the first good grasp.

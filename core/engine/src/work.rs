@@ -78,6 +78,8 @@ works! {
     Gap(gap / GapWork);
     /// Part of grasping.
     Grasp(grasp / GraspWork);
+    /// Part of tying the arms to the eyes.
+    HandEye(handeye / HandEyeWork);
     /// Part of the experiment with grasps.
     Trials(trials / TrialsWork);
     /// Part of commissioning.

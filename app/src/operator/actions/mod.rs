@@ -5,6 +5,7 @@ mod detect;
 mod gap;
 mod grasp;
 mod grid;
+mod handeye;
 mod labels;
 mod models;
 mod robot;
@@ -17,6 +18,7 @@ pub use detect::DetectAction;
 pub use gap::{GapAction, plan as gap_plan, proof as gap_proof};
 pub use grasp::GraspAction;
 pub use grid::{GridAction, USUAL_THING};
+pub use handeye::HandEyeAction;
 pub use labels::{LabelsAction, ScoresAction};
 pub use models::ModelsAction;
 pub use robot::{MountAction, RobotAction, default_scenario};
@@ -114,6 +116,8 @@ pub enum Action {
     Gap(GapAction),
     /// Of grasping.
     Grasp(GraspAction),
+    /// Of tying the arms to the eyes.
+    HandEye(HandEyeAction),
     /// Of the experiment with grasps.
     Trials(TrialsAction),
     /// Of the 9 by 4 evaluation.
@@ -165,7 +169,7 @@ macro_rules! into_action {
 }
 into_action!(
     Robot: RobotAction, Mount: MountAction, Touch: TouchAction, Models: ModelsAction, Gap: GapAction,
-    Grasp: GraspAction, Trials: TrialsAction, Grid: GridAction, Commission: CommissionAction,
+    Grasp: GraspAction, HandEye: HandEyeAction, Trials: TrialsAction, Grid: GridAction, Commission: CommissionAction,
     Timeline: TimelineAction, Labels: LabelsAction, Scores: ScoresAction, Detect: DetectAction
 );
 
@@ -177,6 +181,7 @@ pub fn all() -> impl Iterator<Item = Action> {
     let models = ModelsAction::ALL.into_iter().map(Action::Models);
     let gap = GapAction::ALL.into_iter().map(Action::Gap);
     let grasp = GraspAction::ALL.into_iter().map(Action::Grasp);
+    let handeye = HandEyeAction::ALL.into_iter().map(Action::HandEye);
     let trials = TrialsAction::ALL.into_iter().map(Action::Trials);
     let commission = CommissionAction::ALL.into_iter().map(Action::Commission);
     let timeline = TimelineAction::ALL.into_iter().map(Action::Timeline);
@@ -184,8 +189,15 @@ pub fn all() -> impl Iterator<Item = Action> {
     let labels = LabelsAction::ALL.into_iter().map(Action::Labels);
     let scores = ScoresAction::ALL.into_iter().map(Action::Scores);
     let grid = GridAction::ALL.into_iter().map(Action::Grid);
-    let steps =
-        robot.chain(mount).chain(touch).chain(models).chain(gap).chain(grasp).chain(trials).chain(grid);
+    let steps = robot
+        .chain(mount)
+        .chain(touch)
+        .chain(models)
+        .chain(gap)
+        .chain(handeye)
+        .chain(grasp)
+        .chain(trials)
+        .chain(grid);
     let threads = WatchedThread::ALL.into_iter().map(Action::StartAgain);
     ALL.iter()
         .copied()
@@ -226,6 +238,7 @@ const ALL: &[Action] = &[
     Action::Go(Screen::Touch),
     Action::Go(Screen::Models),
     Action::Go(Screen::Gap),
+    Action::Go(Screen::HandEye),
     Action::Go(Screen::Grasp),
     Action::Go(Screen::Drift),
     Action::Go(Screen::Timeline),
@@ -300,6 +313,7 @@ impl Action {
             Self::Go(Screen::Touch) => "Go to Touch",
             Self::Go(Screen::Models) => "Go to Models",
             Self::Go(Screen::Gap) => "Go to Gap",
+            Self::Go(Screen::HandEye) => "Go to Hand-eye",
             Self::Go(Screen::Grasp) => "Go to Grasp",
             Self::Go(Screen::Drift) => "Go to Drift",
             Self::Go(Screen::Timeline) => "Go to Timeline",
@@ -312,6 +326,7 @@ impl Action {
             Self::Models(action) => action.label(),
             Self::Gap(action) => action.label(),
             Self::Grasp(action) => action.label(),
+            Self::HandEye(action) => action.label(),
             Self::Trials(action) => action.label(),
             Self::Grid(action) => action.label(),
             Self::Commission(action) => action.label(),
@@ -362,6 +377,7 @@ impl Action {
                 | Self::Touch(TouchAction::AcceptScreen)
                 | Self::Models(ModelsAction::AcceptShown | ModelsAction::Accept(_))
                 | Self::Gap(GapAction::Add)
+                | Self::HandEye(HandEyeAction::Accept)
                 | Self::Labels(LabelsAction::AcceptProposals | LabelsAction::AcceptImport)
         )
     }
@@ -418,6 +434,7 @@ impl Action {
             Self::Models(action) => action.refusal(view),
             Self::Gap(action) => action.refusal(view),
             Self::Grasp(action) => action.refusal(view),
+            Self::HandEye(action) => action.refusal(view),
             Self::Trials(action) => action.refusal(view),
             Self::Grid(action) => action.refusal(view),
             Self::Commission(action) => action.refusal(view),

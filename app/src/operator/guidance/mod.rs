@@ -5,6 +5,7 @@ mod detect;
 mod drift;
 mod gap;
 mod grasp;
+mod handeye;
 mod models;
 mod robot;
 mod sentence;
@@ -49,6 +50,7 @@ pub fn guidance(view: &View, screen: Screen) -> Guidance {
         Screen::Touch => touch::touch(view),
         Screen::Models => models::models(view),
         Screen::Gap => gap::gap(view),
+        Screen::HandEye => handeye::handeye(view),
         Screen::Grasp => grasp::grasp(view),
         Screen::Drift => drift::drift(view),
         Screen::Timeline => timeline::timeline(view),
@@ -69,8 +71,10 @@ pub fn failed_inside(view: &View, screen: Screen) -> Option<Guidance> {
 
 /// What only looks goes on while STOP is latched; what moves says so.
 fn stopped(view: &View, screen: Screen) -> Option<Guidance> {
-    let moves =
-        matches!(screen, Screen::Live | Screen::Mount | Screen::Touch | Screen::Grasp | Screen::Robot);
+    let moves = matches!(
+        screen,
+        Screen::Live | Screen::Mount | Screen::Touch | Screen::HandEye | Screen::Grasp | Screen::Robot
+    );
     let connected = view.robot.connection.is_connected();
     (moves && connected && view.robot.stopped)
         .then(|| say("Stopped: nothing moves until you press Release STOP, at the top right.").warn())
@@ -110,7 +114,7 @@ fn commissioning(view: &View) -> Guidance {
         _ if commission.is_done() => say("All steps are done.").then("Grasp", Action::Go(Screen::Grasp)),
         Some(_) => say("Commissioning goes on where it was. Nothing moves yet.")
             .then("Next: go on with commissioning", start),
-        None => say("Seven steps lead to the first good grasp, each with one button. Nothing moves yet.")
+        None => say("Eight steps lead to the first good grasp, each with one button. Nothing moves yet.")
             .then("Next: begin commissioning", start),
     }
 }

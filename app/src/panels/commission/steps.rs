@@ -1,4 +1,4 @@
-//! The seven steps: what is done with its figure and date, what comes now, what waits.
+//! The eight steps: what is done with its figure and date, what comes now, what waits.
 
 use egui::text::{LayoutJob, TextWrapping};
 use egui::{Align2, RichText, ScrollArea, Sense, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2};
@@ -115,6 +115,7 @@ fn what_for(step: CommissionStep) -> &'static str {
         CommissionStep::Screen => "so that touches measure the arm",
         CommissionStep::Touches => "the rest is learned from them",
         CommissionStep::Effects => "so that the model moves as the arm does",
+        CommissionStep::Hands => "so that the hand meets what the eyes see",
         CommissionStep::Check => "how far the finger misses then",
         CommissionStep::Grasp => "with all of it",
     }

@@ -1,29 +1,19 @@
 //! The inspector of grasping: gates, and the chosen attempt.
 
-use egui::{RichText, Ui};
+use egui::Ui;
 use plumbline_engine::View;
-use plumbline_engine::view::{AttemptView, GateState, GraspOutcome};
+use plumbline_engine::view::{AttemptView, GraspOutcome};
 use plumbline_widgets::format;
 use plumbline_widgets::key_value::{KeyValue, key_value_grid};
-use plumbline_widgets::theme::{self, Role, group_heading, space};
+use plumbline_widgets::theme::{self, group_heading, space};
 
 use crate::operator::words::clock;
 use crate::operator::words::grasp::{closed, method, result};
-use crate::panels::PanelState;
+use crate::panels::{PanelState, show_gates};
 
 pub fn show(ui: &mut Ui, view: &View, state: &PanelState) {
     group_heading(ui, "Before anything moves");
-    let tokens = theme::tokens(ui);
-    for gate in view.grasp.gates.iter() {
-        let (sign, role) = match gate.state {
-            GateState::Open => ("ready", Role::Accepted),
-            GateState::Doubtful => ("note", Role::Weak),
-            GateState::Shut => ("not ready", Role::Warning),
-        };
-        ui.label(RichText::new(format!("{}: {sign}", gate.name)).color(role.color(tokens)));
-        ui.label(theme::small(ui, gate.text.clone()));
-        ui.add_space(space::XS);
-    }
+    show_gates(ui, &view.grasp.gates);
     let chosen = state.grasp.chosen.as_ref();
     let mut attempts = view.grasp.attempts.iter();
     let shown = match chosen {

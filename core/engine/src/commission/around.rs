@@ -21,6 +21,8 @@ pub struct CommissionAround {
     pub run: Option<RunStanding>,
     /// The finding that is shown.
     pub found: Option<Found>,
+    /// What the arms were tied to the eyes by.
+    pub hands: Made,
     /// The newest grasp that the operator saw to be good.
     pub held: Made,
     /// Views of the board that were kept: pairs of the eyes, and views of the head.

@@ -1,4 +1,4 @@
-//! The way of a robot that was just switched on to its first good grasp: seven steps, which of them are
+//! The way of a robot that was just switched on to its first good grasp: eight steps, which of them are
 //! done and with what figure, and what they took in minutes, touches and views of the board.
 //!
 //! [`CommissionWorkflow`] reads what its neighbors know and says which step comes next; it moves nothing

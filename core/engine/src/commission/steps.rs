@@ -11,7 +11,7 @@ pub const LEAST_TOUCHES: usize = 12;
 pub const LEAST_CHECKED: usize = 5;
 
 /// All steps in their order.
-pub fn steps(around: &CommissionAround, kept: Option<&Kept>) -> [CommissionStepView; 7] {
+pub fn steps(around: &CommissionAround, kept: Option<&Kept>) -> [CommissionStepView; 8] {
     let mut first_open = None;
     CommissionStep::ALL.map(|step| {
         let state = match (done(step, around, kept), first_open) {
@@ -33,6 +33,7 @@ fn done(step: CommissionStep, around: &CommissionAround, kept: Option<&Kept>) ->
         CommissionStep::Screen => counts(&around.screen, kept),
         CommissionStep::Touches => touched(around, kept),
         CommissionStep::Effects => effects(around, kept),
+        CommissionStep::Hands => counts(&around.hands, kept),
         CommissionStep::Check => checked(around, kept),
         CommissionStep::Grasp => held(around, kept),
     }
@@ -62,11 +63,13 @@ fn effects(around: &CommissionAround, kept: Option<&Kept>) -> Made {
     }
 }
 
-/// A check says something of the model only when it was made after the search for effects.
+/// A check says something of the model only when it was made after the search for effects and the look at the
+/// hands.
 fn checked(around: &CommissionAround, kept: Option<&Kept>) -> Made {
     let checked = kept?.checked.as_ref()?;
     let effects = effects(around, kept)?;
-    let after = effects.at.is_none_or(|found| checked.at >= found);
+    let hands = counts(&around.hands, kept)?;
+    let after = [effects.at, hands.at].into_iter().flatten().all(|made| checked.at >= made);
     let figure = CommissionFigure::Missed { mean_m: checked.mean_m, touches: checked.touched };
     after.then_some(CommissionDone { at: Some(checked.at), figure })
 }

@@ -119,6 +119,7 @@ impl Lab {
     }
 }
 
+const SEEN: CommissionFigure = CommissionFigure::Seen { before_m: 0.012, after_m: 0.002 };
 const START: CommissionCommand = CommissionCommand::Start { anew: false };
 
 #[test]
@@ -128,7 +129,7 @@ fn steps_come_in_their_order_and_the_last_makes_it_done() {
     let view = lab.tell(START);
     assert!(view.is_on && !view.is_untouched());
     assert_eq!(view.now(), Some(CommissionStep::Eyes));
-    assert_eq!(view.steps[6].state, CommissionState::Waits(CommissionStep::Eyes));
+    assert_eq!(view.steps[7].state, CommissionState::Waits(CommissionStep::Eyes));
 
     lab.calibrated();
     assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Touches));
@@ -141,6 +142,8 @@ fn steps_come_in_their_order_and_the_last_makes_it_done() {
     lab.around.found = Some(lab.found("touches", true));
     assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Effects), "what was found is not added");
     lab.around.found = Some(lab.found("touches", false));
+    assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Hands));
+    lab.around.hands = Some(lab.made(SEEN));
     assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Check));
     lab.around.run = Some(lab.run("check", Purpose::Check, 20, true));
     let view = lab.after_s(1);
@@ -192,6 +195,7 @@ fn done_anew_counts_from_now_on() {
     lab.calibrated();
     lab.around.run = Some(lab.run("touches", Purpose::Train, 24, true));
     lab.around.found = Some(lab.found("touches", false));
+    lab.around.hands = Some(lab.made(SEEN));
     lab.around.held = Some(lab.made(CommissionFigure::Held("Tomato".to_owned())));
     assert!(!lab.view().is_untouched(), "what was done without being led is done");
     lab.time = lab.time.after(Duration::from_secs(3600));
@@ -215,7 +219,29 @@ fn a_check_before_the_search_for_effects_says_nothing() {
     lab.after_s(1);
     lab.time = lab.time.after(Duration::from_secs(5));
     lab.around.found = Some(lab.found("touches", false));
+    lab.around.hands = Some(lab.made(SEEN));
     assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Check));
+}
+
+#[test]
+fn a_check_before_the_look_at_the_hands_says_nothing() {
+    let mut lab = Lab::new();
+    lab.tell(START);
+    lab.calibrated();
+    lab.around.run = Some(lab.run("touches", Purpose::Train, 24, true));
+    lab.after_s(1);
+    lab.around.found = Some(lab.found("touches", false));
+    lab.around.hands = Some(lab.made(SEEN));
+    lab.after_s(1);
+    lab.time = lab.time.after(Duration::from_secs(5));
+    lab.around.run = Some(lab.run("check", Purpose::Check, 20, true));
+    assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Grasp));
+    // Looked at anew, the model is another.
+    lab.time = lab.time.after(Duration::from_secs(5));
+    lab.around.hands = Some(lab.made(SEEN));
+    assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Check));
+    lab.around.hands = None;
+    assert_eq!(lab.after_s(1).now(), Some(CommissionStep::Hands));
 }
 
 #[test]

@@ -66,6 +66,8 @@ pub enum CommissionStep {
     Touches,
     /// What makes the arm miss, found and added to its model.
     Effects,
+    /// The eyes look at the hands, which ties the arms to them.
+    Hands,
     /// New touches, sent with that model.
     Check,
     /// The first good grasp.
@@ -74,8 +76,16 @@ pub enum CommissionStep {
 
 impl CommissionStep {
     /// All of them.
-    pub const ALL: [Self; 7] =
-        [Self::Eyes, Self::Mount, Self::Screen, Self::Touches, Self::Effects, Self::Check, Self::Grasp];
+    pub const ALL: [Self; 8] = [
+        Self::Eyes,
+        Self::Mount,
+        Self::Screen,
+        Self::Touches,
+        Self::Effects,
+        Self::Hands,
+        Self::Check,
+        Self::Grasp,
+    ];
 
     /// Its place in the order, from 1.
     pub fn number(self) -> usize {
@@ -142,6 +152,13 @@ pub enum CommissionFigure {
     Effects(Vec<String>),
     /// The touches show something that no effect of the library explains.
     NotInLibrary,
+    /// How far a hand is seen from where its arm has it, rms on looks that were not used, m.
+    Seen {
+        /// Before it was tied to the eyes.
+        before_m: f64,
+        /// After.
+        after_m: f64,
+    },
     /// How far new touches miss, mean, m; `None` of a single one.
     Missed {
         /// Mean, m.

@@ -171,6 +171,15 @@ impl GapWorkflow {
         self.changing = Some(context.start(work));
     }
 
+    /// A model that was made of the one in use elsewhere is put in use.
+    pub fn put_in_use(&mut self, model: RigModel, around: &GapAround, context: &mut Context<'_>) {
+        self.change("Tie the arms to the eyes", around, context, |in_use| {
+            *in_use = model;
+            Ok(())
+        });
+        self.look();
+    }
+
     fn model_for_change(&self, context: &mut Context<'_>) -> Option<Arc<RigModel>> {
         if self.changing.is_some() {
             context.refuse("The model in use is being changed already. Try again in a moment.");

@@ -7,9 +7,9 @@
 
 mod around;
 mod attempt;
-mod body;
+pub(crate) mod body;
 pub mod command;
-mod gates;
+pub(crate) mod gates;
 mod keeping;
 mod method;
 mod pointing;
@@ -17,7 +17,7 @@ mod progress;
 mod refusal;
 mod rests_on;
 mod shown;
-mod sights;
+pub(crate) mod sights;
 mod standing;
 mod steps;
 #[cfg(test)]
@@ -28,6 +28,8 @@ pub mod work;
 mod workflow;
 
 pub use around::GraspAround;
+pub(crate) use body::{EyesOn, LedBody, Ropes};
 pub use keeping::KeepingError;
+pub(crate) use sights::Sights;
 pub use standing::read_record;
 pub use workflow::GraspWorkflow;

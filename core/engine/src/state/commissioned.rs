@@ -12,10 +12,11 @@ use crate::commission::{CommissionAround, CommissionWorkflow, Found};
 use crate::gap::GapWorkflow;
 use crate::grasp::view::AttemptView;
 use crate::ground::World;
+use crate::handeye::view::HandEyeSummary;
 
 impl Neighbors<CommissionWorkflow> for State {
     fn around(&self, world: World) -> CommissionAround {
-        let Rooms { eyes, mount, touch, gap, grasp, .. } = &self.rooms;
+        let Rooms { eyes, mount, touch, gap, handeye, grasp, .. } = &self.rooms;
         let (eyes, mount, touch) = (eyes.of(world), mount.of(world), touch.of(world));
         CommissionAround {
             eyes: eyes.in_use().map(|calibration| of_eyes(calibration)),
@@ -23,6 +24,7 @@ impl Neighbors<CommissionWorkflow> for State {
             screen: touch.placement().map(of_screen),
             run: touch.run_standing(),
             found: of_gap(gap.of(world)),
+            hands: handeye.of(world).in_use(gap.of(world).model()).map(|seen| of_hands(seen)),
             held: grasp.of(world).held_last().map(of_grasp),
             views: eyes.pair_count() + mount.view_count(),
         }
@@ -57,6 +59,13 @@ fn of_gap(gap: &GapWorkflow) -> Option<Found> {
     };
     let done = CommissionDone { at: Some(shown.entry.made), figure };
     Some(Found { sessions: shown.folders.clone(), is_open, done })
+}
+
+fn of_hands(seen: &HandEyeSummary) -> CommissionDone {
+    let figure = seen.error_m().map_or(CommissionFigure::Unknown, |[before_m, after_m]| {
+        CommissionFigure::Seen { before_m, after_m }
+    });
+    CommissionDone { at: Some(seen.at), figure }
 }
 
 fn of_grasp(attempt: &AttemptView) -> CommissionDone {

@@ -2,6 +2,7 @@
 
 mod actions;
 mod commissioned;
+mod looked;
 mod neighbors;
 mod results;
 mod rooms;
@@ -298,6 +299,7 @@ impl State {
         self.shown_of = opened;
         self.rooms.eyes.of_mut(self.shown).set_image_size(frame.left.dimensions());
         self.rooms.grasp.of(self.arm_of).saw(&frame);
+        self.rooms.handeye.of(self.arm_of).saw(&frame);
         self.record(|recording, time| recording.saw(&frame, time));
         self.with::<DriftWorkflow>(World::default(), |drift, around, context| {
             drift.saw(&frame, around, context);

@@ -21,6 +21,7 @@ use crate::grasp::{GraspAround, GraspWorkflow};
 use crate::ground::jobs::JobId;
 use crate::ground::stage::Skipped;
 use crate::ground::{Moment, Workflow, World};
+use crate::handeye::HandEyeWorkflow;
 use crate::labels::{LabelsAround, LabelsWorkflow};
 use crate::live::LiveWorkflow;
 use crate::models::{ModelsAround, ModelsWorkflow};

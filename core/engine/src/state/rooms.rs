@@ -9,6 +9,7 @@ use crate::eyes::EyesWorkflow;
 use crate::gap::GapWorkflow;
 use crate::grasp::GraspWorkflow;
 use crate::ground::{PerWorld, Workflow, World};
+use crate::handeye::HandEyeWorkflow;
 use crate::labels::LabelsWorkflow;
 use crate::live::LiveWorkflow;
 use crate::models::ModelsWorkflow;
@@ -41,6 +42,7 @@ macro_rules! all_rooms {
             models: ModelsWorkflow, Models, arm_of;
             gap: GapWorkflow, Gap, arm_of;
             grasp: GraspWorkflow, Grasp, arm_of;
+            handeye: HandEyeWorkflow, HandEye, arm_of;
             trials: TrialsWorkflow, Trials, arm_of;
             commission: CommissionWorkflow, Commission, arm_of;
             timeline: TimelineWorkflow, Timeline, arm_of;

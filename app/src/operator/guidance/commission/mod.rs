@@ -20,7 +20,7 @@ use crate::operator::{Action, CommissionAction, GapAction, MountAction, Screen};
 /// Where commissioning is, and what comes next.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
-    /// "Commissioning 3 of 7: place the screen – 2 of 8 touches".
+    /// "Commissioning 3 of 8: place the screen – 2 of 8 touches".
     pub title: String,
     /// Where it happens.
     pub screen: Screen,
@@ -103,6 +103,7 @@ fn screen_of_step(step: CommissionStep) -> Screen {
         CommissionStep::Mount => Screen::Mount,
         CommissionStep::Screen | CommissionStep::Touches | CommissionStep::Check => Screen::Touch,
         CommissionStep::Effects => Screen::Gap,
+        CommissionStep::Hands => Screen::HandEye,
         CommissionStep::Grasp => Screen::Grasp,
     }
 }
@@ -128,6 +129,7 @@ fn said(view: &View, step: Option<CommissionStep>, screen: Screen) -> Said {
         CommissionStep::Screen => touch::placing(view),
         CommissionStep::Touches => touch::training(view),
         CommissionStep::Effects => effects(view),
+        CommissionStep::Hands => super::handeye::handeye(view).into(),
         CommissionStep::Check => touch::checking(view),
         CommissionStep::Grasp => grasp::said(view),
     }

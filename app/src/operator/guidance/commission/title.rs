@@ -14,18 +14,19 @@ pub fn name(step: CommissionStep) -> &'static str {
         CommissionStep::Screen => "Place the screen",
         CommissionStep::Touches => "Touch the screen",
         CommissionStep::Effects => "Find what makes the arm miss",
+        CommissionStep::Hands => "Look at the hands",
         CommissionStep::Check => "Check with new touches",
         CommissionStep::Grasp => "Grasp",
     }
 }
 
-/// "Commissioning 3 of 7: place the screen – 2 of 8 touches".
+/// "Commissioning 3 of 8: place the screen – 2 of 8 touches".
 pub(super) fn title(view: &View, step: Option<CommissionStep>) -> String {
-    let Some(step) = step else { return "Commissioning: all 7 steps are done".to_owned() };
+    let Some(step) = step else { return "Commissioning: all 8 steps are done".to_owned() };
     let name = name(step);
     let (first, rest) = name.split_at(1);
     let far = far(view, step).map_or_else(String::new, |far| format!(" – {far}"));
-    format!("Commissioning {} of 7: {}{rest}{far}", step.number(), first.to_lowercase())
+    format!("Commissioning {} of 8: {}{rest}{far}", step.number(), first.to_lowercase())
 }
 
 /// How far a step is.
@@ -47,7 +48,7 @@ fn far(view: &View, step: CommissionStep) -> Option<String> {
             let (done, all) = (done_of(view.touch.counts), wanted(view.touch.counts));
             running.then(|| format!("{done} of {all} touches"))
         }
-        CommissionStep::Effects | CommissionStep::Grasp => None,
+        CommissionStep::Effects | CommissionStep::Hands | CommissionStep::Grasp => None,
     }
 }
 
@@ -72,6 +73,13 @@ pub fn done_in_words(figure: &CommissionFigure) -> String {
         }
         CommissionFigure::Effects(effects) => format!("in the model: {}", effects.join(", ")),
         CommissionFigure::NotInLibrary => "something is missing that no known effect explains".to_owned(),
+        CommissionFigure::Seen { before_m, after_m } => {
+            format!(
+                "the hand is seen {} beside its arm, {} before",
+                format::mm(*after_m),
+                format::mm(*before_m)
+            )
+        }
         CommissionFigure::Missed { mean_m: Some(mean_m), touches } => {
             format!("{touches} new touches miss by {}", format::mm(*mean_m))
         }

@@ -1,0 +1,82 @@
+//! What to do next so that the arms are tied to the eyes.
+
+use plumbline_engine::View;
+use plumbline_engine::view::HandEyeSummary;
+use plumbline_widgets::format;
+
+use super::sentence::{Guidance, say};
+use crate::operator::{Action, HandEyeAction, Screen};
+
+/// What moves, before it is pressed.
+const MOVES: &str = "Clear the table. The head turns, then each open hand is held over it at 12 places: 3 min, nothing is touched.";
+/// The same of a twin, which clears its table by itself.
+const MOVES_OF_THE_TWIN: &str =
+    "The head turns, then each open hand is held over the table at 12 places: 3 min, nothing is touched.";
+
+pub(super) fn handeye(view: &View) -> Guidance {
+    let handeye = &view.handeye;
+    if handeye.is_looking {
+        let doing = view.running_job().and_then(|job| match &job.state {
+            plumbline_engine::view::JobState::Running { doing, .. } => Some(doing.as_str()),
+            _ => None,
+        });
+        let doing = doing.unwrap_or("looking at the hands");
+        return say(format!("{doing}. The head and the arms move; Esc or space stops."));
+    }
+    if let Some(proposal) = &handeye.proposal {
+        let accept = Action::HandEye(HandEyeAction::Accept);
+        return said(proposal).then(HandEyeAction::Accept.label(), accept);
+    }
+    if let Some(why) = handeye.trouble() {
+        let guidance = say(why).warn();
+        return match first_lacking(view) {
+            Some((label, screen)) => guidance.then(label, Action::Go(screen)),
+            None => guidance,
+        };
+    }
+    let look = Action::HandEye(HandEyeAction::Look);
+    let moves = if view.twin.running { MOVES_OF_THE_TWIN } else { MOVES };
+    match (&handeye.stale, &handeye.in_use) {
+        (Some(why), _) => say(format!("{why} {moves}")).warn().then("Look again", look),
+        (None, Some(_)) => {
+            say("The arms are tied to the eyes. Look again when eyes or an arm were taken apart.")
+                .then("Look again", look)
+        }
+        (None, None) => say(moves).then(HandEyeAction::Look.label(), look),
+    }
+}
+
+/// What came of a look, in a sentence.
+pub fn said(proposal: &HandEyeSummary) -> Guidance {
+    match proposal.error_m() {
+        Some([before_m, after_m]) => {
+            let (before, after) = (format::mm(before_m), format::mm(after_m));
+            let guidance = say(format!(
+                "The hand is seen {before} beside its arm, {after} with what was learned (looks that were not used). \
+                 Accepting moves nothing."
+            ));
+            if after_m > before_m { guidance.warn() } else { guidance }
+        }
+        None => say(
+            "The eyes have looked at the hands; of the looks that judge none was found. Accepting puts what was \
+             learned into the model in use; nothing moves.",
+        )
+        .warn(),
+    }
+}
+
+/// Where the first thing that is missing is made.
+fn first_lacking(view: &View) -> Option<(&'static str, Screen)> {
+    if !view.robot.connection.is_connected() {
+        return None;
+    }
+    if view.eyes.in_use.is_none() {
+        return Some(("Calibrate the eyes", Screen::Collect));
+    }
+    if view.mount.in_use.is_none() {
+        return Some(("Go to Mount", Screen::Mount));
+    }
+    let touches = view.handeye.gates.iter().find(|gate| gate.name == "Touches");
+    let lacks_touches = touches.is_some_and(|gate| gate.state == plumbline_engine::view::GateState::Shut);
+    lacks_touches.then_some(("Go to Touch", Screen::Touch))
+}

@@ -1,0 +1,18 @@
+//! The inspector of tying the arms to the eyes: what is looked at before anything moves.
+
+use egui::Ui;
+use plumbline_engine::View;
+use plumbline_widgets::theme::{self, group_heading};
+
+use crate::panels::show_gates;
+
+pub fn show(ui: &mut Ui, view: &View) {
+    group_heading(ui, "Before anything moves");
+    show_gates(ui, &view.handeye.gates);
+    group_heading(ui, "What it is good for");
+    ui.label(theme::small(
+        ui,
+        "The model in use then says where a hand is in what the eyes see. M5 grasps by it; places and moves use it, too.",
+    ));
+    ui.label(theme::small(ui, "Taken back like any step of the model: Gap, History."));
+}

@@ -1,0 +1,21 @@
+//! What tying the arms to the eyes can see of the rest.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use plumbline_effects::RigModel;
+
+use crate::grasp::GraspAround;
+use crate::twin::view::TwinView;
+
+/// What the workflow can see of the rest.
+pub struct HandEyeAround {
+    /// What a grasp sees: the robot, its eyes, what was calibrated.
+    pub grasp: GraspAround,
+    /// The model in use; `None`: it was not read yet, or cannot be used.
+    pub added: Option<Arc<RigModel>>,
+    /// The session of touches that the model was learned from; `None`: there is none.
+    pub touches: Option<PathBuf>,
+    /// The twin, where its arm is connected.
+    pub twin: Option<Arc<TwinView>>,
+}

@@ -1,0 +1,62 @@
+//! What is looked at before anything moves.
+
+use plumbline_grasp::{Hand, HandChoice, Method};
+
+use super::around::HandEyeAround;
+use crate::grasp::gates::gates as gates_of_grasp;
+use crate::grasp::view::{Gate, GateState};
+
+/// All gates, in the order in which they are passed. Both arms move.
+pub fn gates(around: &HandEyeAround) -> Vec<Gate> {
+    let described = &around.grasp.described;
+    let hands = Hand::BOTH.into_iter().filter(|hand| described.arm(hand.name()).is_some());
+    let mut gates: Vec<Gate> = vec![];
+    for gate in hands.flat_map(|hand| gates_of_grasp(&around.grasp, HandChoice::from(hand), Method::M5)) {
+        // Of both arms, the one that lets pass less is told.
+        match gates.iter_mut().find(|known| known.name == gate.name) {
+            Some(known) if rank(gate.state) > rank(known.state) => *known = gate,
+            Some(_) => {}
+            None => gates.push(gate),
+        }
+    }
+    gates.retain(|gate| !["Places", "Method"].contains(&gate.name));
+    gates.push(calibrated(around));
+    gates.push(touched(around));
+    gates
+}
+
+fn rank(state: GateState) -> usize {
+    match state {
+        GateState::Open => 0,
+        GateState::Doubtful => 1,
+        GateState::Shut => 2,
+    }
+}
+
+fn gate(name: &'static str, is_open: bool, [open, shut]: [&str; 2]) -> Gate {
+    let (state, text) = if is_open { (GateState::Open, open) } else { (GateState::Shut, shut) };
+    Gate { name, state, text: text.to_owned() }
+}
+
+fn calibrated(around: &HandEyeAround) -> Gate {
+    let grasp = &around.grasp;
+    let is_open = grasp.calibration.is_some() && grasp.has_mount && grasp.has_screen;
+    let shut = match (grasp.calibration.is_some(), grasp.has_mount) {
+        (false, _) => "The lenses are not calibrated: calibrate the eyes first.",
+        (true, false) => "How the eyes sit in the head was not measured: calibrate the mount first.",
+        (true, true) => "Where the screen lies was not measured: place the screen first, in Touch.",
+    };
+    gate("Places", is_open, ["Lenses, mount and screen were calibrated.", shut])
+}
+
+fn touched(around: &HandEyeAround) -> Gate {
+    let is_open = around.touches.is_some() && around.added.is_some();
+    gate(
+        "Touches",
+        is_open,
+        [
+            "What the arm was learned from is there.",
+            "No touches were learned from: touch the screen, and find what makes the arm miss, in Gap.",
+        ],
+    )
+}

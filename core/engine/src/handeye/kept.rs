@@ -1,0 +1,131 @@
+//! What is kept of a look that was accepted, in the folder of its world.
+
+use std::path::{Path, PathBuf};
+
+use jiff::Timestamp;
+use plumbline_effects::rig_model::ModelEffect;
+use plumbline_effects::{Kind, RigModel};
+use plumbline_grasp::Hand;
+use plumbline_handeye::{Figures, Tie, Tied};
+use plumbline_model::files::{self, FileError, Size};
+use serde::{Deserialize, Serialize};
+
+use super::view::HandEyeSummary;
+
+/// The file, in the folder of a world.
+pub const FILE: &str = "hand-eye.json";
+/// Version of the file.
+const FORMAT: u32 = 1;
+
+/// Why it cannot be kept, or read. Reads as a sentence.
+#[derive(Debug, thiserror::Error)]
+pub enum KeptError {
+    /// The file itself.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// It is something else.
+    #[error("{} does not say how arms and eyes were tied ({why}): move it away and look again", .file.display())]
+    NoLook {
+        /// Which.
+        file: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
+}
+
+/// A look that was accepted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Kept {
+    format: u32,
+    /// When it was begun.
+    pub at: Timestamp,
+    /// What was seen of what does not move.
+    tie: Tie,
+    /// Hands, the one that touched first.
+    hands: Vec<KeptHand>,
+    /// Every effect of the arms and of the neck that it gave, with its values.
+    gave: Vec<String>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct KeptHand {
+    hand: Hand,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    figures: Option<Figures>,
+    /// Why its arm stays as it was.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    why_not: String,
+}
+
+impl Kept {
+    /// Of a look that was begun then.
+    pub fn of(tied: &Tied, at: Timestamp) -> Self {
+        let (hand, figures) = &tied.touched;
+        let mut hands =
+            vec![KeptHand { hand: *hand, figures: Some(figures.clone()), why_not: String::new() }];
+        hands.extend(tied.other.as_ref().map(|(hand, said)| KeptHand {
+            hand: *hand,
+            figures: said.as_ref().ok().cloned(),
+            why_not: said.as_ref().err().cloned().unwrap_or_default(),
+        }));
+        Self { format: FORMAT, at, tie: tied.tie.clone(), hands, gave: gave(&tied.model) }
+    }
+
+    /// Whether a model still has what it gave.
+    pub fn is_in(&self, model: &RigModel) -> bool {
+        let has = gave(model);
+        !self.gave.is_empty() && self.gave.iter().all(|effect| has.contains(effect))
+    }
+
+    /// For people.
+    pub fn summary(&self) -> HandEyeSummary {
+        let said = |kept: &KeptHand| {
+            let figures = kept.figures.clone().ok_or_else(|| kept.why_not.clone());
+            (kept.hand, figures)
+        };
+        let Tie { body, screen } = self.tie.clone();
+        HandEyeSummary { at: self.at, body, screen, hands: self.hands.iter().map(said).collect() }
+    }
+
+    /// Reads it; `None` where nothing was ever accepted.
+    ///
+    /// # Errors
+    /// When there is a file that does not say what it should.
+    pub fn read(file: &Path) -> Result<Option<Self>, KeptError> {
+        let text = match files::read_text(file, Size::SHORT) {
+            Ok(text) => text,
+            Err(error) if error.is_absent() => return Ok(None),
+            Err(error) => return Err(error.into()),
+        };
+        let wrong = |why: String| KeptError::NoLook { file: file.to_owned(), why };
+        let kept: Self = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+        if kept.format != FORMAT {
+            return Err(wrong(format!("it has format {}, this program knows {FORMAT}", kept.format)));
+        }
+        Ok(Some(kept))
+    }
+
+    /// Writes it in place of what was.
+    ///
+    /// # Errors
+    /// When it cannot be written; then the old one is there.
+    pub fn write(&self, file: &Path) -> Result<(), KeptError> {
+        let text = serde_json::to_vec_pretty(self)
+            .map_err(|error| KeptError::NoLook { file: file.to_owned(), why: error.to_string() })?;
+        if let Some(folder) = file.parent() {
+            files::make_folder(folder)?;
+        }
+        Ok(files::write(file, text)?)
+    }
+}
+
+/// Effects of arms and neck in a model, with their values.
+fn gave(model: &RigModel) -> Vec<String> {
+    let is_of_it = |effect: &&ModelEffect| effect.tip.is_some() || effect.id == Kind::HeadJoint.id();
+    let told = |effect: &ModelEffect| {
+        format!("{} {} {:?}", effect.tip.as_deref().unwrap_or("neck"), effect.name(), effect.values)
+    };
+    model.effects().iter().filter(is_of_it).map(told).collect()
+}

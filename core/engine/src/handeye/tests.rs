@@ -1,0 +1,202 @@
+//! What is kept of a look, and what is put in use.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use plumbline_effects::rig_model::{Addition, ModelEffect};
+use plumbline_effects::{RigModel, RobotModel};
+use plumbline_grasp::{Corrections, Hand};
+use plumbline_handeye::hands::Miss;
+use plumbline_handeye::{Figures, SENTENCE, Tie, Tied};
+use plumbline_model::robot::Rig;
+use plumbline_vision::detect::Provider;
+
+use super::kept::{FILE, Kept};
+use super::view::HandEyeView;
+use super::work::{Context, HandEyeResult};
+use super::*;
+use crate::detect::command::DetectorChoice;
+use crate::grasp::GraspAround;
+use crate::grasp::view::GateState;
+use crate::ground::jobs::JobId;
+use crate::ground::jobs::list::JobList;
+use crate::ground::notice::Notices;
+use crate::ground::stage::Skipped;
+use crate::ground::step::StepState;
+use crate::ground::time::Time;
+use crate::ground::{Moment, Workflow as _};
+use command::HandEyeCommand;
+
+fn rig() -> Arc<Rig> {
+    Arc::new(Rig::built_in("nico").expect("comes with the program"))
+}
+
+/// The zero of an elbow, as a look sizes it.
+fn model(rig: &Rig, before: &RigModel, value: f64) -> RigModel {
+    let effect = ModelEffect {
+        id: "joint-zero".to_owned(),
+        site: "r_elbow_y".to_owned(),
+        title: String::new(),
+        tip: Some("right_index_tip".to_owned()),
+        shape: None,
+        values: vec![value],
+        covariance: vec![1e-6],
+        probability: Some(0.9),
+        parameters: vec![],
+    };
+    let mut model = before.clone();
+    let addition = Addition {
+        effects: vec![effect],
+        screens: vec![],
+        externals: vec![],
+        eyes: vec![],
+        together: vec![],
+        replaces: true,
+        at: jiff::Timestamp::UNIX_EPOCH,
+        sentence: SENTENCE.to_owned(),
+        sessions: vec!["touches".to_owned()],
+        version: String::new(),
+        gap: None,
+    };
+    model.add(rig, addition).expect("it fits");
+    model
+}
+
+fn tied(model: RigModel) -> Tied {
+    let miss = |off_m: f64| Miss { at_m: [0.3, 0.0], off_m: Some([off_m, 0.0]) };
+    let figures = Figures {
+        looked: 12,
+        found: 12,
+        before_m: Some(0.012),
+        after_m: Some(0.0015),
+        before: vec![miss(0.012)],
+        after: vec![miss(0.0015)],
+    };
+    let other = Some((Hand::Left, Err("it was not found".to_owned())));
+    Tied { tie: Tie::default(), model, touched: (Hand::Right, figures), other }
+}
+
+#[test]
+fn what_was_accepted_is_read_again_and_holds_for_the_model_that_it_gave_alone() {
+    let rig = rig();
+    let nominal = RigModel::nominal(&rig);
+    let tied = tied(model(&rig, &nominal, 0.02));
+    let kept = Kept::of(&tied, jiff::Timestamp::UNIX_EPOCH);
+    let folder = tempfile::tempdir().expect("a folder for the test");
+    let file = folder.path().join(FILE);
+    assert_eq!(Kept::read(&file).expect("nothing is no error"), None);
+    kept.write(&file).expect("written");
+    assert_eq!(Kept::read(&file).expect("read").as_ref(), Some(&kept));
+    let summary = kept.summary();
+    assert_eq!(summary.error_m(), Some([0.012, 0.0015]));
+    assert_eq!(summary.hands[1].1.as_ref().expect_err("not found"), "it was not found");
+    assert!(kept.is_in(&tied.model));
+    assert!(!kept.is_in(&nominal) && !kept.is_in(&model(&rig, &nominal, 0.021)));
+    // Written and read as the model in use is.
+    crate::rig_models::save(folder.path(), &tied.model, &rig).expect("written");
+    assert!(kept.is_in(&crate::rig_models::load(folder.path(), &rig).expect("read")));
+}
+
+#[test]
+fn a_file_that_is_something_else_is_said() {
+    let folder = tempfile::tempdir().expect("a folder for the test");
+    let file = folder.path().join(FILE);
+    for text in [
+        "{",
+        "[]",
+        r#"{"format":9,"at":"2026-05-01T10:00:00Z","tie":{"body":null,"screen":null},"hands":[],"gave":[]}"#,
+    ] {
+        std::fs::write(&file, text).expect("written");
+        let said = Kept::read(&file).expect_err("no look").to_string();
+        assert!(said.contains("does not say how arms and eyes were tied"), "{said}");
+    }
+}
+
+/// A robot of which nothing is calibrated.
+fn around(rig: &Arc<Rig>, added: &Arc<RigModel>) -> HandEyeAround {
+    HandEyeAround {
+        grasp: GraspAround {
+            described: rig.clone(),
+            model: Arc::new(RobotModel::nominal(rig.clone())),
+            robot: Arc::default(),
+            calibration: None,
+            eyes_on_min: None,
+            has_mount: false,
+            has_screen: false,
+            corrections: Corrections::default(),
+            detector: (DetectorChoice::Shipped, Provider::default()),
+            source: Arc::default(),
+            own_eyes: true,
+            found: None,
+        },
+        added: Some(added.clone()),
+        touches: None,
+        twin: None,
+    }
+}
+
+/// The workflow, and what it told.
+struct Desk {
+    room: HandEyeWorkflow,
+    around: HandEyeAround,
+    notices: Notices,
+    jobs: JobList,
+}
+
+impl Desk {
+    fn new(rig: &Arc<Rig>, added: &Arc<RigModel>, folder: &std::path::Path) -> Self {
+        let room = HandEyeWorkflow::new(folder);
+        Self { room, around: around(rig, added), notices: Notices::default(), jobs: JobList::default() }
+    }
+
+    fn with(&mut self, act: impl FnOnce(&mut HandEyeWorkflow, &HandEyeAround, &mut Context<'_>)) {
+        let mut asked = vec![];
+        let mut context = Context::new(&mut self.notices, &mut self.jobs, Time::now(), &mut asked);
+        act(&mut self.room, &self.around, &mut context);
+    }
+
+    fn tell(&mut self, command: HandEyeCommand) -> String {
+        self.with(|room, around, context| room.apply(command, around, context));
+        let notices = self.notices.view();
+        notices.last().map_or_else(String::new, |notice| notice.text.clone())
+    }
+
+    fn view(&mut self) -> Arc<HandEyeView> {
+        let moment = Moment { now: Instant::now(), skipped: Skipped::default() };
+        self.room.view(&self.around, &moment)
+    }
+}
+
+#[test]
+fn what_lacks_is_said_before_anything_moves_and_nothing_is_accepted_that_was_not_looked_at() {
+    let (rig, folder) = (rig(), tempfile::tempdir().expect("a folder for the test"));
+    let nominal = Arc::new(RigModel::nominal(&rig));
+    let mut desk = Desk::new(&rig, &nominal, folder.path());
+    let view = desk.view();
+    assert!(view.trouble().is_some_and(|why| why.contains("No robot is connected")), "{:?}", view.gates);
+    let shut = |name: &str| view.gates.iter().any(|gate| gate.name == name && gate.state == GateState::Shut);
+    assert!(shut("Places") && shut("Touches"), "{:?}", view.gates);
+    assert!(desk.tell(HandEyeCommand::Look).contains("No robot is connected"));
+    assert!(desk.tell(HandEyeCommand::Accept).contains("nothing to accept"));
+    assert!(desk.tell(HandEyeCommand::End).contains("Nothing is under way"));
+    assert!(!desk.view().is_looking && desk.room.take_accepted().is_none());
+}
+
+#[test]
+fn a_model_learned_anew_makes_a_look_stale() {
+    let (rig, folder) = (rig(), tempfile::tempdir().expect("a folder for the test"));
+    let nominal = Arc::new(RigModel::nominal(&rig));
+    let mut desk = Desk::new(&rig, &nominal, folder.path());
+    assert_eq!(desk.view().step, StepState::NotDone);
+    let looked = model(&rig, &nominal, 0.02);
+    let kept = Box::new(Kept::of(&tied(looked.clone()), jiff::Timestamp::UNIX_EPOCH));
+    let id = JobId(7);
+    desk.with(|room, around, context| {
+        room.work_done(id, HandEyeResult::Restored(Some(kept)), around, context);
+    });
+    let view = desk.view();
+    assert!(view.in_use.is_none() && view.stale.is_some(), "{view:?}");
+    desk.around.added = Some(Arc::new(looked));
+    let view = desk.view();
+    assert!(view.in_use.is_some() && view.stale.is_none() && view.step == StepState::Done, "{view:?}");
+}
