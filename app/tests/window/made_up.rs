@@ -8,8 +8,8 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use plumbline_engine::View;
 use plumbline_engine::view::{
     BusView, Connection, FaultView, GraspHand, HandEyeBody, HandEyeSummary, HandFigures, HandMiss,
-    HeadViewSummary, InTheWay, JointSample, JointView, MotionState, MountSummary, MountView, PathCheck,
-    PoseView, Preview, RobotView, StepState, TipPlace, ToyView, TwinView,
+    HandOutcome, HeadViewSummary, InTheWay, JointSample, JointView, MotionState, MountSummary, MountView,
+    PathCheck, PoseView, Preview, RobotView, StepState, TipPlace, ToyView, TwinView,
 };
 use plumbline_model::frame::{Point, Pose};
 use plumbline_model::robot::{JointIndex, Posture, Rig};
@@ -245,7 +245,11 @@ pub fn looked_at_hands() -> HandEyeSummary {
             share_of_described: None,
         }),
         screen: None,
-        hands: vec![(GraspHand::Right, Ok(figures)), (GraspHand::Left, Err("it was not seen".to_owned()))],
+        table: None,
+        hands: vec![
+            (GraspHand::Right, HandOutcome::Sized(figures)),
+            (GraspHand::Left, HandOutcome::Stays("it was not seen".to_owned())),
+        ],
     }
 }
 

@@ -29,4 +29,4 @@ mod whole;
 pub use error::HandEyeError;
 pub use model::Sizing;
 pub use tie::{Held, Start, Tie};
-pub use whole::{Figures, Part, SENTENCE, Seen, Tied, Watch, of_other, of_touched, tie};
+pub use whole::{Figures, Outcome, Part, SENTENCE, Seen, Tied, Watch, of_other, of_touched, tie};

@@ -54,12 +54,11 @@ impl<'a> Sizing<'a> {
         names: Vec<Name>,
         chosen: Chosen,
     ) -> Result<Self, HandEyeError> {
-        let table = tie.screen.as_ref().and_then(|screen| screen.table);
         Ok(Self {
             start,
             touches,
             held: tie.held(start)?,
-            glass_over_table_m: table.map(|table| table.glass_over_m),
+            glass_over_table_m: tie.table.map(|table| table.glass_over_m),
             names,
             chosen,
         })

@@ -16,7 +16,6 @@ use serde::{Deserialize, Serialize};
 use crate::HandEyeError;
 use crate::edges::{STEP_PX, profile};
 use crate::picture::{Picture, from_head_poses};
-use crate::table::TableBeside;
 
 /// Turns of the head from home from which it is looked at, rad.
 const LOOKS_RAD: [f64; 3] = [0.0, 0.2, -0.2];
@@ -54,9 +53,6 @@ pub struct SeenScreen {
     pub rms_px: f64,
     /// Edges that were found.
     pub edges: usize,
-    /// The table around it.
-    #[serde(default)]
-    pub table: Option<TableBeside>,
 }
 
 /// What the edges are compared with.
@@ -181,13 +177,7 @@ fn fit(scene: &Scene<'_>, rest_sd_rad: [f64; 2], pictures: &[Picture]) -> Option
     for k in 0..6 {
         own[(k, k)] += LEAST_SD[k / 3].powi(2);
     }
-    Some(SeenScreen {
-        robot_from_screen: guess.robot_from_screen,
-        covariance: own,
-        rms_px,
-        edges,
-        table: None,
-    })
+    Some(SeenScreen { robot_from_screen: guess.robot_from_screen, covariance: own, rms_px, edges })
 }
 
 /// The normal equations of the unknowns.

@@ -124,7 +124,7 @@ fn both_hands_meet_what_the_eyes_see_and_the_neck_is_told() {
     shrinks(&tied.touched.1);
     let (hand, other) = tied.other.expect("a left arm");
     assert_eq!(hand, Hand::Left);
-    shrinks(&other.expect("found"));
+    shrinks(other.figures().expect("found"));
     // It was told all along, part by part.
     assert_eq!(told.saw.len(), 5, "{:?}", told.saw);
     assert!(told.looks.iter().all(|(_, number, of)| number < of), "{:?}", told.looks);

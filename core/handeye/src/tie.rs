@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::HandEyeError;
 use crate::body::SeenBody;
 use crate::screen::SeenScreen;
+use crate::table::TableBeside;
 
 /// The robot as it is known before.
 #[derive(Clone, Debug)]
@@ -61,8 +62,10 @@ impl Start {
 pub struct Tie {
     /// The robot's own body; `None`: its edges were not seen.
     pub body: Option<SeenBody>,
-    /// The frame of the touchscreen, and the table around it; `None`: its edges were not seen.
+    /// The frame of the touchscreen; `None`: its edges were not seen.
     pub screen: Option<SeenScreen>,
+    /// The table around it; `None`: it shows the eyes too little to match.
+    pub table: Option<TableBeside>,
 }
 
 impl Tie {

@@ -39,8 +39,28 @@ pub enum Seen {
     Screen(Option<SeenScreen>),
     /// `None`: it shows the eyes too little to match.
     Table(Option<TableBeside>),
-    /// A hand; else why its arm stays as it is.
-    Hand(Hand, Result<Figures, String>),
+    /// A hand, and what came of its arm.
+    Hand(Hand, Outcome),
+}
+
+/// What came of an arm whose hand was looked at.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Outcome {
+    /// It was sized.
+    Sized(Figures),
+    /// It stays as it was: why. Reads as a sentence.
+    Stays(String),
+}
+
+impl Outcome {
+    /// Of an arm that was sized.
+    pub fn figures(&self) -> Option<&Figures> {
+        match self {
+            Self::Sized(figures) => Some(figures),
+            Self::Stays(_) => None,
+        }
+    }
 }
 
 /// Told while it happens.
@@ -79,8 +99,8 @@ pub struct Tied {
     pub model: RigModel,
     /// The hand of the arm that touched.
     pub touched: (Hand, Figures),
-    /// The other hand; `None`: the robot has none, or too few looks at it: then why.
-    pub other: Option<(Hand, Result<Figures, String>)>,
+    /// The other hand; `None`: the robot has none.
+    pub other: Option<(Hand, Outcome)>,
 }
 
 /// Looks at body, screen, table and hands, and sizes both arms. First the arms go home. The head and both arms
@@ -114,7 +134,7 @@ pub fn tie(
     let looks = take(robot, &known, touched, watch, context)?;
     watch.computes("sizing the arm's errors");
     let (arm, figures) = of_touched(&sizing, [start, &known], &looks, at, context)?;
-    watch.saw(&Seen::Hand(touched, Ok(figures.clone())));
+    watch.saw(&Seen::Hand(touched, Outcome::Sized(figures.clone())));
     let known = start.with(sizing.model(&arm, None, SENTENCE, at)?)?;
 
     let mut other = None;
@@ -125,9 +145,9 @@ pub fn tie(
         let said = match of_other(&sizing, &arm, [start, &known], &looks, at, context) {
             Ok((arm, figures)) => {
                 sized = Some((hand, arm));
-                Ok(figures)
+                Outcome::Sized(figures)
             }
-            Err(why @ HandEyeError::FewHands { .. }) => Err(why.to_string()),
+            Err(why @ HandEyeError::FewHands { .. }) => Outcome::Stays(why.to_string()),
             Err(error) => return Err(error),
         };
         watch.saw(&Seen::Hand(hand, said.clone()));
@@ -150,14 +170,15 @@ fn look_around(
     watch.saw(&Seen::Body(body));
     let mut look = |number| watch.looks(Part::Screen, number, SeenScreen::LOOKS);
     let placed = start.model.touchscreen();
-    let mut seen = screen::see(robot, &rig, mounted.rest_sigma_rad, placed, &mut look, context)?;
-    watch.saw(&Seen::Screen(seen.clone()));
-    if let Some(screen) = &mut seen {
+    let screen = screen::see(robot, &rig, mounted.rest_sigma_rad, placed, &mut look, context)?;
+    watch.saw(&Seen::Screen(screen.clone()));
+    let mut table = None;
+    if let Some(screen) = &screen {
         watch.looks(Part::Table, 0, 1);
-        screen.table = table::see(robot, &rig, &start.calibration, screen, placed)?;
-        watch.saw(&Seen::Table(screen.table));
+        table = table::see(robot, &rig, &start.calibration, screen, placed)?;
+        watch.saw(&Seen::Table(table));
     }
-    Ok(Tie { body, screen: seen })
+    Ok(Tie { body, screen, table })
 }
 
 fn take(

@@ -49,7 +49,7 @@ struct Pair<'a> {
 fn pairs(summary: &HandEyeSummary) -> Vec<Pair<'_>> {
     let mut pairs = vec![];
     for (hand, said) in &summary.hands {
-        let Ok(figures) = said else { continue };
+        let Some(figures) = said.figures() else { continue };
         let looks = figures.before.iter().zip(&figures.after);
         pairs.extend(looks.map(|(before, after)| Pair { hand: *hand, before, after }));
     }

@@ -2,7 +2,7 @@
 
 use egui::{RichText, ScrollArea, Ui};
 use plumbline_engine::view::{
-    GraspHand, HandEyePart, HandEyeSeen, HandEyeSummary, HandEyeView, HandFigures, PartState,
+    GraspHand, HandEyePart, HandEyeSeen, HandEyeSummary, HandEyeView, HandFigures, HandOutcome, PartState,
 };
 use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::format;
@@ -69,11 +69,10 @@ fn came_of_it(ui: &mut Ui, view: &HandEyeView, summary: &HandEyeSummary) {
     if let Some(why) = &view.stale {
         warning(ui, why);
     }
-    let table = summary.screen.as_ref().and_then(|screen| screen.table);
     let seen = [
         HandEyeSeen::Body(summary.body),
         HandEyeSeen::Screen(summary.screen.clone()),
-        HandEyeSeen::Table(table),
+        HandEyeSeen::Table(summary.table),
     ];
     let parts = [HandEyePart::Body, HandEyePart::Screen, HandEyePart::Table];
     for (part, seen) in parts.into_iter().zip(&seen) {
@@ -126,9 +125,9 @@ fn words(seen: &HandEyeSeen) -> (String, Role) {
     }
 }
 
-fn words_of_hand(said: &Result<HandFigures, String>) -> (String, Role) {
+fn words_of_hand(said: &HandOutcome) -> (String, Role) {
     match said {
-        Ok(figures) => {
+        HandOutcome::Sized(figures) => {
             let mm = |m: Option<f64>| m.map_or("not known".to_owned(), format::mm);
             let HandFigures { found, looked, before_m, after_m, .. } = figures;
             let text = format!(
@@ -138,6 +137,6 @@ fn words_of_hand(said: &Result<HandFigures, String>) -> (String, Role) {
             );
             (text, Role::Ink)
         }
-        Err(why) => (format!("its arm stays as it was: {why}"), Role::Warning),
+        HandOutcome::Stays(why) => (format!("its arm stays as it was: {why}"), Role::Warning),
     }
 }

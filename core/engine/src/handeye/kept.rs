@@ -6,7 +6,7 @@ use jiff::Timestamp;
 use plumbline_effects::rig_model::ModelEffect;
 use plumbline_effects::{Kind, RigModel};
 use plumbline_grasp::Hand;
-use plumbline_handeye::{Figures, Tie, Tied};
+use plumbline_handeye::{Outcome, Tie, Tied};
 use plumbline_model::files::{self, FileError, Size};
 use serde::{Deserialize, Serialize};
 
@@ -43,33 +43,16 @@ pub struct Kept {
     /// What was seen of what does not move.
     tie: Tie,
     /// Hands, the one that touched first.
-    hands: Vec<KeptHand>,
+    hands: Vec<(Hand, Outcome)>,
     /// Every effect of the arms and of the neck that it gave, with its values.
     gave: Vec<String>,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct KeptHand {
-    hand: Hand,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    figures: Option<Figures>,
-    /// Why its arm stays as it was.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    why_not: String,
 }
 
 impl Kept {
     /// Of a look that was begun then.
     pub fn of(tied: &Tied, at: Timestamp) -> Self {
-        let (hand, figures) = &tied.touched;
-        let mut hands =
-            vec![KeptHand { hand: *hand, figures: Some(figures.clone()), why_not: String::new() }];
-        hands.extend(tied.other.as_ref().map(|(hand, said)| KeptHand {
-            hand: *hand,
-            figures: said.as_ref().ok().cloned(),
-            why_not: said.as_ref().err().cloned().unwrap_or_default(),
-        }));
+        let (hand, figures) = tied.touched.clone();
+        let hands = std::iter::once((hand, Outcome::Sized(figures))).chain(tied.other.clone()).collect();
         Self { format: FORMAT, at, tie: tied.tie.clone(), hands, gave: gave(&tied.model) }
     }
 
@@ -81,12 +64,8 @@ impl Kept {
 
     /// For people.
     pub fn summary(&self) -> HandEyeSummary {
-        let said = |kept: &KeptHand| {
-            let figures = kept.figures.clone().ok_or_else(|| kept.why_not.clone());
-            (kept.hand, figures)
-        };
-        let Tie { body, screen } = self.tie.clone();
-        HandEyeSummary { at: self.at, body, screen, hands: self.hands.iter().map(said).collect() }
+        let Tie { body, screen, table } = self.tie.clone();
+        HandEyeSummary { at: self.at, body, screen, table, hands: self.hands.clone() }
     }
 
     /// Reads it; `None` where nothing was ever accepted.

@@ -9,6 +9,7 @@ mod gates;
 mod kept;
 mod look;
 mod progress;
+mod refusal;
 #[cfg(test)]
 mod tests;
 pub mod view;

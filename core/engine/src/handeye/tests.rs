@@ -7,7 +7,7 @@ use plumbline_effects::rig_model::{Addition, ModelEffect};
 use plumbline_effects::{RigModel, RobotModel};
 use plumbline_grasp::{Corrections, Hand};
 use plumbline_handeye::hands::Miss;
-use plumbline_handeye::{Figures, SENTENCE, Tie, Tied};
+use plumbline_handeye::{Figures, Outcome, SENTENCE, Tie, Tied};
 use plumbline_model::robot::Rig;
 use plumbline_vision::detect::Provider;
 
@@ -72,7 +72,7 @@ fn tied(model: RigModel) -> Tied {
         before: vec![miss(0.012)],
         after: vec![miss(0.0015)],
     };
-    let other = Some((Hand::Left, Err("it was not found".to_owned())));
+    let other = Some((Hand::Left, Outcome::Stays("it was not found".to_owned())));
     Tied { tie: Tie::default(), model, touched: (Hand::Right, figures), other }
 }
 
@@ -89,7 +89,7 @@ fn what_was_accepted_is_read_again_and_holds_for_the_model_that_it_gave_alone() 
     assert_eq!(Kept::read(&file).expect("read").as_ref(), Some(&kept));
     let summary = kept.summary();
     assert_eq!(summary.error_m(), Some([0.012, 0.0015]));
-    assert_eq!(summary.hands[1].1.as_ref().expect_err("not found"), "it was not found");
+    assert_eq!(summary.hands[1].1, Outcome::Stays("it was not found".to_owned()));
     assert!(kept.is_in(&tied.model));
     assert!(!kept.is_in(&nominal) && !kept.is_in(&model(&rig, &nominal, 0.021)));
     // Written and read as the model in use is.
@@ -104,7 +104,7 @@ fn a_file_that_is_something_else_is_said() {
     for text in [
         "{",
         "[]",
-        r#"{"format":9,"at":"2026-05-01T10:00:00Z","tie":{"body":null,"screen":null},"hands":[],"gave":[]}"#,
+        r#"{"format":9,"at":"2026-05-01T10:00:00Z","tie":{"body":null,"screen":null,"table":null},"hands":[],"gave":[]}"#,
     ] {
         std::fs::write(&file, text).expect("written");
         let said = Kept::read(&file).expect_err("no look").to_string();

@@ -7,7 +7,9 @@ pub use plumbline_handeye::body::SeenBody as HandEyeBody;
 pub use plumbline_handeye::hands::Miss as HandMiss;
 pub use plumbline_handeye::screen::SeenScreen as HandEyeScreen;
 pub use plumbline_handeye::table::TableBeside as HandEyeTable;
-pub use plumbline_handeye::{Figures as HandFigures, Part as HandEyePart, Seen as HandEyeSeen};
+pub use plumbline_handeye::{
+    Figures as HandFigures, Outcome as HandOutcome, Part as HandEyePart, Seen as HandEyeSeen,
+};
 
 use crate::grasp::view::{Gate, GateState, GraspHand};
 use crate::ground::step::StepState;
@@ -68,10 +70,12 @@ pub struct HandEyeSummary {
     pub at: Timestamp,
     /// The robot's body; `None`: not seen.
     pub body: Option<HandEyeBody>,
-    /// The screen's frame, and the table around it; `None`: not seen.
+    /// The screen's frame; `None`: not seen.
     pub screen: Option<HandEyeScreen>,
-    /// Hands, the one that touched first; else why an arm stays as it was.
-    pub hands: Vec<(GraspHand, Result<HandFigures, String>)>,
+    /// The table around it; `None`: not matched.
+    pub table: Option<HandEyeTable>,
+    /// Hands, the one that touched first, and what came of their arms.
+    pub hands: Vec<(GraspHand, HandOutcome)>,
 }
 
 impl HandEyeSummary {
@@ -79,7 +83,7 @@ impl HandEyeSummary {
     /// and after, m.
     pub fn error_m(&self) -> Option<[f64; 2]> {
         let (_, figures) = self.hands.first()?;
-        let figures = figures.as_ref().ok()?;
+        let figures = figures.figures()?;
         Some([figures.before_m?, figures.after_m?])
     }
 }

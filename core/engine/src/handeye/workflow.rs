@@ -14,6 +14,7 @@ use super::gates::gates;
 use super::kept::{FILE, Kept};
 use super::look::Look;
 use super::progress::Progress;
+use super::refusal::Refusal;
 use super::view::{HandEyeSummary, HandEyeView};
 use super::work::{Context, HandEyeResult, HandEyeWork};
 use crate::grasp::gates::shut;
@@ -80,19 +81,22 @@ impl HandEyeWorkflow {
         added.is_some_and(|model| kept.is_in(model)).then_some(summary)
     }
 
-    fn begin(&mut self, around: &HandEyeAround, context: &mut Context<'_>) -> Result<(), String> {
+    fn begin(&mut self, around: &HandEyeAround, context: &mut Context<'_>) -> Result<(), Refusal> {
         if self.running.is_some() {
-            return Err("The eyes are looking at the hands already.".to_owned());
+            return Err(Refusal::UnderWay);
         }
         let gates = gates(around);
         if let Some(gate) = shut(&gates) {
-            return Err(gate.text.clone());
+            return Err(Refusal::Shut(gate.text.clone()));
         }
         let grasp = &around.grasp;
         let (Some(calibration), Some(touches), Some(base)) =
             (grasp.calibration.clone(), around.touches.clone(), around.added.clone())
         else {
-            return Err("Calibrate eyes, mount and screen, and touch the screen first.".to_owned());
+            // The gates have looked at all of it.
+            return Err(Refusal::Shut(
+                "Calibrate eyes, mount and screen, and touch the screen first.".to_owned(),
+            ));
         };
         let reins = Reins::default();
         let (leader, led) = Leader::pair("looking at the hands", true, &reins);
@@ -117,14 +121,12 @@ impl HandEyeWorkflow {
         Ok(())
     }
 
-    fn accept(&mut self, around: &HandEyeAround, context: &mut Context<'_>) -> Result<(), String> {
+    fn accept(&mut self, around: &HandEyeAround, context: &mut Context<'_>) -> Result<(), Refusal> {
         let Some(proposal) = self.proposal.take() else {
-            return Err("There is nothing to accept: look at the hands first.".to_owned());
+            return Err(Refusal::NothingToAccept);
         };
         if around.added.as_ref() != Some(&proposal.base) {
-            return Err(
-                "The model in use was changed since the look began: look at the hands again.".to_owned()
-            );
+            return Err(Refusal::Changed);
         }
         let Proposal { tied, kept, summary, .. } = proposal;
         context.start(HandEyeWork::Keep { file: self.file.clone(), kept: kept.clone() });
@@ -220,7 +222,7 @@ impl Workflow for HandEyeWorkflow {
                     running.ending = true;
                     Ok(())
                 }
-                None => Err("Nothing is under way.".to_owned()),
+                None => Err(Refusal::NothingUnderWay),
             },
             HandEyeCommand::Accept => self.accept(around, context),
             HandEyeCommand::Discard => {

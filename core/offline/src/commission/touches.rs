@@ -208,10 +208,10 @@ fn look_around(
         ),
         None => "The eyes do not see the edges of the robot's body.".to_owned(),
     });
-    let mut screen = screen::see(robot, &rig, mounted.rest_sigma_rad, placed, &mut |_| {}, context)?;
-    let Some(seen) = &mut screen else {
+    let screen = screen::see(robot, &rig, mounted.rest_sigma_rad, placed, &mut |_| {}, context)?;
+    let Some(seen) = &screen else {
         step.notes.push("The eyes do not see its edges.".to_owned());
-        return Ok(Tie { body, screen });
+        return Ok(Tie { body, screen, table: None });
     };
     let off = seen.robot_from_screen * pose(placed).inverse();
     let middle = placed.point_at(placed.middle()).coords;
@@ -225,8 +225,8 @@ fn look_around(
         seen.edges,
         seen.rms_px
     ));
-    seen.table = table::see(robot, &rig, &lab.calibration()?, seen, placed)?;
-    step.notes.push(match &seen.table {
+    let table = table::see(robot, &rig, &lab.calibration()?, seen, placed)?;
+    step.notes.push(match &table {
         Some(table) => format!(
             "Its glass lies {:.1} ± {:.1} mm over the table around it ({} places).",
             1e3 * table.glass_over_m,
@@ -238,7 +238,7 @@ fn look_around(
                 .to_owned()
         }
     });
-    Ok(Tie { body, screen })
+    Ok(Tie { body, screen, table })
 }
 
 /// Rms distance of the fingertip, by encoders and the nominal arm, from the pixel it touched on a screen
