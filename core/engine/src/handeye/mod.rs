@@ -17,4 +17,5 @@ pub mod work;
 mod workflow;
 
 pub use around::HandEyeAround;
+pub use kept::{FILE, Kept, KeptError};
 pub use workflow::HandEyeWorkflow;

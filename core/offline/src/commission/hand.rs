@@ -1,8 +1,11 @@
 //! Step hand: the eyes look at the hands, where the grasp will happen.
 
+use plumbline_engine::handeye::{FILE, Kept};
 use plumbline_grasp::Hand;
 use plumbline_handeye::hands::Looks;
-use plumbline_handeye::{Figures, HandEyeError, SENTENCE, Sizing, Start, of_other, of_touched};
+use plumbline_handeye::{
+    Figures, HandEyeError, Outcome, SENTENCE, Sizing, Start, Tied, of_other, of_touched,
+};
 use plumbline_model::JobContext;
 
 use super::effects::{in_use, place_for_others, put_in_use};
@@ -26,25 +29,35 @@ pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Res
         let model = sizing.model(&arm, None, SENTENCE, at)?;
         put_in_use(lab, &model)?;
         place_for_others(lab, touches, &arm)?;
+        let mut tied =
+            Tied { tie: tie.clone(), model: model.clone(), touched: (Hand::Right, figures), other: None };
         if lab.rig.arm(Hand::Left.name()).is_none() {
-            return Ok(());
+            return keep(lab, &tied, at);
         }
         let known = start.with(model)?;
         let looks = look(robot, &known, Hand::Left, 0.5, context)?;
         match of_other(&sizing, &arm, [&known, &known], &looks, at, context) {
             Ok((left, figures)) => {
                 step.notes.push(told(&figures));
-                put_in_use(lab, &sizing.model(&arm, Some((Hand::Left, &left)), SENTENCE, at)?)
+                tied.model = sizing.model(&arm, Some((Hand::Left, &left)), SENTENCE, at)?;
+                put_in_use(lab, &tied.model)?;
+                tied.other = Some((Hand::Left, Outcome::Sized(figures)));
             }
             // The right hand grasps without it.
             Err(why @ HandEyeError::FewHands { .. }) => {
                 step.notes.push(format!("The left arm is taken as described: {why}."));
-                Ok(())
+                tied.other = Some((Hand::Left, Outcome::Stays(why.to_string())));
             }
-            Err(error) => Err(error.into()),
+            Err(error) => return Err(error.into()),
         }
+        keep(lab, &tied, at)
     })?;
     Ok(step)
+}
+
+/// The window, too, knows that the arms are tied to the eyes.
+fn keep(lab: &Lab, tied: &Tied, at: jiff::Timestamp) -> Result<(), CommissionError> {
+    Kept::of(tied, at).write(&lab.world().join(FILE)).map_err(CommissionError::room)
 }
 
 fn look(
