@@ -8,6 +8,7 @@ use plumbline_widgets::texture::Picture;
 use plumbline_widgets::theme;
 
 use super::PlumblineWindow;
+use super::narrow::NARROW;
 use crate::operator::{Outbox, Pane, Screen};
 use crate::panels::{self, PanelContext, PanelState, picture_key};
 
@@ -21,8 +22,11 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
         if screen == Screen::Live && nothing {
             return panels::show_start(ui, &window.settings.recent_sources, outbox);
         }
-        let tree = window.settings.arrangement(screen);
-        let mut behavior = PaneBehavior { view: &window.view, screen, state: &mut window.panels, outbox };
+        let narrow = ui.available_width() < NARROW;
+        let arranged = window.settings.arrangement(screen);
+        let tree = if narrow { window.narrow.of(screen, arranged) } else { arranged };
+        let (view, state) = (&window.view, &mut window.panels);
+        let mut behavior = PaneBehavior { view, screen, narrow, state, outbox };
         tree.ui(&mut behavior, ui);
     });
 }
@@ -61,6 +65,8 @@ fn picture_buttons(ui: &mut Ui, pane: Pane, picture: &Picture, outbox: &mut Outb
 struct PaneBehavior<'a> {
     view: &'a View,
     screen: Screen,
+    /// The panes are tabs, one at a time.
+    narrow: bool,
     state: &'a mut PanelState,
     outbox: &'a mut Outbox,
 }
@@ -107,6 +113,11 @@ impl Behavior<Pane> for PaneBehavior<'_> {
                 egui::WidgetInfo::labeled(egui::Role::Button, true, label)
             });
         }
+    }
+
+    /// What stands as tabs for want of room is arranged in a wider window.
+    fn is_tile_draggable(&self, _tiles: &Tiles<Pane>, _tile_id: TileId) -> bool {
+        !self.narrow
     }
 
     fn simplification_options(&self) -> SimplificationOptions {
