@@ -10,6 +10,7 @@ pub use target::{TargetLook, paint_felt, paint_target};
 
 use egui::{Pos2, Rect, Response, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 
+use crate::own_part::own_sides;
 use crate::theme::space;
 
 /// What became of a touch.
@@ -84,8 +85,6 @@ pub struct TouchPatternResponse {
 const MOST_LABELS: usize = 400;
 /// A touch is found by the pointer within this many points.
 const NEAR_PT: f32 = 9.0;
-/// Targets nearer than this are at the same place, pt.
-const SAME_PLACE_PT: f32 = 1.0;
 
 /// Maps pixels of the touchscreen to the drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -205,9 +204,9 @@ impl<'a> TouchPattern<'a> {
             clicked = response.interact_pointer_pos().and_then(|at| self.near(transform, at));
         }
         let marks = if self.marks.len() > MOST_LABELS { &[] } else { self.marks };
-        let side = side_of_marks(marks, transform);
-        for mark in marks {
-            let around = Rect::from_center_size(transform.to_drawing(mark.target_px), Vec2::splat(side));
+        let at: Vec<Pos2> = marks.iter().map(|mark| transform.to_drawing(mark.target_px)).collect();
+        for ((mark, at), side) in marks.iter().zip(&at).zip(own_sides(&at, space::M)) {
+            let around = Rect::from_center_size(*at, Vec2::splat(side));
             // What sticks out of the drawing would take the clicks of what stands beside it.
             let rect = around.intersect(transform.rect);
             let touch = ui.interact(rect, response.id.with(("touch", mark.number)), Sense::click());
@@ -232,22 +231,6 @@ impl<'a> TouchPattern<'a> {
         let nearest = self.marks.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
         (distance(nearest) <= NEAR_PT).then_some(nearest.number)
     }
-}
-
-/// Side of the square around a target that is its own, pt: close targets leave each other their part.
-fn side_of_marks(marks: &[TouchMark], transform: PatternTransform) -> f32 {
-    let at: Vec<Pos2> = marks.iter().map(|mark| transform.to_drawing(mark.target_px)).collect();
-    let mut side = space::M;
-    for (i, a) in at.iter().enumerate() {
-        for b in &at[i + 1..] {
-            let apart = (*a - *b).abs().max_elem();
-            // Targets at the same place are told apart by nobody.
-            if apart > SAME_PLACE_PT {
-                side = side.min(apart);
-            }
-        }
-    }
-    side
 }
 
 impl TouchMark {
