@@ -233,9 +233,8 @@ impl Interrupted {
     /// Whether joints were merely not heard, so that the arm holds and nothing of what it was to do was
     /// refused.
     pub fn is_unheard(&self) -> bool {
-        let of_refusal = |refusal: &Refusal| {
-            matches!(refusal, Refusal::Unknown { .. } | Refusal::UnknownInChain { .. })
-        };
+        let of_refusal =
+            |refusal: &Refusal| matches!(refusal, Refusal::Unknown { .. } | Refusal::UnknownInChain { .. });
         match self {
             Self::NotRead | Self::Unknown => true,
             Self::Arm(refusal) | Self::Unable(Unable::Arm(refusal)) => of_refusal(refusal),

@@ -159,11 +159,8 @@ impl ArmDriver {
         if let Some(reason) = &state.gone {
             return Err(Refusal::Gone(reason.clone()));
         }
-        let unknown = || Refusal::Unknown {
-            joint: JointIndex(0),
-            name: "the arm".to_owned(),
-            why: Unheard::Silent,
-        };
+        let unknown =
+            || Refusal::Unknown { joint: JointIndex(0), name: "the arm".to_owned(), why: Unheard::Silent };
         let joints: Vec<JointIndex> = wanted.goals.iter().map(|(joint, _)| *joint).collect();
         self.chains.check(&self.limiter.rig, &joints, &state.unknown, &state.late)?;
         let start = state.commanded.as_ref().ok_or_else(unknown)?;

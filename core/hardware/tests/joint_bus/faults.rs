@@ -3,9 +3,7 @@
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::dynamixel::{FaultKind, Item, open_port};
-use plumbline_hardware::joints::{
-    ArmDriver, ArmOptions, HoldReason, Motion, MoveOutcome, Refusal, Unheard,
-};
+use plumbline_hardware::joints::{ArmDriver, ArmOptions, HoldReason, Motion, MoveOutcome, Refusal, Unheard};
 
 use super::chain::{Fault, PtyChain};
 use super::world::{await_state, id_of, joint, nico, ready, run, turn};
