@@ -35,6 +35,7 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
 /// would lie over a title; where not even that fits, a title is worth more.
 const BUTTONS_WIDTH: f32 = 100.0;
 const MENU_WIDTH: f32 = 32.0;
+const TABLE_BUTTON_WIDTH: f32 = 48.0;
 /// On each side of a title.
 const TITLE_SPACING: f32 = 12.0;
 
@@ -58,6 +59,21 @@ fn picture_buttons(ui: &mut Ui, pane: Pane, picture: &Picture, outbox: &mut Outb
         });
         if button.on_hover_text("The picture alone, in its own pixels").clicked() {
             *slot = Some(picture.clone());
+        }
+    }
+}
+
+impl PaneBehavior<'_> {
+    fn table_button(&mut self, ui: &mut Ui, pane: Pane) {
+        let button = ui.add(egui::Button::new(theme::small(ui, "Copy")).frame(false));
+        button.widget_info(|| {
+            let label = format!("Copy {} as a table", pane.title());
+            egui::WidgetInfo::labeled(egui::Role::Button, true, label)
+        });
+        if button.on_hover_text("All rows as CSV, for a spreadsheet").clicked()
+            && let Some(table) = panels::csv_of(pane, self.view)
+        {
+            self.outbox.table = Some(table);
         }
     }
 }
@@ -94,10 +110,14 @@ impl Behavior<Pane> for PaneBehavior<'_> {
         tabs: &egui_tiles::Tabs,
         _scroll_offset: &mut f32,
     ) {
-        let pane = tabs.active.and_then(|active| tiles.get_pane(&active));
-        let Some((pane, key)) = pane.and_then(|pane| Some((pane, picture_key(*pane)?))) else { return };
-        let Some(picture) = self.state.textures.last(key).cloned() else { return };
+        let Some(pane) = tabs.active.and_then(|active| tiles.get_pane(&active)) else { return };
         let room = ui.available_width() - titles_width(ui, tiles, tabs);
+        if room > TABLE_BUTTON_WIDTH && panels::has_table(*pane, self.view) {
+            self.table_button(ui, *pane);
+        }
+        let Some(picture) = picture_key(*pane).and_then(|key| self.state.textures.last(key)).cloned() else {
+            return;
+        };
         if room > BUTTONS_WIDTH {
             ui.spacing_mut().item_spacing.x = theme::space::S + 2.0;
             ui.add_space(0.0);
