@@ -166,16 +166,16 @@ mod tests {
     #[test]
     fn what_was_written_as_asked_can_be_opened_from_its_message() {
         let mut list = NoticeList::default();
-        list.await_file("/tmp/gap.html".into());
+        list.await_file("reports/gap.html".into());
         let told = |number: u64, level: NoticeLevel| Notice {
-            text: "The report was written to /tmp/gap.html.".to_owned(),
+            text: "The report was written to reports/gap.html.".to_owned(),
             ..notice(number, level)
         };
         let file_of = |list: &NoticeList| list.shown.history().next().and_then(|newest| newest.file.clone());
         list.take(&Arc::from([told(1, NoticeLevel::Error)]));
         assert_eq!(file_of(&list), None, "it was not written");
         list.take(&Arc::from([told(2, NoticeLevel::Success)]));
-        assert_eq!(file_of(&list), Some("/tmp/gap.html".into()));
+        assert_eq!(file_of(&list), Some("reports/gap.html".into()));
         list.take(&Arc::from([notice(3, NoticeLevel::Success)]));
         assert_eq!(file_of(&list), None);
     }
