@@ -11,6 +11,9 @@ use super::view::TouchPhase;
 use crate::robot::view::{JointView, MotionState};
 use crate::robot::{TouchOrder, TouchRun};
 
+/// What happens while the run waits.
+type Happens = fn(&mut Desk);
+
 const MOMENT: Duration = Duration::from_millis(300);
 
 /// An arm that holds, all of its joints heard.
@@ -92,7 +95,7 @@ fn it_goes_on_once_all_joints_were_heard_for_a_while_and_says_so() {
 
 #[test]
 fn it_stays_after_stop_and_after_whatever_needs_a_person() {
-    let cases: [(&str, fn(&mut Desk)); 5] = [
+    let cases: [(&str, Happens); 5] = [
         ("STOP", |desk| desk.robot.stopped = true),
         ("goes limp", |desk| change_elbow(desk, |joint| joint.torque_on = Some(false))),
         ("let go", |desk| change_elbow(desk, |joint| joint.let_go = true)),
