@@ -23,6 +23,7 @@ pub mod lamp;
 pub mod loss_curves;
 pub mod notifications;
 pub mod overlay;
+mod own_part;
 pub mod parameter;
 pub mod probability;
 pub mod progress;

@@ -1,6 +1,7 @@
 //! Short messages that pass by, and the list of those that did.
 
 use std::collections::VecDeque;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use egui::{Align2, Area, Context, Frame, Id, Margin, Order, RichText, ScrollArea, Ui, Vec2, vec2};
@@ -57,6 +58,8 @@ pub struct Notification {
     pub text: String,
     /// When.
     pub at: Instant,
+    /// What it tells of, to be opened.
+    pub file: Option<PathBuf>,
     dismissed: bool,
 }
 
@@ -89,8 +92,22 @@ impl Notifications {
         if self.kept.len() == MOST_KEPT {
             self.kept.pop_front();
         }
-        self.kept.push_back(Notification { number: self.next, severity, text, at, dismissed: false });
+        self.kept.push_back(Notification {
+            number: self.next,
+            severity,
+            text,
+            at,
+            file: None,
+            dismissed: false,
+        });
         self.next += 1;
+    }
+
+    /// The newest message tells of this file, which can be opened there.
+    pub fn tells_of(&mut self, file: PathBuf) {
+        if let Some(newest) = self.kept.back_mut() {
+            newest.file = Some(file);
+        }
     }
 
     /// All messages, newest first.
@@ -118,17 +135,19 @@ impl Notifications {
     }
 
     /// Draws the messages on screen, stacked upward from the bottom right; `margin` keeps them
-    /// off the window's bottom line.
-    pub fn show_toasts(&mut self, ctx: &Context, margin: Vec2) {
+    /// off the window's bottom line. Returns the file that is to be opened.
+    pub fn show_toasts(&mut self, ctx: &Context, margin: Vec2) -> Option<PathBuf> {
         let now = Instant::now();
         let shown: Vec<Notification> = self.on_screen(now).cloned().collect();
-        let mut dismissed = Vec::new();
+        let (mut dismissed, mut opened) = (Vec::new(), None);
         let area = Area::new(Id::unique("notifications")).order(Order::Foreground);
         area.anchor(Align2::RIGHT_BOTTOM, -margin).interactable(!shown.is_empty()).show(ctx, |ui| {
             for notification in &shown {
-                if toast(ui, notification) {
+                let asked = toast(ui, notification);
+                if asked.dismissed {
                     dismissed.push(notification.number);
                 }
+                opened = opened.take().or(notification.file.clone().filter(|_| asked.opened));
             }
         });
         for number in dismissed {
@@ -138,14 +157,16 @@ impl Notifications {
         if let Some(end) = next_end {
             ctx.request_repaint_after(end.saturating_duration_since(now));
         }
+        opened
     }
 
-    /// Draws the list of all messages, newest first.
-    pub fn show_history(&mut self, ui: &mut Ui) {
+    /// Draws the list of all messages, newest first. Returns the file that is to be opened.
+    pub fn show_history(&mut self, ui: &mut Ui) -> Option<PathBuf> {
         if self.kept.is_empty() {
             crate::empty::empty_state(ui, "No messages yet", "What the program reports is kept here.", None);
-            return;
+            return None;
         }
+        let mut opened = None;
         let now = Instant::now();
         ScrollArea::vertical().id_salt("notification history").auto_shrink([false, true]).show(ui, |ui| {
             for notification in self.history() {
@@ -156,10 +177,16 @@ impl Notifications {
                         vec2(72.0, 18.0),
                         egui::Label::new(theme::small(ui, age)).halign(egui::Align::LEFT),
                     );
-                    ui.add(egui::Label::new(&notification.text).wrap());
+                    ui.vertical(|ui| {
+                        ui.add(egui::Label::new(&notification.text).wrap());
+                        if notification.file.is_some() && ui.button("Open").clicked() {
+                            opened.clone_from(&notification.file);
+                        }
+                    });
                 });
             }
         });
+        opened
     }
 }
 
@@ -169,8 +196,13 @@ fn severity_sign(ui: &mut Ui, severity: Severity) {
     glyph::paint(ui.painter(), rect.center(), 12.0, sign, color);
 }
 
-/// `true` when dismissed.
-fn toast(ui: &mut Ui, notification: &Notification) -> bool {
+/// What was asked for at a message on screen.
+struct ToastAsked {
+    dismissed: bool,
+    opened: bool,
+}
+
+fn toast(ui: &mut Ui, notification: &Notification) -> ToastAsked {
     let tokens = theme::tokens(ui);
     let frame = Frame::new()
         .fill(tokens.raised)
@@ -185,8 +217,10 @@ fn toast(ui: &mut Ui, notification: &Notification) -> bool {
             ui.allocate_ui(vec2(WIDTH - 30.0 - close - space::S, 0.0), |ui| {
                 ui.add(egui::Label::new(RichText::new(&notification.text).color(tokens.text_strong)).wrap());
             });
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::TOP), |ui| {
-                ui.add(egui::Button::new(theme::small(ui, "Dismiss")).frame(false)).clicked()
+            ui.with_layout(egui::Layout::top_down(egui::Align::Max), |ui| {
+                let dismissed = ui.add(egui::Button::new(theme::small(ui, "Dismiss")).frame(false)).clicked();
+                let opened = notification.file.is_some() && ui.button("Open").clicked();
+                ToastAsked { dismissed, opened }
             })
             .inner
         })

@@ -23,6 +23,8 @@ pub struct Outbox {
     pub save: Option<Picture>,
     /// A picture to be put on the clipboard.
     pub copy: Option<Picture>,
+    /// A table as CSV to be put on the clipboard.
+    pub table: Option<String>,
 }
 
 impl Outbox {

@@ -29,6 +29,9 @@ impl PlumblineWindow {
             Answer::Paths(question, paths) => (question, paths),
         };
         let Some(file) = paths.first().cloned() else { return };
+        if question.saves() {
+            self.notices.await_file(file.clone());
+        }
         let command: Command = match question {
             Question::TwoFolders | Question::TwoVideos if paths.len() != 2 => return,
             Question::Folder | Question::TwoFolders | Question::TwoVideos => {

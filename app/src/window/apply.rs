@@ -50,6 +50,10 @@ impl PlumblineWindow {
             ctx.copy_image(picture.image().as_ref().clone());
             self.notices.say("The picture is on the clipboard.");
         }
+        if let Some(table) = outbox.table {
+            ctx.copy_text(table);
+            self.notices.say("The table is on the clipboard, as CSV.");
+        }
         if let Some(picture) = outbox.save {
             self.pending_picture = Some(Arc::clone(picture.image()));
             self.ask_for(ctx, Question::SaveView);

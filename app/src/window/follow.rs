@@ -65,6 +65,7 @@ impl PlumblineWindow {
     pub(super) fn show_pane(&mut self, screen: Screen, pane: Pane) {
         let tree = self.settings.arrangement(screen);
         tree.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(shown) if *shown == pane));
+        self.narrow.show_pane(screen, pane);
     }
 
     /// What has ended well is in the messages; only trouble stays in the bottom line.

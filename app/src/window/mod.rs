@@ -26,6 +26,7 @@ mod lamps;
 mod launch;
 mod log_lines;
 mod log_panel;
+mod narrow;
 mod notices;
 mod palette;
 mod rail;
@@ -66,6 +67,7 @@ use frame_time::FrameTimes;
 use gamepad::Gamepads;
 use jogging::Jogging;
 use log_panel::LogPanel;
+use narrow::NarrowTabs;
 use notices::NoticeList;
 use palette::Palette;
 use rest::Rest;
@@ -118,6 +120,7 @@ pub struct PlumblineWindow {
     saved: WindowSettings,
     settings_file: Option<PathBuf>,
     panels: PanelState,
+    narrow: NarrowTabs,
     dialogs: Dialogs,
     ask: Option<Ask>,
     palette: Palette,
@@ -170,6 +173,7 @@ impl PlumblineWindow {
             settings: options.settings,
             settings_file: options.settings_file,
             panels: PanelState::default(),
+            narrow: NarrowTabs::default(),
             dialogs: Dialogs::new(options.native_dialogs, ctx.clone()),
             ask: None,
             palette: Palette::default(),

@@ -1,5 +1,6 @@
 //! Messages: passing by as toasts, and kept as a history.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::{Align2, Context, vec2};
@@ -7,11 +8,14 @@ use plumbline_engine::{Notice, NoticeCommand, NoticeLevel};
 use plumbline_widgets::notifications::{Notifications, Severity};
 use plumbline_widgets::theme::space;
 
+use super::saving::open_file;
 use super::sheet::sheet;
 use crate::operator::Outbox;
 
 /// More new messages than this are not all put on screen.
 const MOST_AT_ONCE: usize = 2;
+/// Of more files than this that were never told of the oldest is forgotten.
+const MOST_AWAITED: usize = 16;
 
 /// The engine's messages and the window's own.
 #[derive(Default)]
@@ -20,6 +24,8 @@ pub(super) struct NoticeList {
     newest: u64,
     unread: usize,
     history_open: bool,
+    /// What the operator asked to be written and no message has told of yet.
+    awaited: Vec<PathBuf>,
 }
 
 impl NoticeList {
@@ -34,9 +40,27 @@ impl NoticeList {
                 self.unread += 1;
             }
             self.shown.push(severity, notice.text.as_str());
+            if severity == Severity::Done {
+                self.attach(&notice.text);
+            }
         }
         if new.len() > MOST_AT_ONCE {
             self.summarize(new.len());
+        }
+    }
+
+    /// A file is going to be written: it can be opened from the message that tells of it.
+    pub(super) fn await_file(&mut self, file: PathBuf) {
+        self.awaited.push(file);
+        if self.awaited.len() > MOST_AWAITED {
+            self.awaited.remove(0);
+        }
+    }
+
+    fn attach(&mut self, text: &str) {
+        let told = self.awaited.iter().position(|file| text.contains(&*file.to_string_lossy()));
+        if let Some(i) = told {
+            self.shown.tells_of(self.awaited.remove(i));
         }
     }
 
@@ -69,8 +93,10 @@ impl NoticeList {
     }
 
     pub(super) fn show_new(&mut self, ctx: &Context) {
-        if !self.history_open {
-            self.shown.show_toasts(ctx, vec2(space::M, 68.0));
+        if !self.history_open
+            && let Some(file) = self.shown.show_toasts(ctx, vec2(space::M, 68.0))
+        {
+            open_file(file);
         }
     }
 
@@ -94,7 +120,9 @@ impl NoticeList {
                 outbox.send(NoticeCommand::Clear);
             });
             ui.add_space(space::S);
-            self.shown.show_history(ui);
+            if let Some(file) = self.shown.show_history(ui) {
+                open_file(file);
+            }
         });
         self.unread = 0;
         if shown.close {
@@ -133,5 +161,22 @@ mod tests {
         assert_eq!((list.shown.history().count(), list.unread()), (3, 2));
         list.toggle_history();
         assert_eq!(list.unread(), 0);
+    }
+
+    #[test]
+    fn what_was_written_as_asked_can_be_opened_from_its_message() {
+        let mut list = NoticeList::default();
+        list.await_file("reports/gap.html".into());
+        let told = |number: u64, level: NoticeLevel| Notice {
+            text: "The report was written to reports/gap.html.".to_owned(),
+            ..notice(number, level)
+        };
+        let file_of = |list: &NoticeList| list.shown.history().next().and_then(|newest| newest.file.clone());
+        list.take(&Arc::from([told(1, NoticeLevel::Error)]));
+        assert_eq!(file_of(&list), None, "it was not written");
+        list.take(&Arc::from([told(2, NoticeLevel::Success)]));
+        assert_eq!(file_of(&list), Some("reports/gap.html".into()));
+        list.take(&Arc::from([notice(3, NoticeLevel::Success)]));
+        assert_eq!(file_of(&list), None);
     }
 }

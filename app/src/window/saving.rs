@@ -95,6 +95,15 @@ pub(super) fn save_picture(
     });
 }
 
+/// Opens a file with the program that the desktop has for it.
+pub(super) fn open_file(file: PathBuf) {
+    on_thread("file opener", move || {
+        if let Err(error) = open::that_detached(&file) {
+            log::error!("{} could not be opened: {error}; open it from the file manager", file.display());
+        }
+    });
+}
+
 fn on_thread(name: &str, work: impl FnOnce() + Send + 'static) {
     if let Err(error) = thread::Builder::new().name(name.to_owned()).spawn(work) {
         log::error!("no thread for the {name}: {error}");

@@ -8,6 +8,7 @@ use plumbline_widgets::texture::Picture;
 use plumbline_widgets::theme;
 
 use super::PlumblineWindow;
+use super::narrow::NARROW;
 use crate::operator::{Outbox, Pane, Screen};
 use crate::panels::{self, PanelContext, PanelState, picture_key};
 
@@ -21,8 +22,11 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
         if screen == Screen::Live && nothing {
             return panels::show_start(ui, &window.settings.recent_sources, outbox);
         }
-        let tree = window.settings.arrangement(screen);
-        let mut behavior = PaneBehavior { view: &window.view, screen, state: &mut window.panels, outbox };
+        let narrow = ui.available_width() < NARROW;
+        let arranged = window.settings.arrangement(screen);
+        let tree = if narrow { window.narrow.of(screen, arranged) } else { arranged };
+        let (view, state) = (&window.view, &mut window.panels);
+        let mut behavior = PaneBehavior { view, screen, narrow, state, outbox };
         tree.ui(&mut behavior, ui);
     });
 }
@@ -31,6 +35,7 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
 /// would lie over a title; where not even that fits, a title is worth more.
 const BUTTONS_WIDTH: f32 = 100.0;
 const MENU_WIDTH: f32 = 32.0;
+const TABLE_BUTTON_WIDTH: f32 = 48.0;
 /// On each side of a title.
 const TITLE_SPACING: f32 = 12.0;
 
@@ -58,9 +63,26 @@ fn picture_buttons(ui: &mut Ui, pane: Pane, picture: &Picture, outbox: &mut Outb
     }
 }
 
+impl PaneBehavior<'_> {
+    fn table_button(&mut self, ui: &mut Ui, pane: Pane) {
+        let button = ui.add(egui::Button::new(theme::small(ui, "Copy")).frame(false));
+        button.widget_info(|| {
+            let label = format!("Copy {} as a table", pane.title());
+            egui::WidgetInfo::labeled(egui::Role::Button, true, label)
+        });
+        if button.on_hover_text("All rows as CSV, for a spreadsheet").clicked()
+            && let Some(table) = panels::csv_of(pane, self.view)
+        {
+            self.outbox.table = Some(table);
+        }
+    }
+}
+
 struct PaneBehavior<'a> {
     view: &'a View,
     screen: Screen,
+    /// The panes are tabs, one at a time.
+    narrow: bool,
     state: &'a mut PanelState,
     outbox: &'a mut Outbox,
 }
@@ -88,10 +110,14 @@ impl Behavior<Pane> for PaneBehavior<'_> {
         tabs: &egui_tiles::Tabs,
         _scroll_offset: &mut f32,
     ) {
-        let pane = tabs.active.and_then(|active| tiles.get_pane(&active));
-        let Some((pane, key)) = pane.and_then(|pane| Some((pane, picture_key(*pane)?))) else { return };
-        let Some(picture) = self.state.textures.last(key).cloned() else { return };
+        let Some(pane) = tabs.active.and_then(|active| tiles.get_pane(&active)) else { return };
         let room = ui.available_width() - titles_width(ui, tiles, tabs);
+        if room > TABLE_BUTTON_WIDTH && panels::has_table(*pane, self.view) {
+            self.table_button(ui, *pane);
+        }
+        let Some(picture) = picture_key(*pane).and_then(|key| self.state.textures.last(key)).cloned() else {
+            return;
+        };
         if room > BUTTONS_WIDTH {
             ui.spacing_mut().item_spacing.x = theme::space::S + 2.0;
             ui.add_space(0.0);
@@ -107,6 +133,11 @@ impl Behavior<Pane> for PaneBehavior<'_> {
                 egui::WidgetInfo::labeled(egui::Role::Button, true, label)
             });
         }
+    }
+
+    /// What stands as tabs for want of room is arranged in a wider window.
+    fn is_tile_draggable(&self, _tiles: &Tiles<Pane>, _tile_id: TileId) -> bool {
+        !self.narrow
     }
 
     fn simplification_options(&self) -> SimplificationOptions {

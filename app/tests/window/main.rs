@@ -1,6 +1,7 @@
 //! The window over made-up views: every state is drawn, and every click asks for the right thing.
 
 mod commission;
+mod copying;
 mod covered;
 mod drift;
 mod experiment;

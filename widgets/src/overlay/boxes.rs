@@ -37,6 +37,10 @@ const GAP: f32 = 2.0;
 const PADDING: Vec2 = vec2(6.0, 1.0);
 /// Words go away from their box by up to this many lines to find room.
 const LINES_AWAY: usize = 6;
+/// And by up to this many where nothing nearer is free of other boxes.
+const FARTHEST: f32 = 9.0;
+/// Steps in which room is looked for there, in widths of the words.
+const ACROSS: f32 = 6.0;
 /// How much worse words on another box are than words one line farther away.
 const ON_A_BOX: f32 = 3.0;
 
@@ -122,22 +126,47 @@ pub(crate) fn room(
     Some(place)
 }
 
-/// Where words of this size for box `i` go: of the places around it that are on the picture and on
-/// no other words, the one that is near and hides little of other boxes. `None` if the box is not on
+/// Where words of this size for box `i` go: of the places around it that are on the picture and on no
+/// other words, the nearest that hides nothing of any box; where there is none, the nearest such place
+/// farther away; where there is none either, one around it that hides little. `None` if the box is not on
 /// the picture at all, or there is no room: better no word than two that cannot be read.
 fn place(i: usize, around: &[Rect], size: Vec2, clip: Rect, taken: &[Rect]) -> Option<Rect> {
     let own = around[i];
     if !clip.intersects(own) {
         return None;
     }
-    let rects = places(own, size).filter(|(_, rect)| clip.contains_rect(*rect));
-    let free = rects.filter(|(_, rect)| !taken.iter().any(|other| other.intersects(*rect)));
+    let is_free = |(_, rect): &(f32, Rect)| {
+        clip.contains_rect(*rect) && !taken.iter().any(|other| other.intersects(*rect))
+    };
     let hidden = |rect: &Rect| {
         let on = around.iter().map(|other| other.intersect(*rect)).filter(|common| common.is_positive());
         on.map(|common| common.area()).sum::<f32>() / size.x / size.y
     };
-    let scored = free.map(|(away, rect)| (away + ON_A_BOX * hidden(&rect), rect));
-    scored.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, rect)| rect)
+    let hides_nothing = |(_, rect): &(f32, Rect)| hidden(rect) == 0.0;
+    let nearest =
+        |places: &mut dyn Iterator<Item = (f32, Rect)>| places.min_by(|(a, _), (b, _)| a.total_cmp(b));
+    let near: Vec<(f32, Rect)> = places(own, size).filter(is_free).collect();
+    let found = nearest(&mut near.iter().copied().filter(hides_nothing))
+        .or_else(|| nearest(&mut farther(own, size, clip).filter(is_free).filter(hides_nothing)))
+        .or_else(|| nearest(&mut near.iter().map(|(away, rect)| (away + ON_A_BOX * hidden(rect), *rect))));
+    found.map(|(_, rect)| rect)
+}
+
+/// Places all over the picture that are not too far from a box to be taken for its words, with how many
+/// lines they are away from it.
+fn farther(own: Rect, size: Vec2, clip: Rect) -> impl Iterator<Item = (f32, Rect)> {
+    let step = vec2(size.x / ACROSS, (size.y + GAP) / 2.0);
+    let count = (clip.size() / step).floor();
+    let (columns, rows) = (count.x.max(0.0) as usize, count.y.max(0.0) as usize);
+    let at = move |column: usize, row: usize| clip.min + vec2(column as f32 * step.x, row as f32 * step.y);
+    let rects = (0..=rows).flat_map(move |row| (0..=columns).map(move |column| at(column, row)));
+    let lines = move |rect: Rect| {
+        let beside = (rect.left() - own.right()).max(own.left() - rect.right()).max(0.0);
+        let beyond = (rect.top() - own.bottom()).max(own.top() - rect.bottom()).max(0.0);
+        beside.hypot(beyond) / (size.y + GAP)
+    };
+    let rects = rects.map(move |min| Rect::from_min_size(min, size)).map(move |rect| (lines(rect), rect));
+    rects.filter(|(away, _)| *away <= FARTHEST)
 }
 
 /// Places around a box, with how many lines they are away from it.
@@ -192,6 +221,43 @@ mod tests {
         let boxes = [around(100.0, 100.0), Rect::from_min_size(pos2(90.0, 60.0), vec2(80.0, 38.0))];
         let place = place(0, &boxes, SIZE, CLIP, &[]).expect("there is room");
         assert!(!place.intersects(boxes[1]) && place.expand(GAP + 1.0).intersects(boxes[0]), "{place:?}");
+    }
+
+    /// Toys close together in the middle of a small picture, as on a table: every one has its words, and no
+    /// words lie on a toy.
+    #[test]
+    fn words_of_close_toys_hide_none_of_them() {
+        let toys = [
+            (120.0, 130.0, 38.0, 30.0),
+            (150.0, 112.0, 34.0, 40.0),
+            (182.0, 128.0, 44.0, 32.0),
+            (214.0, 108.0, 30.0, 38.0),
+            (126.0, 164.0, 46.0, 26.0),
+            (178.0, 166.0, 32.0, 34.0),
+            (216.0, 150.0, 40.0, 44.0),
+            (250.0, 128.0, 30.0, 30.0),
+            (94.0, 150.0, 28.0, 40.0),
+        ];
+        let boxes = toys.map(|(x, y, width, height)| Rect::from_min_size(pos2(x, y), vec2(width, height)));
+        let size = vec2(92.0, 16.0);
+        let mut taken = Vec::new();
+        for i in 0..boxes.len() {
+            taken.push(place(i, &boxes, size, CLIP, &taken).expect("there is room"));
+        }
+        for (i, words) in taken.iter().enumerate() {
+            let hidden = boxes.iter().position(|toy| toy.intersect(*words).is_positive());
+            assert_eq!(hidden, None, "the words of {i} at {words:?}");
+            assert!(taken[i + 1..].iter().all(|other| !other.intersects(*words)), "{taken:?}");
+        }
+    }
+
+    #[test]
+    fn where_there_is_no_room_elsewhere_words_hide_little() {
+        // A picture full of boxes.
+        let boxes: Vec<Rect> =
+            (0..10).flat_map(|x| (0..8).map(move |y| around(40.0 * x as f32, 40.0 * y as f32))).collect();
+        let place = place(33, &boxes, SIZE, CLIP, &[]).expect("better there than nowhere");
+        assert!(!place.intersect(boxes[33]).is_positive(), "its own box is not hidden: {place:?}");
     }
 
     #[test]

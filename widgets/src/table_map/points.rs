@@ -5,6 +5,7 @@ use egui::{Id, Key, Pos2, Rect, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
 use super::paint::Map;
 use super::{TableMap, TableScene, TableTransform};
 use crate::overlay::Ink;
+use crate::own_part::own_sides;
 use crate::theme;
 
 /// Distance that is still a hit, points.
@@ -50,13 +51,14 @@ pub(super) fn interact(
     points: &[TablePoint],
 ) -> PointsResponse {
     let mut done = PointsResponse::default();
-    for (i, point) in points.iter().enumerate().filter(|(_, point)| !point.faint) {
-        let at = transform.to_screen(point.at_m);
-        if !on_map.contains(at) {
-            continue;
-        }
+    let at_of = |point: &TablePoint| transform.to_screen(point.at_m);
+    let is_touchable = |point: &&TablePoint| !point.faint && on_map.contains(at_of(point));
+    let touchable: Vec<Pos2> = points.iter().filter(is_touchable).map(at_of).collect();
+    let mut sides = own_sides(&touchable, 2.0 * GRAB).into_iter();
+    for (i, point) in points.iter().enumerate().filter(|(_, point)| is_touchable(point)) {
+        let (at, side) = (at_of(point), sides.next().unwrap_or(2.0 * GRAB));
         let id = map_id.with(("point", i));
-        let rect = Rect::from_center_size(at, Vec2::splat(2.0 * GRAB)).intersect(on_map);
+        let rect = Rect::from_center_size(at, Vec2::splat(side)).intersect(on_map);
         let response = ui.interact(rect, id, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &point.label));
         if response.clicked() || response.drag_started() {

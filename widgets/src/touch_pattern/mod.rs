@@ -10,6 +10,7 @@ pub use target::{TargetLook, paint_felt, paint_target};
 
 use egui::{Pos2, Rect, Response, Sense, Ui, Vec2, WidgetInfo, pos2, vec2};
 
+use crate::own_part::own_sides;
 use crate::theme::space;
 
 /// What became of a touch.
@@ -202,8 +203,12 @@ impl<'a> TouchPattern<'a> {
         if response.clicked() {
             clicked = response.interact_pointer_pos().and_then(|at| self.near(transform, at));
         }
-        for mark in self.marks.iter().take(if self.marks.len() > MOST_LABELS { 0 } else { MOST_LABELS }) {
-            let rect = Rect::from_center_size(transform.to_drawing(mark.target_px), Vec2::splat(space::M));
+        let marks = if self.marks.len() > MOST_LABELS { &[] } else { self.marks };
+        let at: Vec<Pos2> = marks.iter().map(|mark| transform.to_drawing(mark.target_px)).collect();
+        for ((mark, at), side) in marks.iter().zip(&at).zip(own_sides(&at, space::M)) {
+            let around = Rect::from_center_size(*at, Vec2::splat(side));
+            // What sticks out of the drawing would take the clicks of what stands beside it.
+            let rect = around.intersect(transform.rect);
             let touch = ui.interact(rect, response.id.with(("touch", mark.number)), Sense::click());
             touch.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, mark.text()));
             if touch.clicked() {

@@ -55,6 +55,7 @@ impl Worker {
                 .map(|posture| self.tip_place(posture)),
             model: self.title.clone(),
             unknown: state.map_or_else(Default::default, |state| state.unknown.clone()),
+            late: state.map_or_else(Default::default, |state| state.late.clone()),
             measured,
             trail: self.trail.iter().map(|(_, place)| *place).collect(),
             preview: self.preview.as_ref().map(|(_, preview)| preview.clone()),
@@ -185,6 +186,7 @@ impl RobotView {
             && (self.speed - other.speed).abs() < f64::EPSILON
             && self.measured.is_some() == other.measured.is_some()
             && self.unknown == other.unknown
+            && self.late == other.late
             && self.joints.len() == other.joints.len()
             && self.joints.iter().zip(other.joints.iter()).all(|(a, b)| {
                 a.torque_on == b.torque_on

@@ -56,6 +56,7 @@ impl Arm for FakeArm {
             stopped: false,
             measured: Some(self.posture.clone()),
             unknown,
+            late: Arc::from([]),
             slow_answers: 0,
             commanded: Some(self.posture.clone()),
             bus: BusStatistics::default(),

@@ -44,7 +44,7 @@ impl Worker {
 
     pub(super) fn begin_touch_with(&mut self, order: TouchOrder, source: Box<dyn TouchSource>, now: Instant) {
         if let Err(reason) = self.may_touch(&order) {
-            return self.touching.tell(&order, TouchRun::Interrupted(reason.to_string()));
+            return self.touching.tell(&order, not_begun(&reason));
         }
         let refusals = self.state().and_then(|state| state.refusal.as_ref().map(|(number, _)| *number));
         match Run::new(&self.rig, order.clone(), source, refusals.unwrap_or_default(), now) {
@@ -54,7 +54,7 @@ impl Worker {
                 self.touching.run = Some(run);
                 self.step_touch(now);
             }
-            Err(reason) => self.touching.tell(&order, TouchRun::Interrupted(reason.to_string())),
+            Err(reason) => self.touching.tell(&order, not_begun(&reason)),
         }
     }
 
@@ -125,14 +125,24 @@ impl Worker {
                 // Goals below the glass become where the finger is: the next move starts outside.
                 let _ = self.arm().map(|arm| arm.hold());
                 self.paths.allow(vec![]);
-                let text = format!(
-                    "Touch {} was interrupted ({}). {reason} The arm stands where it is; when its way is free, resume.",
-                    run.order().number,
-                    run.stage().name()
-                );
-                self.touching.tell(run.order(), TouchRun::Interrupted(text));
+                let (number, stage) = (run.order().number, run.stage().name());
+                let what = format!("Touch {number} was interrupted ({stage}). {reason}");
+                let end = match reason.is_unheard() {
+                    true => TouchRun::Unheard(format!("{what} The arm holds where it is.")),
+                    false => TouchRun::Interrupted(format!(
+                        "{what} The arm stands where it is; when its way is free, resume."
+                    )),
+                };
+                self.touching.tell(run.order(), end);
             }
         }
+    }
+}
+
+fn not_begun(reason: &Interrupted) -> TouchRun {
+    match reason.is_unheard() {
+        true => TouchRun::Unheard(reason.to_string()),
+        false => TouchRun::Interrupted(reason.to_string()),
     }
 }
 

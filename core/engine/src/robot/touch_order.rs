@@ -113,6 +113,9 @@ pub enum TouchRun {
     /// There was none; the arm is up again. A sentence: the lowest place was reached, the load was
     /// too large.
     Missed(String),
+    /// Joints were not heard in time: nothing was refused, and the arm holds where it is. The touch may be
+    /// made again once they are heard. A sentence.
+    Unheard(String),
     /// The run cannot go on without the operator: STOP, a lost connection, a refused move. The
     /// arm stands where it is. A sentence.
     Interrupted(String),

@@ -204,7 +204,7 @@ pub enum Interrupted {
     #[error("The joints have not been read yet. Wait a moment, then go on.")]
     NotRead,
     /// Nobody knows any more where the arm is.
-    #[error("The joints are not known. Look at cables and power.")]
+    #[error("Not all joints have been read. Wait a moment; if it stays so, look at cables and power.")]
     Unknown,
     /// Nobody knows where it was sent.
     #[error("The goals of the joints are not known. Connect again.")]
@@ -227,6 +227,22 @@ pub enum Interrupted {
     /// Whoever was asked says why.
     #[error("{}", sentence(.0))]
     Told(String),
+}
+
+impl Interrupted {
+    /// Whether joints were merely not heard, so that the arm holds and nothing of what it was to do was
+    /// refused.
+    pub fn is_unheard(&self) -> bool {
+        let of_refusal =
+            |refusal: &Refusal| matches!(refusal, Refusal::Unknown { .. } | Refusal::UnknownInChain { .. });
+        match self {
+            Self::NotRead | Self::Unknown => true,
+            Self::Arm(refusal) | Self::Unable(Unable::Arm(refusal)) => of_refusal(refusal),
+            Self::Holds(HoldReason::Refused(refusal)) => of_refusal(refusal),
+            Self::Holds(HoldReason::Slow { .. } | HoldReason::NoAnswer { .. }) => true,
+            _ => false,
+        }
+    }
 }
 
 impl From<InTheWay> for Interrupted {

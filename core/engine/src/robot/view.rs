@@ -26,6 +26,8 @@ pub struct RobotView {
     pub measured: Option<Posture>,
     /// Joints whose servo does not answer or is not who it should be: where they are is not known.
     pub unknown: Arc<[JointIndex]>,
+    /// Those of `unknown` whose servo answers, but later than this computer can wait.
+    pub late: Arc<[JointIndex]>,
     /// Angles that the servos were sent last; `None` when nothing was sent.
     pub commanded: Option<Posture>,
     /// The tip that jogging and Cartesian targets speak of.

@@ -384,7 +384,7 @@ impl Worker {
     /// Whether it is known where some joints are, and what moves with them.
     fn knows(&self, joints: &[JointIndex]) -> Result<(), Unable> {
         let Some(state) = self.arm.as_ref().and_then(|arm| arm.state()) else { return Ok(()) };
-        Ok(self.together.check(&self.rig, joints, &state.unknown)?)
+        Ok(self.together.check(&self.rig, joints, &state.unknown, &state.late)?)
     }
 
     fn torque(&mut self, joints: &[JointIndex], on: bool) -> Result<(), Unable> {

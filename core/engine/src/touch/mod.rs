@@ -10,6 +10,9 @@ mod figures;
 mod kept_tests;
 #[cfg(test)]
 mod path_tests;
+mod patience;
+#[cfg(test)]
+mod patience_tests;
 pub mod placement;
 pub mod plan;
 pub mod record;

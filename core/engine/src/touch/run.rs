@@ -8,12 +8,14 @@ use plumbline_model::Pixel;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::{Screen, Touchscreen};
 
+use super::patience::{Look, Patience};
 use super::plan::{Aim, RunPlan};
 use super::record::{Ended, Fate, Progress, TouchRecord};
 use super::refusal::{Refusal, Trouble};
 use super::store::Stored;
 use super::work::{Context, RouteRequest, TouchWork};
 use crate::ground::jobs::JobId;
+use crate::ground::notice::NoticeLevel;
 use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
 use crate::robot::view::{Connection, RobotView};
 use crate::robot::{RobotControl, TouchNews, TouchOrder, TouchRun, TouchStage};
@@ -112,6 +114,7 @@ pub struct Run {
     /// Number of the newest touch that is not on disk yet.
     pub unwritten: Option<usize>,
     misses: usize,
+    patience: Patience,
     contacts: Vec<Instant>,
     planner: Option<(Touchscreen, Arc<Planner>)>,
     ended: bool,
@@ -144,6 +147,7 @@ impl Run {
             written: 0,
             unwritten: None,
             misses: 0,
+            patience: Patience::default(),
             contacts: vec![],
             planner: None,
             ended: false,
@@ -386,7 +390,13 @@ impl Run {
             }
             TouchRun::Missed(_) if at_end == AtEnd::Skip => self.end(number, Ended::Skipped),
             TouchRun::Missed(why) if at_end == AtEnd::Keep => self.missed(number, why),
-            TouchRun::Interrupted(why) => {
+            TouchRun::Unheard(why) if at_end == AtEnd::Keep && self.waits_to_be_heard(context) => {
+                let text = format!(
+                    "{why} The run goes on by itself with touch {number} as soon as the joints are heard again."
+                );
+                self.phase = Phase::Paused(Some(text));
+            }
+            TouchRun::Interrupted(why) | TouchRun::Unheard(why) => {
                 if at_end == AtEnd::Skip {
                     self.end(number, Ended::Skipped);
                 }
@@ -410,6 +420,7 @@ impl Run {
                 self.progress.touched(record);
                 self.unwritten = Some(number);
                 self.misses = 0;
+                self.patience.touched();
                 self.changed();
             }
             None => self.missed(number, "The contact had no place.".to_owned()),
@@ -439,6 +450,43 @@ impl Run {
             let again = format!("Touch {number} is made again when you go on.");
             self.phase = Phase::Paused(Some(format!("{why} {again}")));
         }
+    }
+
+    fn waits_to_be_heard(&mut self, context: &Context<'_>) -> bool {
+        self.phase == Phase::Working && !self.pause && self.patience.begin(context.time.instant)
+    }
+
+    /// Looks whether a run that holds because joints were not heard goes on by itself.
+    pub fn look_again(&mut self, now: &Now<'_>, context: &mut Context<'_>) {
+        let Phase::Paused(why) = &mut self.phase else {
+            self.patience.end();
+            return;
+        };
+        let trouble = now.trouble.map(|trouble| trouble.to_string());
+        match self.patience.look(now.robot, trouble, &self.joints, context.time.instant) {
+            Look::Same => {}
+            Look::GoesOn => {
+                self.phase = Phase::Working;
+                let text = "The joints are heard again: the run goes on by itself.";
+                context.notices.add(NoticeLevel::Info, text.to_owned());
+            }
+            Look::GivesUp(reason) => {
+                let before = why.take().unwrap_or_default();
+                *why = Some(format!("{before} It did not: {reason} Go on when the way is free."));
+            }
+        }
+    }
+
+    /// A run that would go on by itself waits for the operator.
+    pub fn hold_on(&mut self) {
+        if self.patience.end() {
+            self.phase = Phase::Paused(None);
+        }
+    }
+
+    /// The operator decides what becomes of a run that waits for its joints.
+    pub fn waits_no_more(&mut self) {
+        self.patience.end();
     }
 
     /// The robot is gone: no more is heard of the touch under way.

@@ -166,6 +166,12 @@ impl Desk {
         self.with(|workflow, around, context| workflow.apply(command, around, context));
     }
 
+    /// Time passes, then the robot has something new.
+    pub fn wait(&mut self, time: Duration) {
+        self.clock += time;
+        self.step();
+    }
+
     pub fn step(&mut self) {
         self.with(|workflow, around, context| workflow.step(around, context));
     }

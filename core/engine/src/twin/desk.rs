@@ -65,6 +65,9 @@ pub struct TwinDesk {
     failed: Option<String>,
     board_places: Vec<Pose<Robot, Board>>,
     tour: Option<Tour>,
+    /// Toys that made room for the board that lies on the table, and where they stood (x, y in the robot's
+    /// frame, m).
+    made_room: Vec<(Toy, [f64; 2])>,
     notes: Vec<(NoticeLevel, String)>,
 }
 
@@ -79,6 +82,7 @@ impl TwinDesk {
             failed: None,
             board_places: Vec::new(),
             tour: None,
+            made_room: Vec::new(),
             notes: Vec::new(),
         }
     }
@@ -113,6 +117,7 @@ impl TwinDesk {
     pub fn start(&mut self, scenario: &str, rig: &Arc<Rig>) -> Result<PathBuf, TwinUnable> {
         self.eyes.set(None);
         (self.twin, self.tour) = (None, None);
+        self.made_room.clear();
         scenario.clone_into(&mut self.scenario);
         let started = self.try_start(scenario, rig);
         self.failed = started.as_ref().err().map(ToString::to_string);
@@ -132,6 +137,25 @@ impl TwinDesk {
 
     /// Does what the operator asked.
     pub fn control(&mut self, command: TwinCommand, rig: &Rig) -> Result<(), TwinUnable> {
+        let touched = match &command {
+            TwinCommand::PlaceToy { toy, .. } | TwinCommand::RemoveToy { toy } => Toy::from_name(toy),
+            _ => None,
+        };
+        let takes_board = matches!(
+            command,
+            TwinCommand::HoldBoard { .. } | TwinCommand::TourBoard(true) | TwinCommand::HideBoard
+        );
+        let resets = matches!(command, TwinCommand::Reset);
+        self.carry_out(command, rig)?;
+        // Whoever was put somewhere by hand stays there.
+        self.made_room.retain(|(toy, _)| !resets && Some(*toy) != touched);
+        if takes_board {
+            self.put_back(rig);
+        }
+        Ok(())
+    }
+
+    fn carry_out(&mut self, command: TwinCommand, rig: &Rig) -> Result<(), TwinUnable> {
         let twin = self.twin.as_ref().ok_or(TwinUnable::NotRunning)?;
         let toy = |name: &str| Toy::from_name(name).ok_or_else(|| TwinUnable::NoToy(name.to_owned()));
         let send = |command| {
@@ -158,7 +182,7 @@ impl TwinDesk {
             TwinCommand::LayBoard { x_m, y_m, yaw_rad } => {
                 self.tour = None;
                 let robot_from_board = lying(rig, x_m, y_m, yaw_rad)?;
-                self.make_room(&robot_from_board);
+                self.make_room(&robot_from_board, rig);
                 let twin = self.twin.as_ref().ok_or(TwinUnable::NotRunning)?;
                 twin.send(To::PlaceBoard { robot_from_board });
                 Ok(())
@@ -174,6 +198,13 @@ impl TwinDesk {
             TwinCommand::PrepareTouch { screen_height_m, payload_kg } => {
                 self.tour = None;
                 self.free_screen(rig);
+                // Whoever stood on the screen comes back with the next change of the board.
+                let on_screen = |at: &[f64; 2]| is_on_screen([at[0], at[1], rig.table.height_m].into(), rig);
+                let before = std::mem::take(&mut self.made_room);
+                let (later, back): (Vec<_>, Vec<_>) = before.into_iter().partition(|(_, at)| on_screen(at));
+                self.made_room = back;
+                self.put_back(rig);
+                self.made_room = later;
                 let twin = self.twin.as_ref().ok_or(TwinUnable::NotRunning)?;
                 twin.send(To::HideBoard);
                 twin.send(To::PrepareTouch { screen_height_m, payload_kg });
@@ -198,26 +229,48 @@ impl TwinDesk {
         }
     }
 
-    /// Puts toys away that stand where the board is to lie: they would hide its corners.
-    fn make_room(&mut self, robot_from_board: &Pose<Robot, Board>) {
+    /// Puts toys away that stand where the board is to lie: they would hide its corners. Those that made
+    /// room for it elsewhere come back.
+    fn make_room(&mut self, robot_from_board: &Pose<Robot, Board>, rig: &Rig) {
         let Some(twin) = &self.twin else { return };
-        let board = plumbline_model::default_board();
-        let size = |corners: u32| f64::from(corners - 1) * board.square_m;
-        let (width_m, height_m) = (size(board.inner_columns), size(board.inner_rows));
+        let hides = |toy: Toy, at_m: [f64; 2]| is_on_board(toy, at_m, robot_from_board, rig);
+        let before = std::mem::take(&mut self.made_room);
+        let (stay_away, back): (Vec<_>, Vec<_>) = before.into_iter().partition(|(toy, at)| hides(*toy, *at));
         let mut away = vec![];
         for (toy, place) in &twin.state().toys {
-            let Some(place) = place else { continue };
-            let on_board = robot_from_board.isometry.inverse() * nalgebra::Point3::from(*place);
-            // The eyes look from the side, so what stands near hides something too.
-            let reach_m = 2.0 * board.square_m + 2.0 * toy.radius_m();
-            let inside = |value: f64, size_m: f64| value > -reach_m && value < size_m + reach_m;
-            if inside(on_board.x, width_m) && inside(on_board.y, height_m) {
-                twin.send(plumbline_twin::TwinCommand::RemoveObject { toy: *toy });
-                away.push(toy.name());
-            }
+            let Some(at_m) = place.map(|place| [place.x, place.y]).filter(|at_m| hides(*toy, *at_m)) else {
+                continue;
+            };
+            twin.send(plumbline_twin::TwinCommand::RemoveObject { toy: *toy });
+            away.push((*toy, at_m));
         }
         if !away.is_empty() {
-            let text = format!("Put away to make room for the board: {}.", away.join(", "));
+            let names: Vec<&str> = away.iter().map(|(toy, _)| toy.name()).collect();
+            let text = format!(
+                "Put away to make room for the board, and back where they stood once it is gone: {}.",
+                names.join(", ")
+            );
+            self.notes.push((NoticeLevel::Info, text));
+        }
+        self.made_room = back;
+        self.put_back(rig);
+        self.made_room = [stay_away, away].concat();
+    }
+
+    /// Toys that made room for the board stand where they stood.
+    fn put_back(&mut self, rig: &Rig) {
+        let Some(twin) = &self.twin else { return };
+        let mut back = vec![];
+        for (toy, [x_m, y_m]) in std::mem::take(&mut self.made_room) {
+            // One that was at the very edge, or had been pushed off the table, cannot be put there.
+            let on = |range: [f64; 2], value: f64| value >= range[0] && value <= range[1];
+            if on(rig.table.x_range_m, x_m) && on(rig.table.y_range_m, y_m) {
+                twin.send(plumbline_twin::TwinCommand::PlaceObject { toy, x_m, y_m });
+                back.push(toy.name());
+            }
+        }
+        if !back.is_empty() {
+            let text = format!("Back where they stood: {}.", back.join(", "));
             self.notes.push((NoticeLevel::Info, text));
         }
     }
@@ -225,18 +278,9 @@ impl TwinDesk {
     /// Puts toys away that lie on the touchscreen or near it: a finger would land on them.
     pub fn free_screen(&mut self, rig: &Rig) {
         let Some(twin) = &self.twin else { return };
-        let screen = &rig.touchscreen;
         let mut away = vec![];
         for (toy, place) in &twin.state().toys {
-            let Some(place) = place else { continue };
-            let pixel = screen.pixel_at(Point::from(nalgebra::Point3::from(*place)));
-            let near = |at_px: f64, count: u32, size_m: f64| {
-                let at_m = at_px * size_m / f64::from(count);
-                at_m > -BESIDE_SCREEN_M && at_m < size_m + BESIDE_SCREEN_M
-            };
-            if near(pixel.u_px, screen.width_px, screen.width_m)
-                && near(pixel.v_px, screen.height_px, screen.height_m)
-            {
+            if place.is_some_and(|place| is_on_screen(place, rig)) {
                 twin.send(plumbline_twin::TwinCommand::RemoveObject { toy: *toy });
                 away.push(toy.name());
             }
@@ -362,6 +406,29 @@ fn lying(rig: &Rig, x_m: f64, y_m: f64, yaw_rad: f64) -> Result<Pose<Robot, Boar
     Ok(Pose::new(nalgebra::Isometry3::from_parts(origin.into(), turn)))
 }
 
+/// Whether a toy at a place stands on the touchscreen, or so near that a hand would meet it.
+fn is_on_screen(place: nalgebra::Vector3<f64>, rig: &Rig) -> bool {
+    let screen = &rig.touchscreen;
+    let pixel = screen.pixel_at(Point::from(nalgebra::Point3::from(place)));
+    let near = |at_px: f64, count: u32, size_m: f64| {
+        let at_m = at_px * size_m / f64::from(count);
+        at_m > -BESIDE_SCREEN_M && at_m < size_m + BESIDE_SCREEN_M
+    };
+    near(pixel.u_px, screen.width_px, screen.width_m) && near(pixel.v_px, screen.height_px, screen.height_m)
+}
+
+/// Whether a toy at a place of the table would hide some of a lying board.
+fn is_on_board(toy: Toy, [x_m, y_m]: [f64; 2], robot_from_board: &Pose<Robot, Board>, rig: &Rig) -> bool {
+    let board = plumbline_model::default_board();
+    let size = |corners: u32| f64::from(corners - 1) * board.square_m;
+    let place = nalgebra::Point3::new(x_m, y_m, rig.table.height_m);
+    let on_board = robot_from_board.isometry.inverse() * place;
+    // The eyes look from the side, so what stands near hides something too.
+    let reach_m = 2.0 * board.square_m + 2.0 * toy.radius_m();
+    let inside = |value: f64, size_m: f64| value > -reach_m && value < size_m + reach_m;
+    inside(on_board.x, size(board.inner_columns)) && inside(on_board.y, size(board.inner_rows))
+}
+
 /// The printed side lies this high above the table, m; the touchscreen's glass is lower.
 const BOARD_THICKNESS_M: f64 = 0.006;
 
@@ -378,6 +445,51 @@ mod tests {
         assert!(seen(1600, 108));
         assert!(!seen(30_000, 104) && seen(60_000, 104), "a slow machine has looked four times");
         assert!(seen(12_000, 100), "nobody looks");
+    }
+
+    #[test]
+    fn toys_make_room_for_the_board_and_come_back_where_they_stood() {
+        let rig = Arc::new(Rig::built_in("nico").expect("the rig that comes with the program"));
+        let mut desk = TwinDesk::new(TwinEyesPlug::default());
+        desk.start("perfect", &rig).expect("a twin");
+        let place = |desk: &TwinDesk, toy: Toy| {
+            let twin = desk.twin.as_ref().expect("it runs");
+            twin.state().toys.iter().find(|(known, _)| *known == toy).and_then(|(_, place)| *place)
+        };
+        let until = |desk: &TwinDesk, what: &str, holds: &dyn Fn(&TwinDesk) -> bool| {
+            let begun = Instant::now();
+            while !holds(desk) {
+                assert!(begun.elapsed() < Duration::from_secs(30), "never: {what}");
+                std::thread::sleep(Duration::from_millis(5));
+            }
+        };
+        let put = |desk: &mut TwinDesk, toy: Toy, [x_m, y_m]: [f64; 2]| {
+            let command = TwinCommand::PlaceToy { toy: toy.name().to_owned(), x_m, y_m };
+            desk.control(command, &rig).expect("on the table");
+            until(desk, "it stands", &|desk| {
+                place(desk, toy).is_some_and(|at| (at.x - x_m).hypot(at.y - y_m) < 0.03 && at.z < 0.15)
+            });
+        };
+        put(&mut desk, Toy::Tomato, [0.35, 0.0]);
+        put(&mut desk, Toy::Duck, [0.30, 0.05]);
+        let stood = place(&desk, Toy::Tomato).expect("it stands");
+        let lay = |x_m: f64, y_m: f64| TwinCommand::LayBoard { x_m, y_m, yaw_rad: 0.0 };
+        desk.control(lay(0.35, 0.0), &rig).expect("it lies");
+        until(&desk, "room", &|desk| [Toy::Tomato, Toy::Duck].iter().all(|toy| place(desk, *toy).is_none()));
+        assert!(desk.take_notes().iter().any(|(_, text)| text.contains("make room")));
+        // What is put somewhere by hand meanwhile stays there.
+        put(&mut desk, Toy::Duck, [0.30, -0.45]);
+        desk.control(TwinCommand::HideBoard, &rig).expect("hidden");
+        until(&desk, "the tomato is back", &|desk| {
+            place(desk, Toy::Tomato).is_some_and(|at| (at.x - stood.x).hypot(at.y - stood.y) < 0.02)
+        });
+        let duck = place(&desk, Toy::Duck).expect("it stands");
+        assert!((duck.y + 0.45).abs() < 0.03, "{duck}");
+        let said = desk.take_notes();
+        let back = said.iter().find(|(_, text)| text.starts_with("Back where they stood: "));
+        assert!(back.is_some_and(|(_, text)| text.contains("tomato") && !text.contains("duck")), "{said:?}");
+        desk.control(TwinCommand::HideBoard, &rig).expect("hidden");
+        assert!(desk.take_notes().is_empty(), "once");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use plumbline_model::robot::{Description, JointIndex, JointKind, LinkIndex, Rig};
 
-use super::refusal::Refusal;
+use super::refusal::{Refusal, Unheard};
 
 /// For each joint the joints on the same way from the base to a fingertip.
 #[derive(Clone, Debug)]
@@ -29,18 +29,29 @@ impl Chains {
         self.0.get(a.0).and_then(|row| row.get(b.0)).copied().unwrap_or(false)
     }
 
-    /// Whether `joints` may move while it is not known where `unknown` are.
+    /// Whether `joints` may move while it is not known where `unknown` are, `late` among them because
+    /// their servos answer too late.
     ///
     /// # Errors
     /// Which joint has to stay, and for which.
-    pub fn check(&self, rig: &Rig, joints: &[JointIndex], unknown: &[JointIndex]) -> Result<(), Refusal> {
+    pub fn check(
+        &self,
+        rig: &Rig,
+        joints: &[JointIndex],
+        unknown: &[JointIndex],
+        late: &[JointIndex],
+    ) -> Result<(), Refusal> {
+        let why = |joint: JointIndex| match late.contains(&joint) {
+            true => Unheard::TooBusy,
+            false => Unheard::Silent,
+        };
         let name = |joint: JointIndex| match rig.servo_of(joint) {
             Some(servo) => servo.title.clone(),
             None => format!("joint number {}", joint.0),
         };
         for joint in joints {
             if unknown.contains(joint) {
-                return Err(Refusal::Unknown { joint: *joint, name: name(*joint) });
+                return Err(Refusal::Unknown { joint: *joint, name: name(*joint), why: why(*joint) });
             }
         }
         for joint in joints {
@@ -50,6 +61,7 @@ impl Chains {
                     name: name(*joint),
                     unknown: *other,
                     unknown_name: name(*other),
+                    why: why(*other),
                 });
             }
         }
@@ -92,8 +104,8 @@ mod tests {
             assert_eq!(chains.are_together(joint(a), joint(b)), together, "{a} and {b}");
         }
         let refused =
-            chains.check(&rig, &[joint("r_elbow_y")], &[joint("r_shoulder_y")]).expect_err("one chain");
+            chains.check(&rig, &[joint("r_elbow_y")], &[joint("r_shoulder_y")], &[]).expect_err("one chain");
         assert!(refused.to_string().contains("not known where Right shoulder swing is"), "{refused}");
-        assert!(chains.check(&rig, &[joint("l_elbow_y")], &[joint("r_shoulder_y")]).is_ok());
+        assert!(chains.check(&rig, &[joint("l_elbow_y")], &[joint("r_shoulder_y")], &[]).is_ok());
     }
 }

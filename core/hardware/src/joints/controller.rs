@@ -18,7 +18,7 @@ use super::guard::{FloorGuard, Guard};
 use super::limiter::Limiter;
 use super::options::ArmOptions;
 use super::rate::Rate;
-use super::refusal::{HoldReason, Refusal};
+use super::refusal::{HoldReason, Refusal, Unheard};
 use super::requests::Request;
 use super::slot::Slot;
 use super::trajectory::Trajectory;
@@ -299,6 +299,12 @@ impl Controller {
     pub(super) fn unknown(&self) -> Vec<JointIndex> {
         let slots = self.exchange.slots.iter().filter(|slot| !slot.is_known());
         slots.map(|slot| slot.reading.joint).chain(self.voiceless.iter().copied()).collect()
+    }
+
+    /// Those of them whose servo answers, but too late.
+    pub(super) fn late(&self) -> Vec<JointIndex> {
+        let slots = self.exchange.slots.iter().filter(|slot| !slot.is_known());
+        slots.filter(|slot| slot.unheard() == Unheard::TooBusy).map(|slot| slot.reading.joint).collect()
     }
 
     /// Whether all that moves was read just now, and may be written.

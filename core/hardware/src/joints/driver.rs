@@ -18,7 +18,7 @@ use super::grip::Grip;
 use super::limiter::Limiter;
 use super::options::ArmOptions;
 use super::reading::JointState;
-use super::refusal::{HoldReason, Refusal};
+use super::refusal::{HoldReason, Refusal, Unheard};
 use super::requests::{Request, note_scan};
 use super::ring::StateRing;
 use super::servo_unit::ServoUnit;
@@ -159,9 +159,10 @@ impl ArmDriver {
         if let Some(reason) = &state.gone {
             return Err(Refusal::Gone(reason.clone()));
         }
-        let unknown = || Refusal::Unknown { joint: JointIndex(0), name: "the arm".to_owned() };
+        let unknown =
+            || Refusal::Unknown { joint: JointIndex(0), name: "the arm".to_owned(), why: Unheard::Silent };
         let joints: Vec<JointIndex> = wanted.goals.iter().map(|(joint, _)| *joint).collect();
-        self.chains.check(&self.limiter.rig, &joints, &state.unknown)?;
+        self.chains.check(&self.limiter.rig, &joints, &state.unknown, &state.late)?;
         let start = state.commanded.as_ref().ok_or_else(unknown)?;
         let present = state.measured.as_ref().ok_or_else(unknown)?;
         let line = self.limiter.plan(start, present, wanted)?;

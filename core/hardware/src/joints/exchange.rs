@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use super::servo_unit::ServoUnit;
 use super::slot::{Identity, Slot};
-use crate::dynamixel::{BulkItem, Bus, BusError, Instruction, Item};
+use crate::dynamixel::{BulkItem, Bus, BusError, FaultKind, Instruction, Item};
 
 /// The first attempt of a cycle waits as long as answers take at the moment.
 const FIRST_ATTEMPT: Duration = Duration::from_millis(100);
@@ -231,7 +231,11 @@ impl Exchange {
     fn note_silence(&mut self) {
         let Silence { cycles, time } = self.silence;
         for slot in &mut self.slots {
-            if slot.missed >= cycles && slot.silence() >= time {
+            let by_servo = &self.bus.counts().by_servo;
+            let late = by_servo.get(&slot.unit.id()).map_or(0, |counts| counts.of(FaultKind::Late));
+            slot.note_late(late);
+            // Who answers too late is there: this machine is busy, and neither power nor cable is gone.
+            if slot.missed >= cycles && slot.silence() >= time && !slot.answers_late() {
                 slot.fall_silent();
             }
         }

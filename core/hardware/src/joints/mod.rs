@@ -55,6 +55,6 @@ pub use grip::Grip;
 pub use guard::{FloorGuard, Guard};
 pub use options::{ArmOptions, OnState};
 pub use reading::{BusStatistics, JointReading, JointState};
-pub use refusal::{HoldReason, Refusal};
+pub use refusal::{HoldReason, Refusal, Unheard};
 pub use stop::{Heartbeat, StopSwitch};
 pub use touch::{ScreenGone, Touch, TouchSource};

@@ -2,6 +2,7 @@
 
 use plumbline_model::robot::Gate;
 
+use super::refusal::Unheard;
 use super::slot::Slot;
 use super::torque::barred;
 
@@ -13,6 +14,10 @@ pub(super) fn of(slot: &Slot, gate: &Gate) -> Option<String> {
     }
     if slot.silent {
         return Some(match &slot.complaint {
+            None if slot.answers_late() => format!(
+                "servo {id} answers too late and is left out, where its joint is, is not known: {}; it is asked again twice a second",
+                Unheard::TooBusy.advice()
+            ),
             Some(words) => format!("servo {id} is left out: {words}"),
             None => format!(
                 "servo {id} does not answer and is left out, where its joint is, is not known: check its cable and power; it is asked again twice a second"
@@ -36,6 +41,13 @@ pub(super) fn of(slot: &Slot, gate: &Gate) -> Option<String> {
     if slot.let_go {
         return Some(format!(
             "servo {id} did not answer for a while: nothing is sent to it until you switch torque on, which holds it where it is then"
+        ));
+    }
+    if slot.missed > 2 && slot.answers_late() {
+        return Some(format!(
+            "servo {id} answered too late in the last {} cycles: {}",
+            slot.missed,
+            Unheard::TooBusy.advice()
         ));
     }
     if slot.missed > 2 {
@@ -68,6 +80,9 @@ pub(super) fn warm(title: &str, temperature_c: f64, gate: &Gate) -> String {
 
 /// Nobody answers any more.
 pub(super) const ALL_SILENT: &str = "no servo answers: their power seems to be off, or the cable is unplugged. When they are back nothing moves and all are limp until you switch torque on";
+
+/// Everybody answers too late.
+pub(super) const ALL_LATE: &str = "all servos answer too late: the computer is too busy to hear them in time; close other programs. When they are heard again nothing moves and all are limp until you switch torque on";
 
 /// Bytes per second that belong to nothing from which on somebody else talks on the line.
 pub(super) const FLOOD_BYTES_PER_S: f64 = 2000.0;

@@ -102,6 +102,8 @@ pub struct JointState {
     /// Joints whose servo is silent, was never read, or is not who the rig says: where they are is
     /// not known, whatever `measured` holds for them.
     pub unknown: Arc<[JointIndex]>,
+    /// Those of `unknown` whose servo answers, but later than this machine or the line can wait.
+    pub late: Arc<[JointIndex]>,
     /// All joints as commanded last, the others as measured.
     pub commanded: Option<Posture>,
     /// The bus.

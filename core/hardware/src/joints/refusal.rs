@@ -4,6 +4,35 @@ use std::time::Duration;
 
 use plumbline_model::robot::JointIndex;
 
+/// Why nothing is heard of a servo.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unheard {
+    /// It does not answer.
+    Silent,
+    /// It answers, later than anybody waits, or is not even asked in time: this computer or the line does
+    /// not keep up.
+    TooBusy,
+}
+
+impl Unheard {
+    /// What to do.
+    pub(super) fn advice(self) -> &'static str {
+        match self {
+            Self::Silent => "check its cable and power",
+            Self::TooBusy => {
+                "the computer was too busy to hear its answers in time: close other programs, or wait until it has less to do"
+            }
+        }
+    }
+
+    fn happened(self) -> &'static str {
+        match self {
+            Self::Silent => "does not answer",
+            Self::TooBusy => "was not heard in time",
+        }
+    }
+}
+
 /// Why a motion is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
@@ -105,16 +134,18 @@ pub enum Refusal {
         name: String,
     },
     /// Its angle is not known.
-    #[error("the servo of {name} does not answer, so its angle is not known: check its cable and power")]
+    #[error("the servo of {name} {}, so its angle is not known: {}", .why.happened(), .why.advice())]
     Unknown {
         /// The joint.
         joint: JointIndex,
         /// Its name.
         name: String,
+        /// Why it is not heard.
+        why: Unheard,
     },
     /// Where another joint of its chain is, is not known.
     #[error(
-        "{name} stays, because it is not known where {unknown_name} is, and with it the rest of that arm: check the cable and power of that servo"
+        "{name} stays, because it is not known where {unknown_name} is, and with it the rest of that arm; its servo {}: {}", .why.happened(), .why.advice()
     )]
     UnknownInChain {
         /// The joint that was to move.
@@ -125,6 +156,8 @@ pub enum Refusal {
         unknown: JointIndex,
         /// Its name.
         unknown_name: String,
+        /// Why it is not heard.
+        why: Unheard,
     },
     /// It does not take a limit of its torque.
     #[error("the servo of {name} does not take a limit of {:.0} % of its torque, so it does not grip: look at its cable, then take hold of it anew (torque off and on)", .share * 1e2)]

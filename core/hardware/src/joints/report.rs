@@ -10,6 +10,7 @@ use super::command::Motion;
 use super::controller::{Controller, Mode};
 use super::problem;
 use super::reading::{BusStatistics, JointState};
+use super::slot::Slot;
 use super::torque::slow_answers;
 
 impl Controller {
@@ -32,7 +33,8 @@ impl Controller {
         let slots = &self.exchange.slots;
         let all_silent = !slots.is_empty() && slots.iter().all(|slot| !slot.in_use());
         if all_silent {
-            warnings.insert(0, problem::ALL_SILENT.to_owned());
+            let late = slots.iter().any(Slot::answers_late);
+            warnings.insert(0, if late { problem::ALL_LATE } else { problem::ALL_SILENT }.to_owned());
         }
         let strays_per_s = self.rate.strays_per_s();
         if strays_per_s > problem::FLOOD_BYTES_PER_S {
@@ -63,6 +65,7 @@ impl Controller {
             stopped: self.options.stop.is_pressed(),
             measured: self.measured(),
             unknown: self.unknown().into(),
+            late: self.late().into(),
             slow_answers: slow.map(|(count, _)| count).unwrap_or(0),
             commanded: self.commanded.clone(),
             bus: BusStatistics {

@@ -10,7 +10,7 @@ use super::command::{Move, MoveId, MoveOutcome, Setpoint};
 use super::controller::{Controller, Mode};
 use super::driver::expected_servos;
 use super::grip::Grip;
-use super::refusal::{HoldReason, Refusal};
+use super::refusal::{HoldReason, Refusal, Unheard};
 use super::slot::{Bar, Identity, Slot};
 use super::torque::{barred, unknown};
 use super::trajectory::Trajectory;
@@ -126,16 +126,20 @@ impl Controller {
             let slot = self.exchange.slots.iter().find(|slot| slot.reading.joint == *joint);
             may_move(slot.ok_or(Refusal::NoServo { joint: *joint })?, self.limiter.rig.gate.hot_c)?;
         }
-        self.chains.check(&self.limiter.rig, joints, &self.unknown())?;
-        let unknown = || {
+        self.chains.check(&self.limiter.rig, joints, &self.unknown(), &self.late())?;
+        let not_known = || {
             let slot = self.exchange.slots.iter().find(|slot| slot.reading.angle_rad.is_none());
-            let (joint, name) = slot.map_or((JointIndex(0), "the arm".to_owned()), |slot| {
-                (slot.reading.joint, slot.unit.servo.title.clone())
-            });
-            Refusal::Unknown { joint, name }
+            slot.map_or_else(
+                || Refusal::Unknown {
+                    joint: JointIndex(0),
+                    name: "the arm".to_owned(),
+                    why: Unheard::Silent,
+                },
+                unknown,
+            )
         };
-        let measured = self.measured().ok_or_else(unknown)?;
-        let mut commanded = self.commanded.clone().ok_or_else(unknown)?;
+        let measured = self.measured().ok_or_else(not_known)?;
+        let mut commanded = self.commanded.clone().ok_or_else(not_known)?;
         for joint in joints {
             // NaN fails the comparison.
             if !((commanded[*joint] - measured[*joint]).abs() <= self.limiter.rig.gate.step_rad) {
@@ -193,7 +197,7 @@ fn may_move(slot: &Slot, limit_c: f64) -> Result<(), Refusal> {
         return Err(refusal);
     }
     if !slot.is_known() || slot.silence() >= RECENT {
-        return Err(Refusal::Unknown { joint, name });
+        return Err(unknown(slot));
     }
     if !slot.holds_torque() && (slot.let_go || slot.reading.torque_on == Some(true)) {
         return Err(Refusal::LetGo { joint, name });

@@ -121,6 +121,7 @@ mod tests {
                 refusal: None,
                 warnings: Arc::from([]),
                 unknown: Arc::from([]),
+                late: Arc::from([]),
                 slow_answers: 0,
                 gone: None,
                 scan: Arc::default(),

@@ -8,6 +8,7 @@
 use std::time::{Duration, Instant};
 
 use super::reading::JointReading;
+use super::refusal::Unheard;
 use super::servo_unit::{ServoUnit, unwrapped};
 use crate::dynamixel::{FoundServo, Status, Ticks};
 
@@ -16,6 +17,8 @@ use crate::dynamixel::{FoundServo, Status, Ticks};
 const NEAR: Duration = Duration::from_millis(300);
 /// An angle read longer ago than this says no more where the joint is.
 const KNOWN_FOR: Duration = Duration::from_secs(1);
+/// An answer that came too late is a sign of life for this long: without it the servo is silent.
+const LATE_COUNTS_FOR: Duration = Duration::from_millis(500);
 /// Less force than this share of the stall torque is none.
 const NO_FORCE: f64 = 0.02;
 
@@ -60,6 +63,10 @@ pub(super) struct Slot {
     pub found_at_start: bool,
     /// Cycles in a row in which it was asked for itself and did not answer rightly.
     pub missed: u32,
+    /// When an answer of it came that was not waited for any more: it has power and a cable.
+    pub late_at: Option<Instant>,
+    /// Such answers so far.
+    pub late_answers: u64,
     /// Left out for its silence; asked again now and then.
     pub silent: bool,
     /// It was in hand when it fell silent.
@@ -105,6 +112,8 @@ impl Slot {
             in_hand: false,
             found_at_start: false,
             missed: 0,
+            late_at: None,
+            late_answers: 0,
             silent: true,
             let_go: false,
             verify: false,
@@ -148,6 +157,26 @@ impl Slot {
     /// Time since the last answer; long before the first.
     pub fn silence(&self) -> Duration {
         self.reading.read_at.map_or(Duration::MAX, |at| at.elapsed())
+    }
+
+    /// Takes how many of its answers came too late so far.
+    pub fn note_late(&mut self, late_answers: u64) {
+        if late_answers > self.late_answers {
+            self.late_at = Some(Instant::now());
+        }
+        self.late_answers = late_answers;
+    }
+
+    /// Whether it answers, but later than this machine or the line can wait.
+    pub fn answers_late(&self) -> bool {
+        self.late_at.is_some_and(|at| at.elapsed() < LATE_COUNTS_FOR)
+    }
+
+    /// Why it is not heard: one that is not even asked in time is no more to blame than one that
+    /// answers late.
+    pub fn unheard(&self) -> Unheard {
+        let is_reached_too_seldom = self.in_use() && self.missed == 0;
+        if self.answers_late() || is_reached_too_seldom { Unheard::TooBusy } else { Unheard::Silent }
     }
 
     /// Whether its torque is on and it is ours to command.

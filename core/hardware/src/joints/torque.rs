@@ -193,7 +193,8 @@ pub(super) fn slow_answers(slots: &[Slot]) -> Option<(usize, Duration)> {
 }
 
 pub(super) fn unknown(slot: &Slot) -> Refusal {
-    Refusal::Unknown { joint: slot.unit.servo.joint, name: slot.unit.servo.title.clone() }
+    let (joint, name) = (slot.unit.servo.joint, slot.unit.servo.title.clone());
+    Refusal::Unknown { joint, name, why: slot.unheard() }
 }
 
 /// Why a servo is never used, if so.

@@ -27,7 +27,7 @@ impl Controller {
             return self.stay(MoveOutcome::Held(HoldReason::JogEnded), HoldReason::JogEnded);
         }
         let unknown = self.unknown();
-        if let Err(refusal) = self.chains.check(&self.limiter.rig, &moving, &unknown)
+        if let Err(refusal) = self.chains.check(&self.limiter.rig, &moving, &unknown, &self.late())
             && matches!(refusal, Refusal::UnknownInChain { .. })
         {
             self.refuse(refusal.clone());

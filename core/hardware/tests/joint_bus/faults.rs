@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::dynamixel::{FaultKind, Item, open_port};
-use plumbline_hardware::joints::{ArmDriver, ArmOptions, HoldReason, Motion, MoveOutcome, Refusal};
+use plumbline_hardware::joints::{ArmDriver, ArmOptions, HoldReason, Motion, MoveOutcome, Refusal, Unheard};
 
 use super::chain::{Fault, PtyChain};
 use super::world::{await_state, id_of, joint, nico, ready, run, turn};
@@ -92,6 +92,31 @@ fn a_silent_servo_is_named_on_a_slow_line_too() {
     }
 }
 
+/// A computer that is too busy hears answers when their time is over: they tell that power and cable are
+/// there, so nobody is let go, and nobody is sent to look at cables.
+#[test]
+fn a_servo_that_answers_too_late_is_not_taken_for_a_silent_one() {
+    let (rig, chain, driver) = ready();
+    let pan = joint(&rig, "head_z");
+    chain.fault(id_of(&rig, pan), Fault::Late(Duration::from_millis(70)), u32::MAX);
+    let state = await_state(&driver, "a head that is not known", |s| s.unknown.contains(&pan));
+    assert!(state.late.contains(&pan), "{:?}", state.late);
+    let reading = state.of(pan).expect("a joint");
+    assert!(!reading.let_go, "nobody let it go");
+    let problem = reading.problem.as_ref().expect("told");
+    assert!(problem.contains("computer") && !problem.contains("cable"), "{problem}");
+    let outcome = run(&driver, pan, 0.1, 0.5);
+    let MoveOutcome::Refused(refusal @ Refusal::Unknown { why: Unheard::TooBusy, .. }) = outcome else {
+        panic!("{outcome:?}")
+    };
+    let words = refusal.to_string();
+    assert!(words.contains("the computer was too busy") && !words.contains("cable"), "{words}");
+    // Nobody has to take hold of it anew.
+    chain.lock().servos.get_mut(&id_of(&rig, pan)).expect("there").fault = None;
+    await_state(&driver, "it is heard again", |s| s.joints.iter().all(|j| j.problem.is_none()));
+    assert!(matches!(run(&driver, pan, 0.1, 0.5), MoveOutcome::Arrived { .. }));
+}
+
 #[test]
 fn a_moving_servo_that_falls_silent_holds_the_arm_and_says_so() {
     let (rig, chain, driver) = ready();
@@ -110,7 +135,11 @@ fn a_moving_servo_that_falls_silent_holds_the_arm_and_says_so() {
     let elbow = joint(&rig, "r_elbow_y");
     let begin = state.measured.as_ref().expect("known")[elbow];
     assert!(matches!(run(&driver, elbow, begin + 0.1, 0.5), MoveOutcome::Arrived { .. }));
-    assert!(matches!(run(&driver, pan, 0.0, 0.5), MoveOutcome::Refused(Refusal::Unknown { .. })));
+    let refused = run(&driver, pan, 0.0, 0.5);
+    assert!(
+        matches!(refused, MoveOutcome::Refused(Refusal::Unknown { why: Unheard::Silent, .. })),
+        "{refused:?}"
+    );
     // It comes back: left alone until it is taken hold of.
     let told = chain.lock().written.len();
     chain.lock().servos.get_mut(&id_of(&rig, pan)).expect("there").fault = None;

@@ -145,6 +145,25 @@ fn toys_come_to_rest_on_the_table() {
     }
 }
 
+/// What nobody touches stands where it stood, however long the robot works beside it. On the glass of the
+/// touchscreen, which can be raised and so is never asleep, balls roll by some millimeters a minute.
+#[test]
+fn a_toy_at_rest_on_the_table_stays() {
+    let mut world = world("lab");
+    for (i, toy) in Toy::ALL.into_iter().enumerate() {
+        let y_m = if i % 2 == 0 { 0.42 } else { -0.42 };
+        world.place_toy(toy, 0.25 + 0.1 * (i / 2) as f64, y_m).expect("on the table");
+    }
+    world.run(8.0);
+    let before: Vec<_> = Toy::ALL.iter().map(|toy| world.toy(*toy).expect("out")).collect();
+    world.run(60.0);
+    for (toy, before) in Toy::ALL.into_iter().zip(before) {
+        let now = world.toy(toy).expect("out");
+        let moved_mm = 1e3 * (now.translation.vector - before.translation.vector).norm();
+        assert!(moved_mm < 0.05, "{toy:?} moves {moved_mm} mm in a minute");
+    }
+}
+
 #[test]
 fn a_toy_at_rest_falls_again_where_it_is_put() {
     let mut world = world("lab");

@@ -25,9 +25,12 @@ impl TouchWorkflow {
         let now = self.now(around, &screen);
         let prepares = matches!(command, TouchCommand::Resume | TouchCommand::Prepared { .. });
         let run = self.run.as_mut().ok_or(Refusal::NoRun)?;
+        if matches!(command, TouchCommand::Resume | TouchCommand::Skip | TouchCommand::Finish) {
+            run.waits_no_more();
+        }
         match command {
             TouchCommand::Pause if run.phase == Phase::Working => run.pause = true,
-            TouchCommand::Pause => {}
+            TouchCommand::Pause => run.hold_on(),
             TouchCommand::Resume => {
                 // Writing to disk needs no arm.
                 let needs_arm = !run.progress.finished && !matches!(run.phase, Phase::Stuck(_));
@@ -86,6 +89,7 @@ impl TouchWorkflow {
             );
         }
         let before = (run.phase.clone(), run.task());
+        run.look_again(&now, context);
         run.go_on(&now, context);
         if before != (run.phase.clone(), run.task()) {
             self.refresh(around, context);

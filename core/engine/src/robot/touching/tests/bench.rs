@@ -107,6 +107,7 @@ impl Arm for FakeArm {
             stopped: false,
             measured: Some(measured),
             unknown: Arc::from([]),
+            late: Arc::from([]),
             slow_answers: 0,
             commanded: Some(made.commanded.clone()),
             bus: BusStatistics::default(),

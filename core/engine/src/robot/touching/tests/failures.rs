@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use plumbline_hardware::joints::{HoldReason, Motion, MoveOutcome, Refusal, ScreenGone};
+use plumbline_hardware::joints::{HoldReason, Motion, MoveOutcome, Refusal, ScreenGone, Unheard};
 use plumbline_model::robot::Posture;
 
 use super::bench::{Asked, Bench, TARGET};
@@ -124,6 +124,42 @@ fn nobody_at_the_window_ends_it_on_the_way_and_on_the_way_down() {
         let text = interrupted(bench.until_end(|_| {}));
         assert!(text.contains("window did not answer"), "{text}");
         stands(&mut bench);
+    }
+}
+
+#[test]
+fn joints_that_were_not_heard_end_it_as_what_may_be_tried_again() {
+    let (joint, name) = (Bench::new().chain.joints()[0], "Right elbow".to_owned());
+    let held = [
+        HoldReason::NoAnswer { joint, name: name.clone(), servo: 5, cycles: 6 },
+        HoldReason::Slow {
+            joint,
+            name: name.clone(),
+            age: Duration::from_millis(90),
+            since: Duration::from_secs(2),
+        },
+        HoldReason::Refused(Refusal::Unknown { joint, name: name.clone(), why: Unheard::TooBusy }),
+    ];
+    for reason in held {
+        for stage in [TouchStage::Lowering, TouchStage::Dwelling] {
+            let mut bench = bench_in(stage);
+            bench.arm().motion = Motion::Holding(reason.clone());
+            let end = bench.until_end(|_| {});
+            let TouchRun::Unheard(text) = end else { panic!("{reason:?}: {end:?}") };
+            assert!(text.contains("Right elbow") && text.contains("holds where it is"), "{text}");
+            stands(&mut bench);
+        }
+    }
+    // What is hot, heavy or blocked is for a person to look at.
+    let hot = Refusal::Hot { joint, name: name.clone(), temperature_c: 71.0, limit_c: 70.0 };
+    for reason in [
+        HoldReason::Refused(hot),
+        HoldReason::Heavy { joint, name: name.clone(), load: 0.9, limit: 0.7 },
+        HoldReason::NotFollowing { joint, name, behind_rad: 0.1, since: Duration::from_secs(2) },
+    ] {
+        let mut bench = bench_in(TouchStage::Lowering);
+        bench.arm().motion = Motion::Holding(reason);
+        interrupted(bench.until_end(|_| {}));
     }
 }
 
