@@ -282,16 +282,14 @@ fn in_a_world_drawn_by_chance() {
     holds("drawn-1", &table);
 }
 
-/// There the right eye nods and rolls against the left one, which no effect of the library is: places go by
-/// millimeters only, nothing is named and nothing corrected. What that leaves at the corners with the head turned
-/// (17.6 mm after 20 minutes) is more than is wanted.
+/// There the right eye nods and rolls against the left one: places in the middle stay, those at the corners go.
 #[test]
-fn in_another_world_drawn_by_chance_nothing_is_named_and_places_stay_on_average() {
+fn in_another_world_drawn_by_chance_an_eye_that_rolls_is_named_and_corrected() {
     let Some(table) = judged("drawn-2", &scenario("drawn-2"), 20.0) else { return };
-    for (minutes, is_turned, before, after) in &table {
-        let about = format!("{minutes} min, turned: {is_turned}: {after:?}");
-        assert!(after.mean_m <= 6e-3 && after.mean_m <= before.mean_m, "{about}");
-    }
+    holds("drawn-2", &table);
+    let worst_m = |of: fn(&(f64, bool, Off, Off)) -> f64| table.iter().map(of).fold(0.0, f64::max);
+    let [before_m, after_m] = [worst_m(|row| row.2.worst_m), worst_m(|row| row.3.worst_m)];
+    assert!(before_m > 15e-3 && after_m < 0.5 * before_m, "{before_m} {after_m}");
 }
 
 #[test]

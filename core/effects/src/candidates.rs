@@ -6,6 +6,9 @@ use crate::library::{
 use crate::measurements::Measurements;
 use crate::observation::{Observation, What};
 
+/// Places that are no farther apart are one, m.
+const SAME_PLACE_M: f64 = 0.02;
+
 impl Effect {
     /// Every effect, at every site and in every shape of a grid, that these rows could show: by
     /// the columns that are there. Whether they do show it is for the tangents to say.
@@ -60,6 +63,7 @@ impl Known {
             arm: !of_arm.is_empty(),
             eyes: !of_eyes.is_empty(),
             watched: of_eyes.iter().any(|row| row.stand.is_some()),
+            watched_places: places(&of_eyes),
             only_watched: !of_eyes.is_empty() && of_eyes.iter().all(|row| row.stand.is_some()),
             background: of_eyes.iter().any(|row| row.background_m.is_some()),
             commanded: of_arm.iter().any(|row| row.encoder_rad.is_none()),
@@ -78,6 +82,17 @@ impl Known {
                 .collect(),
         }
     }
+}
+
+/// At how many places things were watched.
+fn places(rows: &[&Observation]) -> usize {
+    let mut known: Vec<nalgebra::Point3<f64>> = vec![];
+    for at in rows.iter().filter(|row| row.stand.is_some()).filter_map(|row| row.truth_m) {
+        if known.iter().all(|other| (other - at).norm() > SAME_PLACE_M) {
+            known.push(at);
+        }
+    }
+    known.len()
 }
 
 fn torques(measurements: &Measurements, row: &Observation) -> Option<Vec<f64>> {

@@ -352,6 +352,9 @@ fn parameters_are_reported_as_the_command_line_names_them() {
     let yaw = reported("eye-yaw", Some(Effect::yaw_growth(240.0, 90.0)), &[0.01], &[0.001]);
     let values: Vec<(&str, f64)> = yaw.iter().map(|one| (one.0.as_str(), one.1)).collect();
     assert_eq!(values, [("amplitude_rad", 0.01), ("time_constant_s", 240.0), ("delay_s", 90.0)]);
+    let late = reported("eye-yaw", Some(Effect::late_growth(240.0, 60.0)), &[0.01], &[0.001]);
+    let values: Vec<(&str, f64)> = late.iter().map(|one| (one.0.as_str(), one.1)).collect();
+    assert_eq!(values, [("amplitude_rad", 0.01), ("time_constant_s", 240.0), ("late_s", 60.0)]);
     let slip = reported("slipped-horn", Some(610.0), &[0.05], &[0.001]);
     assert!(slip[0].0 == "step_rad" && slip[1].0 == "t_secs" && slip[1].1 == 610.0);
     let pulled = reported("joint-coupling", None, &[0.02], &[0.001]);

@@ -34,7 +34,7 @@ mod slopes;
 pub use arm::Part;
 pub use eyes::EyesDeviation;
 pub use forward::{Assumed, Tangents};
-pub use library::{Effect, Kind, Parameter, Present, Reported, Situation, Surface};
+pub use library::{Effect, Growth, Kind, Parameter, Present, Reported, Situation, Surface};
 pub use measurements::{Measurements, MeasurementsError};
 pub use nuisance::Nuisance;
 pub use observability::{

@@ -32,7 +32,11 @@ fn housing_k(at_s: f64) -> f64 {
 }
 
 fn turns_rad(at_s: f64) -> [Vector3<f64>; 2] {
-    [LEFT_RAD_PER_K, RIGHT_RAD_PER_K].map(|per_k| Vector3::from(per_k) * housing_k(at_s))
+    turned_rad([LEFT_RAD_PER_K, RIGHT_RAD_PER_K], at_s)
+}
+
+fn turned_rad(per_k: [[f64; 3]; 2], at_s: f64) -> [Vector3<f64>; 2] {
+    per_k.map(|per_k| Vector3::from(per_k) * housing_k(at_s))
 }
 
 /// Where stereo puts a place, in the left camera.
@@ -47,14 +51,20 @@ fn seen(rig: &Rig, at: Point<Robot>, turns_rad: [Vector3<f64>; 2]) -> Point<Left
 }
 
 /// As the window makes it: looks are off by `noise_rad` per eye, and places start where they are.
-fn watched(rig: &Rig, from_s: f64, to_s: f64, noise_rad: f64) -> Measurements {
-    let mut random = StdRng::seed_from_u64(7);
+fn watched(
+    rig: &Rig,
+    per_k: [[f64; 3]; 2],
+    [from_s, to_s]: [f64; 2],
+    noise_rad: f64,
+    seed: u64,
+) -> Measurements {
+    let mut random = StdRng::seed_from_u64(seed);
     let mut noise = || (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
     let mut text = "true_x_m,true_y_m,true_z_m,est_x_m,est_y_m,est_z_m,t_secs,object\n".to_owned();
-    let first = turns_rad(from_s);
+    let first = turned_rad(per_k, from_s);
     for look in 0..16 {
         let t_s = from_s + (to_s - from_s) * f64::from(look) / 15.0;
-        let mut turns = turns_rad(t_s);
+        let mut turns = turned_rad(per_k, t_s);
         for (turn, first) in turns.iter_mut().zip(first) {
             *turn += Vector3::new(noise(), noise(), noise()) * noise_rad - first;
         }
@@ -125,8 +135,8 @@ fn judged(model: &RobotModel, at_s: f64, above_m: f64) -> [f64; 3] {
 #[test]
 fn eyes_that_each_turn_their_own_way_are_named_and_taken_off_everywhere() {
     let rig = default_rig();
-    let finding =
-        find(&watched(&rig, 5.0, 1200.0, 2e-5), &Options::default(), &Unattended).expect("can be looked at");
+    let watched = watched(&rig, [LEFT_RAD_PER_K, RIGHT_RAD_PER_K], [5.0, 1200.0], 2e-5, 7);
+    let finding = find(&watched, &Options::default(), &Unattended).expect("can be looked at");
     println!("{:?} in {:.1} s: {}", finding.verdict, finding.seconds, finding.sentence);
     for effect in &finding.effects {
         println!("  {} {:?} {:?} {:?}", effect.id, effect.shape, effect.values, effect.class.len());
@@ -150,4 +160,30 @@ fn eyes_that_each_turn_their_own_way_are_named_and_taken_off_everywhere() {
         }
     }
     assert!(most > 0.03, "there was something to correct: {most}");
+}
+
+/// The right eye rolls and turns sideways, so that places in the middle of the table hardly go anywhere.
+#[test]
+fn an_eye_that_rolls_is_named_as_such() {
+    let rig = default_rig();
+    let rolls = [[0.0; 3], [0.000_02, -0.000_05, -0.0004]];
+    let watched = watched(&rig, rolls, [5.0, 1200.0], 2e-5, 8);
+    let finding = find(&watched, &Options::default(), &Unattended).expect("can be looked at");
+    println!("{:?} in {:.1} s: {}", finding.verdict, finding.seconds, finding.sentence);
+    assert!(matches!(finding.verdict, Verdict::Named | Verdict::Class), "{}", finding.sentence);
+    let roll = finding.effects.iter().find(|effect| effect.id == "eye-roll").expect("named");
+    // What is seen turns the other way round than what sees it.
+    let end_rad = 0.0004 * housing_k(7200.0);
+    assert!((roll.values[0] / end_rad - 1.0).abs() < 0.15, "{:?} and not {end_rad}", roll.values);
+}
+
+#[test]
+fn eyes_that_stay_where_they_are_are_not_blamed_at_several_places_either() {
+    let rig = default_rig();
+    for seed in 20..30 {
+        let watched = watched(&rig, [[0.0; 3]; 2], [5.0, 1200.0], 7e-5, seed);
+        let finding = find(&watched, &Options::default(), &Unattended).expect("can be looked at");
+        assert!(finding.effects.is_empty(), "{seed}: {}", finding.sentence);
+        assert_eq!(finding.verdict, Verdict::NoGap, "{seed}: {}", finding.sentence);
+    }
 }

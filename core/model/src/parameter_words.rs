@@ -4,7 +4,7 @@
 //! said in one place, for the sentence of a finding, its page and the window alike.
 
 /// A name, what is said before its value ("off by 1.8°"), and what it is called ("zero").
-const KNOWN: [(&str, &str, &str); 41] = [
+const KNOWN: [(&str, &str, &str); 42] = [
     ("offset_rad", "off by", "zero"),
     ("scale", "too large by", "scale"),
     ("scale_u", "wider by", "width of the image"),
@@ -17,6 +17,7 @@ const KNOWN: [(&str, &str, &str); 41] = [
     ("t_secs", "at", "moment"),
     ("time_constant_s", "two thirds of it within", "pace"),
     ("delay_s", "begins after", "delay"),
+    ("late_s", "late by", "lateness"),
     ("ratio", "follows by", "share that it follows"),
     ("from_joint", "pulled by", "joint that pulls"),
     ("which", "namely the", "which of the two"),

@@ -54,8 +54,7 @@ impl Effect {
 
     /// Part of its full size that it has reached.
     pub(super) fn grown(&self, t_secs: Option<f64>) -> f64 {
-        let (Some(t_secs), Some((constant_s, delay_s))) = (t_secs, self.growth_s()) else { return 0.0 };
-        -(-(t_secs - delay_s).max(0.0) / constant_s).exp_m1()
+        t_secs.zip(self.growth()).map_or(0.0, |(t_secs, growth)| growth.share(t_secs))
     }
 
     /// 1 after the moment of the step, 0 before.

@@ -21,7 +21,7 @@ pub struct Effect {
     pub title: String,
     /// What does not enter the prediction linearly, by kind: periods per turn (`None`: one), a
     /// time constant (s), a moment (s), a torque (N m), which of two things (`None`: the first). An
-    /// eye that turns is constant without it and grows with it: see [`Self::growth_s`]. `None`
+    /// eye that turns is constant without it and grows with it: see [`Self::growth`]. `None`
     /// where there is no such thing.
     pub shape: Option<f64>,
     /// Between which shapes the true one lies, as far as the grid of candidates tells.
@@ -123,14 +123,19 @@ impl Effect {
         !self.members.is_empty()
     }
 
-    /// Time constant and delay (s) of what grows as 1 − exp(−(t − delay)/time constant). The shape
-    /// of a growing [`Kind::EyeYaw`] holds both: whole seconds of the time constant, and the delay
-    /// in thousandths of its seconds after the point (240.06: 240 s, after 60 s).
-    pub fn growth_s(&self) -> Option<(f64, f64)> {
+    /// The law of what grows. The shape holds it: whole seconds of the time constant, and its second number in
+    /// thousandths of its seconds after the point (240.06: 240 s, 60 s); negative where that number is a second
+    /// time constant and no delay.
+    pub fn growth(&self) -> Option<Growth> {
         let shape = self.shape?;
         match self.kind.entry().shape {
-            Shape::Growth(_) => Some((shape.trunc(), (shape.fract() * 1e6).round() / 1e3)),
-            Shape::TimeConstant(_) => Some((shape, 0.0)),
+            Shape::Growth(_) => {
+                let time_constant_s = shape.abs().trunc();
+                let second_s = (shape.abs().fract() * 1e6).round() / 1e3;
+                let (delay_s, late_s) = if shape < 0.0 { (0.0, second_s) } else { (second_s, 0.0) };
+                Some(Growth { time_constant_s, delay_s, late_s })
+            }
+            Shape::TimeConstant(_) => Some(Growth { time_constant_s: shape, delay_s: 0.0, late_s: 0.0 }),
             Shape::None
             | Shape::OnceOrTwice
             | Shape::Teeth
@@ -143,6 +148,40 @@ impl Effect {
     /// The shape of an eye that turns with this time constant and delay, s.
     pub fn yaw_growth(time_constant_s: f64, delay_s: f64) -> f64 {
         time_constant_s.round() + delay_s * 1e-3
+    }
+
+    /// The shape of an eye that turns with its housing, which has this time constant, and is heated by what has
+    /// the second one, s.
+    pub fn late_growth(time_constant_s: f64, late_s: f64) -> f64 {
+        -Self::yaw_growth(time_constant_s, late_s)
+    }
+}
+
+/// How something approaches its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Growth {
+    /// Time constant, s.
+    pub time_constant_s: f64,
+    /// Nothing happens before, s.
+    pub delay_s: f64,
+    /// Time constant of what heats it, and is heated itself, s; 0: it is heated at once.
+    pub late_s: f64,
+}
+
+impl Growth {
+    /// Part of the way after this time, s.
+    pub fn share(&self, t_secs: f64) -> f64 {
+        let t_secs = (t_secs - self.delay_s).max(0.0);
+        let gone = |constant_s: f64| if constant_s > 0.0 { -(-t_secs / constant_s).exp_m1() } else { 1.0 };
+        if self.late_s <= 0.0 {
+            return gone(self.time_constant_s);
+        }
+        // Two that are alike are as good as two that hardly differ.
+        let alike = (self.time_constant_s - self.late_s).abs() < 1e-3 * self.late_s;
+        let late_s = if alike { 0.998 * self.late_s } else { self.late_s };
+        // Two bodies in a row, each warmed by the one before.
+        let weighted = self.time_constant_s * gone(self.time_constant_s) - late_s * gone(late_s);
+        weighted / (self.time_constant_s - late_s)
     }
 }
 
@@ -216,4 +255,25 @@ fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let start = Vector3::ith(axis.iamin(), 1.0);
     let a = axis.cross(&start).normalize();
     [a, axis.cross(&a)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two bodies in a row: the step response of x'' with both time constants, against small steps.
+    #[test]
+    fn what_is_warmed_late_follows_two_bodies_in_a_row() {
+        for (time_constant_s, late_s) in [(400.0, 60.0), (120.0, 120.0), (300.0, 0.0)] {
+            let law = Growth { time_constant_s, delay_s: 0.0, late_s };
+            let (mut inner, mut outer) = (if late_s > 0.0 { 0.0 } else { 1.0 }, 0.0);
+            for step in 0..20_000 {
+                let share = law.share(0.1 * f64::from(step));
+                assert!((share - outer).abs() < 2e-3, "{law:?} after {step}: {share} {outer}");
+                outer += 0.1 * (inner - outer) / time_constant_s;
+                inner += if late_s > 0.0 { 0.1 * (1.0 - inner) / late_s } else { 0.0 };
+            }
+        }
+        assert_eq!(Growth { time_constant_s: 0.0, delay_s: 0.0, late_s: 0.0 }.share(0.0), 1.0);
+    }
 }

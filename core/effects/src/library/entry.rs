@@ -105,7 +105,7 @@ pub(crate) enum Shape {
     TimeConstant(fn(&Known) -> f64),
     /// Moment, s.
     Moment,
-    /// `None`: constant. Else it grows, see [`Effect::growth_s`], and has these parameters.
+    /// `None`: constant. Else it grows, see [`Effect::growth`], and has these parameters.
     Growth(&'static [Parameter]),
     /// `None`: the first of two things; 1: the second.
     Either([&'static str; 2]),

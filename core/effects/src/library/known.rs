@@ -10,9 +10,15 @@ const TIME_CONSTANTS_S: [f64; 6] = [60.0, 120.0, 240.0, 480.0, 900.0, 1800.0];
 /// Time constants and delays that are tried for an eye that turns, s.
 const YAW_CONSTANTS_S: [f64; 4] = [120.0, 240.0, 480.0, 960.0];
 const YAW_DELAYS_S: [f64; 3] = [0.0, 90.0, 180.0];
-/// The same where one thing was watched: its course shows them better.
-const WATCHED_CONSTANTS_S: [f64; 7] = [120.0, 170.0, 240.0, 340.0, 480.0, 680.0, 960.0];
-const WATCHED_DELAYS_S: [f64; 3] = [0.0, 60.0, 120.0];
+/// The same where things were watched: their course shows them better. A housing is warmed by what lies before it,
+/// with a time constant of its own.
+const WATCHED_CONSTANTS_S: [f64; 16] = [
+    120.0, 140.0, 163.0, 190.0, 222.0, 258.0, 301.0, 351.0, 410.0, 478.0, 557.0, 650.0, 758.0, 884.0, 1031.0,
+    1202.0,
+];
+const WATCHED_LATE_S: [f64; 5] = [0.0, 30.0, 60.0, 90.0, 120.0];
+/// At fewer places an eye that rolls looks like one that turns sideways.
+const ROLL_SHOWS_AT: usize = 3;
 /// A time law needs rows over this time, s.
 const SHORTEST_SPAN_S: f64 = 60.0;
 /// A joint must be held at least so long for it to creep, s. Repeats that follow each other closely
@@ -34,6 +40,8 @@ pub(crate) struct Known {
     pub(crate) background: bool,
     /// The eyes watched things that stood still.
     pub(crate) watched: bool,
+    /// At how many places.
+    pub(crate) watched_places: usize,
     /// And nothing else: what is constant there has no name.
     pub(crate) only_watched: bool,
     /// Some row starts from commanded angles.
@@ -116,19 +124,22 @@ impl Known {
     /// An effect of the eyes with every time law that is tried.
     fn grown(&self, effect: &Effect) -> Vec<Effect> {
         let span_s = span(&self.eye_secs);
-        if span_s < SHORTEST_SPAN_S {
+        let is_told = effect.kind != Kind::EyeRoll || self.watched_places >= ROLL_SHOWS_AT;
+        if span_s < SHORTEST_SPAN_S || !is_told {
             return vec![];
         }
-        let (constants, delays) = if self.watched {
-            (&WATCHED_CONSTANTS_S[..], WATCHED_DELAYS_S)
+        let lasts = |constant: &f64| *constant <= 2.0 * span_s;
+        let shapes: Vec<f64> = if self.watched {
+            let of = |constant: f64| WATCHED_LATE_S.map(|late| (constant, late));
+            let all = WATCHED_CONSTANTS_S.into_iter().filter(lasts).flat_map(of);
+            all.filter(|(constant, late)| 2.0 * late <= *constant)
+                .map(|(constant, late)| Effect::late_growth(constant, late))
+                .collect()
         } else {
-            (&YAW_CONSTANTS_S[..], YAW_DELAYS_S)
+            let of = |constant: f64| YAW_DELAYS_S.map(|delay| Effect::yaw_growth(constant, delay));
+            YAW_CONSTANTS_S.into_iter().filter(lasts).flat_map(of).collect()
         };
-        let fitting = constants.iter().filter(|constant| **constant <= 2.0 * span_s);
-        fitting
-            .flat_map(|constant| delays.map(|delay| Effect::yaw_growth(*constant, delay)))
-            .map(|shape| effect.clone().with_shape(Some(shape)))
-            .collect()
+        shapes.into_iter().map(|shape| effect.clone().with_shape(Some(shape))).collect()
     }
 }
 

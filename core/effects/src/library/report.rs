@@ -103,7 +103,7 @@ impl Effect {
         match self.kind.entry().shape {
             Shape::Moment => vec![self.shape("t_secs")],
             Shape::TimeConstant(_) => vec![self.shape("time_constant_s")],
-            Shape::Growth(_) => self.growth_s().map_or(vec![], |(constant_s, delay_s)| {
+            Shape::Growth(_) => self.growth().map_or(vec![], |growth| {
                 let known = |name: &str, value: f64| Reported {
                     name: name.to_owned(),
                     value,
@@ -111,7 +111,12 @@ impl Effect {
                     high: value * std::f64::consts::SQRT_2,
                     text: None,
                 };
-                vec![known("time_constant_s", constant_s), known("delay_s", delay_s)]
+                let second = if self.shape.is_some_and(|shape| shape < 0.0) {
+                    known("late_s", growth.late_s)
+                } else {
+                    known("delay_s", growth.delay_s)
+                };
+                vec![known("time_constant_s", growth.time_constant_s), second]
             }),
             Shape::None | Shape::OnceOrTwice | Shape::Teeth | Shape::Limit | Shape::Either(_) => vec![],
         }

@@ -11,32 +11,31 @@ use crate::rig_model::{EyesLeft, tangents_per_angle};
 /// A place that was seen at fewer times was not watched: how the eyes find it anew each time is in the rows, too,
 /// and that is in the uncertainty of what is seen already.
 const LEAST_TIMES: usize = 8;
-/// Rows that are no farther apart are of one look, s.
-const SAME_LOOK_S: f64 = 0.5;
+/// What watching itself is off by for as long as it lasts, of each eye's ray, rad: the standard deviation that looks
+/// state of how an eye has turned. With it 94 % of places lay inside the stated 95 % in 22 worlds drawn for this,
+/// 16 of them with eyes that were not calibrated.
+const WATCHING_RAD: f64 = 7.5e-5;
 
 impl RobotModel {
-    /// What this model leaves of rows in which things were watched, at the time at which that is most: it is no
-    /// scatter, but the same from look to look. `None`: nothing was watched.
+    /// What this model leaves of rows in which things were watched, root mean square, with what watching is off by.
+    /// `None`: nothing was watched.
     pub fn left_of(&self, table: &LocalizationTable) -> Option<EyesLeft> {
-        let rows: Vec<(f64, LocalizationRow)> =
-            table.rows().filter(|row| row.valid).filter_map(|row| Some((row.t_secs?, row))).collect();
-        let times = |row: &LocalizationRow| rows.iter().filter(|(_, other)| other.truth == row.truth).count();
-        let watched = rows.iter().filter(|(_, row)| times(row) >= LEAST_TIMES);
-        let left: Vec<(f64, Vector3<f64>)> =
-            watched.filter_map(|(at_s, row)| Some((*at_s, self.left_of_row(table, row)?))).collect();
+        let rows: Vec<LocalizationRow> =
+            table.rows().filter(|row| row.valid && row.t_secs.is_some()).collect();
+        let times = |row: &LocalizationRow| rows.iter().filter(|other| other.truth == row.truth).count();
+        let watched = rows.iter().filter(|row| times(row) >= LEAST_TIMES);
+        let left: Vec<Vector3<f64>> = watched.filter_map(|row| self.left_of_row(table, row)).collect();
         if left.len() < LEAST_TIMES {
             return None;
         }
-        // Places of one look together.
-        let square_at = |at_s: f64| {
-            let of_it = left.iter().filter(|(other_s, _)| (other_s - at_s).abs() < SAME_LOOK_S);
-            let (sum, count) = of_it.fold((Vector3::zeros(), 0.0), |(sum, count), (_, left)| {
-                (sum + left.component_mul(left), count + 1.0)
-            });
-            sum / count
-        };
-        let most = left.iter().map(|(at_s, _)| square_at(*at_s)).fold(Vector3::zeros(), |a, b| a.sup(&b));
-        Some(EyesLeft { bearing_rad: most.x.max(most.y).sqrt(), disparity_rad: most.z.sqrt() })
+        let sum: Vector3<f64> = left.iter().map(|left| left.component_mul(left)).sum();
+        let mean = sum / left.len() as f64;
+        let watching = WATCHING_RAD * WATCHING_RAD;
+        Some(EyesLeft {
+            bearing_rad: (mean.x.max(mean.y) + watching).sqrt(),
+            // Of two eyes.
+            disparity_rad: (mean.z + 2.0 * watching).sqrt(),
+        })
     }
 
     /// What the eyes made of a row minus what they make of it by the model: to the right, down, and between the

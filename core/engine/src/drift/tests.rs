@@ -32,6 +32,8 @@ struct Desk {
     jobs: JobList,
     time: Time,
     pairs: u64,
+    /// A look takes so long.
+    busy: Duration,
 }
 
 impl Desk {
@@ -56,6 +58,7 @@ impl Desk {
             jobs: JobList::default(),
             time: Time::now(),
             pairs: 0,
+            busy: Duration::from_millis(50),
         }
     }
 
@@ -83,7 +86,7 @@ impl Desk {
         self.with(|room, around, context| room.saw(&frame, around, context));
         let Some(input) = self.room.input() else { return false };
         let result = self.stage.process(input);
-        let output = Timed { stamp, busy: Duration::from_millis(50), result };
+        let output = Timed { stamp, busy: self.busy, result };
         self.with(|room, _, context| room.looked(output, context));
         true
     }
@@ -173,6 +176,69 @@ fn lights_off_another_source_and_eyes_switched_on_again() {
     assert!(desk.view().waits_because.as_deref().is_some_and(|why| why.contains("No pairs come")));
     desk.ask(DriftCommand::Start);
     assert!(desk.said().last().is_some_and(|text| text.contains("Nothing can be watched yet")));
+}
+
+/// A hand that waves: it hides most of both images, elsewhere each time.
+fn hidden(pair: &[Arc<RgbImage>; 2], wave: u32) -> [Arc<RgbImage>; 2] {
+    pair.clone().map(|image| {
+        let mut image = RgbImage::clone(&image);
+        let (from, width) = (wave * 37 % 120, 500);
+        for (u, v, pixel) in image.enumerate_pixels_mut() {
+            if (from..from + width).contains(&u) {
+                let shade = 150 + ((u + 13 * wave) / 9 % 5 * 8 + v / 11 % 4 * 6) as u8;
+                *pixel = image::Rgb([shade, shade - 30, shade - 50]);
+            }
+        }
+        Arc::new(image)
+    })
+}
+
+#[test]
+fn a_hand_that_waves_before_the_eyes_turns_no_eye() {
+    let mut desk = Desk::new();
+    let still = desk.pair(0.0);
+    desk.ask(DriftCommand::Start);
+    (0..17).for_each(|_| _ = desk.see(&still));
+    for wave in 0..8 {
+        desk.see(&hidden(&still, wave));
+    }
+    (0..4).for_each(|_| _ = desk.see(&still));
+    let view = desk.view();
+    let course = view.course.clone().expect("looked");
+    assert!(matches!(course.verdict, Verdict::Steady { .. }), "{}", course.sentence);
+    assert_eq!((view.failed.clone(), course.alarms.len()), (None, 0), "{:?}", desk.said());
+}
+
+#[test]
+fn looking_takes_three_percent_of_a_core_at_most() {
+    let mut desk = Desk::new();
+    let still = desk.pair(0.0);
+    desk.ask(DriftCommand::Start);
+    (0..17).for_each(|_| _ = desk.see(&still));
+    assert!(desk.view().course.as_ref().is_some_and(|course| course.band_m.is_some()), "it has learned");
+    for busy_ms in [300, 900] {
+        desk.busy = Duration::from_millis(busy_ms);
+        let looks = (0..200).filter(|_| desk.see(&still)).count();
+        let share = looks as f64 * desk.busy.as_secs_f64() / (200.0 * EVERY.as_secs_f64());
+        assert!(looks > 0 && share <= 0.031, "{busy_ms} ms a look, {looks} looks: {share}");
+    }
+}
+
+#[test]
+fn an_evaluation_that_cannot_be_kept_says_where_and_why() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A file lies where the folder of sessions would be, as good as a full disk.
+    let sessions = folder.path().join("sessions");
+    std::fs::write(&sessions, "").expect("written");
+    let work = super::work::DriftWork::KeepGrid {
+        sessions,
+        folder: None,
+        rows: Arc::from([]),
+        rig: default_rig(),
+        began: jiff::Timestamp::UNIX_EPOCH,
+    };
+    let error = crate::ground::LongWork::run(work, &plumbline_model::Unattended).expect_err("no room");
+    assert!(error.to_string().contains("sessions"), "{error}");
 }
 
 #[test]

@@ -112,7 +112,7 @@ pub(super) fn rivals(
             kind: None,
             is_family: false,
             is_of_all: false,
-            grows_right: false,
+            grows_sideways: false,
             name: library.names.len(),
             log_prior: (UNKNOWN / count).ln(),
         })

@@ -20,9 +20,9 @@ pub(super) struct Block {
     pub is_family: bool,
     /// Whether every encoder was logged early by it: one joint early beside all of them is no other thing.
     pub is_of_all: bool,
-    /// Whether it turns or shifts the right eye in the course of time: such act alike, and two of them
-    /// would cancel each other.
-    pub grows_right: bool,
+    /// Whether it turns the right eye sideways or shifts its image in the course of time: such act alike, and two
+    /// of them would cancel each other.
+    pub grows_sideways: bool,
     /// Number of its name. Two blocks of one name (shapes of one effect) are never in together.
     pub name: usize,
     /// How much it is trusted beforehand, log of the odds.
@@ -35,7 +35,7 @@ impl Block {
     pub fn excludes(&self, other: &Self) -> bool {
         let of_one_kind = self.kind.is_some() && self.kind == other.kind;
         self.name == other.name
-            || self.grows_right && other.grows_right
+            || self.grows_sideways && other.grows_sideways
             || of_one_kind && (self.is_family != other.is_family || self.is_of_all != other.is_of_all)
     }
 
@@ -91,10 +91,11 @@ impl Library {
             });
             let len = effect.parameters().len();
             let (kind, is_family) = (Some(effect.kind), effect.is_of_every_site());
-            let grows_right = effect.growth_s().is_some() && effect.site == "right";
+            let is_sideways = matches!(effect.kind, Kind::EyeYaw | Kind::ImageShift);
+            let grows_sideways = effect.growth().is_some() && is_sideways;
             let is_of_all = effect.kind == Kind::EarlyLog && effect.site.is_empty();
             let log_prior = 0.0;
-            blocks.push(Block { start, len, kind, is_family, is_of_all, grows_right, name, log_prior });
+            blocks.push(Block { start, len, kind, is_family, is_of_all, grows_sideways, name, log_prior });
             start += len;
         }
         let mut shapes = vec![0_usize; names.len()];

@@ -1,6 +1,6 @@
 //! From sets with probabilities to names, classes and a verdict.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use plumbline_effects::{Effect, Kind};
 
 use super::explore::{Explored, Model};
@@ -118,7 +118,7 @@ impl Evidence<'_> {
             let (own, covariance) = &values[place];
             let size = sizes[place];
             let least = noise * if size >= largest { SMALLEST_FIRST } else { SMALLEST };
-            let grows = self.library.effects[block].growth_s().is_some();
+            let grows = self.library.effects[block].growth().is_some();
             let cancelling = if grows { CANCELLING_GROWN } else { CANCELLING };
             if size < least || size > cancelling * self.look.gap() + SMALLEST {
                 continue;
@@ -301,6 +301,7 @@ impl Evidence<'_> {
             .sum();
         let typical: Vec<f64> = effect.parameters().iter().map(|parameter| parameter.typical).collect();
         let values: Vec<f64> = own.iter().zip(&typical).map(|(value, typical)| value * typical).collect();
+        let covariance = covariance + self.by_shapes(block, own);
         let covariance =
             DMatrix::from_fn(own.len(), own.len(), |r, c| covariance[(r, c)] * typical[r] * typical[c]);
         let at_bound = own.iter().any(|value| value.abs() > BOUND);
@@ -324,6 +325,28 @@ impl Evidence<'_> {
                     .to_owned()
             }),
         }
+    }
+
+    /// Covariance (usual sizes) of what grows by what is not known of its law: how far it will go is known the less,
+    /// the less of its course was seen.
+    fn by_shapes(&self, block: usize, own: &[f64]) -> DMatrix<f64> {
+        let mut spread = DMatrix::zeros(own.len(), own.len());
+        let is_late = |block: usize| self.library.effects[block].shape.is_some_and(|shape| shape < 0.0);
+        if !is_late(block) {
+            return spread;
+        }
+        let name = self.look.blocks[block].name;
+        let mut total = 0.0;
+        for model in &self.explored.models {
+            let same = |other: &usize| self.look.blocks[*other].name == name;
+            let set = self.of_library(model);
+            let Some(place) = set.iter().position(same) else { continue };
+            let Some((other, _)) = self.values(&set).into_iter().nth(place) else { continue };
+            let apart = DVector::from_iterator(own.len(), other.iter().zip(own).map(|(a, b)| a - b));
+            spread += &apart * apart.transpose() * model.probability;
+            total += model.probability;
+        }
+        if total > 0.0 { spread / total } else { spread }
     }
 
     /// Every name in the place of one block of a set: name, log score over its shapes, and its best

@@ -6,6 +6,8 @@ use crate::eyes::EyeSituation;
 /// Eyes that warm up turn; they do not wander through the head.
 const TURN: [Parameter; 3] =
     [parameter("rot_x_rad", TILT), parameter("rot_y_rad", TILT), parameter("rot_z_rad", TILT)];
+/// What rolls and nods as it warms up goes as far as what turns sideways does.
+const ROLL_AND_NOD: [Parameter; 2] = [parameter("roll_rad", 0.01), parameter("pitch_rad", 0.01)];
 /// What grows is told along the rows alone: across them it would stand for any turn of both eyes.
 const SHIFT_ALONG: [Parameter; 1] = [parameter("du_px", 1.5)];
 
@@ -112,11 +114,12 @@ pub(super) static EYE_ROLL: Entry = Entry {
     remedy: "Check the mounts of the eyes; calibrate the stereo pair again.",
     parameters: &[parameter("roll_rad", 0.0025), parameter("pitch_rad", 0.0025)],
     site: Site::OfEyes(EyeSite::Right),
-    shape: Shape::None,
+    shape: Shape::Growth(&ROLL_AND_NOD),
     shown: |rows| rows.eyes,
-    act: Act::Eyes(|_, _, values, deviation| {
-        deviation.right_rad.z += values[0];
-        deviation.right_rad.x += values[1];
+    act: Act::Eyes(|effect, situation, values, deviation| {
+        let part = part(effect, situation);
+        deviation.right_rad.z += values[0] * part;
+        deviation.right_rad.x += values[1] * part;
     }),
     reported: Effect::plain,
     is: &[],
