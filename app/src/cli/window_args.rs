@@ -18,8 +18,8 @@ pub struct WindowArgs {
     #[arg(long, value_name = "LEFT,RIGHT", value_parser = cameras)]
     cameras: Option<(u32, u32)>,
     /// The simulated robot to start with when nothing is opened: lab (like the real robot, with
-    /// its errors), perfect, or none.
-    #[arg(long, value_name = "SCENARIO", default_value = "lab", value_parser = scenario)]
+    /// its errors), perfect, none, or a scenario file.
+    #[arg(long, value_name = "SCENARIO|FILE.toml", default_value = "lab", value_parser = scenario)]
     twin: String,
     /// What draws the window.
     #[arg(long, value_enum, default_value_t)]
@@ -94,11 +94,10 @@ fn cameras(text: &str) -> Result<(u32, u32), String> {
 }
 
 fn scenario(text: &str) -> Result<String, String> {
-    let known: Vec<&str> = plumbline_engine::robot::scenarios().collect();
-    if text == "none" || known.contains(&text) {
-        return Ok(text.to_owned());
+    if text != "none" {
+        plumbline_engine::robot::check_scenario(text).map_err(|why| format!("{why}; or none, or a file"))?;
     }
-    Err(format!("there are the scenarios {}, and none", known.join(", ")))
+    Ok(text.to_owned())
 }
 
 fn size(text: &str) -> Result<[f32; 2], String> {

@@ -21,6 +21,9 @@ pub enum TwinError {
         /// What is wrong and what is right.
         reason: String,
     },
+    /// A scenario file that cannot be read.
+    #[error(transparent)]
+    File(#[from] plumbline_model::files::FileError),
     /// The scenario speaks of a part that the robot does not have.
     #[error(
         "scenario {scenario} speaks of {what} \"{name}\", which the robot {robot} does not have: correct the name"

@@ -5,8 +5,9 @@
 //! out of everything that calibrates, searches, trains or grasps.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
-use plumbline_model::files::told;
+use plumbline_model::files::{self, Size, told};
 use serde::Deserialize;
 
 use crate::error::TwinError;
@@ -230,6 +231,24 @@ impl Scenario {
         Self::from_toml(name, text)
     }
 
+    /// A scenario that comes with the program by its name, else the one of a file anywhere.
+    ///
+    /// # Errors
+    /// When there is neither, or the file is no scenario.
+    pub fn named_or_file(text: &str) -> Result<Self, TwinError> {
+        let is_file = text.ends_with(".toml") || Path::new(text).exists();
+        if Self::built_in_names().any(|name| name == text) || !is_file {
+            return Self::built_in(text);
+        }
+        Self::from_toml(text, &files::read_text(Path::new(text), Size::SHORT)?)
+    }
+
+    /// How a scenario is called for short that was given by name or by file.
+    pub fn short_name(text: &str) -> &str {
+        let stem = text.strip_suffix(".toml").and_then(|path| Path::new(path).file_name()?.to_str());
+        stem.unwrap_or(text)
+    }
+
     /// Reads the text of a scenario file; `file` names it in messages.
     ///
     /// # Errors
@@ -305,6 +324,23 @@ mod tests {
     use super::*;
 
     const HEAD: &str = "format = 1\nname = \"x\"\ntitle = \"X\"\nabout = \"x\"\n";
+
+    #[test]
+    fn a_scenario_is_found_by_name_and_in_a_file_anywhere() {
+        assert_eq!(Scenario::named_or_file("perfect").expect("known").name, "perfect");
+        let folder = tempfile::tempdir().expect("a folder for the test");
+        let file = folder.path().join("mine.toml");
+        let text = "format = 1\nname = \"mine\"\ntitle = \"Mine\"\nabout = \"As described.\"\n";
+        std::fs::write(&file, text).expect("written");
+        let path = file.display().to_string();
+        assert_eq!(Scenario::named_or_file(&path).expect("a file").name, "mine");
+        assert_eq!((Scenario::short_name(&path), Scenario::short_name("lab")), ("mine", "lab"));
+        let gone = folder.path().join("gone.toml").display().to_string();
+        let said = Scenario::named_or_file(&gone).expect_err("no file").to_string();
+        assert!(said.contains("gone.toml"), "{said}");
+        let said = Scenario::named_or_file("moon").expect_err("no name").to_string();
+        assert!(said.contains("moon") && said.contains("perfect"), "{said}");
+    }
 
     #[test]
     fn the_scenarios_that_come_along_are_valid() {

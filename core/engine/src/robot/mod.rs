@@ -31,7 +31,7 @@ pub use thread::{RobotThread, Wires as RobotWires};
 pub use touch_order::{TouchMeasurement, TouchNews, TouchOrder, TouchRun, TouchStage};
 pub use worker::{News, Worker};
 
-pub use crate::twin::scenarios;
+pub use crate::twin::{check_scenario, scenarios};
 
 /// What goes past every queue: the latched STOP and the window's sign of life.
 #[derive(Clone, Debug, Default)]

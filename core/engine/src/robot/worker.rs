@@ -168,7 +168,7 @@ impl Worker {
     pub fn announce(&self, control: &RobotControl) -> Option<News> {
         let (to, doing) = match control {
             RobotControl::Robot(RobotCommand::ConnectTwin { scenario }) => {
-                (format!("twin \"{scenario}\""), "starting the simulation")
+                (twin_called(scenario), "starting the simulation")
             }
             RobotControl::Robot(RobotCommand::ConnectPort { path }) => {
                 (path.display().to_string(), "asking the bus who is there")
@@ -313,7 +313,7 @@ impl Worker {
 
     fn connect_twin(&mut self, scenario: &str) -> Result<(), Unable> {
         self.disconnect();
-        let to = format!("twin \"{scenario}\"");
+        let to = twin_called(scenario);
         let port = self.desk.start(scenario, &self.rig).map_err(Unable::from).and_then(|port| {
             self.twins_started += 1;
             Ok(connect::open(&port, true, &self.rig, &self.paths, &self.switches)?)
@@ -607,4 +607,9 @@ impl Worker {
             self.trail.push_back((now, place));
         }
     }
+}
+
+/// How the twin of a scenario is called.
+fn twin_called(scenario: &str) -> String {
+    format!("twin \"{}\"", crate::twin::short_name(scenario))
 }

@@ -125,7 +125,7 @@ impl TwinDesk {
     }
 
     fn try_start(&mut self, scenario: &str, rig: &Arc<Rig>) -> Result<PathBuf, TwinUnable> {
-        let scenario = Scenario::built_in(scenario)?;
+        let scenario = Scenario::named_or_file(scenario)?;
         let settings = TwinSettings { rig: rig.clone(), scenario, seed: SEED, pace: 1.0 };
         let twin = Twin::start(settings)?;
         self.board_places = board_presets(rig);

@@ -104,15 +104,7 @@ pub struct CommissionReport {
 /// # Errors
 /// When there is neither.
 pub fn scenario(twin: &str) -> Result<Scenario, CommissionError> {
-    if Scenario::built_in_names().any(|name| name == twin) {
-        return Ok(Scenario::built_in(twin)?);
-    }
-    let file = PathBuf::from(twin);
-    if !twin.ends_with(".toml") && !file.exists() {
-        return Ok(Scenario::built_in(twin)?);
-    }
-    let text = files::read_text(&file, Size::SHORT)?;
-    Ok(Scenario::from_toml(twin, &text)?)
+    Ok(Scenario::named_or_file(twin)?)
 }
 
 /// Commissions a twin, or goes on where that was interrupted.
