@@ -92,5 +92,7 @@ fn a_perfect_twin_is_commissioned_by_the_next_button_alone() {
 #[test]
 #[ignore = "takes a quarter of an hour: touches and grasps take as long as the robot's"]
 fn a_twin_like_the_lab_is_commissioned_by_the_next_button_alone() {
-    commission("lab");
+    // Or another one, of a scenario file.
+    let scenario = std::env::var("PLUMBLINE_SCENARIO").unwrap_or_else(|_| "lab".to_owned());
+    commission(&scenario);
 }

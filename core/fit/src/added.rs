@@ -44,9 +44,10 @@ pub fn effect_of(tip: &str, present: &Present, covariance: Vec<f64>) -> ModelEff
 pub fn neck_effect(rig: &Rig, fitted: &Fit) -> Option<ModelEffect> {
     let (zero_rad, sd_rad) = fitted.neck_rad?;
     let joint = rig.description.joint(rig.eyes.pan).name.clone();
+    let title = rig.servo_of(rig.eyes.pan).map_or(joint.as_str(), |servo| servo.title.as_str());
     Some(ModelEffect {
         id: Kind::HeadJoint.id().to_owned(),
-        title: format!("{joint}: {}", Kind::HeadJoint.about()),
+        title: format!("{title}: {}", Kind::HeadJoint.about()),
         site: joint,
         tip: None,
         shape: None,

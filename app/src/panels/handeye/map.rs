@@ -123,7 +123,8 @@ fn legend(ui: &mut Ui, scene: &TableScene, errors: Errors) {
         scale if scale > 1.0 => format!("{scale} times as long as the error"),
         _ => "in true length".to_owned(),
     };
-    ui.label(theme::small(ui, format!("Where the eyes see the hand − where its arm has it, {times}.")));
+    let what = "Where the eyes see the hand − where its arm has it";
+    ui.label(theme::small(ui, format!("{what}, {times}. After: with all looks learned from.")));
     ui.horizontal_wrapped(|ui| {
         if errors != Errors::After {
             entry(ui, BeforeAfter::BEFORE, "before");
