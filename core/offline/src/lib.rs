@@ -32,6 +32,7 @@ mod table;
 #[cfg(test)]
 mod touch_tests;
 mod train;
+mod twin_body;
 
 pub use bench::{BenchReport, Figure, Peer, bench};
 pub use calibrate::{CalibrateArgs, CalibrateReport, LeftOutCorner, PairErrors, Rejected, calibrate_stereo};

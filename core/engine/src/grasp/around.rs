@@ -54,3 +54,24 @@ impl GraspAround {
         }
     }
 }
+
+#[cfg(test)]
+impl GraspAround {
+    /// A robot that is not connected, of which nothing was calibrated.
+    pub(crate) fn bare(rig: &Arc<Rig>) -> Self {
+        Self {
+            described: rig.clone(),
+            model: Arc::new(RobotModel::nominal(rig.clone())),
+            robot: Arc::default(),
+            calibration: None,
+            eyes_on_min: None,
+            has_mount: false,
+            has_screen: false,
+            corrections: Corrections::default(),
+            detector: (DetectorChoice::Shipped, Provider::default()),
+            source: Arc::default(),
+            own_eyes: true,
+            found: None,
+        }
+    }
+}

@@ -183,13 +183,9 @@ fn method_gate(around: &GraspAround, method: Method) -> Gate {
 mod tests {
     use std::sync::Arc;
 
-    use plumbline_effects::RobotModel;
-    use plumbline_grasp::Corrections;
     use plumbline_model::robot::{Limits, Rig};
-    use plumbline_vision::detect::Provider;
 
     use super::*;
-    use crate::detect::command::DetectorChoice;
     use crate::robot::view::JointView;
 
     /// A robot whose elbow gives this load, and is this warm.
@@ -225,20 +221,7 @@ mod tests {
             measured: Some(rig.home()),
             ..RobotView::default()
         };
-        GraspAround {
-            model: Arc::new(RobotModel::nominal(rig.clone())),
-            described: rig,
-            robot: Arc::new(robot),
-            calibration: None,
-            eyes_on_min: None,
-            has_mount: false,
-            has_screen: false,
-            corrections: Corrections::default(),
-            detector: (DetectorChoice::Shipped, Provider::default()),
-            source: Arc::default(),
-            own_eyes: true,
-            found: None,
-        }
+        GraspAround { robot: Arc::new(robot), ..GraspAround::bare(&rig) }
     }
 
     #[test]

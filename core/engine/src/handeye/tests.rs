@@ -3,19 +3,17 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use plumbline_effects::RigModel;
 use plumbline_effects::rig_model::{Addition, ModelEffect};
-use plumbline_effects::{RigModel, RobotModel};
-use plumbline_grasp::{Corrections, Hand};
+use plumbline_grasp::Hand;
 use plumbline_handeye::hands::Miss;
 use plumbline_handeye::{Figures, Outcome, SENTENCE, Tie, Tied};
 use plumbline_model::robot::Rig;
-use plumbline_vision::detect::Provider;
 
 use super::kept::{FILE, Kept};
 use super::view::HandEyeView;
 use super::work::{Context, HandEyeResult};
 use super::*;
-use crate::detect::command::DetectorChoice;
 use crate::grasp::GraspAround;
 use crate::grasp::view::GateState;
 use crate::ground::jobs::JobId;
@@ -114,25 +112,7 @@ fn a_file_that_is_something_else_is_said() {
 
 /// A robot of which nothing is calibrated.
 fn around(rig: &Arc<Rig>, added: &Arc<RigModel>) -> HandEyeAround {
-    HandEyeAround {
-        grasp: GraspAround {
-            described: rig.clone(),
-            model: Arc::new(RobotModel::nominal(rig.clone())),
-            robot: Arc::default(),
-            calibration: None,
-            eyes_on_min: None,
-            has_mount: false,
-            has_screen: false,
-            corrections: Corrections::default(),
-            detector: (DetectorChoice::Shipped, Provider::default()),
-            source: Arc::default(),
-            own_eyes: true,
-            found: None,
-        },
-        added: Some(added.clone()),
-        touches: None,
-        twin: None,
-    }
+    HandEyeAround { grasp: GraspAround::bare(rig), added: Some(added.clone()), touches: None, twin: None }
 }
 
 /// The workflow, and what it told.

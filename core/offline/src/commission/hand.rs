@@ -70,7 +70,7 @@ fn look(
     let report = |number: usize| {
         context.report(begin + 0.4 * number as f64 / Looks::MOST as f64, "looking at the hand");
     };
-    Ok(Looks::take(robot, &known.model, hand, &mut { report }, context)?)
+    Ok(Looks::take(robot.body(), &known.model, hand, &mut { report }, context)?)
 }
 
 fn told(figures: &Figures) -> String {

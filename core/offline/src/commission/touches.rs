@@ -197,7 +197,7 @@ fn look_around(
     context: &dyn JobContext,
 ) -> Result<Tie, CommissionError> {
     let (rig, mounted) = (lab.rig_with_eyes()?, rig_models::mounted(&lab.mount()?));
-    let body = body::see(robot, &rig, &mounted, &mut |_| {}, context)?;
+    let body = body::see(robot.body(), &rig, &mounted, &mut |_| {}, context)?;
     step.notes.push(match &body {
         Some(body) => format!(
             "By the robot's body the neck's turn is off by {:.2}° ± {:.2}° ({} edge points, {:.2} px).",
@@ -208,7 +208,7 @@ fn look_around(
         ),
         None => "The eyes do not see the edges of the robot's body.".to_owned(),
     });
-    let screen = screen::see(robot, &rig, mounted.rest_sigma_rad, placed, &mut |_| {}, context)?;
+    let screen = screen::see(robot.body(), &rig, mounted.rest_sigma_rad, placed, &mut |_| {}, context)?;
     let Some(seen) = &screen else {
         step.notes.push("The eyes do not see its edges.".to_owned());
         return Ok(Tie { body, screen, table: None });
@@ -225,7 +225,7 @@ fn look_around(
         seen.edges,
         seen.rms_px
     ));
-    let table = table::see(robot, &rig, &lab.calibration()?, seen, placed)?;
+    let table = table::see(robot.body(), &rig, &lab.calibration()?, seen, placed)?;
     step.notes.push(match &table {
         Some(table) => format!(
             "Its glass lies {:.1} ± {:.1} mm over the table around it ({} places).",

@@ -15,9 +15,9 @@ use plumbline_twin::eyes::EyeRenderer;
 use plumbline_twin::{Lockstep, Scenario, Toy};
 use plumbline_vision::detect::{DetectSettings, DetectorOptions, shipped_detector};
 
-use super::body::TwinBody;
 use super::judge::Judge;
 use crate::OfflineError;
+use crate::twin_body::TwinBody;
 
 /// Since the eyes were switched on, s: they have warmed up, as in the published experiment.
 const WARM_S: f64 = 1800.0;

@@ -1,7 +1,6 @@
 //! Grasps on the twin: one, and the whole experiment.
 
 mod attempt;
-mod body;
 mod judge;
 mod lab;
 mod one;

@@ -1,9 +1,15 @@
 //! Where table and touchscreen truly are.
 
-use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use plumbline_model::Chessboard;
 use plumbline_model::robot::Rig;
 
 use crate::scenario::Scenario;
+
+/// The picture of a board is so much above what it lies on, m: its own thickness.
+const BOARD_OVER_M: f64 = 0.003;
+/// The touchscreen is wider than its image by so much on each side, m.
+const FRAME_M: f64 = 0.02;
 
 /// True places of what stands still.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +77,36 @@ impl Places {
         middle.z - (normal.x * (x_m - middle.x) + normal.y * (y_m - middle.y)) / normal.z
     }
 
+    /// How much higher a board has to be held so that it reaches into neither table nor screen, m: what a person
+    /// lays down lies on what is there.
+    pub(crate) fn lift_m(&self, robot_from_board: &Isometry3<f64>, board: &Chessboard) -> f64 {
+        const SAMPLES: usize = 8;
+        let side = |inner: u32, k: usize| {
+            board.square_m * ((f64::from(inner) + 1.0) * k as f64 / SAMPLES as f64 - 1.0)
+        };
+        let each = (0..=SAMPLES).flat_map(|i| (0..=SAMPLES).map(move |j| (i, j)));
+        let missing = each.map(|(i, j)| {
+            let on_board = Point3::new(side(board.inner_columns, i), side(board.inner_rows, j), 0.0);
+            let point = robot_from_board * on_board;
+            self.surface_m(point.x, point.y) + BOARD_OVER_M - point.z
+        });
+        missing.fold(0.0, f64::max)
+    }
+
+    /// Height of what is there at a place of the robot frame: the glass, or the table, m.
+    fn surface_m(&self, x_m: f64, y_m: f64) -> f64 {
+        let table_m = self.table_height_m(x_m, y_m);
+        let on_screen = self.robot_from_screen.inverse() * Point3::new(x_m, y_m, table_m);
+        let [half_u, half_v] = self.screen_size_m.map(|size_m| 0.5 * size_m + FRAME_M);
+        if on_screen.x.abs() > half_u || on_screen.y.abs() > half_v {
+            return table_m;
+        }
+        let (normal, middle) =
+            (self.robot_from_screen.rotation * Vector3::z(), self.robot_from_screen.translation.vector);
+        let glass_m = middle.z - (normal.x * (x_m - middle.x) + normal.y * (y_m - middle.y)) / normal.z;
+        glass_m.max(table_m)
+    }
+
     /// Whether a place of the robot frame lies on the table.
     pub(crate) fn on_table(&self, x_m: f64, y_m: f64) -> bool {
         let z = self.table_height_m(x_m, y_m);
@@ -95,6 +131,26 @@ mod tests {
 
     fn rig() -> Rig {
         Rig::built_in("nico").expect("valid")
+    }
+
+    #[test]
+    fn a_board_that_is_laid_down_lies_on_what_is_there() {
+        let rig = rig();
+        let board = plumbline_model::default_board();
+        let flat = |height_m: f64| {
+            let turn = UnitQuaternion::from_scaled_axis(Vector3::x() * std::f64::consts::PI);
+            Isometry3::from_parts(Translation3::new(0.25, 0.07, height_m), turn)
+        };
+        let over = |places: &Places, height_m: f64| places.lift_m(&flat(height_m), &board);
+        let perfect = Places::of(&rig, &Scenario::built_in("perfect").expect("valid"));
+        assert!(over(&perfect, rig.table.height_m + 0.05).abs() < 1e-12, "held in the air it stays");
+        let text = "format = 1\nname = \"x\"\ntitle = \"X\"\nabout = \"x\"\n[table]\n\
+                    translation_m = [0.0, 0.0, 0.008]\nrotation_rad = [0.0, 0.01, 0.0]";
+        let high = Places::of(&rig, &Scenario::from_toml("x", text).expect("valid"));
+        let (flat_m, high_m) = (over(&perfect, rig.table.height_m), over(&high, rig.table.height_m));
+        assert!(high_m > flat_m + 0.006 && high_m < 0.03, "{flat_m} {high_m}");
+        let laid = over(&high, rig.table.height_m + high_m);
+        assert!(laid.abs() < 1e-9, "{laid}");
     }
 
     #[test]

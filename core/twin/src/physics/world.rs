@@ -405,6 +405,12 @@ impl World {
 
     /// Holds the chessboard somewhere, or puts it away.
     pub fn hold_board(&mut self, robot_from_board: Option<Pose<Robot, Board>>) {
+        // What a person lays down lies on what is there.
+        let robot_from_board = robot_from_board.map(|mut pose| {
+            let lift_m = self.places.lift_m(&pose.isometry, &plumbline_model::default_board());
+            pose.isometry.translation.vector.z += lift_m;
+            pose
+        });
         self.board = robot_from_board;
         let place = robot_from_board.map_or(Isometry3::translation(0.0, 0.0, -2.0), |pose| pose.isometry);
         let q = place.rotation.quaternion();

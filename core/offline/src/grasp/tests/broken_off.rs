@@ -10,9 +10,9 @@ use plumbline_model::robot::{Posture, Rig};
 use plumbline_twin::{Lockstep, Scenario, Toy};
 
 use super::super::attempt::{Bench, Meddler};
-use super::super::body::TwinBody;
 use super::bad_inputs::{HandHidden, assert_honest};
 use super::{bench_of, bench_with, failure, task};
+use crate::twin_body::TwinBody;
 
 const EASY_M: [f64; 2] = [0.3, -0.1];
 /// In every step that moves.

@@ -1,4 +1,4 @@
-//! A twin without a clock as the body of a grasp.
+//! A twin without a clock as the body of a grasp, or of a look.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use plumbline_model::robot::{Posture, Rig};
 use plumbline_twin::{Lockstep, Toy};
 
 /// The twin, and what it lacks to be told from a robot.
-pub(super) struct TwinBody {
+pub(crate) struct TwinBody {
     twin: Lockstep,
     pairs: u64,
 }
@@ -21,7 +21,13 @@ impl TwinBody {
         Ok(Self { twin, pairs: 0 })
     }
 
-    /// For who judges.
+    /// The twin stands before an empty table.
+    pub fn cleared(mut twin: Lockstep) -> Self {
+        Toy::ALL.into_iter().for_each(|toy| twin.remove_toy(toy));
+        Self { twin, pairs: 0 }
+    }
+
+    /// What only a twin can, and for who judges.
     pub fn twin(&mut self) -> &mut Lockstep {
         &mut self.twin
     }
