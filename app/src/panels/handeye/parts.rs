@@ -105,9 +105,9 @@ fn words(seen: &HandEyeSeen) -> (String, Role) {
     let unseen = |what: &str| (what.to_owned(), Role::Warning);
     match seen {
         HandEyeSeen::Body(Some(body)) => {
-            let degrees = body.neck_rad.to_degrees();
-            let sd = body.neck_sd_rad.to_degrees();
-            (format!("the neck's turn is off by {degrees:.2} ± {sd:.2}°"), Role::Ink)
+            let (off, sd) = (body.neck_rad.to_degrees(), body.neck_sd_rad.to_degrees());
+            let (off, sd) = (format::fixed(off, 2), format::fixed(sd, 2));
+            (format!("the neck's turn is off by {off} ± {sd}°"), Role::Ink)
         }
         HandEyeSeen::Body(None) => unseen("its edges are not seen: the neck's zero stays less sure"),
         HandEyeSeen::Screen(Some(screen)) => {
@@ -115,8 +115,8 @@ fn words(seen: &HandEyeSeen) -> (String, Role) {
         }
         HandEyeSeen::Screen(None) => unseen("its edges are not seen: clear the table, and look again"),
         HandEyeSeen::Table(Some(table)) => {
-            let (over, sd) = (1e3 * table.glass_over_m, 1e3 * table.sd_m);
-            (format!("the glass lies {over:.1} ± {sd:.1} mm over it"), Role::Ink)
+            let (over, sd) = (format::fixed(1e3 * table.glass_over_m, 1), format::fixed(1e3 * table.sd_m, 1));
+            (format!("the glass lies {over} ± {sd} mm over it"), Role::Ink)
         }
         HandEyeSeen::Table(None) => {
             ("too even to be measured: the glass is taken to lie 2 mm over it".to_owned(), Role::Weak)

@@ -276,8 +276,11 @@ impl State {
         }
         match accepted.robot_model(&self.rig) {
             Ok(model) => {
+                // While the program starts the effects may be read before the eyes that they belong to.
+                let Rooms { eyes, mount, .. } = &self.rooms;
+                let is_read = eyes.of(world).accepted().is_some() && mount.of(world).accepted().is_some();
                 let others = accepted.effects.map(|effects| effects.effects_of_other_eyes(model.rig()));
-                if let Some(words) = others.as_deref().and_then(other_eyes) {
+                if let Some(words) = others.as_deref().and_then(other_eyes).filter(|_| is_read) {
                     self.notices.add(NoticeLevel::Warning, words);
                 }
                 *known = Arc::new(model);
