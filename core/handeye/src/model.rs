@@ -160,7 +160,7 @@ impl<'a> Sizing<'a> {
             gap: self.gap(),
         };
         let mut next = (**before).clone();
-        let eyes_left = next.contents.eyes_left.clone();
+        let eyes_left = next.contents.eyes_left;
         next.add(rig, addition)?;
         next.contents.eyes_left = eyes_left;
         Ok(next)

@@ -36,7 +36,7 @@ pub enum Seen {
     /// `None`: its edges were not seen, or are not described.
     Body(Option<SeenBody>),
     /// `None`: its edges were not seen, or are not described.
-    Screen(Option<SeenScreen>),
+    Screen(Option<Box<SeenScreen>>),
     /// `None`: it shows the eyes too little to match.
     Table(Option<TableBeside>),
     /// A hand, and what came of its arm.
@@ -171,7 +171,7 @@ fn look_around(
     let mut look = |number| watch.looks(Part::Screen, number, SeenScreen::LOOKS);
     let placed = start.model.touchscreen();
     let screen = screen::see(robot, &rig, mounted.rest_sigma_rad, placed, &mut look, context)?;
-    watch.saw(&Seen::Screen(screen.clone()));
+    watch.saw(&Seen::Screen(screen.clone().map(Box::new)));
     let mut table = None;
     if let Some(screen) = &screen {
         watch.looks(Part::Table, 0, 1);

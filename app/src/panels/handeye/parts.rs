@@ -71,7 +71,7 @@ fn came_of_it(ui: &mut Ui, view: &HandEyeView, summary: &HandEyeSummary) {
     }
     let seen = [
         HandEyeSeen::Body(summary.body),
-        HandEyeSeen::Screen(summary.screen.clone()),
+        HandEyeSeen::Screen(summary.screen.clone().map(Box::new)),
         HandEyeSeen::Table(summary.table),
     ];
     let parts = [HandEyePart::Body, HandEyePart::Screen, HandEyePart::Table];

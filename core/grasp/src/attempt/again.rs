@@ -4,6 +4,7 @@ use plumbline_model::robot::Posture;
 
 use super::{AIR_RAD_S, End, Running};
 use crate::record::{Earlier, Failure, Outcome, Step};
+use crate::see::Seen;
 
 /// Before the arm moves again, who watches has this long to read what will move, and to stop it, s.
 const SAID_S: f64 = 2.0;
@@ -29,7 +30,8 @@ impl Running<'_> {
         self.body.wait(SAID_S)?;
         self.follow(Step::Again, std::slice::from_ref(&opened), AIR_RAD_S)?;
         self.follow(Step::Again, &back, AIR_RAD_S)?;
-        self.near_m = self.record.standing_m.or(self.near_m);
+        let stood = self.record.standing_m.or(self.near_m);
+        self.near_m = looked_for_near(&self.record.seen, &self.order.object, stood);
         let first = Outcome::Failed { failure, why: why.clone() };
         self.record.earlier.push(Earlier {
             hand: self.record.hand,
@@ -46,5 +48,34 @@ impl Running<'_> {
             }
             Ok(outcome) => Ok(outcome),
         }
+    }
+}
+
+/// Near which place the object is looked for again: near where it stood, so that another one of its class is not
+/// taken for it. The only one of its class may have rolled away: it is looked for wherever it is.
+fn looked_for_near(seen: &[Seen], object: &str, stood_m: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    let of_class = seen.iter().filter(|thing| thing.class.eq_ignore_ascii_case(object)).count();
+    stood_m.filter(|_| of_class != 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_only_one_of_its_class_is_followed_and_one_of_several_is_not_taken_for_another() {
+        let thing = |class: &str| Seen {
+            class: class.to_owned(),
+            confidence: 0.9,
+            boxes_px: [None; 2],
+            place: Err("hidden".to_owned()),
+        };
+        let stood = Some([0.3, 0.2]);
+        let alone = [thing("Tomato"), thing("Duck")];
+        assert_eq!(looked_for_near(&alone, "tomato", stood), None);
+        let two = [thing("Tomato"), thing("Duck"), thing("Tomato")];
+        assert_eq!(looked_for_near(&two, "tomato", stood), stood);
+        // What was not seen any more at the last look is looked for where it was.
+        assert_eq!(looked_for_near(&two[1..2], "tomato", stood), stood);
     }
 }
