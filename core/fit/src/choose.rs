@@ -5,7 +5,7 @@ use plumbline_effects::arm::Arm;
 use plumbline_effects::{Effect, Kind, Measurements};
 use plumbline_model::{Cancelled, JobContext};
 
-use crate::fit::{Known, held_out_m};
+use crate::fit::{Known, hands_held_out, held_out_m};
 use crate::usual::{is_first_zero, usual};
 
 /// Another model has to err less by this share on held-out touches, or the simpler one stays.
@@ -108,6 +108,29 @@ pub fn choose(
     Ok(Chosen { which, effects, share, held_out })
 }
 
+/// Touches held out may err by this factor more where hands that were held out are met better.
+const NO_WORSE: f64 = 1.1;
+
+/// By which share of what robots usually are the arm is off, now that the eyes have seen its hand: of those with
+/// which touches held out err about as little as they can, the one with which hands that were held out are met
+/// best; `share` (of `known`) unless another one is clearly better. A fingertip on its glass may be met by an
+/// arm that is hardly off and a finger that is bent; the palm then is elsewhere.
+pub fn share_by_hands(measurements: &Measurements, effects: &[Effect], known: &Known<'_>) -> f64 {
+    let with = |share: f64| Known { share, ..*known };
+    let touches_m = SHARES.map(|share| held_out_m(measurements, effects, &with(share)));
+    let least_m = touches_m.into_iter().flatten().fold(f64::INFINITY, f64::min);
+    let mut best = (known.share, hands_held_out(measurements, effects, known));
+    for (share, error_m) in SHARES.into_iter().zip(touches_m) {
+        // An arm that touched nothing is told by its hand alone.
+        let is_no_worse = measurements.rows.is_empty() || error_m.is_some_and(|m| m <= NO_WORSE * least_m);
+        let far = hands_held_out(measurements, effects, &with(share));
+        if is_no_worse && is_better(far, best.1, WORTH) {
+            best = (share, far);
+        }
+    }
+    best.0
+}
+
 fn which(held_out: &HeldOut) -> Which {
     let HeldOut { nothing_m, named_m, all_m } = *held_out;
     if is_better(all_m, nothing_m, WORTH) {
@@ -125,13 +148,17 @@ fn is_better(new_m: Option<f64>, old_m: Option<f64>, worth: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Matrix6;
+    use nalgebra::{Isometry3, Matrix3, Matrix6, Vector3, Vector6};
+    use plumbline_effects::Assumed;
+    use plumbline_effects::measurements::What;
     use plumbline_model::Unattended;
     use plumbline_model::robot::Rig;
 
     use super::*;
     use crate::fit::NECK_SD_RAD;
-    use crate::made_up::{hidden, touches};
+    use crate::made_up::{TIP, hidden, postures, touches};
+    use crate::seen::{SeenHand, SeenHands};
+    use crate::usual::{measurements, row};
 
     /// Many small errors, none of which touches could name.
     const MANY: [(&str, &str, &[f64]); 6] = [
@@ -159,6 +186,48 @@ mod tests {
             share: 1.0,
         };
         choose(&touches, &arm, named, &known, &Unattended).expect("not cancelled")
+    }
+
+    /// Hands over the table of an arm with hidden effects, seen to within 2 mm.
+    fn hands(rig: &Rig, effects: &[(&str, &str, &[f64])]) -> SeenHands {
+        const PALM: &str = "right_palm_center";
+        let over =
+            [[0.25, -0.3], [0.35, -0.3], [0.3, -0.2], [0.38, -0.1], [0.25, -0.1], [0.32, 0.0], [0.25, 0.1]];
+        let over = over.map(|[x, y]| Vector3::new(x, y, 0.15));
+        let arm = Arm::of_rig(rig, PALM).expect("an arm");
+        let effects = hidden(&arm, effects);
+        let truth = Assumed { effects, placements: vec![Isometry3::identity()], ..Assumed::default() };
+        let directions = vec![1.0; arm.len()];
+        let rows = postures(rig, PALM, &over);
+        let rows = rows.into_iter().map(|angles| row(What::Pose, angles, directions.clone())).collect();
+        let arm = measurements(rig, arm, None, rows);
+        let seen = arm.rows.iter().map(|row| SeenHand {
+            palm_m: Vector3::from_column_slice(&arm.predict(row, &truth).expect("predicted")),
+            information: Matrix3::identity() / 2e-3f64.powi(2),
+        });
+        let seen = seen.collect();
+        SeenHands { arm, seen }
+    }
+
+    #[test]
+    fn hands_tell_that_an_arm_is_off_by_more_than_its_fingertip_shows_and_nothing_where_it_is_not() {
+        let rig = Rig::built_in("nico").expect("valid");
+        let mount = Matrix6::from_diagonal(&Vector6::new(1e-6, 1e-6, 1e-6, 3e-7, 3e-7, 3e-7));
+        let share_of = |effects: &[(&str, &str, &[f64])]| {
+            // The touches are those of an arm without errors: only the hand tells.
+            let touches = measurements(&rig, Arm::of_rig(&rig, TIP).expect("an arm"), None, vec![]);
+            let library = usual(touches.apparatuses[0].arm.as_ref().expect("an arm"));
+            let seen = hands(&rig, effects);
+            assert!(seen.seen.len() >= 5, "{}", seen.seen.len());
+            let neck_rad = (0.0, 0.0015);
+            let known =
+                Known { rig: &rig, screen: None, hands: Some(&seen), neck_rad, mount: &mount, share: 0.03 };
+            share_by_hands(&touches, &library, &known)
+        };
+        let off = [("joint-zero", "r_elbow_y", &[0.03][..]), ("joint-zero", "r_arm_x", &[0.025][..])];
+        let (of_off, of_right) = (share_of(&off), share_of(&[]));
+        assert!(of_off > 0.2, "{of_off}");
+        assert!(of_right <= 0.1, "{of_right}");
     }
 
     #[test]

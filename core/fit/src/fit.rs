@@ -54,6 +54,10 @@ pub struct Fit {
     /// Zero of the neck's turn (true less encoder, rad) and its standard deviation; `None` when the eyes
     /// have seen nothing that tells it.
     pub neck_rad: Option<(f64, f64)>,
+    /// Zero of the neck and place of the eyes in the head, as [`Looked::moved`] takes them.
+    eyes: [f64; 7],
+    /// How far all hands are seen beside where they are, m.
+    beside_m: Vector3<f64>,
 }
 
 /// The screen as the eyes see it.
@@ -161,7 +165,9 @@ pub fn fit(
     let covariance = DMatrix::from_fn(n, n, |r, c| inverse[(FRAME + r, FRAME + c)] * typical[r] * typical[c]);
     let is_told = known.screen.is_some() || known.neck_rad.1 < NECK_SD_RAD;
     let neck_rad = is_told.then(|| (at[NECK], inverse[(NECK, NECK)].max(0.0).sqrt()));
-    Some(Fit { assumed, covariance, neck_rad })
+    let eyes = std::array::from_fn(|k| at[NECK + k]);
+    let beside_m = Vector3::from_fn(|k, _| at[BESIDE + k]);
+    Some(Fit { assumed, covariance, neck_rad, eyes, beside_m })
 }
 
 /// What is known of the unknowns before anything is measured: the inverse of their covariance, effects in
@@ -229,6 +235,30 @@ pub fn held_out_m(measurements: &Measurements, effects: &[Effect], known: &Known
     }
     let rows = measurements.rows.len();
     (rows > 0).then(|| (squares / rows as f64).sqrt())
+}
+
+/// Hands that were left out are looked at in so many parts, each left out once.
+const PARTS: usize = 4;
+/// A hand that is found elsewhere counts as no farther than so many squared standard deviations.
+const FARTHEST: f64 = 9.0;
+
+/// How far hands that were not fitted lie from where the eyes saw them: squared standard deviations per hand.
+/// `None`: no hands were seen, or they cannot be predicted.
+pub fn hands_held_out(measurements: &Measurements, effects: &[Effect], known: &Known<'_>) -> Option<f64> {
+    let hands = known.hands?;
+    let rows: Vec<&Observation> = measurements.rows.iter().collect();
+    let looked = Looked::new(known.rig);
+    let mut far = 0.0;
+    for part in 0..PARTS {
+        let used = hands.only(|i| i % PARTS != part);
+        let fitted = fit(measurements, &rows, effects, &Known { hands: Some(&used), ..*known })?;
+        let (eyes, beside_m) = (&fitted.eyes, &fitted.beside_m);
+        let back = hands.only(|i| i % PARTS == part);
+        for (_, off, information) in back.against(&looked, &fitted.assumed, effects, NECK, eyes, beside_m)? {
+            far += (off.transpose() * information * off).x.min(FARTHEST);
+        }
+    }
+    (!hands.seen.is_empty()).then(|| far / hands.seen.len() as f64)
 }
 
 #[cfg(test)]

@@ -56,6 +56,18 @@ pub struct SeenHands {
 pub type Against = (DMatrix<f64>, Vector3<f64>, Matrix3<f64>);
 
 impl SeenHands {
+    /// Those of them whose numbers are wanted.
+    pub(crate) fn only(&self, is_wanted: impl Fn(usize) -> bool) -> Self {
+        let mut arm = self.arm.clone();
+        let mut number = 0;
+        arm.rows.retain(|_| {
+            number += 1;
+            is_wanted(number - 1)
+        });
+        let seen = self.seen.iter().enumerate().filter(|(i, _)| is_wanted(*i));
+        Self { arm, seen: seen.map(|(_, hand)| hand.clone()).collect() }
+    }
+
     /// All of them against the arm with effects; the unknowns of neck and eyes begin at `neck`, after
     /// them comes how far all hands are seen beside where they are (`beside_m`), then effects. `None` when the arm cannot be predicted.
     pub fn against(

@@ -9,7 +9,7 @@ use plumbline_model::session::Touchscreen;
 use plumbline_model::{Cancelled, JobContext, Session};
 
 use crate::added::{arm_effects, effect_of, placed, together};
-use crate::choose::{Chosen, Which, choose};
+use crate::choose::{Chosen, Which, choose, share_by_hands};
 use crate::fit::{Fit, Known, fit};
 use crate::lag::lag;
 use crate::seen::SeenHands;
@@ -117,6 +117,16 @@ impl<'a> ArmTouches<'a> {
         Ok(chosen)
     }
 
+    /// The same choice with the share of the usual sizes that the hands tell, which the eyes saw (`known`).
+    pub fn seen_by_hands(&self, chosen: &Chosen, known: &Known<'_>) -> Chosen {
+        let mut chosen = chosen.clone();
+        if chosen.which == Which::All {
+            let known = Known { share: chosen.share, ..*known };
+            chosen.share = share_by_hands(self.measurements, &chosen.effects, &known);
+        }
+        chosen
+    }
+
     /// Sizes what was chosen; `known` with the hands that the eyes saw, where they did. `None`: the rows cannot
     /// be predicted. `rig`: the robot, whose screen the session has touched where the session does not say.
     pub fn sized(&self, names: &[Name], chosen: &Chosen, known: &Known<'_>, rig: &Rig) -> Option<SizedArm> {
@@ -171,6 +181,7 @@ pub fn sized_by_hands(
     let library: Vec<Effect> = usual(&arm).into_iter().filter(moves_palm).collect();
     let known = Known { hands: Some(hands), screen: None, ..*known };
     let nothing = measurements(rig, arm.clone(), Some(Surface::of(&rig.touchscreen)), vec![]);
+    let known = Known { share: share_by_hands(&nothing, &library, &known), ..known };
     let Some(fitted) = fit(&nothing, &[], &library, &known) else { return Ok(None) };
     let mut effects = arm_effects(tip, &fitted, |_| None);
     let together = together(tip, &fitted, &effects);

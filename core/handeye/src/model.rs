@@ -75,6 +75,15 @@ impl<'a> Sizing<'a> {
         self
     }
 
+    /// The same with the share of the usual sizes that the hand of the arm that touched tells.
+    #[must_use]
+    pub fn seen_by_hands(&self, hands: &SeenHands) -> Self {
+        let known = Known { hands: Some(hands), ..self.held.known(&self.start.described, self.chosen.share) };
+        let chosen = self.touches.seen_by_hands(&self.chosen, &known);
+        let (held, names) = (self.held.clone(), self.names.clone());
+        Self { held, names, chosen, ..*self }
+    }
+
     /// What the arm is corrected with.
     pub fn what(&self) -> &Chosen {
         &self.chosen

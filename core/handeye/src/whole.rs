@@ -207,13 +207,15 @@ pub fn of_touched(
     let mut eyes = Eyes::new(looks, start)?;
     let (every, (used, back)) = (looks.every(), looks.used_and_back());
     let before = eyes.misses(start, known, &every, AROUND_M[0])?;
-    let mut known = known.clone();
-    for around_m in AROUND_M {
-        context.checkpoint()?;
-        let seen = eyes.seen(&known, &used, around_m)?;
-        let arm = sizing.touched(Some(&seen))?;
-        known = start.with(sizing.model(&arm, None, SENTENCE, at)?)?;
-    }
+    let seen = eyes.seen(known, &used, AROUND_M[0])?;
+    let sizing = sizing.seen_by_hands(&seen);
+    let arm = sizing.touched(Some(&seen))?;
+    let mut known = start.with(sizing.model(&arm, None, SENTENCE, at)?)?;
+    context.checkpoint()?;
+    let seen = eyes.seen(&known, &used, AROUND_M[1])?;
+    let sizing = sizing.seen_by_hands(&seen);
+    let arm = sizing.touched(Some(&seen))?;
+    known = start.with(sizing.model(&arm, None, SENTENCE, at)?)?;
     let after_m = hands::rms_m(&eyes.misses(&known, &known, &back, AROUND_M[0])?);
     let seen = eyes.seen(&known, &every, AROUND_M[1])?;
     let arm = sizing.touched(Some(&seen))?;
