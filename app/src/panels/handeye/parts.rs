@@ -61,7 +61,8 @@ fn came_of_it(ui: &mut Ui, view: &HandEyeView, summary: &HandEyeSummary) {
         ui.spacing_mut().item_spacing.x = space::L;
         if let Some([before_m, after_m]) = summary.error_m() {
             big_figure(ui, "hand beside its arm, before", &format::mm(before_m), Role::Ink);
-            big_figure(ui, &format!("after, {what}"), &format::mm(after_m), Role::Accepted);
+            let role = if after_m > before_m { Role::Warning } else { Role::Accepted };
+            big_figure(ui, &format!("after, {what}"), &format::mm(after_m), role);
         }
     });
     ui.label(theme::small(ui, format!("Looked at {}; on looks that were not used, rms.", clock(summary.at))));
