@@ -214,7 +214,7 @@ mod tests {
         let rig = Rig::built_in("nico").expect("valid");
         let mount = Matrix6::from_diagonal(&Vector6::new(1e-6, 1e-6, 1e-6, 3e-7, 3e-7, 3e-7));
         let share_of = |effects: &[(&str, &str, &[f64])]| {
-            // The touches are those of an arm without errors: only the hand tells.
+            // It touched nothing: only the hand tells.
             let touches = measurements(&rig, Arm::of_rig(&rig, TIP).expect("an arm"), None, vec![]);
             let library = usual(touches.apparatuses[0].arm.as_ref().expect("an arm"));
             let seen = hands(&rig, effects);
