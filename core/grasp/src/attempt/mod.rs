@@ -311,6 +311,8 @@ impl Running<'_> {
         }
         self.begin(Step::Lower);
         self.follow(Step::Lower, &plan.down, DOWN_RAD_S)?;
+        // An arm that still swings or lags behind its commands would close beside the object.
+        self.body.wait(STILL_S)?;
         self.begin(Step::Close);
         let closed = self.close(&plan)?;
         self.begin(Step::Lift);

@@ -115,6 +115,7 @@ impl Running<'_> {
             let sigma_m = over_table_m(&error.covariance_m2);
             let there = missing_m < NEAR_M && (sigma_m < SURE_M || look == LOOKS);
             if there && over.lowered.is_some() {
+                over.plan = self.nudged(over.plan, &error.m);
                 break;
             }
             over = self.corrected(over, &mut error)?;
@@ -207,6 +208,14 @@ impl Running<'_> {
                 let plan = nearly(self, &over.plan, SHORT_M).ok_or(barred)?;
                 Ok(Over { plan, lowered: None })
             }
+        }
+    }
+
+    /// What is left is undone on the way down, where the joints turn anyway.
+    fn nudged(&self, plan: GraspPlan, error_m: &Vector3<f64>) -> GraspPlan {
+        match self.grasper.planner(self.order.method).again(&plan, &-error_m) {
+            Ok(again) => GraspPlan { approach: plan.approach, ..again.from_low(LOW_M).1 },
+            Err(_) => plan,
         }
     }
 

@@ -139,7 +139,7 @@ impl Bench {
         let step = Rc::new(RefCell::new(Step::Ready));
         let meddler = RefCell::new(meddler);
         let mut watched =
-            Watched { body: &mut *body, judge: judge.clone(), step: step.clone(), meddler: &meddler };
+            Watched { body: &mut *body, judge: judge.clone(), step: step.clone(), meddler: &meddler, last: Step::Ready };
         let mut watch = Steps { step, meddler: &meddler };
         let record = self.grasper.attempt(&mut watched, &task.order, jiff::Timestamp::UNIX_EPOCH, &mut watch);
         let judged = judge.borrow().judge(body.twin(), &record);
@@ -175,6 +175,8 @@ struct Watched<'a, 'm> {
     judge: Rc<RefCell<Judge>>,
     step: Rc<RefCell<Step>>,
     meddler: &'a RefCell<&'m mut dyn Meddler>,
+    /// Of the last move.
+    last: Step,
 }
 
 impl Body for Watched<'_, '_> {
@@ -199,10 +201,11 @@ impl Body for Watched<'_, '_> {
     fn follow(&mut self, way: &[Posture], speed_rad_s: f64) -> Result<(), Halt> {
         let step = *self.step.borrow();
         self.meddler.borrow_mut().moves(step, way, self.body.twin())?;
-        self.body.follow(way, speed_rad_s)?;
-        if *self.step.borrow() == Step::Lower {
+        if step == Step::Close && self.last != Step::Close {
             self.judge.borrow_mut().closing(self.body.twin());
         }
+        self.last = step;
+        self.body.follow(way, speed_rad_s)?;
         Ok(())
     }
 

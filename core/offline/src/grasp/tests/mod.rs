@@ -8,6 +8,7 @@ mod broken_off;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use nalgebra::Vector3;
 use plumbline_effects::RobotModel;
 use plumbline_engine::trials::Experiment;
 use plumbline_engine::trials::store::begin;
@@ -15,7 +16,7 @@ use plumbline_grasp::attempt::{HandFinder, RenderedHand};
 use plumbline_grasp::{
     Corrections, Failure, Halt, Hand, HandChoice, Knowledge, Method, Order, Outcome, Record, Step,
 };
-use plumbline_model::robot::Rig;
+use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::{StereoCalibration, Unattended};
 use plumbline_twin::{Lockstep, Scenario, Toy};
 
@@ -110,6 +111,25 @@ fn a_tomato_is_lifted_and_the_record_says_how() {
     for step in [Step::Approach, Step::Lower, Step::Close, Step::Lift, Step::Check] {
         assert!(after.contains(&step), "{step:?} is in the record");
     }
+}
+
+#[test]
+fn the_hand_closes_where_the_looks_together_want_it() {
+    let mut bench = bench("lab");
+    let (record, judged) = bench.attempt(&task(Method::M5, Toy::Tomato, [0.3, -0.1])).expect("done");
+    assert!(judged.lifted, "{judged:?}");
+    let arm = bench.grasper().planner(Method::M5).arm();
+    let modeled = |step: Step| {
+        let moment = record.moments.iter().rev().find(|moment| moment.after == step).expect("a moment");
+        arm.palm(&Posture::new(moment.commanded_rad.clone())).coords.coords
+    };
+    let hand = Vector3::from(record.iterations.last().and_then(|look| look.hand_m).expect("a hand"));
+    let wanted = Vector3::from(record.wanted_m.expect("a plan"));
+    // The last look leaves less than a millimeter, which is undone on the way down.
+    let left_m = (wanted - hand).xy().norm();
+    assert!(left_m > 1e-4, "nothing to undo: {left_m} m");
+    let closes = modeled(Step::Lower) + hand - modeled(Step::Align);
+    assert!((wanted - closes).norm() < 5e-4, "{wanted} {closes}");
 }
 
 #[test]
