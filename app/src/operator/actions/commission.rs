@@ -5,9 +5,10 @@ use std::borrow::Cow;
 use plumbline_engine::{
     Command, CommissionCommand, Correction, GraspCommand, GraspTarget, TouchCommand, TwinCommand, View,
 };
+use plumbline_model::touch_plan::{Finger, PlanOptions, Purpose};
 use serde::Serialize;
 
-use super::touch::{Preset, TouchAction};
+use super::touch::{CHECK_SEED, Preset, TouchAction, other_targets, usual_area};
 use crate::operator::guidance::{Press, course};
 
 /// Of commissioning.
@@ -22,6 +23,10 @@ pub enum CommissionAction {
     Next,
     /// Leads no more.
     Leave,
+    /// Plans touches of the corners, which measure where the screen lies.
+    PlanCorners,
+    /// Plans the touches that are learned from.
+    PlanTouches,
     /// Plans the touches that check the model in use.
     PlanCheck,
     /// Chooses what is grasped first; the twin has it laid on its table.
@@ -37,8 +42,16 @@ type Refusal = Option<Cow<'static, str>>;
 
 impl CommissionAction {
     /// All of them, in the palette's order.
-    pub const ALL: [Self; 6] =
-        [Self::Start, Self::StartAnew, Self::Next, Self::Leave, Self::PlanCheck, Self::LayOut];
+    pub const ALL: [Self; 8] = [
+        Self::Start,
+        Self::StartAnew,
+        Self::Next,
+        Self::Leave,
+        Self::PlanCorners,
+        Self::PlanTouches,
+        Self::PlanCheck,
+        Self::LayOut,
+    ];
 
     /// What it is called everywhere.
     pub fn label(self) -> &'static str {
@@ -47,6 +60,8 @@ impl CommissionAction {
             Self::StartAnew => "Commission once more, from the beginning",
             Self::Next => "Do what comes next in commissioning",
             Self::Leave => "Leave commissioning",
+            Self::PlanCorners => "Plan the corners that commissioning touches",
+            Self::PlanTouches => "Plan the touches that commissioning learns from",
             Self::PlanCheck => "Plan touches that check the model in use",
             Self::LayOut => "Choose the first thing to grasp",
         }
@@ -68,7 +83,9 @@ impl CommissionAction {
                 Some(Press::Do { .. }) => None,
             },
             Self::Leave => when(commission.is_on, "it is not under way"),
-            Self::PlanCheck => TouchAction::Plan(Preset::Check).refusal(view),
+            Self::PlanCorners | Self::PlanTouches | Self::PlanCheck => {
+                TouchAction::Plan(Preset::Check).refusal(view)
+            }
             Self::LayOut => None,
         }
     }
@@ -80,14 +97,22 @@ impl CommissionAction {
             Self::StartAnew => vec![CommissionCommand::Start { anew: true }.into()],
             Self::Leave => vec![CommissionCommand::Leave.into()],
             Self::Next => vec![],
+            Self::PlanCorners => few(view, Purpose::PlaceScreen).into_iter().collect(),
+            Self::PlanTouches => few(view, Purpose::Train).into_iter().collect(),
             Self::PlanCheck => {
                 let correction = (!view.gap.model.effects.is_empty()).then_some(Correction::Effects);
-                let plan = TouchAction::Plan(Preset::Check).command(view);
+                let plan = few(view, Purpose::Check);
                 [Some(TouchCommand::CorrectWith(correction).into()), plan].into_iter().flatten().collect()
             }
             Self::LayOut => lay_out(view),
         }
     }
+}
+
+/// The plan of few touches for a purpose; `None` without a screen.
+fn few(view: &View, purpose: Purpose) -> Option<Command> {
+    let options = PlanOptions::few(usual_area(view, Finger::Right)?, purpose, CHECK_SEED);
+    Some(TouchCommand::Plan(other_targets(view, options)).into())
 }
 
 fn lay_out(view: &View) -> Vec<Command> {

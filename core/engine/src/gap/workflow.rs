@@ -180,6 +180,11 @@ impl GapWorkflow {
         self.look();
     }
 
+    /// Whether the model in use is being changed: it cannot be changed once more before that is done.
+    pub fn is_changing(&self) -> bool {
+        self.changing.is_some()
+    }
+
     fn model_for_change(&self, context: &mut Context<'_>) -> Option<Arc<RigModel>> {
         if self.changing.is_some() {
             context.refuse("The model in use is being changed already. Try again in a moment.");

@@ -14,6 +14,8 @@ pub struct HandEyeAround {
     pub grasp: GraspAround,
     /// The model in use; `None`: it was not read yet, or cannot be used.
     pub added: Option<Arc<RigModel>>,
+    /// Whether that model is being changed.
+    pub is_changing: bool,
     /// The session of touches that the model was learned from; `None`: there is none.
     pub touches: Option<PathBuf>,
     /// The twin, where its arm is connected.

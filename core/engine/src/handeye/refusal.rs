@@ -15,6 +15,9 @@ pub enum Refusal {
     /// Nothing was looked at.
     #[error("There is nothing to accept: look at the hands first.")]
     NothingToAccept,
+    /// Gap writes the model.
+    #[error("The model in use is being changed just now: accept in a moment.")]
+    Changing,
     /// What the look began with is not in use any more.
     #[error("The model in use was changed since the look began: look at the hands again.")]
     Changed,

@@ -112,7 +112,8 @@ fn a_file_that_is_something_else_is_said() {
 
 /// A robot of which nothing is calibrated.
 fn around(rig: &Arc<Rig>, added: &Arc<RigModel>) -> HandEyeAround {
-    HandEyeAround { grasp: GraspAround::bare(rig), added: Some(added.clone()), touches: None, twin: None }
+    let grasp = GraspAround::bare(rig);
+    HandEyeAround { grasp, added: Some(added.clone()), is_changing: false, touches: None, twin: None }
 }
 
 /// The workflow, and what it told.
@@ -158,6 +159,8 @@ fn what_lacks_is_said_before_anything_moves_and_nothing_is_accepted_that_was_not
     assert!(shut("Places") && shut("Touches"), "{:?}", view.gates);
     assert!(desk.tell(HandEyeCommand::Look).contains("No robot is connected"));
     assert!(desk.tell(HandEyeCommand::Accept).contains("nothing to accept"));
+    desk.around.is_changing = true;
+    assert!(desk.tell(HandEyeCommand::Accept).contains("is being changed just now"));
     assert!(desk.tell(HandEyeCommand::End).contains("Nothing is under way"));
     assert!(!desk.view().is_looking && desk.room.take_accepted().is_none());
 }

@@ -58,6 +58,8 @@ pub struct HandEyeWorkflow {
     proposal: Option<Proposal>,
     /// What was accepted last.
     kept: Option<(Kept, Arc<HandEyeSummary>)>,
+    /// The model that was asked of last, and whether it has what was accepted.
+    asked: Option<(Arc<RigModel>, bool)>,
     /// A model that was accepted, to be put in use.
     accepted: Option<RigModel>,
 }
@@ -78,7 +80,28 @@ impl HandEyeWorkflow {
     /// What the model in use came of; `None`: the arms are not tied to the eyes, or not any more.
     pub fn in_use(&self, added: Option<&Arc<RigModel>>) -> Option<&Arc<HandEyeSummary>> {
         let (kept, summary) = self.kept.as_ref()?;
-        added.is_some_and(|model| kept.is_in(model)).then_some(summary)
+        let has = |model: &Arc<RigModel>| match &self.asked {
+            Some((asked, has)) if Arc::ptr_eq(asked, model) => *has,
+            _ => kept.is_in(model),
+        };
+        added.is_some_and(has).then_some(summary)
+    }
+
+    /// Compares all values once for each model, not at every picture.
+    fn ask(&mut self, added: Option<&Arc<RigModel>>) {
+        let is_new = |(asked, _): &(Arc<RigModel>, bool)| added.is_none_or(|model| !Arc::ptr_eq(asked, model));
+        if self.asked.as_ref().is_none_or(is_new) {
+            let (kept, added) = (self.kept.as_ref(), added.cloned());
+            self.asked = kept.zip(added).map(|((kept, _), model)| {
+                let has = kept.is_in(&model);
+                (model, has)
+            });
+        }
+    }
+
+    fn keep(&mut self, kept: Kept, summary: Arc<HandEyeSummary>) {
+        self.kept = Some((kept, summary));
+        self.asked = None;
     }
 
     fn begin(&mut self, around: &HandEyeAround, context: &mut Context<'_>) -> Result<(), Refusal> {
@@ -122,6 +145,10 @@ impl HandEyeWorkflow {
     }
 
     fn accept(&mut self, around: &HandEyeAround, context: &mut Context<'_>) -> Result<(), Refusal> {
+        if around.is_changing {
+            // It would be refused there, and what was seen would be lost.
+            return Err(Refusal::Changing);
+        }
         let Some(proposal) = self.proposal.take() else {
             return Err(Refusal::NothingToAccept);
         };
@@ -130,7 +157,7 @@ impl HandEyeWorkflow {
         }
         let Proposal { tied, kept, summary, .. } = proposal;
         context.start(HandEyeWork::Keep { file: self.file.clone(), kept: kept.clone() });
-        self.kept = Some((*kept, summary));
+        self.keep(*kept, summary);
         self.accepted = Some(tied.model);
         Ok(())
     }
@@ -187,11 +214,13 @@ impl Workflow for HandEyeWorkflow {
             progress: None,
             proposal: None,
             kept: None,
+            asked: None,
             accepted: None,
         }
     }
 
     fn view(&mut self, around: &HandEyeAround, _moment: &Moment) -> Arc<HandEyeView> {
+        self.ask(around.added.as_ref());
         let step = self.step(around);
         let stale = match &step {
             StepState::Stale { why } => Some(why.clone()),
@@ -244,10 +273,10 @@ impl Workflow for HandEyeWorkflow {
     ) {
         match result {
             HandEyeResult::Restored(kept) => {
-                self.kept = kept.map(|kept| {
+                if let Some(kept) = kept {
                     let summary = Arc::new(kept.summary());
-                    (*kept, summary)
-                });
+                    self.keep(*kept, summary);
+                }
             }
             HandEyeResult::Looked(tied) => {
                 if let Some(running) = self.ended(id, context) {

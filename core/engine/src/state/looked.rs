@@ -18,6 +18,7 @@ impl Neighbors<HandEyeWorkflow> for State {
         HandEyeAround {
             grasp: <Self as Neighbors<GraspWorkflow>>::around(self, world),
             added: gap.model().cloned(),
+            is_changing: gap.is_changing(),
             touches: one.or_else(newest),
             twin: is_twin.then(|| self.twin.clone()),
         }

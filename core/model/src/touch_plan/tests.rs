@@ -48,6 +48,9 @@ fn the_usual_plans_have_the_usual_size() {
     assert!((22..=26).contains(&plan(&PlanOptions::quick(area())).touches.len()));
     assert_eq!(plan(&PlanOptions::check_reach(area(), 250, 3)).touches.len(), 250);
     assert_eq!(plan(&PlanOptions::place_screen(area())).touches.len(), 8);
+    let few = [Purpose::PlaceScreen, Purpose::Train, Purpose::Check]
+        .map(|purpose| plan(&PlanOptions::few(area(), purpose, 7)).touches.len());
+    assert_eq!(few, [4, 15, 6], "25 in all");
     let rich = plan(&PlanOptions::rich(area()));
     assert_eq!(rich.touches.len(), 17 * 2 * 3 * 2);
 }

@@ -7,7 +7,7 @@ use plumbline_model::touch_plan::Purpose;
 use super::super::robot;
 use super::super::touch::{done_of, touch, wanted, what_moves};
 use super::Said;
-use crate::operator::{Action, CommissionAction, Preset, TouchAction, needs_window};
+use crate::operator::{Action, CommissionAction, TouchAction, needs_window};
 
 pub(super) fn placing(view: &View) -> Said {
     let touch = &view.touch;
@@ -21,7 +21,7 @@ pub(super) fn placing(view: &View) -> Said {
     let plan = Said::press(
         "The corners of the screen are touched to measure where it lies. Planning moves nothing.",
         "Plan to touch the corners",
-        vec![Action::Touch(TouchAction::Plan(Preset::Corners))],
+        vec![Action::Commission(CommissionAction::PlanCorners)],
     );
     run(view, Purpose::PlaceScreen, plan)
 }
@@ -30,7 +30,7 @@ pub(super) fn training(view: &View) -> Said {
     let plan = Said::press(
         "Places all over the screen are touched, to learn from what makes the arm miss. Planning moves nothing.",
         "Plan touches to learn from",
-        vec![Action::Touch(TouchAction::Plan(Preset::Quick))],
+        vec![Action::Commission(CommissionAction::PlanTouches)],
     );
     run(view, Purpose::Train, plan)
 }

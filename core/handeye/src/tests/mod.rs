@@ -1,5 +1,7 @@
 //! All of it on a twin whose errors are hidden from it.
 
+mod bad_inputs;
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -93,9 +95,9 @@ impl Watch for Told {
 }
 
 fn tied(
-    body: &mut TwinBody,
+    body: &mut dyn plumbline_grasp::Body,
     start: &Start,
-    told: &mut Told,
+    told: &mut dyn Watch,
     context: &dyn JobContext,
 ) -> Result<Tied, HandEyeError> {
     let measurements = touches(&start.described);
