@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use jiff::Timestamp;
-use plumbline_model::files::{self, FileError, Size};
+use plumbline_model::files::{FileError, Size};
 use serde::{Deserialize, Serialize};
+
+use crate::ground::own_file::{self, NotOwn, Own};
 
 /// The file, in the folder of a world.
 pub const FILE: &str = "commission.json";
@@ -28,6 +30,15 @@ pub enum CommissionError {
         /// What is wrong with it.
         why: String,
     },
+}
+
+impl CommissionError {
+    fn of(file: &Path, why: NotOwn) -> Self {
+        match why {
+            NotOwn::File(error) => Self::File(error),
+            NotOwn::Other(why) => Self::NoCommission { file: file.to_owned(), why },
+        }
+    }
 }
 
 /// What is kept.
@@ -69,6 +80,15 @@ pub struct KeptRun {
     pub at: Timestamp,
 }
 
+impl Own for Kept {
+    const FORMAT: u32 = FORMAT;
+    const LONGEST: Size = Size::SHORT;
+
+    fn format(&self) -> u32 {
+        self.format
+    }
+}
+
 impl Kept {
     /// Just begun.
     pub fn begun(at: Timestamp, anew: bool) -> Self {
@@ -91,16 +111,10 @@ impl Kept {
     /// # Errors
     /// When there is a file that does not say what it should.
     pub fn read(file: &Path) -> Result<Option<Self>, CommissionError> {
-        let text = match files::read_text(file, Size::SHORT) {
-            Ok(text) => text,
-            Err(error) if error.is_absent() => return Ok(None),
-            Err(error) => return Err(error.into()),
+        let Some(kept) = own_file::read::<Self>(file).map_err(|why| CommissionError::of(file, why))? else {
+            return Ok(None);
         };
         let wrong = |why: String| CommissionError::NoCommission { file: file.to_owned(), why };
-        let kept: Self = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-        if kept.format != FORMAT {
-            return Err(wrong(format!("it has format {}, this program knows {FORMAT}", kept.format)));
-        }
         if !(0.0..=LONGEST_S).contains(&kept.spent_s) {
             return Err(wrong(format!("it took {} s", kept.spent_s)));
         }
@@ -116,13 +130,6 @@ impl Kept {
     /// # Errors
     /// When it cannot be written; then the old one is there.
     pub fn write(&self, file: &Path) -> Result<(), CommissionError> {
-        let text = serde_json::to_vec_pretty(self).map_err(|error| CommissionError::NoCommission {
-            file: file.to_owned(),
-            why: error.to_string(),
-        })?;
-        if let Some(folder) = file.parent() {
-            files::make_folder(folder)?;
-        }
-        Ok(files::write(file, text)?)
+        own_file::write(file, self).map_err(|why| CommissionError::of(file, why))
     }
 }

@@ -8,6 +8,7 @@ pub mod jobs;
 #[cfg(all(test, target_os = "linux"))]
 pub mod kept;
 pub mod notice;
+pub mod own_file;
 pub mod sessions;
 pub mod shelf;
 pub mod slot;

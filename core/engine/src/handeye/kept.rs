@@ -7,10 +7,11 @@ use plumbline_effects::rig_model::ModelEffect;
 use plumbline_effects::{Kind, RigModel};
 use plumbline_grasp::Hand;
 use plumbline_handeye::{Outcome, Tie, Tied};
-use plumbline_model::files::{self, FileError, Size};
+use plumbline_model::files::{FileError, Size};
 use serde::{Deserialize, Serialize};
 
 use super::view::HandEyeSummary;
+use crate::ground::own_file::{self, NotOwn, Own};
 
 /// The file, in the folder of a world.
 pub const FILE: &str = "hand-eye.json";
@@ -33,6 +34,15 @@ pub enum KeptError {
     },
 }
 
+impl KeptError {
+    fn of(file: &Path, why: NotOwn) -> Self {
+        match why {
+            NotOwn::File(error) => Self::File(error),
+            NotOwn::Other(why) => Self::NoLook { file: file.to_owned(), why },
+        }
+    }
+}
+
 /// A look that was accepted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -46,6 +56,15 @@ pub struct Kept {
     hands: Vec<(Hand, Outcome)>,
     /// Every effect of the arms and of the neck that it gave, with its values.
     gave: Vec<String>,
+}
+
+impl Own for Kept {
+    const FORMAT: u32 = FORMAT;
+    const LONGEST: Size = Size::SHORT;
+
+    fn format(&self) -> u32 {
+        self.format
+    }
 }
 
 impl Kept {
@@ -73,17 +92,7 @@ impl Kept {
     /// # Errors
     /// When there is a file that does not say what it should.
     pub fn read(file: &Path) -> Result<Option<Self>, KeptError> {
-        let text = match files::read_text(file, Size::SHORT) {
-            Ok(text) => text,
-            Err(error) if error.is_absent() => return Ok(None),
-            Err(error) => return Err(error.into()),
-        };
-        let wrong = |why: String| KeptError::NoLook { file: file.to_owned(), why };
-        let kept: Self = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-        if kept.format != FORMAT {
-            return Err(wrong(format!("it has format {}, this program knows {FORMAT}", kept.format)));
-        }
-        Ok(Some(kept))
+        own_file::read(file).map_err(|why| KeptError::of(file, why))
     }
 
     /// Writes it in place of what was.
@@ -91,12 +100,7 @@ impl Kept {
     /// # Errors
     /// When it cannot be written; then the old one is there.
     pub fn write(&self, file: &Path) -> Result<(), KeptError> {
-        let text = serde_json::to_vec_pretty(self)
-            .map_err(|error| KeptError::NoLook { file: file.to_owned(), why: error.to_string() })?;
-        if let Some(folder) = file.parent() {
-            files::make_folder(folder)?;
-        }
-        Ok(files::write(file, text)?)
+        own_file::write(file, self).map_err(|why| KeptError::of(file, why))
     }
 }
 

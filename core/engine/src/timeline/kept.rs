@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use plumbline_model::files::{self, FileError, Size};
+use plumbline_model::files::{FileError, Size};
 use serde::{Deserialize, Serialize};
 
 use super::view::TimelineEntry;
+use crate::ground::own_file::{self, NotOwn, Own};
 
 /// The file, in the folder of a world.
 pub const FILE: &str = "timeline.json";
@@ -28,6 +29,15 @@ pub enum TimelineError {
     },
 }
 
+impl TimelineError {
+    fn of(file: &Path, why: NotOwn) -> Self {
+        match why {
+            NotOwn::File(error) => Self::File(error),
+            NotOwn::Other(why) => Self::NoTimeline { file: file.to_owned(), why },
+        }
+    }
+}
+
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Kept<'a> {
@@ -35,21 +45,23 @@ struct Kept<'a> {
     entries: std::borrow::Cow<'a, [TimelineEntry]>,
 }
 
+impl Own for Kept<'_> {
+    const FORMAT: u32 = FORMAT;
+    const LONGEST: Size = Size::TEXT;
+
+    fn format(&self) -> u32 {
+        self.format
+    }
+}
+
 /// Reads it; empty where there is none.
 ///
 /// # Errors
 /// When there is a file that is no timeline.
 pub fn read(file: &Path) -> Result<Vec<TimelineEntry>, TimelineError> {
-    let text = match files::read_text(file, Size::TEXT) {
-        Ok(text) => text,
-        Err(error) if error.is_absent() => return Ok(Vec::new()),
-        Err(error) => return Err(error.into()),
-    };
+    let kept = own_file::read::<Kept<'_>>(file).map_err(|why| TimelineError::of(file, why))?;
+    let Some(kept) = kept else { return Ok(Vec::new()) };
     let wrong = |why: String| TimelineError::NoTimeline { file: file.to_owned(), why };
-    let kept: Kept<'_> = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
-    if kept.format != FORMAT {
-        return Err(wrong(format!("it has format {}, this program knows {FORMAT}", kept.format)));
-    }
     let entries = kept.entries.into_owned();
     if entries.windows(2).any(|two| two[0].number >= two[1].number) {
         return Err(wrong("its entries are not numbered in their order".to_owned()));
@@ -67,10 +79,5 @@ pub fn read(file: &Path) -> Result<Vec<TimelineEntry>, TimelineError> {
 /// When it cannot be written; then the old one is there.
 pub fn write(file: &Path, entries: &[TimelineEntry]) -> Result<(), TimelineError> {
     let kept = Kept { format: FORMAT, entries: entries.into() };
-    let text = serde_json::to_vec_pretty(&kept)
-        .map_err(|error| TimelineError::NoTimeline { file: file.to_owned(), why: error.to_string() })?;
-    if let Some(folder) = file.parent() {
-        files::make_folder(folder)?;
-    }
-    Ok(files::write(file, text)?)
+    own_file::write(file, &kept).map_err(|why| TimelineError::of(file, why))
 }
