@@ -18,7 +18,7 @@ fn planner(rig: &Arc<Rig>, hand: Hand) -> GraspPlanner {
 }
 
 fn plan(planner: &GraspPlanner, [x_m, y_m]: [f64; 2], from: &Posture) -> Result<GraspPlan, NoPlan> {
-    let standing = Standing { xy_m: [x_m, y_m], support_m: 0.056, height_m: 0.054 };
+    let standing = Standing { xy_m: [x_m, y_m], support_m: 0.056, height_m: 0.054, lower_m: 0.0 };
     planner.plan(&standing, &Vector3::zeros(), from)
 }
 

@@ -37,7 +37,7 @@ fn lifted_m(toy: Toy, at_m: [f64; 2], off_m: [f64; 3]) -> Result<(f64, f64, f64)
     let before = place(&mut twin);
     let half_m = 0.027;
     let standing =
-        Standing { xy_m: [before.x, before.y], support_m: before.z - half_m, height_m: 2.0 * half_m };
+        Standing { xy_m: [before.x, before.y], support_m: before.z - half_m, height_m: 2.0 * half_m, lower_m: 0.0 };
     let planner = planner(&rig);
     let from = twin.commanded().clone();
     let rough = planner.plan(&standing, &Vector3::zeros(), &from).map_err(|error| error.to_string())?;
@@ -110,7 +110,7 @@ fn step_by_step() {
             twin.truth_for_judging().robot_from_link[link.0].expect("there").translation.vector
         };
         let before = place(&mut twin);
-        let standing = Standing { xy_m: [before.x, before.y], support_m: before.z - 0.027, height_m: 0.054 };
+        let standing = Standing { xy_m: [before.x, before.y], support_m: before.z - 0.027, height_m: 0.054, lower_m: 0.0 };
         let planner = planner(&rig);
         let from = twin.commanded().clone();
         let Ok(plan) = planner.plan(&standing, &Vector3::zeros(), &from) else { continue };
@@ -147,7 +147,7 @@ fn step_by_step() {
 fn room_at_the_edge() {
     let rig = Arc::new(Rig::built_in("nico").expect("valid"));
     let planner = planner(&rig);
-    let standing = Standing { xy_m: [0.2, 0.3], support_m: 0.054, height_m: 0.054 };
+    let standing = Standing { xy_m: [0.2, 0.3], support_m: 0.054, height_m: 0.054, lower_m: 0.0 };
     let plan = planner.plan(&standing, &Vector3::zeros(), &rig.home()).expect("in reach");
     let bodies = plumbline_model::robot::collision::CollisionModel::of_rig(&rig);
     for posture in &plan.down {

@@ -8,6 +8,9 @@ use crate::see::Seen;
 
 /// Before the arm moves again, who watches has this long to read what will move, and to stop it, s.
 const SAID_S: f64 = 2.0;
+/// What a hand closed over and did not hold it takes so much lower the next time, m: things are smaller and arms
+/// higher than they are taken to be, and a hand that does the same again fails again.
+const LOWER_M: f64 = 0.004;
 
 impl Running<'_> {
     /// Opens the hand, goes back to where the arm was at first, so that the eyes see the table as they did
@@ -32,6 +35,9 @@ impl Running<'_> {
         self.follow(Step::Again, &back, AIR_RAD_S)?;
         let stood = self.record.standing_m.or(self.near_m);
         self.near_m = looked_for_near(&self.record.seen, &self.order.object, stood);
+        if failure == Failure::ReachWrong {
+            self.lower_m += LOWER_M;
+        }
         let first = Outcome::Failed { failure, why: why.clone() };
         self.record.earlier.push(Earlier {
             hand: self.record.hand,

@@ -97,7 +97,7 @@ impl Running<'_> {
         }
         let xy_m = [point.x, point.y];
         let support_m = knowledge.support_m(point.x, point.y);
-        let standing = Standing { xy_m, support_m, height_m: thing.height_m };
+        let standing = Standing { xy_m, support_m, height_m: thing.height_m, lower_m: self.lower_m };
         Ok(Chosen { point: Point::new(point.x, point.y, point.z), covariance_m2, standing })
     }
 }

@@ -251,6 +251,8 @@ struct Running<'a> {
     began_s: f64,
     /// The one nearest to this place is meant, m.
     near_m: Option<[f64; 2]>,
+    /// The palm closes so much lower than it usually does, m.
+    lower_m: f64,
 }
 
 impl<'a> Running<'a> {
@@ -262,7 +264,7 @@ impl<'a> Running<'a> {
         record: &'a mut Record,
     ) -> Self {
         let began_s = body.now_s();
-        Self { grasper, body, order, watch, record, began_s, near_m: order.near_m }
+        Self { grasper, body, order, watch, record, began_s, near_m: order.near_m, lower_m: 0.0 }
     }
 }
 
@@ -273,14 +275,20 @@ impl Running<'_> {
         let hands = self.fit_hands()?;
         self.begin(Step::Look);
         let before = self.body.look()?;
-        let chosen = self.find(&before)?;
+        let mut chosen = self.find(&before)?;
         self.begin(Step::Plan);
         let beside = self.beside(&chosen);
         self.grasper.leave(&beside);
         let method = self.order.method;
         let from = self.body.commanded()?;
         let headed = method::published(method, &self.grasper.knowledge, &chosen.point)?;
-        let plan = self.best_plan(&hands, &chosen, headed.as_ref(), &from)?;
+        let plan = match self.best_plan(&hands, &chosen, headed.as_ref(), &from) {
+            Err(_) if chosen.standing.lower_m > 0.0 => {
+                chosen.standing.lower_m = 0.0;
+                self.best_plan(&hands, &chosen, headed.as_ref(), &from)?
+            }
+            plan => plan?,
+        };
         let shift_m = headed.map_or_else(Vector3::zeros, |headed| headed.shift_m);
         self.planned(&plan);
         Ok(Prepared { before, chosen, shift_m, plan })

@@ -107,7 +107,7 @@ mod tests {
             GraspPlanner::new(PalmArm::new(&RobotModel::nominal(rig.clone()), "right").expect("an arm"));
         let home = rig.home();
         for [x_m, y_m] in [[0.3, -0.1], [0.4, -0.2], [0.3, 0.2]] {
-            let standing = Standing { xy_m: [x_m, y_m], support_m: rig.table.height_m, height_m: 0.054 };
+            let standing = Standing { xy_m: [x_m, y_m], support_m: rig.table.height_m, height_m: 0.054, lower_m: 0.0 };
             let heading_rad = heading_rad(x_m, y_m);
             for centered in [false, true] {
                 let headed = Headed { heading_rad, shift_m: Vector3::new(0.0, 0.0, 0.01), centered };
@@ -125,7 +125,7 @@ mod tests {
                 assert!(if centered { beside < 0.003 } else { beside > 0.010 }, "{centered} {beside}");
             }
         }
-        let far = Standing { xy_m: [0.9, 0.0], support_m: rig.table.height_m, height_m: 0.054 };
+        let far = Standing { xy_m: [0.9, 0.0], support_m: rig.table.height_m, height_m: 0.054, lower_m: 0.0 };
         let headed = Headed { heading_rad: 0.0, shift_m: Vector3::zeros(), centered: false };
         let refused = planner.plan_headed(&far, &headed, &home).expect_err("out of reach");
         assert_eq!(refused, NoPlan::OutOfReach { xy_m: far.xy_m });

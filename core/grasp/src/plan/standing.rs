@@ -24,6 +24,8 @@ pub struct Standing {
     pub support_m: f64,
     /// Height of the object, m.
     pub height_m: f64,
+    /// The palm closes so much lower than it usually does, m.
+    pub lower_m: f64,
 }
 
 impl Standing {
@@ -41,9 +43,23 @@ impl Standing {
     /// The same for a palm that is turned somehow: x along the fingers, z out of the back of the hand.
     pub fn palm_turned(&self, robot_from_palm: &UnitQuaternion<f64>, is_left: bool) -> Point<Robot> {
         let middle = Vector3::new(self.xy_m[0], self.xy_m[1], self.middle_m());
-        let over_m = 0.5 * self.height_m - BELOW_TOP_M;
+        let over_m = 0.5 * self.height_m - BELOW_TOP_M - self.lower_m;
         let from_thumb_m = if is_left { FROM_THUMB_M } else { -FROM_THUMB_M };
         let in_hand = Vector3::new(INTO_FINGERS_M, from_thumb_m, -over_m);
         Point::from(Point3::from(middle - robot_from_palm * in_hand))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_palm_that_closes_lower_stays_over_the_same_place() {
+        let usual = Standing { xy_m: [0.3, -0.1], support_m: 0.05, height_m: 0.054, lower_m: 0.0 };
+        let lower = Standing { lower_m: 0.004, ..usual };
+        let [a, b] = [usual, lower].map(|standing| standing.palm(0.4, false).coords.coords);
+        assert!((a - b - Vector3::new(0.0, 0.0, 0.004)).norm() < 1e-12, "{a} {b}");
+        assert!((usual.middle_m() - lower.middle_m()).abs() < 1e-12);
     }
 }

@@ -154,7 +154,7 @@ mod tests {
         other.table.x_range_m[0] -= 0.3;
         let (here, there) = (planner(&rig), planner(&Arc::new(other)));
         for xy_m in [[0.2, -0.2], [0.3, -0.2], [0.3, -0.1]] {
-            let standing = Standing { xy_m, support_m: rig.table.height_m, height_m: 0.054 };
+            let standing = Standing { xy_m, support_m: rig.table.height_m, height_m: 0.054, lower_m: 0.0 };
             let plan = here.plan(&standing, &Vector3::zeros(), &rig.home()).expect("a plan");
             let above = plan.above().expect("a way");
             assert!(!here.may_meet_table(above, &plan.down).expect("postures"), "{xy_m:?}");

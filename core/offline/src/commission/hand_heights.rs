@@ -100,7 +100,7 @@ fn oddest(table: &HeightTable) -> Result<Option<(usize, f64)>, CommissionError> 
 /// Height of the described hand's lowest point when the real one met the table at a place, m.
 fn lower(planner: &GraspPlanner, robot: &mut Robot, xy_m: [f64; 2]) -> Result<f64, String> {
     let rig = robot.lockstep().rig().clone();
-    let standing = Standing { xy_m, support_m: rig.table.height_m, height_m: THING_M };
+    let standing = Standing { xy_m, support_m: rig.table.height_m, height_m: THING_M, lower_m: 0.0 };
     let heading_rad = heading_rad(xy_m[0], xy_m[1]);
     let headed = Headed { heading_rad, shift_m: Vector3::zeros(), centered: false };
     let home = rig.home();
