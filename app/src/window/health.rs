@@ -121,6 +121,9 @@ fn view_menu(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
         ui.separator();
         entry(ui, "Save a picture of the window…", Action::SaveWindow);
         entry(ui, "Frame times", Action::ToggleFrameTimes);
+        ui.separator();
+        entry(ui, "Help", Action::Help);
+        entry(ui, "About Plumbline", Action::About);
         entry(ui, "Quit", Action::Quit);
     });
 }
