@@ -58,6 +58,8 @@ impl PlumblineWindow {
                 "frames": summary.count,
                 "median_ms": ms(summary.median),
                 "percentile_95_ms": ms(summary.percentile_95),
+                "longest_ms": ms(summary.longest),
+                "over_100_ms": summary.slow,
                 "renderer": self.renderer,
                 "resident_before_mb": self.resident_before_mb,
                 "resident_mb": resident_mb(),

@@ -1,6 +1,7 @@
 //! Help and about.
 
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 
 use crate::fake::{Fake, click, says, shows};
@@ -71,6 +72,19 @@ fn about_says_the_versions() {
     for name in ["Plumbline", "OpenCV", "MuJoCo", "ONNX Runtime"] {
         assert!(says(&window, name), "{name}");
     }
+    window.run_steps(3);
     click(&mut window, "Close");
     assert!(!says(&window, "MuJoCo"));
+}
+
+#[test]
+fn a_step_that_is_pointed_at_says_what_it_waits_for() {
+    let fake = Fake::over(plumbline_engine::View::default());
+    let settings = WindowSettings { screen: Screen::Timeline, ..WindowSettings::default() };
+    let mut window = fake.window_of_size(settings, [1440.0, 900.0]);
+    window.get_by_label("Models").hover();
+    for _ in 0..60 {
+        window.run_steps(1);
+    }
+    assert!(says(&window, "Touch the screen first"));
 }

@@ -165,9 +165,6 @@ impl<'a> ImageView<'a> {
             view.see(picture.size_px(), part);
         }
         input::handle(ui, &response, rect, view, picture.size_px());
-        if self.crop {
-            seen::button(ui, rect, self.label, view, picture.size_px());
-        }
         let transform = view.transform(picture.size_px(), rect);
         let at_pointer = |pos: Option<egui::Pos2>| {
             pos.map(|pos| transform.to_image(pos)).filter(|at_px| transform.contains(*at_px))
@@ -177,6 +174,9 @@ impl<'a> ImageView<'a> {
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, self.label));
         if ui.is_rect_visible(rect) {
             self.paint(ui, rect, &transform, picture, &response, hover_px);
+        }
+        if self.crop {
+            seen::button(ui, rect, self.label, view, picture.size_px());
         }
         ImageViewResponse {
             response,

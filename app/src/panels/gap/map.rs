@@ -27,11 +27,11 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         Drawn::of(&shown, corners.unwrap_or_default())
     });
     padded(ui, |ui| {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let options = [(Errors::Before, "Before"), (Errors::After, "After"), (Errors::Both, "Both")];
             choice(ui, "Errors of the gap", &mut cx.state.gap.errors, &options);
             let floor = words::error(&shown.finding.shown, shown.finding.shown.floor);
-            ui.label(theme::small(ui, format!("noise alone: {floor}")));
+            ui.add(egui::Label::new(theme::small(ui, format!("noise alone: {floor}"))).extend());
         });
         ui.add_space(space::XS);
         let errors = cx.state.gap.errors;
