@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crossbeam_channel::{Receiver, Sender, unbounded};
+use crossbeam_channel::{Receiver, Sender, bounded};
 use egui::{ColorImage, Context, Rect};
 
 use super::PlumblineWindow;
@@ -17,6 +17,9 @@ use crate::operator::{Pane, Table, Taken};
 const FRAMES: u8 = 4;
 /// A picture that has not come by then does not come.
 const LONGEST: Duration = Duration::from_secs(5);
+
+/// Files whose writing the window was not told of yet.
+const MOST_WRITTEN: usize = 16;
 
 /// What a picture of a tile is for.
 enum Purpose {
@@ -55,7 +58,7 @@ pub(super) struct Taking {
 
 impl Default for Taking {
     fn default() -> Self {
-        Self { shot: None, pending: None, pictures: unbounded(), written: unbounded() }
+        Self { shot: None, pending: None, pictures: bounded(1), written: bounded(MOST_WRITTEN) }
     }
 }
 
@@ -69,7 +72,7 @@ impl Taking {
     pub(super) fn teller(&self, file: PathBuf) -> impl FnOnce(Result<(), String>) + Send + 'static {
         let sender = self.written.0.clone();
         // A window that is gone needs no telling.
-        move |outcome| drop(sender.send((file, outcome)))
+        move |outcome| drop(sender.try_send((file, outcome)))
     }
 
     /// Writes what waits for its file.
@@ -135,6 +138,8 @@ impl PlumblineWindow {
 
     fn photograph(&mut self, pane: Pane, purpose: Purpose) {
         let Some(rect) = self.tile_rects.get(&pane).copied() else { return };
+        // One that came too late is of another tile.
+        while self.taking.pictures.1.try_recv().is_ok() {}
         self.taking.shot = Some(Shot { pane, rect, purpose, frames: FRAMES, since: Instant::now() });
     }
 
@@ -158,7 +163,7 @@ impl PlumblineWindow {
                 let (sender, again) = (self.taking.pictures.0.clone(), ctx.clone());
                 ctx.request_screenshot(move |picture| {
                     // A window that is gone needs no picture.
-                    drop(sender.send(picture));
+                    drop(sender.try_send(picture));
                     again.request_repaint();
                 });
             }
