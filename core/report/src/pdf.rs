@@ -13,9 +13,8 @@ use krilla::paint::{Fill, FillRule, Stroke, StrokeDash};
 use krilla::surface::Surface;
 use krilla::text::{Font, TextDirection};
 
-use crate::drawing::{self, Color, Drawing, Mark};
+use crate::drawing::{self, Color, Drawing, Mark, Picture};
 use crate::font::{self, Weight};
-use crate::tile::Picture;
 use crate::{About, ReportError};
 
 /// Distance of the control points of a quarter of a circle, per radius.

@@ -1,6 +1,7 @@
 //! One tile of the window for a colleague: its picture as it stood on the screen, and its table below, on
 //! as many pages as that takes.
 
+pub use crate::drawing::Picture;
 use crate::drawing::{Drawing, Stroke, Style, ink};
 use crate::font;
 use crate::page::{HEIGHT, MARGIN, WIDTH};
@@ -31,15 +32,6 @@ pub struct Tile {
     pub rows: Vec<Vec<String>>,
     /// Name and version of the program.
     pub version: String,
-}
-
-/// Pixels.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub struct Picture {
-    /// Columns and rows.
-    pub size_px: [u32; 2],
-    /// Four bytes per pixel, row by row from the top left.
-    pub rgba: Vec<u8>,
 }
 
 /// The tile as a PDF file, with its fonts.

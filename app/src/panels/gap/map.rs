@@ -35,7 +35,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         });
         ui.add_space(space::XS);
         let errors = cx.state.gap.errors;
-        let height = (ui.available_height() - 52.0).max(140.0);
+        let height = (ui.available_height() - 72.0).max(110.0);
         let scene = drawn.scene(errors);
         let at = |at_m| drawn.words(at_m);
         TableMap::new("Map of the gap", &scene).words(&at).height(height).show(ui);
