@@ -13,6 +13,9 @@ use plumbline_tests::{Window, click, eye_renderer, until, view, window};
 /// The touches alone take minutes: the twin's clock is the real one.
 const LONGEST: Duration = Duration::from_secs(3000);
 
+/// From the first start to an accepted model.
+const MOST_CLICKS: usize = 45;
+
 /// The button that leads on, if it can be pressed just now.
 fn next(window: &Window) -> Option<String> {
     let mut found = window.query_all_by_label_contains("Next: ");
@@ -36,6 +39,8 @@ fn commission(scenario: &str) {
 
     let began = Instant::now();
     let mut pressed: Vec<String> = vec![];
+    // Clicks until a model is in use, the one that opened commissioning among them.
+    let mut until_model = None;
     loop {
         until(&mut window, "the next button", |window| next(window).is_some() || began.elapsed() > LONGEST);
         assert!(began.elapsed() < LONGEST, "{pressed:#?}, {:?}", view(&window).notices);
@@ -49,6 +54,9 @@ fn commission(scenario: &str) {
         assert!(last < 4, "{pressed:#?}, {:?}", view(&window).notices);
         pressed.push(label.clone());
         click(&mut window, &label);
+        if until_model.is_none() && view(&window).commission.of(CommissionStep::Effects).is_some() {
+            until_model = Some(1 + pressed.len());
+        }
         // It is gray once it was pressed; then what was asked for shows, or it can be pressed again.
         until(&mut window, "the press", |window| next(window).is_none());
     }
@@ -66,6 +74,8 @@ fn commission(scenario: &str) {
         pressed.len()
     );
     assert!(done.is_done());
+    println!("{until_model:?} clicks from the first start to an accepted model");
+    assert!(until_model.is_some_and(|clicks| clicks <= MOST_CLICKS), "{until_model:?}: {pressed:#?}");
     let held = done.of(CommissionStep::Grasp).map(|done| done.figure.clone());
     assert_eq!(held, Some(CommissionFigure::Held("Tomato".to_owned())));
     let attempt = view(&window).grasp.attempts.first().cloned().expect("it was grasped");

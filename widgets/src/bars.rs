@@ -62,6 +62,9 @@ pub struct PairBars<'a> {
     height: f32,
 }
 
+/// What the line is that good pairs stay below.
+const THRESHOLD: &str = "good pairs stay below";
+
 /// What happened to the chart.
 #[derive(Clone, Debug)]
 pub struct BarsResponse {
@@ -173,6 +176,10 @@ impl<'a> PairBars<'a> {
             let ends = [pos2(chart.rect.left(), y), pos2(chart.rect.right(), y)];
             let stroke = Stroke::new(1.0, theme::tokens(ui).text);
             ui.painter().extend(Shape::dashed_line(&ends, stroke, 4.0, 4.0));
+            let font = theme::font(ui, &TextStyle::Small);
+            let at = pos2(chart.rect.left() + space::XS, y - 1.0);
+            let color = theme::tokens(ui).text_weak;
+            ui.painter().text(at, Align2::LEFT_BOTTOM, THRESHOLD, font, color);
         }
     }
 

@@ -57,7 +57,8 @@ impl StepState<'_> {
             Self::Running(fraction) => {
                 Some(format!("Running, {}", crate::format::percent(f64::from(*fraction))))
             }
-            Self::NotDone => Some("Not done".to_owned()),
+            // What it waits for is said by who knows.
+            Self::NotDone => None,
             Self::Done => Some("Done".to_owned()),
         }
     }

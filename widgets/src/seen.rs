@@ -67,6 +67,13 @@ impl<K, T> Default for Memo<K, T> {
     }
 }
 
+impl<K, T> Memo<K, T> {
+    /// What was made last, if anything was.
+    pub fn last(&self) -> Option<&T> {
+        self.made.as_ref().map(|(_, made)| &**made)
+    }
+}
+
 impl<K: PartialEq, T> Memo<K, T> {
     /// What was made from `of`; `make` is called only if that was something else.
     pub fn get(&mut self, of: K, make: impl FnOnce() -> T) -> Arc<T> {

@@ -8,9 +8,25 @@ const MOST_POINTS_PER_PX: f64 = 96.0;
 /// Zoom and position of one view, or of several linked ones: give the same state to each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ViewState {
-    /// `None` while the whole image fits the view.
+    /// `None` while the image, or the part of it where something is seen, fits the view.
     looking_at: Option<LookingAt>,
+    /// Where something is seen; grows with what comes.
+    seen: Option<SeenPart>,
+    /// The whole image was asked for, black borders and all.
+    whole: bool,
 }
+
+/// The part of an image outside of which it is dark.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct SeenPart {
+    size_px: [usize; 2],
+    /// First and last column, first and last row.
+    columns_px: [f64; 2],
+    rows_px: [f64; 2],
+}
+
+/// A part that leaves out less than this of the image, along both sides, is no part.
+const WORTH_LEAVING_OUT: f64 = 0.06;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct LookingAt {
@@ -89,9 +105,41 @@ impl ViewState {
         self.looking_at = None;
     }
 
-    /// Whether the whole image is shown.
+    /// Whether nothing was zoomed.
     pub fn is_fit(&self) -> bool {
         self.looking_at.is_none()
+    }
+
+    /// Tells where in an image of this size something is seen, outside of which it is dark: columns and rows,
+    /// first and last. What was seen before stays in the part, so that it does not flicker.
+    pub fn see(&mut self, size_px: [usize; 2], [columns_px, rows_px]: [[f64; 2]; 2]) {
+        let before = self.seen.filter(|seen| seen.size_px == size_px);
+        let grown = |before: Option<[f64; 2]>, now: [f64; 2]| {
+            before.map_or(now, |before| [before[0].min(now[0]), before[1].max(now[1])])
+        };
+        self.seen = Some(SeenPart {
+            size_px,
+            columns_px: grown(before.map(|seen| seen.columns_px), columns_px),
+            rows_px: grown(before.map(|seen| seen.rows_px), rows_px),
+        });
+    }
+
+    /// The part that fits the view in place of the whole image, where there is one worth it.
+    fn part(&self, size_px: [usize; 2]) -> Option<SeenPart> {
+        let seen = self.seen.filter(|seen| seen.size_px == size_px)?;
+        let share = |[first, last]: [f64; 2], n: usize| (last - first + 1.0) / n.max(1) as f64;
+        let (across, down) = (share(seen.columns_px, size_px[0]), share(seen.rows_px, size_px[1]));
+        (across.min(down) < 1.0 - WORTH_LEAVING_OUT).then_some(seen)
+    }
+
+    /// Whether only a part of an image of this size is shown; `None`: there is no part worth it.
+    pub fn shows_part(&self, size_px: [usize; 2]) -> Option<bool> {
+        self.part(size_px).map(|_| !self.whole)
+    }
+
+    /// Shows the whole image, or only where something is seen.
+    pub fn show_whole(&mut self, whole: bool) {
+        (self.whole, self.looking_at) = (whole, None);
     }
 
     /// Puts a pixel into the center, at so many points per image pixel.
@@ -102,20 +150,35 @@ impl ViewState {
     /// The mapping for an image of this size in this rectangle.
     pub fn transform(&self, size_px: [usize; 2], view: Rect) -> ImageTransform {
         match self.looking_at {
-            None => ImageTransform::fit(size_px, view),
+            None => self.fitted(size_px, view),
             Some(LookingAt { center_px, points_per_px }) => {
                 ImageTransform::centered(size_px, view, center_px, points_per_px)
             }
         }
     }
 
+    /// Without any zoom.
+    fn fitted(&self, size_px: [usize; 2], view: Rect) -> ImageTransform {
+        let Some(part) = self.part(size_px).filter(|_| !self.whole) else {
+            return ImageTransform::fit(size_px, view);
+        };
+        let size = |[first, last]: [f64; 2]| (last - first + 1.0).max(1.0);
+        let across = f64::from(view.width()) / size(part.columns_px);
+        let down = f64::from(view.height()) / size(part.rows_px);
+        let middle = |[first, last]: [f64; 2]| (first + last) / 2.0;
+        let center_px = [middle(part.columns_px), middle(part.rows_px)];
+        ImageTransform::centered(size_px, view, center_px, across.min(down).max(1e-6))
+    }
+
     /// Magnifies by `factor` while the pixel under `pointer` stays where it is. Zooming out ends
     /// with the whole image.
     pub fn zoom(&mut self, factor: f64, pointer: Pos2, size_px: [usize; 2], view: Rect) {
         let before = self.transform(size_px, view);
-        let fit = ImageTransform::fit(size_px, view).points_per_px;
+        let fit = self.fitted(size_px, view).points_per_px;
         let points_per_px = (before.points_per_px * factor).min(MOST_POINTS_PER_PX.max(fit));
         if points_per_px <= fit * 1.001 {
+            // Zooming out once more ends with the whole image.
+            self.whole |= self.is_fit() && factor < 1.0;
             self.fit();
             return;
         }

@@ -27,8 +27,8 @@ pub struct WindowArgs {
     /// Colors of the window, in place of the remembered ones.
     #[arg(long, value_enum)]
     theme: Option<ThemeChoice>,
-    /// Screen to start with: commission, live, collect, judge, accept, mount, touch, models, gap, grasp, robot,
-    /// images or scores.
+    /// Screen to start with: commission, live, collect, judge, accept, mount, touch, models, gap, hand-eye,
+    /// grasp, drift, timeline, robot, images or scores.
     #[arg(long, value_name = "SCREEN", value_parser = screen)]
     screen: Option<Screen>,
     /// Size of the window in points: 1280x800.
@@ -115,7 +115,7 @@ fn screen(text: &str) -> Result<Screen, String> {
         name => name,
     };
     serde_json::from_value(name.into()).map_err(|_| {
-        "there are the screens commission, live, collect, judge, accept, mount, touch, models, gap, grasp, robot, images and scores"
+        "there are the screens commission, live, collect, judge, accept, mount, touch, models, gap, hand-eye, grasp, drift, timeline, robot, images and scores"
             .to_owned()
     })
 }

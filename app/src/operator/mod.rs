@@ -9,6 +9,7 @@ mod outbox;
 mod screens;
 pub mod shortcuts;
 pub mod snapshot;
+mod table;
 mod touch_monitor;
 pub mod words;
 
@@ -23,7 +24,8 @@ pub use guidance::{
     Course, Press, Verdict, course, done_of, hint_text, is_of_choice, minutes, other_board, verdict, wanted,
     what_moves,
 };
-pub use outbox::Outbox;
+pub use outbox::{Outbox, Taken};
 pub use screens::{Pane, Screen};
 pub use shortcuts::{StopKeys, shortcut_text};
+pub use table::Table;
 pub use touch_monitor::{Monitor, window_problem};

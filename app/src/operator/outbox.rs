@@ -4,7 +4,7 @@
 use plumbline_engine::{Command, ExportFormat, Exported, JogRates, ProbePoint, Products};
 use plumbline_widgets::texture::Picture;
 
-use super::Action;
+use super::{Action, Pane, Table};
 
 /// Collected while a frame is drawn.
 #[derive(Default)]
@@ -19,12 +19,26 @@ pub struct Outbox {
     pub probe: Option<ProbePoint>,
     /// How a tip is to be jogged, as long as the keys for it are held.
     pub jog: Option<JogRates>,
-    /// A picture to be saved (asks where to).
-    pub save: Option<Picture>,
-    /// A picture to be put on the clipboard.
-    pub copy: Option<Picture>,
-    /// A table as CSV to be put on the clipboard.
-    pub table: Option<String>,
+    /// What is to be taken out of a tile.
+    pub taken: Option<(Pane, Taken)>,
+}
+
+/// What of a tile is taken, and where it goes; saving asks where to.
+pub enum Taken {
+    /// Its picture in its own pixels, to the clipboard.
+    CopyPicture(Picture),
+    /// Its picture in its own pixels, to a file.
+    SavePicture(Picture),
+    /// The tile as it stands, to the clipboard.
+    CopyImage,
+    /// The tile as it stands, to a file.
+    SaveImage,
+    /// Its rows as CSV, to the clipboard.
+    CopyTable(Table),
+    /// Its rows as CSV, to a file.
+    SaveTable(Table),
+    /// The tile as it stands and its rows below, as PDF, to a file.
+    SavePage(Table),
 }
 
 impl Outbox {

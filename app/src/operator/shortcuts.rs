@@ -48,6 +48,7 @@ impl Action {
             Self::ToggleNotices => command(Key::M),
             Self::ToggleTheme => command(Key::T),
             Self::ResetArrangement => command(Key::R),
+            Self::Help => plain(Key::F1),
             Self::ToggleFrameTimes => plain(Key::F12),
             Self::Quit => command(Key::Q),
             _ => None,

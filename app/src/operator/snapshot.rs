@@ -19,6 +19,11 @@ pub mod trials {
     pub use plumbline_engine::trials::{HEADINGS, Page, PageMethod, PagePosition};
 }
 
+/// Of pages for a colleague: one tile of the window.
+pub mod page {
+    pub use plumbline_engine::timeline::{PagePicture, TilePage, tile_pdf};
+}
+
 /// Of the gap between model and measurement.
 pub mod gap {
     pub use plumbline_engine::gap::{

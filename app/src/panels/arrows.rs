@@ -29,13 +29,22 @@ pub(crate) fn arrow_scale(lengths: impl Iterator<Item = f64>) -> f64 {
     [100.0, 50.0, 20.0, 10.0, 5.0, 2.0].into_iter().find(|scale| *scale <= wanted).unwrap_or(1.0)
 }
 
-/// A line in the color that it has on the map, and what it means.
+/// A line in the color that it has on a bare map, and what it means.
 pub(crate) fn entry(ui: &mut Ui, role: Role, text: &str) {
+    entry_in(ui, theme::tokens(ui), role, text);
+}
+
+/// The same on a map with a field of colors.
+pub(crate) fn entry_on_field(ui: &mut Ui, role: Role, text: &str) {
+    entry_in(ui, &theme::ON_IMAGE, role, text);
+}
+
+fn entry_in(ui: &mut Ui, tokens: &theme::Tokens, role: Role, text: &str) {
     ui.spacing_mut().interact_size.y = 14.0;
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(26.0, 14.0), Sense::hover());
-        ui.painter().rect_filled(rect, 3.0, theme::ON_IMAGE.panel);
-        let stroke = Stroke::new(2.0, role.color(&theme::ON_IMAGE));
+        ui.painter().rect_filled(rect, 3.0, tokens.backdrop);
+        let stroke = Stroke::new(2.0, role.color(tokens));
         ui.painter().hline(rect.shrink(5.0).x_range(), rect.center().y, stroke);
         ui.label(theme::small(ui, text));
     });

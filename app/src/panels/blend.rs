@@ -9,6 +9,7 @@ use plumbline_widgets::image_view::{Content, ImageView};
 
 use super::rectified::{probe_mark, show_missing, take_probe};
 use super::{PanelContext, picture, source_state};
+use crate::operator::Pane;
 
 /// How long each eye is shown, seconds.
 const BLINK_S: f64 = 0.5;
@@ -36,7 +37,7 @@ pub fn anaglyph(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let stale = source_state::stale_sentence(cx.view);
     let shown = ImageView::new("Left eye red, right eye cyan", content)
         .stale(stale.as_deref())
-        .show(ui, &mut cx.state.rectified);
+        .show(ui, cx.state.views.entry((cx.screen, Pane::Anaglyph)).or_default());
     take_probe(cx, shown.hover_px, shown.clicked_px);
 }
 
@@ -57,5 +58,5 @@ pub fn blink(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ImageView::new(label, Content::Picture(picture))
         .overlay(&overlay)
         .stale(stale.as_deref())
-        .show(ui, &mut cx.state.rectified);
+        .show(ui, cx.state.views.entry((cx.screen, Pane::Blink)).or_default());
 }

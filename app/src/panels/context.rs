@@ -1,5 +1,6 @@
 //! What every panel has at hand, and how all of them are looked at.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use egui::Ui;
@@ -21,16 +22,14 @@ use super::{
     scores::state::ScoresPanels, timeline::state::TimelinePanels, touch::state::TouchPanels,
     twin::state::TwinPanels,
 };
-use crate::operator::{Outbox, Screen};
+use crate::operator::{Outbox, Pane, Screen};
 
 /// How the panels are looked at: kept from frame to frame, never saved.
 pub struct PanelState {
     /// Pictures by name.
     pub textures: TextureCache,
-    /// Zoom of the raw eyes.
-    pub raw: [ViewState; 2],
-    /// Zoom of everything that shows the rectified pair, so that all of it moves together.
-    pub rectified: ViewState,
+    /// Zoom of the pictures, each by itself; the two of a rectified pair move together.
+    pub views: BTreeMap<(Screen, Pane), ViewState>,
     /// Zoom of the chosen pair's images.
     pub chosen: [ViewState; 2],
     /// The measured point.
@@ -81,8 +80,7 @@ impl Default for PanelState {
     fn default() -> Self {
         Self {
             textures: TextureCache::default(),
-            raw: Default::default(),
-            rectified: ViewState::default(),
+            views: BTreeMap::new(),
             chosen: Default::default(),
             probe: ProbeState::default(),
             objects: ObjectsPanels::default(),

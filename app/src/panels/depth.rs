@@ -10,6 +10,7 @@ use plumbline_widgets::image_view::{Content, ImageView};
 
 use super::rectified::{probe_mark, show_missing, take_probe};
 use super::{PanelContext, picture, source_state};
+use crate::operator::Pane;
 
 /// Width of the strip with the scale, points.
 const SCALE_WIDTH: f32 = 68.0;
@@ -24,6 +25,7 @@ pub fn disparity(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         Some(with_origin(values, u, v, text))
     };
     let look = Look {
+        pane: Pane::Disparity,
         key: "disparity",
         label: "Disparity of the left eye",
         scale_label: "Disparity",
@@ -47,6 +49,7 @@ pub fn depth(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         Some(with_origin(values, u, v, text))
     };
     let look = Look {
+        pane: Pane::Depth,
         key: "depth",
         label: "Depth seen by the left eye",
         scale_label: "Depth",
@@ -97,6 +100,7 @@ fn size(values: &DisparityView) -> [usize; 2] {
 }
 
 struct Look {
+    pane: Pane,
     key: &'static str,
     label: &'static str,
     scale_label: &'static str,
@@ -128,7 +132,7 @@ fn draw(
             .stale(stale.as_deref())
             .value_text(text)
             .size(vec2((full.x - SCALE_WIDTH - 8.0).max(48.0), full.y))
-            .show(ui, &mut cx.state.rectified);
+            .show(ui, cx.state.views.entry((cx.screen, look.pane)).or_default());
         let under = shown.hover_px.and_then(|at| {
             let [u, v] = shown.transform.as_ref()?.pixel_at(at)?;
             value(u as u32, v as u32)

@@ -11,7 +11,7 @@ use plumbline_widgets::overlay::{Mark, Overlay, PointShape};
 use plumbline_widgets::theme::Role;
 
 use super::{PanelContext, grasp, objects, picture, residuals, source_state};
-use crate::operator::Screen;
+use crate::operator::{Pane, Screen};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
     let collecting = matches!(cx.screen, Screen::Collect | Screen::Mount);
@@ -27,6 +27,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
     if (on_live && cx.state.objects.shown) || (grasping && grasp::wants_detections(cx.view)) {
         cx.outbox.want(Products { detections: true, ..Products::default() });
     }
+    let pane = if eye == Eye::Left { Pane::LeftEye } else { Pane::RightEye };
     let view = cx.view;
     let label = if eye == Eye::Left { "Left eye, as delivered" } else { "Right eye, as delivered" };
     let mut overlay = if collecting { board_marks(cx, eye) } else { probe_marks(cx, eye) };
@@ -52,7 +53,8 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
         .overlay(&overlay)
         .stale(stale.as_deref())
         .note(note.as_deref().filter(|_| eye == Eye::Left))
-        .show(ui, &mut cx.state.raw[eye.index()]);
+        .crop()
+        .show(ui, cx.state.views.entry((cx.screen, pane)).or_default());
     if shown.button_clicked {
         source_state::button_clicked(view, cx.outbox);
     }

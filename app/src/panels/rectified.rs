@@ -1,19 +1,23 @@
-//! The aimed pair, side by side: rows are epipolar lines.
+//! The aimed pair, side by side or one above the other: rows are epipolar lines.
 
-use egui::{Ui, vec2};
+use egui::{Align, Layout, Ui, vec2};
 use plumbline_engine::view::RectifiedView;
 use plumbline_engine::{ProbePoint, Products, View};
 use plumbline_model::Eye;
 use plumbline_widgets::compare::epipolar_lines;
 use plumbline_widgets::empty::Message;
-use plumbline_widgets::image_view::{Content, ImageView};
+use plumbline_widgets::image_view::{Content, ImageView, ViewState};
 use plumbline_widgets::overlay::Overlay;
 use plumbline_widgets::theme::Role;
 
 use super::{PanelContext, objects, picture, source_state};
-use crate::operator::{Action, Outbox, Screen};
+use crate::operator::{Action, Outbox, Pane, Screen};
 
 const PAIR: &str = "Rectified pair";
+/// Between the two pictures, pt.
+const GAP: f32 = 2.0;
+/// By so much the pictures must grow to stand one above the other.
+const MUCH_LARGER: f32 = 1.3;
 /// Distance of the lines, pixels.
 const LINES_EVERY_PX: usize = 40;
 
@@ -24,14 +28,30 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         return show_missing(ui, cx, PAIR);
     };
     let stale = source_state::stale_sentence(view);
-    let gap = 2.0;
-    let size = vec2((ui.available_width() - gap) / 2.0, ui.available_height());
-    ui.spacing_mut().item_spacing.x = gap;
-    ui.horizontal(|ui| {
+    let room = ui.available_size();
+    let across = is_across([rectified.left.width(), rectified.left.height()], room);
+    let size = match across {
+        true => vec2((room.x - GAP) / 2.0, room.y),
+        false => vec2(room.x, (room.y - GAP) / 2.0),
+    };
+    ui.spacing_mut().item_spacing = vec2(GAP, GAP);
+    let layout = match across {
+        true => Layout::left_to_right(Align::Min),
+        false => Layout::top_down(Align::Min),
+    };
+    ui.with_layout(layout, |ui| {
         for eye in Eye::BOTH {
             one_eye(ui, cx, rectified, eye, size, stale.as_deref());
         }
     });
+}
+
+/// Whether the two stand side by side, where their rows meet, rather than one above the other: where that
+/// makes them much larger.
+fn is_across([width, height]: [u32; 2], room: egui::Vec2) -> bool {
+    let scale = |room: egui::Vec2| (room.x / width.max(1) as f32).min(room.y / height.max(1) as f32);
+    let (beside, above) = (scale(vec2(room.x / 2.0, room.y)), scale(vec2(room.x, room.y / 2.0)));
+    above < MUCH_LARGER * beside
 }
 
 fn one_eye(
@@ -59,7 +79,7 @@ fn one_eye(
         .overlay(&overlay)
         .stale(stale)
         .size(size)
-        .show(ui, &mut cx.state.rectified);
+        .show(ui, cx.state.views.entry((cx.screen, Pane::Rectified)).or_default());
     if eye == Eye::Left {
         take_probe(cx, shown.hover_px, shown.clicked_px);
     }
@@ -92,7 +112,7 @@ pub fn probe_mark(view: &View, eye: Eye) -> Overlay {
 pub fn show_missing(ui: &mut Ui, cx: &mut PanelContext<'_>, label: &str) {
     let view = cx.view;
     let (content, calibrate) = missing(view, label == PAIR);
-    let clicked = ImageView::new(label, content).show(ui, &mut cx.state.rectified).button_clicked;
+    let clicked = ImageView::new(label, content).show(ui, &mut ViewState::default()).button_clicked;
     if clicked {
         press(view, calibrate, cx.outbox);
     }

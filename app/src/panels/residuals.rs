@@ -94,5 +94,9 @@ pub fn collected_image(
             "Only its corners are known, from a file: open the pairs and collect them to see the images.",
         )),
     };
-    ImageView::new(label, content).overlay(overlay).size(size).show(ui, &mut cx.state.chosen[eye.index()]);
+    ImageView::new(label, content)
+        .overlay(overlay)
+        .size(size)
+        .crop()
+        .show(ui, &mut cx.state.chosen[eye.index()]);
 }

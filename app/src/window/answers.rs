@@ -29,7 +29,7 @@ impl PlumblineWindow {
             Answer::Paths(question, paths) => (question, paths),
         };
         let Some(file) = paths.first().cloned() else { return };
-        if question.saves() {
+        if question.saves() && !question.is_of_window() {
             self.notices.await_file(file.clone());
         }
         let command: Command = match question {
@@ -71,11 +71,8 @@ impl PlumblineWindow {
                 ModelsCommand::Tables(TablesCommand::Export { table, file }).into()
             }
             Question::SaveWindow => return self.save_window(ctx, file),
-            Question::SaveView => {
-                if let Some(picture) = self.pending_picture.take() {
-                    save_picture(ctx, &picture, file, |_| {});
-                }
-                return;
+            Question::SaveView | Question::SaveRows | Question::SavePage => {
+                return self.taking.save(ctx, file);
             }
         };
         self.send(command);
@@ -103,7 +100,7 @@ impl PlumblineWindow {
     }
 
     fn save_window(&self, ctx: &egui::Context, file: PathBuf) {
-        let again = ctx.clone();
-        ctx.request_screenshot(move |picture| save_picture(&again, &picture, file, |_| {}));
+        let (again, told) = (ctx.clone(), self.taking.teller(file.clone()));
+        ctx.request_screenshot(move |picture| save_picture(&again, &picture, file, told));
     }
 }

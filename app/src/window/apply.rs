@@ -1,6 +1,5 @@
 //! Carrying out what was asked for during a frame.
 
-use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_engine::{
@@ -10,6 +9,7 @@ use plumbline_engine::{
 };
 
 use super::PlumblineWindow;
+use super::about::About;
 use super::arrangement::default_arrangement;
 use super::ask::Ask;
 use super::dialogs::Question;
@@ -46,17 +46,8 @@ impl PlumblineWindow {
         for action in outbox.actions {
             self.act(ctx, action);
         }
-        if let Some(picture) = outbox.copy {
-            ctx.copy_image(picture.image().as_ref().clone());
-            self.notices.say("The picture is on the clipboard.");
-        }
-        if let Some(table) = outbox.table {
-            ctx.copy_text(table);
-            self.notices.say("The table is on the clipboard, as CSV.");
-        }
-        if let Some(picture) = outbox.save {
-            self.pending_picture = Some(Arc::clone(picture.image()));
-            self.ask_for(ctx, Question::SaveView);
+        if let Some((pane, taken)) = outbox.taken {
+            self.take_from(ctx, pane, taken);
         }
     }
 
@@ -143,6 +134,8 @@ impl PlumblineWindow {
                 self.may_open_commissioning = false;
             }
             Action::Palette => self.palette.toggle(),
+            Action::Help => self.manual.toggle(),
+            Action::About => self.ask = Some(Ask::About(About::new(ctx, &self.renderer))),
             Action::ToggleInspector => self.settings.inspector_open = !self.settings.inspector_open,
             Action::ToggleLog => self.settings.log_open = !self.settings.log_open,
             Action::ToggleNotices => self.notices.toggle_history(),

@@ -10,6 +10,7 @@ use plumbline_engine::{
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
+use super::about::About;
 use super::connect::{self, ConnectChoice};
 use super::dialogs::{Answer, Question};
 use super::sheet::{Asked, buttons, sheet, title};
@@ -36,6 +37,8 @@ pub enum Ask {
         /// How many there are.
         count: usize,
     },
+    /// Which version this is.
+    About(About),
     /// What the robot is connected to.
     Connect(ConnectChoice),
     /// Whether the window closes although something moves.
@@ -79,6 +82,7 @@ impl Ask {
             Self::Paths { question, typed } => paths(ui, *question, typed),
             Self::Cameras { left, right } => cameras(ui, view, left, right),
             Self::DeleteAll { count } => delete_all(ui, *count),
+            Self::About(about) => about.show(ui),
             Self::Connect(chosen) => connect::show(ui, view, chosen),
             Self::CloseWhileMoving => close_while_moving(ui),
             Self::LetGo => let_go(ui),

@@ -62,8 +62,12 @@ pub enum Question {
     SetupReport(TimelineFormat),
     /// Where a picture of the window is saved.
     SaveWindow,
-    /// Where a picture of one view is saved.
+    /// Where a picture of one tile is saved.
     SaveView,
+    /// Where the rows of a tile are saved.
+    SaveRows,
+    /// Where a tile is saved as a page.
+    SavePage,
 }
 
 /// How a question ended.
@@ -109,7 +113,9 @@ impl Question {
             Self::Trials(_) => "Export the experiment",
             Self::SetupReport(_) => "Write the report of the setup",
             Self::SaveWindow => "Save a picture of the window",
-            Self::SaveView => "Save a picture of the view",
+            Self::SaveView => "Save a picture of the tile",
+            Self::SaveRows => "Save the rows of the tile as CSV",
+            Self::SavePage => "Save the tile as PDF",
         }
     }
 
@@ -170,6 +176,8 @@ impl Question {
             Self::SetupReport(TimelineFormat::Pdf) => "setup.pdf",
             Self::SaveWindow => "plumbline.png",
             Self::SaveView => "view.png",
+            Self::SaveRows => "rows.csv",
+            Self::SavePage => "page.pdf",
             _ => "",
         }
     }
@@ -188,7 +196,14 @@ impl Question {
                 | Self::SetupReport(_)
                 | Self::SaveWindow
                 | Self::SaveView
+                | Self::SaveRows
+                | Self::SavePage
         )
+    }
+
+    /// Whether the window writes it, and tells of it, itself.
+    pub fn is_of_window(self) -> bool {
+        matches!(self, Self::SaveWindow | Self::SaveView | Self::SaveRows | Self::SavePage)
     }
 
     /// Asks the desktop; blocks, so not for the window's thread.

@@ -31,6 +31,7 @@ impl PlumblineWindow {
             self.take_answer(ctx, answer);
         }
         self.notices.take(&self.view.notices);
+        self.go_on_taking(ctx);
         self.log.refresh(self.settings.log_open);
         self.follow_the_work();
         let next = self.script.next(&self.view, ctx);
@@ -63,6 +64,7 @@ impl PlumblineWindow {
     fn stop_keys(&self, ctx: &egui::Context) -> StopKeys {
         let lies_on_top = self.ask.is_some()
             || self.palette.is_open()
+            || self.manual.is_open()
             || self.notices.is_history_open()
             || egui::Popup::is_any_open(ctx);
         let moves = self.moves();
@@ -158,8 +160,14 @@ impl PlumblineWindow {
         if let Some(action) = self.palette.show(ctx, &self.view, escape_pressed) {
             outbox.act(action);
         }
-        self.notices.show_new(ctx);
+        // They would lie in the picture of a tile.
+        if !self.taking.waits_for_picture() {
+            self.notices.show_new(ctx);
+        }
         self.notices.show_history(ctx, escape_pressed, outbox);
+        // Esc closes what lies on top of help first.
+        let on_top = self.ask.is_some() || self.palette.is_open() || self.notices.is_history_open();
+        self.manual.show(ctx, self.settings.screen, escape_pressed && !on_top);
         self.show_ask(ctx, escape_pressed, outbox);
         if self.frame_times_open {
             frame_times_overlay::show(ctx, &self.frame_times, &self.renderer);

@@ -10,6 +10,8 @@ pub struct FrameTimes {
     // Counts per bin of BIN; bounded memory however long the window is open.
     histogram: Vec<u64>,
     count: u64,
+    longest: Duration,
+    slow: u64,
 }
 
 /// Summary of a set of frames.
@@ -21,7 +23,14 @@ pub struct FrameSummary {
     pub median: Duration,
     /// 95 of 100 frames took at most this.
     pub percentile_95: Duration,
+    /// The longest one.
+    pub longest: Duration,
+    /// Frames that took longer than [`SLOW`].
+    pub slow: u64,
 }
+
+/// A frame that takes longer is seen to stutter.
+pub const SLOW: Duration = Duration::from_millis(100);
 
 const BIN: Duration = Duration::from_micros(100);
 const BINS: usize = 2000;
@@ -29,7 +38,13 @@ const KEPT: usize = 240;
 
 impl Default for FrameTimes {
     fn default() -> Self {
-        Self { recent: VecDeque::with_capacity(KEPT), histogram: vec![0; BINS], count: 0 }
+        Self {
+            recent: VecDeque::with_capacity(KEPT),
+            histogram: vec![0; BINS],
+            count: 0,
+            longest: Duration::ZERO,
+            slow: 0,
+        }
     }
 }
 
@@ -59,6 +74,8 @@ impl FrameTimes {
         let bin = (cpu.as_micros() / BIN.as_micros()).min(BINS as u128 - 1) as usize;
         self.histogram[bin] += 1;
         self.count += 1;
+        self.longest = self.longest.max(cpu);
+        self.slow += u64::from(cpu > SLOW);
     }
 
     /// The last frames, oldest first.
@@ -78,6 +95,8 @@ impl FrameTimes {
             count: self.count,
             median: self.percentile(0.5),
             percentile_95: self.percentile(0.95),
+            longest: self.longest,
+            slow: self.slow,
         })
     }
 
@@ -110,6 +129,9 @@ mod tests {
         // Frame number 50 of 1.0, 1.1, … ms took 5.9 ms, number 95 took 10.4 ms; plus the bin.
         assert_eq!(summary.median, Duration::from_micros(6000));
         assert_eq!(summary.percentile_95, Duration::from_micros(10500));
+        assert_eq!((summary.longest, summary.slow), (Duration::from_micros(10900), 0));
+        times.add(SLOW + BIN);
+        assert_eq!(times.summary().map(|summary| summary.slow), Some(1));
     }
 
     #[test]

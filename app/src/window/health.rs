@@ -105,7 +105,11 @@ fn view_menu(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     Popup::menu(&response).show(|ui| {
         ui.set_min_width(260.0);
         let mut entry = |ui: &mut Ui, text: &str, action: Action| {
-            let button = Button::new(text).shortcut_text(shortcut_text(ui.ctx(), action).unwrap_or_default());
+            let button = Button::new(text);
+            let button = match shortcut_text(ui.ctx(), action) {
+                Some(keys) => button.shortcut_text(keys),
+                None => button,
+            };
             if ui.add(button).clicked() {
                 outbox.act(action);
                 ui.close();
@@ -121,6 +125,9 @@ fn view_menu(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
         ui.separator();
         entry(ui, "Save a picture of the window…", Action::SaveWindow);
         entry(ui, "Frame times", Action::ToggleFrameTimes);
+        ui.separator();
+        entry(ui, "Help", Action::Help);
+        entry(ui, "About Plumbline", Action::About);
         entry(ui, "Quit", Action::Quit);
     });
 }

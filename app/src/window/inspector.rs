@@ -72,8 +72,8 @@ fn live(ui: &mut Ui, view: &View, state: &mut PanelState, outbox: &mut Outbox) {
         if view.robot.connection.is_connected() {
             let head = view.live.head;
             let rows = [
-                KeyValue::quantity("Head left", Quantity::Angle, head.head_z_rad).help("By the encoder"),
-                KeyValue::quantity("Head up", Quantity::Angle, head.head_y_rad).help("By the encoder"),
+                KeyValue::text("Head left", encoder(head.head_z_rad)).unit("°").help("By the encoder"),
+                KeyValue::text("Head up", encoder(head.head_y_rad)).unit("°").help("By the encoder"),
             ];
             key_value_grid(ui, "head", &rows);
         } else {
@@ -94,6 +94,11 @@ fn look_there(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
     }
 }
 
+/// An angle as finely as encoders read it.
+fn encoder(angle_rad: f64) -> String {
+    format::fixed(angle_rad.to_degrees(), 1)
+}
+
 fn mount(ui: &mut Ui, view: &View) {
     group_heading(ui, "Head");
     let robot = &view.robot;
@@ -105,8 +110,8 @@ fn mount(ui: &mut Ui, view: &View) {
     match angles {
         Some((rig, posture)) => {
             let rows = [
-                KeyValue::quantity("Left", Quantity::Angle, posture[rig.eyes.pan]),
-                KeyValue::quantity("Up", Quantity::Angle, posture[rig.eyes.tilt]),
+                KeyValue::text("Left", encoder(posture[rig.eyes.pan])).unit("°"),
+                KeyValue::text("Up", encoder(posture[rig.eyes.tilt])).unit("°"),
             ];
             key_value_grid(ui, "head", &rows);
         }

@@ -3,6 +3,7 @@
 //! Once per frame it takes the engine's newest view, draws it, and hands over what the operator
 //! asked for. It computes nothing, opens no file and waits for nothing.
 
+mod about;
 mod answers;
 mod apply;
 mod arrangement;
@@ -26,6 +27,7 @@ mod lamps;
 mod launch;
 mod log_lines;
 mod log_panel;
+mod manual;
 mod narrow;
 mod notices;
 mod palette;
@@ -40,12 +42,15 @@ mod settings;
 mod sheet;
 mod source_menu;
 mod status_line;
+mod taking;
+mod tile_menu;
 mod tiles;
 mod touch_window;
 mod transport;
 mod truth_band;
 mod world_menu;
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -59,7 +64,7 @@ pub use script_step::ScriptStep;
 pub use settings::{ThemeChoice, WindowSettings};
 pub use touch_window::{TouchSurface, touch_surface};
 
-use crate::operator::Action;
+use crate::operator::{Action, Pane};
 use crate::panels::PanelState;
 use ask::Ask;
 use dialogs::Dialogs;
@@ -67,11 +72,13 @@ use frame_time::FrameTimes;
 use gamepad::Gamepads;
 use jogging::Jogging;
 use log_panel::LogPanel;
+use manual::Manual;
 use narrow::NarrowTabs;
 use notices::NoticeList;
 use palette::Palette;
 use rest::Rest;
 use script::Script;
+use taking::Taking;
 use touch_window::TouchWindow;
 
 /// What the window is made with.
@@ -124,6 +131,7 @@ pub struct PlumblineWindow {
     dialogs: Dialogs,
     ask: Option<Ask>,
     palette: Palette,
+    manual: Manual,
     notices: NoticeList,
     log: LogPanel,
     frame_times: FrameTimes,
@@ -135,7 +143,9 @@ pub struct PlumblineWindow {
     script: Script,
     started: Instant,
     stopped_at: Option<Instant>,
-    pending_picture: Option<Arc<egui::ColorImage>>,
+    /// Where the tiles lay that were in front in the last frame.
+    tile_rects: BTreeMap<Pane, egui::Rect>,
+    taking: Taking,
     /// Whether it closes although something moves: that was asked, or nobody is there to be.
     closes: bool,
     dismissed: Vec<JobId>,
@@ -177,6 +187,7 @@ impl PlumblineWindow {
             dialogs: Dialogs::new(options.native_dialogs, ctx.clone()),
             ask: None,
             palette: Palette::default(),
+            manual: Manual::default(),
             notices: NoticeList::default(),
             log: LogPanel::new(options.log),
             frame_times: FrameTimes::default(),
@@ -188,7 +199,8 @@ impl PlumblineWindow {
             script: Script::new(options.script),
             started: Instant::now(),
             stopped_at: None,
-            pending_picture: None,
+            tile_rects: BTreeMap::new(),
+            taking: Taking::default(),
             closes: false,
             dismissed: Vec::new(),
             wanted: None,
@@ -202,6 +214,11 @@ impl PlumblineWindow {
             touch_window: TouchWindow::default(),
             monitors_found_s: f64::NEG_INFINITY,
         }
+    }
+
+    /// The tiles that were in front in the last frame.
+    pub fn tiles(&self) -> impl Iterator<Item = Pane> {
+        self.tile_rects.keys().copied()
     }
 
     /// The snapshot that the last frame drew.

@@ -78,6 +78,18 @@ impl NoticeList {
         self.shown.push(Severity::Info, text);
     }
 
+    /// The window itself wrote a file: it can be opened from the message.
+    pub(super) fn say_written(&mut self, file: PathBuf) {
+        self.shown.push(Severity::Done, format!("Saved {}.", file.display()));
+        self.shown.tells_of(file);
+    }
+
+    /// Something that the window itself did failed.
+    pub(super) fn say_failed(&mut self, text: &str) {
+        self.shown.push(Severity::Failed, text);
+        self.unread += 1;
+    }
+
     /// Warnings and failures since the history was last open.
     pub(super) fn unread(&self) -> usize {
         self.unread

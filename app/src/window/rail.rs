@@ -1,6 +1,6 @@
 //! The rail: the steps in the order of work, and how far each one is.
 
-use egui::{Panel, ScrollArea, TextStyle, Ui};
+use egui::{Panel, Response, ScrollArea, TextStyle, Ui};
 use plumbline_engine::View;
 use plumbline_engine::view::{Connection, EyesView, JobState, StepState as EngineStep, TouchPhase};
 use plumbline_widgets::format;
@@ -8,7 +8,7 @@ use plumbline_widgets::rail::{RailStep, StepState};
 use plumbline_widgets::theme::{self, space};
 
 use super::PlumblineWindow;
-use crate::operator::guidance::dropped;
+use crate::operator::guidance::{dropped, guidance};
 use crate::operator::{Action, Outbox, Screen};
 use crate::panels::shown_calibration;
 
@@ -36,21 +36,21 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
 /// `parts`: whether the parts of "Eyes" stand below it.
 fn steps(ui: &mut Ui, view: &View, screen: Screen, parts: bool, outbox: &mut Outbox) {
     let commission = RailStep::new("Commission", commission_state(view));
-    if commission.selected(screen == Screen::Commission).show(ui).clicked() {
+    if why(commission.selected(screen == Screen::Commission).show(ui), view, Screen::Commission).clicked() {
         outbox.act(Action::Go(Screen::Commission));
     }
     if RailStep::new("Live", StepState::Always).selected(screen == Screen::Live).show(ui).clicked() {
         outbox.act(Action::Go(Screen::Live));
     }
     let step = RailStep::new("Eyes", eyes_state(view)).number(1).selected(screen.is_eyes()).show(ui);
-    if step.clicked() {
+    if why(step, view, eyes_screen(&view.eyes)).clicked() {
         outbox.act(Action::Go(eyes_screen(&view.eyes)));
     }
     for part in Part::ALL.into_iter().filter(|_| parts) {
         part_row(ui, view, part, screen, outbox);
     }
     let mount = RailStep::new("Mount", step_state(&view.mount.step)).number(2);
-    if mount.selected(screen == Screen::Mount).show(ui).clicked() {
+    if why(mount.selected(screen == Screen::Mount).show(ui), view, Screen::Mount).clicked() {
         outbox.act(Action::Go(Screen::Mount));
     }
     for (name, number, state, target) in [
@@ -61,7 +61,7 @@ fn steps(ui: &mut Ui, view: &View, screen: Screen, parts: bool, outbox: &mut Out
         ("Grasp", 7, step_state(&view.grasp.step), Screen::Grasp),
     ] {
         let step = RailStep::new(name, state).number(number).selected(screen == target);
-        if step.show(ui).clicked() {
+        if why(step.show(ui), view, target).clicked() {
             outbox.act(Action::Go(target));
         }
     }
@@ -85,6 +85,14 @@ fn steps(ui: &mut Ui, view: &View, screen: Screen, parts: bool, outbox: &mut Out
     if screen.is_detect() {
         detect_rows(ui, view, screen, outbox);
     }
+}
+
+/// A step that is pointed at says what it waits for, or what comes next in it: the sentence of its screen.
+fn why(step: Response, view: &View, target: Screen) -> Response {
+    step.on_hover_ui(|ui| {
+        ui.set_max_width(320.0);
+        ui.label(guidance(view, target).sentence);
+    })
 }
 
 /// The order of work within the step "Eyes".

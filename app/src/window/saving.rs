@@ -58,6 +58,8 @@ impl PlumblineWindow {
                 "frames": summary.count,
                 "median_ms": ms(summary.median),
                 "percentile_95_ms": ms(summary.percentile_95),
+                "longest_ms": ms(summary.longest),
+                "over_100_ms": summary.slow,
                 "renderer": self.renderer,
                 "resident_before_mb": self.resident_before_mb,
                 "resident_mb": resident_mb(),
@@ -74,7 +76,7 @@ pub(super) fn save_picture(
     ctx: &egui::Context,
     picture: &egui::ColorImage,
     file: PathBuf,
-    done: impl FnOnce(bool) + Send + 'static,
+    done: impl FnOnce(Result<(), String>) + Send + 'static,
 ) {
     let [width, height] = picture.size;
     let rgba: Vec<u8> = picture.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
@@ -90,7 +92,26 @@ pub(super) fn save_picture(
             Ok(()) => log::info!("saved {}", file.display()),
             Err(error) => log::error!("the picture could not be saved as {}: {error}", file.display()),
         }
-        done(saved.is_ok());
+        done(saved);
+        ctx.request_repaint();
+    });
+}
+
+/// Writes bytes that are made on a thread of their own, then calls `done`.
+pub(super) fn save_bytes(
+    ctx: &egui::Context,
+    file: PathBuf,
+    make: impl FnOnce() -> Result<Vec<u8>, String> + Send + 'static,
+    done: impl FnOnce(Result<(), String>) + Send + 'static,
+) {
+    let ctx = ctx.clone();
+    on_thread("tile writer", move || {
+        let saved = make().and_then(|bytes| files::write(&file, bytes).map_err(|error| error.to_string()));
+        match &saved {
+            Ok(()) => log::info!("saved {}", file.display()),
+            Err(error) => log::error!("{} could not be written: {error}", file.display()),
+        }
+        done(saved);
         ctx.request_repaint();
     });
 }
@@ -104,7 +125,7 @@ pub(super) fn open_file(file: PathBuf) {
     });
 }
 
-fn on_thread(name: &str, work: impl FnOnce() + Send + 'static) {
+pub(super) fn on_thread(name: &str, work: impl FnOnce() + Send + 'static) {
     if let Err(error) = thread::Builder::new().name(name.to_owned()).spawn(work) {
         log::error!("no thread for the {name}: {error}");
     }

@@ -67,6 +67,14 @@ pub(super) fn title(ui: &mut Ui, title: &str, hint: &str) {
 /// Height of the row of buttons at the end of a sheet, points.
 const BUTTON_ROW_HEIGHT: f32 = 36.0;
 
+/// The one button of a sheet that asks nothing.
+pub(super) fn close_button(ui: &mut Ui) -> bool {
+    ui.add_space(space::S);
+    let row = egui::vec2(ui.available_width(), BUTTON_ROW_HEIGHT);
+    let layout = egui::Layout::right_to_left(egui::Align::Center);
+    ui.allocate_ui_with_layout(row, layout, |ui| ui.add(accent_button(ui, "Close")).clicked()).inner
+}
+
 /// `Some(true)` when the work was asked for, `Some(false)` when it was called off.
 pub(super) fn buttons(ui: &mut Ui, verb: &str, enabled: bool) -> Option<bool> {
     ui.add_space(space::S);

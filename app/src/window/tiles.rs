@@ -1,14 +1,15 @@
 //! The tiles of a screen: docking, and the bar above each one.
 
-use egui::{CentralPanel, Color32, Frame, Stroke, Ui, Visuals, WidgetText};
+use std::collections::BTreeMap;
+
+use egui::{CentralPanel, Color32, Frame, Rect, Stroke, Ui, Visuals, WidgetText};
 use egui_tiles::{Behavior, SimplificationOptions, TabState, TileId, Tiles, UiResponse};
 use plumbline_engine::View;
 use plumbline_engine::view::{Connection, SourceStatus};
-use plumbline_widgets::texture::Picture;
 use plumbline_widgets::theme;
 
-use super::PlumblineWindow;
 use super::narrow::NARROW;
+use super::{PlumblineWindow, tile_menu};
 use crate::operator::{Outbox, Pane, Screen};
 use crate::panels::{self, PanelContext, PanelState, picture_key};
 
@@ -25,17 +26,15 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
         let narrow = ui.available_width() < NARROW;
         let arranged = window.settings.arrangement(screen);
         let tree = if narrow { window.narrow.of(screen, arranged) } else { arranged };
-        let (view, state) = (&window.view, &mut window.panels);
-        let mut behavior = PaneBehavior { view, screen, narrow, state, outbox };
+        let (view, state, rects) = (&window.view, &mut window.panels, &mut window.tile_rects);
+        rects.clear();
+        let mut behavior = PaneBehavior { view, screen, narrow, state, outbox, rects };
         tree.ui(&mut behavior, ui);
     });
 }
 
-/// What "Copy" and "Save…" take beside the titles, and what the menu takes that holds both where they
-/// would lie over a title; where not even that fits, a title is worth more.
-const BUTTONS_WIDTH: f32 = 100.0;
-const MENU_WIDTH: f32 = 32.0;
-const TABLE_BUTTON_WIDTH: f32 = 48.0;
+/// What "Copy" takes beside the titles; where there is less, three dots stand for it.
+const COPY_WIDTH: f32 = 52.0;
 /// On each side of a title.
 const TITLE_SPACING: f32 = 12.0;
 
@@ -50,34 +49,6 @@ fn titles_width(ui: &Ui, tiles: &Tiles<Pane>, tabs: &egui_tiles::Tabs) -> f32 {
     widths.sum()
 }
 
-fn picture_buttons(ui: &mut Ui, pane: Pane, picture: &Picture, outbox: &mut Outbox) {
-    for (text, slot) in [("Save…", &mut outbox.save), ("Copy", &mut outbox.copy)] {
-        let button = ui.add(egui::Button::new(theme::small(ui, text)).frame(false));
-        button.widget_info(|| {
-            let label = format!("{} {}", text.trim_end_matches('…'), pane.title());
-            egui::WidgetInfo::labeled(egui::Role::Button, true, label)
-        });
-        if button.on_hover_text("The picture alone, in its own pixels").clicked() {
-            *slot = Some(picture.clone());
-        }
-    }
-}
-
-impl PaneBehavior<'_> {
-    fn table_button(&mut self, ui: &mut Ui, pane: Pane) {
-        let button = ui.add(egui::Button::new(theme::small(ui, "Copy")).frame(false));
-        button.widget_info(|| {
-            let label = format!("Copy {} as a table", pane.title());
-            egui::WidgetInfo::labeled(egui::Role::Button, true, label)
-        });
-        if button.on_hover_text("All rows as CSV, for a spreadsheet").clicked()
-            && let Some(table) = panels::csv_of(pane, self.view)
-        {
-            self.outbox.table = Some(table);
-        }
-    }
-}
-
 struct PaneBehavior<'a> {
     view: &'a View,
     screen: Screen,
@@ -85,12 +56,15 @@ struct PaneBehavior<'a> {
     narrow: bool,
     state: &'a mut PanelState,
     outbox: &'a mut Outbox,
+    /// Where the tiles in front lie.
+    rects: &'a mut BTreeMap<Pane, Rect>,
 }
 
 impl Behavior<Pane> for PaneBehavior<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile_id: TileId, pane: &mut Pane) -> UiResponse {
         let fill = theme::tokens(ui).panel;
         ui.painter().rect_filled(ui.max_rect(), 0.0, fill);
+        self.rects.insert(*pane, ui.max_rect());
         let mut context =
             PanelContext { view: self.view, screen: self.screen, state: self.state, outbox: self.outbox };
         ui.push_id(*pane, |ui| panels::show(ui, *pane, &mut context));
@@ -112,26 +86,12 @@ impl Behavior<Pane> for PaneBehavior<'_> {
     ) {
         let Some(pane) = tabs.active.and_then(|active| tiles.get_pane(&active)) else { return };
         let room = ui.available_width() - titles_width(ui, tiles, tabs);
-        if room > TABLE_BUTTON_WIDTH && panels::has_table(*pane, self.view) {
-            self.table_button(ui, *pane);
-        }
-        let Some(picture) = picture_key(*pane).and_then(|key| self.state.textures.last(key)).cloned() else {
-            return;
-        };
-        if room > BUTTONS_WIDTH {
-            ui.spacing_mut().item_spacing.x = theme::space::S + 2.0;
-            ui.add_space(0.0);
-            picture_buttons(ui, *pane, &picture, self.outbox);
-        } else if room > MENU_WIDTH {
-            let more = ui.menu_button(theme::small(ui, "⋯"), |ui| {
-                ui.with_layout(egui::Layout::top_down_justified(egui::Align::Min), |ui| {
-                    picture_buttons(ui, *pane, &picture, self.outbox);
-                });
-            });
-            more.response.widget_info(|| {
-                let label = format!("Copy or save {}", pane.title());
-                egui::WidgetInfo::labeled(egui::Role::Button, true, label)
-            });
+        let text = if room > COPY_WIDTH { "Copy" } else { "…" };
+        let picture = picture_key(*pane).and_then(|key| self.state.textures.last(key)).cloned();
+        let (view, state) = (self.view, &*self.state);
+        let rows = || panels::table_of(*pane, view, state);
+        if let Some(taken) = tile_menu::show(ui, *pane, text, picture.as_ref(), rows) {
+            self.outbox.taken = Some((*pane, taken));
         }
     }
 

@@ -9,6 +9,7 @@ mod fake;
 mod faults;
 mod gap;
 mod guidance;
+mod help;
 mod labels;
 mod layout;
 mod made_up;

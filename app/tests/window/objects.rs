@@ -30,10 +30,10 @@ fn wanted(sent: &[Command]) -> Vec<bool> {
 fn the_list_says_what_is_where_and_a_click_tells_all() {
     let fake = Fake::over(live(detect()));
     let mut window = fake.window_of_size(settings(), TALL);
-    assert!(says(&window, "Tomato, 331, -118, 82 ± 4 mm"));
+    assert!(says(&window, "Tomato, 331, −118, 82 ± 4 mm"));
     assert!(says(&window, "Banana, only the left eye: no place"));
     assert!(says(&window, "network 38.2") && says(&window, "43.8 ms a pair"));
-    click(&mut window, "Tomato, 331, -118, 82 ± 4 mm");
+    click(&mut window, "Tomato, 331, −118, 82 ± 4 mm");
     assert!(says(&window, "Tomato, from the left eye: 452.0 ± 4.3 mm"), "distance");
     assert!(says(&window, "x: 331.0 ± 4.0 mm"), "place in the robot's frame");
     click(&mut window, "Banana, only the left eye: no place");
@@ -46,7 +46,7 @@ fn a_leak_is_told_in_a_sentence() {
     let fake = Fake::over(live(detect()));
     let mut window = fake.window_of_size(settings(), TALL);
     assert!(!says(&window, "240 mm behind it"));
-    click(&mut window, "RightHand, 331, -118, 82 ± 4 mm");
+    click(&mut window, "RightHand, 331, −118, 82 ± 4 mm");
     assert!(says(&window, "240 mm behind it"));
 }
 
@@ -135,7 +135,7 @@ fn every_state_of_the_detector_has_its_words() {
 fn an_object_that_is_gone_is_said_to_be_gone() {
     let fake = Fake::over(live(detect()));
     let mut window = fake.window_of_size(settings(), TALL);
-    click(&mut window, "Tomato, 331, -118, 82 ± 4 mm");
+    click(&mut window, "Tomato, 331, −118, 82 ± 4 mm");
     fake.show(live(DetectView { found: Some(Arc::new(found(vec![banana()]))), ..detect() }));
     window.run_steps(3);
     assert!(says(&window, "The tomato that was chosen is not seen on this pair."));
@@ -184,7 +184,7 @@ fn pictures_of_objects() {
             let settings = WindowSettings { theme, ..settings() };
             let mut window = fake.window_with(settings, [1440.0, 1100.0], true);
             if choose {
-                click(&mut window, "RightHand, 331, -118, 82 ± 4 mm");
+                click(&mut window, "RightHand, 331, −118, 82 ± 4 mm");
             }
             window.run_steps(3);
             let image = window.render().expect("the test renderer draws");

@@ -90,9 +90,7 @@ fn it_is_reached_by_the_rail_and_says_when_there_is_nothing() {
 #[test]
 fn each_entry_says_its_error_and_what_is_in_use_is_listed() {
     let (_, window) = window_of(results());
-    for text in
-        ["5.88 mm → 0.970 mm", "5.93 mm → 0.930 mm", "0.214 px → 0.0820 px", "calibration of 31 pairs"]
-    {
+    for text in ["5.88 → 0.970 mm", "5.93 → 0.930 mm", "0.214 → 0.0820 px", "calibration of 31 pairs"] {
         assert!(says(&window, text), "{text}");
     }
     assert!(says(&window, "the robot as it is described"));

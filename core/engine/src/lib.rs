@@ -47,7 +47,7 @@ pub use command::{
     WatchCommand,
 };
 pub use engine::settings::{self, EngineSettings};
-pub use engine::{Engine, Wake, journal, replay};
+pub use engine::{Engine, Wake, journal, libraries, replay};
 pub use ground::notice::{Notice, NoticeLevel};
 pub use ground::stage::Skipped;
 pub use ground::watched::WatchedThread;

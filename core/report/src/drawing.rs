@@ -99,6 +99,15 @@ pub enum Mark {
     Text(Text),
 }
 
+/// Pixels.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Picture {
+    /// Columns and rows.
+    pub size_px: [u32; 2],
+    /// Four bytes per pixel, row by row from the top left.
+    pub rgba: Vec<u8>,
+}
+
 /// A page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {

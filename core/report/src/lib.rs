@@ -1,4 +1,5 @@
-//! The gap, an experiment with grasps, or a whole setup, on one page for a colleague, as HTML and PDF.
+//! The gap, an experiment with grasps, or a whole setup, on one page for a colleague, as HTML and PDF; and
+//! one tile of the window with its table, as PDF.
 //!
 //! One drawing of an A4 page is laid out (`page`) and written twice: as an inline SVG in an HTML
 //! file that needs no other file, and as a PDF. Lengths on the page are points (1/72 inch).
@@ -12,6 +13,7 @@ mod pdf;
 pub mod sample;
 pub mod setup;
 mod svg;
+pub mod tile;
 mod values;
 
 use plumbline_gap::Finding;

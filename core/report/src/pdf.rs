@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use krilla::Document;
 use krilla::color::rgb;
-use krilla::geom::{Path, PathBuilder, Point};
+use krilla::geom::{Path, PathBuilder, Point, Size, Transform};
+use krilla::image::Image;
 use krilla::metadata::Metadata;
 use krilla::num::NormalizedF32;
 use krilla::page::PageSettings;
@@ -12,15 +13,30 @@ use krilla::paint::{Fill, FillRule, Stroke, StrokeDash};
 use krilla::surface::Surface;
 use krilla::text::{Font, TextDirection};
 
-use crate::drawing::{self, Color, Drawing, Mark};
+use crate::drawing::{self, Color, Drawing, Mark, Picture};
 use crate::font::{self, Weight};
 use crate::{About, ReportError};
 
 /// Distance of the control points of a quarter of a circle, per radius.
 const QUARTER: f64 = 0.552_284_75;
 
+/// A picture on a page: its pixels, and where it lies: left, top, width, height.
+pub struct Placed<'a> {
+    pub picture: &'a Picture,
+    pub rect: [f64; 4],
+}
+
 /// The page as a file.
 pub fn of(drawing: &Drawing, about: &About) -> Result<Vec<u8>, ReportError> {
+    of_pages(std::slice::from_ref(drawing), None, about)
+}
+
+/// Pages as a file; a picture lies on the first one, over what is drawn there.
+pub fn of_pages(
+    pages: &[Drawing],
+    mut placed: Option<Placed<'_>>,
+    about: &About,
+) -> Result<Vec<u8>, ReportError> {
     let refused = |reason: &str| ReportError::Pdf { reason: reason.to_owned() };
     let mut document = Document::new();
     document.set_metadata(
@@ -35,16 +51,33 @@ pub fn of(drawing: &Drawing, about: &About) -> Result<Vec<u8>, ReportError> {
         let font = Font::new(weight.data().into(), 0).ok_or_else(|| refused("a font cannot be read"))?;
         fonts.insert(weight, font);
     }
-    let settings = PageSettings::from_wh(drawing.width as f32, drawing.height as f32)
-        .ok_or_else(|| refused("the page has no size"))?;
-    let mut page = document.start_page_with(settings);
-    let mut surface = page.surface();
-    for mark in &drawing.marks {
-        draw(&mut surface, mark, &fonts);
+    for drawing in pages {
+        let settings = PageSettings::from_wh(drawing.width as f32, drawing.height as f32)
+            .ok_or_else(|| refused("the page has no size"))?;
+        let mut page = document.start_page_with(settings);
+        let mut surface = page.surface();
+        for mark in &drawing.marks {
+            draw(&mut surface, mark, &fonts);
+        }
+        if let Some(placed) = placed.take() {
+            lay(&mut surface, &placed).ok_or_else(|| refused("the picture is incomplete"))?;
+        }
+        surface.finish();
+        page.finish();
     }
-    surface.finish();
-    page.finish();
     document.finish().map_err(|error| refused(&format!("{error:?}")))
+}
+
+/// `None`: the pixels are not as many as the picture's size says, or it has no place.
+fn lay(surface: &mut Surface<'_>, Placed { picture, rect }: &Placed<'_>) -> Option<()> {
+    let [left, top, width, height] = rect.map(|length| length as f32);
+    let bytes = 4 * picture.size_px[0] as usize * picture.size_px[1] as usize;
+    let size = Size::from_wh(width, height).filter(|_| bytes > 0 && picture.rgba.len() == bytes)?;
+    surface.push_transform(&Transform::from_translate(left, top));
+    let [columns, rows] = picture.size_px;
+    surface.draw_image(Image::from_rgba8(picture.rgba.clone(), columns, rows), size);
+    surface.pop();
+    Some(())
 }
 
 fn draw(surface: &mut Surface<'_>, mark: &Mark, fonts: &HashMap<Weight, Font>) {

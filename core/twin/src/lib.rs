@@ -30,3 +30,8 @@ pub use scenario::Scenario;
 pub use servos::Fault;
 pub use toys::Toy;
 pub use twin::{SceneSource, Twin, TwinCommand, TwinSettings, TwinState, TwinTouchscreen};
+
+/// Version of the physics that the twin is made of.
+pub fn physics_version() -> &'static str {
+    mujoco_rs::mujoco_version()
+}

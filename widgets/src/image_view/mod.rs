@@ -4,6 +4,7 @@
 mod chrome;
 mod input;
 mod pixels;
+mod seen;
 
 pub use crate::view_state::{ImageTransform, ViewState};
 
@@ -52,6 +53,7 @@ pub struct ImageView<'a> {
     value_text: Option<ValueText<'a>>,
     size: Option<Vec2>,
     caption: bool,
+    crop: bool,
 }
 
 /// What happened to a view.
@@ -81,6 +83,7 @@ impl<'a> ImageView<'a> {
             value_text: None,
             size: None,
             caption: true,
+            crop: false,
         }
     }
 
@@ -121,6 +124,13 @@ impl<'a> ImageView<'a> {
         self
     }
 
+    /// Fits the part of the picture where something is seen, and not the dark around it, as a fisheye lens
+    /// leaves it; a button shows all. Default: no.
+    pub fn crop(mut self) -> Self {
+        self.crop = true;
+        self
+    }
+
     /// Draws it. Give several views the same `view` to link their zoom and position.
     pub fn show(self, ui: &mut Ui, view: &mut ViewState) -> ImageViewResponse {
         let size = self.size.unwrap_or_else(|| ui.available_size()).max(Vec2::splat(48.0));
@@ -149,6 +159,11 @@ impl<'a> ImageView<'a> {
         picture: &Picture,
     ) -> ImageViewResponse {
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+        if self.crop
+            && let Some(part) = seen::part(picture.image())
+        {
+            view.see(picture.size_px(), part);
+        }
         input::handle(ui, &response, rect, view, picture.size_px());
         let transform = view.transform(picture.size_px(), rect);
         let at_pointer = |pos: Option<egui::Pos2>| {
@@ -159,6 +174,9 @@ impl<'a> ImageView<'a> {
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, self.label));
         if ui.is_rect_visible(rect) {
             self.paint(ui, rect, &transform, picture, &response, hover_px);
+        }
+        if self.crop {
+            seen::button(ui, rect, self.label, view, picture.size_px());
         }
         ImageViewResponse {
             response,

@@ -58,6 +58,9 @@ impl Default for SceneCamera {
     }
 }
 
+/// A view that is narrower than this, width by height, shows as much as one of this shape would.
+const FITTING_ASPECT: f32 = 1.15;
+
 /// A half line in the robot's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
@@ -99,9 +102,9 @@ impl SceneCamera {
         }
     }
 
-    /// Moves the picture by so many points on a view of that height.
-    pub fn pan(&mut self, by: Vec2, view_height: f32) {
-        let view = self.view(Vec2::splat(view_height.max(1.0)));
+    /// Moves the picture by so many points on a view of that size.
+    pub fn pan(&mut self, by: Vec2, size: Vec2) {
+        let view = self.view(size.max(Vec2::splat(1.0)));
         let m_per_point = self.distance_m / f64::from(view.focal);
         self.target_m += (view.up * f64::from(by.y) - view.right * f64::from(by.x)) * m_per_point;
     }
@@ -127,7 +130,7 @@ impl SceneCamera {
             right,
             up,
             forward,
-            focal: size.y / 2.0 / (fov / 2.0).tan() as f32,
+            focal: size.y.min(size.x / FITTING_ASPECT) / 2.0 / (fov / 2.0).tan() as f32,
             center: pos2(size.x / 2.0, size.y / 2.0),
         }
     }
@@ -227,7 +230,7 @@ mod tests {
         let mut camera = SceneCamera::default();
         let point = camera.target_m;
         let before = at(&camera, point.x, point.y, point.z);
-        camera.pan(vec2(40.0, -25.0), SIZE.y);
+        camera.pan(vec2(40.0, -25.0), SIZE);
         let after = at(&camera, point.x, point.y, point.z);
         assert!((after - before - vec2(40.0, -25.0)).length() < 0.5, "{after:?}");
     }

@@ -16,7 +16,6 @@ const KEY_ZOOM: f64 = 1.25;
 /// Drag turns; drag with shift or the middle button moves; wheel and pinch go nearer. With
 /// keyboard focus: arrows turn, with shift move, + and − go nearer and away, 0 resets.
 pub(super) fn handle(ui: &mut Ui, response: &Response, camera: &mut SceneCamera) {
-    let height = response.rect.height();
     if response.hover_pos().is_some() {
         // Taken away, so that a scroll area around the view does not scroll as well.
         let (scroll, pinch) = ui.input_mut(|input| {
@@ -32,7 +31,7 @@ pub(super) fn handle(ui: &mut Ui, response: &Response, camera: &mut SceneCamera)
     if by != Vec2::ZERO {
         let left = response.dragged_by(PointerButton::Primary);
         if response.dragged_by(PointerButton::Middle) || (left && shift) {
-            camera.pan(by, height);
+            camera.pan(by, response.rect.size());
         } else if left {
             orbit(camera, by);
         }
@@ -58,7 +57,7 @@ fn keys(ui: &Ui, response: &Response, camera: &mut SceneCamera, shift: bool) {
     let net = |less, more| (presses(more) - presses(less)) as f32;
     let by = vec2(net(Key::ArrowLeft, Key::ArrowRight), net(Key::ArrowUp, Key::ArrowDown));
     if by != Vec2::ZERO && shift {
-        camera.pan(-by * KEY_PAN, response.rect.height());
+        camera.pan(-by * KEY_PAN, response.rect.size());
     } else if by != Vec2::ZERO {
         camera.orbit(f64::from(by.x) * KEY_ORBIT_RAD, -f64::from(by.y) * KEY_ORBIT_RAD);
     }

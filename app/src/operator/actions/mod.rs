@@ -140,6 +140,10 @@ pub enum Action {
     SaveWindow,
     /// Opens the list of everything that can be done.
     Palette,
+    /// The manual at this screen.
+    Help,
+    /// Which version this is.
+    About,
     /// Opens or closes the inspector.
     ToggleInspector,
     /// Opens or closes the log.
@@ -265,6 +269,8 @@ const ALL: &[Action] = &[
     Action::CancelJob,
     Action::SaveWindow,
     Action::Palette,
+    Action::Help,
+    Action::About,
     Action::ToggleInspector,
     Action::ToggleLog,
     Action::ToggleNotices,
@@ -356,6 +362,8 @@ impl Action {
             Self::CancelJob => "Cancel the running job",
             Self::SaveWindow => "Save a picture of the window…",
             Self::Palette => "All commands",
+            Self::Help => "Help: the manual at this screen",
+            Self::About => "About Plumbline",
             Self::ToggleInspector => "Inspector",
             Self::ToggleLog => "Log",
             Self::ToggleNotices => "Messages",

@@ -4,7 +4,7 @@ use plumbline_engine::View;
 use plumbline_widgets::format::{self, Quantity};
 
 use crate::operator::snapshot::gap::{
-    CoordinateComparison, Experiment, Finding, Knowledge, NamedEffect, Shown, ShownUnit, Unit, Verdict,
+    CoordinateComparison, Experiment, Finding, Knowledge, NamedEffect, Shown, ShownUnit, Unit, Verdict, What,
 };
 
 /// Quantity of a natural coordinate; residuals in SI.
@@ -13,6 +13,17 @@ pub fn quantity(of: &CoordinateComparison) -> Quantity {
         Unit::Meter => Quantity::Length,
         Unit::Radian => Quantity::Angle,
         Unit::Pixel => Quantity::Pixels,
+    }
+}
+
+/// What was measured.
+pub fn kind(what: What) -> &'static str {
+    match what {
+        What::Touch => "touches",
+        What::Pose => "poses measured from outside",
+        What::OrientedPose => "poses measured with their orientation",
+        What::Place => "places that the eyes estimated",
+        What::EyePoints => "image points",
     }
 }
 

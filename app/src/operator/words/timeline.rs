@@ -11,12 +11,21 @@ pub fn figure(figure: Figure) -> String {
     }
 }
 
-/// "5.88 mm → 0.93 mm"; empty where no error is known.
+/// "5.88 → 0.93 mm"; empty where no error is known.
 pub fn errors(entry: &TimelineEntry) -> String {
     match (entry.before, entry.after) {
-        (Some(before), Some(after)) => format!("{} → {}", figure(before), figure(after)),
+        (Some(before), Some(after)) => short(&figure(before), &figure(after)),
         (None, Some(after)) => figure(after),
         (_, None) => String::new(),
+    }
+}
+
+/// The unit stands once where both have the same.
+fn short(before: &str, after: &str) -> String {
+    let unit = |text: &str| text.split_once(' ').map(|(_, unit)| unit.to_owned());
+    match before.split_once(' ') {
+        Some((number, of)) if unit(after).as_deref() == Some(of) => format!("{number} → {after}"),
+        _ => format!("{before} → {after}"),
     }
 }
 
@@ -66,7 +75,7 @@ mod tests {
             id_after: None,
             outside: true,
         };
-        assert_eq!(errors(&entry), "5.88 mm → 0.930 mm");
+        assert_eq!(errors(&entry), "5.88 → 0.930 mm");
         assert!(about(&entry).contains("while this program was closed"));
         (entry.before, entry.after) = (None, Some(Figure::Pixels(0.0824)));
         assert!(errors(&entry).ends_with(" px"), "{}", errors(&entry));

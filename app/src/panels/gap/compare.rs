@@ -10,7 +10,6 @@ use plumbline_widgets::probability::{ShareRow, share_rows};
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::parts::{line, state};
-use crate::operator::snapshot::gap::What;
 use crate::operator::words::clock;
 use crate::operator::words::gap as words;
 use crate::operator::{GapAction, is_of_choice};
@@ -168,7 +167,7 @@ fn compared(ui: &mut Ui, shown: &ShownFinding) {
     }
     ui.add_space(space::S);
     for kind in &comparison.kinds {
-        theme::group_heading(ui, &format!("Where it shows: {}", kind_words(kind.what)));
+        theme::group_heading(ui, &format!("Where it shows: {}", words::kind(kind.what)));
         let rows: Vec<ShareRow> = kind
             .coordinates
             .iter()
@@ -193,16 +192,6 @@ fn compared(ui: &mut Ui, shown: &ShownFinding) {
         line(ui, Glyph::Warning, Role::Warning, warning);
     }
     left_out(ui, shown);
-}
-
-fn kind_words(what: What) -> &'static str {
-    match what {
-        What::Touch => "touches",
-        What::Pose => "poses measured from outside",
-        What::OrientedPose => "poses measured with their orientation",
-        What::Place => "places that the eyes estimated",
-        What::EyePoints => "image points",
-    }
 }
 
 /// Rows that could not be used, by reason.

@@ -27,15 +27,15 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         Drawn::of(&shown, corners.unwrap_or_default())
     });
     padded(ui, |ui| {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let options = [(Errors::Before, "Before"), (Errors::After, "After"), (Errors::Both, "Both")];
             choice(ui, "Errors of the gap", &mut cx.state.gap.errors, &options);
             let floor = words::error(&shown.finding.shown, shown.finding.shown.floor);
-            ui.label(theme::small(ui, format!("noise alone: {floor}")));
+            ui.add(egui::Label::new(theme::small(ui, format!("noise alone: {floor}"))).extend());
         });
         ui.add_space(space::XS);
         let errors = cx.state.gap.errors;
-        let height = (ui.available_height() - 52.0).max(140.0);
+        let height = (ui.available_height() - 72.0).max(110.0);
         let scene = drawn.scene(errors);
         let at = |at_m| drawn.words(at_m);
         TableMap::new("Map of the gap", &scene).words(&at).height(height).show(ui);

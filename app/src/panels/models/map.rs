@@ -12,7 +12,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::drawn::{Drawn, Shown};
 use crate::operator::snapshot::models::Method;
-use crate::panels::arrows::{Errors, entry};
+use crate::panels::arrows::{Errors, entry, entry_on_field};
 use crate::panels::{PanelContext, padded};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
@@ -41,7 +41,12 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         let legend_height = 62.0;
         let height = (ui.available_height() - legend_height).max(160.0);
         draw(ui, cx, &drawn, height);
-        legend(ui, cx.state.models.errors, &drawn);
+        let state = &cx.state.models;
+        let field = match state.field {
+            Shown::Uncertainty => &drawn.sd,
+            Shown::Correction => &drawn.shift,
+        };
+        legend(ui, state.errors, &drawn, field.is_some());
     });
 }
 
@@ -86,7 +91,7 @@ fn draw(ui: &mut Ui, cx: &PanelContext<'_>, drawn: &Drawn, height: f32) {
 }
 
 /// What the arrows mean, in their colors, with their magnification and means.
-fn legend(ui: &mut Ui, errors: Errors, drawn: &Drawn) {
+fn legend(ui: &mut Ui, errors: Errors, drawn: &Drawn, on_field: bool) {
     let Some([before, after]) = drawn.means_m else {
         ui.label(theme::small(ui, "The touches of this model are not known, so no errors can be drawn."));
         return;
@@ -96,6 +101,7 @@ fn legend(ui: &mut Ui, errors: Errors, drawn: &Drawn) {
     let times =
         if scale > 1.0 { format!("{scale} times as long as the error") } else { "in true length".to_owned() };
     ui.label(theme::small(ui, format!("Arrows {times}.")));
+    let entry = if on_field { entry_on_field } else { entry };
     if errors != Errors::After {
         entry(
             ui,

@@ -87,7 +87,7 @@ fn whereabouts(object: &ObjectView) -> String {
     match &object.place {
         Ok(place) => {
             let at = place.point_in_robot.coords;
-            let number = |m: f64| format!("{:.0}", Quantity::Length.on_screen(m));
+            let number = |m: f64| format::fixed(Quantity::Length.on_screen(m), 0);
             let worst_m = place.sigma_m.iter().copied().fold(0.0, f64::max);
             format!("{}, {}, {} ± {} mm", number(at.x), number(at.y), number(at.z), number(worst_m))
         }

@@ -29,6 +29,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                 }
                 ui.add_space(space::S);
             }
+            group_heading(ui, "Report of the whole setup");
             ui.horizontal_wrapped(|ui| {
                 action_button(ui, cx, TimelineAction::Report(TimelineFormat::Html), "HTML…");
                 action_button(ui, cx, TimelineAction::Report(TimelineFormat::Pdf), "PDF…");

@@ -3,6 +3,7 @@
 mod caring;
 mod hub;
 pub mod journal;
+mod libraries;
 mod pipeline;
 pub mod replay;
 pub mod settings;
@@ -16,6 +17,7 @@ use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Sender, TrySendError};
 
+pub use self::libraries::libraries;
 use self::settings::EngineSettings;
 use crate::command::Command;
 use crate::ground::bell::Bell;

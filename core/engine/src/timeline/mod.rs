@@ -16,4 +16,5 @@ pub mod work;
 mod workflow;
 
 pub use around::{Check, Finding, Standing, TimelineAround};
+pub use plumbline_report::tile::{Picture as PagePicture, Tile as TilePage, tile_pdf};
 pub use workflow::TimelineWorkflow;

@@ -280,7 +280,7 @@ impl Writer<'_> {
             r#"    <body name="table" {}>
       <geom name="table" type="box" size="{x} {y} {slab}" pos="0 0 -{slab}" {STATIC}/>
     </body>
-    <body name="screen" mocap="true" {}>
+    <body name="screen" {}>
       <geom name="glass" type="box" size="{} {} {glass}" pos="0 0 {glass}" friction="{friction} 0.002 0.0002" solref="0.008 1" solimp="0.95 0.99 0.0005" priority="1" {STATIC}/>
     </body>
     <body name="board" mocap="true" pos="0 0 -2"/>

@@ -94,7 +94,7 @@ impl Places {
     }
 
     /// Height of what is there at a place of the robot frame: the glass, or the table, m.
-    fn surface_m(&self, x_m: f64, y_m: f64) -> f64 {
+    pub(crate) fn surface_m(&self, x_m: f64, y_m: f64) -> f64 {
         let table_m = self.table_height_m(x_m, y_m);
         let on_screen = self.robot_from_screen.inverse() * Point3::new(x_m, y_m, table_m);
         let [half_u, half_v] = self.screen_size_m.map(|size_m| 0.5 * size_m + FRAME_M);

@@ -145,23 +145,48 @@ fn toys_come_to_rest_on_the_table() {
     }
 }
 
-/// What nobody touches stands where it stood, however long the robot works beside it. On the glass of the
-/// touchscreen, which can be raised and so is never asleep, balls roll by some millimeters a minute.
+/// What nobody touches stands where it stood, however long the robot works beside it.
 #[test]
-fn a_toy_at_rest_on_the_table_stays() {
-    let mut world = world("lab");
-    for (i, toy) in Toy::ALL.into_iter().enumerate() {
-        let y_m = if i % 2 == 0 { 0.42 } else { -0.42 };
-        world.place_toy(toy, 0.25 + 0.1 * (i / 2) as f64, y_m).expect("on the table");
+fn a_toy_at_rest_stays_on_the_table_and_on_the_glass() {
+    // Beside the screen, on it, and on it while it stands on a block.
+    for (off_m, raised_m) in [(0.42, 0.0), (0.12, 0.0), (0.12, 0.05)] {
+        let mut world = world("lab");
+        world.raise_screen(raised_m).expect("not too high");
+        stays(&mut world, off_m);
     }
-    world.run(8.0);
+}
+
+fn stays(world: &mut World, off_m: f64) {
+    for (i, toy) in Toy::ALL.into_iter().enumerate() {
+        let y_m = if i % 2 == 0 { off_m } else { -off_m };
+        let from_m = if off_m > 0.3 { 0.25 } else { 0.32 };
+        world.place_toy(toy, from_m + 0.08 * (i / 2) as f64, y_m).expect("on the table");
+    }
+    world.run(10.0);
     let before: Vec<_> = Toy::ALL.iter().map(|toy| world.toy(*toy).expect("out")).collect();
     world.run(60.0);
     for (toy, before) in Toy::ALL.into_iter().zip(before) {
         let now = world.toy(toy).expect("out");
         let moved_mm = 1e3 * (now.translation.vector - before.translation.vector).norm();
+        println!("{toy:?}, {off_m} m to the side: {moved_mm:.3} mm in a minute");
         assert!(moved_mm < 0.05, "{toy:?} moves {moved_mm} mm in a minute");
     }
+}
+
+#[test]
+fn what_stands_on_the_screen_rises_and_falls_with_it() {
+    let mut world = world("lab");
+    Toy::ALL.iter().filter(|other| **other != Toy::Tomato).for_each(|other| world.remove_toy(*other));
+    world.place_toy(Toy::Tomato, 0.40, 0.1).expect("on the screen");
+    world.run(6.0);
+    let height_m = |world: &World| world.toy(Toy::Tomato).expect("out").translation.z;
+    let low_m = height_m(&world);
+    world.raise_screen(0.05).expect("not too high");
+    world.run(3.0);
+    assert!((height_m(&world) - low_m - 0.05).abs() < 2e-3, "{} m from {low_m} m", height_m(&world));
+    world.raise_screen(0.0).expect("back");
+    world.run(3.0);
+    assert!((height_m(&world) - low_m).abs() < 2e-3, "{} m from {low_m} m", height_m(&world));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use mujoco_rs::mujoco_c::mjtEnableBit;
 use mujoco_rs::prelude::*;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use plumbline_model::frame::{Head, LeftCamera, RightCamera};
@@ -23,9 +24,8 @@ use crate::warm_up::WarmUp;
 
 /// Temperatures change slowly: every so many steps is enough.
 const HEAT_EVERY: u64 = 50;
-/// Bodies that are moved by hand, in the order of the model: the touchscreen, then the board.
-const SCREEN_MOCAP: usize = 0;
-const BOARD_MOCAP: usize = 1;
+/// The body that is moved by hand: the board.
+const BOARD_MOCAP: usize = 0;
 /// Blocks under the touchscreen may be this high, m.
 const HIGHEST_BLOCK_M: f64 = 0.2;
 /// The hand may carry this much, kg.
@@ -57,6 +57,7 @@ pub struct World {
     warm_up_pace: f64,
     eyes_body: usize,
     board_body: usize,
+    screen_body: usize,
     touch: TouchWatch,
     /// Height of the block under the touchscreen.
     raised_m: f64,
@@ -122,6 +123,7 @@ impl World {
         let mut world = Self {
             eyes_body: find(data.model(), MjtObjBase::mjOBJ_BODY, eyes_link)?,
             board_body: find(data.model(), MjtObjBase::mjOBJ_BODY, "board")?,
+            screen_body: find(data.model(), MjtObjBase::mjOBJ_BODY, "screen")?,
             eyes: EyePlaces::of(&rig, scenario),
             warm_up: WarmUp::cold(scenario.eyes.heat),
             warm_up_pace: 1.0,
@@ -311,12 +313,42 @@ impl World {
                 remedy: "give 0 to 0.2 m",
             });
         }
+        let before = self.places;
         self.places = self.level;
         self.places.raise_screen(by_m);
         self.raised_m = by_m;
-        self.data.mocap_pos_mut()[SCREEN_MOCAP] = self.places.robot_from_screen.translation.vector.into();
-        self.data.forward();
+        self.move_screen(&before);
         Ok(())
+    }
+
+    /// Puts the touchscreen where it belongs. It is a part of the world and no body that could move, for what
+    /// lies on such a one never sleeps, and what never sleeps creeps.
+    /// What stands on it goes with it; `before`: where all was.
+    fn move_screen(&mut self, before: &Places) {
+        let at_m: [f64; 3] = self.places.robot_from_screen.translation.vector.into();
+        // Where parts of the world are is computed anew only while nothing may sleep.
+        for may_sleep in [false, true] {
+            let Some(mut model) = self.spare.take() else { return };
+            model.body_pos_mut()[self.screen_body] = at_m;
+            let sleep = mjtEnableBit::mjENBL_SLEEP as i32;
+            let flags = &mut model.opt_mut().enableflags;
+            *flags = if may_sleep { *flags | sleep } else { *flags & !sleep };
+            self.spare = Some(self.data.swap_model(model));
+            self.data.forward();
+        }
+        if let Some(model) = &mut self.spare {
+            model.opt_mut().enableflags |= mjtEnableBit::mjENBL_SLEEP as i32;
+        }
+        for toy in Toy::ALL {
+            let Some(mut place) = self.toy(toy) else { continue };
+            let at_m = place.translation.vector;
+            let height_m = |places: &Places| places.surface_m(at_m.x, at_m.y);
+            let rise_m = height_m(&self.places) - height_m(before);
+            if rise_m != 0.0 {
+                place.translation.vector.z += rise_m;
+                self.put_toy(toy, place);
+            }
+        }
     }
 
     /// Height of the block under the touchscreen, m.
@@ -365,7 +397,12 @@ impl World {
                 remedy: "choose a place on the table",
             });
         }
-        let z_m = self.places.table_height_m(x_m, y_m) + self.toy_size * toy.rest_height_m() + 0.004;
+        // The glass on the table is thin: a toy is put down from above it anyway.
+        let below_m = match self.raised_m {
+            0.0 => self.places.table_height_m(x_m, y_m),
+            _ => self.places.surface_m(x_m, y_m),
+        };
+        let z_m = below_m + self.toy_size * toy.rest_height_m() + 0.004;
         let mut random = StdRng::seed_from_u64(self.seed.wrapping_mul(31).wrapping_add(toy as u64));
         let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), random.random_range(-0.6..0.6));
         self.put_toy(toy, Isometry3::from_parts(Translation3::new(x_m, y_m, z_m), turn));
