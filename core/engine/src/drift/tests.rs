@@ -225,23 +225,6 @@ fn looking_takes_three_percent_of_a_core_at_most() {
 }
 
 #[test]
-fn an_evaluation_that_cannot_be_kept_says_where_and_why() {
-    let folder = tempfile::tempdir().expect("a folder");
-    // A file lies where the folder of sessions would be, as good as a full disk.
-    let sessions = folder.path().join("sessions");
-    std::fs::write(&sessions, "").expect("written");
-    let work = super::work::DriftWork::KeepGrid {
-        sessions,
-        folder: None,
-        rows: Arc::from([]),
-        rig: default_rig(),
-        began: jiff::Timestamp::UNIX_EPOCH,
-    };
-    let error = crate::ground::LongWork::run(work, &plumbline_model::Unattended).expect_err("no room");
-    assert!(error.to_string().contains("sessions"), "{error}");
-}
-
-#[test]
 fn it_looks_seldom_and_waits_while_the_thread_is_at_work() {
     let mut desk = Desk::new();
     let still = desk.pair(0.0);
