@@ -158,7 +158,7 @@ fn is_of_eyes(finding: &Finding) -> bool {
 fn eyes_that_warm_up_by_other_physics_are_named() {
     let rig = default_rig();
     let named =
-        (0..24).filter(|seed| is_of_eyes(&found(&World::drawn(500 + seed, true), &rig, *seed))).count();
+        (0..24).filter(|seed| is_of_eyes(&found(&World::drawn(1500 + seed, true), &rig, *seed))).count();
     println!("{named} of 24 named");
     assert!(named >= 20, "{named} of 24");
 }
@@ -166,7 +166,7 @@ fn eyes_that_warm_up_by_other_physics_are_named() {
 #[test]
 fn eyes_that_stay_are_not_blamed_for_the_steps_of_a_detector() {
     let rig = default_rig();
-    let blamed =
-        (0..24).filter(|seed| found(&World::drawn(700 + seed, false), &rig, *seed).verdict != Verdict::NoGap);
+    let blamed = (0..60)
+        .filter(|seed| found(&World::drawn(1700 + seed, false), &rig, *seed).verdict != Verdict::NoGap);
     assert_eq!(blamed.count(), 0);
 }
