@@ -249,3 +249,18 @@ fn it_looks_seldom_and_waits_while_the_thread_is_at_work() {
     desk.with(|room, around, context| room.saw(&later, around, context));
     assert!(Arc::ptr_eq(&waits, &desk.room.input().expect("the same")), "one at a time");
 }
+
+#[test]
+fn a_clock_of_the_eyes_that_goes_back_a_little_is_no_switching_on() {
+    let mut desk = Desk::new();
+    let still = desk.pair(0.0);
+    desk.ask(DriftCommand::Start);
+    (0..3).for_each(|_| _ = desk.see(&still));
+    // Set by somebody, or by the network: back by a little more than has passed since the last look.
+    desk.around.eyes_on_s = desk.around.eyes_on_s.map(|on_s| on_s - EVERY.as_secs_f64() - 0.5);
+    (0..2).for_each(|_| _ = desk.see(&still));
+    let course = desk.view().course.clone().expect("looked");
+    assert_eq!(desk.said(), [""; 0], "nobody switched them on again");
+    let times: Vec<f64> = course.points.iter().map(|point| point.at_s).collect();
+    assert!(times.len() == 5 && times.windows(2).all(|two| two[0] <= two[1]), "{times:?}");
+}
