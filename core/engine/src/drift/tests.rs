@@ -264,3 +264,41 @@ fn a_clock_of_the_eyes_that_goes_back_a_little_is_no_switching_on() {
     let times: Vec<f64> = course.points.iter().map(|point| point.at_s).collect();
     assert!(times.len() == 5 && times.windows(2).all(|two| two[0] <= two[1]), "{times:?}");
 }
+
+/// Time that all threads of this program were on a processor, s; `None` where the system does not say.
+fn on_processor_s() -> Option<f64> {
+    let told = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let fields: Vec<&str> = told.rsplit(')').next()?.split_whitespace().collect();
+    let ticks = |k: usize| fields.get(k)?.parse::<f64>().ok();
+    // User and system, in hundredths of a second.
+    Some(0.01 * (ticks(11)? + ticks(12)?))
+}
+
+/// A measurement: `cargo test --release -p plumbline-engine --lib -- --ignored --nocapture what_looking_takes`.
+#[test]
+#[ignore = "measures time, alone"]
+#[allow(clippy::print_stdout, reason = "a measurement")]
+fn what_looking_takes_of_a_processor() {
+    let mut desk = Desk::new();
+    let still = desk.pair(0.0);
+    desk.ask(DriftCommand::Start);
+    (0..17).for_each(|_| _ = desk.see(&still));
+    let (looks, began) = (40, std::time::Instant::now());
+    let before_s = on_processor_s().expect("this system says");
+    for number in 0..looks {
+        // What the thread is handed, and what it makes of it.
+        desk.time = desk.time.after(Duration::from_secs(60));
+        assert!(desk.see(&still), "look {number}");
+    }
+    let (cpu_s, wall_s) = (on_processor_s().expect("as before") - before_s, began.elapsed().as_secs_f64());
+    let (cpu_s, wall_s) = (cpu_s / f64::from(looks), wall_s / f64::from(looks));
+    // It rests until its wall time is three percent, and two seconds at least.
+    let share = cpu_s / (wall_s / 0.03).max(2.0);
+    println!(
+        "a look: {:.0} ms on processors, {:.0} ms by the clock; {:.1} % of a core",
+        1e3 * cpu_s,
+        1e3 * wall_s,
+        1e2 * share
+    );
+    assert!(share <= 0.032, "{share}");
+}
