@@ -3,9 +3,9 @@
 //! epipolar line, the middle comes out too near.
 #![allow(clippy::print_stdout, reason = "figures for who reads the test's output")]
 
-use nalgebra::{SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, Vector3};
 use plumbline_model::robot::default_rig;
-use plumbline_model::{Pixel, Point, Raw, StereoCameras};
+use plumbline_model::{Pixel, Point, Raw, StereoCameras, decompose};
 
 /// Both rays turned as little as possible (sum of squared sines) until they meet, left camera, m.
 fn least_turned(cameras: &StereoCameras, left: Pixel<Raw>, right: Pixel<Raw>) -> Vector3<f64> {
@@ -18,10 +18,11 @@ fn least_turned(cameras: &StereoCameras, left: Pixel<Raw>, right: Pixel<Raw>) ->
     let off = |ray: Vector3<f64>| ray - along * ray.dot(&along);
     let (a, b) = (off(ray_left), off(ray_right));
     // The plane through both eyes that both rays are nearest to.
-    let eigen = SymmetricEigen::new(a * a.transpose() + b * b.transpose());
+    let both = DMatrix::from_fn(3, 3, |r, c| a[r] * a[c] + b[r] * b[c]);
+    let eigen = decompose::symmetric_eigen(both).expect("finite");
     let upright =
         (0..3).max_by(|k, l| eigen.eigenvalues[*k].total_cmp(&eigen.eigenvalues[*l])).expect("three");
-    let in_plane = eigen.eigenvectors.column(upright).into_owned();
+    let in_plane = Vector3::from_fn(|c, _| eigen.eigenvectors[(c, upright)]);
     let flat = |ray: Vector3<f64>| along * ray.dot(&along) + in_plane * ray.dot(&in_plane);
     let (p, q) = (flat(ray_left), flat(ray_right));
     // p s = origin + q t in that plane.
