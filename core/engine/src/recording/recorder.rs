@@ -167,8 +167,8 @@ mod tests {
     /// As large as NICO's, with as much in it as granite has.
     fn picture(number: u32) -> Arc<RgbImage> {
         Arc::new(RgbImage::from_fn(640, 480, |u, v| {
-            let mut grain = (u / 2 + number) * 0x9E37 ^ (v / 2) * 0x85EB;
-            grain = (grain ^ grain >> 7).wrapping_mul(0x2C1B_3C6D) >> 27;
+            let mut grain = ((u / 2 + number) * 0x9E37) ^ ((v / 2) * 0x85EB);
+            grain = (grain ^ (grain >> 7)).wrapping_mul(0x2C1B_3C6D) >> 27;
             let shade = (90 + grain + 40 * ((u / 80 + v / 60) % 2)) as u8;
             Rgb([shade, shade - 12, shade - 30])
         }))
