@@ -24,6 +24,24 @@ pub fn robust_sd(values: impl IntoIterator<Item = f64>) -> f64 {
     1.4826 * median(values.into_iter().map(f64::abs)).unwrap_or(0.0)
 }
 
+/// Where a detector goes in steps, more than half of the values may be the very same: their spread is what this
+/// share of them lies within, and what that is of a standard deviation.
+const WITHIN: f64 = 0.8;
+const WITHIN_SIGMAS: f64 = 1.2816;
+
+/// Standard deviation about zero of values that may go in steps; a fifth of them may be anything. 0 of nothing.
+pub fn stepped_sd(values: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = values.iter().map(|value| value.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let last = (WITHIN * sizes.len() as f64).ceil() as usize;
+    let within = last.checked_sub(1).and_then(|k| sizes.get(k)).map_or(0.0, |size| size / WITHIN_SIGMAS);
+    within.max(robust_sd(sizes))
+}
+
+/// Noise of the coordinates of what eyes watch is of one kind, pixels: none is less than this share of the largest,
+/// however often a detector says the very same.
+pub const ALIKE: f64 = 0.25;
+
 /// Probability that a value of Fisher's F with these degrees of freedom is at least `value`.
 pub fn f_tail(value: f64, above: f64, below: f64) -> f64 {
     if !(value > 0.0) {

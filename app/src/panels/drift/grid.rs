@@ -59,6 +59,7 @@ fn begin(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         }
     });
     if let Some(run) = &cx.view.drift.grid.run {
+        not_on_disk(ui, run);
         let text = format!("The last one saw the {} at {} of {} places.", run.object, run.measured, run.of);
         ui.label(theme::small(ui, text));
     }
@@ -96,6 +97,7 @@ fn under_way(ui: &mut Ui, cx: &mut PanelContext<'_>, run: &GridRunView) {
         }
         GridDoing::Ended => {}
     }
+    not_on_disk(ui, run);
     ui.horizontal_wrapped(|ui| {
         if !run.places_by_itself {
             action_button(ui, cx, GridAction::Placed, "Placed");
@@ -103,6 +105,13 @@ fn under_way(ui: &mut Ui, cx: &mut PanelContext<'_>, run: &GridRunView) {
         action_button(ui, cx, GridAction::LeaveOut, "Leave out");
         action_button(ui, cx, GridAction::End, "End");
     });
+}
+
+fn not_on_disk(ui: &mut Ui, run: &GridRunView) {
+    if let Some(why) = &run.unkept {
+        let text = format!("What was measured is not on disk yet, and is tried again by itself: {why}");
+        warning(ui, &text);
+    }
 }
 
 fn sideways(y_m: f64) -> String {

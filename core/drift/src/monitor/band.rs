@@ -98,6 +98,13 @@ impl Band {
         (0..3).any(|k| off_m[k] > self.half_m[k] || turned[k].norm() > self.half_rad[k])
     }
 
+    /// Whether places come out of it anywhere: what the eyes turn slowly counts by what it costs, since an
+    /// accepted law of their warming up takes it off.
+    pub(super) fn costs(&self, look: &Look) -> bool {
+        let off_m = self.off_m(look);
+        (0..3).any(|k| off_m[k] > self.half_m[k])
+    }
+
     /// How the eyes turned since then.
     pub(super) fn turns_since(&self, look: &Look) -> [Vector3<f64>; 3] {
         since(&self.turns_rad, look)

@@ -177,7 +177,7 @@ impl Monitor {
             return Verdict::Learning { looks: self.samples.len(), needed: Band::LOOKS };
         };
         let cost_m = band.off_m(&newest.look);
-        let out = self.samples.iter().rev().take_while(|sample| band.is_out(&sample.look)).count();
+        let out = self.samples.iter().rev().take_while(|sample| band.costs(&sample.look)).count();
         if out < CONFIRMED_BY {
             return Verdict::Steady { cost_m };
         }

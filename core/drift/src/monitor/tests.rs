@@ -184,3 +184,21 @@ fn before_anything_is_learned_nothing_is_claimed_but_a_hard_knock_is() {
     (0..2).for_each(|_| course.look(Vector3::zeros(), degrees(0.0, 1.0, 0.0), vec![]));
     assert_eq!(moved(&course).what, Mover::RightEye);
 }
+
+/// An accepted law of the warm-up: eyes go on turning, and places stay.
+#[test]
+fn turns_that_the_model_in_use_takes_off_are_told_as_what_they_cost() {
+    let mut course = Course::new(10.0);
+    course.still(20);
+    let still = course.monitor.samples().last().expect("looked").look.clone();
+    for step in 0..400 {
+        let turn_rad = degrees(0.0, 0.3, 0.0) * f64::from(step) / 400.0;
+        let turns_rad = [still.turns_rad[0] - turn_rad, still.turns_rad[1] + turn_rad];
+        let look = Look { turns_rad, against_rad: still.against_rad + 2.0 * turn_rad, ..still.clone() };
+        course.monitor.add(Sample { at_s: course.at_s, look });
+        course.at_s += EVERY_S;
+        let verdict = course.monitor.verdict();
+        assert!(matches!(verdict, Verdict::Steady { .. }), "{step}: {}", words::verdict(&verdict));
+    }
+    assert_eq!(course.monitor.alarms(), &[]);
+}

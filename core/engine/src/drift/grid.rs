@@ -21,6 +21,8 @@ const SETTLES: Duration = Duration::from_millis(1500);
 pub(super) const LOOKS: usize = 5;
 /// The eyes have found it within this, or it is not seen.
 const SEEN_WITHIN: Duration = Duration::from_secs(8);
+/// What could not be written is tried again after this, or with the next place.
+const TRIED_AGAIN: Duration = Duration::from_secs(15);
 /// A thing that comes out farther from its target than this is another one, m.
 const FARTHEST_M: f64 = 0.2;
 
@@ -54,6 +56,8 @@ pub(super) struct GridRun {
     /// The session, once it is on disk.
     pub folder: Option<PathBuf>,
     keeping: Option<JobId>,
+    /// When what could not be written is tried again (`None`: at once), and why it could not.
+    unkept: Option<(Option<Instant>, String)>,
     /// No detector has looked for as long as one is waited for.
     is_blind: bool,
     /// Rows that the session on disk does not hold yet.
@@ -73,6 +77,7 @@ impl GridRun {
             looked_at: None,
             folder: None,
             keeping: None,
+            unkept: None,
             is_blind: false,
             is_newer: false,
         };
@@ -139,8 +144,7 @@ impl GridRun {
         }
         if self.looks.len() >= LOOKS || is_over && !self.looks.is_empty() {
             let looks = std::mem::take(&mut self.looks);
-            self.rows.extend(looks);
-            self.is_newer = true;
+            self.add_rows(looks);
             self.go_to(self.at + 1, around, context);
         } else if is_over && around.twin.is_some() {
             self.miss(around, context);
@@ -201,9 +205,17 @@ impl GridRun {
     /// Nothing is seen at this place: that is written down, too.
     fn miss(&mut self, around: &DriftAround, context: &mut Context<'_>) {
         self.looks.clear();
-        self.rows.extend(self.row(around, None));
-        self.is_newer = true;
+        self.add_rows(self.row(around, None));
         self.go_to(self.at + 1, around, context);
+    }
+
+    /// They are to be kept at once, whatever was before.
+    fn add_rows(&mut self, rows: impl IntoIterator<Item = LocalizationRow>) {
+        self.rows.extend(rows);
+        self.is_newer = true;
+        if let Some((again, _)) = &mut self.unkept {
+            *again = None;
+        }
     }
 
     fn go_to(&mut self, at: usize, around: &DriftAround, context: &mut Context<'_>) {
@@ -220,7 +232,9 @@ impl GridRun {
 
     /// Writes what was measured, unless that is being done.
     pub fn keep(&mut self, sessions: PathBuf, around: &DriftAround, context: &mut Context<'_>) {
-        if !self.is_newer || self.keeping.is_some() {
+        let waits =
+            self.unkept.as_ref().is_some_and(|(again, _)| again.is_some_and(|at| context.time.instant < at));
+        if !self.is_newer || self.keeping.is_some() || waits {
             return;
         }
         self.is_newer = false;
@@ -238,15 +252,22 @@ impl GridRun {
         let mine = self.keeping.take_if(|keeping| *keeping == id).is_some();
         if mine {
             self.folder = Some(folder);
+            self.unkept = None;
         }
         mine
     }
 
-    /// It could not be written; it is tried again with the next place. `false`: that was of another one.
-    pub fn not_kept(&mut self, id: JobId) -> bool {
-        let mine = self.keeping.take_if(|keeping| *keeping == id).is_some();
-        self.is_newer |= mine;
-        mine
+    /// It could not be written; it is tried again a while later, or with the next place.
+    pub fn not_kept(&mut self, id: JobId, why: Option<&str>, now: Instant) {
+        if self.keeping.take_if(|keeping| *keeping == id).is_some() {
+            self.is_newer = true;
+            self.unkept = Some((Some(now + TRIED_AGAIN), why.unwrap_or("it was cancelled").to_owned()));
+        }
+    }
+
+    /// Whether something was measured that is not on disk, and could not be written.
+    pub fn is_unkept(&self) -> bool {
+        self.unkept.is_some()
     }
 
     pub fn view(&self, around: &DriftAround) -> GridRunView {
@@ -270,6 +291,7 @@ impl GridRun {
             doing,
             measured: measured.len(),
             session: self.folder.clone(),
+            unkept: self.unkept.as_ref().map(|(_, why)| why.clone()),
         }
     }
 }

@@ -153,9 +153,9 @@ impl GridRoom {
     }
 
     /// Work has ended without a result.
-    pub fn work_ended(&mut self, id: JobId, why: Option<&str>) {
+    pub fn work_ended(&mut self, id: JobId, why: Option<&str>, context: &Context<'_>) {
         if let Some(run) = &mut self.run {
-            run.not_kept(id);
+            run.not_kept(id, why, context.time.instant);
         }
         self.figures.not_judged(id, why);
     }
@@ -163,6 +163,11 @@ impl GridRoom {
     fn unable(&self, around: &DriftAround) -> Option<&'static str> {
         if self.run.as_ref().is_some_and(GridRun::is_under_way) {
             return Some("one is under way");
+        }
+        if self.run.as_ref().is_some_and(GridRun::is_unkept) {
+            return Some(
+                "what the last one measured is not on disk yet; make room there, it is tried again by itself",
+            );
         }
         if !around.is_live {
             return Some("no eyes are live");

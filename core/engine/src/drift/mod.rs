@@ -5,6 +5,8 @@ pub mod command;
 mod figures;
 mod grid;
 mod grid_room;
+#[cfg(test)]
+mod grid_tests;
 mod stage;
 #[cfg(test)]
 mod tests;

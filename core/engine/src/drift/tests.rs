@@ -225,23 +225,6 @@ fn looking_takes_three_percent_of_a_core_at_most() {
 }
 
 #[test]
-fn an_evaluation_that_cannot_be_kept_says_where_and_why() {
-    let folder = tempfile::tempdir().expect("a folder");
-    // A file lies where the folder of sessions would be, as good as a full disk.
-    let sessions = folder.path().join("sessions");
-    std::fs::write(&sessions, "").expect("written");
-    let work = super::work::DriftWork::KeepGrid {
-        sessions,
-        folder: None,
-        rows: Arc::from([]),
-        rig: default_rig(),
-        began: jiff::Timestamp::UNIX_EPOCH,
-    };
-    let error = crate::ground::LongWork::run(work, &plumbline_model::Unattended).expect_err("no room");
-    assert!(error.to_string().contains("sessions"), "{error}");
-}
-
-#[test]
 fn it_looks_seldom_and_waits_while_the_thread_is_at_work() {
     let mut desk = Desk::new();
     let still = desk.pair(0.0);
@@ -265,4 +248,57 @@ fn it_looks_seldom_and_waits_while_the_thread_is_at_work() {
     let later = StereoFrame { stamp: Stamp { seq: 100, captured_at: desk.time.instant }, ..frame };
     desk.with(|room, around, context| room.saw(&later, around, context));
     assert!(Arc::ptr_eq(&waits, &desk.room.input().expect("the same")), "one at a time");
+}
+
+#[test]
+fn a_clock_of_the_eyes_that_goes_back_a_little_is_no_switching_on() {
+    let mut desk = Desk::new();
+    let still = desk.pair(0.0);
+    desk.ask(DriftCommand::Start);
+    (0..3).for_each(|_| _ = desk.see(&still));
+    // Set by somebody, or by the network: back by a little more than has passed since the last look.
+    desk.around.eyes_on_s = desk.around.eyes_on_s.map(|on_s| on_s - EVERY.as_secs_f64() - 0.5);
+    (0..2).for_each(|_| _ = desk.see(&still));
+    let course = desk.view().course.clone().expect("looked");
+    assert_eq!(desk.said(), [""; 0], "nobody switched them on again");
+    let times: Vec<f64> = course.points.iter().map(|point| point.at_s).collect();
+    assert!(times.len() == 5 && times.windows(2).all(|two| two[0] <= two[1]), "{times:?}");
+}
+
+/// Time that all threads of this program were on a processor, s; `None` where the system does not say.
+fn on_processor_s() -> Option<f64> {
+    let told = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let fields: Vec<&str> = told.rsplit(')').next()?.split_whitespace().collect();
+    let ticks = |k: usize| fields.get(k)?.parse::<f64>().ok();
+    // User and system, in hundredths of a second.
+    Some(0.01 * (ticks(11)? + ticks(12)?))
+}
+
+/// A measurement: `cargo test --release -p plumbline-engine --lib -- --ignored --nocapture what_looking_takes`.
+#[test]
+#[ignore = "measures time, alone"]
+#[allow(clippy::print_stdout, reason = "a measurement")]
+fn what_looking_takes_of_a_processor() {
+    let mut desk = Desk::new();
+    let still = desk.pair(0.0);
+    desk.ask(DriftCommand::Start);
+    (0..17).for_each(|_| _ = desk.see(&still));
+    let (looks, began) = (40, std::time::Instant::now());
+    let before_s = on_processor_s().expect("this system says");
+    for number in 0..looks {
+        // What the thread is handed, and what it makes of it.
+        desk.time = desk.time.after(Duration::from_secs(60));
+        assert!(desk.see(&still), "look {number}");
+    }
+    let (cpu_s, wall_s) = (on_processor_s().expect("as before") - before_s, began.elapsed().as_secs_f64());
+    let (cpu_s, wall_s) = (cpu_s / f64::from(looks), wall_s / f64::from(looks));
+    // It rests until its wall time is three percent, and two seconds at least.
+    let share = cpu_s / (wall_s / 0.03).max(2.0);
+    println!(
+        "a look: {:.0} ms on processors, {:.0} ms by the clock; {:.1} % of a core",
+        1e3 * cpu_s,
+        1e3 * wall_s,
+        1e2 * share
+    );
+    assert!(share <= 0.032, "{share}");
 }

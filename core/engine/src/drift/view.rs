@@ -72,6 +72,8 @@ pub struct GridRunView {
     pub measured: usize,
     /// The session, once it is on disk.
     pub session: Option<PathBuf>,
+    /// Why what was measured last is not on disk; it is tried again by itself.
+    pub unkept: Option<String>,
 }
 
 /// What is done at a place.

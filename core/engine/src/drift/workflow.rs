@@ -264,6 +264,6 @@ impl Workflow for DriftWorkflow {
         if self.retelling.take_if(|retelling| *retelling == id).is_some() && why.is_some() {
             self.begin(around, context.time);
         }
-        self.grid.work_ended(id, why);
+        self.grid.work_ended(id, why, context);
     }
 }

@@ -149,3 +149,59 @@ fn write(mut writer: RecordingWriter, items: &Receiver<Item>, told: &Told) -> Re
     }
     writer.finish()
 }
+
+#[cfg(test)]
+mod tests {
+    use image::Rgb;
+    use jiff::SignedDuration;
+    use plumbline_recording::About;
+
+    use super::*;
+
+    /// Time that this thread was on a processor, s; `None` where the system does not say.
+    fn on_processor_s() -> Option<f64> {
+        let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+        told.split_whitespace().next()?.parse::<f64>().ok().map(|ns| 1e-9 * ns)
+    }
+
+    /// As large as NICO's, with as much in it as granite has.
+    fn picture(number: u32) -> Arc<RgbImage> {
+        Arc::new(RgbImage::from_fn(640, 480, |u, v| {
+            let mut grain = ((u / 2 + number) * 0x9E37) ^ ((v / 2) * 0x85EB);
+            grain = (grain ^ (grain >> 7)).wrapping_mul(0x2C1B_3C6D) >> 27;
+            let shade = (90 + grain + 40 * ((u / 80 + v / 60) % 2)) as u8;
+            Rgb([shade, shade - 12, shade - 30])
+        }))
+    }
+
+    /// A measurement, with pictures as full of grain as a table of granite: a tenth of a core is not kept with
+    /// them. `cargo test --release -p plumbline-engine --lib -- --ignored --nocapture thirty_pairs`.
+    #[test]
+    #[ignore = "measures time"]
+    #[allow(clippy::print_stdout, reason = "a measurement")]
+    fn thirty_pairs_a_second_take_a_fifth_of_a_core_at_most() {
+        const PAIRS: u32 = 300;
+        let folder = tempfile::tempdir().expect("a folder");
+        let start: Timestamp = "2026-11-21T10:04:00Z".parse().expect("a time");
+        let writer = RecordingWriter::create(&folder.path().join("log.mcap"), start, &About::default());
+        let (items, waiting) = crossbeam_channel::bounded(PAIRS as usize);
+        let pictures: Vec<_> = (0..8).map(picture).collect();
+        for number in 0..PAIRS {
+            let at = start + SignedDuration::from_millis(i64::from(number) * 1000 / 30);
+            let images = [0, 1].map(|eye| pictures[(number as usize + 3 * eye) % 8].clone());
+            items.send(Item::Pair { at, number: number.into(), images, right_later_s: None }).expect("room");
+        }
+        drop(items);
+        let before = on_processor_s().expect("this system says");
+        let counts = write(writer.expect("begun"), &waiting, &Told::default()).expect("written");
+        let took_s = on_processor_s().expect("this system says") - before;
+        let share = took_s * 30.0 / f64::from(PAIRS);
+        println!(
+            "{:.2} ms a pair of {:.0} kB, {:.1} % of a core at 30 pairs a second",
+            1e3 * took_s / f64::from(PAIRS),
+            1e-3 * counts.bytes as f64 / f64::from(PAIRS),
+            1e2 * share
+        );
+        assert!(share <= 0.20, "{share}");
+    }
+}

@@ -65,6 +65,16 @@ impl Desk {
         }
     }
 
+    fn look_after(&mut self) {
+        let mut asked = Vec::new();
+        let Self { room, notices, jobs, .. } = self;
+        room.look_after(&mut Context::new(notices, jobs, Time::now(), &mut asked));
+        for asked in asked {
+            let Asked::Start(id, work) = asked else { continue };
+            self.finish(id, work);
+        }
+    }
+
     fn view(&mut self) -> Arc<RecordingView> {
         let moment = Moment { now: Instant::now(), skipped: Skipped::default() };
         self.room.view(&self.around, &moment)
@@ -168,4 +178,49 @@ fn a_recorder_that_does_not_keep_up_counts_what_it_drops() {
     let so_far = desk.view().last.as_ref().expect("finished").so_far;
     assert!(so_far.dropped > 0, "{so_far:?}");
     assert_eq!(so_far.pairs + so_far.dropped, pairs, "none is lost without being counted");
+}
+
+const FULL: &str = "PLUMBLINE_TEST_FULL_DISK";
+
+/// In a process whose files cannot grow: it records until that is so.
+fn record_until_full(folder: &Path) {
+    let mut desk = Desk::new(folder, true);
+    desk.apply(RecordingCommand::Start);
+    let RecordingState::On { session, .. } = desk.view().state.clone() else { panic!("{:?}", desk.view()) };
+    let noise = Arc::new(RgbImage::from_fn(320, 240, |x, y| Rgb([(x * y) as u8, (x ^ y) as u8, y as u8])));
+    let began = Instant::now();
+    let mut number = 0;
+    while desk.view().is_on() {
+        assert!(began.elapsed() < Duration::from_secs(60), "it never noticed");
+        number += 1;
+        let frame = StereoFrame { left: noise.clone(), right: noise.clone(), ..frame(number) };
+        desk.room.saw(&frame, Time::now());
+        std::thread::sleep(Duration::from_millis(2));
+        desk.look_after();
+    }
+    assert!(desk.said().contains("check that the disk is there and has room"), "{}", desk.said());
+    // A small file was written as ever, and the next recording can begin.
+    let recording = Recording::open(&session.join(FILE)).expect("what is there can be read");
+    assert!(!recording.is_whole());
+    assert!(desk.view().last.is_none(), "it was not finished");
+}
+
+#[test]
+fn a_disk_that_fills_up_ends_a_recording_with_words_and_nothing_else() {
+    if let Some(folder) = std::env::var_os(FULL) {
+        return record_until_full(Path::new(&folder));
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let test = "recording::tests::a_disk_that_fills_up_ends_a_recording_with_words_and_nothing_else";
+    // Blocks of 512 bytes; the signal that goes with it would end the child.
+    let script = format!("trap '' XFSZ; ulimit -f 4000; exec \"$0\" {test} --exact");
+    let child = std::process::Command::new("sh")
+        .args(["-c", &script])
+        .arg(std::env::current_exe().expect("a test has a file"))
+        .env(FULL, folder.path())
+        .output()
+        .expect("started");
+    let said = String::from_utf8_lossy(&child.stdout).into_owned();
+    assert!(child.status.success(), "{said}\n{}", String::from_utf8_lossy(&child.stderr));
+    assert!(said.contains("1 passed"), "{said}");
 }

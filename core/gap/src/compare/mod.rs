@@ -112,11 +112,11 @@ pub(crate) fn compare(
             *residual = None;
         }
     }
-    if outlier.iter().filter(|out| !**out).count() < FEWEST_ROWS {
-        return Err(GapError::TooFew {
-            rows: outlier.iter().filter(|out| !**out).count(),
-            needed: FEWEST_ROWS,
-        });
+    let kept = outlier.iter().filter(|out| !**out).count();
+    let is_watched = measurements.rows.iter().any(|row| row.stand.is_some());
+    let needed = if is_watched { crate::watched::LEAST_LOOKS } else { FEWEST_ROWS };
+    if kept < needed {
+        return Err(GapError::TooFew { rows: kept, needed });
     }
     context.checkpoint()?;
     context.report(0.4, "measuring the noise");

@@ -15,7 +15,7 @@ use super::neighbors::Points;
 use super::structure::{Repeat, Structure, structure};
 use crate::finding::FloorSource;
 use crate::floor::{Floor, KindFloor, finest};
-use crate::statistics::{median, robust_sd};
+use crate::statistics::{ALIKE, median, robust_sd, stepped_sd};
 
 /// Fewer degrees of freedom than this say too little of the spread: 20 know it to a sixth. What
 /// repeats say is taken as it is, what neighbors say with doubt.
@@ -193,7 +193,8 @@ fn within_cells(
                     members.iter().map(move |residual| (residual[c] - mean) * inflate)
                 })
                 .collect();
-            pooled(&spread)
+            let robust = robust_sd(spread.iter().copied());
+            pooled(&spread, robust)
         })
         .collect();
     let course = drift(&deviations(measurements, residuals, what), free);
@@ -311,9 +312,9 @@ fn deviations(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what:
     .collect()
 }
 
-/// Root mean square of what is not far out.
-fn pooled(spread: &[f64]) -> f64 {
-    let limit = FAR * robust_sd(spread.iter().copied());
+/// Root mean square of what is not far out, by a robust standard deviation.
+fn pooled(spread: &[f64], robust: f64) -> f64 {
+    let limit = FAR * robust;
     let (sum, count) = spread
         .iter()
         .filter(|value| limit == 0.0 || value.abs() <= limit)
@@ -338,6 +339,7 @@ fn near_neighbors(measurements: &Measurements, residuals: &[Option<Vec<f64>>], w
     let values = if count >= 3 * columns { less_fit(&smooth, values) } else { values };
     let d = points.directions();
     let nearest = points.nearest((3 * (d + 1)).min(count.saturating_sub(1)));
+    let watched = points.rows.iter().all(|&i| measurements.rows[i].stand.is_some());
     let mut spread = vec![vec![]; what.len()];
     for (i, around) in nearest.iter().enumerate() {
         if around.len() < d + 2 {
@@ -356,15 +358,21 @@ fn near_neighbors(measurements: &Measurements, residuals: &[Option<Vec<f64>>], w
             spread.push((values[(i, c)] - here) / inflate);
         }
     }
-    let sd = (0..what.len())
+    let mut sd: Vec<f64> = (0..what.len())
         .map(|c| {
             if spread[c].is_empty() {
                 values.column(c).norm() / (count.max(1) as f64).sqrt()
+            } else if watched {
+                pooled(&spread[c], stepped_sd(&spread[c]))
             } else {
-                pooled(&spread[c])
+                pooled(&spread[c], robust_sd(spread[c].iter().copied()))
             }
         })
         .collect();
+    if watched {
+        let least = ALIKE * sd.iter().copied().fold(0.0, f64::max);
+        sd.iter_mut().for_each(|sd| *sd = sd.max(least));
+    }
     KindFloor { what, sd, degrees_of_freedom: (0.5 * count as f64).max(1.0), sigma_m: None }
 }
 

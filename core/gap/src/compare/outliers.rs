@@ -3,13 +3,15 @@
 use plumbline_effects::measurements::{Measurements, What};
 
 use super::neighbors::Points;
-use crate::statistics::{median, robust_sd};
+use crate::statistics::{ALIKE, median, robust_sd, stepped_sd};
 
 /// A row this many robust standard deviations away from its neighbors is an outlier. Far: an
 /// effect that few rows show must not be thrown away.
 const FAR: f64 = 8.0;
 /// Neighbors whose median a row is held against.
 const NEIGHBORS: usize = 9;
+/// The same of one place that is watched: it goes somewhere, fastest at the beginning.
+const NEIGHBORS_IN_TIME: usize = 5;
 /// So many in a row are no mishap but a condition: something changed.
 const A_CONDITION: usize = 5;
 
@@ -22,17 +24,19 @@ pub fn outliers(measurements: &Measurements, residuals: &[Option<Vec<f64>>]) -> 
         if points.rows.len() < NEIGHBORS + 3 {
             continue;
         }
-        let nearest = points.nearest(NEIGHBORS);
+        let watched = points.rows.iter().all(|&i| measurements.rows[i].stand.is_some());
+        let nearest = points.nearest(if watched { NEIGHBORS_IN_TIME } else { NEIGHBORS });
         // Twice: the first round's outliers do not speak in the second.
         for _ in 0..2 {
             let off = off_by(&points, &nearest, residuals, &out, what.len());
             let scales: Vec<f64> = (0..what.len())
                 .map(|c| {
                     let inside = off.iter().zip(&points.rows).filter(|(_, row)| !out[**row]);
-                    robust_sd(inside.map(|(off, _)| off[c]))
+                    let off: Vec<f64> = inside.map(|(off, _)| off[c]).collect();
+                    if watched { stepped_sd(&off) } else { robust_sd(off) }
                 })
                 .collect();
-            let finest = 0.05 * scales.iter().copied().fold(0.0, f64::max);
+            let finest = if watched { ALIKE } else { 0.05 } * scales.iter().copied().fold(0.0, f64::max);
             for (off, &row) in off.iter().zip(&points.rows) {
                 out[row] =
                     off.iter().zip(&scales).any(|(off, scale)| off.abs() > FAR * scale.max(finest).max(1e-9));

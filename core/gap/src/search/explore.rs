@@ -1,6 +1,6 @@
 //! Looks through sets of effects, the most promising first.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use plumbline_model::JobContext;
 
@@ -28,7 +28,7 @@ pub(super) struct Model {
     pub probability: f64,
 }
 
-/// The sets that are left, the most probable first.
+/// The sets that are left, the most probable first, but see [`Space::put_first`].
 #[derive(Clone, Debug)]
 pub(super) struct Explored {
     pub models: Vec<Model>,
@@ -155,6 +155,26 @@ impl Space<'_> {
         Ok(())
     }
 
+    /// Sets that differ only in how eyes turn sideways in the course of time (which time constant, turned or
+    /// shifted) say the same: together they may be more probable than a set that is so alone, which has nothing of
+    /// it. The best one of those that are the most probable together comes first.
+    fn put_first(&self, models: &mut [Model]) {
+        let said = |model: &Model| -> Vec<Option<usize>> {
+            let of = |block: &usize| (!self.blocks[*block].grows_sideways).then_some(*block);
+            let mut said: Vec<_> = model.set.iter().map(of).collect();
+            said.sort_unstable();
+            said
+        };
+        let mut together: BTreeMap<Vec<Option<usize>>, (usize, f64)> = BTreeMap::new();
+        for (place, model) in models.iter().enumerate() {
+            together.entry(said(model)).or_insert((place, 0.0)).1 += model.probability;
+        }
+        let best = together.values().max_by(|a, b| a.1.total_cmp(&b.1).then_with(|| b.0.cmp(&a.0)));
+        if let Some((place, _)) = best.copied() {
+            models[..=place].rotate_right(1);
+        }
+    }
+
     fn left(&self, visited: HashMap<Vec<usize>, f64>, fields: &[usize]) -> Explored {
         // Doubt is about the evidence, not about how rare effects are.
         let tempered = |set: &[usize], score: f64| {
@@ -177,6 +197,7 @@ impl Space<'_> {
         models.sort_by(|a, b| b.probability.total_cmp(&a.probability).then_with(|| a.set.cmp(&b.set)));
         let sum: f64 = models.iter().map(|model| model.probability).sum();
         models.iter_mut().for_each(|model| model.probability /= sum);
+        self.put_first(&mut models);
         let scores = models.first().map_or(vec![], |model| self.scores(&model.set, fields));
         let total = log_sum(scores.iter().copied());
         let variants: Vec<f64> =

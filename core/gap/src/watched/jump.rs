@@ -1,15 +1,18 @@
 //! When a thing that was watched was somewhere else at once.
 
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Rotation3, Vector3};
 use plumbline_effects::Measurements;
 
-use crate::seen::nominal_place_m;
+use crate::seen::{nominal_in_left_m, nominal_place_m};
 use crate::statistics::f_tail;
 
 /// Rows before and after a jump.
 const LEAST_ROWS: usize = 3;
 /// Time constants of the courses that are no jump, s.
 const COURSES_S: [f64; 3] = [100.0, 400.0, 1600.0];
+/// What may be found by chance is spent on: the usual course along the line of sight and across it, and any course.
+const USUAL_COURSE: [f64; 3] = [0.6, 0.1, 0.1];
+const ANY_COURSE: [f64; 3] = [0.1, 0.05, 0.05];
 /// A jump counts from this probability by chance on …
 const SIGNIFICANT: f64 = 1e-4;
 /// … and from this size on, in what it leaves.
@@ -49,24 +52,45 @@ fn seen(measurements: &Measurements, rows: &[usize]) -> Vec<(f64, [f64; 3])> {
     rows.iter().filter_map(of_row).collect()
 }
 
-/// Probability that noise alone makes a thing seem to go anywhere in the course of time, beside its jumps;
-/// of three coordinates.
+/// Probability that noise alone makes a thing seem to go anywhere in the course of time, beside its jumps.
+///
+/// Eyes that turn against each other move what they see along the line of sight above all, and as one warm-up
+/// goes: most of what may be found by chance is spent on that one question, the rest on other times and on the
+/// directions across (weighted Bonferroni).
 pub(super) fn course_by_chance(measurements: &Measurements, rows: &[usize], jumps: &[Jump]) -> f64 {
-    let seen = seen(measurements, rows);
+    let seen = along_and_across(measurements, rows);
     let Some((first_s, _)) = seen.first().copied() else { return 1.0 };
     let still = left(&seen, &|t_s| jumped(jumps, t_s));
-    let moving = left(&seen, &|t_s| [jumped(jumps, t_s), grown(t_s - first_s)].concat());
-    let (Some((before, _)), Some((after, _))) = (still, moving) else { return 1.0 };
-    let used = COURSES_S.len() as f64;
-    let free = seen.len() as f64 - used - 1.0 - jumps.len() as f64;
-    if free < 4.0 {
-        return 1.0;
-    }
-    let chance = |c: usize| {
-        let rest = (after[c] / free).max(LEAST_M * LEAST_M);
-        f_tail((before[c] - after[c]) / used / rest, used, free)
+    let by_chance = |constants_s: &[f64]| -> Option<[f64; 3]> {
+        let grown = |t_s: f64| constants_s.iter().map(move |constant_s| share(t_s - first_s, *constant_s));
+        let moving = left(&seen, &|t_s| jumped(jumps, t_s).into_iter().chain(grown(t_s)).collect());
+        let ((before, _), (after, _)) = (still?, moving?);
+        let used = constants_s.len() as f64;
+        let free = seen.len() as f64 - used - 1.0 - jumps.len() as f64;
+        let chance = |c: usize| {
+            let rest = (after[c] / free).max(LEAST_M * LEAST_M);
+            f_tail((before[c] - after[c]) / used / rest, used, free)
+        };
+        (free >= 4.0).then(|| [0, 1, 2].map(chance))
     };
-    (3.0 * (0..3).map(chance).fold(1.0, f64::min)).min(1.0)
+    let mut least = 1.0_f64;
+    for (constants_s, weights) in [(&COURSES_S[1..2], USUAL_COURSE), (&COURSES_S[..], ANY_COURSE)] {
+        let Some(chances) = by_chance(constants_s) else { continue };
+        least = chances.iter().zip(weights).map(|(chance, weight)| chance / weight).fold(least, f64::min);
+    }
+    least
+}
+
+/// Times (s) and places seen from the left eye: along the line of sight to the thing, then across, m.
+fn along_and_across(measurements: &Measurements, rows: &[usize]) -> Vec<(f64, [f64; 3])> {
+    let of_row = |&i: &usize| {
+        let row = &measurements.rows[i];
+        Some((row.t_secs?, nominal_in_left_m(measurements, row)?.coords))
+    };
+    let seen: Vec<(f64, Vector3<f64>)> = rows.iter().filter_map(of_row).collect();
+    let middle: Vector3<f64> = seen.iter().map(|(_, at)| at).sum();
+    let Some(turn) = Rotation3::rotation_between(&middle, &Vector3::x()) else { return vec![] };
+    seen.into_iter().map(|(t_s, at)| (t_s, (turn * at).into())).collect()
 }
 
 /// A constant, and one for each jump.
@@ -77,7 +101,11 @@ fn jumped(jumps: &[Jump], t_s: f64) -> Vec<f64> {
 
 /// What grows with each time constant after so long.
 fn grown(since_s: f64) -> Vec<f64> {
-    COURSES_S.iter().map(|constant_s| 1.0 - (-since_s / constant_s).exp()).collect()
+    COURSES_S.iter().map(|constant_s| share(since_s, *constant_s)).collect()
+}
+
+fn share(since_s: f64, constant_s: f64) -> f64 {
+    1.0 - (-since_s / constant_s).exp()
 }
 
 /// The surest jump beside those that are known.

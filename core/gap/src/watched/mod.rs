@@ -18,7 +18,7 @@ use crate::statistics::median;
 use jump::{Jump, jumps};
 
 /// A thing is watched that was seen at least so many times …
-const LEAST_LOOKS: usize = 8;
+pub(crate) const LEAST_LOOKS: usize = 8;
 /// … over so long, s.
 const LEAST_TIME_S: f64 = 60.0;
 /// It stands still within this, m; the head within this, rad.

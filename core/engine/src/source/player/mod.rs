@@ -1,5 +1,6 @@
 //! Plays a source: asks it for pairs, holds it, steps, winds, and says how it is doing.
 
+use std::path::Path;
 use std::time::Duration;
 
 use plumbline_hardware::{
@@ -7,6 +8,8 @@ use plumbline_hardware::{
     SourceStatus as Presence, StereoSource, open_retrying,
 };
 use plumbline_model::StereoFrame;
+use plumbline_model::robot::default_rig;
+use plumbline_recording::Whose;
 
 use super::command::Control;
 use super::view::{ReplayView, SourceCounters, SourceStatus, SourceView};
@@ -36,6 +39,8 @@ pub enum Polled {
 /// different sources never have the same stamp.
 pub struct Player {
     opener: Opener,
+    /// Of which robot recordings may be.
+    rig: String,
     source: Option<(SourceSpec, Retrying)>,
     playing: bool,
     ended: bool,
@@ -60,6 +65,7 @@ impl Player {
     pub fn with_opener(opener: Opener) -> Self {
         Self {
             opener,
+            rig: default_rig().name.clone(),
             source: None,
             playing: false,
             ended: false,
@@ -189,6 +195,9 @@ impl Player {
 
     /// Opens a source; if that fails the present one stays.
     fn open(&mut self, spec: SourceSpec) -> Result<(), SourceError> {
+        if let SourceSpec::Recording { file, .. } = &spec {
+            self.refuse_another_robots(file)?;
+        }
         let rate = match spec {
             SourceSpec::Folder(_) | SourceSpec::Folders { .. } => {
                 ReplayRate::PairsPerSecond(PHOTOGRAPHS_PER_SECOND)
@@ -209,6 +218,22 @@ impl Player {
         (self.playing, self.ended, self.show_one) = (true, false, false);
         (self.shown, self.stepping_back_to, self.replay) = (None, None, replay);
         Ok(())
+    }
+
+    /// Its places would come out by the eyes and the head of this one. A recording that does not say whose it is,
+    /// is played.
+    fn refuse_another_robots(&self, file: &Path) -> Result<(), SourceError> {
+        let refused = |problem: String| SourceError::Recording { problem };
+        let whose = Whose::read(file).map_err(|error| refused(error.to_string()))?;
+        match whose.rig.filter(|rig| !rig.is_empty() && *rig != self.rig) {
+            None => Ok(()),
+            Some(other) => Err(refused(format!(
+                "{} is a recording of the robot {other}, and this one is {}: places would come out wrong. Play it \
+                 where {other} is set up, or look at it with another program (Foxglove, Rerun)",
+                file.display(),
+                self.rig
+            ))),
+        }
     }
 
     fn deliver(&mut self, mut frame: StereoFrame) -> Polled {

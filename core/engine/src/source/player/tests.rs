@@ -1,3 +1,4 @@
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -5,6 +6,7 @@ use std::time::Instant;
 use image::RgbImage;
 use plumbline_hardware::{Counters, FiniteSource, MemorySource, RetryPolicy, SourceDescription};
 use plumbline_model::Stamp;
+use plumbline_recording::{About, Jpeg, RecordingWriter};
 
 use super::*;
 
@@ -202,4 +204,34 @@ fn a_player_in_place_of_another_counts_on() {
             return;
         }
     }
+}
+
+/// A recording of a pair, by a robot of this name.
+fn recorded(folder: &Path, rig: &str) -> PathBuf {
+    let file = folder.join(format!("of-{rig}.mcap"));
+    let about = About { rig: rig.to_owned(), ..About::default() };
+    let at = jiff::Timestamp::from_second(1_700_000_000).expect("a time");
+    let mut writer = RecordingWriter::create(&file, at, &about).expect("begun");
+    let image = image::RgbImage::from_pixel(64, 48, image::Rgb([90; 3]));
+    let jpeg = Jpeg(plumbline_hardware::encode_jpeg(&image, plumbline_hardware::QUALITY).expect("encoded"));
+    writer.pair(at, 1, [jpeg.clone(), jpeg], None).expect("written");
+    writer.finish().expect("finished");
+    file
+}
+
+#[test]
+fn a_recording_of_another_robot_is_refused_and_what_is_shown_stays() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [own, unknown, other] = ["nico", "", "icub"].map(|rig| recorded(folder.path(), rig));
+    let mut player = Player::default();
+    for file in [&own, &unknown] {
+        let notes = player.control(Control::OpenPaths(vec![file.clone()]));
+        assert!(notes.iter().all(|(level, _)| *level != NoticeLevel::Error), "{notes:?}");
+        assert!(shown(&mut player).is_some(), "{}", file.display());
+    }
+    let notes = player.control(Control::OpenPaths(vec![other]));
+    let said = &notes.last().expect("told").1;
+    assert!(said.contains("of the robot icub") && said.contains("this one is nico"), "{said}");
+    let unknown = SourceSpec::Recording { file: unknown, of_twin: false };
+    assert_eq!(player.view().spec, Some(unknown), "what was shown stays");
 }

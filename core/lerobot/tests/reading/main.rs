@@ -1,60 +1,19 @@
 //! What was exported is read through the published layout: `info.json` says where rows are and what is in them.
 
+mod made;
+mod others;
+
 use std::fs::File;
 use std::path::Path;
 
-use jiff::{SignedDuration, Timestamp};
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::record::{Field, Row};
 use plumbline_lerobot::{ExportError, Options, export};
 use plumbline_model::Unattended;
 use plumbline_model::robot::default_rig;
-use plumbline_recording::{About, Attached, JointReading, Jpeg, RecordingWriter};
 use serde_json::{Value, json};
 
-fn at(seconds: f64) -> Timestamp {
-    let start: Timestamp = "2026-11-21T10:04:00Z".parse().expect("a time");
-    start + SignedDuration::try_from_secs_f64(seconds).expect("a time")
-}
-
-/// A picture of one gray.
-fn jpeg(gray: u8) -> Jpeg {
-    let image = image::RgbImage::from_pixel(64, 48, image::Rgb([gray, gray, gray]));
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    image.write_to(&mut bytes, image::ImageFormat::Jpeg).expect("encoded");
-    Jpeg(bytes.into_inner())
-}
-
-fn joints(angle_rad: f64) -> Vec<JointReading> {
-    let joint = |name: &str, angle_rad| JointReading { name: name.to_owned(), angle_rad, speed_rad_s: None };
-    vec![joint("head_z", angle_rad), joint("head_y", -0.5)]
-}
-
-/// Twenty pairs a second for six seconds; angles from 0.2 s on.
-fn recorded(file: &Path) {
-    let rig = Attached {
-        name: "rig.toml".to_owned(),
-        media_type: "application/toml".to_owned(),
-        bytes: b"name = 1".into(),
-    };
-    let about = About {
-        software: "plumbline test".to_owned(),
-        rig: "nico".to_owned(),
-        of_twin: true,
-        cameras: None,
-        attached: vec![rig],
-    };
-    let mut writer = RecordingWriter::create(file, at(0.0), &about).expect("begun");
-    for number in 0..120 {
-        let time = at(0.05 * f64::from(number));
-        if number >= 4 {
-            writer.joints(time, &joints(0.01 * f64::from(number))).expect("written");
-        }
-        let images = [jpeg((number % 200) as u8), jpeg(250)];
-        writer.pair(time, number as u64, images, None).expect("written");
-    }
-    writer.finish().expect("finished");
-}
+use crate::made::recorded;
 
 fn read(file: &Path) -> Vec<Row> {
     let file = File::open(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));

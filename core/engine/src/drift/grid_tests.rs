@@ -1,0 +1,138 @@
+//! An evaluation whose disk is full: nothing of it is lost, nobody is told without end.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Duration;
+
+use plumbline_effects::RobotModel;
+use plumbline_model::Session;
+use plumbline_model::robot::default_rig;
+
+use super::command::{DriftCommand, GridCommand};
+use super::view::GridRunView;
+use super::work::DriftWork;
+use super::{DriftAround, DriftWorkflow};
+use crate::ground::jobs::JobId;
+use crate::ground::jobs::list::JobList;
+use crate::ground::notice::Notices;
+use crate::ground::stage::Skipped;
+use crate::ground::{Asked, Context, LongWork as _, Moment, Time, Workflow as _, World};
+use crate::robot::view::{Connection, RobotView};
+
+struct Desk {
+    room: DriftWorkflow,
+    around: DriftAround,
+    notices: Notices,
+    jobs: JobList,
+    time: Time,
+    /// How often it was tried to write the evaluation.
+    tries: usize,
+}
+
+impl Desk {
+    fn new(folder: &Path) -> Self {
+        let connection = Connection::Connected { to: "a robot".to_owned(), twin: false };
+        let around = DriftAround {
+            is_live: true,
+            opened: 1,
+            model: Arc::new(RobotModel::nominal(default_rig())),
+            own_eyes: true,
+            robot: Arc::new(RobotView { connection, ..RobotView::default() }),
+            eyes_on_s: Some(60.0),
+            clock_pace: 1.0,
+            world: Some(World::Robot),
+            twin: None,
+            found: None,
+        };
+        Self {
+            room: DriftWorkflow::new(folder),
+            around,
+            notices: Notices::default(),
+            jobs: JobList::default(),
+            time: Time::now(),
+            tries: 0,
+        }
+    }
+
+    /// Does something, and all the work that it asks for.
+    fn with(
+        &mut self,
+        act: impl FnOnce(&mut DriftWorkflow, &DriftAround, &mut super::workflow::Context<'_>),
+    ) {
+        let mut asked = Vec::new();
+        let Self { room, around, notices, jobs, time, .. } = self;
+        act(room, around, &mut Context::new(notices, jobs, *time, &mut asked));
+        for asked in asked {
+            if let Asked::Start(id, work) = asked {
+                self.run(id, work);
+            }
+        }
+    }
+
+    fn run(&mut self, id: JobId, work: DriftWork) {
+        self.tries += usize::from(matches!(work, DriftWork::KeepGrid { .. }));
+        match work.run(&plumbline_model::Unattended) {
+            Ok(result) => self.with(|room, around, context| room.work_done(id, result, around, context)),
+            Err(error) => self
+                .with(|room, around, context| room.work_ended(id, Some(&error.to_string()), around, context)),
+        }
+    }
+
+    fn ask(&mut self, command: GridCommand) {
+        self.with(|room, around, context| room.apply(DriftCommand::Grid(command), around, context));
+    }
+
+    /// Pairs come for so long, twenty a second.
+    fn passes(&mut self, time: Duration) {
+        let image = Arc::new(image::RgbImage::new(4, 4));
+        for _ in 0..time.as_millis() / 50 {
+            self.time = self.time.after(Duration::from_millis(50));
+            let frame = plumbline_model::StereoFrame {
+                stamp: plumbline_model::Stamp { seq: 1, captured_at: self.time.instant },
+                left: image.clone(),
+                right: image.clone(),
+                time_difference_s: None,
+                name: None,
+            };
+            self.with(|room, around, context| room.saw(&frame, around, context));
+        }
+    }
+
+    fn run_view(&mut self) -> GridRunView {
+        let moment = Moment { now: self.time.instant, skipped: Skipped::default() };
+        self.room.view(&self.around, &moment).grid.run.clone().expect("begun")
+    }
+}
+
+#[test]
+fn a_full_disk_loses_nothing_of_an_evaluation_and_is_told_now_and_then() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A file lies where the folder of sessions would be, as good as a full disk.
+    let sessions = World::Robot.folder(folder.path()).join("sessions");
+    std::fs::create_dir_all(sessions.parent().expect("in a folder")).expect("made");
+    std::fs::write(&sessions, "").expect("written");
+    let mut desk = Desk::new(folder.path());
+    desk.ask(GridCommand::Begin { object: "Tomato".to_owned() });
+    desk.ask(GridCommand::LeaveOut);
+    assert!(desk.run_view().unkept.is_some_and(|why| why.contains("sessions")), "it says where");
+    assert_eq!((desk.tries, desk.run_view().session), (1, None));
+    desk.passes(Duration::from_secs(40));
+    assert!((2..=3).contains(&desk.tries), "{} tries in 40 s", desk.tries);
+    let tries = desk.tries;
+    desk.ask(GridCommand::LeaveOut);
+    assert_eq!(desk.tries, tries + 1, "with the next place it is tried at once");
+    desk.ask(GridCommand::End);
+    desk.ask(GridCommand::Begin { object: "Tomato".to_owned() });
+    let told = desk.notices.view().last().map(|notice| notice.text.clone()).expect("told");
+    assert!(told.contains("not on disk yet"), "the next one would forget it: {told}");
+    // Somebody makes room.
+    std::fs::remove_file(&sessions).expect("removed");
+    desk.passes(Duration::from_secs(20));
+    let view = desk.run_view();
+    assert_eq!(view.unkept, None);
+    let session = Session::read(&view.session.expect("on disk")).expect("a session");
+    assert_eq!(session.localizations.expect("a table").row_count(), 2, "both places");
+    let tries = desk.tries;
+    desk.passes(Duration::from_secs(40));
+    assert_eq!(desk.tries, tries, "what is on disk is not written again");
+}
