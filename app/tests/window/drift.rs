@@ -157,6 +157,7 @@ fn run(doing: GridDoing, places_by_itself: bool) -> GridView {
         doing,
         measured: 11,
         session: None,
+        unkept: None,
     };
     GridView { run: Some(run), unable: Some("one is under way"), ..evaluated() }
 }
