@@ -115,7 +115,7 @@ fn a_tomato_is_lifted_and_the_record_says_how() {
 
 #[test]
 fn the_hand_closes_where_the_looks_together_want_it() {
-    let mut bench = bench("lab");
+    let mut bench = bench("perfect");
     let (record, judged) = bench.attempt(&task(Method::M5, Toy::Tomato, [0.3, -0.1])).expect("done");
     assert!(judged.lifted, "{judged:?}");
     let arm = bench.grasper().planner(Method::M5).arm();
