@@ -36,8 +36,12 @@ fn lifted_m(toy: Toy, at_m: [f64; 2], off_m: [f64; 3]) -> Result<(f64, f64, f64)
     };
     let before = place(&mut twin);
     let half_m = 0.027;
-    let standing =
-        Standing { xy_m: [before.x, before.y], support_m: before.z - half_m, height_m: 2.0 * half_m, lower_m: 0.0 };
+    let standing = Standing {
+        xy_m: [before.x, before.y],
+        support_m: before.z - half_m,
+        height_m: 2.0 * half_m,
+        lower_m: 0.0,
+    };
     let planner = planner(&rig);
     let from = twin.commanded().clone();
     let rough = planner.plan(&standing, &Vector3::zeros(), &from).map_err(|error| error.to_string())?;
@@ -110,7 +114,12 @@ fn step_by_step() {
             twin.truth_for_judging().robot_from_link[link.0].expect("there").translation.vector
         };
         let before = place(&mut twin);
-        let standing = Standing { xy_m: [before.x, before.y], support_m: before.z - 0.027, height_m: 0.054, lower_m: 0.0 };
+        let standing = Standing {
+            xy_m: [before.x, before.y],
+            support_m: before.z - 0.027,
+            height_m: 0.054,
+            lower_m: 0.0,
+        };
         let planner = planner(&rig);
         let from = twin.commanded().clone();
         let Ok(plan) = planner.plan(&standing, &Vector3::zeros(), &from) else { continue };

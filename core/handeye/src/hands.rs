@@ -98,7 +98,8 @@ impl Looks {
             context.checkpoint()?;
             looks(number);
             let xy_m = if planner.arm().is_left() { [xy_m[0], -xy_m[1]] } else { xy_m };
-            let standing = Standing { xy_m, support_m: model.rig().table.height_m, height_m: HEIGHT_M, lower_m: 0.0 };
+            let standing =
+                Standing { xy_m, support_m: model.rig().table.height_m, height_m: HEIGHT_M, lower_m: 0.0 };
             let stands = body.commanded()?;
             let Ok(plan) = planner.plan(&standing, &Vector3::zeros(), &stands) else { continue };
             match along(body, &plan.approach, stands) {

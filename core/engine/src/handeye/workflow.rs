@@ -89,7 +89,8 @@ impl HandEyeWorkflow {
 
     /// Compares all values once for each model, not at every picture.
     fn ask(&mut self, added: Option<&Arc<RigModel>>) {
-        let is_new = |(asked, _): &(Arc<RigModel>, bool)| added.is_none_or(|model| !Arc::ptr_eq(asked, model));
+        let is_new =
+            |(asked, _): &(Arc<RigModel>, bool)| added.is_none_or(|model| !Arc::ptr_eq(asked, model));
         if self.asked.as_ref().is_none_or(is_new) {
             let (kept, added) = (self.kept.as_ref(), added.cloned());
             self.asked = kept.zip(added).map(|((kept, _), model)| {

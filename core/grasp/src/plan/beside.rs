@@ -47,7 +47,8 @@ mod tests {
         let rig = Arc::new(Rig::built_in("nico").expect("valid"));
         let arm = PalmArm::new(&RobotModel::nominal(rig.clone()), "right").expect("an arm");
         let mut planner = GraspPlanner::new(arm);
-        let standing = Standing { xy_m: [0.3, -0.1], support_m: rig.table.height_m, height_m: 0.054, lower_m: 0.0 };
+        let standing =
+            Standing { xy_m: [0.3, -0.1], support_m: rig.table.height_m, height_m: 0.054, lower_m: 0.0 };
         let plan =
             |planner: &GraspPlanner| planner.plan(&standing, &Vector3::zeros(), &rig.home()).expect("a plan");
         let usual = plan(&planner);

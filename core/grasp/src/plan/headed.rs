@@ -107,7 +107,8 @@ mod tests {
             GraspPlanner::new(PalmArm::new(&RobotModel::nominal(rig.clone()), "right").expect("an arm"));
         let home = rig.home();
         for [x_m, y_m] in [[0.3, -0.1], [0.4, -0.2], [0.3, 0.2]] {
-            let standing = Standing { xy_m: [x_m, y_m], support_m: rig.table.height_m, height_m: 0.054, lower_m: 0.0 };
+            let standing =
+                Standing { xy_m: [x_m, y_m], support_m: rig.table.height_m, height_m: 0.054, lower_m: 0.0 };
             let heading_rad = heading_rad(x_m, y_m);
             for centered in [false, true] {
                 let headed = Headed { heading_rad, shift_m: Vector3::new(0.0, 0.0, 0.01), centered };

@@ -205,7 +205,12 @@ fn standing(looker: &mut Looker, sight: &Sight, knowledge: &Knowledge) -> Result
     let tomato = seen.into_iter().find(|seen| seen.class == thing.class).ok_or("no tomato is seen")?;
     let point_m = tomato.place?.point_m;
     let xy_m = [point_m[0], point_m[1]];
-    Ok(Standing { xy_m, support_m: knowledge.support_m(xy_m[0], xy_m[1]), height_m: thing.height_m, lower_m: 0.0 })
+    Ok(Standing {
+        xy_m,
+        support_m: knowledge.support_m(xy_m[0], xy_m[1]),
+        height_m: thing.height_m,
+        lower_m: 0.0,
+    })
 }
 
 /// The posture in which the palm is where it closes, for the first heading with which it gets there.

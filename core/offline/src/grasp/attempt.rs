@@ -138,8 +138,13 @@ impl Bench {
         let judge = Rc::new(RefCell::new(Judge::new(body.twin(), task.toy, &self.rig)));
         let step = Rc::new(RefCell::new(Step::Ready));
         let meddler = RefCell::new(meddler);
-        let mut watched =
-            Watched { body: &mut *body, judge: judge.clone(), step: step.clone(), meddler: &meddler, last: Step::Ready };
+        let mut watched = Watched {
+            body: &mut *body,
+            judge: judge.clone(),
+            step: step.clone(),
+            meddler: &meddler,
+            last: Step::Ready,
+        };
         let mut watch = Steps { step, meddler: &meddler };
         let record = self.grasper.attempt(&mut watched, &task.order, jiff::Timestamp::UNIX_EPOCH, &mut watch);
         let judged = judge.borrow().judge(body.twin(), &record);
