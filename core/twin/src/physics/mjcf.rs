@@ -57,9 +57,11 @@ impl Writer<'_> {
     fn head(&mut self) {
         let _ = write!(
             self.text,
+            // Soft contacts let a pressed thing creep, about 1.5 mm per second out of a closed hand, which dry
+            // friction does not; the solver's last iterations take that slip away (MuJoCo, "noslip").
             r#"<mujoco model="{}">
   <compiler angle="radian" autolimits="true" balanceinertia="true" inertiafromgeom="false" boundmass="0.001" boundinertia="1e-7"/>
-  <option timestep="{STEP_S}" integrator="implicitfast" cone="elliptic" impratio="20" iterations="30" sleep_tolerance="0.004"><flag sleep="enable"/></option>
+  <option timestep="{STEP_S}" integrator="implicitfast" cone="elliptic" impratio="20" iterations="30" noslip_iterations="5" sleep_tolerance="0.004"><flag sleep="enable"/></option>
   <size memory="16M"/>
   <default>
     <geom condim="4" friction="0.8 0.005 0.0005"/>
