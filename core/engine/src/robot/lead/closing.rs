@@ -14,10 +14,7 @@ use crate::robot::worker::Worker;
 /// Fingers bend this fast, rad/s.
 const SPEED_RAD_S: f64 = 1.2;
 /// They press with this share of their stall torque: far less than what shuts a servo down for an
-/// overload, however long it lasts, and about 2 N at a fingertip. More is no better: a round thing between
-/// fingers and palm creeps out of the hand in proportion to what presses it. Tomatoes of the lab's twin
-/// that were still held after the attempt: none of six with 0.7, two of three with 0.3, all six with 0.2,
-/// all three with 0.15.
+/// overload, however long it lasts, and about 2 N at a fingertip.
 const FORCE: f64 = 0.2;
 /// Where a servo says that it may use no more than this, it has taken its limit.
 const LIMITED: f64 = FORCE + 0.01;
