@@ -19,7 +19,10 @@ const MOST_LEFT: f64 = 0.25;
 /// What a law leaves is the same for many looks: however many there are, they count as this many.
 const MOST_COUNT: f64 = 6.0;
 /// Laws that are this much worse than the best (of a sum of squares in standard deviations) are possible still.
-const POSSIBLE: f64 = 1.5;
+const POSSIBLE: f64 = 3.0;
+/// No law of two constants is followed nearer than this by an error, m: where looks scatter less, laws are as uncertain
+/// as if they scattered so much, for what a real housing does besides them is the same for all looks.
+const BESIDE_LAWS_M: f64 = 1.5e-4;
 /// A shorter time to go is not told from none, s.
 const SHORT_S: f64 = 30.0;
 
@@ -77,6 +80,7 @@ pub fn fit_warm_up(seen: &[(f64, [Vector3<f64>; 3])]) -> Option<Approach> {
     }
     let total = about_mean(seen, |_| 0.0).0;
     let count = (seen.len() as f64).min(MOST_COUNT);
+    let beside = 3.0 * seen.len() as f64 * BESIDE_LAWS_M * BESIDE_LAWS_M;
     let mut tried: Vec<(f64, f64, WarmUp)> = Vec::with_capacity(TRIALS * LATE_S.len());
     for k in 0..TRIALS {
         let share = k as f64 / (TRIALS - 1) as f64;
@@ -84,7 +88,8 @@ pub fn fit_warm_up(seen: &[(f64, [Vector3<f64>; 3])]) -> Option<Approach> {
         let off = ((tau_s / USUAL_S).ln() / USUAL_SPREAD).powi(2);
         for late_s in LATE_S.into_iter().filter(|late_s| *late_s < 0.9 * tau_s) {
             let (left, slopes) = about_mean(seen, |t_s| WarmUp::share(t_s, tau_s, late_s));
-            let loss = count * left.max(1e-12 * total).ln() + off;
+            let left = left + beside;
+            let loss = count * left.ln() + off;
             let rest = 1.0 - WarmUp::share(last.0, tau_s, late_s);
             let to_go_m = slopes.iter().map(|slope| slope.norm()).sum::<f64>() / 3.0 * rest;
             tried.push((loss, left, WarmUp { time_constant_s: tau_s, to_go_m, late_s }));
