@@ -9,87 +9,16 @@ use plumbline_twin::Scenario;
 
 use super::*;
 
-/// Draws the errors of a robot that nobody has looked at, evenly from stated ranges.
-struct Dice(u64);
-
-impl Dice {
-    /// Evenly in 0 to 1 (Steele, Lea and Flood 2014: SplitMix).
-    fn share(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn within(&mut self, most: f64) -> f64 {
-        most * (2.0 * self.share() - 1.0)
-    }
-
-    fn three(&mut self, most: f64) -> String {
-        let [x, y, z] = [0; 3].map(|_| self.within(most));
-        format!("[{x:.6}, {y:.6}, {z:.6}]")
-    }
-}
-
-/// A scenario file. Ranges: encoder zeros ±0.03 rad (head ±0.015), slack to 0.008 rad, give to
-/// 0.008 rad/Nm, axes ±0.01 rad, joints ±2 mm, table ±8 mm and ±0.01 rad, screen on it ±10 mm, up to 3 mm higher, ±0.02 rad and
-/// ±1 %, eyes ±6 mm and ±0.03 rad, right eye ±0.01 rad, warming up ±0.3 mrad/K, fingertip ±4 mm.
-fn drawn(seed: u64) -> String {
-    let mut dice = Dice(seed);
-    let mut text = format!(
-        "format = 1\nname = \"drawn-{seed}\"\ntitle = \"Drawn {seed}\"\nabout = \"Errors drawn by chance.\"\n"
-    );
-    for joint in ["r_shoulder_z", "r_shoulder_y", "r_arm_x", "r_elbow_y", "r_wrist_z", "r_wrist_x"] {
-        text.push_str(&format!(
-            "\n[joint.{joint}]\nencoder_zero_rad = {:.6}\nslack_rad = {:.6}\ncompliance_rad_per_nm = {:.6}\n\
-             axis_tilt_rad = {}\norigin_shift_m = {}\n",
-            dice.within(0.03),
-            0.008 * dice.share(),
-            0.008 * dice.share(),
-            dice.three(0.01),
-            dice.three(0.002),
-        ));
-    }
-    for joint in ["head_z", "head_y"] {
-        let zero_rad = dice.within(0.015);
-        text.push_str(&format!("\n[joint.{joint}]\nencoder_zero_rad = {zero_rad:.6}\n"));
-    }
-    let (table_rad, table_m) = (dice.three(0.01), dice.three(0.008));
-    text.push_str(&format!("\n[table]\nrotation_rad = {table_rad}\ntranslation_m = {table_m}\n"));
-    // It lies on the table: it may be turned and shifted there, and stand a little higher, not deeper.
-    let turn = format!("[0.0, 0.0, {:.6}]", dice.within(0.02));
-    let shift = format!("[{:.6}, {:.6}, {:.6}]", dice.within(0.01), dice.within(0.01), 0.003 * dice.share());
-    let scale = [0; 2].map(|_| 1.0 + dice.within(0.01));
-    text.push_str(&format!(
-        "\n[touchscreen]\nrotation_rad = {turn}\ntranslation_m = {shift}\nscale = [{:.6}, {:.6}]\n",
-        scale[0], scale[1]
-    ));
-    let (turn, shift, right) = (dice.three(0.03), dice.three(0.006), dice.three(0.01));
-    text.push_str(&format!(
-        "\n[eyes]\nrotation_rad = {turn}\ntranslation_m = {shift}\nright_rotation_rad = {right}\n"
-    ));
-    let (left, right) = (dice.three(3e-4), dice.three(3e-4));
-    text.push_str(&format!("\n[eyes.heat]\nleft_rad_per_k = {left}\nright_rad_per_k = {right}\n"));
-    text.push_str(&format!("\n[fingertip.r_indexfinger]\noffset_m = {}\n", dice.three(0.004)));
-    text
-}
-
 fn drawn_file(seed: u64) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/scenarios/drawn-{seed}.toml"))
 }
 
-/// `PLUMBLINE_DRAW=1 cargo test -p plumbline-offline scenarios_that_were_drawn` writes the files anew.
+/// What was measured with these files is of the robots that are drawn by their names today.
 #[test]
-fn scenarios_that_were_drawn_are_on_disk_as_they_were_drawn() {
+fn robots_that_are_drawn_by_name_are_those_on_disk() {
     for seed in [1, 2] {
-        let (file, text) = (drawn_file(seed), drawn(seed));
-        if std::env::var_os("PLUMBLINE_DRAW").is_some() {
-            plumbline_model::files::write(&file, &text).expect("writable");
-        }
-        let kept = files::read_text(&file, Size::SHORT).expect("in the checkout");
-        assert_eq!(kept, text);
-        Scenario::from_toml("drawn", &text).expect("a scenario");
+        let kept = files::read_text(&drawn_file(seed), Size::SHORT).expect("in the checkout");
+        assert_eq!(plumbline_twin::scenario::drawn::named(&format!("drawn-{seed}")), Some(kept));
     }
 }
 

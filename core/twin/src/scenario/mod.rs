@@ -4,6 +4,8 @@
 //! These values become bodies, joints, springs, stops and lens places of the physics. They stay
 //! out of everything that calibrates, searches, trains or grasps.
 
+pub mod drawn;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -16,8 +18,10 @@ use crate::error::TwinError;
 const FORMAT: u32 = 1;
 
 /// Scenarios that come with the program: name and text.
-const BUILT_IN: &[(&str, &str)] =
-    &[("lab", include_str!("../scenarios/lab.toml")), ("perfect", include_str!("../scenarios/perfect.toml"))];
+const BUILT_IN: &[(&str, &str)] = &[
+    ("lab", include_str!("../../scenarios/lab.toml")),
+    ("perfect", include_str!("../../scenarios/perfect.toml")),
+];
 
 /// Hidden reality of a twin. Vectors are x, y, z; rotations are rotation vectors (axis times
 /// angle); meters, radians.
@@ -218,12 +222,15 @@ impl Scenario {
         BUILT_IN.iter().map(|(name, _)| *name)
     }
 
-    /// A scenario that comes with the program.
+    /// A scenario that comes with the program, or of a robot [that is drawn by chance](drawn).
     ///
     /// # Errors
     /// When there is none of that name.
     pub fn built_in(name: &str) -> Result<Self, TwinError> {
-        let known = || Self::built_in_names().collect::<Vec<_>>().join(", ");
+        if let Some(text) = drawn::named(name) {
+            return Self::from_toml(name, &text);
+        }
+        let known = || Self::built_in_names().chain(drawn::NAMES).collect::<Vec<_>>().join(", ");
         let (_, text) = BUILT_IN
             .iter()
             .find(|(known, _)| *known == name)
@@ -237,7 +244,7 @@ impl Scenario {
     /// When there is neither, or the file is no scenario.
     pub fn named_or_file(text: &str) -> Result<Self, TwinError> {
         let is_file = text.ends_with(".toml") || Path::new(text).exists();
-        if Self::built_in_names().any(|name| name == text) || !is_file {
+        if Self::built_in_names().any(|name| name == text) || drawn::named(text).is_some() || !is_file {
             return Self::built_in(text);
         }
         Self::from_toml(text, &files::read_text(Path::new(text), Size::SHORT)?)
