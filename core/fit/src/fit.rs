@@ -23,8 +23,11 @@ const FRAME: usize = 16;
 /// Where those of neck and eyes begin, and those of how hands are seen.
 const NECK: usize = 6;
 const BESIDE: usize = 13;
-/// Scale of the robust loss of hands, standard deviations: one may be mistaken for its shadow.
+/// Scale of the robust loss of hands, standard deviations: one may be mistaken for its shadow. Of touches it counts
+/// in what they are off by typically, if that is more: a screen may have been met with a knuckle.
 const ROBUST: f64 = 2.5;
+/// Median of what is off, in standard deviations per axis, of three axes.
+const MEDIAN_OF_THREE: f64 = 0.888;
 
 /// What is known besides the touches.
 #[derive(Clone, Copy)]
@@ -81,7 +84,9 @@ pub fn pose(screen: &Touchscreen) -> Isometry3<f64> {
 }
 
 /// Rounds of linearizing.
-const ROUNDS: usize = 6;
+const ROUNDS: usize = 10;
+/// In the first of them every touch counts in full: an arm as described may be far off everywhere.
+const IN_FULL: usize = 2;
 
 /// Fits effects to rows of one session of touches, and to what the eyes saw. `None` when the rows cannot be
 /// predicted.
@@ -109,10 +114,12 @@ pub fn fit(
     // Where the fit stands, in the units of the tangents.
     let mut at = DVector::<f64>::zeros(count);
     let mut inverse = DMatrix::identity(count, count);
-    for _ in 0..ROUNDS {
+    for round in 0..ROUNDS {
         let mut normal = prior.clone();
         let mut right = &prior * (&usual - &at);
-        for row in rows {
+        let counts =
+            if round < IN_FULL { vec![1.0; rows.len()] } else { counts(measurements, rows, &assumed)? };
+        for (row, counts) in rows.iter().zip(counts) {
             let tangents = measurements.tangents(row, &assumed, effects)?;
             for (k, noise_m) in NOISE_M.into_iter().enumerate() {
                 let slope = DVector::from_fn(count, |i, _| match i {
@@ -120,7 +127,7 @@ pub fn fit(
                     NECK..FRAME => 0.0,
                     _ => tangents.effects[(k, i - FRAME)],
                 });
-                let weight = noise_m.powi(-2);
+                let weight = counts * noise_m.powi(-2);
                 normal += &slope * slope.transpose() * weight;
                 right += slope * ((row.measured[k] - tangents.predicted[k]) * weight);
             }
@@ -157,7 +164,7 @@ pub fn fit(
                 k += 1;
             }
         }
-        if change.amax() < 1e-7 {
+        if round >= IN_FULL && change.amax() < 1e-7 {
             break;
         }
     }
@@ -168,6 +175,25 @@ pub fn fit(
     let eyes = std::array::from_fn(|k| at[NECK + k]);
     let beside_m = Vector3::from_fn(|k, _| at[BESIDE + k]);
     Some(Fit { assumed, covariance, neck_rad, eyes, beside_m })
+}
+
+/// How much each touch counts, 0–1: the farther off beside the others, the less.
+fn counts(measurements: &Measurements, rows: &[&Observation], assumed: &Assumed) -> Option<Vec<f64>> {
+    let off = |row: &&Observation| {
+        let predicted = measurements.predict(row, assumed)?;
+        let squares = NOISE_M.iter().enumerate().map(|(k, m)| ((row.measured[k] - predicted[k]) / m).powi(2));
+        Some((squares.sum::<f64>() / NOISE_M.len() as f64).sqrt())
+    };
+    let off: Vec<f64> = rows.iter().map(off).collect::<Option<_>>()?;
+    let typical = (median(&off) / MEDIAN_OF_THREE).max(1.0);
+    Some(off.iter().map(|off| 1.0 / (1.0 + (off / (ROBUST * typical)).powi(2))).collect())
+}
+
+/// The middle one of values, the upper one of two; 0 of none.
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or_default()
 }
 
 /// What is known of the unknowns before anything is measured: the inverse of their covariance, effects in
@@ -220,21 +246,25 @@ fn tie(
     (slopes, off(eyes))
 }
 
+/// A touch that was held out counts as off by no more than so many times the middle one.
+const FARTHEST_TOUCH: f64 = 3.0;
+
 /// Error on rows that were not fitted, each group of repeats held out once: rms of the distance along
-/// the glass and of the height together, m.
+/// the glass and of the height together, m. What a few touches are off by beside the others does not decide.
 pub fn held_out_m(measurements: &Measurements, effects: &[Effect], known: &Known<'_>) -> Option<f64> {
-    let mut squares = 0.0;
+    let mut off_m = vec![];
     for cell in 0..measurements.cell_count() {
         let (back, used): (Vec<&Observation>, Vec<&Observation>) =
             measurements.rows.iter().partition(|row| row.cell == cell);
         let fitted = fit(measurements, &used, effects, known)?;
         for row in back {
             let predicted = measurements.predict(row, &fitted.assumed)?;
-            squares += (0..3).map(|k| (row.measured[k] - predicted[k]).powi(2)).sum::<f64>();
+            off_m.push((0..3).map(|k| (row.measured[k] - predicted[k]).powi(2)).sum::<f64>().sqrt());
         }
     }
-    let rows = measurements.rows.len();
-    (rows > 0).then(|| (squares / rows as f64).sqrt())
+    let most_m = FARTHEST_TOUCH * median(&off_m);
+    let squares: f64 = off_m.iter().map(|m| m.min(most_m).powi(2)).sum();
+    (!off_m.is_empty()).then(|| (squares / off_m.len() as f64).sqrt())
 }
 
 /// Hands that were left out are looked at in so many parts, each left out once.

@@ -4,7 +4,7 @@
 
 mod arm;
 pub mod attempt;
-mod body;
+pub mod body;
 pub mod hand;
 mod hands;
 mod knowledge;

@@ -6,20 +6,35 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use plumbline_effects::RobotModel;
+use plumbline_grasp::body::{GRIP_RAD_S, grip_force};
 use plumbline_grasp::plan::{GraspPlanner, Standing};
 use plumbline_grasp::{PLACES_M, PalmArm};
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_twin::{Lockstep, Scenario, Toy};
 
+/// What is still in the hand after this long is held, s.
+const HOLDS_S: f64 = 10.0;
+
 fn planner(rig: &Arc<Rig>) -> GraspPlanner {
     GraspPlanner::new(PalmArm::new(&RobotModel::nominal(rig.clone()), "right").expect("an arm"))
 }
 
-/// How far (m) a toy was lifted by a hand that is sent so much beside it (along the fingers, across, up).
+/// A robot that is exactly as described, with toys of this friction and mass.
+fn robot() -> Scenario {
+    let of = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<f64>().ok()).unwrap_or(1.0);
+    let (friction, mass, size) = (of("PLUMBLINE_FRICTION"), of("PLUMBLINE_MASS"), of("PLUMBLINE_SIZE"));
+    let text = format!(
+        "format = 1\nname = \"toys\"\ntitle = \"Toys\"\nabout = \"Other toys.\"\n[contact]\n\
+         toy_friction = {friction}\ntoy_mass = {mass}\ntoy_size = {size}\n"
+    );
+    Scenario::from_toml("toys", &text).expect("valid")
+}
+
+/// How far (m) a toy is up after it was held for ten seconds, by a hand that is sent so much beside it (along the
+/// fingers, across, up), and presses as a grip does.
 fn lifted_m(toy: Toy, at_m: [f64; 2], off_m: [f64; 3]) -> Result<(f64, f64, f64), String> {
     let rig = Arc::new(Rig::built_in("nico").expect("valid"));
-    let mut twin =
-        Lockstep::new(rig.clone(), &Scenario::built_in("perfect").expect("valid"), 1).expect("a twin");
+    let mut twin = Lockstep::new(rig.clone(), &robot(), 1).expect("a twin");
     Toy::ALL.iter().filter(|other| **other != toy).for_each(|other| twin.remove_toy(*other));
     twin.place_toy(toy, at_m[0], at_m[1]).map_err(|error| error.to_string())?;
     twin.wait(1.0);
@@ -56,13 +71,16 @@ fn lifted_m(toy: Toy, at_m: [f64; 2], off_m: [f64; 3]) -> Result<(f64, f64, f64)
     let close = rig.pose("close-hand").expect("a pose").applied_to(&closing);
     let joint = |name: &str| rig.description.find_joint(name).expect("a joint");
     let thumb = [joint("r_thumb_x"), joint("r_thumb_z")];
-    twin.follow(&[closing.with(&thumb, &close.of(&thumb))], 2.0);
-    twin.follow(std::slice::from_ref(&close), 2.5);
+    for finger in rig.arms.iter().flat_map(|arm| arm.hand.iter().copied()) {
+        twin.limit(finger, grip_force(&rig, finger));
+    }
+    twin.follow(&[closing.with(&thumb, &close.of(&thumb))], GRIP_RAD_S);
+    twin.follow(std::slice::from_ref(&close), GRIP_RAD_S);
     twin.wait(0.3);
     let up: Vec<Posture> = planner.lift(&plan, &close, GraspPlanner::LIFT_M);
     twin.follow(&up, 0.4);
-    twin.wait(0.5);
     let seconds = twin.now_s() - began_s;
+    twin.wait(HOLDS_S);
     Ok((place(&mut twin).z - before.z, plan.level, seconds))
 }
 

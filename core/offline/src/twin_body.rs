@@ -2,14 +2,20 @@
 
 use std::sync::Arc;
 
+use plumbline_grasp::body::{GRIP_RAD_S, closes, grip_force};
 use plumbline_grasp::{Body, Halt, ServoState, Sight};
-use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::robot::{JointIndex, Posture, Rig};
 use plumbline_twin::{Lockstep, Toy};
+
+/// Joints that turn by less stay, rad.
+const SAME_RAD: f64 = 1e-9;
 
 /// The twin, and what it lacks to be told from a robot.
 pub(crate) struct TwinBody {
     twin: Lockstep,
     pairs: u64,
+    /// Joints of hands.
+    hands: Vec<JointIndex>,
 }
 
 impl TwinBody {
@@ -18,13 +24,18 @@ impl TwinBody {
         Toy::ALL.into_iter().filter(|other| *other != toy).for_each(|other| twin.remove_toy(other));
         twin.place_toy(toy, at_m[0], at_m[1])?;
         twin.wait(1.0);
-        Ok(Self { twin, pairs: 0 })
+        Ok(Self::of(twin))
     }
 
     /// The twin stands before an empty table.
     pub fn cleared(mut twin: Lockstep) -> Self {
         Toy::ALL.into_iter().for_each(|toy| twin.remove_toy(toy));
-        Self { twin, pairs: 0 }
+        Self::of(twin)
+    }
+
+    fn of(twin: Lockstep) -> Self {
+        let hands = twin.rig().arms.iter().flat_map(|arm| arm.hand.iter().copied()).collect();
+        Self { twin, pairs: 0, hands }
     }
 
     /// What only a twin can, and for who judges.
@@ -62,7 +73,21 @@ impl Body for TwinBody {
         Ok(self.twin.commanded().clone())
     }
 
+    /// As on the bus: fingers that close press with no more than a grip does, until they are moved otherwise.
     fn follow(&mut self, way: &[Posture], speed_rad_s: f64) -> Result<(), Halt> {
+        let from = self.twin.commanded().clone();
+        let goals: Vec<(JointIndex, f64)> = way.last().map_or_else(Vec::new, |end| {
+            let turn = |joint: &JointIndex| (end[*joint] - from[*joint]).abs() > SAME_RAD;
+            let servos = self.rig().servos.iter().map(|servo| servo.joint);
+            servos.filter(turn).map(|joint| (joint, end[joint])).collect()
+        });
+        let grips = closes(&self.hands, &from, &goals);
+        let of_hands = goals.iter().map(|(joint, _)| *joint).filter(|joint| self.hands.contains(joint));
+        for joint in of_hands.collect::<Vec<_>>() {
+            let force = if grips { grip_force(self.rig(), joint) } else { 1.0 };
+            self.twin.limit(joint, force);
+        }
+        let speed_rad_s = if grips { speed_rad_s.min(GRIP_RAD_S) } else { speed_rad_s };
         self.twin.follow(way, speed_rad_s);
         Ok(())
     }

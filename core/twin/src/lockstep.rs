@@ -143,6 +143,13 @@ impl Lockstep {
         touched
     }
 
+    /// The servo of a joint may use no more than this share of its torque from now on, 0–1.
+    pub fn limit(&mut self, joint: JointIndex, torque: f64) {
+        if let Some(servo) = self.rig().servos.iter().position(|servo| servo.joint == joint) {
+            self.world.limit(servo, torque);
+        }
+    }
+
     /// Time passes while everything holds.
     pub fn wait(&mut self, duration_s: f64) {
         for _ in 0..(duration_s / World::STEP_S).round() as usize {

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use plumbline_grasp::body::closes;
 use plumbline_grasp::{Body, Halt, ServoState, Sight};
 use plumbline_hardware::joints::JointState;
 use plumbline_model::JobContext;
@@ -184,14 +185,6 @@ impl<'a> LedBody<'a> {
         }
         Ok(())
     }
-
-    /// Fingers alone, each farther bent than it is: they close.
-    fn closes(&self, from: &Posture, goals: &[(JointIndex, f64)]) -> bool {
-        !goals.is_empty()
-            && goals
-                .iter()
-                .all(|(joint, to_rad)| self.hands.contains(joint) && to_rad.abs() > from[*joint].abs())
-    }
 }
 
 impl Body for LedBody<'_> {
@@ -233,7 +226,7 @@ impl Body for LedBody<'_> {
             return Ok(());
         }
         self.acts(&goals);
-        if self.closes(&from, &goals) {
+        if closes(&self.hands, &from, &goals) {
             self.let_touch(true)?;
             self.carry_out(LeadOrder::Close { goals: goals.clone() })?;
             self.given_way.retain(|(joint, _)| goals.iter().all(|(other, _)| other != joint));

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use plumbline_model::robot::{JointIndex, Posture};
 
 use super::GraspPlanner;
+use crate::body::is_thumb;
 
 /// Fingers and thumb bend this far around nothing, rad.
 const CLOSED_RAD: f64 = 1.8;
@@ -56,7 +57,7 @@ impl GraspPlanner {
     }
 
     fn is_thumb(&self, joint: JointIndex) -> bool {
-        self.arm.rig().description.joint(joint).name.contains("thumb")
+        is_thumb(self.arm.rig(), joint)
     }
 
     /// Bent inward, as far as the fingers of the pose "close-hand" are.

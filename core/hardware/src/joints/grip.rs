@@ -34,12 +34,21 @@ const STANDS_RAD_S: f64 = 0.1;
 /// Fingers that close and go on pressing, until they are moved otherwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grip {
-    /// Fingers and how far they bend where nothing is between them, rad.
-    pub goals: Vec<(JointIndex, f64)>,
-    /// Largest share of the stall torque that each may use: above 0, up to 0.9.
-    pub force: f64,
+    /// Which.
+    pub fingers: Vec<GripFinger>,
     /// Speed at which they close, rad/s: above 0, up to the rig's limit.
     pub speed_rad_s: f64,
+}
+
+/// A finger that closes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GripFinger {
+    /// Its joint.
+    pub joint: JointIndex,
+    /// How far it bends where nothing is in its way, rad.
+    pub goal_rad: f64,
+    /// Largest share of its stall torque that it may use: above 0, up to 0.9.
+    pub force: f64,
 }
 
 /// A finger of a grip.
@@ -58,19 +67,19 @@ impl Controller {
     pub(super) fn begin_grip(&mut self, grip: &Grip) -> Result<(), Refusal> {
         let bad = |what: String| Refusal::NotAMove { what };
         // NaN fails the comparisons.
-        if !(grip.force > 0.0 && grip.force <= MOST_FORCE) {
+        let is_too_much = |finger: &&GripFinger| !(finger.force > 0.0 && finger.force <= MOST_FORCE);
+        if let Some(GripFinger { force, .. }) = grip.fingers.iter().find(is_too_much) {
             return Err(bad(format!(
-                "a grip with {} of the torque; give more than 0, up to {MOST_FORCE}",
-                grip.force
+                "a grip with {force} of the torque; give more than 0, up to {MOST_FORCE}"
             )));
         }
         if !(grip.speed_rad_s > 0.0 && grip.speed_rad_s <= self.limiter.rig.gate.speed_rad_s) {
             return Err(bad(format!("fingers that close at {} rad/s; give less", grip.speed_rad_s)));
         }
-        let joints: Vec<JointIndex> = grip.goals.iter().map(|(joint, _)| *joint).collect();
+        let joints: Vec<JointIndex> = grip.fingers.iter().map(|finger| finger.joint).collect();
         let (commanded, _) = self.may_move(&joints)?;
-        for (joint, goal_rad) in &grip.goals {
-            self.limiter.goal(*joint, *goal_rad, &commanded)?;
+        for finger in &grip.fingers {
+            self.limiter.goal(finger.joint, finger.goal_rad, &commanded)?;
         }
         let moving = self.moving();
         // What made the arm hold before is over; what moves without these fingers goes on.
@@ -78,9 +87,9 @@ impl Controller {
             self.stay(MoveOutcome::Replaced, HoldReason::Asked);
         }
         self.grips.retain(|known| !joints.contains(&known.joint));
-        for (joint, goal_rad) in &grip.goals {
-            let (joint, goal_rad, sent_rad) = (*joint, *goal_rad, commanded[*joint]);
-            let Grip { force, speed_rad_s, .. } = *grip;
+        let speed_rad_s = grip.speed_rad_s;
+        for GripFinger { joint, goal_rad, force } in grip.fingers.iter().copied() {
+            let sent_rad = commanded[joint];
             self.grips.push(Gripping { joint, goal_rad, force, speed_rad_s, sent_rad });
             if let Some(slot) = self.exchange.slots.iter_mut().find(|slot| slot.reading.joint == joint) {
                 (slot.force, slot.force_tries) = (Some(Force::Limited(force)), 0);

@@ -51,7 +51,7 @@ mod tests;
 pub use chains::Chains;
 pub use command::{Motion, Move, MoveId, MoveOutcome, Pace, Setpoint, SetpointKind};
 pub use driver::{ArmDriver, expected_servos};
-pub use grip::Grip;
+pub use grip::{Grip, GripFinger};
 pub use guard::{FloorGuard, Guard};
 pub use options::{ArmOptions, OnState};
 pub use reading::{BusStatistics, JointReading, JointState};

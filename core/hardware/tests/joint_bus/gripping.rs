@@ -4,7 +4,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use plumbline_hardware::dynamixel::{Instruction, Item, open_port};
-use plumbline_hardware::joints::{ArmDriver, ArmOptions, Grip, MoveOutcome, Refusal};
+use plumbline_hardware::joints::{ArmDriver, ArmOptions, Grip, GripFinger, MoveOutcome, Refusal};
 use plumbline_model::robot::{JointIndex, Rig};
 use rustix::process::{Pid, Signal, kill_process};
 
@@ -29,7 +29,11 @@ fn bent_rad(rig: &Rig, finger: JointIndex) -> f64 {
 }
 
 fn grip(finger: JointIndex, goal_rad: f64) -> Grip {
-    Grip { goals: vec![(finger, goal_rad)], force: FORCE, speed_rad_s: 1.0 }
+    with_force(finger, goal_rad, FORCE)
+}
+
+fn with_force(joint: JointIndex, goal_rad: f64, force: f64) -> Grip {
+    Grip { fingers: vec![GripFinger { joint, goal_rad, force }], speed_rad_s: 1.0 }
 }
 
 fn block(chain: &PtyChain, id: u8, blocked: bool) {
@@ -149,8 +153,8 @@ fn too_much_force_or_speed_and_a_hot_finger_are_refused() {
     let (rig, chain, driver) = ready();
     let (finger, id) = finger(&rig);
     for bad in [
-        Grip { force: 0.95, ..grip(finger, 0.3) },
-        Grip { force: f64::NAN, ..grip(finger, 0.3) },
+        with_force(finger, 0.3, 0.95),
+        with_force(finger, 0.3, f64::NAN),
         Grip { speed_rad_s: 9.0, ..grip(finger, 0.3) },
         grip(finger, f64::NAN),
         grip(finger, 9.0),

@@ -258,8 +258,13 @@ impl World {
         let rig = self.rig.clone();
         for (servo, motor) in rig.servos.iter().zip(&mut self.servos) {
             let goal_rad = posture[servo.joint];
-            motor.drive = Drive { torque_on: true, goal_rad, speed_rad_s, torque_limit: 1.0, gain: 1.0 };
+            motor.drive = Drive { torque_on: true, goal_rad, speed_rad_s, gain: 1.0, ..motor.drive };
         }
+    }
+
+    /// Largest share of its torque that a servo may use from now on, 0–1.
+    pub fn limit(&mut self, servo: usize, torque_limit: f64) {
+        self.servos[servo].drive.torque_limit = torque_limit;
     }
 
     /// What a servo reads.

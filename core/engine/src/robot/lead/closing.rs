@@ -5,19 +5,15 @@
 
 use std::time::{Duration, Instant};
 
-use plumbline_hardware::joints::{Grip, HoldReason, JointReading, JointState, Motion};
-use plumbline_model::robot::{JointIndex, Posture};
+use plumbline_grasp::body::{GRIP_RAD_S, grip_force};
+use plumbline_hardware::joints::{Grip, GripFinger, HoldReason, JointReading, JointState, Motion};
+use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 use super::{GivenUp, Stepped};
 use crate::robot::worker::Worker;
 
-/// Fingers bend this fast, rad/s.
-const SPEED_RAD_S: f64 = 1.2;
-/// They press with this share of their stall torque: far less than what shuts a servo down for an
-/// overload, however long it lasts, and about 2 N at a fingertip.
-const FORCE: f64 = 0.2;
-/// Where a servo says that it may use no more than this, it has taken its limit.
-const LIMITED: f64 = FORCE + 0.01;
+/// Where a servo says that it may use no more than this beyond what it was told, it has taken its limit.
+const TAKEN: f64 = 0.01;
 /// A finger that is this near is there, rad.
 const THERE_RAD: f64 = 0.03;
 /// A finger whose goal is this far ahead of it and that stands has met something, rad.
@@ -68,7 +64,7 @@ impl Closing {
             return Ok(false);
         }
         if self.since_cycle.is_none() {
-            worker.arm()?.grip(grip(self.goals.clone()))?;
+            worker.arm()?.grip(grip(&worker.rig, self.goals.iter().copied()))?;
             self.since_cycle = Some(state.stamp.seq);
         }
         let began = *self.began.get_or_insert(now);
@@ -78,8 +74,9 @@ impl Closing {
         let known = state.commanded.as_ref();
         let commanded = known.ok_or_else(|| GivenUp::Lost("the joints are not known".to_owned()))?;
         let fingers = self.goals.iter();
-        let fingers: Vec<Finger> =
-            fingers.map(|(joint, goal_rad)| finger(commanded, state.of(*joint), *joint, *goal_rad)).collect();
+        let fingers: Vec<Finger> = fingers
+            .map(|goal| finger(commanded, state.of(goal.0), *goal, grip_force(&worker.rig, goal.0)))
+            .collect();
         let since = |so: bool, since: Option<Instant>| so.then(|| since.unwrap_or(now));
         self.stand_since = since(!fingers.contains(&Finger::Turns), self.stand_since);
         self.met_since = since(fingers.iter().all(|finger| *finger == Finger::Met), self.met_since);
@@ -94,7 +91,7 @@ impl Closing {
         let here = |(joint, _): &(JointIndex, f64)| Some((*joint, state.of(*joint)?.angle_rad?));
         let here: Option<Vec<_>> = self.goals.iter().map(here).collect();
         let here = here.ok_or_else(|| GivenUp::Lost("the joints are not known".to_owned()))?;
-        Ok(worker.arm()?.grip(grip(here))?)
+        Ok(worker.arm()?.grip(grip(&worker.rig, here.into_iter()))?)
     }
 
     fn has_new_refusal(&mut self, state: &JointState) -> bool {
@@ -113,8 +110,9 @@ impl Closing {
     }
 }
 
-fn grip(goals: Vec<(JointIndex, f64)>) -> Grip {
-    Grip { goals, force: FORCE, speed_rad_s: SPEED_RAD_S }
+fn grip(rig: &Rig, goals: impl Iterator<Item = (JointIndex, f64)>) -> Grip {
+    let finger = |(joint, goal_rad)| GripFinger { joint, goal_rad, force: grip_force(rig, joint) };
+    Grip { fingers: goals.map(finger).collect(), speed_rad_s: GRIP_RAD_S }
 }
 
 /// What a finger does.
@@ -127,11 +125,16 @@ enum Finger {
     Met,
 }
 
-fn finger(commanded: &Posture, reading: Option<&JointReading>, joint: JointIndex, goal_rad: f64) -> Finger {
+fn finger(
+    commanded: &Posture,
+    reading: Option<&JointReading>,
+    (joint, goal_rad): (JointIndex, f64),
+    force: f64,
+) -> Finger {
     let Some((reading, angle_rad)) = reading.and_then(|reading| Some((reading, reading.angle_rad?))) else {
         return Finger::Turns;
     };
-    let is_limited = reading.force.is_none_or(|share| share <= LIMITED);
+    let is_limited = reading.force.is_none_or(|share| share <= force + TAKEN);
     let is_slow = reading.speed_rad_s.is_none_or(|speed| speed.abs() < STANDS_RAD_S);
     let is_there = (goal_rad - angle_rad).abs() < THERE_RAD;
     let presses = (commanded[joint] - angle_rad).abs() > AHEAD_RAD;
