@@ -8,12 +8,12 @@ use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 /// Fingers press with this share of their stall torque: far less than what shuts a servo down for an
 /// overload, and about 4 N at a fingertip.
-const FINGER_FORCE: f64 = 0.35;
+const FINGER_FORCE: f64 = 0.4;
 /// The thumb with this one: the motors of two fingers press against it, and what it cannot hold against them is
 /// pushed out across the hand. (A tomato of 0.7 of the usual friction and 1.3 of the mass, physics, eight places:
-/// 3 are still held after ten seconds where all press with 0.2, 5 with 0.35 or 0.4, 7 where the thumb alone may use
-/// 0.5, and 8 with 0.4 and 0.8.)
-const THUMB_FORCE: f64 = 0.7;
+/// 3 are still held after ten seconds where all press with 0.2, 5 with 0.35, 7 where the thumb alone may use
+/// 0.5, and 8 with 0.4 and 0.8.) More would shut its servo down after seconds.
+const THUMB_FORCE: f64 = 0.8;
 /// Fingers that close bend this fast, rad/s.
 pub const GRIP_RAD_S: f64 = 1.2;
 
