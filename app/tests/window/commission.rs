@@ -110,11 +110,8 @@ fn cold_eyes_are_warmed_then_shown_the_board() {
     assert_eq!(sent, [Command::from(TwinCommand::AdvanceWarmUp { minutes: 10.0 })]);
 
     let (label, window, sent) = press(at(CommissionStep::Eyes));
-    assert_eq!(label, "Next: show the board at all places");
-    assert_eq!(
-        sent,
-        [Command::from(EyesCommand::AutoCapture(true)), Command::from(TwinCommand::TourBoard(true))]
-    );
+    assert_eq!(label, "Next: show the board at 12 places");
+    assert_eq!(sent, [Command::from(EyesCommand::AutoCapture(true)), Command::from(TwinCommand::TourFew)]);
     is_on(&window, "Coverage");
     assert!(says(&window, "Commissioning 1 of 8: calibrate the eyes"));
     assert!(shows(&window, "9 min · 8 touches · 14 views"));

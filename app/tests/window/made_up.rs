@@ -158,6 +158,7 @@ pub fn twin() -> TwinView {
         toys: toys.into(),
         board: None,
         board_places: 24,
+        few_board_places: 12,
         faults: faults
             .map(|(name, about)| FaultView { name: name.to_owned(), about: about.to_owned(), on: false })
             .into(),
