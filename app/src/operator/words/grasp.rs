@@ -70,8 +70,8 @@ pub fn held_now(run: &GraspRun) -> String {
 /// What became of an attempt, in a word or two.
 pub fn result(attempt: &AttemptView) -> &'static str {
     match (attempt.told, &attempt.outcome) {
-        (Some(true), _) if attempt.slipped_after.is_some() => "held, as you said; slipped out later",
-        (None, Some(GraspOutcome::Success)) if attempt.slipped_after.is_some() => "held, slipped out later",
+        (Some(true), _) if attempt.slipped_after.is_some() => "held, as you said; lost later",
+        (None, Some(GraspOutcome::Success)) if attempt.slipped_after.is_some() => "held, then lost",
         (Some(true), _) => "held, as you said",
         (Some(false), _) => "not held, as you said",
         (None, Some(GraspOutcome::Success)) => "held",

@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
     big_figure(ui, "minutes", &minutes.to_string(), Role::Measured);
     let rows = [
         KeyValue::text("Touches", commission.spent.touches.to_string()).help("Contacts with the screen"),
-        KeyValue::text("Views of the board", commission.spent.views.to_string())
+        KeyValue::text("Board views", commission.spent.views.to_string())
             .help("Pairs that were captured of the board in the hand, and head poses from which it was looked at as it lies on the table"),
         KeyValue::text("Begun", commission.began.map_or_else(|| "not yet".to_owned(), clock)),
     ];
