@@ -16,6 +16,12 @@ const LONGEST: Duration = Duration::from_secs(3000);
 /// From the first start to an accepted model.
 const MOST_CLICKS: usize = 45;
 
+/// Views of the board: in the hand, and as it lies on the table.
+const MOST_VIEWS: usize = 20;
+
+/// After the first good grasp it is looked once more so much later, s of the twin.
+const LATER_S: f64 = 10.0;
+
 /// The button that leads on, if it can be pressed just now.
 fn next(window: &Window) -> Option<String> {
     let mut found = window.query_all_by_label_contains("Next: ");
@@ -86,7 +92,11 @@ fn commission(scenario: &str) {
         toys.iter().find(|toy| toy.name == "tomato").and_then(|toy| toy.place).map(|at| at.coords.z)
     };
     assert!(height_m(&window).is_some_and(|height_m| height_m > 0.1), "{:?}", height_m(&window));
-    assert!(spent.touches >= 25 && spent.views >= 20, "{spent:?}");
+    // And stays in the hand.
+    let now_s = view(&window).twin.time_s;
+    until(&mut window, "ten seconds of the twin", |window| view(window).twin.time_s >= now_s + LATER_S);
+    assert!(height_m(&window).is_some_and(|height_m| height_m > 0.1), "{:?}", height_m(&window));
+    assert!(spent.touches == 25 && (16..=MOST_VIEWS).contains(&spent.views), "{spent:?}");
 
     click(&mut window, "Next: finish");
     until(&mut window, "its end", |window| !view(window).commission.is_on);

@@ -12,6 +12,8 @@ use super::PanelContext;
 use crate::operator::{Action, RobotAction, hint_text};
 
 const ROW: f32 = 24.0;
+/// A distance needs so much beside the name.
+const DISTANCE: f32 = 60.0;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     cx.outbox.want(Products { corners: true, ..Products::default() });
@@ -127,7 +129,8 @@ fn pair_row(ui: &mut Ui, cx: &mut PanelContext<'_>, pair: &CollectedPair) {
             if delete.clicked() {
                 cx.outbox.send(EyesCommand::Delete { pair: pair.name.clone() });
             }
-            if let Some(place) = pair.place {
+            // It stands under the mouse too; it must not run into the name.
+            if let Some(place) = pair.place.filter(|_| ui.available_width() > DISTANCE) {
                 ui.label(theme::small(ui, format::meters(place.distance_m)));
             }
         });

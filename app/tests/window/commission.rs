@@ -110,11 +110,8 @@ fn cold_eyes_are_warmed_then_shown_the_board() {
     assert_eq!(sent, [Command::from(TwinCommand::AdvanceWarmUp { minutes: 10.0 })]);
 
     let (label, window, sent) = press(at(CommissionStep::Eyes));
-    assert_eq!(label, "Next: show the board at all places");
-    assert_eq!(
-        sent,
-        [Command::from(EyesCommand::AutoCapture(true)), Command::from(TwinCommand::TourBoard(true))]
-    );
+    assert_eq!(label, "Next: show the board at 12 places");
+    assert_eq!(sent, [Command::from(EyesCommand::AutoCapture(true)), Command::from(TwinCommand::TourFew)]);
     is_on(&window, "Coverage");
     assert!(says(&window, "Commissioning 1 of 8: calibrate the eyes"));
     assert!(shows(&window, "9 min · 8 touches · 14 views"));
@@ -261,6 +258,20 @@ fn the_tomato_is_laid_out_then_grasped_then_judged_by_a_person() {
         outcome: Some(plumbline_engine::view::GraspOutcome::Success),
         ..Default::default()
     };
+    // What has slipped out since is not held: it is laid out once more.
+    let slipped = plumbline_engine::view::GraspRun {
+        object: "Tomato".to_owned(),
+        since: plumbline_engine::view::SinceHeld::Slipped(std::time::Duration::from_secs(6)),
+        ..run.clone()
+    };
+    let mut lost = view.clone();
+    Arc::make_mut(&mut lost.grasp).run = Some(Arc::new(slipped));
+    let window = Fake::over(lost.clone()).window(on(Screen::Grasp));
+    assert!(shows(&window, "The tomato was held and has slipped out."), "in the pane");
+    assert!(says(&window, "It was held and has slipped out. It is tried once more."), "in the strip");
+    assert!(!says(&window, "The tomato is held."));
+    assert_eq!(press(lost).0, "Next: grasp the tomato");
+
     Arc::make_mut(&mut view.grasp).run = Some(Arc::new(run));
     let (label, _, sent) = press(view);
     assert_eq!(label, "Next: say that it is held");

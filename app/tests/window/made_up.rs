@@ -92,6 +92,7 @@ fn joint_view(rig: &Rig, i: usize, servo: &plumbline_model::robot::Servo, measur
         goal_rad: Some(measured[servo.joint]),
         speed_rad_s: Some(0.0),
         load: Some(0.3 * phase.sin()),
+        current_a: None,
         temperature_c: Some(36.0 + (i % 7) as f64),
         voltage_v: Some(12.1),
         torque_on: Some(true),
@@ -158,6 +159,7 @@ pub fn twin() -> TwinView {
         toys: toys.into(),
         board: None,
         board_places: 24,
+        few_board_places: 12,
         faults: faults
             .map(|(name, about)| FaultView { name: name.to_owned(), about: about.to_owned(), on: false })
             .into(),

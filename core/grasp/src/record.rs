@@ -199,6 +199,9 @@ pub struct Record {
     pub outcome: Option<Outcome>,
     /// What the operator said.
     pub told_by_operator: Option<bool>,
+    /// It was held, and slipped out of the hand so long after the grasp had ended, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slipped_after_s: Option<f64>,
 }
 
 impl Record {
@@ -226,12 +229,14 @@ impl Record {
             seconds: None,
             outcome: None,
             told_by_operator: None,
+            slipped_after_s: None,
         }
     }
 
-    /// Whether it was lifted: as the operator said, else as it took itself.
+    /// Whether it was lifted and stayed: as the operator said, else as it took itself.
     pub fn is_success(&self) -> bool {
-        self.told_by_operator.unwrap_or(self.outcome == Some(Outcome::Success))
+        let took = self.outcome == Some(Outcome::Success) && self.slipped_after_s.is_none();
+        self.told_by_operator.unwrap_or(took)
     }
 
     /// Distance of the hand from where it belongs, at the last look, m.

@@ -32,6 +32,10 @@ const HELD: [[f64; 6]; 22] = [
     [0.40, 22.0, -20.0, 15.0, 25.0, 0.0],
 ];
 
+/// Those of [`HELD`] that suffice where the board is then looked at once more as it lies on the table: tilted in
+/// the middle, at all borders of the images, and far away.
+const FEW: [usize; 12] = [1, 2, 3, 4, 5, 6, 7, 8, 13, 14, 18, 21];
+
 /// Board of the laboratory: 9×6 squares of 30 mm.
 pub fn default_board() -> Chessboard {
     Chessboard { inner_columns: 8, inner_rows: 5, square_m: 0.03 }
@@ -43,6 +47,12 @@ pub fn board_presets(rig: &Rig) -> Vec<Pose<Robot, Board>> {
     let robot_from_left = rig.robot_from_left(&rig.home());
     let half_baseline_m = 0.5 * rig.eyes.cameras.baseline_m();
     HELD.iter().map(|held| robot_from_left * left_from_board(held, half_baseline_m)).collect()
+}
+
+/// The few of them that suffice where the board is then looked at as it lies on the table.
+pub fn few_board_presets(rig: &Rig) -> Vec<Pose<Robot, Board>> {
+    let all = board_presets(rig);
+    FEW.iter().filter_map(|place| all.get(*place).copied()).collect()
 }
 
 fn left_from_board(held: &[f64; 6], half_baseline_m: f64) -> Pose<LeftCamera, Board> {
@@ -96,11 +106,17 @@ mod tests {
     #[test]
     fn together_they_cover_the_image() {
         let rig = Rig::built_in("nico").expect("valid");
+        assert_eq!(few_board_presets(&rig).len(), FEW.len());
+        cover_the_image(&rig, &board_presets(&rig));
+        cover_the_image(&rig, &few_board_presets(&rig));
+    }
+
+    fn cover_the_image(rig: &Rig, places: &[Pose<Robot, Board>]) {
         let left_from_robot = rig.robot_from_left(&rig.home()).inverse();
         let (mut least, mut most) = ([f64::MAX; 2], [f64::MIN; 2]);
-        for robot_from_board in board_presets(&rig) {
+        for robot_from_board in places {
             for corner in 0..default_board().corner_count() {
-                let point = left_from_robot * (robot_from_board * default_board().corner(corner));
+                let point = left_from_robot * (*robot_from_board * default_board().corner(corner));
                 let pixel = rig.eyes.cameras.left.project(&point.coords.coords).expect("in front");
                 for (k, value) in [pixel.u_px, pixel.v_px].into_iter().enumerate() {
                     least[k] = least[k].min(value);

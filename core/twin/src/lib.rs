@@ -22,7 +22,7 @@ pub mod truth;
 mod twin;
 mod warm_up;
 
-pub use board_presets::{board_presets, default_board};
+pub use board_presets::{board_presets, default_board, few_board_presets};
 pub use error::TwinError;
 pub use lockstep::{Lockstep, ServoState, Touched};
 pub use physics::places_of_bodies;

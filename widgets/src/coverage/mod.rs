@@ -123,13 +123,18 @@ pub fn coverage_view(ui: &mut Ui, coverage: &Coverage) {
     ui.label(coverage.advice());
 }
 
+/// A map that is this wide has room for words over it.
+const WORDY: f32 = 140.0;
+
 fn heat_map(ui: &mut Ui, grid: &CoverageGrid, eye: Eye, width: f32) {
     let title = if eye == Eye::Left { "Left eye" } else { "Right eye" };
     let share = format::percent(grid.fraction());
     let title_row = ui.horizontal(|ui| {
         ui.label(theme::small(ui, title));
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.label(theme::small(ui, format!("{share} covered")));
+            // Where there is no room for the word it would run into the title, and beyond the pane.
+            let text = if width < WORDY { share.clone() } else { format!("{share} covered") };
+            ui.label(theme::small(ui, text));
         });
     });
     title_row.response.widget_info(|| WidgetInfo::labeled(egui::Role::GenericContainer, true, title));

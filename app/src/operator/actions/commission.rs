@@ -98,7 +98,12 @@ impl CommissionAction {
             Self::Leave => vec![CommissionCommand::Leave.into()],
             Self::Next => vec![],
             Self::PlanCorners => few(view, Purpose::PlaceScreen).into_iter().collect(),
-            Self::PlanTouches => few(view, Purpose::Train).into_iter().collect(),
+            Self::PlanTouches => {
+                // What is learned from is sent as the robot is described.
+                let plan = few(view, Purpose::Train);
+                let plainly = view.touch.correct_with.map(|_| TouchCommand::CorrectWith(None).into());
+                plainly.into_iter().chain(plan).collect()
+            }
             Self::PlanCheck => {
                 let correction = (!view.gap.model.effects.is_empty()).then_some(Correction::Effects);
                 let plan = few(view, Purpose::Check);

@@ -36,6 +36,8 @@ pub enum RobotAction {
     SavePose,
     /// Shows the board at all places of the twin, or ends that.
     TourBoard,
+    /// Shows it at the few places that suffice where it is then looked at on the table.
+    TourFew,
     /// Lays the board on the twin's table.
     LayBoard,
     /// Puts the board away.
@@ -85,7 +87,7 @@ fn when(possible: bool, why: &'static str) -> Refusal {
 
 impl RobotAction {
     /// All of them, in the palette's order.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Connect,
         Self::ConnectTwin,
         Self::TwinEyes,
@@ -99,6 +101,7 @@ impl RobotAction {
         Self::TorqueOff,
         Self::SavePose,
         Self::TourBoard,
+        Self::TourFew,
         Self::LayBoard,
         Self::HideBoard,
         Self::WarmUp,
@@ -122,6 +125,7 @@ impl RobotAction {
             Self::TorqueOff => "Let all joints go limp…",
             Self::SavePose => "Save this posture…",
             Self::TourBoard => "Show the board at all places",
+            Self::TourFew => "Show the board at the places that suffice",
             Self::LayBoard => "Lay the board on the table",
             Self::HideBoard => "Put the board away",
             Self::WarmUp => "Warm the twin's eyes by 10 minutes",
@@ -159,7 +163,7 @@ impl RobotAction {
             Self::TorqueOn if robot.stopped => Some("STOP is latched: release it first".into()),
             Self::TorqueOn | Self::TorqueOff => when(connected, "no robot is connected"),
             Self::HideBoard => when(view.twin.board.is_some(), "the board is put away"),
-            Self::TourBoard => when(
+            Self::TourBoard | Self::TourFew => when(
                 view.twin.running && view.twin.board_places > 0,
                 "the twin does not run; connect it first",
             ),
@@ -186,6 +190,7 @@ impl RobotAction {
             Self::ReleaseStop => RobotCommand::ReleaseStop.into(),
             Self::TorqueOn => RobotCommand::Torque { joints: all(), on: true }.into(),
             Self::TourBoard => TwinCommand::TourBoard(true).into(),
+            Self::TourFew => TwinCommand::TourFew.into(),
             Self::LayBoard => {
                 let [x_m, y_m] = BOARD_ON_TABLE_M;
                 TwinCommand::LayBoard { x_m, y_m, yaw_rad: BOARD_TURN_RAD }.into()

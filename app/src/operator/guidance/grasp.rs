@@ -1,12 +1,14 @@
 //! What to do next with grasping: one button, named by what it does.
 
 use plumbline_engine::View;
-use plumbline_engine::view::{GraspOutcome, GraspPhase, GraspView, LampState, TrialsPhase};
+use plumbline_engine::view::{
+    GraspOutcome, GraspPhase, GraspRun, GraspView, LampState, SinceHeld, TrialsPhase,
+};
 use plumbline_widgets::format;
 
 use super::robot;
 use super::sentence::{Guidance, say};
-use crate::operator::words::grasp::{again, closed, method, object_of, try_of};
+use crate::operator::words::grasp::{again, closed, held_now, method, object_of, try_of};
 use crate::operator::words::trials::ask;
 use crate::operator::{Action, GraspAction, RobotAction, TrialsAction};
 
@@ -54,6 +56,10 @@ fn idle(view: &View) -> Guidance {
     let waits = grasp.run.as_ref().filter(|run| run.outcome.is_some() && run.told.is_none());
     let label = format!("Grasp {} with {by}", object_of(grasp));
     match waits.and_then(|run| run.outcome.as_ref()) {
+        Some(GraspOutcome::Success) if grasp.run.as_deref().is_some_and(has_slipped) => {
+            let said = grasp.run.as_deref().map(held_now).unwrap_or_default();
+            say(said).warn().then(label, Action::Grasp(GraspAction::Grasp))
+        }
         Some(GraspOutcome::Success) => say("Say whether it is held; then put it down, or hand it over.")
             .then(label, Action::Grasp(GraspAction::Grasp)),
         Some(GraspOutcome::Failed { why, .. } | GraspOutcome::Refused { why }) => {
@@ -62,6 +68,11 @@ fn idle(view: &View) -> Guidance {
         None => say("Plan shows what would be sent; Grasp plans and moves the arm at once.")
             .then(label, Action::Grasp(GraspAction::Grasp)),
     }
+}
+
+/// Whether what was held is not in the hand any more.
+pub(super) fn has_slipped(run: &GraspRun) -> bool {
+    matches!(run.since, SinceHeld::Slipped(_))
 }
 
 /// "Grasps tomato with M5, try 2 of 3: approach. The arm moves; Esc or space stops."

@@ -1,7 +1,7 @@
 //! A grasp in words.
 
 use plumbline_engine::view::{
-    AttemptView, GraspHand, GraspMethod, GraspOutcome, GraspRun, GraspView, HandChoice,
+    AttemptView, GraspHand, GraspMethod, GraspOutcome, GraspRun, GraspView, HandChoice, SinceHeld,
 };
 
 /// "M5".
@@ -54,9 +54,24 @@ pub fn again(run: &GraspRun) -> Option<String> {
     ))
 }
 
+/// How it is with what was found to be held, as a sentence.
+pub fn held_now(run: &GraspRun) -> String {
+    let object = run.object.to_lowercase();
+    match run.since {
+        SinceHeld::Held => format!("The {object} is held."),
+        SinceHeld::Slipped(_) => format!("The {object} was held and has slipped out."),
+        SinceHeld::LetGo => format!("The {object} was held."),
+        SinceHeld::Unknown => {
+            format!("The {object} was held; nobody knows whether it still is, for the hand is not heard.")
+        }
+    }
+}
+
 /// What became of an attempt, in a word or two.
 pub fn result(attempt: &AttemptView) -> &'static str {
     match (attempt.told, &attempt.outcome) {
+        (Some(true), _) if attempt.slipped_after.is_some() => "held, as you said; lost later",
+        (None, Some(GraspOutcome::Success)) if attempt.slipped_after.is_some() => "held, then lost",
         (Some(true), _) => "held, as you said",
         (Some(false), _) => "not held, as you said",
         (None, Some(GraspOutcome::Success)) => "held",

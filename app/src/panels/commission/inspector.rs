@@ -16,8 +16,8 @@ pub fn show(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
     big_figure(ui, "minutes", &minutes.to_string(), Role::Measured);
     let rows = [
         KeyValue::text("Touches", commission.spent.touches.to_string()).help("Contacts with the screen"),
-        KeyValue::text("Views", commission.spent.views.to_string())
-            .help("Pairs of the board that were kept, and views of the head"),
+        KeyValue::text("Board views", commission.spent.views.to_string())
+            .help("Pairs that were captured of the board in the hand, and head poses from which it was looked at as it lies on the table"),
         KeyValue::text("Begun", commission.began.map_or_else(|| "not yet".to_owned(), clock)),
     ];
     key_value_grid(ui, "commission spent", &rows);

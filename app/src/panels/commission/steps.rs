@@ -11,11 +11,14 @@ use crate::operator::words::clock;
 use crate::operator::{Course, Press, course};
 use crate::panels::{PanelContext, padded};
 
+/// Height of a step; where room is scarce it is less, so that all eight are seen.
 const ROW: f32 = 52.0;
+const LEAST_ROW: f32 = 42.0;
 const CIRCLE: f32 = 11.0;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     padded(ui, |ui| {
+        let room = ui.available_height();
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.label(theme::strong(ui, "From a robot just switched on to its first good grasp"));
             ui.add_space(space::XS);
@@ -23,8 +26,10 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             ui.add_space(space::S);
             ui.spacing_mut().item_spacing.y = 0.0;
             let course = course(cx.view);
-            for step in cx.view.commission.steps.iter() {
-                row(ui, step, course.as_ref());
+            let steps = &cx.view.commission.steps;
+            let each = (room - ui.min_rect().height()) / steps.len().max(1) as f32;
+            for step in steps.iter() {
+                row(ui, each.clamp(LEAST_ROW, ROW), step, course.as_ref());
             }
         });
     });
@@ -39,8 +44,8 @@ fn about(view: &View) -> &'static str {
     }
 }
 
-fn row(ui: &mut Ui, view: &CommissionStepView, course: Option<&Course>) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::hover());
+fn row(ui: &mut Ui, height: f32, view: &CommissionStepView, course: Option<&Course>) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::hover());
     let (name, below) = (commission_name(view.step), below(view, course));
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, format!("{name}: {below}")));
     let tokens = theme::tokens(ui);

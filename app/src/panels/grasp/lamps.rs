@@ -9,18 +9,22 @@ const RADIUS: f32 = 6.5;
 /// The widest title needs so much, and each this height.
 const TITLE: f32 = 58.0;
 const LINE: f32 = 14.0;
+/// Titles at both ends, wider than their share of the row, need so much more.
+const ENDS: f32 = 8.0;
 
 /// All steps, those that are done filled, the one under way ringed, the one where it ended crossed.
 pub fn show(ui: &mut Ui, lamps: &[(GraspStep, LampState)]) {
     let tokens = theme::tokens(ui);
     let width = ui.available_width();
-    let each = width / lamps.len().max(1) as f32;
+    let count = lamps.len().max(1) as f32;
+    let ends = if width / count < TITLE { ENDS } else { 0.0 };
+    let each = (width - 2.0 * ends) / count;
     let height = if each < TITLE { HEIGHT + LINE } else { HEIGHT };
     let (rect, _) = ui.allocate_exact_size(vec2(width, height), Sense::hover());
     let font = FontSelection::Style(TextStyle::Small).resolve(ui.style());
     let y = rect.top() + 11.0;
     for (i, (step, lamp)) in lamps.iter().enumerate() {
-        let x = rect.left() + (i as f32 + 0.5) * each;
+        let x = rect.left() + ends + (i as f32 + 0.5) * each;
         let (at, painter) = (pos2(x, y), ui.painter());
         if i > 0 {
             let line = [pos2(x - each + RADIUS + 3.0, y), pos2(x - RADIUS - 3.0, y)];

@@ -1,12 +1,12 @@
 //! What became of the attempt, large and plain, and what the operator saw of it.
 
 use egui::{RichText, TextStyle, Ui};
-use plumbline_engine::view::{GraspOutcome, GraspPhase, GraspRun};
+use plumbline_engine::view::{GraspOutcome, GraspPhase, GraspRun, SinceHeld};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
 use crate::operator::GraspAction;
-use crate::operator::words::grasp::closed;
+use crate::operator::words::grasp::{closed, held_now};
 use crate::panels::PanelContext;
 use crate::panels::parts::action_button;
 
@@ -23,9 +23,13 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, run: &GraspRun) {
     }
     let object = run.object.to_lowercase();
     let (role, text, why) = match (run.told, outcome) {
+        // Whatever was said of it before.
+        (Some(true) | None, GraspOutcome::Success) if matches!(run.since, SinceHeld::Slipped(_)) => {
+            (Role::Warning, held_now(run), None)
+        }
         (Some(true), _) => (Role::Accepted, format!("The {object} was held, as you said."), None),
         (Some(false), _) => (Role::Warning, format!("The {object} was not held, as you said."), None),
-        (None, GraspOutcome::Success) => (Role::Accepted, format!("The {object} is held."), None),
+        (None, GraspOutcome::Success) => (Role::Accepted, held_now(run), None),
         (None, GraspOutcome::Failed { why, .. }) => (Role::Warning, "Not held.".to_owned(), Some(why)),
         (None, GraspOutcome::Refused { why }) => (Role::Warning, "Not grasped.".to_owned(), Some(why)),
     };

@@ -112,6 +112,7 @@ fn patterns(ui: &mut Ui, patterns: &mut Vec<Pattern>) {
         Pattern::Lines { horizontal: 2, vertical: 1, diagonal: 2, points: 7 },
         Pattern::Random { count: 20 },
         Pattern::Again { targets: 5, times: 4 },
+        Pattern::Telling { places: 22, again: 3 },
     ];
     for default in defaults {
         let same = |one: &Pattern| std::mem::discriminant(one) == std::mem::discriminant(&default);
@@ -142,6 +143,7 @@ fn name(pattern: &Pattern) -> &'static str {
         Pattern::Lines { .. } => "Lines",
         Pattern::Random { .. } => "Random",
         Pattern::Again { .. } => "Again",
+        Pattern::Telling { .. } => "Most telling",
     }
 }
 
@@ -183,6 +185,12 @@ fn fields(ui: &mut Ui, pattern: &mut Pattern) {
             word(ui, "targets");
             count(ui, "Times more", times, 1..=20);
             word(ui, "times more");
+        }
+        Pattern::Telling { places, again } => {
+            count(ui, "Places that tell most", places, 1..=100);
+            word(ui, "places, of them");
+            count(ui, "Of them touched twice", again, 0..=40);
+            word(ui, "twice");
         }
     }
 }

@@ -49,7 +49,8 @@ pub struct CommissionSpent {
     pub time: Duration,
     /// Contacts with the screen.
     pub touches: usize,
-    /// Times that the board was looked at and kept.
+    /// Times that the board was looked at: pairs that were captured of it, and head poses from which it was
+    /// seen on the table.
     pub views: usize,
 }
 

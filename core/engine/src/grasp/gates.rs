@@ -206,6 +206,7 @@ mod tests {
                 goal_rad: Some(0.0),
                 speed_rad_s: Some(0.0),
                 load: Some(if is_elbow { load } else { 0.1 }),
+                current_a: None,
                 temperature_c: Some(if is_elbow { temperature_c } else { 31.0 }),
                 voltage_v: Some(12.0),
                 torque_on: Some(true),

@@ -10,6 +10,7 @@ mod attempt;
 pub(crate) mod body;
 pub mod command;
 pub(crate) mod gates;
+mod held;
 mod keeping;
 mod method;
 mod pointing;

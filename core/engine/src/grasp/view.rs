@@ -190,10 +190,26 @@ pub struct GraspRun {
     pub outcome: Option<GraspOutcome>,
     /// What the operator said of it.
     pub told: Option<bool>,
+    /// What became of a thing that was held since.
+    pub since: SinceHeld,
     /// How far the fingers were kept open after the lift, rad.
     pub fingers_open_rad: Option<f64>,
     /// From its beginning to the end of the lift, s.
     pub seconds: Option<f64>,
+}
+
+/// What became of a thing since it was found to be held.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum SinceHeld {
+    /// Fingers and thumb press on it.
+    #[default]
+    Held,
+    /// It slipped out of the hand so long after the grasp had ended.
+    Slipped(Duration),
+    /// The hand was told to let it go, or to do something else.
+    LetGo,
+    /// Nobody knows: the hand cannot be read any more.
+    Unknown,
 }
 
 /// What became of an attempt.
@@ -217,6 +233,8 @@ pub struct AttemptView {
     pub reached: Option<GraspStep>,
     /// What the operator said.
     pub told: Option<bool>,
+    /// It was held, and slipped out of the hand so long after the grasp had ended.
+    pub slipped_after: Option<Duration>,
     /// Distance of the hand from where it belongs at the last look, m.
     pub alignment_m: Option<f64>,
     /// Height of the palm where the hand closes, robot frame, m.
@@ -226,8 +244,8 @@ pub struct AttemptView {
 }
 
 impl AttemptView {
-    /// Whether it was held: as the operator said, else as it took itself.
+    /// Whether it was held and stayed: as the operator said, else as it took itself.
     pub fn is_success(&self) -> bool {
-        self.told.unwrap_or(self.outcome == Some(GraspOutcome::Success))
+        self.told.unwrap_or(self.outcome == Some(GraspOutcome::Success) && self.slipped_after.is_none())
     }
 }

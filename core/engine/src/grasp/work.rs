@@ -1,6 +1,7 @@
 //! What takes long in grasping.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use plumbline_grasp::Outcome;
 use plumbline_model::JobContext;
@@ -35,6 +36,13 @@ pub enum GraspWork {
         /// Whether the object was held.
         held: bool,
     },
+    /// Keeps that what was held has slipped out of the hand.
+    Slipped {
+        /// Folder of the attempt.
+        folder: PathBuf,
+        /// So long after the grasp had ended.
+        after: Duration,
+    },
 }
 
 /// What came out.
@@ -50,6 +58,8 @@ pub enum GraspResult {
     HandDone(HandStep, Result<(), NoStep>),
     /// What the operator saw is kept.
     Judged(Box<AttemptView>),
+    /// That it has slipped out of the hand is kept.
+    SlipKept(Box<AttemptView>),
 }
 
 /// What the handlers of this room may reach besides their own workflow.
@@ -65,6 +75,7 @@ impl LongWork for GraspWork {
             Self::Grasp(attempt) => format!("Grasp by {}", attempt.method.name().to_uppercase()),
             Self::Hand(work) => work.step.title().to_owned(),
             Self::Judge { .. } => "Keep what was seen".to_owned(),
+            Self::Slipped { .. } => "Keep that it slipped out".to_owned(),
         }
     }
 
@@ -88,6 +99,13 @@ impl LongWork for GraspWork {
                 record.told_by_operator = Some(held);
                 keeping.record(&record).map_err(JobError::told)?;
                 Ok(GraspResult::Judged(Box::new(keeping.view(&record))))
+            }
+            Self::Slipped { folder, after } => {
+                let keeping = Keeping::of(folder);
+                let mut record = keeping.read().map_err(JobError::told)?;
+                record.slipped_after_s = Some(after.as_secs_f64());
+                keeping.record(&record).map_err(JobError::told)?;
+                Ok(GraspResult::SlipKept(Box::new(keeping.view(&record))))
             }
         }
     }
@@ -114,6 +132,7 @@ impl GraspResult {
                 Some(true) => "Kept: it was held.".to_owned(),
                 _ => "Kept: it was not held.".to_owned(),
             },
+            Self::SlipKept(_) => "Kept: it was held, and slipped out of the hand.".to_owned(),
         }
     }
 }

@@ -16,6 +16,7 @@ use plumbline_model::robot::{Chain, JointIndex, LinkIndex, Posture, Rig};
 use plumbline_model::session::Screen;
 use plumbline_model::touch_plan::Side;
 use plumbline_model::{Direction, Pixel, Point, Robot};
+use serde::{Deserialize, Serialize};
 
 /// The heading over a place of the table is found at this height above the table, m: about that of a
 /// fingertip on the glass.
@@ -111,7 +112,7 @@ impl TouchPace {
 
 /// How the hand is held at a touch, other than as its place has it: what other postures at the same place
 /// show of the arm's errors the usual one does not.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Hold {
     /// Turned about the vertical by this much, rad.
     pub turn_rad: f64,
@@ -120,6 +121,11 @@ pub struct Hold {
 }
 
 impl Hold {
+    /// Whether it is held as the place has it.
+    pub fn is_usual(&self) -> bool {
+        *self == Self::default()
+    }
+
     /// Where the tip's z axis should point.
     fn tool_z(self) -> Option<Direction<Robot>> {
         Direction::new(Vector3::new(self.lean_rad[0], self.lean_rad[1], 1.0))
@@ -304,7 +310,7 @@ impl Planner {
         }
         let (contact, held) = self.contact(sent, target, hold, from)?;
         let upright = self.inclination(&contact);
-        if hold != Hold::default() && upright < LEAST_UPRIGHT {
+        if !hold.is_usual() && upright < LEAST_UPRIGHT {
             return Err(NoWay::Inclined { target, inclined_rad: upright.clamp(-1.0, 1.0).acos() });
         }
         let heading_rad = held.heading_rad;
@@ -425,9 +431,10 @@ impl Planner {
         target: Pixel<Screen>,
         sent: Point<Robot>,
         side: Side,
+        hold: Hold,
         from: &Posture,
     ) -> Result<(Vec<f64>, Vec<f64>), NoWay> {
-        let (contact, held) = self.contact(sent, target, Hold::default(), from)?;
+        let (contact, held) = self.contact(sent, target, hold, from)?;
         let at = |step: usize| on_the_way(sent, side, held.heading_rad, step as f64 * STEP_M);
         let above = self.follow(&contact, LAST_STEPS, held.hold, at);
         let before = above.last().unwrap_or(&contact);

@@ -120,6 +120,7 @@ impl Worker {
             goal_rad: reading.and_then(|r| r.goal_rad),
             speed_rad_s: reading.and_then(|r| r.speed_rad_s),
             load: reading.and_then(|r| r.load),
+            current_a: reading.and_then(|r| r.current_a),
             temperature_c: reading.and_then(|r| r.temperature_c),
             voltage_v: reading.and_then(|r| r.voltage_v),
             torque_on: reading.and_then(|r| r.torque_on),

@@ -144,6 +144,8 @@ pub struct JointView {
     pub speed_rad_s: Option<f64>,
     /// Share of the servo's stall torque, signed.
     pub load: Option<f64>,
+    /// Current of its motor, of servos that say it, A.
+    pub current_a: Option<f64>,
     /// Temperature, °C.
     pub temperature_c: Option<f64>,
     /// Supply voltage, V.
@@ -171,6 +173,7 @@ impl JointView {
             goal_rad: None,
             speed_rad_s: None,
             load: None,
+            current_a: None,
             temperature_c: None,
             voltage_v: None,
             torque_on: None,

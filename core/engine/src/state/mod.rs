@@ -29,6 +29,7 @@ use crate::commission::CommissionWorkflow;
 use crate::detect::{DetectInput, DetectOutput, DetectWorkflow, OpenDetector};
 use crate::drift::{DriftInput, DriftOutput, DriftWorkflow};
 use crate::eyes::{CornersInput, EyesWorkflow, Look};
+use crate::grasp::GraspWorkflow;
 use crate::ground::data_folder::KeptView;
 use crate::ground::jobs::list::JobList;
 use crate::ground::jobs::{JobId, JobState, JobView, Outcome};
@@ -368,6 +369,9 @@ impl State {
         self.use_models();
         self.with::<MountWorkflow>(self.shown, |mount, around, context| mount.step(around, context));
         self.with::<TouchWorkflow>(self.arm_of, |touch, around, context| touch.step(around, context));
+        if self.rooms.grasp.of(self.arm_of).is_watching() {
+            self.with::<GraspWorkflow>(self.arm_of, |grasp, around, context| grasp.watch(around, context));
+        }
         self.with::<TrialsWorkflow>(self.arm_of, |trials, around, context| trials.step(around, context));
         self.with::<CommissionWorkflow>(self.arm_of, |room, around, context| room.look(around, context));
     }

@@ -22,6 +22,7 @@ mod seen;
 mod shown;
 mod standing;
 pub mod store;
+pub mod telling;
 #[cfg(test)]
 mod testing;
 #[cfg(test)]

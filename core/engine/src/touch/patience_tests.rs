@@ -34,6 +34,7 @@ fn desk() -> (Desk, tempfile::TempDir) {
         goal_rad: Some(0.0),
         speed_rad_s: Some(0.0),
         load: Some(0.0),
+        current_a: None,
         temperature_c: Some(30.0),
         voltage_v: Some(12.0),
         torque_on: Some(true),

@@ -17,21 +17,27 @@ use plumbline_model::{Point, Robot};
 use serde::{Deserialize, Serialize};
 
 use super::command::Correction;
+use super::telling;
 use super::view::PlanView;
-use crate::ground::jobs::JobError;
+use crate::ground::jobs::{JobError, Part};
 use crate::ground::text::sentence;
-use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
+use crate::motion::{Hold, NoWay, Planner, ScreenPlace, TouchPace};
 
 /// The tip that touches unless another finger was chosen, and that M1 to M3 correct.
 pub const TIP: &str = "right_index_tip";
 /// Version of the plan's file.
 pub const FORMAT: u32 = 1;
+/// Share of the work of a plan whose touches have to be chosen first after which they are chosen.
+const CHOSEN_AT: f64 = 0.8;
 
 /// A planned touch with the point that is sent for it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Aim {
     /// The planned touch.
     pub touch: PlannedTouch,
+    /// How the hand is held at it.
+    #[serde(default, skip_serializing_if = "Hold::is_usual")]
+    pub hold: Hold,
     /// Place of its pixel on the glass, on its block; robot frame, m.
     pub place_m: [f64; 3],
     /// The point that is sent; robot frame, m.
@@ -154,19 +160,28 @@ impl Corrector {
 pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, JobError> {
     let PlanRequest { rig, place, options, corrector } = request;
     let words = |error: &dyn std::fmt::Display| JobError::failed(sentence(&error.to_string()));
-    let plan = TouchPlan::make(options, &rig.touchscreen).map_err(|error| words(&error))?;
     let tip = options.finger.tip();
+    let (began, planned) = match options.telling() {
+        Some(wanted) => {
+            options.check(&rig.touchscreen).map_err(|error| words(&error))?;
+            (CHOSEN_AT, telling(request, wanted, &Part { whole: context, begin: 0.0, end: CHOSEN_AT })?)
+        }
+        None => {
+            let plan = TouchPlan::make(options, &rig.touchscreen).map_err(|error| words(&error))?;
+            (0.0, plan.touches.into_iter().map(|touch| (touch, Hold::default())).collect())
+        }
+    };
     let senders = Senders::of(corrector, tip).map_err(JobError::failed)?;
-    let (pace, count) = (TouchPace::default(), plan.touches.len());
+    let (pace, count) = (TouchPace::default(), planned.len());
     let mut duration = Duration::ZERO;
     let mut planner: Option<(f64, Planner)> = None;
     let mut stands: Option<Posture> = None;
     let mut touches: Vec<Aim> = vec![];
     let mut contacts = vec![];
-    for touch in plan.touches {
+    for (touch, hold) in planned {
         context.checkpoint()?;
         let done = touches.len() as f64 / count.max(1) as f64;
-        context.report(0.9 * done, &format!("target {} of {count}", touches.len() + 1));
+        context.report(began + (0.9 - began) * done, &format!("target {} of {count}", touches.len() + 1));
         let height_m = touch.screen_height_m;
         let planner = match &mut planner {
             Some((of_m, planner)) if *of_m == height_m => &*planner,
@@ -177,10 +192,10 @@ pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, 
             }
         };
         let from = stands.take().unwrap_or_else(|| planner.ready(&rig.home()));
-        let mut aim = senders.aim(rig, planner, touch, &from);
+        let mut aim = senders.aim(rig, planner, touch, hold, &from);
         let path = match aim.refusal.take() {
             None => planner
-                .plan(aim.touch.target, aim.sent(), aim.touch.side, &from)
+                .plan_held(aim.touch.target, aim.sent(), aim.touch.side, hold, &from)
                 .map_err(|why| why.to_string()),
             Some(reason) => Err(reason),
         };
@@ -219,6 +234,27 @@ pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, 
         duration_s: duration.as_secs_f64(),
         score,
     })
+}
+
+/// The touches that tell most of where the palm will be, of the screen where it is taken to lie; `wanted`:
+/// how many places, and how many of them twice.
+fn telling(
+    request: &PlanRequest,
+    (places, again): (usize, usize),
+    context: &dyn JobContext,
+) -> Result<Vec<(PlannedTouch, Hold)>, JobError> {
+    let PlanRequest { rig, place, options, .. } = request;
+    let planner = Planner::new(rig, options.finger.tip(), *place).map_err(JobError::failed)?;
+    let possible = telling::candidates(&planner, &options.area, context)?;
+    context.checkpoint()?;
+    let chosen = telling::choose(rig, options.finger, &possible, places, again)
+        .map_err(|error| JobError::failed(sentence(&error.to_string())))?;
+    let ordered = telling::in_short_ways(&chosen, &possible);
+    let planned = ordered.iter().enumerate().map(|(k, pick)| {
+        let candidate = &possible[pick.candidate];
+        (candidate.planned(k + 1, pick.group), candidate.hold)
+    });
+    Ok(planned.collect())
 }
 
 /// Why targets cannot be corrected as was asked.
@@ -269,7 +305,7 @@ impl<'a> Senders<'a> {
     }
 
     /// The point that is sent for a planned touch, by an arm that stands at `from`.
-    fn aim(&self, rig: &Rig, planner: &Planner, touch: PlannedTouch, from: &Posture) -> Aim {
+    fn aim(&self, rig: &Rig, planner: &Planner, touch: PlannedTouch, hold: Hold, from: &Posture) -> Aim {
         let place = rig.touchscreen.raised(touch.screen_height_m).point_at(touch.target);
         let (mut sent, mut inside, mut refusal) = (place, true, None);
         match self {
@@ -283,7 +319,8 @@ impl<'a> Senders<'a> {
             Self::Effects { arm, screen } => {
                 let mut direction: Option<Vec<f64>> = None;
                 let commanded = |sent| {
-                    let (angles_rad, signs) = planner.commanded(touch.target, sent, touch.side, from)?;
+                    let (angles_rad, signs) =
+                        planner.commanded(touch.target, sent, touch.side, hold, from)?;
                     // A joint that nearly stands must not turn round from one point to the next.
                     Ok::<_, NoWay>((angles_rad, direction.get_or_insert(signs).clone()))
                 };
@@ -308,6 +345,7 @@ impl<'a> Senders<'a> {
         }
         Aim {
             touch,
+            hold,
             place_m: place.coords.coords.into(),
             sent_m: sent.coords.coords.into(),
             inside,

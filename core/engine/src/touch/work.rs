@@ -344,7 +344,7 @@ fn route(request: RouteRequest) -> TouchResult {
         },
     };
     let RouteRequest { aim, from, order, pace, rig, .. } = request;
-    let path = planner.plan(aim.touch.target, aim.sent(), aim.touch.side, &from);
+    let path = planner.plan_held(aim.touch.target, aim.sent(), aim.touch.side, aim.hold, &from);
     let along = |path| TouchOrder::along(path, planner.chain(), &rig.touchscreen, &pace, number, order);
     let order = path.map(|path| Box::new(along(path)));
     TouchResult::Routed { number, planner: Some(planner), order }

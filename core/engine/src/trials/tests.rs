@@ -156,6 +156,7 @@ impl Lab {
             outcome: Some(outcome),
             reached: None,
             told: None,
+            slipped_after: None,
             alignment_m: None,
             closed_at_m: None,
             seconds: Some(20.0),

@@ -37,6 +37,8 @@ pub enum TwinCommand {
     /// Shows the board at all places one after the other, each for a moment, so that pairs can be
     /// captured by themselves.
     TourBoard(bool),
+    /// The same at the few places that suffice where the board is then looked at as it lies on the table.
+    TourFew,
     /// Puts the chessboard away.
     HideBoard,
     /// Makes room on the touchscreen, puts it on a block and a weight into the right palm.

@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 use plumbline_model::Point;
 use plumbline_model::frame::{Board, Pose, Robot};
 use plumbline_model::robot::Rig;
-use plumbline_twin::{Fault, Scenario, Toy, Twin, TwinSettings, TwinTouchscreen, board_presets};
+use plumbline_twin::{
+    Fault, Scenario, Toy, Twin, TwinSettings, TwinTouchscreen, board_presets, few_board_presets,
+};
 
 use super::command::TwinCommand;
 use super::eyes::TwinEyesPlug;
@@ -31,8 +33,10 @@ const PHYSICS_FAILED: &str = "The twin's physics have failed inside, so the twin
 /// The same twin every time.
 const SEED: u64 = 1;
 
-/// The board on its way through all places.
+/// The board on its way through places.
 struct Tour {
+    /// Where it is held, one after the other.
+    places: Vec<Pose<Robot, Board>>,
     /// The place that is next.
     next: usize,
     /// When it was held at the one before; `None`: at none yet.
@@ -42,6 +46,10 @@ struct Tour {
 }
 
 impl Tour {
+    fn through(places: Vec<Pose<Robot, Board>>) -> Self {
+        Self { places, next: 0, held: None, looks: 0 }
+    }
+
     /// Whether the board was seen where it is.
     fn is_seen(&self, now: Instant, looks: u64) -> bool {
         let Some(held) = self.held else { return true };
@@ -64,6 +72,7 @@ pub struct TwinDesk {
     scenario: String,
     failed: Option<String>,
     board_places: Vec<Pose<Robot, Board>>,
+    few_places: Vec<Pose<Robot, Board>>,
     tour: Option<Tour>,
     /// Toys that made room for the board that lies on the table, and where they stood (x, y in the robot's
     /// frame, m).
@@ -81,6 +90,7 @@ impl TwinDesk {
             scenario: String::new(),
             failed: None,
             board_places: Vec::new(),
+            few_places: Vec::new(),
             tour: None,
             made_room: Vec::new(),
             notes: Vec::new(),
@@ -128,7 +138,7 @@ impl TwinDesk {
         let scenario = Scenario::named_or_file(scenario)?;
         let settings = TwinSettings { rig: rig.clone(), scenario, seed: SEED, pace: 1.0 };
         let twin = Twin::start(settings)?;
-        self.board_places = board_presets(rig);
+        (self.board_places, self.few_places) = (board_presets(rig), few_board_presets(rig));
         self.eyes.set(Some(twin.scene()));
         let port = twin.port();
         self.twin = Some(twin);
@@ -143,7 +153,10 @@ impl TwinDesk {
         };
         let takes_board = matches!(
             command,
-            TwinCommand::HoldBoard { .. } | TwinCommand::TourBoard(true) | TwinCommand::HideBoard
+            TwinCommand::HoldBoard { .. }
+                | TwinCommand::TourBoard(true)
+                | TwinCommand::TourFew
+                | TwinCommand::HideBoard
         );
         let resets = matches!(command, TwinCommand::Reset);
         self.carry_out(command, rig)?;
@@ -188,7 +201,11 @@ impl TwinDesk {
                 Ok(())
             }
             TwinCommand::TourBoard(on) => {
-                self.tour = on.then_some(Tour { next: 0, held: None, looks: 0 });
+                self.tour = on.then(|| Tour::through(self.board_places.clone()));
+                Ok(())
+            }
+            TwinCommand::TourFew => {
+                self.tour = Some(Tour::through(self.few_places.clone()));
                 Ok(())
             }
             TwinCommand::HideBoard => {
@@ -302,15 +319,16 @@ impl TwinDesk {
         if !tour.is_seen(now, looks) {
             return;
         }
-        match self.board_places.get(tour.next) {
-            Some(place) => {
-                twin.send(plumbline_twin::TwinCommand::PlaceBoard { robot_from_board: *place });
-                *tour = Tour { next: tour.next + 1, held: Some(now), looks };
+        match tour.places.get(tour.next).copied() {
+            Some(robot_from_board) => {
+                twin.send(plumbline_twin::TwinCommand::PlaceBoard { robot_from_board });
+                (tour.next, tour.held, tour.looks) = (tour.next + 1, Some(now), looks);
             }
             None => {
                 twin.send(plumbline_twin::TwinCommand::HideBoard);
+                let all = if tour.places.len() == self.board_places.len() { "all " } else { "" };
+                let text = format!("The board was shown at {all}{} places.", tour.places.len());
                 self.tour = None;
-                let text = format!("The board was shown at all {} places.", self.board_places.len());
                 self.notes.push((NoticeLevel::Info, text));
             }
         }
@@ -337,6 +355,7 @@ impl TwinDesk {
             scenarios,
             scenario: self.scenario.clone(),
             board_places: self.board_places.len(),
+            few_board_places: self.few_places.len(),
             ..TwinView::default()
         };
         let Some(twin) = &self.twin else { return view };
@@ -439,7 +458,7 @@ mod tests {
     #[test]
     fn the_board_stays_until_it_was_looked_at_often_enough() {
         let held = Instant::now();
-        let tour = Tour { next: 1, held: Some(held), looks: 100 };
+        let tour = Tour { places: vec![], next: 1, held: Some(held), looks: 100 };
         let seen = |after_ms: u64, looks: u64| tour.is_seen(held + Duration::from_millis(after_ms), looks);
         assert!(!seen(500, 200), "not found still yet");
         assert!(seen(1600, 108));

@@ -28,6 +28,8 @@ pub struct TwinView {
     pub board: Option<Pose<Robot, Board>>,
     /// Number of places that the board can be held at for calibrating the eyes.
     pub board_places: usize,
+    /// So many of them suffice where the board is then looked at as it lies on the table.
+    pub few_board_places: usize,
     /// Height of the block under the touchscreen, m.
     pub screen_height_m: f64,
     /// Weight in the right palm, kg.
@@ -51,6 +53,7 @@ impl Default for TwinView {
             toys: Vec::new(),
             board: None,
             board_places: 0,
+            few_board_places: 0,
             screen_height_m: 0.0,
             payload_kg: 0.0,
             faults: Vec::new(),

@@ -1,25 +1,12 @@
 //! Whether something is held: the fingers say, and the eyes.
 
 use plumbline_model::detection::PixelBox;
-use plumbline_model::robot::JointIndex;
 use plumbline_model::{Point, Robot};
 
 use super::{Chosen, End, Running};
-use crate::body::ServoState;
 use crate::record::{Failure, Outcome, Step};
 use crate::see::Seen;
 
-/// What is held presses the thumb with at least this share of what presses the strongest finger: what fingers
-/// press on alone is the hand itself, or slips out between them. Of 883 attempts of the twin the thumb had
-/// more than 0.42 in all but one of 763 that held something, and less than 0.18 in the 120 that did not.
-const THUMB_SHARE: f64 = 0.3;
-/// A thumb or a finger that presses with less than this share of its torque presses on nothing.
-const PRESSES: f64 = 0.1;
-/// The same by the currents of their motors, A: those of a hand say no load. Fingers that press with a fifth
-/// of their torque take several times as much.
-const PRESSES_A: f64 = 0.015;
-/// Where servos say neither: a finger that is kept open by more than this holds something, rad.
-const HELD_RAD: f64 = 0.10;
 /// A thing that is seen this near to where it stood, and no higher than this over it, was left, m.
 const LEFT_M: f64 = 0.10;
 /// What is not held well has fallen after this time, s.
@@ -74,38 +61,14 @@ impl Running<'_> {
     }
 
     /// Whether something is between fingers and thumb. How far the fingers (the thumb is none) are kept
-    /// from closing around nothing, the mean, goes into the record. A body may let them press less than it
-    /// was asked, so it is not what was commanded last that counts.
+    /// from closing around nothing, the mean, goes into the record.
     fn hand_holds(&mut self) -> Result<bool, End> {
-        let planner = self.grasper.planner(self.order.method);
-        let closed = planner.closed(&self.body.commanded()?);
-        let (fingers, thumb) = (planner.fingers(), planner.thumb());
+        let grip = self.grasper.planner(self.order.method).grip();
         let servos = self.body.servos()?;
-        let of = |joints: &[JointIndex]| -> Vec<&ServoState> {
-            servos.iter().filter(|servo| joints.contains(&servo.joint)).collect()
-        };
-        let (fingers, thumb) = (of(&fingers), of(&thumb));
-        let open_rad: Vec<f64> =
-            fingers.iter().map(|servo| (servo.angle_rad - closed[servo.joint]).abs()).collect();
+        let open_rad = grip.open_rad(&servos);
         self.record.fingers_open_rad = Some(open_rad.iter().sum::<f64>() / open_rad.len().max(1) as f64);
-        let pinched = |says: fn(&ServoState) -> Option<f64>, presses: f64| {
-            let all =
-                |servos: &[&ServoState]| servos.iter().map(|servo| says(servo)).collect::<Option<Vec<_>>>();
-            let (fingers, thumb) = (all(&fingers)?, all(&thumb)?);
-            (!thumb.is_empty()).then(|| is_pinched(&fingers, &thumb, presses))
-        };
-        let pinched =
-            pinched(|servo| servo.load, PRESSES).or_else(|| pinched(|servo| servo.current_a, PRESSES_A));
-        Ok(pinched.unwrap_or_else(|| open_rad.iter().any(|open_rad| *open_rad > HELD_RAD)))
+        Ok(grip.holds(&servos))
     }
-}
-
-/// Whether what presses the fingers presses the thumb, by what their servos say of their torque; less than
-/// `presses` is nothing.
-fn is_pinched(fingers: &[f64], thumb: &[f64], presses: f64) -> bool {
-    let strongest = fingers.iter().fold(0.0f64, |strongest, load| strongest.max(load.abs()));
-    let thumb: f64 = thumb.iter().map(|load| load.abs()).sum();
-    strongest > presses && thumb > presses.max(THUMB_SHARE * strongest)
 }
 
 /// Whether both eyes see it in the boxes in which the chosen one was before.
@@ -182,28 +145,6 @@ mod tests {
         // In the hand it is high and elsewhere in the images, or high and not.
         assert!(!is_left(&tomato([0.3, -0.1, 0.18], 290.0), &[]));
         assert!(!is_left(&tomato([0.3, -0.1, 0.18], 210.0), &[]));
-    }
-
-    #[test]
-    fn what_is_held_presses_the_thumb_however_far_the_fingers_are_closed() {
-        // Fingers and thumb of attempts: a tomato pressed with all and with a fifth of the torque, a mushroom.
-        for (fingers, thumb) in [
-            ([-0.0, -1.0], [-0.4, 0.35]),
-            ([-0.01, -0.2], [-0.15, 0.01]),
-            ([-0.0, -1.0], [-0.3, 0.12]),
-            ([-0.0, -1.0], [-0.4, 0.07]),
-        ] {
-            assert!(is_pinched(&fingers, &thumb, PRESSES), "{fingers:?} {thumb:?}");
-        }
-        // A tomato that slipped out, fingers that press on the hand itself, fingers that closed around nothing.
-        for (fingers, thumb) in [
-            ([-0.0, -1.0], [-0.09, 0.07]),
-            ([-0.2, -0.2], [-0.0, -0.0]),
-            ([-0.0, -0.03], [-0.02, 0.02]),
-            ([0.0, 0.0], [0.0, 0.0]),
-        ] {
-            assert!(!is_pinched(&fingers, &thumb, PRESSES), "{fingers:?} {thumb:?}");
-        }
     }
 
     #[test]

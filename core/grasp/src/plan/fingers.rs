@@ -6,20 +6,12 @@ use plumbline_model::robot::{JointIndex, Posture};
 
 use super::GraspPlanner;
 use crate::body::is_thumb;
-
-/// Fingers and thumb bend this far around nothing, rad.
-const CLOSED_RAD: f64 = 1.8;
+use crate::held::{self, Grip};
 
 impl GraspPlanner {
     /// The hand open, the rest as in `from`.
     pub fn open(&self, from: &Posture) -> Posture {
         from.with(self.arm.hand(), &vec![0.0; self.arm.hand().len()])
-    }
-
-    /// Joints of the fingers without the thumb.
-    pub fn fingers(&self) -> Vec<JointIndex> {
-        let is_finger = |joint: &&JointIndex| !self.is_thumb(**joint);
-        self.arm.hand().iter().filter(is_finger).copied().collect()
     }
 
     /// Joints of the thumb.
@@ -56,17 +48,16 @@ impl GraspPlanner {
         above.with(&[turn, bend], &[turned, bent])
     }
 
+    /// Its joints, to tell whether something is in it.
+    pub fn grip(&self) -> Grip {
+        Grip::of_joints(self.arm.rig(), self.arm.hand())
+    }
+
     fn is_thumb(&self, joint: JointIndex) -> bool {
         is_thumb(self.arm.rig(), joint)
     }
 
-    /// Bent inward, as far as the fingers of the pose "close-hand" are.
     fn closed_rad(&self, joint: JointIndex) -> f64 {
-        if self.arm.rig().description.joint(joint).name.contains("thumb_z") {
-            return 0.0;
-        }
-        let limits = self.arm.rig().limits(joint);
-        let inward = if limits.upper_rad > -limits.lower_rad { 1.0 } else { -1.0 };
-        inward * CLOSED_RAD
+        held::closed_rad(self.arm.rig(), joint)
     }
 }

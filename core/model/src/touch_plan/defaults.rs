@@ -49,14 +49,12 @@ impl PlanOptions {
         Self { patterns: vec![Pattern::Corners], repeats: 2, ..Self::plain(area, Purpose::PlaceScreen) }
     }
 
-    /// What commissioning touches for a purpose: 4 corners, 15 to learn from, 6 to check, 25 in all. What so
-    /// few leave open of the arm, its hands held over the table tell the eyes.
+    /// What commissioning touches for a purpose: 4 corners, 15 to learn from where they tell most, 6 anywhere
+    /// to check, 25 in all. What so few leave open of the arm, its hands held over the table tell the eyes.
     pub fn few(area: TouchArea, purpose: Purpose, seed: u64) -> Self {
         let patterns = match purpose {
             Purpose::PlaceScreen => vec![Pattern::Corners],
-            Purpose::Train => {
-                vec![Pattern::Grid { columns: 4, rows: 3 }, Pattern::Again { targets: 3, times: 1 }]
-            }
+            Purpose::Train => vec![Pattern::Telling { places: 12, again: 3 }],
             Purpose::Check => vec![Pattern::Random { count: 6 }],
         };
         Self { patterns, seed, ..Self::plain(area, purpose) }

@@ -27,6 +27,16 @@ pub enum PlanError {
         /// What it needs.
         least: &'static str,
     },
+    /// What tells most is chosen among all touches, by itself.
+    #[error(
+        "places that tell most are chosen alone, of the screen as it lies and the bare hand: take the other patterns, heights and weights away"
+    )]
+    TellingAlone,
+    /// Nobody but the arm knows where.
+    #[error(
+        "places that tell most are chosen with the arm: connect to the robot or the twin, and plan there"
+    )]
+    TellingNeedsArm,
     /// Only repeats of what no pattern has.
     #[error("there is nothing to be repeated: add a grid, lines or random targets")]
     NothingToRepeat,

@@ -91,6 +91,9 @@ impl TouchPlan {
     /// When the options do not describe a plan that can be made: which, and what to do.
     pub fn make(options: &PlanOptions, screen: &Touchscreen) -> Result<Self, PlanError> {
         options.check(screen)?;
+        if options.telling().is_some() {
+            return Err(PlanError::TellingNeedsArm);
+        }
         let targets = pattern::targets(options);
         if options.purpose == Purpose::PlaceScreen && !pattern::span_a_plane(&targets, screen) {
             return Err(PlanError::OnALine);

@@ -79,6 +79,14 @@ pub enum Pattern {
         /// How often more.
         times: usize,
     },
+    /// Where touches tell most of where the palm will be, from the sides and with the hand held as tells
+    /// most. They are chosen with the arm itself, not by [`super::TouchPlan::make`], and alone.
+    Telling {
+        /// Number of places.
+        places: usize,
+        /// How many of them are touched twice.
+        again: usize,
+    },
 }
 
 /// From where the fingertip arrives.
@@ -169,7 +177,20 @@ pub struct PlanOptions {
 }
 
 impl PlanOptions {
-    pub(super) fn check(&self, screen: &Touchscreen) -> Result<(), PlanError> {
+    /// Number of places where touches tell most, and how many of them are touched twice; `None`: targets lie
+    /// where patterns have them.
+    pub fn telling(&self) -> Option<(usize, usize)> {
+        self.patterns.iter().find_map(|pattern| match *pattern {
+            Pattern::Telling { places, again } => Some((places, again)),
+            _ => None,
+        })
+    }
+
+    /// Looks whether a plan can be made from them.
+    ///
+    /// # Errors
+    /// What is wrong with them, and what to do.
+    pub fn check(&self, screen: &Touchscreen) -> Result<(), PlanError> {
         let area = &self.area;
         if !(area.u_px[0] < area.u_px[1] && area.v_px[0] < area.v_px[1]) {
             return Err(PlanError::AreaEmpty);
@@ -191,6 +212,12 @@ impl PlanOptions {
             let count = pattern.size();
             if count > super::MOST_TOUCHES {
                 return Err(PlanError::TooMany { count, most: super::MOST_TOUCHES });
+            }
+        }
+        if self.telling().is_some() {
+            let as_it_lies = self.screen_heights_m == [0.0] && self.payloads_kg == [0.0];
+            if self.patterns.len() > 1 || !as_it_lies || self.beside_described {
+                return Err(PlanError::TellingAlone);
             }
         }
         if self.repeats == 0 {
@@ -225,6 +252,9 @@ impl Pattern {
             Self::Again { targets, times } => {
                 (targets == 0 || times == 0).then_some(("pattern of repeats", "one target, once more"))
             }
+            Self::Telling { places, .. } => {
+                (places == 0).then_some(("choice of what tells most", "one place"))
+            }
         }
     }
 
@@ -238,6 +268,7 @@ impl Pattern {
             Self::Random { count } => count,
             Self::Corners => 4,
             Self::Again { targets, times } => targets.saturating_mul(times),
+            Self::Telling { places, again } => places.saturating_add(again),
         }
     }
 }

@@ -48,11 +48,27 @@ fn the_usual_plans_have_the_usual_size() {
     assert!((22..=26).contains(&plan(&PlanOptions::quick(area())).touches.len()));
     assert_eq!(plan(&PlanOptions::check_reach(area(), 250, 3)).touches.len(), 250);
     assert_eq!(plan(&PlanOptions::place_screen(area())).touches.len(), 8);
-    let few = [Purpose::PlaceScreen, Purpose::Train, Purpose::Check]
-        .map(|purpose| plan(&PlanOptions::few(area(), purpose, 7)).touches.len());
-    assert_eq!(few, [4, 15, 6], "25 in all");
+    let few = |purpose| PlanOptions::few(area(), purpose, 7);
+    let patterned = [Purpose::PlaceScreen, Purpose::Check].map(|purpose| plan(&few(purpose)).touches.len());
+    assert_eq!(patterned, [4, 6]);
+    assert_eq!(few(Purpose::Train).telling(), Some((12, 3)), "25 in all");
     let rich = plan(&PlanOptions::rich(area()));
     assert_eq!(rich.touches.len(), 17 * 2 * 3 * 2);
+}
+
+#[test]
+fn what_tells_most_is_chosen_alone_and_with_the_arm() {
+    let options = PlanOptions::few(area(), Purpose::Train, 7);
+    assert_eq!(options.check(&screen()), Ok(()));
+    assert_eq!(TouchPlan::make(&options, &screen()), Err(PlanError::TellingNeedsArm));
+    let mut beside = options.clone();
+    beside.patterns.push(Pattern::Corners);
+    let on_block = PlanOptions { screen_heights_m: vec![0.06], ..options.clone() };
+    for options in [beside, on_block] {
+        assert_eq!(options.check(&screen()), Err(PlanError::TellingAlone));
+    }
+    let none = PlanOptions { patterns: vec![Pattern::Telling { places: 0, again: 3 }], ..options };
+    assert!(matches!(none.check(&screen()), Err(PlanError::EmptyPattern { .. })));
 }
 
 #[test]

@@ -13,7 +13,7 @@ use plumbline_model::{
     Board, CalibrationOptions, Chessboard, Eye, JobContext, PairObservation, Pose, Robot as RobotFrame,
     Stamp, StereoCameras, StereoFrame,
 };
-use plumbline_twin::{board_presets, default_board};
+use plumbline_twin::{default_board, few_board_presets};
 use plumbline_vision::calibrate::solve;
 use plumbline_vision::chessboard::find_in_pair;
 use plumbline_vision::mount::{HeadView, PlannedTarget, plan_head_views};
@@ -23,9 +23,6 @@ use super::lab::{EYES_SESSION, Lab};
 use super::robot::Robot;
 use super::steps::Step;
 
-/// Places of `board_presets` at which the board is held: tilted in the middle, at all borders of the
-/// images, and far away.
-const HELD: [usize; 12] = [1, 2, 3, 4, 5, 6, 7, 8, 13, 14, 18, 21];
 /// Head poses from which the lying board is looked at.
 const TOUR: usize = 8;
 /// Their names begin so.
@@ -48,14 +45,14 @@ pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Res
     }
     let board = default_board();
     let mut album = Album { lab, board, seen: vec![], postures: BTreeMap::new(), sizes_px: [(0, 0); 2] };
-    let presets = board_presets(&lab.rig);
-    for (k, place) in HELD.iter().filter_map(|i| presets.get(*i)).enumerate() {
+    let held = few_board_presets(&lab.rig);
+    for (k, place) in held.iter().enumerate() {
         context.checkpoint()?;
-        context.report(0.5 * k as f64 / HELD.len() as f64, "looking at the board in a person's hands");
+        context.report(0.5 * k as f64 / held.len() as f64, "looking at the board in a person's hands");
         robot.hold_board(Some(*place));
         album.take(robot, format!("held {:02}", k + 1))?;
     }
-    let lying = lying_board(&board);
+    let lying = lying_board(&board, LIES_AT_M);
     robot.hold_board(Some(lying));
     let target = PlannedTarget::board(&board, &lying);
     let cameras = &lab.rig.eyes.cameras;
@@ -158,21 +155,25 @@ fn postures_file(lab: &Lab) -> PathBuf {
     lab.sessions().join(EYES_SESSION).join(POSTURES)
 }
 
-/// The board face up, its columns to the robot's right.
-fn lying_board(board: &Chessboard) -> Pose<RobotFrame, Board> {
+/// The board face up, its columns to the robot's right, its middle at a place of the robot's frame, m.
+pub(super) fn lying_board(board: &Chessboard, at_m: [f64; 3]) -> Pose<RobotFrame, Board> {
     // x along the columns to the right, y along the rows toward the robot, z down into the board.
     let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -std::f64::consts::FRAC_PI_2)
         * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
     let middle = 0.5
         * board.square_m
         * Vector3::new(f64::from(board.inner_columns - 1), f64::from(board.inner_rows - 1), 0.0);
-    let at = Vector3::from(LIES_AT_M) - turn * middle;
+    let at = Vector3::from(at_m) - turn * middle;
     Pose::new(Isometry3::from_parts(Translation3::from(at), turn))
 }
 
 /// Rms error of lengths between corners of the same board, along its rows and columns and from each
 /// corner to the next, by triangulation; mm. `None` where no board was seen by both eyes.
-fn length_error_mm(cameras: &StereoCameras, board: &Chessboard, pairs: &[PairObservation]) -> Option<f64> {
+pub(super) fn length_error_mm(
+    cameras: &StereoCameras,
+    board: &Chessboard,
+    pairs: &[PairObservation],
+) -> Option<f64> {
     let (columns, rows) = (board.inner_columns as usize, board.inner_rows as usize);
     let (mut squares, mut count) = (0.0, 0.0);
     for pair in pairs {

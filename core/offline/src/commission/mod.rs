@@ -26,6 +26,8 @@ mod steps;
 #[cfg(test)]
 mod tests;
 mod touches;
+#[cfg(test)]
+mod views_tests;
 
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -43,7 +43,12 @@ pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, Commissio
 
 /// How far the board's corners seem to lie, from head poses held back, from where they seem to lie on
 /// the mean of the others; rms, mm.
-fn wander_mm(rig: &Rig, cameras: &StereoCameras, used: &[HeadView], back: &[HeadView]) -> Option<f64> {
+pub(super) fn wander_mm(
+    rig: &Rig,
+    cameras: &StereoCameras,
+    used: &[HeadView],
+    back: &[HeadView],
+) -> Option<f64> {
     let corners = |view: &HeadView| -> Vec<Option<Vector3<f64>>> {
         let (Some(left), Some(right)) = (view.pixels(Eye::Left), view.pixels(Eye::Right)) else {
             return vec![];

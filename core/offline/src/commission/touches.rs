@@ -5,23 +5,25 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
+use plumbline_engine::ground::jobs::Part;
 use plumbline_engine::motion::{Hold, Planner, ScreenPlace, TouchPath};
 use plumbline_engine::rig_models;
 use plumbline_engine::robot::TouchMeasurement;
 use plumbline_engine::touch::plan::{Aim, FORMAT, RunPlan, TIP};
 use plumbline_engine::touch::record::{Ended, Progress, TouchRecord};
+use plumbline_engine::touch::telling::{Candidate, Chosen, candidates, choose, in_short_ways};
 use plumbline_engine::touch::{placement, store};
 use plumbline_fit::pose;
 use plumbline_handeye::{Tie, body, screen, table};
 use plumbline_model::robot::{Chain, Rig};
 use plumbline_model::session::{Screen, Touchscreen};
-use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, PlannedTouch, Purpose, Side, Sides};
+use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, Side, Sides};
 use plumbline_model::{JobContext, Pixel, Point, Robot as RobotFrame};
 use plumbline_twin::Touched;
 
 use super::error::CommissionError;
 use super::lab::{Lab, TOUCH_SESSION};
-use super::plan::{Candidate, Chosen, TOUCHES, area, candidates, choose};
+use super::plan::{AGAIN, PLACES, area};
 use super::robot::{Robot, SPEED_RAD_S};
 use super::steps::Step;
 
@@ -45,17 +47,18 @@ pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Res
     let planner = Planner::new(&lab.rig, TIP, ScreenPlace::Nominal)?;
     let mut depths = Depths::new(&lab.rig, ScreenPlace::Nominal)?;
     let area = area(&lab.rig)?;
-    let possible = candidates(&planner, &area, context)?;
+    let possible = candidates(&planner, &area, &Part { whole: context, begin: 0.0, end: 0.2 })?;
     context.report(0.2, "choosing touches");
-    let chosen = in_short_ways(&choose(&lab.rig, &possible)?, &possible);
+    let chosen = choose(&lab.rig, Finger::Right, &possible, PLACES, AGAIN)?;
+    let chosen = in_short_ways(&chosen, &possible);
     let aims: Vec<Aim> = chosen.iter().enumerate().map(|(k, pick)| aim(k + 1, pick, &possible)).collect();
     let plan = RunPlan {
         format: FORMAT,
         options: PlanOptions {
             area,
-            patterns: vec![Pattern::Random { count: TOUCHES }],
+            patterns: vec![Pattern::Telling { places: PLACES, again: AGAIN }],
             repeats: 1,
-            sides: Sides::LeftAndRight,
+            sides: Sides::Above,
             screen_heights_m: vec![0.0],
             payloads_kg: vec![0.0],
             seed: lab.seed,
@@ -75,8 +78,7 @@ pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Res
     for (k, aim) in plan.touches.iter().enumerate() {
         context.checkpoint()?;
         context.report(0.25 + 0.75 * k as f64 / plan.touches.len() as f64, "touching the screen");
-        let hold = possible[chosen[k].candidate].hold;
-        let met = depths.touch(robot, aim.touch.target, aim.sent(), aim.touch.side, hold);
+        let met = depths.touch(robot, aim.touch.target, aim.sent(), aim.touch.side, aim.hold);
         match met.and_then(|measured| TouchRecord::new(aim, &measured).ok_or_else(|| NOTHING.to_owned())) {
             Ok(record) => progress.touched(record),
             Err(why) => {
@@ -271,45 +273,17 @@ pub(super) fn rms(values: &[f64]) -> Option<f64> {
 }
 
 fn aim(number: usize, pick: &Chosen, candidates: &[Candidate]) -> Aim {
-    let Candidate { path, side, set, .. } = &candidates[pick.candidate];
-    let sent_m: [f64; 3] = path.sent.coords.coords.into();
+    let candidate = &candidates[pick.candidate];
+    let sent_m: [f64; 3] = candidate.path.sent.coords.coords.into();
     Aim {
-        touch: PlannedTouch {
-            number,
-            target: path.target,
-            set: set.clone(),
-            group: format!("g{:02}", pick.group + 1),
-            side: *side,
-            screen_height_m: 0.0,
-            payload_kg: 0.0,
-            as_described: false,
-        },
+        touch: candidate.planned(number, pick.group),
+        hold: candidate.hold,
         place_m: sent_m,
         sent_m,
         inside: true,
         refusal: None,
-        posture: Some(path.contact.clone()),
+        posture: Some(candidate.path.contact.clone()),
     }
-}
-
-/// Always the nearest next; repeats of a touch are not made one after the other.
-fn in_short_ways(chosen: &[Chosen], candidates: &[Candidate]) -> Vec<Chosen> {
-    let mut left: Vec<&Chosen> = chosen.iter().collect();
-    let mut ordered: Vec<Chosen> = vec![];
-    while !left.is_empty() {
-        let cost = |pick: &&Chosen| {
-            let Some(last) = ordered.last() else { return 0.0 };
-            let way_rad = candidates[last.candidate]
-                .path
-                .contact
-                .distance_rad(&candidates[pick.candidate].path.contact);
-            way_rad + if last.group == pick.group { 10.0 } else { 0.0 }
-        };
-        let nearest = (0..left.len()).min_by(|a, b| cost(&left[*a]).total_cmp(&cost(&left[*b]))).unwrap_or(0);
-        let Chosen { candidate, group } = *left.remove(nearest);
-        ordered.push(Chosen { candidate, group });
-    }
-    ordered
 }
 
 /// Goes above, lowers until the glass is met, reads, and goes up again. `None`: the glass was not met, or

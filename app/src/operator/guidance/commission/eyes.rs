@@ -8,6 +8,8 @@ use super::super::{ENOUGH_PAIRS, dropped, source_trouble, verdict};
 use super::Said;
 use crate::operator::{Action, RobotAction};
 
+/// Pairs that suffice on the way: the board is then looked at as it lies on the table.
+const SUFFICE: usize = 12;
 /// Lenses move while cameras get warm; after so long they have settled, s.
 const WARM_AFTER_S: f64 = 20.0 * 60.0;
 
@@ -46,11 +48,15 @@ fn pairs(view: &View) -> usize {
     view.eyes.collected.len() - dropped(&view.eyes)
 }
 
-fn solve(count: usize) -> Said {
+fn solve(view: &View) -> Said {
+    let count = pairs(view);
     let sentence = format!(
         "{count} pairs are collected. Solving moves nothing, and nothing is used before you accept it."
     );
-    Said::press(sentence, format!("Solve {}", format::count(count, "pair")), vec![Action::Solve])
+    // What a person still holds is not collected while it is solved.
+    let capture = view.eyes.auto_capture.then_some(Action::ToggleAutoCapture);
+    let actions = [capture, Some(Action::Solve)].into_iter().flatten().collect();
+    Said::press(sentence, format!("Solve {}", format::count(count, "pair")), actions)
 }
 
 /// Nobody is needed: an unseen hand shows the board.
@@ -59,7 +65,8 @@ fn twin(view: &View, again: bool) -> Said {
     if view.twin.board.is_some() && view.eyes.auto_capture {
         let why =
             format!("The board is shown to the eyes, pairs are captured by themselves: {count} so far.");
-        let fraction = count as f64 / view.twin.board_places.max(1) as f64;
+        let places = if again { view.twin.board_places } else { view.twin.few_board_places };
+        let fraction = count as f64 / places.max(1) as f64;
         return Said::wait(why, Some(fraction.min(1.0)));
     }
     if view.twin.eyes_on_s < WARM_AFTER_S && count == 0 {
@@ -70,21 +77,29 @@ fn twin(view: &View, again: bool) -> Said {
         );
     }
     if count >= ENOUGH_PAIRS && !again {
-        return solve(count);
+        return solve(view);
     }
+    let (places, action) = match again || count > 0 {
+        true => (format!("all {} places", view.twin.board_places), RobotAction::TourBoard),
+        false => (format!("{} places", view.twin.few_board_places), RobotAction::TourFew),
+    };
     Said::press(
-        "An unseen hand shows the twin the board at all places; pairs are captured by themselves. The robot stays.",
-        "Show the board at all places",
+        format!(
+            "An unseen hand shows the twin the board at {places}; pairs are captured by themselves. The robot stays."
+        ),
+        format!("Show the board at {places}"),
         // On the screen of collecting, that captures too.
-        vec![Action::Robot(RobotAction::TourBoard)],
+        vec![Action::Robot(action)],
     )
 }
 
 /// A person holds the board to the outline.
 fn person(view: &View, again: bool) -> Said {
     let (count, eyes) = (pairs(view), &view.eyes);
-    if count >= ENOUGH_PAIRS && (eyes.ghost.is_none() || !eyes.auto_capture) && !again {
-        return solve(count);
+    let suffices =
+        count >= SUFFICE || (count >= ENOUGH_PAIRS && (eyes.ghost.is_none() || !eyes.auto_capture));
+    if suffices && !again {
+        return solve(view);
     }
     if !eyes.auto_capture {
         return Said::press(
@@ -94,6 +109,7 @@ fn person(view: &View, again: bool) -> Said {
         );
     }
     let wanted = eyes.ghost.as_ref().map_or_else(|| "another place".to_owned(), |ghost| ghost.reason.clone());
-    let why = format!("Hold the board still as the outline shows: {wanted}. {count} pairs so far.");
-    Said::wait(why, Some((count as f64 / ENOUGH_PAIRS as f64).min(1.0)))
+    let why =
+        format!("Hold the board still as the outline shows: {wanted}. {count} of {SUFFICE} pairs so far.");
+    Said::wait(why, Some((count as f64 / SUFFICE as f64).min(1.0)))
 }

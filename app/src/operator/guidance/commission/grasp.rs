@@ -24,7 +24,9 @@ pub(super) fn said(view: &View) -> Said {
         return trouble.into();
     }
     let run = of_view.run.as_ref().filter(|run| run.outcome.is_some());
-    let held = run.is_some_and(|run| run.outcome == Some(GraspOutcome::Success) && run.told.is_none());
+    let slipped = run.is_some_and(|run| grasp::has_slipped(run));
+    let held =
+        !slipped && run.is_some_and(|run| run.outcome == Some(GraspOutcome::Success) && run.told.is_none());
     if held {
         return Said::press(
             "The fingers meet something. Look: is it held? If not, say Not held in the pane Grasp.",
@@ -45,6 +47,7 @@ pub(super) fn said(view: &View) -> Said {
     let grasps =
         "Both eyes look for the tomato; then the right arm reaches for it, closes the hand and lifts it.";
     let sentence = match run.and_then(|run| run.outcome.as_ref()) {
+        _ if slipped => format!("It was held and has slipped out. It is tried once more. {grasps}"),
         Some(GraspOutcome::Failed { why, .. } | GraspOutcome::Refused { why }) => {
             format!("{} It is tried once more. {grasps}", closed(why))
         }

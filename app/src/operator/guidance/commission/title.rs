@@ -71,14 +71,12 @@ pub fn done_in_words(figure: &CommissionFigure) -> String {
         CommissionFigure::Effects(effects) if effects.is_empty() => {
             "nothing is missing in the model".to_owned()
         }
-        CommissionFigure::Effects(effects) => format!("in the model: {}", effects.join(", ")),
+        CommissionFigure::Effects(effects) => {
+            format!("{} in the model: {}", format::count(effects.len(), "effect"), effects.join(", "))
+        }
         CommissionFigure::NotInLibrary => "something is missing that no known effect explains".to_owned(),
         CommissionFigure::Seen { before_m, after_m } => {
-            format!(
-                "the hand is seen {} beside its arm, {} before",
-                format::mm(*after_m),
-                format::mm(*before_m)
-            )
+            format!("seen {} beside the arm, {} before", format::mm(*after_m), format::mm(*before_m))
         }
         CommissionFigure::Missed { mean_m: Some(mean_m), touches } => {
             format!("{touches} new touches miss by {}", format::mm(*mean_m))

@@ -28,7 +28,7 @@ pub(super) fn placing(view: &View) -> Said {
 
 pub(super) fn training(view: &View) -> Said {
     let plan = Said::press(
-        "Places all over the screen are touched, to learn from what makes the arm miss. Planning moves nothing.",
+        "The screen is touched where, and with the hand held as, tells most of what makes the arm miss. Planning moves nothing.",
         "Plan touches to learn from",
         vec![Action::Commission(CommissionAction::PlanTouches)],
     );

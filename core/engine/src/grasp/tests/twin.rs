@@ -7,7 +7,7 @@ use plumbline_twin::Toy;
 
 use super::bench::{Bench, words};
 use crate::command::{GraspCommand, HandStep, RobotCommand};
-use crate::view::{GraspOutcome, GraspStep, LampState, MotionState};
+use crate::view::{GraspOutcome, GraspStep, LampState, MotionState, SinceHeld, View};
 
 const EASY_M: [f64; 2] = [0.32, -0.15];
 
@@ -80,6 +80,28 @@ fn stop_ends_it_the_arm_holds_and_the_next_one_works() {
     bench.until("STOP to be released", |view| !view.robot.stopped);
     let run = bench.grasp();
     assert_eq!(run.outcome, Some(GraspOutcome::Success), "{run:?}");
+}
+
+#[test]
+fn what_is_held_and_slips_out_later_is_told() {
+    let Some(bench) = Bench::start("perfect", Toy::Tomato, EASY_M) else { return };
+    let run = bench.grasp();
+    assert_eq!(run.outcome, Some(GraspOutcome::Success), "{run:?}");
+    // It stays in the hand, and nothing else is said.
+    let now_s = bench.until_idle().twin.time_s;
+    let view = bench.until("ten seconds", |view| view.twin.time_s >= now_s + 10.0);
+    let since = |view: &View| view.grasp.run.as_ref().map(|run| run.since);
+    assert_eq!(since(&view), Some(SinceHeld::Held), "{:?}", view.notices);
+    assert!(view.grasp.attempts[0].is_success());
+
+    bench.remove(Toy::Tomato);
+    let view = bench.until("that it is gone", |view| matches!(since(view), Some(SinceHeld::Slipped(_))));
+    let said = view.notices.iter().any(|notice| notice.text.contains("was held and has slipped out of the"));
+    assert!(said, "{:?}", view.notices);
+    bench.until("it to be kept", |view| view.grasp.attempts[0].slipped_after.is_some());
+    let record = kept(&bench);
+    assert!(record.slipped_after_s.is_some_and(|after_s| after_s > 5.0) && !record.is_success());
+    assert_eq!(record.outcome, Some(GraspOutcome::Success), "what it took itself for stays");
 }
 
 #[test]

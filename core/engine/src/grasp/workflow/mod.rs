@@ -12,6 +12,7 @@ use plumbline_model::StereoFrame;
 
 use super::around::GraspAround;
 use super::command::{GraspCommand, GraspTarget, HandStep};
+use super::held::HeldWatch;
 use super::keeping::grasps_in;
 use super::progress::Progress;
 use super::sights::Sights;
@@ -57,6 +58,8 @@ pub struct GraspWorkflow {
     sights: Sights,
     /// Height of the palm when the hand closed last, m.
     closed_at_m: Option<f64>,
+    /// What the hand holds, while it is looked whether it still does.
+    held: Option<HeldWatch>,
 }
 
 /// What became of an attempt during which the program ended; `None`: it came to its end.
@@ -86,6 +89,7 @@ impl GraspWorkflow {
             attempts: vec![],
             sights: Sights::default(),
             closed_at_m: None,
+            held: None,
         }
     }
 
@@ -142,14 +146,14 @@ impl Workflow for GraspWorkflow {
                 }
             }
             GraspResult::Planned(proposed) => self.planned(*proposed, context),
-            GraspResult::Grasped(attempt) => self.grasped(*attempt, &summary, context),
+            GraspResult::Grasped(attempt) => self.grasped(*attempt, &summary, around, context),
             GraspResult::HandDone(_, done) => {
                 self.plan = None;
                 if done.is_err() {
                     context.notices.add(NoticeLevel::Warning, summary);
                 }
             }
-            GraspResult::Judged(attempt) => self.judged(*attempt),
+            GraspResult::Judged(attempt) | GraspResult::SlipKept(attempt) => self.judged(*attempt),
         }
         self.ended(id, around, context);
     }

@@ -3,9 +3,11 @@
 use plumbline_grasp::Outcome;
 
 use super::GraspWorkflow;
+use crate::grasp::around::GraspAround;
 use crate::grasp::attempt::Proposed;
-use crate::grasp::view::AttemptView;
-use crate::grasp::work::Context;
+use crate::grasp::held::HeldWatch;
+use crate::grasp::view::{AttemptView, SinceHeld};
+use crate::grasp::work::{Context, GraspWork};
 use crate::ground::notice::NoticeLevel;
 
 impl GraspWorkflow {
@@ -25,7 +27,13 @@ impl GraspWorkflow {
         }
     }
 
-    pub(super) fn grasped(&mut self, attempt: AttemptView, summary: &str, context: &mut Context<'_>) {
+    pub(super) fn grasped(
+        &mut self,
+        attempt: AttemptView,
+        summary: &str,
+        around: &GraspAround,
+        context: &mut Context<'_>,
+    ) {
         let level = match attempt.outcome {
             Some(Outcome::Success) => NoticeLevel::Success,
             _ => NoticeLevel::Warning,
@@ -33,7 +41,50 @@ impl GraspWorkflow {
         context.notices.add(level, summary);
         self.plan = None;
         self.closed_at_m = attempt.closed_at_m.or(self.closed_at_m);
+        self.held = match attempt.outcome {
+            Some(Outcome::Success) => HeldWatch::of(&attempt, &around.described, context.time.instant),
+            _ => None,
+        };
         self.attempts.insert(0, attempt);
+    }
+
+    /// Whether something is in the hand, so that it has to be looked at.
+    pub fn is_watching(&self) -> bool {
+        self.held.is_some() && self.running.is_none()
+    }
+
+    /// The robot has something new: is what was grasped still in the hand?
+    pub fn watch(&mut self, around: &GraspAround, context: &mut Context<'_>) {
+        if self.running.is_some() {
+            return;
+        }
+        let Some(watch) = &mut self.held else { return };
+        match watch.look(&around.robot, context.time.instant) {
+            SinceHeld::Held => {}
+            since => self.is_not_held_any_more(since, context),
+        }
+    }
+
+    /// What was in the hand is not, or nobody knows.
+    pub(super) fn is_not_held_any_more(&mut self, since: SinceHeld, context: &mut Context<'_>) {
+        let Some(watch) = self.held.take() else { return };
+        if let Some(progress) = &self.progress {
+            progress.change(|run| {
+                if run.name == watch.attempt {
+                    run.since = since;
+                }
+            });
+        }
+        if let SinceHeld::Slipped(after) = since {
+            let text = format!(
+                "The {} was held and has slipped out of the {} hand {} s later.",
+                watch.object.to_lowercase(),
+                watch.hand.name(),
+                after.as_secs()
+            );
+            context.notices.add(NoticeLevel::Warning, text);
+            context.start(GraspWork::Slipped { folder: watch.folder, after });
+        }
     }
 
     pub(super) fn judged(&mut self, attempt: AttemptView) {

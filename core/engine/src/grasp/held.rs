@@ -1,0 +1,220 @@
+//! Goes on looking whether a thing that was grasped is still in the hand, until the hand is told something
+//! else.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use plumbline_grasp::{Grip, Hand, ServoState};
+use plumbline_model::robot::Rig;
+
+use super::view::{AttemptView, SinceHeld};
+use crate::robot::view::{MotionState, RobotView};
+
+/// A hand that presses on nothing for so long has lost it: a single reading says little.
+const EMPTY_FOR: Duration = Duration::from_secs(1);
+/// A hand whose joints are sent so much farther open than they were, the mean, was told to open, rad. The goals
+/// of a grip go on with its fingers, a little back and forth around what is held and far on around nothing.
+const OPENED_RAD: f64 = 0.3;
+
+/// A thing in a hand.
+#[derive(Clone, Debug)]
+pub struct HeldWatch {
+    /// Name of the attempt that grasped it.
+    pub attempt: String,
+    /// Its folder.
+    pub folder: PathBuf,
+    /// What is held.
+    pub object: String,
+    /// In which hand.
+    pub hand: Hand,
+    grip: Grip,
+    /// Since when it is known to be held.
+    since: Instant,
+    /// How far its joints were sent toward the closed hand at most, the mean, rad.
+    closed_rad: Option<f64>,
+    empty_since: Option<Instant>,
+}
+
+impl HeldWatch {
+    /// Of an attempt that has just ended and holds something; `None`: the robot has no such hand.
+    pub fn of(attempt: &AttemptView, rig: &Rig, now: Instant) -> Option<Self> {
+        Some(Self {
+            attempt: attempt.name.clone(),
+            folder: attempt.folder.clone(),
+            object: attempt.object.clone(),
+            hand: attempt.hand,
+            grip: Grip::of_rig(rig, attempt.hand)?,
+            since: now,
+            closed_rad: None,
+            empty_since: None,
+        })
+    }
+
+    /// Looks at the hand; anything but [`SinceHeld::Held`] is the end of it.
+    pub fn look(&mut self, robot: &RobotView, now: Instant) -> SinceHeld {
+        if !robot.connection.is_connected() {
+            return SinceHeld::Unknown;
+        }
+        let Some(sent_rad) = self.sent_rad(robot) else { return SinceHeld::Held };
+        let closed_rad = self.closed_rad.map_or(sent_rad, |closed_rad| closed_rad.max(sent_rad));
+        self.closed_rad = Some(closed_rad);
+        if closed_rad - sent_rad > OPENED_RAD {
+            return SinceHeld::LetGo;
+        }
+        // While the arm moves, what it carries presses now more and now less.
+        let servos = self.servos(robot).filter(|_| !matches!(robot.motion, MotionState::Moving { .. }));
+        let Some(servos) = servos else {
+            self.empty_since = None;
+            return SinceHeld::Held;
+        };
+        if self.grip.holds(&servos) {
+            self.empty_since = None;
+            return SinceHeld::Held;
+        }
+        let empty_since = *self.empty_since.get_or_insert(now);
+        if now.saturating_duration_since(empty_since) < EMPTY_FOR {
+            return SinceHeld::Held;
+        }
+        SinceHeld::Slipped(empty_since.saturating_duration_since(self.since))
+    }
+
+    /// How far the joints of the hand are sent from where they are open, the mean, rad; `None` while that is
+    /// not known.
+    fn sent_rad(&self, robot: &RobotView) -> Option<f64> {
+        let goal = |joint| robot.joints.iter().find(|view| view.joint == joint)?.goal_rad;
+        let goals_rad: Vec<f64> = self.grip.joints().map(goal).collect::<Option<_>>()?;
+        Some(goals_rad.iter().map(|goal_rad| goal_rad.abs()).sum::<f64>() / goals_rad.len().max(1) as f64)
+    }
+
+    /// What the servos of the hand say; `None`: not all of them are heard.
+    fn servos(&self, robot: &RobotView) -> Option<Vec<ServoState>> {
+        let of = |joint| {
+            let view = robot.joints.iter().find(|view| view.joint == joint)?;
+            Some(ServoState {
+                joint,
+                angle_rad: view.angle_rad?,
+                load: view.load,
+                current_a: view.current_a,
+                temperature_c: view.temperature_c,
+            })
+        };
+        self.grip.joints().map(of).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use jiff::Timestamp;
+    use plumbline_grasp::{Method, Outcome};
+    use plumbline_model::robot::Limits;
+
+    use super::*;
+    use crate::robot::view::{Connection, JointView};
+
+    const HOLDS: MotionState = MotionState::Holding { why: None };
+
+    fn rig() -> Rig {
+        Rig::built_in("nico").expect("comes with the program")
+    }
+
+    fn attempt() -> AttemptView {
+        AttemptView {
+            name: "one".to_owned(),
+            folder: PathBuf::from("one"),
+            began: Timestamp::UNIX_EPOCH,
+            method: Method::M5,
+            hand: Hand::Right,
+            object: "Tomato".to_owned(),
+            outcome: Some(Outcome::Success),
+            reached: None,
+            told: None,
+            slipped_after: None,
+            alignment_m: None,
+            closed_at_m: None,
+            seconds: None,
+        }
+    }
+
+    /// A robot whose joints press with this share of their torque and were sent there.
+    fn robot(load: f64, goal_rad: f64, motion: MotionState) -> RobotView {
+        let rig = rig();
+        let limits = Limits { lower_rad: -3.0, upper_rad: 3.0 };
+        let joint = |servo: &plumbline_model::robot::Servo| JointView {
+            joint: servo.joint,
+            name: servo.joint_name.clone(),
+            title: servo.title.clone(),
+            servo: servo.id,
+            model: servo.model.clone(),
+            limits,
+            limits_now: limits,
+            angle_rad: Some(1.0),
+            goal_rad: Some(goal_rad),
+            speed_rad_s: None,
+            load: Some(load),
+            current_a: None,
+            temperature_c: None,
+            voltage_v: None,
+            torque_on: Some(true),
+            let_go: false,
+            no_force: false,
+            age: None,
+            problem: None,
+            history: Arc::from([]),
+        };
+        RobotView {
+            joints: rig.servos.iter().map(joint).collect(),
+            connection: Connection::Connected { to: "twin".to_owned(), twin: true },
+            motion,
+            ..RobotView::default()
+        }
+    }
+
+    fn watch(began: Instant) -> HeldWatch {
+        HeldWatch::of(&attempt(), &rig(), began).expect("it has a right hand")
+    }
+
+    #[test]
+    fn what_slips_out_is_told_once_the_hand_was_empty_for_a_while() {
+        let began = Instant::now();
+        let at = |tenths: u64| began + Duration::from_millis(100 * tenths);
+        let mut held = watch(began);
+        assert_eq!(held.look(&robot(0.2, 1.8, HOLDS), at(1)), SinceHeld::Held);
+        // One bad reading, and one as the arm moves, say nothing.
+        assert_eq!(held.look(&robot(0.0, 1.8, HOLDS), at(40)), SinceHeld::Held);
+        assert_eq!(held.look(&robot(0.2, 1.8, HOLDS), at(41)), SinceHeld::Held);
+        let moving = MotionState::Moving { what: "to Home".to_owned(), fraction: None, remaining: None };
+        for tenths in 42..70 {
+            assert_eq!(held.look(&robot(0.0, 1.8, moving.clone()), at(tenths)), SinceHeld::Held);
+        }
+        for tenths in 70..80 {
+            assert_eq!(held.look(&robot(0.0, 1.8, HOLDS), at(tenths)), SinceHeld::Held);
+        }
+        // Around nothing the goals of a grip go on to the closed hand.
+        let slipped = held.look(&robot(0.0, 2.4, HOLDS), at(80));
+        assert_eq!(slipped, SinceHeld::Slipped(Duration::from_secs(7)));
+    }
+
+    #[test]
+    fn a_hand_that_was_told_something_else_has_not_lost_it() {
+        let began = Instant::now();
+        let mut held = watch(began);
+        assert_eq!(held.look(&robot(0.2, 1.8, HOLDS), began), SinceHeld::Held);
+        assert_eq!(held.look(&robot(0.0, 0.0, HOLDS), began), SinceHeld::LetGo);
+        let away = RobotView { connection: Connection::None, ..robot(0.2, 1.8, HOLDS) };
+        assert_eq!(watch(began).look(&away, began), SinceHeld::Unknown);
+    }
+
+    #[test]
+    fn nothing_is_said_of_a_hand_that_is_not_heard() {
+        let began = Instant::now();
+        let mut held = watch(began);
+        let mut silent = robot(0.0, 1.8, HOLDS);
+        silent.joints = silent.joints.iter().map(JointView::without_readings).collect();
+        for seconds in 0..20 {
+            let now = began + Duration::from_secs(seconds);
+            assert_eq!(held.look(&silent, now), SinceHeld::Held);
+        }
+    }
+}
