@@ -79,9 +79,10 @@ fn twin(view: &View, again: bool) -> Said {
     if count >= ENOUGH_PAIRS && !again {
         return solve(view);
     }
-    let (places, action) = match again || count > 0 {
-        true => (format!("all {} places", view.twin.board_places), RobotAction::TourBoard),
-        false => (format!("{} places", view.twin.few_board_places), RobotAction::TourFew),
+    let (places, action) = if again || count > 0 {
+        (format!("all {} places", view.twin.board_places), RobotAction::TourBoard)
+    } else {
+        (format!("{} places", view.twin.few_board_places), RobotAction::TourFew)
     };
     Said::press(
         format!(
