@@ -125,15 +125,15 @@ fn eyes_that_warm_up_are_told_from_a_knock_and_how_long_it_takes() {
     while course.at_s < 2000.0 {
         let share = 1.0 - (-course.at_s / tau_s).exp();
         course.look(-0.6 * most * share, most * share, vec![]);
-        if let Verdict::Warming { to_go_s: Some([least_s, most_s]), what, .. } = course.monitor.verdict() {
+        if let Verdict::Warming { to_go: Some(to_go), what, .. } = course.monitor.verdict() {
             assert_eq!(what, Mover::BothEyes);
-            told_s.push((course.at_s, 0.5 * (least_s + most_s)));
+            told_s.push((course.at_s, to_go.about_s));
         }
     }
     assert_eq!(course.monitor.alarms(), &[], "nobody knocked");
     assert!(told_s[0].0 < 120.0, "it is noticed early: {:?}", told_s[0]);
     // From ten minutes on the end is known to two minutes.
-    let end_s = |(at_s, to_go_s): &(f64, f64)| at_s + to_go_s;
+    let end_s = |(at_s, about_s): &(f64, f64)| at_s + about_s;
     let late: Vec<f64> = told_s.iter().filter(|told| told.0 > 600.0 && told.1 > 0.0).map(end_s).collect();
     let [soonest, latest] = late.iter().fold([f64::MAX, 0.0], |[a, b], end| [a.min(*end), f64::max(b, *end)]);
     assert!(latest - soonest < 240.0, "{soonest} to {latest} s");
