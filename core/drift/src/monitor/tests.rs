@@ -202,3 +202,25 @@ fn turns_that_the_model_in_use_takes_off_are_told_as_what_they_cost() {
     }
     assert_eq!(course.monitor.alarms(), &[]);
 }
+
+/// Looks that are minutes apart while the eyes turn fast: what they turn is no scatter, and places are off from
+/// where they came out at first, not from the middle of the way.
+#[test]
+fn what_drifts_while_the_band_is_learned_does_not_widen_it_and_is_told_from_the_beginning() {
+    let mut course = Course::new(0.0);
+    for _ in 0..40 {
+        let share = 1.0 - (-course.at_s / 420.0).exp();
+        let turn_rad = degrees(0.0, 0.3, 0.0) * share;
+        course.look(-turn_rad, turn_rad, vec![]);
+        course.at_s += 30.0;
+    }
+    let mut still = Course::new(3600.0);
+    still.still(20);
+    let half_m = |course: &Course| course.monitor.band().expect("learned").half_m[2];
+    assert!(half_m(&course) < 1.3 * half_m(&still), "{} {}", half_m(&course), half_m(&still));
+    let off_m = |index: usize| course.monitor.off_m(&course.monitor.samples()[index])[2];
+    assert!(off_m(0) < half_m(&course) && off_m(14) > 0.015, "{} {}", off_m(0), off_m(14));
+    let farther = (1..40).filter(|index| off_m(*index) > off_m(index - 1)).count();
+    assert!(farther > 30, "it goes one way: {farther} of 39");
+    assert_eq!(course.monitor.alarms(), &[], "nobody knocked");
+}
