@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use image::GrayImage;
 use nalgebra::{Matrix2, Matrix3, Point3, Vector3};
-use plumbline_drift::{Monitor, Sample, Verdict, Watcher, WatcherSetup, log_of};
+use plumbline_drift::{Monitor, Sample, ToGo, Verdict, Watcher, WatcherSetup, log_of};
 use plumbline_effects::{Measurements, RigModel, RobotModel, SeenUnder};
 use plumbline_gap::{Finding, Options, find};
 use plumbline_model::measured_data::left_out;
@@ -155,7 +155,7 @@ fn warm_s(twin: &mut Lockstep, model: &RobotModel) -> f64 {
 }
 
 /// What was said of the time to go, after so many minutes each.
-fn told_to_go(monitor: &Monitor) -> Vec<(f64, [f64; 2])> {
+fn told_to_go(monitor: &Monitor) -> Vec<(f64, ToGo)> {
     let mut told = Vec::new();
     let mut so_far = Monitor::default();
     let mut next =
@@ -164,8 +164,8 @@ fn told_to_go(monitor: &Monitor) -> Vec<(f64, [f64; 2])> {
         so_far.add(sample.clone());
         if next.peek().is_some_and(|at_s| sample.at_s >= *at_s) {
             next.next();
-            if let Verdict::Warming { to_go_s: Some(to_go_s), .. } = so_far.verdict() {
-                told.push((sample.at_s, to_go_s));
+            if let Verdict::Warming { to_go: Some(to_go), .. } = so_far.verdict() {
+                told.push((sample.at_s, to_go));
             }
         }
     }
@@ -191,10 +191,11 @@ fn judged(name: &str, scenario: &Scenario, watched_min: f64) -> Option<Vec<(f64,
     let mut twin = world(&rig, scenario);
     let monitor = watched(&mut twin, &nominal, watched_min)?;
     let warm_s = warm_s(&mut world(&rig, scenario), &nominal);
-    for (at_s, [least_s, most_s]) in told_to_go(&monitor) {
+    for (at_s, ToGo { least_s, about_s, most_s }) in told_to_go(&monitor) {
         println!(
-            "{name}: after {:.0} min {:.0} to {:.0} min to go; truly {:.1}",
+            "{name}: after {:.0} min about {:.0} min to go, {:.0} to {:.0}; truly {:.1}",
             at_s / 60.0,
+            about_s / 60.0,
             least_s / 60.0,
             most_s / 60.0,
             (warm_s - at_s).max(0.0) / 60.0

@@ -20,5 +20,5 @@ pub use evaluation::{GridCorrection, Judged, NotJudged, evaluation_places_m, jud
 pub use grid::{GridErrors, GridPlace, PivotCorrection, grid_places};
 pub use log::{LogError, is_too_short, log_of};
 pub use monitor::{Alarm, Band, Monitor, Mover, OwnMotion, Sample, Verdict};
-pub use warm_up::{Approach, WarmUp, fit_warm_up};
+pub use warm_up::{Approach, ToGo, WarmUp, fit_warm_up};
 pub use watch::{Look, Reference, ReferenceKind, ReferenceSeen, WatchError, Watcher, WatcherSetup};

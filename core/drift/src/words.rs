@@ -1,6 +1,7 @@
 //! What is the matter, for the operator.
 
 use crate::monitor::{Alarm, Mover, OwnMotion, Verdict};
+use crate::warm_up::ToGo;
 use crate::watch::ReferenceKind;
 
 /// A verdict as a sentence.
@@ -13,13 +14,13 @@ pub fn verdict(verdict: &Verdict) -> String {
         Verdict::Steady { cost_m } => {
             format!("Places stay where they were: {} at the far end of the table.", off(cost_m[2]))
         }
-        Verdict::Warming { to_go_s: Some([_, most_s]), cost_m, what, .. } if *most_s <= 0.0 => {
+        Verdict::Warming { to_go: Some(to_go), cost_m, what, .. } if to_go.is_over() => {
             let turned = has_turned(*what).trim_end_matches(',');
             format!("Warmed up. {turned}. {} Calibrate the eyes again, warm.", costs(cost_m))
         }
-        Verdict::Warming { to_go_s, cost_m, what, .. } => {
-            let to_go = match to_go_s {
-                Some([least_s, most_s]) => to_go(least_s.max(60.0), most_s.max(60.0)),
+        Verdict::Warming { to_go, cost_m, what, .. } => {
+            let to_go = match to_go {
+                Some(told) => to_go_words(told),
                 None => "how long it takes cannot be told yet".to_owned(),
             };
             format!("Still warming up, {to_go}: {} slowly. {}", turns(*what), costs(cost_m))
@@ -81,13 +82,14 @@ fn turns(what: Mover) -> &'static str {
 }
 
 /// What is known to a quarter, or to a minute and a half, is said as one number.
-fn to_go(least_s: f64, most_s: f64) -> String {
-    let middle_s = 0.5 * (least_s + most_s);
-    if most_s - least_s < (0.25 * middle_s).max(90.0) {
-        return format!("about {} to go", whole_minutes(middle_s));
+fn to_go_words(told: &ToGo) -> String {
+    let [least_s, about_s, most_s] = [told.least_s, told.about_s, told.most_s].map(|s| s.max(60.0));
+    let about = format!("about {} to go", whole_minutes(about_s));
+    if most_s - least_s < (0.25 * about_s).max(90.0) {
+        return about;
     }
-    let [least, most] = [least_s, most_s].map(whole_minutes);
-    format!("{} to {most} to go", least.trim_end_matches(" min"))
+    let [least, most] = [least_s, most_s].map(|s| format!("{:.0}", s / 60.0));
+    format!("{about} ({least} to {most})")
 }
 
 fn whole_minutes(s: f64) -> String {

@@ -30,6 +30,8 @@ struct Bench {
     monitor: Monitor,
     busy_s: f64,
     looks: usize,
+    /// Name of a reference that a gray sheet lies on.
+    covered: Option<&'static str>,
 }
 
 impl Bench {
@@ -60,6 +62,7 @@ impl Bench {
             monitor: Monitor::default(),
             busy_s: 0.0,
             looks: 0,
+            covered: None,
         })
     }
 
@@ -73,9 +76,14 @@ impl Bench {
     fn look(&mut self) {
         let pair = self.twin.look().expect("drawn before");
         let gray = |image| -> GrayImage { image::imageops::grayscale(image) };
-        let (left, right) = (gray(&pair.left), gray(&pair.right));
+        let (mut left, mut right) = (gray(&pair.left), gray(&pair.right));
+        let setup = self.setup();
+        let under = setup.references.iter().find(|reference| Some(reference.name.as_str()) == self.covered);
+        if let Some(under) = under {
+            [&mut left, &mut right].into_iter().zip(&under.outlines).for_each(|(image, at)| cover(image, at));
+        }
         let began = Instant::now();
-        let look = self.watcher.look(&self.setup(), (&left, &right)).expect("enough to see");
+        let look = self.watcher.look(&setup, (&left, &right)).expect("enough to see");
         self.busy_s += began.elapsed().as_secs_f64();
         self.looks += 1;
         self.monitor.add(Sample { at_s: self.twin.eyes_on_s(), look });
@@ -91,6 +99,26 @@ impl Bench {
 
     fn newest(&self) -> &Sample {
         self.monitor.samples().last().expect("looked")
+    }
+}
+
+/// A gray sheet over what lies in an outline, and a little more.
+fn cover(image: &mut GrayImage, outline: &[Pixel<plumbline_model::Raw>]) {
+    const BORDER_PX: f64 = 6.0;
+    let range = |of: fn(&Pixel<plumbline_model::Raw>) -> f64| {
+        outline
+            .iter()
+            .map(of)
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], px| [low.min(px), high.max(px)])
+    };
+    let ([u_low, u_high], [v_low, v_high]) = (range(|px| px.u_px), range(|px| px.v_px));
+    for (u, v, pixel) in image.enumerate_pixels_mut() {
+        let (u, v) = (f64::from(u), f64::from(v));
+        if (u_low - BORDER_PX..u_high + BORDER_PX).contains(&u)
+            && (v_low - BORDER_PX..v_high + BORDER_PX).contains(&v)
+        {
+            pixel.0 = [128];
+        }
     }
 }
 
@@ -213,6 +241,35 @@ fn toys_that_are_moved_and_an_arm_that_moves_are_no_fault_of_the_eyes() {
     }
     assert_eq!(bench.monitor.alarms(), &[]);
     assert!(matches!(bench.monitor.verdict(), Verdict::Steady { .. }), "{:?}", bench.monitor.verdict());
+}
+
+#[test]
+fn a_reference_that_is_covered_is_told_as_such_and_turns_no_eye() {
+    let Some(mut bench) = warm(&with_right_eye([0.0; 3])) else { return };
+    bench.watch(18);
+    let lost = |bench: &Bench| {
+        let seen = &bench.newest().look.references;
+        seen.iter().filter(|seen| seen.is_lost).map(|seen| seen.name.clone()).collect::<Vec<_>>()
+    };
+    let known: Vec<String> = bench.newest().look.references.iter().map(|seen| seen.name.clone()).collect();
+    assert!(known.iter().any(|name| name == "Touchscreen") && lost(&bench).is_empty(), "{known:?}");
+    bench.covered = Some("Touchscreen");
+    bench.watch(2);
+    assert_eq!(lost(&bench), ["Touchscreen"]);
+    let own = bench.monitor.own_motions();
+    let told: Vec<String> = own.iter().map(words::own_motion).collect();
+    println!("{told:?}");
+    assert!(
+        told.iter().any(|told| told.starts_with("Touchscreen: gone or covered since minute")),
+        "{told:?}"
+    );
+    assert!(matches!(bench.monitor.verdict(), Verdict::Steady { .. }), "{:?}", bench.monitor.verdict());
+    bench.watch(4);
+    bench.covered = None;
+    bench.watch(6);
+    assert!(lost(&bench).is_empty(), "it is remembered anew: {:?}", lost(&bench));
+    assert!(matches!(bench.monitor.verdict(), Verdict::Steady { .. }), "{:?}", bench.monitor.verdict());
+    assert_eq!(bench.monitor.alarms(), &[]);
 }
 
 /// Hours, and time between looks, s: the window looks more often, but at an arm that moves as often it would look

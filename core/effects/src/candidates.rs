@@ -1,11 +1,16 @@
 //! Which effects rows could show at all, and in which shapes.
 
+use std::collections::BTreeMap;
+
 use crate::library::{
     Effect, Kind, Known, MOST_MOMENTS, Shape, Situation, differ, moments, sorted, thinned, with_shapes,
 };
 use crate::measurements::Measurements;
 use crate::observation::{Observation, What};
 
+/// More sets than these are no stretches of one measurement, and fewer rows do not tell how an eye stood.
+const MOST_SETS: usize = 8;
+const LEAST_IN_SET: usize = 6;
 /// Places that are no farther apart are one, m.
 const SAME_PLACE_M: f64 = 0.02;
 
@@ -19,7 +24,10 @@ impl Effect {
         Kind::ALL
             .iter()
             .filter(|kind| (kind.entry().shown)(&known))
-            .flat_map(|kind| Self::sites(*kind, arm, eyes))
+            .flat_map(|kind| {
+                let in_sets = known.eye_sets.iter().filter_map(|set| Self::in_set(*kind, set)).collect();
+                [Self::sites(*kind, arm, eyes), in_sets].concat()
+            })
             .flat_map(|effect| known.shapes(effect))
             .collect()
     }
@@ -65,6 +73,7 @@ impl Known {
             watched: of_eyes.iter().any(|row| row.stand.is_some()),
             watched_places: places(&of_eyes),
             only_watched: !of_eyes.is_empty() && of_eyes.iter().all(|row| row.stand.is_some()),
+            eye_sets: measurements.sets_of_eyes(),
             background: of_eyes.iter().any(|row| row.background_m.is_some()),
             commanded: of_arm.iter().any(|row| row.encoder_rad.is_none()),
             lag: of_arm.iter().filter_map(|row| row.lag_rad()).flatten().any(|lag| lag.abs() > 1e-4),
@@ -81,6 +90,21 @@ impl Known {
                 .map(|j| sorted(of_arm.iter().filter_map(|row| row.angles_rad().get(j).copied())))
                 .collect(),
         }
+    }
+}
+
+impl Measurements {
+    /// Labels of the sets in which the eyes measured, if what is between them could be told: two sets at least,
+    /// all rows in one of them, and rows enough in each.
+    pub fn sets_of_eyes(&self) -> Vec<String> {
+        let mut counts = BTreeMap::<&String, usize>::new();
+        for row in self.rows.iter().filter(|row| !row.what.is_placed() && row.stand.is_none()) {
+            let Some(set) = &row.set else { return vec![] };
+            *counts.entry(set).or_default() += 1;
+        }
+        let is_told =
+            (2..=MOST_SETS).contains(&counts.len()) && counts.values().all(|count| *count >= LEAST_IN_SET);
+        if is_told { counts.into_keys().cloned().collect() } else { vec![] }
     }
 }
 

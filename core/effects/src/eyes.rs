@@ -132,6 +132,8 @@ pub struct EyeSituation {
     pub t_secs: Option<f64>,
     /// Distance of what lies behind, m.
     pub background_m: Option<f64>,
+    /// Label of the set that it was measured in.
+    pub set: Option<String>,
     /// Gravity about each joint of the neck, N m.
     pub neck_torques_nm: Vec<f64>,
 }
@@ -171,6 +173,7 @@ impl Eyes {
             in_left_m: self.robot_from_left(&row.neck_rad, &nominal).inverse() * truth_m,
             t_secs: row.t_secs,
             background_m: row.background_m,
+            set: row.set.clone(),
             neck_torques_nm: moments.iter().zip(&frames.axes).map(|(m, axis)| m.dot(axis)).collect(),
         }
     }

@@ -131,7 +131,7 @@ fn names_are_those_of_the_command_line() {
         servo-droop joint-sag sideways-give link-bending creep early-log torque-limit servo-warm-up slipped-horn \
         joint-coupling axis-skew link-length tip-offset finger-bend finger-roll touch-drag base-tilt torso-lean \
         payload-mass link-mass screen-bumped screen-scale screen-tilt screen-bow panel-edge camera-mount head-joint eye-yaw \
-        image-shift focal-or-baseline eye-roll lens-distortion disparity-steps background-bleed \
+        image-shift focal-or-baseline eye-roll eye-knock lens-distortion disparity-steps background-bleed \
         foreground-fattening seen-surface box-bias eye-latency speed-overshoot";
     let known: Vec<&str> = known.split_whitespace().collect();
     assert_eq!(Kind::ALL.iter().map(|kind| kind.id()).collect::<Vec<_>>(), known);

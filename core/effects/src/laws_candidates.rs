@@ -61,6 +61,7 @@ fn everything(count: usize) -> Measurements {
         let middle = surface.middle_m();
         seen.truth_m = Some(Point3::new(middle.x + 0.08 * wave(i, 5), middle.y + 0.1 * wave(i, 6), middle.z));
         seen.background_m = Some(1.2 + 0.3 * wave(i, 7));
+        seen.set = Some(if i < count / 2 { "first" } else { "second" }.to_owned());
         rows.push(seen);
     }
     Measurements {

@@ -104,10 +104,25 @@ fn touches_of_the_real_arm_by_commands_alone() {
     assert!(finding.shown.after < 0.75 * finding.shown.before);
 }
 
+/// The published pivot reaches 7.6 mm on all 36 places, fitted to the same; here each place is predicted without it,
+/// and one that was set aside as an outlier is judged with the others.
 #[test]
 fn places_of_the_real_eyes() {
     let Some(measurements) = session("nico-vision/grid-z5") else { return };
     let finding = found(&measurements);
     assert!(finding.comparison.is_gap);
     assert!((finding.shown.before - 36.8e-3).abs() < 1.5e-3, "{}", finding.shown.before);
+    let after_m: Vec<f64> =
+        finding.comparison.residuals.iter().map(|row| row.after_m[0].hypot(row.after_m[1])).collect();
+    let mean_mm = 1e3 * after_m.iter().sum::<f64>() / after_m.len() as f64;
+    println!(
+        "{:.2} mm on {} rows, {mean_mm:.2} mm on all {}",
+        1e3 * finding.shown.after,
+        finding.shown.rows,
+        after_m.len()
+    );
+    for effect in &finding.effects {
+        println!("{}@{}: {:.3?}", effect.id, effect.site, effect.values);
+    }
+    assert!(finding.shown.after <= 7.5e-3 && mean_mm <= 7.5, "{} {mean_mm}", finding.shown.after);
 }

@@ -24,7 +24,12 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         TableMap::new("Drift over the table", &scene).words(&words).height(height).show(ui);
         ui.add_space(space::XS);
         let times = scene.vector_scale;
-        ui.label(theme::small(ui, format!("Arrows {times:.0} times as long as the error.")));
+        let scale = if times > 1.0 {
+            format!("{times:.0} times as long as the error")
+        } else {
+            "in true length".to_owned()
+        };
+        ui.label(theme::small(ui, format!("Arrows {scale}.")));
     });
 }
 

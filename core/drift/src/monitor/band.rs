@@ -40,11 +40,26 @@ impl Band {
 
     /// `None`: there were too few looks.
     ///
-    /// Scatter is taken from successive differences (von Neumann 1941), which a slow drift does not widen.
+    /// Scatter is how far a look lies from between the one before and the one after it, which a slow drift does not
+    /// widen. The middle is where places came out before they had drifted out of that.
     pub(super) fn learned(samples: &[Sample]) -> Option<Self> {
-        let first = samples.get(..Self::LOOKS)?;
-        let count = Self::LOOKS as f64;
-        let mut center = first[0].look.table;
+        let learned = samples.get(..Self::LOOKS)?;
+        let half_m = [0, 1, 2].map(|row: usize| {
+            let sigma_m = scatter(learned, |between| between.table_m[row]);
+            (SIGMAS * sigma_m).clamp(LEAST_M[row], MOST_M)
+        });
+        let half_rad = [0, 1, 2].map(|k: usize| {
+            let sigma_rad = scatter(learned, |between| between.turns_rad[k]);
+            (SIGMAS * sigma_rad).clamp(LEAST_RAD, MOST_RAD)
+        });
+        let begun = &learned[0].look.table;
+        let stays = |sample: &&Sample| {
+            let off_m = sample.look.table.apart_m(begun);
+            (0..3).all(|row| off_m[row] <= half_m[row])
+        };
+        let first: Vec<&Sample> = learned.iter().take_while(stays).collect();
+        let count = first.len().max(1) as f64;
+        let mut center = *begun;
         for (r, row) in center.rows.iter_mut().enumerate() {
             for (p, place) in row.iter_mut().enumerate() {
                 let all = || first.iter().map(|sample| &sample.look.table.rows[r][p]);
@@ -54,26 +69,12 @@ impl Band {
             }
         }
         let mut turns_rad = [Vector3::zeros(); 3];
-        for sample in first {
+        for sample in &first {
             for (sum, turn) in turns_rad.iter_mut().zip(turns(&sample.look)) {
                 *sum += turn / count;
             }
         }
-        let mut half_m = LEAST_M;
-        for (row, half_m) in half_m.iter_mut().enumerate() {
-            let squares =
-                first.windows(2).map(|two| two[1].look.table.apart_m(&two[0].look.table)[row].powi(2));
-            // The difference of two looks has twice the variance of one.
-            let sigma_m = (squares.sum::<f64>() / (2.0 * (count - 1.0))).sqrt();
-            *half_m = (SIGMAS * sigma_m).clamp(*half_m, MOST_M);
-        }
-        let mut half_rad = [LEAST_RAD; 3];
-        for (k, half_rad) in half_rad.iter_mut().enumerate() {
-            let apart = |two: &[Sample]| (turns(&two[1].look)[k] - turns(&two[0].look)[k]).norm_squared();
-            let sigma_rad = (first.windows(2).map(apart).sum::<f64>() / (2.0 * (count - 1.0))).sqrt();
-            *half_rad = (SIGMAS * sigma_rad).clamp(*half_rad, MOST_RAD);
-        }
-        let until_s = first.last().map_or(0.0, |sample| sample.at_s);
+        let until_s = learned.last().map_or(0.0, |sample| sample.at_s);
         Some(Self { center, turns_rad, half_m, half_rad, until_s })
     }
 
@@ -109,4 +110,39 @@ impl Band {
     pub(super) fn turns_since(&self, look: &Look) -> [Vector3<f64>; 3] {
         since(&self.turns_rad, look)
     }
+}
+
+/// How far a look lies from the line between its neighbors in time.
+struct Between {
+    /// Mean over the places of a row, near, in the middle and far, m.
+    table_m: [f64; 3],
+    /// Of the turns of the left eye, of the right one, and against each other, rad.
+    turns_rad: [f64; 3],
+}
+
+impl Between {
+    /// In standard deviations of one look: the line scatters, too.
+    fn of(before: &Sample, at: &Sample, after: &Sample) -> Self {
+        let span_s = after.at_s - before.at_s;
+        let late = if span_s > 0.0 { ((at.at_s - before.at_s) / span_s).clamp(0.0, 1.0) } else { 0.5 };
+        let early = 1.0 - late;
+        let inflate = (1.0 + late * late + early * early).sqrt();
+        let off = |at: Vector3<f64>, before: Vector3<f64>, after: Vector3<f64>| {
+            (at - before * early - after * late).norm() / inflate
+        };
+        let table_m = [0, 1, 2].map(|row: usize| {
+            let error_m = |sample: &Sample, place: usize| sample.look.table.rows[row][place].error_m;
+            let place = |p: usize| off(error_m(at, p), error_m(before, p), error_m(after, p));
+            (0..3).map(place).sum::<f64>() / 3.0
+        });
+        let [before, at, after] = [before, at, after].map(|sample| turns(&sample.look));
+        Self { table_m, turns_rad: [0, 1, 2].map(|k: usize| off(at[k], before[k], after[k])) }
+    }
+}
+
+/// Root mean square of what looks lie off their neighbors.
+fn scatter(looks: &[Sample], of: impl Fn(&Between) -> f64) -> f64 {
+    let squares: Vec<f64> =
+        looks.windows(3).map(|three| of(&Between::of(&three[0], &three[1], &three[2])).powi(2)).collect();
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
 }

@@ -13,7 +13,7 @@ pub use band::Band;
 pub use mover::{Mover, OwnMotion};
 
 use crate::cost::{Row, errors};
-use crate::warm_up::fit_warm_up;
+use crate::warm_up::{ToGo, fit_warm_up};
 use crate::watch::Look;
 
 /// So many looks in a row have to be out of the band.
@@ -72,8 +72,8 @@ pub enum Verdict {
     },
     /// The eyes turn slowly, as lenses do that warm up.
     Warming {
-        /// Until places are as good as where they end, at least and at most, s; `None`: that cannot be told yet.
-        to_go_s: Option<[f64; 2]>,
+        /// Until places are as good as where they end; `None`: that cannot be told yet.
+        to_go: Option<ToGo>,
         /// How far off places are by now near, in the middle and far, m.
         cost_m: [f64; 3],
         /// Which eyes.
@@ -186,12 +186,12 @@ impl Monitor {
         if what == Mover::Head || since_s > WARM_S {
             return Verdict::Moved(Alarm { what, since_s, sudden: false, cost_m });
         }
-        let to_go_s = if newest.at_s > WARM_S { Some([0.0; 2]) } else { self.to_go_s(newest) };
-        Verdict::Warming { to_go_s, cost_m, what, since_s }
+        let to_go = if newest.at_s > WARM_S { Some(ToGo::default()) } else { self.to_go(newest) };
+        Verdict::Warming { to_go, cost_m, what, since_s }
     }
 
-    /// Until the eyes are as good as warm, s.
-    fn to_go_s(&self, newest: &Sample) -> Option<[f64; 2]> {
+    /// Until the eyes are as good as warm.
+    fn to_go(&self, newest: &Sample) -> Option<ToGo> {
         let step = self.samples.len().div_ceil(FITTED).max(1);
         let far = |sample: &Sample| {
             let places = sample.look.table.rows[Row::Far as usize].map(|place| place.error_m);
@@ -202,8 +202,8 @@ impl Monitor {
             seen.push(far(newest));
         }
         match fit_warm_up(&seen) {
-            Some(approach) => Some(approach.until_within_s(AS_GOOD_AS_WARM_M)),
-            None => (newest.at_s < USUALLY_WARM_S).then_some([USUALLY_WARM_S - newest.at_s; 2]),
+            Some(approach) => Some(approach.until_within(AS_GOOD_AS_WARM_M)),
+            None => (newest.at_s < USUALLY_WARM_S).then(|| ToGo::of(USUALLY_WARM_S - newest.at_s)),
         }
     }
 

@@ -125,15 +125,15 @@ fn eyes_that_warm_up_are_told_from_a_knock_and_how_long_it_takes() {
     while course.at_s < 2000.0 {
         let share = 1.0 - (-course.at_s / tau_s).exp();
         course.look(-0.6 * most * share, most * share, vec![]);
-        if let Verdict::Warming { to_go_s: Some([least_s, most_s]), what, .. } = course.monitor.verdict() {
+        if let Verdict::Warming { to_go: Some(to_go), what, .. } = course.monitor.verdict() {
             assert_eq!(what, Mover::BothEyes);
-            told_s.push((course.at_s, 0.5 * (least_s + most_s)));
+            told_s.push((course.at_s, to_go.about_s));
         }
     }
     assert_eq!(course.monitor.alarms(), &[], "nobody knocked");
     assert!(told_s[0].0 < 120.0, "it is noticed early: {:?}", told_s[0]);
     // From ten minutes on the end is known to two minutes.
-    let end_s = |(at_s, to_go_s): &(f64, f64)| at_s + to_go_s;
+    let end_s = |(at_s, about_s): &(f64, f64)| at_s + about_s;
     let late: Vec<f64> = told_s.iter().filter(|told| told.0 > 600.0 && told.1 > 0.0).map(end_s).collect();
     let [soonest, latest] = late.iter().fold([f64::MAX, 0.0], |[a, b], end| [a.min(*end), f64::max(b, *end)]);
     assert!(latest - soonest < 240.0, "{soonest} to {latest} s");
@@ -201,4 +201,26 @@ fn turns_that_the_model_in_use_takes_off_are_told_as_what_they_cost() {
         assert!(matches!(verdict, Verdict::Steady { .. }), "{step}: {}", words::verdict(&verdict));
     }
     assert_eq!(course.monitor.alarms(), &[]);
+}
+
+/// Looks that are minutes apart while the eyes turn fast: what they turn is no scatter, and places are off from
+/// where they came out at first, not from the middle of the way.
+#[test]
+fn what_drifts_while_the_band_is_learned_does_not_widen_it_and_is_told_from_the_beginning() {
+    let mut course = Course::new(0.0);
+    for _ in 0..40 {
+        let share = 1.0 - (-course.at_s / 420.0).exp();
+        let turn_rad = degrees(0.0, 0.3, 0.0) * share;
+        course.look(-turn_rad, turn_rad, vec![]);
+        course.at_s += 30.0;
+    }
+    let mut still = Course::new(3600.0);
+    still.still(20);
+    let half_m = |course: &Course| course.monitor.band().expect("learned").half_m[2];
+    assert!(half_m(&course) < 1.3 * half_m(&still), "{} {}", half_m(&course), half_m(&still));
+    let off_m = |index: usize| course.monitor.off_m(&course.monitor.samples()[index])[2];
+    assert!(off_m(0) < half_m(&course) && off_m(14) > 0.015, "{} {}", off_m(0), off_m(14));
+    let farther = (1..40).filter(|index| off_m(*index) > off_m(index - 1)).count();
+    assert!(farther > 30, "it goes one way: {farther} of 39");
+    assert_eq!(course.monitor.alarms(), &[], "nobody knocked");
 }

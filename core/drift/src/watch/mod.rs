@@ -112,7 +112,7 @@ impl Watcher {
         }
         let looked = match &self.remembered {
             None => None,
-            Some(remembered) => remembered.look(setup, pair, self.turns_rad, &first)?,
+            Some(remembered) => remembered.look(setup, pair, self.turns_rad, &now)?,
         };
         let Some(looked) = looked else {
             return self.begin(setup, pair, &first, &now, epipolar);
@@ -122,7 +122,7 @@ impl Watcher {
         self.elsewhere =
             if looked.references.iter().any(ReferenceSeen::is_elsewhere) { self.elsewhere + 1 } else { 0 };
         if stood == Stood::ArmElsewhere || self.elsewhere >= ANEW_AFTER {
-            self.remember(setup, pair)?;
+            self.remember(setup, pair, now)?;
         }
         let table = self.table(setup, &first, &now)?;
         Ok(Look {
@@ -152,7 +152,7 @@ impl Watcher {
                 return Err(WatchError::NotSeenAgain);
             }
         }
-        self.remember(setup, pair)?;
+        self.remember(setup, pair, *now)?;
         self.misses = 0;
         let table = self.table(setup, first, now)?;
         Ok(Look {
@@ -167,8 +167,13 @@ impl Watcher {
         })
     }
 
-    fn remember(&mut self, setup: &WatcherSetup, pair: (&GrayImage, &GrayImage)) -> Result<(), WatchError> {
-        self.remembered = Some(Remembered::new(setup, pair, self.turns_rad)?);
+    fn remember(
+        &mut self,
+        setup: &WatcherSetup,
+        pair: (&GrayImage, &GrayImage),
+        now: SeenUnder,
+    ) -> Result<(), WatchError> {
+        self.remembered = Some(Remembered::new(setup, pair, self.turns_rad, now)?);
         self.elsewhere = 0;
         Ok(())
     }

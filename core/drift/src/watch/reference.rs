@@ -117,7 +117,7 @@ impl Kept {
         setup: &WatcherSetup,
         eyes: [(&EyeTurn, &[Followed]); 2],
         turns_rad: &[Vector3<f64>; 2],
-        first: &SeenUnder,
+        [remembered, now]: [&SeenUnder; 2],
     ) -> ReferenceSeen {
         let own = [0, 1].map(|eye: usize| own_px(&self.places[eye], eyes[eye]));
         let own_px = match own {
@@ -125,11 +125,13 @@ impl Kept {
             _ => None,
         };
         let still = [Vector3::zeros(); 2];
-        let place = |turns: &[Vector3<f64>; 2], by: &[[f64; 2]; 2]| self.located(setup, turns, by, first);
-        let [own_m, drift_m] = match (own_px, place(&still, &[[0.0; 2]; 2])) {
-            (Some(own), Some(before)) => {
-                [place(&still, &own), place(turns_rad, &own)].map(|now| now.map(|now| now - before))
-            }
+        // Seen when it was remembered, and placed as by what the model knows of the eyes at that time or now.
+        let place = |turns: &[Vector3<f64>; 2], by: &[[f64; 2]; 2], under: &SeenUnder| {
+            self.located(setup, turns, by, [remembered, under])
+        };
+        let [own_m, drift_m] = match (own_px, place(&still, &[[0.0; 2]; 2], remembered)) {
+            (Some(own), Some(before)) => [place(&still, &own, remembered), place(turns_rad, &own, now)]
+                .map(|at| at.map(|at| at - before)),
             _ => [None, None],
         };
         ReferenceSeen {
@@ -148,11 +150,11 @@ impl Kept {
         setup: &WatcherSetup,
         turns_rad: &[Vector3<f64>; 2],
         by_px: &[[f64; 2]; 2],
-        first: &SeenUnder,
+        [remembered, under]: [&SeenUnder; 2],
     ) -> Option<Vector3<f64>> {
         let model = &setup.model;
         let cameras = &model.rig().eyes.cameras;
-        let (left, right) = model.project(&self.place, &setup.posture, first)?;
+        let (left, right) = model.project(&self.place, &setup.posture, remembered)?;
         let eyes = [(left, &cameras.left), (right, &cameras.right)];
         let mut seen = [left, right];
         for (eye, (at, camera)) in eyes.into_iter().enumerate() {
@@ -161,7 +163,7 @@ impl Kept {
             seen[eye] = Pixel::new(there.u_px + by_px[eye][0], there.v_px + by_px[eye][1]);
         }
         let in_left = cameras.triangulate(seen[0], seen[1])?;
-        let place = model.place(&in_left, &nalgebra::Matrix3::zeros(), &setup.posture, first)?;
+        let place = model.place(&in_left, &nalgebra::Matrix3::zeros(), &setup.posture, under)?;
         Some(place.point.coords.coords)
     }
 }

@@ -18,6 +18,8 @@ pub(super) struct Remembered {
     base_rad: [Vector3<f64>; 2],
     pub posture: Posture,
     references: Vec<Kept>,
+    /// When that was.
+    under: SeenUnder,
 }
 
 /// What is seen of it.
@@ -33,11 +35,12 @@ impl Remembered {
         setup: &WatcherSetup,
         (left, right): (&GrayImage, &GrayImage),
         base_rad: [Vector3<f64>; 2],
+        under: SeenUnder,
     ) -> Result<Self, HealthError> {
         let cameras = &setup.model.rig().eyes.cameras;
         let eyes = [RememberedEye::new(&cameras.left, left)?, RememberedEye::new(&cameras.right, right)?];
         let references = keep(&setup.references, &eyes);
-        Ok(Self { eyes, base_rad, posture: setup.posture.clone(), references })
+        Ok(Self { eyes, base_rad, posture: setup.posture.clone(), references, under })
     }
 
     /// `None`: too little of it is seen again, or it does not go with the eyes.
@@ -46,7 +49,7 @@ impl Remembered {
         setup: &WatcherSetup,
         (left, right): (&GrayImage, &GrayImage),
         last_rad: [Vector3<f64>; 2],
-        first: &SeenUnder,
+        now: &SeenUnder,
     ) -> Result<Option<Looked>, HealthError> {
         let mut followed = Vec::with_capacity(2);
         let mut turns: Vec<EyeTurn> = Vec::with_capacity(2);
@@ -63,7 +66,8 @@ impl Remembered {
         });
         let since = [0, 1].map(|eye: usize| turns[eye].rotation_rad);
         let both = [0, 1].map(|eye: usize| (&turns[eye], followed[eye].as_slice()));
-        let references = self.references.iter().map(|kept| kept.seen(setup, both, &since, first)).collect();
+        let seen = |kept: &Kept| kept.seen(setup, both, &since, [&self.under, now]);
+        let references = self.references.iter().map(seen).collect();
         let flags = turns.iter().flat_map(|turn| &turn.went_along);
         let (along, all) = flags.fold((0u32, 0u32), |(along, all), went| (along + u32::from(*went), all + 1));
         let sigmas_rad = [0, 1].map(|eye: usize| turns[eye].covariance_rad2.trace().max(0.0).sqrt());

@@ -15,7 +15,7 @@ const SHORTEST_LINK_M: f64 = 0.02;
 pub struct Effect {
     /// What kind.
     pub kind: Kind,
-    /// A joint, a link, `tip`, `base`, `screen`, `eyes`, `right`; empty: all joints alike.
+    /// A joint, a link, `tip`, `base`, `screen`, `eyes`, `right`, a set of rows; empty: all joints alike.
     pub site: String,
     /// What it is and where, for people.
     pub title: String,
@@ -56,6 +56,17 @@ impl Effect {
         let of_arm = arm.map_or(vec![], |arm| of_arm(kind, arm));
         let of_eyes = eyes.map_or(vec![], |eyes| of_eyes(kind, eyes));
         of_arm.into_iter().chain(of_eyes).collect()
+    }
+
+    /// What was so only while one set of rows was measured; `None` for what does not depend on sets.
+    pub(crate) fn in_set(kind: Kind, set: &str) -> Option<Self> {
+        let is_of_sets = matches!(kind.entry().site, Site::OfEyes(EyeSite::Set));
+        is_of_sets.then(|| Self::new(kind, set, &format!("set {set}"), None))
+    }
+
+    /// Whether it was so only while one set of rows was measured, and says nothing of any other time.
+    pub fn is_of_a_set(&self) -> bool {
+        matches!(self.kind.entry().site, Site::OfEyes(EyeSite::Set))
     }
 
     /// The effect of this name at this site, as a file or the command line gives it; `None` when
@@ -216,6 +227,8 @@ fn of_eyes(kind: Kind, eyes: &Eyes) -> Vec<Effect> {
         }
         EyeSite::Right => vec![Effect::new(kind, "right", "", None)],
         EyeSite::Both => vec![Effect::new(kind, "eyes", "", None)],
+        // Which sets there are, only rows say.
+        EyeSite::Set => vec![],
     }
 }
 

@@ -78,6 +78,8 @@ pub(crate) enum EyeSite {
     Right,
     /// At both.
     Both,
+    /// At the right eye, while one set of rows was measured: the site is the label of the set.
+    Set,
 }
 
 impl Site {

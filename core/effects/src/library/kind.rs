@@ -87,6 +87,8 @@ pub enum Kind {
     FocalOrBaseline,
     /// The right eye is rolled or pitched against the left one.
     EyeRoll,
+    /// The right eye stood otherwise against the left one while one set of rows was measured.
+    EyeKnock,
     /// Distortion of the lenses that the calibration left over.
     LensDistortion,
     /// Disparities come in steps.

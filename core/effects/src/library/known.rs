@@ -44,6 +44,8 @@ pub(crate) struct Known {
     pub(crate) watched_places: usize,
     /// And nothing else: what is constant there has no name.
     pub(crate) only_watched: bool,
+    /// Labels of the sets in which the eyes measured, where an eye may have turned from one to the next.
+    pub(crate) eye_sets: Vec<String>,
     /// Some row starts from commanded angles.
     pub(crate) commanded: bool,
     /// Some row has encoders that lag.

@@ -221,6 +221,7 @@ impl RigModel {
             in_left_m,
             t_secs: None,
             background_m: None,
+            set: None,
             neck_torques_nm: neck_rad.clone(),
             neck_rad,
         };

@@ -34,7 +34,7 @@ pub(super) fn why(effect: &ModelEffect) -> &'static str {
         K::Backlash | K::GravityBacklash | K::Stiction | K::TorqueLimit | K::EarlyLog | K::SpeedOvershoot => {
             DIRECTION
         }
-        K::Creep | K::ServoWarmUp | K::SlippedHorn | K::EyeYaw => TIME,
+        K::Creep | K::ServoWarmUp | K::SlippedHorn | K::EyeYaw | K::EyeKnock => TIME,
         K::JointScale | K::JointEccentricity | K::ToothRipple | K::JointCoupling => ANGLE,
         K::FingerBend | K::FingerRoll | K::TouchDrag => CONTACT,
         K::ScreenBumped | K::ScreenScale | K::ScreenTilt | K::ScreenBow | K::PanelEdge => SCREEN,

@@ -59,6 +59,12 @@ impl Points {
         Self { rows, at, context, watched, hidden }
     }
 
+    /// Only rows of the same group are neighbors, however few there are.
+    pub fn split(&mut self, group: Vec<usize>) {
+        self.context = group;
+        self.watched.fill(true);
+    }
+
     /// Whether neighbors are near in everything that was varied.
     pub fn are_near(&self) -> bool {
         self.hidden < FAR_M

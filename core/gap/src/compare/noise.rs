@@ -329,7 +329,13 @@ fn near_neighbors(measurements: &Measurements, residuals: &[Option<Vec<f64>>], w
         .filter(|&i| residuals[i].is_some() && measurements.rows[i].what == what)
         .filter(|&i| seen.insert(measurements.rows[i].cell))
         .collect::<Vec<_>>();
-    let points = Points::of(measurements, what, chosen.into_iter());
+    let mut points = Points::of(measurements, what, chosen.into_iter());
+    let sets = if what.is_placed() { vec![] } else { measurements.sets_of_eyes() };
+    if !sets.is_empty() {
+        // What an eye turned from one set to the next is no noise.
+        let number = |&i: &usize| sets.iter().position(|set| measurements.rows[i].set.as_ref() == Some(set));
+        points.split(points.rows.iter().map(|i| number(i).unwrap_or(sets.len())).collect());
+    }
     let count = points.rows.len();
     let values = DMatrix::from_fn(count, what.len(), |i, c| {
         residuals[points.rows[i]].as_ref().and_then(|residual| residual.get(c)).copied().unwrap_or(0.0)

@@ -304,7 +304,15 @@ impl Evidence<'_> {
         let covariance = covariance + self.by_shapes(block, own);
         let covariance =
             DMatrix::from_fn(own.len(), own.len(), |r, c| covariance[(r, c)] * typical[r] * typical[c]);
-        let at_bound = own.iter().any(|value| value.abs() > BOUND);
+        let not_addable = if own.iter().any(|value| value.abs() > BOUND) {
+            Some(
+                "its fit lies beyond what is plausible for this effect, so something else is probably at work",
+            )
+        } else if effect.is_of_a_set() {
+            Some("it was so while that set was measured, which says nothing of any other time")
+        } else {
+            None
+        };
         NamedEffect {
             id: effect.id().to_owned(),
             site: effect.site.clone(),
@@ -320,10 +328,7 @@ impl Evidence<'_> {
             class,
             split_by: None,
             runner_up,
-            not_addable: at_bound.then(|| {
-                "its fit lies beyond what is plausible for this effect, so something else is probably at work"
-                    .to_owned()
-            }),
+            not_addable: not_addable.map(str::to_owned),
         }
     }
 

@@ -125,6 +125,23 @@ pub(super) static EYE_ROLL: Entry = Entry {
     is: &[],
 };
 
+pub(super) static EYE_KNOCK: Entry = Entry {
+    about: "right eye stood otherwise against the left one",
+    meaning: "One eye turned against the other between the sets of a measurement.",
+    remedy: "Let the cameras warm up, check their mounts, and measure that set again.",
+    parameters: &[parameter("pitch_rad", 0.01), parameter("yaw_rad", 0.01), parameter("roll_rad", 0.01)],
+    site: Site::OfEyes(EyeSite::Set),
+    shape: Shape::None,
+    shown: |rows| !rows.eye_sets.is_empty(),
+    act: Act::Eyes(|effect, situation, values, deviation| {
+        if situation.set.as_deref() == Some(effect.site.as_str()) {
+            deviation.right_rad += vector(values);
+        }
+    }),
+    reported: Effect::plain,
+    is: &[],
+};
+
 pub(super) static LENS_DISTORTION: Entry = Entry {
     about: "lens distortion left over",
     meaning: "Some lens distortion is left, growing towards the border of the image.",

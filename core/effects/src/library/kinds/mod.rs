@@ -74,6 +74,7 @@ impl Kind {
             Self::ImageShift => &eyes::IMAGE_SHIFT,
             Self::FocalOrBaseline => &eyes::FOCAL_OR_BASELINE,
             Self::EyeRoll => &eyes::EYE_ROLL,
+            Self::EyeKnock => &eyes::EYE_KNOCK,
             Self::LensDistortion => &eyes::LENS_DISTORTION,
             Self::DisparitySteps => &eyes::DISPARITY_STEPS,
             Self::BackgroundBleed => &eyes::BACKGROUND_BLEED,

@@ -1,5 +1,8 @@
 //! How far the eyes are on their way to their temperature, from what was seen so far.
 
+#[cfg(test)]
+mod tests;
+
 use nalgebra::Vector3;
 
 /// Housings of eyes reach their temperature with about this time constant, s.
@@ -54,19 +57,48 @@ impl WarmUp {
     }
 }
 
+/// A time that is to come, and what is not known of it, s. All zero: it is over.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ToGo {
+    /// At least.
+    pub least_s: f64,
+    /// What is expected.
+    pub about_s: f64,
+    /// At most.
+    pub most_s: f64,
+}
+
+impl ToGo {
+    /// A time that is known as this, s.
+    pub fn of(s: f64) -> Self {
+        Self { least_s: s, about_s: s, most_s: s }
+    }
+
+    /// Whether nothing is to come any more.
+    pub fn is_over(&self) -> bool {
+        self.most_s <= 0.0
+    }
+}
+
 /// What was seen of an approach, and the ways that it may go on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Approach {
-    /// All laws that go about as well with what was seen.
-    pub possible: Vec<WarmUp>,
+    /// All laws that go about as well with what was seen, and how probable each is; not empty.
+    pub possible: Vec<(WarmUp, f64)>,
 }
 
 impl Approach {
-    /// Shortest and longest time until places are within this distance (m) of where they end, s.
-    pub fn until_within_s(&self, within_m: f64) -> [f64; 2] {
-        let all = self.possible.iter().map(|law| law.until_within_s(within_m));
-        let [least, most] = all.fold([f64::INFINITY, 0.0], |[a, b]: [f64; 2], s| [a.min(s), b.max(s)]);
-        if most < SHORT_S { [0.0, 0.0] } else { [least.min(most), most] }
+    /// Time until places are within this distance (m) of where they end: the shortest and the longest of all
+    /// laws, and their mean.
+    pub fn until_within(&self, within_m: f64) -> ToGo {
+        let mut told = ToGo { least_s: f64::INFINITY, ..ToGo::default() };
+        for (law, probability) in &self.possible {
+            let s = law.until_within_s(within_m);
+            told.least_s = told.least_s.min(s);
+            told.about_s += probability * s;
+            told.most_s = told.most_s.max(s);
+        }
+        if told.most_s < SHORT_S { ToGo::default() } else { told }
     }
 }
 
@@ -96,8 +128,11 @@ pub fn fit_warm_up(seen: &[(f64, [Vector3<f64>; 3])]) -> Option<Approach> {
         }
     }
     let (least, left, _) = tried.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let possible =
-        tried.iter().filter(|(loss, ..)| *loss <= least + POSSIBLE).map(|(.., law)| *law).collect();
+    // The loss is twice the logarithm of how improbable a law is.
+    let likely = |loss: f64| (0.5 * (least - loss)).exp();
+    let possible = || tried.iter().filter(|(loss, ..)| *loss <= least + POSSIBLE);
+    let sum: f64 = possible().map(|(loss, ..)| likely(*loss)).sum();
+    let possible = possible().map(|(loss, _, law)| (*law, likely(*loss) / sum)).collect();
     (left < MOST_LEFT * total).then_some(Approach { possible })
 }
 
@@ -120,48 +155,4 @@ fn about_mean(seen: &[(f64, [Vector3<f64>; 3])], of: impl Fn(f64) -> f64) -> (f6
             .sum::<f64>();
     }
     (left, slopes)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn course(tau_s: f64, late_s: f64, until_s: f64, noise_m: f64) -> Vec<(f64, [Vector3<f64>; 3])> {
-        (0..=(until_s / 5.0) as usize)
-            .map(|k| {
-                let t_s = 5.0 * k as f64;
-                let rattle = noise_m * (17.0 * t_s).sin();
-                let along_m = 0.04 * WarmUp::share(t_s, tau_s, late_s) + rattle;
-                (t_s, [Vector3::new(along_m, 0.2 * along_m, 0.0); 3])
-            })
-            .collect()
-    }
-
-    #[test]
-    fn the_time_to_go_is_told_with_what_is_not_known_of_it() {
-        for (tau_s, late_s) in [(250.0, 0.0), (400.0, 0.0), (420.0, 60.0), (550.0, 30.0), (300.0, 90.0)] {
-            for minutes in [4.0, 6.0, 10.0, 15.0] {
-                let seen = course(tau_s, late_s, 60.0 * minutes, 2e-4);
-                let found = fit_warm_up(&seen).expect("an approach");
-                let rest = 1.0 - WarmUp::share(60.0 * minutes, tau_s, late_s);
-                let truth = WarmUp { time_constant_s: tau_s, to_go_m: 0.04 * 1.04_f64.sqrt() * rest, late_s };
-                let wait_s = truth.until_within_s(0.002);
-                let [least_s, most_s] = found.until_within_s(0.002);
-                let about =
-                    format!("{tau_s} {late_s} after {minutes} min: {wait_s} in {least_s} to {most_s}");
-                assert!(least_s < 1.15 * wait_s + 60.0 && most_s > 0.85 * wait_s - 60.0, "{about}");
-                // In the first minutes the end is hardly known.
-                assert!(minutes < 8.0 || most_s < 2.0 * wait_s + 180.0, "{about}");
-            }
-        }
-    }
-
-    #[test]
-    fn nothing_is_made_of_noise_or_of_a_moment() {
-        let rattle: Vec<_> = (0..100)
-            .map(|k| (5.0 * f64::from(k), [Vector3::new(2e-4 * (f64::from(k) * 9.1).sin(), 0.0, 0.0); 3]))
-            .collect();
-        assert_eq!(fit_warm_up(&rattle), None);
-        assert_eq!(fit_warm_up(&course(400.0, 0.0, 30.0, 0.0)), None);
-    }
 }
