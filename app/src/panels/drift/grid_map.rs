@@ -6,7 +6,7 @@ use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, Tokens};
 
 /// What is shown of the table, robot frame: x (up) and y (to the left), m.
-const SHOWN_M: [[f64; 2]; 2] = [[0.13, 0.66], [-0.52, 0.52]];
+const SHOWN_M: [[f64; 2]; 2] = [[0.08, 0.66], [-0.52, 0.52]];
 const TARGET: f32 = 3.5;
 const ESTIMATE: f32 = 2.5;
 /// Shorter arrows have no head, points.

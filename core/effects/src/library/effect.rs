@@ -78,8 +78,10 @@ impl Effect {
         arm: Option<&Arm>,
         eyes: Option<&Eyes>,
     ) -> Option<Self> {
-        let found =
-            Self::sites(Kind::of_id(id)?, arm, eyes).into_iter().find(|effect| effect.site == site)?;
+        let kind = Kind::of_id(id)?;
+        let in_set = eyes.filter(|_| !site.is_empty()).and_then(|_| Self::in_set(kind, site));
+        let at_site = || Self::sites(kind, arm, eyes).into_iter().find(|effect| effect.site == site);
+        let found = in_set.or_else(at_site)?;
         Some(found.with_shape(shape))
     }
 
