@@ -38,6 +38,20 @@ impl TwinBody {
         Self { twin, pairs: 0, hands }
     }
 
+    /// Somebody else takes the robot over. As on the bus, goals of fingers that met something lie no farther ahead of
+    /// them than a step.
+    pub fn taken_over(&mut self) {
+        let (commanded, here) = (self.twin.commanded().clone(), self.twin.encoders());
+        let step_rad = self.rig().gate.step_rad;
+        let goal =
+            |joint: &JointIndex| here[*joint] + (commanded[*joint] - here[*joint]).clamp(-step_rad, step_rad);
+        let goals: Vec<f64> = self.hands.iter().map(goal).collect();
+        let taken = commanded.with(&self.hands, &goals);
+        if taken.distance_rad(&commanded) > SAME_RAD {
+            self.twin.follow(&[taken], GRIP_RAD_S);
+        }
+    }
+
     /// What only a twin can, and for who judges.
     pub fn twin(&mut self) -> &mut Lockstep {
         &mut self.twin

@@ -134,6 +134,7 @@ impl Bench {
         task: &Task,
         meddler: &mut dyn Meddler,
     ) -> (Record, Judged) {
+        body.taken_over();
         meddler.before(body.twin());
         let judge = Rc::new(RefCell::new(Judge::new(body.twin(), task.toy, &self.rig)));
         let step = Rc::new(RefCell::new(Step::Ready));
