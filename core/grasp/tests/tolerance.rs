@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use plumbline_effects::RobotModel;
-use plumbline_grasp::body::{GRIP_RAD_S, grip_force};
+use plumbline_grasp::body::{GRIP_RAD_S, grip_force, is_thumb};
 use plumbline_grasp::plan::{GraspPlanner, Standing};
 use plumbline_grasp::{PLACES_M, PalmArm};
-use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::robot::{JointIndex, Posture, Rig};
 use plumbline_twin::{Lockstep, Scenario, Toy};
 
 /// What is still in the hand after this long is held, s.
@@ -28,6 +28,18 @@ fn robot() -> Scenario {
          toy_friction = {friction}\ntoy_mass = {mass}\ntoy_size = {size}\n"
     );
     Scenario::from_toml("toys", &text).expect("valid")
+}
+
+/// How hard a joint of the hand presses, as a share of its torque: as a grip does, or `PLUMBLINE_FORCE` ("0.4 0.8",
+/// fingers and thumb).
+fn force(rig: &Rig, joint: JointIndex) -> f64 {
+    let asked = std::env::var("PLUMBLINE_FORCE").unwrap_or_default();
+    let asked: Vec<f64> = asked.split(' ').filter_map(|text| text.parse().ok()).collect();
+    match asked[..] {
+        [_, thumb] if is_thumb(rig, joint) => thumb,
+        [finger, _] => finger,
+        _ => grip_force(rig, joint),
+    }
 }
 
 /// How far (m) a toy is up after it was held for ten seconds, by a hand that is sent so much beside it (along the
@@ -72,7 +84,7 @@ fn lifted_m(toy: Toy, at_m: [f64; 2], off_m: [f64; 3]) -> Result<(f64, f64, f64)
     let joint = |name: &str| rig.description.find_joint(name).expect("a joint");
     let thumb = [joint("r_thumb_x"), joint("r_thumb_z")];
     for finger in rig.arms.iter().flat_map(|arm| arm.hand.iter().copied()) {
-        twin.limit(finger, grip_force(&rig, finger));
+        twin.limit(finger, force(&rig, finger));
     }
     twin.follow(&[closing.with(&thumb, &close.of(&thumb))], GRIP_RAD_S);
     twin.follow(std::slice::from_ref(&close), GRIP_RAD_S);
@@ -80,8 +92,28 @@ fn lifted_m(toy: Toy, at_m: [f64; 2], off_m: [f64; 3]) -> Result<(f64, f64, f64)
     let up: Vec<Posture> = planner.lift(&plan, &close, GraspPlanner::LIFT_M);
     twin.follow(&up, 0.4);
     let seconds = twin.now_s() - began_s;
+    if std::env::var_os("PLUMBLINE_CREEP").is_some() {
+        creep(&mut twin, &rig, toy);
+    }
     twin.wait(HOLDS_S);
     Ok((place(&mut twin).z - before.z, plan.level, seconds))
+}
+
+/// Second by second, where a toy is in the hand (mm from the middle of the palm, in its frame), and how far its
+/// joints are bent.
+fn creep(twin: &mut Lockstep, rig: &Rig, toy: Toy) {
+    let link = rig.description.find_link("right_palm_center").expect("a tip");
+    let hand = &rig.arms.iter().find(|arm| arm.name == "right").expect("an arm").hand;
+    for second in 0..8 {
+        let truth = twin.truth_for_judging();
+        let palm = truth.robot_from_link[link.0].expect("there");
+        let place =
+            truth.toys.iter().find(|(other, _)| *other == toy).and_then(|(_, place)| *place).expect("out");
+        let in_palm = palm.inverse_transform_point(&place.translation.vector.into()) * 1e3;
+        let bent: Vec<f64> = hand.iter().map(|joint| twin.encoders()[*joint]).collect();
+        println!("  {second} s: [{:.1} {:.1} {:.1}] mm, {bent:.2?} rad", in_palm.x, in_palm.y, in_palm.z);
+        twin.wait(1.0);
+    }
 }
 
 #[test]
@@ -203,5 +235,28 @@ fn a_little_off_everywhere_at_every_height() {
             .collect();
         let all = PLACES_M.len() * OFF_MM.len();
         println!("{up_mm:+.1} mm: {} of {all}; missed {missed:?}", all - missed.len());
+    }
+}
+
+#[test]
+#[ignore = "many minutes of physics; figures for who chooses where in the hand a thing belongs"]
+fn where_in_the_hand() {
+    // Every third place; how far the hand is beside where it is sent, mm: along, across, up.
+    const EVERY: usize = 3;
+    const ALONG_MM: [f64; 7] = [-12.0, -8.0, -4.0, 0.0, 4.0, 8.0, 12.0];
+    const ACROSS_MM: [f64; 5] = [-8.0, -4.0, 0.0, 4.0, 8.0];
+    let wanted = std::env::var("PLUMBLINE_UP_MM").unwrap_or_else(|_| "-4 0 4".to_owned());
+    for up_mm in wanted.split(' ').filter_map(|up| up.parse::<f64>().ok()) {
+        println!("{up_mm:+.0} mm up; across {ACROSS_MM:?} mm");
+        for along_mm in ALONG_MM {
+            let row = ACROSS_MM.map(|across_mm| {
+                let off_m = [along_mm, across_mm, up_mm].map(|mm| mm * 1e-3);
+                let places = PLACES_M.iter().step_by(EVERY);
+                places
+                    .filter(|at_m| lifted_m(Toy::Tomato, **at_m, off_m).is_ok_and(|(up_m, ..)| up_m > 0.04))
+                    .count()
+            });
+            println!("{along_mm:+5.0} mm along: {row:?} of {}", PLACES_M.len().div_ceil(EVERY));
+        }
     }
 }
