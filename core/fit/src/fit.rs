@@ -346,6 +346,48 @@ mod tests {
     }
 
     #[test]
+    fn a_touch_that_is_far_off_beside_the_others_does_not_bend_the_fit() {
+        const KNUCKLE_M: f64 = 0.03;
+        let rig = Rig::built_in("nico").expect("valid");
+        let (mut touches, screen, hands) = measured(&rig);
+        let arm = touches.apparatuses[0].arm.as_ref().expect("an arm");
+        let zeros: Vec<Effect> = Effect::sites(Kind::JointZero, Some(arm), None)
+            .into_iter()
+            .filter(|effect| !effect.site.is_empty())
+            .collect();
+        let mount = Matrix6::from_diagonal(&Vector6::new(1e-6, 1e-6, 1e-6, 3e-7, 3e-7, 3e-7));
+        let truth = touches.clone();
+        // How far the touches that are as they should be are off on average, m.
+        let off_m = |touches: &Measurements| {
+            let known = Known {
+                rig: &rig,
+                screen: Some(&screen),
+                hands: Some(&hands),
+                neck_rad: (0.0, 0.003),
+                mount: &mount,
+                share: 1.0,
+            };
+            let rows: Vec<&Observation> = touches.rows.iter().collect();
+            let fitted = fit(touches, &rows, &zeros, &known).expect("predicted");
+            let of_row = |row: &Observation| {
+                let predicted = truth.predict(row, &fitted.assumed).expect("predicted");
+                (Vector3::from_column_slice(&predicted) - Vector3::from_column_slice(&row.measured)).norm()
+            };
+            truth.rows.iter().skip(1).map(of_row).sum::<f64>() / (truth.rows.len() - 1) as f64
+        };
+        let undisturbed_m = off_m(&touches);
+        touches.rows[0].measured[0] += KNUCKLE_M;
+        let bent_m = off_m(&touches) - undisturbed_m;
+        assert!(bent_m < 0.02 * KNUCKLE_M, "{undisturbed_m} m, {bent_m} m more with it");
+        // Half of them are off: that is the robot, not a knuckle.
+        for row in touches.rows.iter_mut().step_by(2) {
+            row.measured[0] += KNUCKLE_M;
+        }
+        let split_m = off_m(&touches) - undisturbed_m;
+        assert!(split_m > 0.1 * KNUCKLE_M, "{split_m} m");
+    }
+
+    #[test]
     fn the_turn_that_arm_screen_and_head_share_is_told_by_the_body_and_by_nothing_else() {
         let rig = Rig::built_in("nico").expect("valid");
         let (touches, screen, hands) = measured(&rig);

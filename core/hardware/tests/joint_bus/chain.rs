@@ -47,6 +47,8 @@ pub struct FakeServo {
     pub sinks_ticks_s: f64,
     /// Times a goal or an "on" switched its torque on.
     pub switched_on: u32,
+    /// Whether its limit of torque stays as it is, whatever is written.
+    pub keeps_its_limit: bool,
 }
 
 /// A packet with goals, as it arrived.
@@ -84,6 +86,7 @@ impl FakeServo {
             powered: true,
             sinks_ticks_s: 0.0,
             switched_on: 0,
+            keeps_its_limit: false,
         };
         servo.set(Item::ModelNumber, table.number);
         servo.set(Item::FirmwareVersion, 36);
@@ -219,6 +222,11 @@ impl Chain {
     fn store(&mut self, id: u8, address: u16, data: &[u8]) {
         let Some(servo) = self.servos.get_mut(&id).filter(|servo| servo.powered) else { return };
         let was_on = servo.get(Item::TorqueEnable);
+        if servo.keeps_its_limit
+            && servo.table.register(Item::TorqueLimit).is_some_and(|r| r.address == address)
+        {
+            return;
+        }
         let begin = usize::from(address);
         servo.memory[begin..begin + data.len()].copy_from_slice(data);
         // Protocol 1.0: a goal switches the torque on.

@@ -177,6 +177,31 @@ fn too_much_force_or_speed_and_a_hot_finger_are_refused() {
     assert!(state.of(finger).is_some());
 }
 
+#[test]
+fn a_thumb_that_does_not_take_its_limit_is_named_and_stays_where_it_is_while_the_others_close() {
+    let (rig, chain, driver) = ready();
+    let (finger, id) = finger(&rig);
+    let thumb = joint(&rig, "r_thumb_x");
+    let thumb_id = id_of(&rig, thumb);
+    chain.lock().servos.get_mut(&thumb_id).expect("there").keeps_its_limit = true;
+    let stood = chain.lock().servos[&thumb_id].position;
+    let goal_rad = bent_rad(&rig, finger);
+    let fingers = [(finger, goal_rad), (thumb, bent_rad(&rig, thumb))];
+    let fingers = fingers.map(|(joint, goal_rad)| GripFinger { joint, goal_rad, force: FORCE });
+    driver.grip(Grip { fingers: fingers.to_vec(), speed_rad_s: 1.0 }).expect("queued");
+    let state =
+        await_state(&driver, "the refusal", |s| matches!(s.refusal, Some((_, Refusal::Force { .. }))));
+    let (_, refusal) = state.refusal.as_ref().expect("refused");
+    assert!(refusal.to_string().contains("does not take a limit of 70 %"), "{refusal}");
+    assert!(matches!(refusal, Refusal::Force { joint, .. } if *joint == thumb), "{refusal}");
+    await_state(&driver, "the finger at its goal", |state| {
+        state.of(finger).and_then(|reading| reading.angle_rad).is_some_and(|at| (at - goal_rad).abs() < 0.01)
+    });
+    assert_eq!(limit_of(&chain, id), FORCE_RAW);
+    assert!((chain.lock().servos[&thumb_id].position - stood).abs() <= 1.0, "it was bent with all its force");
+    assert_goals_stay_near(&rig, &chain);
+}
+
 const PORT: &str = "PLUMBLINE_TEST_GRIP_PORT";
 
 /// Run as a process of its own by the test below; does nothing otherwise.
