@@ -29,6 +29,13 @@ pub fn is_thumb(rig: &Rig, joint: JointIndex) -> bool {
     rig.description.joint(joint).name.contains("thumb")
 }
 
+/// Joints that are elsewhere than before by more than `same_rad` in one of these postures, in the order of their
+/// servos.
+pub fn turning(rig: &Rig, from: &Posture, way: &[Posture], same_rad: f64) -> Vec<JointIndex> {
+    let turns = |joint: &JointIndex| way.iter().any(|to| (to[*joint] - from[*joint]).abs() > same_rad);
+    rig.servos.iter().map(|servo| servo.joint).filter(turns).collect()
+}
+
 /// Whether these goals are of fingers alone, each farther bent than it is: they close, and what they meet is pressed.
 pub fn closes(hands: &[JointIndex], from: &Posture, goals: &[(JointIndex, f64)]) -> bool {
     let bends =

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use plumbline_grasp::body::{GRIP_RAD_S, closes, grip_force};
+use plumbline_grasp::body::{GRIP_RAD_S, closes, grip_force, turning};
 use plumbline_grasp::{Body, Halt, ServoState, Sight};
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 use plumbline_twin::{Lockstep, Toy};
@@ -90,14 +90,11 @@ impl Body for TwinBody {
     /// As on the bus: fingers that close press with no more than a grip does, until they are moved otherwise.
     fn follow(&mut self, way: &[Posture], speed_rad_s: f64) -> Result<(), Halt> {
         let from = self.twin.commanded().clone();
-        let goals: Vec<(JointIndex, f64)> = way.last().map_or_else(Vec::new, |end| {
-            let turn = |joint: &JointIndex| (end[*joint] - from[*joint]).abs() > SAME_RAD;
-            let servos = self.rig().servos.iter().map(|servo| servo.joint);
-            servos.filter(turn).map(|joint| (joint, end[joint])).collect()
-        });
+        let joints = turning(self.rig(), &from, way, SAME_RAD);
+        let end = way.last().unwrap_or(&from);
+        let goals: Vec<(JointIndex, f64)> = joints.iter().map(|joint| (*joint, end[*joint])).collect();
         let grips = closes(&self.hands, &from, &goals);
-        let of_hands = goals.iter().map(|(joint, _)| *joint).filter(|joint| self.hands.contains(joint));
-        for joint in of_hands.collect::<Vec<_>>() {
+        for joint in joints.into_iter().filter(|joint| self.hands.contains(joint)) {
             let force = if grips { grip_force(self.rig(), joint) } else { 1.0 };
             self.twin.limit(joint, force);
         }

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use plumbline_grasp::body::closes;
+use plumbline_grasp::body::{closes, turning};
 use plumbline_grasp::{Body, Halt, ServoState, Sight};
 use plumbline_hardware::joints::JointState;
 use plumbline_model::JobContext;
@@ -170,9 +170,7 @@ impl<'a> LedBody<'a> {
     /// Joints of a posture that are elsewhere than they were sent before.
     fn turning(&mut self, way: &[Posture]) -> Result<Vec<Vec<(JointIndex, f64)>>, Halt> {
         let from = self.commanded()?;
-        let servos = self.rig.clone();
-        let turns = |joint: &JointIndex| way.iter().any(|to| (to[*joint] - from[*joint]).abs() > SAME_RAD);
-        let joints: Vec<JointIndex> = servos.servos.iter().map(|servo| servo.joint).filter(turns).collect();
+        let joints = turning(&self.rig, &from, way, SAME_RAD);
         Ok(way.iter().map(|to| joints.iter().map(|joint| (*joint, to[*joint])).collect()).collect())
     }
 

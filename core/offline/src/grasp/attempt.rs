@@ -9,7 +9,9 @@ use plumbline_grasp::attempt::HandFinder;
 use plumbline_grasp::plan::GraspPlan;
 use plumbline_grasp::record::Iteration;
 use plumbline_grasp::see::{Looker, Seen};
-use plumbline_grasp::{Body, Grasper, Halt, Hand, Knowledge, Order, Record, ServoState, Sight, Step, Watch};
+use plumbline_grasp::{
+    Body, Grasper, Grip, Halt, Hand, Knowledge, Order, Record, ServoState, Sight, Step, Watch,
+};
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_twin::eyes::EyeRenderer;
 use plumbline_twin::{Lockstep, Scenario, Toy};
@@ -21,6 +23,12 @@ use crate::twin_body::TwinBody;
 
 /// Since the eyes were switched on, s: they have warmed up, as in the published experiment.
 const WARM_S: f64 = 1800.0;
+
+/// What is still in the hand this long after the attempt is held, s: a thing can be there when it is looked
+/// for and fall out later.
+const HOLDS_S: f64 = 10.0;
+/// In this time the hand is felt once, s.
+const FEELS_S: f64 = 0.5;
 
 /// Somebody who interferes with an attempt.
 pub(super) trait Meddler {
@@ -147,9 +155,26 @@ impl Bench {
             last: Step::Ready,
         };
         let mut watch = Steps { step, meddler: &meddler };
-        let record = self.grasper.attempt(&mut watched, &task.order, jiff::Timestamp::UNIX_EPOCH, &mut watch);
+        let mut record =
+            self.grasper.attempt(&mut watched, &task.order, jiff::Timestamp::UNIX_EPOCH, &mut watch);
+        self.hold(body, &mut record);
         let judged = judge.borrow().judge(body.twin(), &record);
         (record, judged)
+    }
+
+    /// Stands still with what is in the hand; as in the window, the record keeps that it slipped out.
+    fn hold(&self, body: &mut TwinBody, record: &mut Record) {
+        let Some(grip) = Grip::of_rig(&self.rig, record.hand).filter(|_| record.is_success()) else {
+            body.twin().wait(HOLDS_S);
+            return;
+        };
+        let ended_s = body.now_s();
+        while body.now_s() - ended_s < HOLDS_S {
+            body.twin().wait(FEELS_S);
+            let holds = body.servos().is_ok_and(|servos| grip.holds(&servos));
+            let now_s = body.now_s() - ended_s;
+            record.slipped_after_s = (!holds).then(|| record.slipped_after_s.unwrap_or(now_s));
+        }
     }
 }
 

@@ -6,9 +6,6 @@ use plumbline_grasp::{Failure, Hand, Record};
 use plumbline_model::robot::Rig;
 use plumbline_twin::{Lockstep, Toy};
 
-/// What is still in the hand this long after the attempt is held, s: a thing can be there when it is looked
-/// for and fall out later.
-const HOLDS_S: f64 = 10.0;
 /// A thing that is this much higher than before is lifted, m.
 const LIFTED_M: f64 = 0.04;
 /// A place that was seen farther off than this was wrong, m.
@@ -62,9 +59,8 @@ impl Judge {
         self.closing_m = self.palms_m(twin);
     }
 
-    /// After the attempt; what is in the hand then has to stay there.
+    /// As it is now.
     pub fn judge(&self, twin: &mut Lockstep, record: &Record) -> Judged {
-        twin.wait(HOLDS_S);
         let after = place(twin, self.toy);
         let of_hand = |palms: &Palms| palms.iter().find(|(hand, _)| *hand == record.hand).map(|(_, at)| *at);
         let (aligned_m, closing_m) = (of_hand(&self.aligned_m), of_hand(&self.closing_m));

@@ -6,12 +6,13 @@ use std::sync::Arc;
 
 use image::{Rgb, RgbImage};
 use plumbline_engine::trials::Judged;
-use plumbline_grasp::{Failure, Method, Outcome, Record, Sight, Step};
-use plumbline_model::robot::Posture;
+use plumbline_grasp::body::grip_force;
+use plumbline_grasp::{Failure, Method, Outcome, Record, ServoState, Sight, Step};
+use plumbline_model::robot::{JointIndex, Posture};
 use plumbline_twin::{Lockstep, Scenario, Toy};
 
 use super::super::attempt::Meddler;
-use super::{bench_of, failure, task};
+use super::{bench, bench_of, failure, task};
 
 const EASY_M: [f64; 2] = [0.3, -0.1];
 
@@ -25,11 +26,10 @@ fn with_contacts(keys: &str) -> Scenario {
 /// What it takes itself for is what is so, and a failure has words.
 pub(super) fn assert_honest(what: &str, record: &Record, judged: &Judged) {
     println!(
-        "{what}: {:?}, lifted {}, fingers {:.2?}",
-        record.outcome, judged.lifted, record.fingers_open_rad
+        "{what}: {:?}, slipped {:?}, lifted {}, fingers {:.2?}",
+        record.outcome, record.slipped_after_s, judged.lifted, record.fingers_open_rad
     );
-    let success = record.outcome == Some(Outcome::Success);
-    assert_eq!(success, judged.lifted, "{what}: {:?}", record.outcome);
+    assert_eq!(record.is_success(), judged.lifted, "{what}: {:?}", record.outcome);
     if let Some(Outcome::Failed { why, .. } | Outcome::Refused { why }) = &record.outcome {
         assert!(why.contains(' '), "{what}: {why}");
     }
@@ -216,4 +216,33 @@ fn with_cold_eyes_in_a_lab() {
             );
         }
     }
+}
+
+/// Feels how hard each joint of the hands presses.
+#[derive(Default)]
+struct Felt(Vec<(JointIndex, f64)>);
+
+impl Meddler for Felt {
+    fn feels(&mut self, step: Step, servos: &mut [ServoState]) {
+        if matches!(step, Step::Close | Step::Lift | Step::Check) {
+            self.0.extend(servos.iter().filter_map(|servo| Some((servo.joint, servo.load?.abs()))));
+        }
+    }
+}
+
+#[test]
+fn fingers_press_no_harder_than_on_the_bus() {
+    let mut bench = bench("perfect");
+    let task = task(Method::M5, Toy::Tomato, [0.3, -0.1]);
+    let mut felt = Felt::default();
+    let (record, judged) = bench.attempt_disturbed(&task, &mut felt).expect("done");
+    assert!(judged.lifted, "{:?}", record.outcome);
+    let hand = bench.rig().arm("right").expect("an arm").hand.clone();
+    let of_hand = || felt.0.iter().filter(|(joint, _)| hand.contains(joint));
+    for (joint, load) in of_hand() {
+        let most = grip_force(bench.rig(), *joint);
+        assert!(*load <= most + 0.01, "{}: {load}", bench.rig().description.joint(*joint).name);
+    }
+    let share = of_hand().map(|(joint, load)| load / grip_force(bench.rig(), *joint)).fold(0.0, f64::max);
+    assert!(share > 0.95, "what is held is pressed as hard as may be: {share}");
 }

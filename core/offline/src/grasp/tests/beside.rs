@@ -6,7 +6,7 @@ use std::sync::Arc;
 use image::{RgbImage, imageops};
 use nalgebra::{Isometry3, Vector3};
 use plumbline_grasp::see::Seen;
-use plumbline_grasp::{Method, Outcome, Sight, Step};
+use plumbline_grasp::{Method, Sight, Step};
 use plumbline_twin::{Lockstep, Scenario, Toy};
 
 use super::super::attempt::Meddler;
@@ -121,6 +121,6 @@ fn what_stands_twelve_centimeters_beside_it_is_not_knocked_over() {
             record.earlier.len() + 1
         );
         assert!(moved_m < TOUCHED_M && leans_rad < LEANS_RAD, "{at_m:?}: {moved_m} m, {leans_rad} rad");
-        assert!(judged.lifted && record.outcome == Some(Outcome::Success), "{at_m:?}: {:?}", record.outcome);
+        assert!(judged.lifted && record.is_success(), "{at_m:?}: {:?}", record.outcome);
     }
 }

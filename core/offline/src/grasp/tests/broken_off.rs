@@ -149,12 +149,7 @@ fn a_servo_that_gets_too_hot_on_the_way_ends_it_and_when_it_is_cool_the_next_gra
         assert!(why.contains("let it cool down") && record.moments.is_empty(), "{why}");
         home(&bench, &mut world, Toy::Tomato);
         let (record, judged) = bench.attempt_in(&mut world, &task, &mut ());
-        assert!(
-            judged.lifted && record.outcome == Some(Outcome::Success),
-            "after {at:?}: {:?} {:?}",
-            record.outcome,
-            record.seen
-        );
+        assert!(judged.lifted && record.is_success(), "after {at:?}: {:?} {:?}", record.outcome, record.seen);
         home(&bench, &mut world, Toy::Tomato);
     }
 }
@@ -186,7 +181,7 @@ fn a_hand_that_is_hidden_from_both_eyes_ends_m4_with_the_reason_and_the_next_gra
     assert_holds("M4", &bench, &mut world);
     home(&bench, &mut world, Toy::Tomato);
     let (record, judged) = bench.attempt_in(&mut world, &task(Method::M5, Toy::Tomato, EASY_M), &mut ());
-    assert!(judged.lifted && record.outcome == Some(Outcome::Success), "{:?}", record.outcome);
+    assert!(judged.lifted && record.is_success(), "{:?}", record.outcome);
 }
 
 #[test]
@@ -200,5 +195,5 @@ fn after_a_hand_that_was_hidden_the_next_grasp_in_the_same_world_works() {
     assert_holds("M5", &bench, &mut world);
     home(&bench, &mut world, Toy::Tomato);
     let (record, judged) = bench.attempt_in(&mut world, &task, &mut ());
-    assert!(judged.lifted && record.outcome == Some(Outcome::Success), "{:?}", record.outcome);
+    assert!(judged.lifted && record.is_success(), "{:?}", record.outcome);
 }
