@@ -1,4 +1,4 @@
-//! Words on the scene: its name, what the colors mean, axes, labels, what the pointer is on.
+//! Words on the scene: its name, what the colors mean, axes, what the pointer is on.
 
 use egui::{Align2, Color32, Painter, Pos2, Rect, Stroke, TextStyle, Ui, Vec2, pos2, vec2};
 use nalgebra::{Point3, Vector3};
@@ -118,26 +118,6 @@ fn chip(ui: &Ui, clip: Rect, at: Pos2, anchor: Align2, text: &str, warning: bool
     }
     painter.galley(rect.min + vec2(6.0 + mark, 3.0), galley, tokens.text);
     rect
-}
-
-/// Labels of the scene; `hidden` says whether a solid is in front.
-pub(super) fn labels(ui: &Ui, rect: Rect, view: &View, scene: &Scene, hidden: impl Fn(Pos2, f64) -> bool) {
-    let tokens = theme::tokens(ui);
-    let painter = ui.painter_at(rect);
-    let font = theme::font(ui, &TextStyle::Small);
-    for label in &scene.labels {
-        let Some((place, depth_m)) = view.project(&label.at_m) else { continue };
-        let strength = if hidden(place, depth_m) { 0.4 } else { 1.0 };
-        let color = match label.tint {
-            Tint::Neutral | Tint::Screen | Tint::Table => tokens.text,
-            tint => tint.ink(tokens),
-        };
-        let galley = painter.layout_no_wrap(label.text.clone(), font.clone(), color.gamma_multiply(strength));
-        let at = rect.min + place.to_vec2() - galley.size() / 2.0;
-        let back = Rect::from_min_size(at, galley.size()).expand2(vec2(4.0, 1.0));
-        painter.rect_filled(back, 3.0, tokens.panel.gamma_multiply(0.7 * strength));
-        painter.galley(at, galley, color);
-    }
 }
 
 /// Numbers in mm and names along those edges of the grid that are nearest to the camera.

@@ -8,6 +8,7 @@ mod camera;
 mod chrome;
 mod facets;
 mod input;
+mod labels;
 mod parts;
 mod pick;
 mod raster;
@@ -215,7 +216,7 @@ impl<'a> Scene3d<'a> {
             chrome::axes(ui, rect, view, &grid);
         }
         let hidden = |at: Pos2, depth_m: f64| cache.renderer.is_hidden(at.to_vec2() / rect.size(), depth_m);
-        chrome::labels(ui, rect, view, self.scene, hidden);
+        labels::labels(ui, rect, view, self.scene, hidden);
         chrome::compass(ui, rect, view);
         chrome::captions(ui, rect, self.label, self.stale, self.scene);
         if let Some(point_m) = hovered.and_then(|picked| picked.point_m) {
