@@ -81,26 +81,17 @@ fn joint_view(rig: &Rig, i: usize, servo: &plumbline_model::robot::Servo, measur
         temperature_c: Some(36.0 + 0.02 * f64::from(t)),
     });
     JointView {
-        joint: servo.joint,
-        name: servo.joint_name.clone(),
-        title: servo.title.clone(),
-        servo: servo.id,
-        model: servo.model.clone(),
-        limits,
         limits_now: rig.limits_in(servo.joint, measured),
         angle_rad: Some(measured[servo.joint] + 0.002 * phase.sin()),
         goal_rad: Some(measured[servo.joint]),
         speed_rad_s: Some(0.0),
         load: Some(0.3 * phase.sin()),
-        current_a: None,
         temperature_c: Some(36.0 + (i % 7) as f64),
         voltage_v: Some(12.1),
         torque_on: Some(true),
         age: Some(Duration::from_millis(12)),
-        problem: None,
-        let_go: false,
-        no_force: false,
         history: history.collect(),
+        ..JointView::unheard(servo, limits)
     }
 }
 

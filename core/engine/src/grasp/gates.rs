@@ -195,26 +195,11 @@ mod tests {
             let is_elbow = servo.joint_name == "r_elbow_y";
             let limits = Limits { lower_rad: -3.0, upper_rad: 3.0 };
             JointView {
-                joint: servo.joint,
-                name: servo.joint_name.clone(),
-                title: servo.title.clone(),
-                servo: servo.id,
-                model: servo.model.clone(),
-                limits,
-                limits_now: limits,
                 angle_rad: Some(0.0),
-                goal_rad: Some(0.0),
-                speed_rad_s: Some(0.0),
                 load: Some(if is_elbow { load } else { 0.1 }),
-                current_a: None,
                 temperature_c: Some(if is_elbow { temperature_c } else { 31.0 }),
-                voltage_v: Some(12.0),
                 torque_on: Some(true),
-                let_go: false,
-                no_force: false,
-                age: None,
-                problem: None,
-                history: Arc::from([]),
+                ..JointView::unheard(servo, limits)
             }
         };
         let robot = RobotView {

@@ -104,8 +104,6 @@ impl HeldWatch {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use jiff::Timestamp;
     use plumbline_grasp::{Method, Outcome};
     use plumbline_model::robot::Limits;
@@ -141,27 +139,12 @@ mod tests {
     fn robot(load: f64, goal_rad: f64, motion: MotionState) -> RobotView {
         let rig = rig();
         let limits = Limits { lower_rad: -3.0, upper_rad: 3.0 };
-        let joint = |servo: &plumbline_model::robot::Servo| JointView {
-            joint: servo.joint,
-            name: servo.joint_name.clone(),
-            title: servo.title.clone(),
-            servo: servo.id,
-            model: servo.model.clone(),
-            limits,
-            limits_now: limits,
+        let joint = |servo| JointView {
             angle_rad: Some(1.0),
             goal_rad: Some(goal_rad),
-            speed_rad_s: None,
             load: Some(load),
-            current_a: None,
-            temperature_c: None,
-            voltage_v: None,
             torque_on: Some(true),
-            let_go: false,
-            no_force: false,
-            age: None,
-            problem: None,
-            history: Arc::from([]),
+            ..JointView::unheard(servo, limits)
         };
         RobotView {
             joints: rig.servos.iter().map(joint).collect(),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use plumbline_model::frame::{Point, Robot};
-use plumbline_model::robot::{JointIndex, Limits, Posture, Rig};
+use plumbline_model::robot::{JointIndex, Limits, Posture, Rig, Servo};
 
 pub use super::unable::InTheWay;
 
@@ -166,6 +166,32 @@ pub struct JointView {
 }
 
 impl JointView {
+    /// Of a servo that was not heard yet.
+    pub fn unheard(servo: &Servo, limits: Limits) -> Self {
+        Self {
+            joint: servo.joint,
+            name: servo.joint_name.clone(),
+            title: servo.title.clone(),
+            servo: servo.id,
+            model: servo.model.clone(),
+            limits,
+            limits_now: limits,
+            angle_rad: None,
+            goal_rad: None,
+            speed_rad_s: None,
+            load: None,
+            current_a: None,
+            temperature_c: None,
+            voltage_v: None,
+            torque_on: None,
+            let_go: false,
+            no_force: false,
+            age: None,
+            problem: None,
+            history: Arc::from([]),
+        }
+    }
+
     /// The same joint when nobody knows anything of it any more.
     pub fn without_readings(&self) -> Self {
         Self {

@@ -22,27 +22,15 @@ fn desk() -> (Desk, tempfile::TempDir) {
     let mut desk = Desk::new(folder.path());
     desk.robot.motion = MotionState::Holding { why: None };
     let rig = desk.rig.clone();
-    let joint = |servo: &plumbline_model::robot::Servo| JointView {
-        joint: servo.joint,
-        name: rig.description.joint(servo.joint).name.clone(),
-        title: servo.title.clone(),
-        servo: servo.id,
-        model: servo.model.clone(),
-        limits: Limits { lower_rad: -3.0, upper_rad: 3.0 },
-        limits_now: Limits { lower_rad: -3.0, upper_rad: 3.0 },
+    let limits = Limits { lower_rad: -3.0, upper_rad: 3.0 };
+    let joint = |servo| JointView {
         angle_rad: Some(0.0),
         goal_rad: Some(0.0),
-        speed_rad_s: Some(0.0),
         load: Some(0.0),
-        current_a: None,
         temperature_c: Some(30.0),
-        voltage_v: Some(12.0),
         torque_on: Some(true),
-        let_go: false,
-        no_force: false,
         age: Some(Duration::from_millis(10)),
-        problem: None,
-        history: [].into(),
+        ..JointView::unheard(servo, limits)
     };
     desk.robot.joints = rig.servos.iter().map(joint).collect();
     (desk, folder)
