@@ -5,7 +5,9 @@
 //! that would pass for a screen that is smaller and nearer; so where each pose really was is an unknown, too.
 
 use image::GrayImage;
-use nalgebra::{DMatrix, DVector, Isometry3, Matrix6, Point3, UnitQuaternion, Vector2, Vector3};
+use nalgebra::{
+    DMatrix, DVector, Isometry3, Matrix6, Point3, Translation3, UnitQuaternion, Vector2, Vector3,
+};
 use plumbline_fit::pose;
 use plumbline_grasp::Body;
 use plumbline_model::robot::{Rig, ScreenFrame};
@@ -23,6 +25,9 @@ const LOOKS_RAD: [f64; 3] = [0.0, 0.2, -0.2];
 const SAMPLES: usize = 48;
 /// Edges are looked for this far from where they should be, in the first round and in the others, px.
 const WINDOW_PX: [f64; 2] = [10.0, 5.0];
+/// The outline is looked for from so far beside where the screen was placed, and where the rig has it, too, along its
+/// width and its height, m: an arm that errs places it by centimeters beside, and other edges lie near.
+const BESIDE_M: [f64; 3] = [0.0, -0.03, 0.03];
 /// The edge is where it gets brighter than this share of the way from frame to table.
 const SHARE: f64 = 0.4;
 /// Scale of the robust loss, px: the table is speckled.
@@ -144,11 +149,33 @@ fn outline(scene: &Scene<'_>, scale: f64) -> Vec<(Vector3<f64>, Vector3<f64>)> {
     points
 }
 
-/// Fits all unknowns to the edges; the head comes to rest to within `rest_sd_rad` (turn, tilt) of where its
-/// encoders have it.
+/// Fits all unknowns to the edges, from every start: the one in which most edges lie where they should is taken. The
+/// head comes to rest to within `rest_sd_rad` (turn, tilt) of where its encoders have it.
 fn fit(scene: &Scene<'_>, rest_sd_rad: [f64; 2], pictures: &[Picture]) -> Option<SeenScreen> {
+    let fits = starts(scene).into_iter().filter_map(|start| fit_from(scene, start, rest_sd_rad, pictures));
+    fits.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(seen, _)| seen)
+}
+
+/// Where the outline is looked for.
+fn starts(scene: &Scene<'_>) -> Vec<Isometry3<f64>> {
+    let mut starts = vec![];
+    for screen in [scene.screen, &scene.rig.touchscreen] {
+        for u_m in BESIDE_M {
+            starts.extend(BESIDE_M.map(|v_m| pose(screen) * Translation3::new(u_m, v_m, 0.0)));
+        }
+    }
+    starts
+}
+
+/// The same from one start, and how many edges lie where they should.
+fn fit_from(
+    scene: &Scene<'_>,
+    start: Isometry3<f64>,
+    rest_sd_rad: [f64; 2],
+    pictures: &[Picture],
+) -> Option<(SeenScreen, f64)> {
     let heads = pictures.iter().map(|picture| picture.head + 1).max()?;
-    let mut guess = Guess { robot_from_screen: pose(scene.screen), scale: 1.0, heads: vec![[0.0; 2]; heads] };
+    let mut guess = Guess { robot_from_screen: start, scale: 1.0, heads: vec![[0.0; 2]; heads] };
     let mut last = None;
     for round in 0..ROUNDS {
         let window_px = WINDOW_PX[usize::from(round > 2)];
@@ -169,15 +196,15 @@ fn fit(scene: &Scene<'_>, rest_sd_rad: [f64; 2], pictures: &[Picture]) -> Option
         let factor = sums.normal.cholesky()?;
         let change = factor.solve(&sums.right);
         guess = (0..guess.unknowns()).fold(guess, |guess, i| guess.changed(i, change[i]));
-        last = Some((factor.inverse() * edge_sd_px.powi(2), rms_px, sums.edges));
+        last = Some((factor.inverse() * edge_sd_px.powi(2), rms_px, sums.edges, sums.weights));
     }
-    let (covariance, rms_px, edges) = last?;
+    let (covariance, rms_px, edges, fitting) = last?;
     // Turn then shift here, shift then turn there.
     let mut own = Matrix6::from_fn(|r, c| covariance[((r + 3) % 6, (c + 3) % 6)]);
     for k in 0..6 {
         own[(k, k)] += LEAST_SD[k / 3].powi(2);
     }
-    Some(SeenScreen { robot_from_screen: guess.robot_from_screen, covariance: own, rms_px, edges })
+    Some((SeenScreen { robot_from_screen: guess.robot_from_screen, covariance: own, rms_px, edges }, fitting))
 }
 
 /// The normal equations of the unknowns.

@@ -18,7 +18,7 @@ use plumbline_model::robot::ik::{Options, Solver, Target};
 use plumbline_model::{Cancelled, JobContext, Pixel, StereoCalibration, Unattended};
 
 use crate::twin::TwinBody;
-use crate::{Figures, HandEyeError, Part, Seen, Start, Tied, Watch, tie};
+use crate::{Figures, HandEyeError, Part, Seen, Start, Tied, Watch, screen, tie};
 
 const TIP: &str = "right_index_tip";
 const NECK_RAD: f64 = 0.015;
@@ -167,4 +167,31 @@ fn cancelled_on_the_way_it_ends_there() {
     let error = tied(&mut body, &start, &mut told, &After(AtomicUsize::new(2))).expect_err("cancelled");
     assert!(matches!(error, HandEyeError::Cancelled(_)), "{error}");
     assert_eq!(told.looks.len(), 2, "{:?}", told.looks);
+}
+
+#[test]
+fn a_screen_that_was_placed_centimeters_beside_is_found_where_it_is() {
+    let rig = Rig::built_in("nico").expect("valid");
+    let mut body = TwinBody::new(&rig, &scenario());
+    let mut see = |beside_m: [f64; 2]| {
+        let mut wrong = rig.clone();
+        wrong.touchscreen.origin.coords.x += beside_m[0];
+        wrong.touchscreen.origin.coords.y += beside_m[1];
+        let placed = wrong.touchscreen.clone();
+        screen::see(&mut body, &wrong, [1e-3; 2], &placed, &mut |_| {}, &Unattended)
+            .expect("done")
+            .expect("seen")
+    };
+    let there = see([0.0, 0.0]);
+    for beside_m in [[-0.005, 0.035], [0.03, -0.03], [-0.03, -0.02]] {
+        let found = see(beside_m);
+        let off = found.robot_from_screen * there.robot_from_screen.inverse();
+        let middle = there.robot_from_screen.translation.vector;
+        let off_m = (found.robot_from_screen.translation.vector - middle).norm();
+        assert!(
+            off_m < 0.001 && off.rotation.angle() < 0.003,
+            "{beside_m:?}: {off_m} {}",
+            off.rotation.angle()
+        );
+    }
 }
