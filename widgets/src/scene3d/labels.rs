@@ -36,7 +36,7 @@ fn room_for(wanted: Rect, text: &str, taken: &[(Rect, &str)]) -> Option<Rect> {
     const STEPS: [f32; 7] = [0.0, -1.0, 1.0, -2.0, 2.0, -3.0, 3.0];
     let is_near = |other: &Rect| {
         let apart = (other.center() - wanted.center()).abs();
-        apart.x < wanted.height() && apart.y < 3.0 * wanted.height()
+        apart.x < 0.75 * wanted.width() && apart.y < 3.0 * wanted.height()
     };
     if taken.iter().any(|(other, said)| said.eq_ignore_ascii_case(text) && is_near(other)) {
         return None;

@@ -86,6 +86,7 @@ impl Judge {
             Some(plumbline_grasp::Outcome::Failed { failure: Failure::NotSeen, .. }) => Failure::NotSeen,
             Some(plumbline_grasp::Outcome::Failed { failure: Failure::Halted, .. }) => Failure::Halted,
             Some(plumbline_grasp::Outcome::Failed { failure: Failure::HandWrong, .. }) => Failure::HandWrong,
+            _ if record.slipped_after_s.is_some() => Failure::Slipped,
             _ if camera_error_m.is_some_and(|error_m| error_m > PLACE_WRONG_M) => Failure::PlaceWrong,
             _ if hand_error_m.is_some_and(|error_m| error_m > HAND_WRONG_M) => Failure::HandWrong,
             _ if flat(after, self.object_m) > LIFTED_M || after.z > self.object_m.z + 0.01 => {
