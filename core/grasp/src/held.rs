@@ -76,6 +76,40 @@ impl Grip {
     }
 }
 
+/// A hand that presses on nothing for so long has lost what it held, s: a single reading says little.
+const EMPTY_FOR_S: f64 = 1.0;
+
+/// Feels whether a thing that was grasped is still in the hand.
+#[derive(Clone, Debug)]
+pub struct HoldWatch {
+    grip: Grip,
+    empty_since_s: Option<f64>,
+}
+
+impl HoldWatch {
+    /// Of a hand that holds something.
+    pub fn new(grip: Grip) -> Self {
+        Self { grip, empty_since_s: None }
+    }
+
+    /// Joints of the hand.
+    pub fn joints(&self) -> impl Iterator<Item = JointIndex> + '_ {
+        self.grip.joints()
+    }
+
+    /// What the servos of the hand say at a time (s, of any clock that only goes on). `None` of them: they are
+    /// not all heard, or say nothing of what is held, as while the arm moves, when what it carries presses now
+    /// more and now less. Since when the hand is empty, once that is sure.
+    pub fn feel(&mut self, servos: Option<&[ServoState]>, now_s: f64) -> Option<f64> {
+        if servos.is_none_or(|servos| self.grip.holds(servos)) {
+            self.empty_since_s = None;
+            return None;
+        }
+        let since_s = *self.empty_since_s.get_or_insert(now_s);
+        (now_s - since_s >= EMPTY_FOR_S).then_some(since_s)
+    }
+}
+
 /// Whether what presses the fingers presses the thumb, by what their servos say of their torque; less than
 /// `presses` is nothing.
 fn is_pinched(fingers: &[f64], thumb: &[f64], presses: f64) -> bool {
@@ -120,19 +154,57 @@ mod tests {
         }
     }
 
+    fn servos(
+        grip: &Grip,
+        rig: &Rig,
+        load: Option<f64>,
+        current_a: Option<f64>,
+        open_rad: f64,
+    ) -> Vec<ServoState> {
+        grip.joints()
+            .map(|joint| {
+                let angle_rad = closed_rad(rig, joint) * (1.0 - open_rad / CLOSED_RAD);
+                ServoState { joint, angle_rad, load, current_a, temperature_c: None }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn what_slips_out_is_told_once_the_hand_was_empty_for_a_while() {
+        let rig = Rig::built_in("nico").expect("comes with the program");
+        let grip = Grip::of_rig(&rig, Hand::Right).expect("it has a right hand");
+        let [holds, empty] = [0.2, 0.0].map(|load| servos(&grip, &rig, Some(load), None, 0.0));
+        let mut watch = HoldWatch::new(grip);
+        assert_eq!(watch.feel(Some(&holds), 0.0), None);
+        // A moment of it, and a hand that is not heard or moves, say nothing.
+        assert_eq!(watch.feel(Some(&empty), 1.0), None);
+        assert_eq!(watch.feel(Some(&empty), 1.9), None);
+        assert_eq!(watch.feel(None, 2.1), None);
+        assert_eq!(watch.feel(Some(&empty), 2.2), None);
+        assert_eq!(watch.feel(Some(&holds), 3.3), None);
+        assert_eq!(watch.feel(Some(&empty), 4.0), None);
+        assert_eq!(watch.feel(Some(&empty), 5.0), Some(4.0));
+        assert_eq!(watch.feel(Some(&empty), 9.0), Some(4.0));
+    }
+
+    /// Servos that say neither load nor current: fingers that creep on to the closed hand have lost it.
+    #[test]
+    fn a_hand_that_says_no_force_is_felt_by_how_far_it_closes() {
+        let rig = Rig::built_in("nico").expect("comes with the program");
+        let grip = Grip::of_rig(&rig, Hand::Right).expect("it has a right hand");
+        let [open, closed] = [0.4, 0.02].map(|open_rad| servos(&grip, &rig, None, None, open_rad));
+        let mut watch = HoldWatch::new(grip);
+        assert_eq!(watch.feel(Some(&open), 0.0), None);
+        assert_eq!(watch.feel(Some(&closed), 1.0), None);
+        assert_eq!(watch.feel(Some(&closed), 2.5), Some(1.0));
+    }
+
     #[test]
     fn by_load_by_current_else_by_how_far_the_fingers_are_open() {
         let rig = Rig::built_in("nico").expect("comes with the program");
         let grip = Grip::of_rig(&rig, Hand::Right).expect("it has a right hand");
         assert!(!grip.fingers.is_empty() && !grip.thumb.is_empty());
-        let servos = |load: Option<f64>, current_a: Option<f64>, open_rad: f64| -> Vec<ServoState> {
-            grip.joints()
-                .map(|joint| {
-                    let angle_rad = closed_rad(&rig, joint) * (1.0 - open_rad / CLOSED_RAD);
-                    ServoState { joint, angle_rad, load, current_a, temperature_c: None }
-                })
-                .collect()
-        };
+        let servos = |load, current_a, open_rad| servos(&grip, &rig, load, current_a, open_rad);
         assert!(grip.holds(&servos(Some(0.2), None, 0.0)) && !grip.holds(&servos(Some(0.02), None, 0.5)));
         assert!(grip.holds(&servos(None, Some(0.1), 0.0)) && !grip.holds(&servos(None, Some(0.001), 0.5)));
         assert!(grip.holds(&servos(None, None, 0.3)) && !grip.holds(&servos(None, None, 0.05)));

@@ -22,7 +22,7 @@ pub use arm::{NoArm, PalmArm};
 pub use attempt::{Grasper, Order, Watch};
 pub use body::{Body, Halt, ServoState, Sight};
 pub use hands::{Hand, HandChoice};
-pub use held::Grip;
+pub use held::{Grip, HoldWatch};
 pub use knowledge::{Corrections, Knowledge};
 pub use method::{Method, PublishedWithRight};
 pub use places::PLACES_M;

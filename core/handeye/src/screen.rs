@@ -28,6 +28,11 @@ const WINDOW_PX: [f64; 2] = [10.0, 5.0];
 /// The outline is looked for from so far beside where the screen was placed, and where the rig has it, too, along its
 /// width and its height, m: an arm that errs places it by centimeters beside, and other edges lie near.
 const BESIDE_M: [f64; 3] = [0.0, -0.03, 0.03];
+/// Outlines whose middles are farther apart are different ones, m.
+const APART_M: f64 = 0.008;
+/// An outline somewhere else that as many edges fit, nearly, leaves open which of them is the screen's: from this share
+/// on.
+const RIVAL: f64 = 0.85;
 /// The edge is where it gets brighter than this share of the way from frame to table.
 const SHARE: f64 = 0.4;
 /// Scale of the robust loss, px: the table is speckled.
@@ -113,11 +118,23 @@ pub fn see(
     looks: &mut dyn FnMut(usize),
     context: &dyn JobContext,
 ) -> Result<Option<SeenScreen>, HandEyeError> {
+    see_beside(body, rig, rest_sd_rad, (start, &BESIDE_M), looks, context)
+}
+
+/// The same, looked for this far beside `start`.
+pub(crate) fn see_beside(
+    body: &mut dyn Body,
+    rig: &Rig,
+    rest_sd_rad: [f64; 2],
+    (start, beside_m): (&Touchscreen, &[f64]),
+    looks: &mut dyn FnMut(usize),
+    context: &dyn JobContext,
+) -> Result<Option<SeenScreen>, HandEyeError> {
     let Some(frame) = &rig.outlines.screen_frame else { return Ok(None) };
     let home = rig.home();
     let poses = LOOKS_RAD.map(|turn_rad| [home[rig.eyes.pan] + turn_rad, home[rig.eyes.tilt]]);
     let pictures = from_head_poses(body, &poses, looks, context)?;
-    Ok(fit(&Scene { rig, frame, screen: start }, rest_sd_rad, &pictures))
+    Ok(fit(&Scene { rig, frame, screen: start }, rest_sd_rad, beside_m, &pictures))
 }
 
 impl SeenScreen {
@@ -149,19 +166,32 @@ fn outline(scene: &Scene<'_>, scale: f64) -> Vec<(Vector3<f64>, Vector3<f64>)> {
     points
 }
 
-/// Fits all unknowns to the edges, from every start: the one in which most edges lie where they should is taken. The
-/// head comes to rest to within `rest_sd_rad` (turn, tilt) of where its encoders have it.
-fn fit(scene: &Scene<'_>, rest_sd_rad: [f64; 2], pictures: &[Picture]) -> Option<SeenScreen> {
-    let fits = starts(scene).into_iter().filter_map(|start| fit_from(scene, start, rest_sd_rad, pictures));
-    fits.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(seen, _)| seen)
+/// Fits all unknowns to the edges, from every start: the one in which most edges lie where they should is taken,
+/// unless nearly as many do in another one. The head comes to rest to within `rest_sd_rad` (turn, tilt) of where its
+/// encoders have it.
+fn fit(
+    scene: &Scene<'_>,
+    rest_sd_rad: [f64; 2],
+    beside_m: &[f64],
+    pictures: &[Picture],
+) -> Option<SeenScreen> {
+    let starts = starts(scene, beside_m).into_iter();
+    let mut fits: Vec<(SeenScreen, f64)> =
+        starts.filter_map(|start| fit_from(scene, start, rest_sd_rad, pictures)).collect();
+    fits.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let (best, fitting) = fits.first()?;
+    let middle = |seen: &SeenScreen| seen.robot_from_screen.translation.vector;
+    let elsewhere = fits.iter().find(|(other, _)| (middle(other) - middle(best)).norm() > APART_M);
+    let rival = elsewhere.filter(|(_, others)| *others > RIVAL * fitting);
+    rival.is_none().then(|| best.clone())
 }
 
 /// Where the outline is looked for.
-fn starts(scene: &Scene<'_>) -> Vec<Isometry3<f64>> {
+fn starts(scene: &Scene<'_>, beside_m: &[f64]) -> Vec<Isometry3<f64>> {
     let mut starts = vec![];
     for screen in [scene.screen, &scene.rig.touchscreen] {
-        for u_m in BESIDE_M {
-            starts.extend(BESIDE_M.map(|v_m| pose(screen) * Translation3::new(u_m, v_m, 0.0)));
+        for u_m in beside_m {
+            starts.extend(beside_m.iter().map(|v_m| pose(screen) * Translation3::new(*u_m, *v_m, 0.0)));
         }
     }
     starts

@@ -1,9 +1,9 @@
 //! What to do next with grasping: one button, named by what it does.
 
-use plumbline_engine::View;
 use plumbline_engine::view::{
-    GraspOutcome, GraspPhase, GraspRun, GraspView, LampState, SinceHeld, TrialsPhase,
+    GraspOutcome, GraspPhase, GraspRun, GraspView, InHand, LampState, SinceHeld, TrialsPhase,
 };
+use plumbline_engine::{HandStep, View};
 use plumbline_widgets::format;
 
 use super::robot;
@@ -35,6 +35,9 @@ fn idle(view: &View) -> Guidance {
     if let Some(trouble) = robot::trouble(&view.robot) {
         return trouble;
     }
+    if let Some(held) = &grasp.held {
+        return in_hand(held, grasp.run.as_deref());
+    }
     if let Some(trouble) = grasp.trouble() {
         let limp = trouble.contains("Hold all joints");
         let guidance = say(trouble).warn();
@@ -60,14 +63,23 @@ fn idle(view: &View) -> Guidance {
             let said = grasp.run.as_deref().map(held_now).unwrap_or_default();
             say(said).warn().then(label, Action::Grasp(GraspAction::Grasp))
         }
-        Some(GraspOutcome::Success) => say("Say whether it is held; then put it down, or hand it over.")
-            .then(label, Action::Grasp(GraspAction::Grasp)),
         Some(GraspOutcome::Failed { why, .. } | GraspOutcome::Refused { why }) => {
             say(closed(why)).warn().then(label, Action::Grasp(GraspAction::Grasp))
         }
-        None => say("Plan shows what would be sent; Grasp plans and moves the arm at once.")
+        _ => say("Plan shows what would be sent; Grasp plans and moves the arm at once.")
             .then(label, Action::Grasp(GraspAction::Grasp)),
     }
+}
+
+/// What is in a hand has to leave it before anything else is grasped.
+fn in_hand(held: &InHand, run: Option<&GraspRun>) -> Guidance {
+    let there = format!("The {} is in the {} hand.", held.object.to_lowercase(), held.hand.name());
+    let asked = run.is_some_and(|run| run.outcome == Some(GraspOutcome::Success) && run.told.is_none());
+    let then = match asked {
+        true => "Say whether you see it held; putting it down lowers the arm and opens the hand.",
+        false => "Putting it down lowers the arm and opens the hand.",
+    };
+    say(format!("{there} {then}")).then("Put it down", Action::Grasp(GraspAction::Hand(HandStep::Place)))
 }
 
 /// Whether what was held is not in the hand any more.

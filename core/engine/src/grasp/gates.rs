@@ -5,7 +5,7 @@ use plumbline_model::robot::JointIndex;
 
 use super::around::GraspAround;
 use super::method::lacks;
-use super::view::{Gate, GateState};
+use super::view::{Gate, GateState, InHand};
 use super::warmth::warmth;
 use crate::ground::text::sentence;
 use crate::robot::view::{Connection, RobotView};
@@ -31,6 +31,18 @@ pub fn gates(around: &GraspAround, choice: HandChoice, method: Method) -> Vec<Ga
         Err(why) => closed("Method", sentence(&why.to_string())),
     });
     gates
+}
+
+/// A hand that holds something would drop it to grasp something else.
+pub fn full_hand(held: &InHand) -> Gate {
+    closed(
+        "Hand",
+        format!(
+            "The {} is in the {} hand: put it down, or hand it over, first.",
+            held.object.to_lowercase(),
+            held.hand.name()
+        ),
+    )
 }
 
 /// What lets any of the hands pass; where not all of them pass, the reason is said.

@@ -4,14 +4,12 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use plumbline_grasp::{Grip, Hand, ServoState};
+use plumbline_grasp::{Grip, Hand, HoldWatch, ServoState};
 use plumbline_model::robot::Rig;
 
 use super::view::{AttemptView, SinceHeld};
 use crate::robot::view::{MotionState, RobotView};
 
-/// A hand that presses on nothing for so long has lost it: a single reading says little.
-const EMPTY_FOR: Duration = Duration::from_secs(1);
 /// A hand whose joints are sent so much farther open than they were, the mean, was told to open, rad. The goals
 /// of a grip go on with its fingers, a little back and forth around what is held and far on around nothing.
 const OPENED_RAD: f64 = 0.3;
@@ -27,12 +25,11 @@ pub struct HeldWatch {
     pub object: String,
     /// In which hand.
     pub hand: Hand,
-    grip: Grip,
+    hold: HoldWatch,
     /// Since when it is known to be held.
     since: Instant,
     /// How far its joints were sent toward the closed hand at most, the mean, rad.
     closed_rad: Option<f64>,
-    empty_since: Option<Instant>,
 }
 
 impl HeldWatch {
@@ -43,10 +40,9 @@ impl HeldWatch {
             folder: attempt.folder.clone(),
             object: attempt.object.clone(),
             hand: attempt.hand,
-            grip: Grip::of_rig(rig, attempt.hand)?,
+            hold: HoldWatch::new(Grip::of_rig(rig, attempt.hand)?),
             since: now,
             closed_rad: None,
-            empty_since: None,
         })
     }
 
@@ -63,26 +59,18 @@ impl HeldWatch {
         }
         // While the arm moves, what it carries presses now more and now less.
         let servos = self.servos(robot).filter(|_| !matches!(robot.motion, MotionState::Moving { .. }));
-        let Some(servos) = servos else {
-            self.empty_since = None;
-            return SinceHeld::Held;
-        };
-        if self.grip.holds(&servos) {
-            self.empty_since = None;
-            return SinceHeld::Held;
+        let now_s = now.saturating_duration_since(self.since).as_secs_f64();
+        match self.hold.feel(servos.as_deref(), now_s) {
+            Some(empty_s) => SinceHeld::Slipped(Duration::from_secs_f64(empty_s)),
+            None => SinceHeld::Held,
         }
-        let empty_since = *self.empty_since.get_or_insert(now);
-        if now.saturating_duration_since(empty_since) < EMPTY_FOR {
-            return SinceHeld::Held;
-        }
-        SinceHeld::Slipped(empty_since.saturating_duration_since(self.since))
     }
 
     /// How far the joints of the hand are sent from where they are open, the mean, rad; `None` while that is
     /// not known.
     fn sent_rad(&self, robot: &RobotView) -> Option<f64> {
         let goal = |joint| robot.joints.iter().find(|view| view.joint == joint)?.goal_rad;
-        let goals_rad: Vec<f64> = self.grip.joints().map(goal).collect::<Option<_>>()?;
+        let goals_rad: Vec<f64> = self.hold.joints().map(goal).collect::<Option<_>>()?;
         Some(goals_rad.iter().map(|goal_rad| goal_rad.abs()).sum::<f64>() / goals_rad.len().max(1) as f64)
     }
 
@@ -98,7 +86,7 @@ impl HeldWatch {
                 temperature_c: view.temperature_c,
             })
         };
-        self.grip.joints().map(of).collect()
+        self.hold.joints().map(of).collect()
     }
 }
 

@@ -6,9 +6,9 @@ use plumbline_grasp::Hand;
 use plumbline_grasp::things::Thing;
 
 use super::around::GraspAround;
-use super::gates::gates;
+use super::gates::{full_hand, gates};
 use super::method::methods;
-use super::view::{GraspPhase, GraspView, HandChoice};
+use super::view::{Gate, GraspPhase, GraspView, HandChoice, InHand};
 use super::workflow::{GraspWorkflow, What};
 use crate::ground::step::StepState;
 
@@ -28,12 +28,24 @@ impl GraspWorkflow {
             hand: self.choice,
             classes: Thing::held().map(|thing| thing.class).collect(),
             target: self.target.clone(),
-            gates: gates(around, self.choice, self.method).into(),
+            held: self.in_hand(),
+            gates: self.gates(around, self.choice).into(),
             phase,
             plan: self.plan.clone(),
             run: self.progress.as_ref().map(|progress| Arc::new(progress.run())),
             attempts: self.attempts.clone().into(),
         }
+    }
+
+    fn in_hand(&self) -> Option<InHand> {
+        self.held.as_ref().map(|held| InHand { object: held.object.clone(), hand: held.hand })
+    }
+
+    /// What is looked at before anything moves; what is in a hand is among it.
+    pub(super) fn gates(&self, around: &GraspAround, choice: HandChoice) -> Vec<Gate> {
+        let full = self.in_hand().filter(|held| choice.asked().is_none_or(|hand| hand == held.hand));
+        let full = full.iter().map(full_hand);
+        gates(around, choice, self.method).into_iter().chain(full).collect()
     }
 
     fn phase(&self) -> GraspPhase {

@@ -30,6 +30,8 @@ pub struct GraspView {
     pub classes: Arc<[&'static str]>,
     /// What is grasped.
     pub target: GraspTarget,
+    /// What was grasped and is in a hand still.
+    pub held: Option<InHand>,
     /// What is looked at before anything moves.
     pub gates: Arc<[Gate]>,
     /// What is done just now.
@@ -47,6 +49,15 @@ impl GraspView {
     pub fn trouble(&self) -> Option<&str> {
         self.gates.iter().find(|gate| gate.state == GateState::Shut).map(|gate| gate.text.as_str())
     }
+}
+
+/// Something in a hand.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct InHand {
+    /// What.
+    pub object: String,
+    /// In which.
+    pub hand: GraspHand,
 }
 
 /// A method, and what it lacks.

@@ -2,6 +2,9 @@
 
 mod no_way;
 mod path;
+mod planner;
+mod ways;
 
 pub use no_way::NoWay;
-pub use path::{Hold, Planner, ScreenPlace, TouchPace, TouchPath, touch_allowances};
+pub use path::{Hold, ScreenPlace, TouchPace, TouchPath, Wanted};
+pub use planner::{Planner, touch_allowances};

@@ -69,6 +69,19 @@ pub enum NoWay {
         /// How high, m.
         high_m: f64,
     },
+    /// What corrects it sends it too far from its place.
+    #[error(
+        "For {} the tip would be sent {:.0} mm beside the place where it is wanted: no arm is believed to be so far off. \
+         Measure the place of the screen and search the gap anew.",
+        place(.target),
+        .by_m * 1e3
+    )]
+    TooFarBeside {
+        /// Which.
+        target: Pixel<Screen>,
+        /// How far, m.
+        by_m: f64,
+    },
     /// Its floor ends the arm above the glass.
     #[error(
         "At {} the arm may not go low enough: it ends {:.0} mm above its floor. Raise the screen, or lower floor_m in the rig file.",

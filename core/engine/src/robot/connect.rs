@@ -42,6 +42,7 @@ pub fn open(
         stop: switches.stop.clone(),
         heartbeat: Some(switches.heartbeat.clone()),
         guards: vec![Arc::new(paths.clone())],
+        floor: paths.floor(),
         ..if twin { patient() } else { ArmOptions::default() }
     };
     let driver = ArmDriver::connect(port, rig.clone(), options)?;

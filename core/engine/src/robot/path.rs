@@ -3,7 +3,8 @@
 use std::sync::{Arc, PoisonError, RwLock};
 use std::time::Duration;
 
-use plumbline_hardware::joints::{Guard, Refusal};
+use nalgebra::Vector3;
+use plumbline_hardware::joints::{FloorShift, Guard, Refusal};
 use plumbline_model::robot::collision::{Allowance, CollisionModel, PathCheck as Found};
 use plumbline_model::robot::{Posture, Rig};
 
@@ -19,31 +20,53 @@ const LIMIT_SLACK_RAD: f64 = 0.03;
 #[derive(Clone)]
 pub struct Paths {
     around: Arc<RwLock<Around>>,
+    floor: FloorShift,
     rig: Arc<Rig>,
 }
 
 /// Bodies, and what of them may meet at this moment.
 struct Around {
+    /// Where they lie.
     model: Arc<CollisionModel>,
+    rig: Arc<Rig>,
+    /// Where they lie for the arm as it is described, while it is known to stand beside that.
+    beside: Option<Arc<CollisionModel>>,
     allowances: Arc<[Allowance]>,
 }
 
 impl Paths {
     /// For a robot on its table.
     pub fn new(rig: &Arc<Rig>) -> Self {
-        let around = Around { model: Arc::new(CollisionModel::of_rig(rig)), allowances: Arc::from([]) };
-        Self { around: Arc::new(RwLock::new(around)), rig: rig.clone() }
+        let model = Arc::new(CollisionModel::of_rig(rig));
+        let around = Around { model, rig: rig.clone(), beside: None, allowances: Arc::from([]) };
+        Self { around: Arc::new(RwLock::new(around)), floor: FloorShift::default(), rig: rig.clone() }
+    }
+
+    /// The shift of the floor that goes with these ways.
+    pub fn floor(&self) -> FloorShift {
+        self.floor.clone()
     }
 
     /// The robot's bodies.
     pub fn model(&self) -> Arc<CollisionModel> {
-        self.look().0
+        self.around.read().unwrap_or_else(PoisonError::into_inner).model.clone()
     }
 
     /// The same robot among things that lie elsewhere.
-    pub fn place(&self, rig: &Rig) {
-        let model = Arc::new(CollisionModel::of_rig(rig));
-        self.around.write().unwrap_or_else(PoisonError::into_inner).model = model;
+    pub fn place(&self, rig: &Arc<Rig>) {
+        let mut around = self.around.write().unwrap_or_else(PoisonError::into_inner);
+        (around.model, around.rig) = (Arc::new(CollisionModel::of_rig(rig)), rig.clone());
+        around.beside = None;
+        self.floor.set_m(0.0);
+    }
+
+    /// From now on the arm is sent this much beside where it is known to end (robot axes, m): what it must not
+    /// meet lies beside by as much, for the arm as it is described. Zero: it stands where it is sent.
+    pub fn sent_beside(&self, by_m: Vector3<f64>) {
+        let mut around = self.around.write().unwrap_or_else(PoisonError::into_inner);
+        let moved = (by_m.norm() > 0.0).then(|| around.rig.with_surroundings_moved(by_m));
+        around.beside = moved.map(|rig| Arc::new(around.model.among(&rig)));
+        self.floor.set_m(by_m.z);
     }
 
     /// What may meet from now on: a finger and the screen, while it is touched; usually nothing.
@@ -53,7 +76,7 @@ impl Paths {
 
     fn look(&self) -> (Arc<CollisionModel>, Arc<[Allowance]>) {
         let around = self.around.read().unwrap_or_else(PoisonError::into_inner);
-        (around.model.clone(), around.allowances.clone())
+        (around.beside.as_ref().unwrap_or(&around.model).clone(), around.allowances.clone())
     }
 
     /// The smallest distance on the straight way in joint space, or a sentence that says what

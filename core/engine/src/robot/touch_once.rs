@@ -50,6 +50,7 @@ impl Worker {
         match Run::new(&self.rig, order.clone(), source, refusals.unwrap_or_default(), now) {
             Ok(run) => {
                 (self.preview, self.refusal) = (None, None);
+                self.paths.sent_beside(order.beside_m);
                 self.touching.tell(&order, TouchRun::Doing(run.stage()));
                 self.touching.run = Some(run);
                 self.step_touch(now);
@@ -79,8 +80,9 @@ impl Worker {
             && order.lower.len() == order.lower_tip.len()
             && order.approach.iter().chain(&order.lower).all(fits);
         let positive = |value: f64| value > 0.0 && value.is_finite();
+        let known = order.beside_m.iter().all(|m| m.is_finite());
         let paced = positive(order.lower_speed_m_s) && positive(order.speed_rad_s);
-        if !(whole && paced && positive(order.plausible_px)) {
+        if !(whole && paced && known && positive(order.plausible_px)) {
             return Err(Interrupted::NoWay);
         }
         Ok(())
@@ -110,6 +112,12 @@ impl Worker {
         }
     }
 
+    /// Whatever moves next may touch nothing, and is looked at as the arm is described.
+    fn touches_no_more(&self) {
+        self.paths.allow(vec![]);
+        self.paths.sent_beside(nalgebra::Vector3::zeros());
+    }
+
     fn went(&mut self, run: Run, step: Result<Step, Interrupted>) {
         match step {
             Ok(Step::Same) => self.touching.run = Some(run),
@@ -118,13 +126,13 @@ impl Worker {
                 self.touching.run = Some(run);
             }
             Ok(Step::End(end)) => {
-                self.paths.allow(vec![]);
+                self.touches_no_more();
                 self.touching.tell(run.order(), end);
             }
             Err(reason) => {
                 // Goals below the glass become where the finger is: the next move starts outside.
                 let _ = self.arm().map(|arm| arm.hold());
-                self.paths.allow(vec![]);
+                self.touches_no_more();
                 let (number, stage) = (run.order().number, run.stage().name());
                 let what = format!("Touch {number} was interrupted ({stage}). {reason}");
                 let end = match reason.is_unheard() {

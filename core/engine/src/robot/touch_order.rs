@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use nalgebra::Vector3;
 use plumbline_model::robot::{Chain, Posture};
 use plumbline_model::session::{Screen, Touchscreen};
 use plumbline_model::{Pixel, Point, Robot};
@@ -25,6 +26,8 @@ pub struct TouchOrder {
     pub lower: Vec<Posture>,
     /// Place of the tip (by the model) in each posture of `lower`.
     pub lower_tip: Vec<Point<Robot>>,
+    /// The point that is sent, less the place where the tip is known to end then; robot axes, m.
+    pub beside_m: Vector3<f64>,
     /// Speed of the tip while lowering, m/s.
     pub lower_speed_m_s: f64,
     /// Peak joint speed on the way, rad/s.
@@ -55,6 +58,7 @@ impl TouchOrder {
             approach: path.approach,
             lower: path.lower,
             lower_tip: path.lower_tip,
+            beside_m: path.beside_m,
             lower_speed_m_s: pace.lower_speed_m_s,
             speed_rad_s: pace.speed_rad_s,
             dwell: pace.dwell,
@@ -110,9 +114,10 @@ pub enum TouchRun {
     Doing(TouchStage),
     /// There was a contact; the arm is up again.
     Touched(Box<TouchMeasurement>),
-    /// There was none; the arm is up again. A sentence: the lowest place was reached, the load was
-    /// too large.
+    /// There was none; the arm is up again. A sentence: the load was too large, something else touched.
     Missed(String),
+    /// There was none: the lowest place was reached, and nothing was met there. The arm is up again.
+    MetNothing,
     /// Joints were not heard in time: nothing was refused, and the arm holds where it is. The touch may be
     /// made again once they are heard. A sentence.
     Unheard(String),

@@ -5,6 +5,7 @@
 
 mod choice;
 pub mod command;
+mod depth;
 mod figures;
 #[cfg(all(test, target_os = "linux"))]
 mod kept_tests;
@@ -31,6 +32,7 @@ pub mod view;
 pub mod work;
 mod workflow;
 
+pub use depth::LOWER_M;
 pub use plumbline_effects::observability::{Addition, Advice, EffectVisibility, PlanScore};
 pub use standing::RunStanding;
 pub use workflow::{TouchAround, TouchWorkflow};

@@ -12,7 +12,7 @@ use plumbline_model::{Point, Robot, Unattended};
 use super::command::Correction;
 use super::plan::{self, Corrector, PlanRequest, TIP};
 use super::testing::rig;
-use crate::motion::{Planner, ScreenPlace, TouchPath};
+use crate::motion::{Planner, ScreenPlace, TouchPath, Wanted};
 use crate::rig_models::made_up::model_with;
 
 /// Rounding of inverse kinematics, m.
@@ -39,7 +39,7 @@ fn touches(planner: &Planner) -> Vec<TouchPath> {
     let plan = |([u_px, v_px], side): ([f64; 2], Side)| {
         let target = Pixel::new(u_px, v_px);
         let sent = planner.rig().touchscreen.point_at(target);
-        let path = planner.plan(target, sent, side, &from).expect("in reach");
+        let path = planner.plan(&Wanted::straight(target, sent, side), &from).expect("in reach");
         from = path.above().clone();
         path
     };
@@ -114,7 +114,8 @@ fn where_the_arm_does_not_get_so_high_it_waits_as_high_as_it_gets() {
         for j in 0..14_u32 {
             let target = Pixel::new(40.0 + 80.0 * f64::from(i), 40.0 + 77.0 * f64::from(j));
             let sent = raised.touchscreen.point_at(target);
-            let of = |planner: &Planner| planner.plan(target, sent, Side::Above, &from).ok();
+            let of =
+                |planner: &Planner| planner.plan(&Wanted::straight(target, sent, Side::Above), &from).ok();
             match (of(&nominal), of(&measured)) {
                 (Some(high), _) => {
                     let height_m = height_m(&nominal, high.above());
@@ -130,6 +131,42 @@ fn where_the_arm_does_not_get_so_high_it_waits_as_high_as_it_gets() {
         "on a block of 120 mm: {full} from 60 mm, {less} from less, {lost} only from 40 mm without need"
     );
     assert!(full > 20 && less > 0 && lost == 0, "{full} {less} {lost}");
+}
+
+/// A model that knows that the arm errs sends the tip beside its place. Nothing is in its way then but what is
+/// in the way of the tip at its place.
+#[test]
+fn what_the_arm_must_not_meet_is_looked_at_where_the_tip_will_be_not_where_it_is_sent() {
+    let planner = planner(ScreenPlace::Measured);
+    let (screen, from) = (&planner.rig().touchscreen, planner.ready(&planner.rig().home()));
+    for (u_px, v_px) in [(950.0, 550.0), (1250.0, 820.0), (1000.0, 800.0)] {
+        let target = Pixel::new(u_px, v_px);
+        let straight = Wanted::straight(target, screen.point_at(target), Side::Above);
+        let place = straight.place.coords;
+        for beside_m in [[0.0, 0.0, -0.03], [0.012, -0.01, -0.025], [0.0, 0.0, 0.02]] {
+            let sent = Point::new(place.x + beside_m[0], place.y + beside_m[1], place.z + beside_m[2]);
+            let wanted = Wanted { sent, ..straight };
+            let path = planner.plan(&wanted, &from).expect("the tip ends on the glass");
+            let tip_m = |posture: &Posture| planner.chain().robot_from_tip_in(posture).translation_m().z;
+            assert!((tip_m(&path.contact) - sent.coords.z).abs() < ROUNDING_M);
+            assert!(
+                (tip_m(path.above()) - sent.coords.z - 0.04).abs() < ROUNDING_M,
+                "as high above as always"
+            );
+            let lowest_m = tip_m(path.lower.last().expect("a way down"));
+            assert!((sent.coords.z - lowest_m - 0.012).abs() < 0.004, "as far down as always: {lowest_m}");
+            // The same point, with nothing known of the arm, is inside of what it must not meet.
+            let unknown = planner.plan(&Wanted::straight(target, sent, Side::Above), &from);
+            if beside_m[2] < 0.0 {
+                let why = unknown.expect_err("it is below the glass").to_string();
+                assert!(why.contains("meet the touchscreen") || why.contains("low enough"), "{why}");
+            }
+        }
+        let far = planner.plan(&straight.lower(0.05), &from).expect_err("no arm errs so much").to_string();
+        assert!(far.contains("50 mm beside"), "{far}");
+        let nan = Wanted { place: Point::new(f64::NAN, 0.0, 0.0), ..straight };
+        assert!(planner.plan(&nan, &from).is_err());
+    }
 }
 
 /// Inverse kinematics with the effects of the model in use: the arm that has them ends on the pixels.

@@ -21,7 +21,7 @@ use super::telling;
 use super::view::PlanView;
 use crate::ground::jobs::{JobError, Part};
 use crate::ground::text::sentence;
-use crate::motion::{Hold, NoWay, Planner, ScreenPlace, TouchPace};
+use crate::motion::{Hold, NoWay, Planner, ScreenPlace, TouchPace, Wanted};
 
 /// The tip that touches unless another finger was chosen, and that M1 to M3 correct.
 pub const TIP: &str = "right_index_tip";
@@ -59,6 +59,12 @@ impl Aim {
     /// Place of its pixel on the glass.
     pub fn place(&self) -> Point<Robot> {
         point(self.place_m)
+    }
+
+    /// As it is planned.
+    pub fn wanted(&self) -> Wanted {
+        let PlannedTouch { target, side, .. } = self.touch;
+        Wanted { target, place: self.place(), sent: self.sent(), side, hold: self.hold }
     }
 
     /// Height of the block under the screen (m) and mass in the hand (kg) that it needs.
@@ -194,9 +200,7 @@ pub fn make(request: &PlanRequest, context: &dyn JobContext) -> Result<RunPlan, 
         let from = stands.take().unwrap_or_else(|| planner.ready(&rig.home()));
         let mut aim = senders.aim(rig, planner, touch, hold, &from);
         let path = match aim.refusal.take() {
-            None => planner
-                .plan_held(aim.touch.target, aim.sent(), aim.touch.side, hold, &from)
-                .map_err(|why| why.to_string()),
+            None => planner.plan(&aim.wanted(), &from).map_err(|why| why.to_string()),
             Some(reason) => Err(reason),
         };
         stands = Some(match path {

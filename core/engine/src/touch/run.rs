@@ -8,6 +8,7 @@ use plumbline_model::Pixel;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::{Screen, Touchscreen};
 
+use super::depth::Depth;
 use super::patience::{Look, Patience};
 use super::plan::{Aim, RunPlan};
 use super::record::{Ended, Fate, Progress, TouchRecord};
@@ -23,6 +24,8 @@ use crate::twin::command::TwinCommand;
 
 /// After so many touches without a contact, one after the other, something is wrong.
 pub const MISSES: usize = 5;
+/// What is said of a finger that ended in the air.
+const MET_NOTHING: &str = "The lowest place was reached and the screen felt nothing.";
 /// The pace is that of so many touches.
 const PACE_OF: usize = 15;
 
@@ -114,6 +117,7 @@ pub struct Run {
     /// Number of the newest touch that is not on disk yet.
     pub unwritten: Option<usize>,
     misses: usize,
+    depth: Depth,
     patience: Patience,
     contacts: Vec<Instant>,
     planner: Option<(Touchscreen, Arc<Planner>)>,
@@ -147,6 +151,7 @@ impl Run {
             written: 0,
             unwritten: None,
             misses: 0,
+            depth: Depth::default(),
             patience: Patience::default(),
             contacts: vec![],
             planner: None,
@@ -289,6 +294,7 @@ impl Run {
             order: next_order(),
             pace: TouchPace::default().at(speed(now.robot)),
             finger: self.plan.options.finger,
+            lower_m: self.depth.lower_m(aim.touch.number),
             from,
             aim: Box::new(aim),
         };
@@ -345,6 +351,11 @@ impl Run {
                 self.touch = Some(UnderWay { order: order.order, number, stage: None, at_end: AtEnd::Keep });
                 context.control(RobotControl::Touch(order));
             }
+            Err(reason) if wanted && self.depth.is_lower(number) => {
+                self.depth.forget();
+                self.missed(number, format!("{MET_NOTHING} It cannot be looked for lower: {reason}"));
+                self.go_on(now, context);
+            }
             Err(reason) if wanted => {
                 let text = format!("Touch {number} was not begun: {reason} Go on to try again, or skip it.");
                 self.phase = Phase::Paused(Some(text));
@@ -388,7 +399,10 @@ impl Run {
                     self.touched(number, &measured);
                 }
             }
-            TouchRun::Missed(_) if at_end == AtEnd::Skip => self.end(number, Ended::Skipped),
+            TouchRun::Missed(_) | TouchRun::MetNothing if at_end == AtEnd::Skip => {
+                self.end(number, Ended::Skipped);
+            }
+            TouchRun::MetNothing if at_end == AtEnd::Keep => self.met_nothing(number, context),
             TouchRun::Missed(why) if at_end == AtEnd::Keep => self.missed(number, why),
             TouchRun::Unheard(why) if at_end == AtEnd::Keep && self.waits_to_be_heard(context) => {
                 let text = format!(
@@ -404,7 +418,7 @@ impl Run {
                     self.interrupted(number, &why);
                 }
             }
-            TouchRun::Missed(_) | TouchRun::Doing(_) => {}
+            TouchRun::Missed(_) | TouchRun::MetNothing | TouchRun::Doing(_) => {}
         }
         if at_end == AtEnd::Finish {
             self.finish(now, context);
@@ -420,10 +434,28 @@ impl Run {
                 self.progress.touched(record);
                 self.unwritten = Some(number);
                 self.misses = 0;
+                self.depth.met(number);
                 self.patience.touched();
                 self.changed();
             }
             None => self.missed(number, "The contact had no place.".to_owned()),
+        }
+    }
+
+    /// The finger ended above the glass: it is looked for a little lower, or missed.
+    fn met_nothing(&mut self, number: usize, context: &mut Context<'_>) {
+        match self.depth.met_nothing(number) {
+            Some(lower_m) => {
+                let text = format!(
+                    "Touch {number} met nothing: the arm may stand higher than its encoders say. The same place is touched again, {:.0} mm lower; the finger stops at what it meets.",
+                    lower_m * 1e3
+                );
+                context.notices.add(NoticeLevel::Info, text);
+            }
+            None => self.missed(
+                number,
+                format!("{MET_NOTHING} Measure where the screen lies, or look whether it works."),
+            ),
         }
     }
 

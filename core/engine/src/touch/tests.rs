@@ -249,6 +249,34 @@ fn many_misses_in_a_row_pause_with_advice() {
     assert_eq!((desk.view().counts.missed, desk.view().counts.touched), (4, 5));
 }
 
+/// An arm that stands higher than its encoders say ends in the air.
+#[test]
+fn where_nothing_is_met_the_same_place_is_looked_for_lower_and_the_next_ones_from_there() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    desk.start(grid(2, 2));
+    let lowest_m = |order: &TouchOrder| order.lower_tip.last().expect("a way down").coords.z;
+    let first = desk.order().expect("first");
+    assert_eq!(first.beside_m.norm(), 0.0);
+    desk.say(&first, TouchRun::MetNothing);
+    assert!(desk.said().contains("12 mm lower"), "{}", desk.said());
+    let lower = desk.order().expect("once more");
+    assert_eq!((lower.number, desk.view().counts.missed), (first.number, 0));
+    assert!((lowest_m(&first) - lowest_m(&lower) - 0.012).abs() < 1e-4);
+    assert!((lower.beside_m.z + 0.012).abs() < 1e-12, "so much lower than it is to end");
+    desk.touch(&lower);
+    let second = desk.order().expect("the next one");
+    assert!((second.beside_m.z + 0.012).abs() < 1e-12, "it begins where the glass was met");
+    desk.say(&second, TouchRun::MetNothing);
+    let lowest = desk.order().expect("lower still");
+    assert_eq!((lowest.number, desk.view().counts.missed), (second.number, 0));
+    assert!((lowest.beside_m.z + 0.024).abs() < 1e-12);
+    desk.say(&lowest, TouchRun::MetNothing);
+    assert_eq!(desk.view().counts.missed, 1, "it was looked for everywhere");
+    let third = desk.order().expect("it goes on");
+    assert!((third.beside_m.z + 0.012).abs() < 1e-12, "from where the glass was met last");
+}
+
 #[test]
 fn a_raised_screen_and_a_weight_are_waited_for() {
     let folder = folder();

@@ -127,6 +127,8 @@ pub struct RouteRequest {
     pub finger: Finger,
     /// The target.
     pub aim: Box<Aim>,
+    /// How much lower than planned the tip is sent, m.
+    pub lower_m: f64,
     /// Where the arm stands.
     pub from: Posture,
     /// Counts orders.
@@ -343,8 +345,8 @@ fn route(request: RouteRequest) -> TouchResult {
             Err(reason) => return TouchResult::Routed { number, planner: None, order: Err(reason) },
         },
     };
-    let RouteRequest { aim, from, order, pace, rig, .. } = request;
-    let path = planner.plan_held(aim.touch.target, aim.sent(), aim.touch.side, aim.hold, &from);
+    let RouteRequest { aim, from, order, pace, rig, lower_m, .. } = request;
+    let path = planner.plan(&aim.wanted().lower(lower_m), &from);
     let along = |path| TouchOrder::along(path, planner.chain(), &rig.touchscreen, &pace, number, order);
     let order = path.map(|path| Box::new(along(path)));
     TouchResult::Routed { number, planner: Some(planner), order }

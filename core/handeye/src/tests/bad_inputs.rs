@@ -38,6 +38,8 @@ struct Meddled {
     /// Whether the hand is behind something then: the picture is that of the table without it.
     hidden: fn(Option<(Part, usize)>) -> bool,
     last_open: Option<Sight>,
+    /// What lies before the eyes all the time.
+    covers: fn(&mut RgbImage),
 }
 
 impl Meddled {
@@ -51,6 +53,7 @@ impl Meddled {
             dark: |_| false,
             hidden: |_| false,
             last_open: None,
+            covers: |_| {},
         }
     }
 
@@ -108,6 +111,9 @@ impl Body for Meddled {
         } else if !matches!(now, Some((Part::Hand(_), _))) {
             self.last_open = Some(sight.clone());
         }
+        for image in [&mut sight.left, &mut sight.right] {
+            (self.covers)(Arc::make_mut(image));
+        }
         Ok(sight)
     }
 }
@@ -133,6 +139,46 @@ fn in_the_dark_no_hand_is_found_and_what_to_do_is_said() {
     let error = body.tied().expect_err("nothing is seen");
     assert!(matches!(error, HandEyeError::FewHands { hand: "right", found: 0, .. }), "{error}");
     assert!(error.to_string().contains("light"), "{error}");
+}
+
+/// A cloth over a part of the screen, as bright as the table: what is left of the outline fits in more than one place,
+/// or in the right one.
+#[test]
+fn a_screen_that_is_half_covered_is_not_seen_or_where_it_is() {
+    let rig = Rig::built_in("nico").expect("valid");
+    let around = [0.0, -0.03, 0.03];
+    let there = screen_placed_beside(&mut Meddled::new(&rig), &rig, [0.0, 0.0], &around).expect("seen");
+    let covers: [fn(&mut RgbImage); 4] = [
+        |image| spread(image, |[x, _], [width, _]| x > width / 2),
+        |image| spread(image, |[x, _], [width, _]| x < width / 2),
+        |image| spread(image, |[_, y], [_, height]| y > height * 3 / 5),
+        |image| spread(image, |[x, y], [width, height]| x > width / 3 && y > height / 2),
+    ];
+    let mut seen = 0;
+    for (k, covers) in covers.into_iter().enumerate() {
+        for placed_m in [[0.0, 0.0], [-0.005, 0.035]] {
+            let mut body = Meddled { covers, ..Meddled::new(&rig) };
+            let Some(found) = screen_placed_beside(&mut body, &rig, placed_m, &around) else {
+                println!("cover {k}, placed {placed_m:?}: not seen");
+                continue;
+            };
+            let (off_m, off_rad) = apart(&found, &there);
+            println!("cover {k}, placed {placed_m:?}: {:.1} mm, {off_rad:.4} rad", 1e3 * off_m);
+            assert!(off_m < 0.005 && off_rad < 0.01, "cover {k}, {placed_m:?}: {off_m} m {off_rad} rad");
+            seen += 1;
+        }
+    }
+    println!("{seen} of 8 seen");
+}
+
+/// Paints where it is covered.
+fn spread(image: &mut RgbImage, covered: fn([u32; 2], [u32; 2]) -> bool) {
+    let size = [image.width(), image.height()];
+    for (x, y, pixel) in image.enumerate_pixels_mut() {
+        if covered([x, y], size) {
+            *pixel = image::Rgb([190, 180, 165]);
+        }
+    }
 }
 
 #[test]

@@ -169,29 +169,41 @@ fn cancelled_on_the_way_it_ends_there() {
     assert_eq!(told.looks.len(), 2, "{:?}", told.looks);
 }
 
+/// The screen of a robot that has it this far beside (x and y, m), looked for so far beside that.
+fn screen_placed_beside(
+    body: &mut dyn plumbline_grasp::Body,
+    rig: &Rig,
+    placed_m: [f64; 2],
+    beside_m: &[f64],
+) -> Option<screen::SeenScreen> {
+    let mut wrong = rig.clone();
+    wrong.touchscreen.origin.coords.x += placed_m[0];
+    wrong.touchscreen.origin.coords.y += placed_m[1];
+    let placed = wrong.touchscreen.clone();
+    screen::see_beside(body, &wrong, [1e-3; 2], (&placed, beside_m), &mut |_| {}, &Unattended).expect("done")
+}
+
+/// How far a screen is from where another one is, m and rad.
+fn apart(found: &screen::SeenScreen, there: &screen::SeenScreen) -> (f64, f64) {
+    let off = found.robot_from_screen * there.robot_from_screen.inverse();
+    let middle = there.robot_from_screen.translation.vector;
+    ((found.robot_from_screen.translation.vector - middle).norm(), off.rotation.angle())
+}
+
 #[test]
 fn a_screen_that_was_placed_centimeters_beside_is_found_where_it_is() {
     let rig = Rig::built_in("nico").expect("valid");
     let mut body = TwinBody::new(&rig, &scenario());
-    let mut see = |beside_m: [f64; 2]| {
-        let mut wrong = rig.clone();
-        wrong.touchscreen.origin.coords.x += beside_m[0];
-        wrong.touchscreen.origin.coords.y += beside_m[1];
-        let placed = wrong.touchscreen.clone();
-        screen::see(&mut body, &wrong, [1e-3; 2], &placed, &mut |_| {}, &Unattended)
-            .expect("done")
-            .expect("seen")
-    };
-    let there = see([0.0, 0.0]);
-    for beside_m in [[-0.005, 0.035], [0.03, -0.03], [-0.03, -0.02]] {
-        let found = see(beside_m);
-        let off = found.robot_from_screen * there.robot_from_screen.inverse();
-        let middle = there.robot_from_screen.translation.vector;
-        let off_m = (found.robot_from_screen.translation.vector - middle).norm();
-        assert!(
-            off_m < 0.001 && off.rotation.angle() < 0.003,
-            "{beside_m:?}: {off_m} {}",
-            off.rotation.angle()
-        );
+    let around = [0.0, -0.03, 0.03];
+    let there = screen_placed_beside(&mut body, &rig, [0.0, 0.0], &around).expect("seen");
+    let mut lost = 0;
+    for placed_m in [[-0.005, 0.035], [0.03, -0.03], [-0.03, -0.02]] {
+        let found = screen_placed_beside(&mut body, &rig, placed_m, &around).expect("seen");
+        let (off_m, off_rad) = apart(&found, &there);
+        assert!(off_m < 0.001 && off_rad < 0.003, "{placed_m:?}: {off_m} {off_rad}");
+        // Looked for only where it was placed, other edges are taken for it, or none.
+        let only_there = screen_placed_beside(&mut body, &rig, placed_m, &[0.0]);
+        lost += usize::from(only_there.is_none_or(|found| apart(&found, &there).0 > 0.005));
     }
+    assert!(lost > 0, "looking around was of no use");
 }

@@ -72,7 +72,7 @@ impl Controller {
     pub fn new(exchange: Exchange, scan: BusScan, rig: Arc<Rig>, options: ArmOptions) -> Self {
         let n = exchange.slots.len();
         let mut guards = options.guards.clone();
-        guards.push(Arc::new(FloorGuard::new(&rig)));
+        guards.push(Arc::new(FloorGuard::new(&rig).shifted_by(options.floor.clone())));
         let has_slot = |joint: &JointIndex| exchange.slots.iter().any(|slot| slot.reading.joint == *joint);
         let voiceless = rig.servos.iter().map(|s| s.joint).filter(|joint| !has_slot(joint)).collect();
         Self {

@@ -1,6 +1,7 @@
 //! Limits beyond those of single joints: every goal that is sent passes them.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use nalgebra::Isometry3;
 use plumbline_model::robot::{Description, LinkIndex, Posture, Rig, Shape};
@@ -17,12 +18,35 @@ pub trait Guard: Send + Sync {
     fn check(&self, present: &Posture, goal: &Posture) -> Result<(), Refusal>;
 }
 
+/// Farther from where the rig has it the floor is never taken to lie, m.
+pub const FARTHEST_FLOOR_M: f64 = 0.04;
+
+/// By how much the floor lies elsewhere for an arm as it is described: one that is known to stand higher than
+/// it is described has to be sent lower to get to the same height. Clones are the same shift.
+#[derive(Clone, Debug, Default)]
+pub struct FloorShift(Arc<AtomicU64>);
+
+impl FloorShift {
+    /// From now on the floor lies higher by this much (negative: lower), m. What is farther than
+    /// [`FARTHEST_FLOOR_M`] or not a number is not believed of any arm: then it lies where the rig has it.
+    pub fn set_m(&self, up_m: f64) {
+        let believed_m = if up_m.abs() <= FARTHEST_FLOOR_M { up_m } else { 0.0 };
+        self.0.store(believed_m.to_bits(), Ordering::Release);
+    }
+
+    /// How much higher it lies, m.
+    pub fn up_m(&self) -> f64 {
+        f64::from_bits(self.0.load(Ordering::Acquire))
+    }
+}
+
 /// No part of an arm below a height.
 #[derive(Clone, Debug)]
 pub struct FloorGuard {
     description: Arc<Description>,
     parts: Vec<LinkIndex>,
     floor_m: f64,
+    shift: FloorShift,
 }
 
 /// Where the present posture is below the floor, lower by this much is still no worse, m.
@@ -40,7 +64,12 @@ impl FloorGuard {
             is_arm[joint.child.0] = own || is_arm[joint.parent.0];
         }
         let parts = (0..is_arm.len()).filter(|link| is_arm[*link]).map(LinkIndex).collect();
-        Self { description, parts, floor_m: rig.gate.floor_m }
+        Self { description, parts, floor_m: rig.gate.floor_m, shift: FloorShift::default() }
+    }
+
+    /// The same, where a shift says that the floor lies.
+    pub fn shifted_by(self, shift: FloorShift) -> Self {
+        Self { shift, ..self }
     }
 
     /// The lowest part of an arm in a posture, and the height of its lowest point (m).
@@ -64,15 +93,16 @@ impl FloorGuard {
 impl Guard for FloorGuard {
     fn check(&self, present: &Posture, goal: &Posture) -> Result<(), Refusal> {
         let Some((link, height_m)) = self.lowest(goal) else { return Ok(()) };
-        if height_m >= self.floor_m {
+        let floor_m = self.floor_m + self.shift.up_m();
+        if height_m >= floor_m {
             return Ok(());
         }
         let before_m = self.lowest(present).map_or(f64::INFINITY, |(_, height_m)| height_m);
-        if before_m < self.floor_m && height_m >= before_m - NO_WORSE_M {
+        if before_m < floor_m && height_m >= before_m - NO_WORSE_M {
             return Ok(());
         }
         let link = self.description.links()[link.0].name.clone();
-        Err(Refusal::Floor { link, height_m, floor_m: self.floor_m })
+        Err(Refusal::Floor { link, height_m, floor_m })
     }
 }
 

@@ -52,7 +52,7 @@ pub use chains::Chains;
 pub use command::{Motion, Move, MoveId, MoveOutcome, Pace, Setpoint, SetpointKind};
 pub use driver::{ArmDriver, expected_servos};
 pub use grip::{Grip, GripFinger};
-pub use guard::{FloorGuard, Guard};
+pub use guard::{FARTHEST_FLOOR_M, FloorGuard, FloorShift, Guard};
 pub use options::{ArmOptions, OnState};
 pub use reading::{BusStatistics, JointReading, JointState};
 pub use refusal::{HoldReason, Refusal, Unheard};

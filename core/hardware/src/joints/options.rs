@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::guard::Guard;
+use super::guard::{FloorShift, Guard};
 use super::stop::{Heartbeat, StopSwitch};
 use crate::dynamixel::BusTiming;
 
@@ -26,6 +26,8 @@ pub struct ArmOptions {
     pub heartbeat_timeout: Duration,
     /// Limits beyond those of joints; the floor is always among them.
     pub guards: Vec<Arc<dyn Guard>>,
+    /// By how much the floor lies elsewhere for the arm as it is described.
+    pub floor: FloorShift,
     /// Servos that wait longer than this before they answer are told of; nothing is written to them
     /// unasked.
     pub return_delay: Duration,
@@ -54,6 +56,7 @@ impl Default for ArmOptions {
             heartbeat: None,
             heartbeat_timeout: Duration::from_secs(1),
             guards: vec![],
+            floor: FloorShift::default(),
             return_delay: Duration::from_micros(10),
             write_window: Duration::from_millis(30),
             missed_cycles: 6,

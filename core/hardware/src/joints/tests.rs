@@ -159,4 +159,17 @@ fn the_floor_refuses_what_goes_below_and_lets_out_who_is_there() {
     assert!(floor.check(first, second).is_ok());
     assert!(lowest_m(second) < lowest_m(first) + 1e-3 || floor.check(second, first).is_err());
     assert!(floor.check(&above, &above).is_ok());
+    // For an arm that is known to stand higher the floor lies lower, by no more than is believed of one.
+    let shift = FloorShift::default();
+    let shifted = FloorGuard::new(&rig).shifted_by(shift.clone());
+    let little = below.iter().max_by(|a, b| lowest_m(a).total_cmp(&lowest_m(b))).expect("one below");
+    let down_m = rig.gate.floor_m - lowest_m(little);
+    assert!(down_m < FARTHEST_FLOOR_M - 1e-3, "the least deep one is {down_m} below");
+    for (up_m, passes) in
+        [(0.0, false), (-down_m - 1e-3, true), (1e-3 - down_m, false), (-1.0, false), (f64::NAN, false)]
+    {
+        shift.set_m(up_m);
+        assert_eq!(shifted.check(&above, little).is_ok(), passes, "{up_m}");
+    }
+    assert!(floor.check(&above, little).is_err(), "another guard is not shifted");
 }

@@ -313,6 +313,19 @@ pub struct Gate {
 }
 
 impl Rig {
+    /// The robot among surroundings that all lie elsewhere by as much, m: table, touchscreen and the lowest
+    /// height allowed. What an arm that is known to stand beside where it is described has to be checked
+    /// against: it meets the glass where the described one is beside the glass by as much.
+    pub fn with_surroundings_moved(&self, by_m: Vector3<f64>) -> Self {
+        let mut rig = self.clone();
+        rig.touchscreen = rig.touchscreen.moved(&Translation3::from(by_m).into());
+        rig.table.height_m += by_m.z;
+        rig.table.x_range_m = rig.table.x_range_m.map(|x_m| x_m + by_m.x);
+        rig.table.y_range_m = rig.table.y_range_m.map(|y_m| y_m + by_m.y);
+        rig.gate.floor_m += by_m.z;
+        rig
+    }
+
     /// Limits of a joint: those of the description and those of its servo together.
     pub fn limits(&self, joint: JointIndex) -> Limits {
         let own = self.description.limits(joint);

@@ -8,7 +8,7 @@ use plumbline_correction::{CorrectionModel, Method};
 use plumbline_effects::rig_model::Conditions;
 use plumbline_engine::models::learn::{learn, options};
 use plumbline_engine::models::losses::Losses;
-use plumbline_engine::motion::{Hold, Planner, ScreenPlace};
+use plumbline_engine::motion::{Planner, ScreenPlace, Wanted};
 use plumbline_engine::touch::plan::{Aim, Corrector, PlanRequest, TIP, make};
 use plumbline_engine::touch::store;
 use plumbline_grasp::Hand;
@@ -215,7 +215,7 @@ fn missed_mm(
         }
         let done = (errors[0].len() + errors[1].len()) as f64 / (2 * CHECKED) as f64;
         context.report(begin + 0.2 * done, "judging where new touches land");
-        let met = depths.touch(robot, aim.touch.target, aim.sent(), aim.touch.side, Hold::default());
+        let met = depths.touch(robot, &aim.wanted());
         if let Ok(measured) = met {
             errors[side].push(miss_mm(rig, measured.pixel, aim.touch.target));
         }
@@ -271,7 +271,7 @@ fn uncorrected(lab: &Lab, robot: &mut Robot, aims: &[Aim]) -> Result<Option<f64>
     let mut errors = vec![];
     for aim in aims.iter().take(CHECKED) {
         let sent = lab.rig.touchscreen.point_at(aim.touch.target);
-        let met = depths.touch(robot, aim.touch.target, sent, aim.touch.side, Hold::default());
+        let met = depths.touch(robot, &Wanted::straight(aim.touch.target, sent, aim.touch.side));
         if let Ok(measured) = met {
             errors.push(miss_mm(&lab.rig, measured.pixel, aim.touch.target));
         }

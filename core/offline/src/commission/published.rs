@@ -8,7 +8,7 @@ use std::sync::Arc;
 use plumbline_correction::tables::HeightTable;
 use plumbline_correction::{CorrectionModel, Method, Recipe, Touch, TouchData, TrainOptions, train};
 use plumbline_engine::ground::jobs::Part;
-use plumbline_engine::motion::{Hold, ScreenPlace};
+use plumbline_engine::motion::{ScreenPlace, Wanted};
 use plumbline_grasp::Corrections;
 use plumbline_grasp::published::HandHeights;
 use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, Side, Sides, TouchArea, TouchPlan};
@@ -136,7 +136,7 @@ fn touches(lab: &Lab, context: &dyn JobContext) -> Result<TouchData, CommissionE
         context.checkpoint()?;
         context.report(row as f64 / plan.touches.len() as f64, "touching for the published models");
         let sent = screen.point_at(planned.target);
-        let met = depths.touch(&mut robot, planned.target, sent, Side::Above, Hold::default());
+        let met = depths.touch(&mut robot, &Wanted::straight(planned.target, sent, Side::Above));
         match met.map(|measured| (measured.pixel, measured.commanded_tip)) {
             Ok((pixel, Some(sent))) => {
                 touches.push(Touch { pixel, sent, set: Some(planned.set.clone()), group: None, row });

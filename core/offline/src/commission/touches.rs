@@ -6,19 +6,19 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_engine::ground::jobs::Part;
-use plumbline_engine::motion::{Hold, Planner, ScreenPlace, TouchPath};
+use plumbline_engine::motion::{Planner, ScreenPlace, TouchPath, Wanted};
 use plumbline_engine::rig_models;
 use plumbline_engine::robot::TouchMeasurement;
 use plumbline_engine::touch::plan::{Aim, FORMAT, RunPlan, TIP};
 use plumbline_engine::touch::record::{Ended, Progress, TouchRecord};
 use plumbline_engine::touch::telling::{Candidate, Chosen, candidates, choose, in_short_ways};
-use plumbline_engine::touch::{placement, store};
+use plumbline_engine::touch::{LOWER_M, placement, store};
 use plumbline_fit::pose;
 use plumbline_handeye::{Tie, body, screen, table};
 use plumbline_model::robot::{Chain, Rig};
-use plumbline_model::session::{Screen, Touchscreen};
-use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, Side, Sides};
-use plumbline_model::{JobContext, Pixel, Point, Robot as RobotFrame};
+use plumbline_model::session::Touchscreen;
+use plumbline_model::touch_plan::{Finger, Pattern, PlanOptions, Purpose, Sides};
+use plumbline_model::{JobContext, Pixel, Point};
 use plumbline_twin::Touched;
 
 use super::error::CommissionError;
@@ -78,7 +78,7 @@ pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Res
     for (k, aim) in plan.touches.iter().enumerate() {
         context.checkpoint()?;
         context.report(0.25 + 0.75 * k as f64 / plan.touches.len() as f64, "touching the screen");
-        let met = depths.touch(robot, aim.touch.target, aim.sent(), aim.touch.side, aim.hold);
+        let met = depths.touch(robot, &aim.wanted());
         match met.and_then(|measured| TouchRecord::new(aim, &measured).ok_or_else(|| NOTHING.to_owned())) {
             Ok(record) => progress.touched(record),
             Err(why) => {
@@ -103,46 +103,27 @@ pub(super) fn run(lab: &Lab, robot: &mut Robot, context: &dyn JobContext) -> Res
 /// Why a touch counts for nothing.
 const NOTHING: &str = "the screen felt nothing near the target";
 
-/// Planners for a screen that lies where it is taken to lie, and for one that lies lower: an arm that stands
-/// higher than its encoders say ends over the glass when it is sent to it.
+/// Touches, lower where the glass is not met: an arm that stands higher than its encoders say ends over the
+/// glass when it is sent to it.
 pub(super) struct Depths {
-    planners: Vec<(f64, Planner)>,
-    /// Of the planners, the one whose finger met the glass last.
+    planner: Planner,
+    /// Of [`LOWER_M`], what met the glass last.
     usual: usize,
 }
 
-/// How much lower the glass is looked for, m; the finger comes down slowly and stops when it is met.
-const LOWER_M: [f64; 3] = [0.0, 0.012, 0.024];
-
 impl Depths {
     pub(super) fn new(rig: &Arc<Rig>, place: ScreenPlace) -> Result<Self, CommissionError> {
-        let planner = |lower_m: f64| -> Result<(f64, Planner), CommissionError> {
-            let mut lower = (**rig).clone();
-            lower.touchscreen = lower.touchscreen.raised(-lower_m);
-            lower.table.height_m -= lower_m;
-            lower.gate.floor_m -= lower_m;
-            Ok((lower_m, Planner::new(&Arc::new(lower), TIP, place)?))
-        };
-        Ok(Self { planners: LOWER_M.into_iter().map(planner).collect::<Result<_, _>>()?, usual: 0 })
+        Ok(Self { planner: Planner::new(rig, TIP, place)?, usual: 0 })
     }
 
-    /// Touches a target with the tip sent to a point, deeper where nothing was met; else why not.
-    pub(super) fn touch(
-        &mut self,
-        robot: &mut Robot,
-        target: Pixel<Screen>,
-        sent: Point<RobotFrame>,
-        side: Side,
-        hold: Hold,
-    ) -> Result<TouchMeasurement, String> {
+    /// Touches what is wanted, lower where nothing was met; else why not.
+    pub(super) fn touch(&mut self, robot: &mut Robot, wanted: &Wanted) -> Result<TouchMeasurement, String> {
         let mut why = NOTHING.to_owned();
-        for k in self.usual..self.planners.len() {
-            let (lower_m, planner) = &self.planners[k];
+        for (k, lower_m) in LOWER_M.into_iter().enumerate().skip(self.usual) {
             let stands = robot.lockstep().commanded().clone();
-            let [x, y, z] = sent.coords.coords.into();
-            match planner.plan_held(target, Point::new(x, y, z - lower_m), side, hold, &stands) {
+            match self.planner.plan(&wanted.lower(lower_m), &stands) {
                 Ok(path) => {
-                    if let Some(measured) = touch(robot, &path, planner.chain()) {
+                    if let Some(measured) = touch(robot, &path, self.planner.chain()) {
                         self.usual = k;
                         return Ok(measured);
                     }

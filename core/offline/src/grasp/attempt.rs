@@ -10,7 +10,7 @@ use plumbline_grasp::plan::GraspPlan;
 use plumbline_grasp::record::Iteration;
 use plumbline_grasp::see::{Looker, Seen};
 use plumbline_grasp::{
-    Body, Grasper, Grip, Halt, Hand, Knowledge, Order, Record, ServoState, Sight, Step, Watch,
+    Body, Grasper, Grip, Halt, Hand, HoldWatch, Knowledge, Order, Record, ServoState, Sight, Step, Watch,
 };
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_twin::eyes::EyeRenderer;
@@ -164,16 +164,16 @@ impl Bench {
 
     /// Stands still with what is in the hand; as in the window, the record keeps that it slipped out.
     fn hold(&self, body: &mut TwinBody, record: &mut Record) {
-        let Some(grip) = Grip::of_rig(&self.rig, record.hand).filter(|_| record.is_success()) else {
-            body.twin().wait(HOLDS_S);
-            return;
-        };
+        let grip = Grip::of_rig(&self.rig, record.hand).filter(|_| record.is_success());
+        let mut watch = grip.map(HoldWatch::new);
         let ended_s = body.now_s();
         while body.now_s() - ended_s < HOLDS_S {
             body.twin().wait(FEELS_S);
-            let holds = body.servos().is_ok_and(|servos| grip.holds(&servos));
-            let now_s = body.now_s() - ended_s;
-            record.slipped_after_s = (!holds).then(|| record.slipped_after_s.unwrap_or(now_s));
+            let Some(felt) = &mut watch else { continue };
+            record.slipped_after_s = felt.feel(body.servos().ok().as_deref(), body.now_s() - ended_s);
+            if record.slipped_after_s.is_some() {
+                watch = None;
+            }
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::grasp::around::GraspAround;
 use crate::grasp::attempt::Attempt;
 use crate::grasp::body::{EyesOn, Ropes};
 use crate::grasp::command::{GraspTarget, HandStep};
-use crate::grasp::gates::{gates, shut};
+use crate::grasp::gates::shut;
 use crate::grasp::keeping::grasps_in;
 use crate::grasp::progress::Progress;
 use crate::grasp::refusal::Refusal;
@@ -24,7 +24,7 @@ impl GraspWorkflow {
     ) -> Result<(), Refusal> {
         self.idle()?;
         let choice = if matches!(what, What::Hand(_)) { self.hand().into() } else { self.choice };
-        let needed = gates(around, choice, self.method);
+        let needed = self.gates(around, choice);
         // A step of the hand needs neither eyes nor a method.
         let of_arm = ["Robot", "STOP", "Arm"];
         let needed: Vec<_> = needed

@@ -59,7 +59,7 @@ pub struct GraspWorkflow {
     /// Height of the palm when the hand closed last, m.
     closed_at_m: Option<f64>,
     /// What the hand holds, while it is looked whether it still does.
-    held: Option<HeldWatch>,
+    pub(super) held: Option<HeldWatch>,
 }
 
 /// What became of an attempt during which the program ended; `None`: it came to its end.

@@ -88,6 +88,10 @@ impl GraspWorkflow {
     }
 
     pub(super) fn judged(&mut self, attempt: AttemptView) {
+        if attempt.told == Some(false) {
+            // A person sees more than the fingers feel.
+            self.held = self.held.take().filter(|held| held.attempt != attempt.name);
+        }
         if let Some(progress) = &self.progress {
             progress.change(|run| {
                 if run.name == attempt.name {

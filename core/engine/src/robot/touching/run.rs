@@ -266,11 +266,7 @@ impl Run {
         let whole = Duration::try_from_secs_f64(self.descent.length_m() / self.order.lower_speed_m_s)
             .unwrap_or(Duration::MAX);
         if lasted >= whole.saturating_add(LAST) {
-            let end = TouchRun::Missed(
-                "The lowest place was reached and the screen felt nothing. Measure where the screen lies, or look whether it works."
-                    .to_owned(),
-            );
-            return self.retreat(hand, end);
+            return self.retreat(hand, TouchRun::MetNothing);
         }
         let posture = self.descent.at(lasted.as_secs_f64() * self.order.lower_speed_m_s);
         self.follow(hand, &posture, VALID)?;

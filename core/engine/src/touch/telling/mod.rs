@@ -11,7 +11,7 @@ mod tests;
 use plumbline_model::touch_plan::{PlannedTouch, Side, TouchArea};
 use plumbline_model::{Cancelled, JobContext};
 
-use crate::motion::{Hold, Planner, TouchPath};
+use crate::motion::{Hold, Planner, TouchPath, Wanted};
 
 pub use choice::{Chosen, choose};
 
@@ -73,7 +73,8 @@ pub fn candidates(
             let target = area.at(part(column, columns), part(row, rows));
             let set = format!("part {}-{}", 3 * column / columns + 1, 2 * row / rows + 1);
             for (side, hold) in ways() {
-                let path = planner.plan_held(target, screen.point_at(target), side, hold, &from);
+                let wanted = Wanted { hold, ..Wanted::straight(target, screen.point_at(target), side) };
+                let path = planner.plan(&wanted, &from);
                 found.extend(path.ok().map(|path| Candidate { path, side, hold, set: set.clone() }));
             }
         }

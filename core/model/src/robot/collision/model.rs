@@ -148,6 +148,11 @@ impl CollisionModel {
         model
     }
 
+    /// The same robot among the surroundings of this rig.
+    pub fn among(&self, rig: &Rig) -> Self {
+        Self { surroundings: surroundings(rig), ..self.clone() }
+    }
+
     /// Pairs of links that meet in the home pose, or nearly, and are therefore never compared.
     pub fn always_in_contact(&self) -> &[Contact] {
         &self.always

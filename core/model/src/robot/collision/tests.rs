@@ -55,6 +55,29 @@ fn whole_poses_of_the_rig_are_clear() {
 }
 
 #[test]
+fn among_surroundings_that_were_moved_everything_is_as_far_away_as_they_were_moved() {
+    let (rig, model) = nico();
+    let ready = rig.pose("touch-ready").expect("a pose").applied_to(&rig.home());
+    let by = nalgebra::Vector3::new(0.0, 0.0, 0.013);
+    let moved = rig.with_surroundings_moved(by);
+    let raised = model.among(&moved);
+    assert_eq!(
+        raised.check_posture(&ready, &[]).expect("a posture"),
+        CollisionModel::of_rig(&moved).check_posture(&ready, &[]).expect("a posture")
+    );
+    let corner = |rig: &Rig| rig.touchscreen.corners()[0].coords.coords;
+    assert!((corner(&moved) - corner(&rig) - by).norm() < 1e-12);
+    assert!((moved.table.height_m - rig.table.height_m - by.z).abs() < 1e-12);
+    assert!((moved.gate.floor_m - rig.gate.floor_m - by.z).abs() < 1e-12);
+    // Over the middle of the table a point is deeper in it by as much.
+    let table = &rig.table;
+    let [x, y] = [table.x_range_m, table.y_range_m].map(|range| 0.5 * (range[0] + range[1]));
+    let inside = Point::<Robot>::new(x, y, table.height_m - 0.02);
+    let depth_m = |model: &CollisionModel| model.body_around(inside, &ready, &[]).expect("in the table").1;
+    assert!((depth_m(&raised) - depth_m(&model) - by.z).abs() < 2e-3, "{}", depth_m(&raised));
+}
+
+#[test]
 fn shapes_that_touch_at_home_are_reported_and_near_the_trunk_only() {
     let (_, model) = nico();
     let always: Vec<String> =

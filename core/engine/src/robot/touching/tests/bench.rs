@@ -11,7 +11,7 @@ use plumbline_model::robot::{Chain, JointIndex, Posture, Rig};
 use plumbline_model::touch_plan::Side;
 use plumbline_model::{Pixel, Point, Robot, Stamp};
 
-use crate::motion::{Planner, ScreenPlace, TouchPace};
+use crate::motion::{Planner, ScreenPlace, TouchPace, Wanted};
 use crate::robot::arm::{Arm, Census};
 use crate::robot::view::Connection;
 use crate::robot::{Switches, TouchOrder, TouchRun, TouchStage, Worker};
@@ -212,7 +212,7 @@ impl Bench {
         let ready = planner.ready(&rig.home());
         let target = Pixel::new(TARGET[0], TARGET[1]);
         let sent = rig.touchscreen.point_at(target);
-        let path = planner.plan(target, sent, Side::Above, &ready).expect("in reach");
+        let path = planner.plan(&Wanted::straight(target, sent, Side::Above), &ready).expect("in reach");
         let chain = planner.chain().clone();
         let order = TouchOrder::along(path, &chain, &rig.touchscreen, &TouchPace::default(), 7, 1);
         let now = Instant::now();
