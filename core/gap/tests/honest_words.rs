@@ -64,6 +64,37 @@ fn repeats_at_any_time_without_structure_are_noise() {
     }
 }
 
+/// Nineteen touches all over the screen by an arm that errs in every joint: the nearest of them are far from each other,
+/// and what the arm errs by from one to the next is no noise.
+#[test]
+fn few_touches_far_apart_say_nothing_of_their_noise_and_clear_no_arm() {
+    let plan = Plan { places: 19, repeats: 1, noise_m: 5e-4, ..Plan::default() };
+    let some = touches(&plan, &[], 1);
+    let sites = ["r_shoulder_z", "r_shoulder_y", "r_arm_x", "r_elbow_y", "r_wrist_z", "r_wrist_x"];
+    for seed in 0..6 {
+        let mut random = StdRng::seed_from_u64(900 + seed);
+        let mut off = |id: &str, size: f64| -> Vec<plumbline_effects::Present> {
+            let zeros = |site: &&str| {
+                let count =
+                    common::present(&some, id, site, &[0.0; 2][..if id == "axis-skew" { 2 } else { 1 }]);
+                let values = count.values.iter().map(|_| size * normal(&mut random)).collect();
+                plumbline_effects::Present { values, ..count }
+            };
+            sites.iter().map(zeros).collect()
+        };
+        let hidden = [off("joint-zero", 0.02), off("axis-skew", 0.015)].concat();
+        let finding = looked_at(&touches(&plan, &hidden, 40 + seed), true);
+        println!(
+            "before {:.4}, floor {:.4}: {:?}",
+            finding.shown.before, finding.shown.floor, finding.comparison.floor_source
+        );
+        assert!(!finding.sentence.contains("no gap to close"), "{}", finding.sentence);
+        if finding.verdict == Verdict::NoGap {
+            assert!(finding.sentence.contains("noise is not known"), "{}", finding.sentence);
+        }
+    }
+}
+
 /// Touches whose encoders were logged, with a servo of the upper arm that gives way by so much, rad/N m.
 fn with_encoders(gives: f64, seed: u64) -> Measurements {
     const ARM: usize = 2;

@@ -132,6 +132,13 @@ impl PalmArm {
         (self.robot_from_palm(posture).isometry.rotation * Vector3::z()).z
     }
 
+    /// The heading (azimuth of the fingers, rad) that is asked for to be held so, see [`Self::sent_to`]: that of the
+    /// arm as it is described. What the model knows turns the hand a little from there.
+    pub fn heading_rad(&self, commanded: &Posture) -> f64 {
+        let fingers = self.arm.chain().robot_from_tip_in(commanded).isometry.rotation * Vector3::x();
+        fingers.y.atan2(fingers.x)
+    }
+
     /// What must be commanded so that the palm comes to a point with a heading, held as near to level as
     /// the arm can; the rest of the robot as in `from`. `None`: it does not get there.
     pub fn sent_to(&self, point: Point<Robot>, heading_rad: f64, from: &Posture) -> Option<Posture> {

@@ -31,6 +31,75 @@ fn mirrored(rig: &Rig, posture: &Posture) -> Posture {
     posture.with(&right, &posture.of(&left)).with(&left, &posture.of(&right))
 }
 
+/// Wherever a thing was grasped and lifted, the arm gets down there again.
+#[test]
+fn what_was_lifted_is_put_down_again_at_every_place() {
+    let rig = rig();
+    let bent = [("joint-zero", "r_elbow_y", 0.03), ("joint-zero", "r_shoulder_y", -0.02)];
+    let described = PalmArm::new(&RobotModel::nominal(rig.clone()), "right").expect("an arm");
+    let known = PalmArm::new(&with_effects(&rig, &bent), "right").expect("an arm");
+    for (name, arm) in [("as described", described), ("with effects", known)] {
+        let planner = GraspPlanner::new(arm);
+        let (mut lifted_at, mut turned_round) = (0, 0);
+        for place_m in PLACES_M {
+            let Ok(plan) = plan(&planner, place_m, &rig.home()) else { continue };
+            let closed = planner.closed(plan.down.last().expect("a way down"));
+            let height_m = planner.arm().palm(&closed).coords.z;
+            let lifted = planner.lift(&plan, &closed, GraspPlanner::LIFT_M).pop().expect("it gets up");
+            let way = planner.lowered(&lifted, height_m).expect("free");
+            let way = way.unwrap_or_else(|| panic!("{name}: {place_m:?} is not reached from above"));
+            let low = way.last().expect("a way");
+            let off_m = planner.arm().palm(low).coords.coords - planner.arm().palm(&closed).coords.coords;
+            assert!(off_m.norm() < 5e-3, "{name}: {place_m:?}: {off_m:?}");
+            assert_eq!(low.of(planner.arm().hand()), closed.of(planner.arm().hand()), "fingers as they are");
+            let mut before = &lifted;
+            for next in &way {
+                assert!(next.distance_rad(before) < 0.95, "{name}: {place_m:?} jumps");
+                before = next;
+            }
+            lifted_at += 1;
+            let straight =
+                planner.vertical(planner.arm().heading_rad(&lifted), &lifted, -GraspPlanner::LIFT_M);
+            turned_round += usize::from(straight.len() < way.len());
+        }
+        println!("{name}: {lifted_at} of 22 lifted and put down, {turned_round} by the way up turned round");
+        assert!(lifted_at >= 20, "{name}: {lifted_at}");
+    }
+}
+
+/// A robot whose right arm errs: effect, joint, value.
+fn with_effects(rig: &Arc<Rig>, effects: &[(&str, &str, f64)]) -> RobotModel {
+    use plumbline_effects::RigModel;
+    use plumbline_effects::rig_model::{Addition, ModelEffect};
+    let effect = |(id, site, value): &(&str, &str, f64)| ModelEffect {
+        id: (*id).to_owned(),
+        site: (*site).to_owned(),
+        title: String::new(),
+        tip: Some("right_index_tip".to_owned()),
+        shape: None,
+        values: vec![*value],
+        covariance: vec![],
+        probability: None,
+        parameters: vec![],
+    };
+    let addition = Addition {
+        effects: effects.iter().map(effect).collect(),
+        screens: vec![],
+        externals: vec![],
+        eyes: vec![],
+        together: vec![],
+        replaces: false,
+        at: jiff::Timestamp::UNIX_EPOCH,
+        sentence: String::new(),
+        sessions: vec![],
+        version: String::new(),
+        gap: None,
+    };
+    let mut model = RigModel::nominal(rig);
+    model.add(rig, addition).expect("they fit");
+    RobotModel::new(rig.clone(), Arc::new(model)).expect("it fits")
+}
+
 #[test]
 fn the_same_angles_make_one_hand_the_mirror_image_of_the_other() {
     let rig = rig();

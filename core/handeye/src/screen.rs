@@ -33,6 +33,8 @@ const APART_M: f64 = 0.008;
 /// An outline somewhere else that as many edges fit, nearly, leaves open which of them is the screen's: from this share
 /// on.
 const RIVAL: f64 = 0.85;
+/// What is farther from both the placed and the described screen is something else, m and rad.
+const FARTHEST: [f64; 2] = [0.06, 0.14];
 /// The edge is where it gets brighter than this share of the way from frame to table.
 const SHARE: f64 = 0.4;
 /// Scale of the robust loss, px: the table is speckled.
@@ -40,6 +42,9 @@ const ROBUST_PX: f64 = 0.7;
 const ROUNDS: usize = 10;
 /// Fewer edges that were found tell nothing.
 const FEWEST: usize = 120;
+/// Nor do fewer than this share of those that the images should show: of an outline that is half covered the rest is
+/// drawn to whatever covers it, by millimeters and degrees.
+const LEAST_SHARE: f64 = 0.75;
 /// Neighboring samples see the same speckle: so many of them count as one.
 const ALIKE: f64 = 4.0;
 /// Pose (turn, then shift) and the width's scale less 1; two angles of every head pose come after them.
@@ -178,12 +183,22 @@ fn fit(
     let starts = starts(scene, beside_m).into_iter();
     let mut fits: Vec<(SeenScreen, f64)> =
         starts.filter_map(|start| fit_from(scene, start, rest_sd_rad, pictures)).collect();
+    fits.retain(|(seen, _)| is_plausible(scene, seen));
     fits.sort_by(|a, b| b.1.total_cmp(&a.1));
     let (best, fitting) = fits.first()?;
     let middle = |seen: &SeenScreen| seen.robot_from_screen.translation.vector;
     let elsewhere = fits.iter().find(|(other, _)| (middle(other) - middle(best)).norm() > APART_M);
     let rival = elsewhere.filter(|(_, others)| *others > RIVAL * fitting);
     rival.is_none().then(|| best.clone())
+}
+
+/// Whether it lies about where the screen was placed, or is described to lie.
+fn is_plausible(scene: &Scene<'_>, seen: &SeenScreen) -> bool {
+    [scene.screen, &scene.rig.touchscreen].into_iter().any(|screen| {
+        let at = pose(screen);
+        let off_m = (at.translation.vector - seen.robot_from_screen.translation.vector).norm();
+        off_m <= FARTHEST[0] && at.rotation.angle_to(&seen.robot_from_screen.rotation) <= FARTHEST[1]
+    })
 }
 
 /// Where the outline is looked for.
@@ -213,7 +228,8 @@ fn fit_from(
         for picture in pictures {
             sums.add(scene, picture, &guess, window_px);
         }
-        if sums.edges < FEWEST {
+        let least = LEAST_SHARE * sums.looked_for as f64;
+        if sums.edges < FEWEST || round + 1 == ROUNDS && (sums.edges as f64) < least {
             return None;
         }
         // The edges say themselves how good they are: what is known before is in units of that.
@@ -244,12 +260,14 @@ struct Sums {
     squares_px2: f64,
     weights: f64,
     edges: usize,
+    /// Edges that the images should show.
+    looked_for: usize,
 }
 
 impl Sums {
     fn new(unknowns: usize) -> Self {
         let (normal, right) = (DMatrix::zeros(unknowns, unknowns), DVector::zeros(unknowns));
-        Self { normal, right, squares_px2: 0.0, weights: 0.0, edges: 0 }
+        Self { normal, right, squares_px2: 0.0, weights: 0.0, edges: 0, looked_for: 0 }
     }
 
     /// The edges of one image.
@@ -266,6 +284,7 @@ impl Sums {
             else {
                 continue;
             };
+            self.looked_for += usize::from(is_inside(&picture.image, &pixel));
             let Some(off_px) = edge(&picture.image, &pixel, &toward, window_px) else { continue };
             let slope = DVector::from_fn(count, |i, _| {
                 let left_from_screen = eyes[i] * moved[i].robot_from_screen;
@@ -298,6 +317,13 @@ fn left_from_robot(scene: &Scene<'_>, picture: &Picture, guess: &Guess) -> Isome
     let [turn_rad, tilt_rad] = guess.heads[picture.head];
     let stands = [picture.posture[head[0]] + turn_rad, picture.posture[head[1]] + tilt_rad];
     scene.rig.robot_from_left(&picture.posture.with(&head, &stands)).isometry.inverse()
+}
+
+/// Whether an image holds a pixel with all that is looked at around it.
+fn is_inside(image: &GrayImage, pixel: &Vector2<f64>) -> bool {
+    let (width, height) = (f64::from(image.width()), f64::from(image.height()));
+    let within = |at_px: f64, size_px: f64| at_px > WINDOW_PX[0] && at_px < size_px - WINDOW_PX[0];
+    within(pixel.x, width) && within(pixel.y, height)
 }
 
 /// Where a point of the outline is seen, and the direction across its edge out of the frame (unit), px.

@@ -1,9 +1,7 @@
 //! Single steps of a hand.
 
-use nalgebra::Vector3;
-use plumbline_grasp::plan::GraspPlanner;
+use plumbline_grasp::plan::{GraspPlanner, NoPlan};
 use plumbline_grasp::{Body, Halt, NoArm, PalmArm};
-use plumbline_model::robot::Posture;
 use plumbline_model::{JobContext, Point};
 
 use super::body::{LedBody, Ropes};
@@ -44,8 +42,11 @@ pub enum NoStep {
     )]
     NotGrasped,
     /// It would put down.
-    #[error("the arm does not get down to the table here: go home, and grasp nearer to the middle")]
+    #[error("the arm does not get down to the table here: hand it over instead, or take it out of the hand")]
     NoLower,
+    /// Something is in the way.
+    #[error(transparent)]
+    NoWay(#[from] NoPlan),
     /// It would hand over.
     #[error("the arm does not reach where things are handed over")]
     OutOfReach,
@@ -107,7 +108,7 @@ impl Hand<'_> {
 
     fn lift(&mut self) -> Result<(), NoStep> {
         let from = self.body.commanded()?;
-        let way = self.planner.vertical(self.heading_rad(&from), &from, GraspPlanner::LIFT_M);
+        let way = self.planner.vertical(self.planner.arm().heading_rad(&from), &from, GraspPlanner::LIFT_M);
         if way.is_empty() {
             return Err(NoStep::NoHigher);
         }
@@ -117,16 +118,11 @@ impl Hand<'_> {
 
     fn place(&mut self, closed_at_m: Option<f64>) -> Result<(), NoStep> {
         let from = self.body.commanded()?;
-        let heading_rad = self.heading_rad(&from);
-        let height_m = self.planner.arm().palm(&from).coords.z;
-        let down_m = closed_at_m.ok_or(NoStep::NotGrasped)? + ABOVE_SUPPORT_M - height_m;
+        let closes_m = closed_at_m.ok_or(NoStep::NotGrasped)? + ABOVE_SUPPORT_M;
         let mut low = from.clone();
-        if down_m < 0.0 {
-            let way = self.planner.vertical(heading_rad, &from, down_m);
+        if self.planner.arm().palm(&from).coords.z > closes_m {
+            let way = self.planner.lowered(&from, closes_m)?.ok_or(NoStep::NoLower)?;
             low = way.last().cloned().unwrap_or(from);
-            if (self.planner.arm().palm(&low).coords.z - (height_m + down_m)).abs() > 2.0 * ABOVE_SUPPORT_M {
-                return Err(NoStep::NoLower);
-            }
             self.body.let_fingers_touch()?;
             self.body.follow(&way, SPEED_RAD_S)?;
         }
@@ -136,6 +132,7 @@ impl Hand<'_> {
         self.body.follow(std::slice::from_ref(&open), OPEN_RAD_S)?;
         self.body.wait(0.3)?;
         self.body.let_fingers_touch()?;
+        let heading_rad = self.planner.arm().heading_rad(&open);
         let up = self.planner.vertical(heading_rad, &open, GraspPlanner::LIFT_M);
         Ok(self.body.follow(&up, SPEED_RAD_S)?)
     }
@@ -172,14 +169,8 @@ impl Hand<'_> {
         if missing_m <= 0.0 {
             return Ok(());
         }
-        let up = self.planner.vertical(self.heading_rad(&from), &from, missing_m);
+        let up = self.planner.vertical(self.planner.arm().heading_rad(&from), &from, missing_m);
         self.body.let_fingers_touch()?;
         Ok(self.body.follow(&up, SPEED_RAD_S)?)
-    }
-
-    /// Azimuth of the fingers.
-    fn heading_rad(&self, posture: &Posture) -> f64 {
-        let fingers = self.planner.arm().robot_from_palm(posture).isometry.rotation * Vector3::x();
-        fingers.y.atan2(fingers.x)
     }
 }

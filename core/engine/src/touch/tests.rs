@@ -15,7 +15,7 @@ use super::testing::{Desk, area, grid, only_session, rig};
 use super::view::{ContactSource, TouchOutcome, TouchPhase};
 use crate::ground::step::StepState;
 use crate::robot::view::Connection;
-use crate::robot::{RobotControl, TouchRun, TouchStage};
+use crate::robot::{RobotControl, TouchOrder, TouchRun, TouchStage};
 
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a folder for the test")

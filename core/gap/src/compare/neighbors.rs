@@ -5,6 +5,8 @@ use plumbline_effects::measurements::{Measurements, Observation, What};
 use plumbline_model::decompose;
 use rayon::prelude::*;
 
+use crate::statistics::median;
+
 /// An arm's reach: what a rad of a joint moves, roughly, m.
 const REACH_M: f64 = 0.3;
 /// A quarter turn of a neighborhood needs this many directions at most.
@@ -68,6 +70,19 @@ impl Points {
     /// Whether neighbors are near in everything that was varied.
     pub fn are_near(&self) -> bool {
         self.hidden < FAR_M
+    }
+
+    /// Whether the farthest of these neighbors (see [`Self::nearest`]) of the usual point is near: of few rows all
+    /// over the workspace the nearest are not, and what an arm errs by from one to the next would pass for noise.
+    pub fn reach_near(&self, nearest: &[Vec<usize>]) -> bool {
+        let apart = |i: usize, j: usize| (self.at.row(i) - self.at.row(j)).norm();
+        let farthest = nearest.iter().enumerate().filter_map(|(i, around)| Some(apart(i, *around.last()?)));
+        median(farthest).is_some_and(|farthest_m| farthest_m < FAR_M)
+    }
+
+    /// So many neighbors carry a plane through them well.
+    pub fn of_a_plane(&self) -> usize {
+        (3 * (self.directions() + 1)).min(self.rows.len().saturating_sub(1))
     }
 
     /// Number of directions in which rows differ.

@@ -155,8 +155,20 @@ fn follows_command(
 /// Whether rows have others that were measured nearly alike. Where more than a few joints move by
 /// themselves, neighbors in the widest directions differ in all others.
 fn are_near(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: What) -> bool {
-    let chosen = (0..measurements.rows.len()).filter(|&i| residuals[i].is_some());
-    Points::of(measurements, what, chosen).are_near()
+    let points = Points::of(measurements, what, one_per_cell(measurements, residuals, what).into_iter());
+    let watched = points.rows.iter().all(|&i| measurements.rows[i].stand.is_some());
+    // What the eyes err by changes slowly over all that they see; what an arm errs by does not.
+    let by_eyes = watched || !what.is_placed();
+    points.are_near() && (by_eyes || points.reach_near(&points.nearest(points.of_a_plane())))
+}
+
+/// Rows of a kind, the first of each cell: repeats lie on the same place and would make planes of one point.
+fn one_per_cell(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: What) -> Vec<usize> {
+    let mut seen = std::collections::BTreeSet::new();
+    (0..measurements.rows.len())
+        .filter(|&i| residuals[i].is_some() && measurements.rows[i].what == what)
+        .filter(|&i| seen.insert(measurements.rows[i].cell))
+        .collect()
 }
 
 /// Median of the instrument's own standard deviations, m; `None` where a row has none.
@@ -323,12 +335,7 @@ fn pooled(spread: &[f64], robust: f64) -> f64 {
 }
 
 fn near_neighbors(measurements: &Measurements, residuals: &[Option<Vec<f64>>], what: What) -> KindFloor {
-    // Repeats of a cell lie on the same place and would make planes of one point.
-    let mut seen = std::collections::BTreeSet::new();
-    let chosen = (0..measurements.rows.len())
-        .filter(|&i| residuals[i].is_some() && measurements.rows[i].what == what)
-        .filter(|&i| seen.insert(measurements.rows[i].cell))
-        .collect::<Vec<_>>();
+    let chosen = one_per_cell(measurements, residuals, what);
     let mut points = Points::of(measurements, what, chosen.into_iter());
     let sets = if what.is_placed() { vec![] } else { measurements.sets_of_eyes() };
     if !sets.is_empty() {
@@ -344,7 +351,7 @@ fn near_neighbors(measurements: &Measurements, residuals: &[Option<Vec<f64>>], w
     let columns = smooth.ncols();
     let values = if count >= 3 * columns { less_fit(&smooth, values) } else { values };
     let d = points.directions();
-    let nearest = points.nearest((3 * (d + 1)).min(count.saturating_sub(1)));
+    let nearest = points.nearest(points.of_a_plane());
     let watched = points.rows.iter().all(|&i| measurements.rows[i].stand.is_some());
     let mut spread = vec![vec![]; what.len()];
     for (i, around) in nearest.iter().enumerate() {

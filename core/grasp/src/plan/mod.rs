@@ -4,6 +4,7 @@
 mod beside;
 mod fingers;
 mod headed;
+mod lowered;
 mod standing;
 mod ways;
 

@@ -1,6 +1,5 @@
 //! Free ways to above an object.
 
-use nalgebra::Vector3;
 use plumbline_model::robot::Posture;
 use plumbline_model::robot::collision::PathCheck;
 
@@ -41,8 +40,7 @@ impl GraspPlanner {
         if home.distance_rad(from) < AT_HOME_RAD {
             return Ok(None);
         }
-        let heading = arm.robot_from_palm(from).isometry.rotation * Vector3::x();
-        let mut up = self.vertical(heading.y.atan2(heading.x), from, CLEARANCE_M);
+        let mut up = self.vertical(arm.heading_rad(from), from, CLEARANCE_M);
         up.push(home.clone());
         let mut barred = None;
         for way in [vec![home], up] {
@@ -102,7 +100,7 @@ impl GraspPlanner {
     }
 
     /// What is in the way; `None`: nothing.
-    fn is_free(&self, from: &Posture, way: &[Posture]) -> Result<Option<String>, NoPlan> {
+    pub(super) fn is_free(&self, from: &Posture, way: &[Posture]) -> Result<Option<String>, NoPlan> {
         let mut before = from;
         for next in way {
             if self.dips(before, next) {
@@ -134,6 +132,7 @@ impl GraspPlanner {
 mod tests {
     use std::sync::Arc;
 
+    use nalgebra::Vector3;
     use plumbline_effects::RobotModel;
     use plumbline_model::robot::Rig;
 

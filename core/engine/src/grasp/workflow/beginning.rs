@@ -4,13 +4,12 @@ use super::{GraspWorkflow, Running, What};
 use crate::grasp::around::GraspAround;
 use crate::grasp::attempt::Attempt;
 use crate::grasp::body::{EyesOn, Ropes};
-use crate::grasp::command::{GraspTarget, HandStep};
+use crate::grasp::command::GraspTarget;
 use crate::grasp::gates::shut;
 use crate::grasp::keeping::grasps_in;
 use crate::grasp::progress::Progress;
 use crate::grasp::refusal::Refusal;
 use crate::grasp::steps::HandWork;
-use crate::grasp::view::SinceHeld;
 use crate::grasp::work::{Context, GraspWork};
 use crate::ground::jobs::JobId;
 use crate::robot::{Leader, Reins, RobotControl};
@@ -33,11 +32,6 @@ impl GraspWorkflow {
             .collect();
         if let Some(gate) = shut(&needed) {
             return Err(Refusal::Shut(gate.text.clone()));
-        }
-        // Looking, lifting and going home leave the hand as it is.
-        let keeps = matches!(what, What::Plan | What::Hand(HandStep::Lift | HandStep::Home));
-        if !keeps {
-            self.is_not_held_any_more(SinceHeld::LetGo, context);
         }
         let reins = Reins::default();
         let title = match what {

@@ -66,7 +66,7 @@ impl GraspWorkflow {
     }
 
     /// What was in the hand is not, or nobody knows.
-    pub(super) fn is_not_held_any_more(&mut self, since: SinceHeld, context: &mut Context<'_>) {
+    fn is_not_held_any_more(&mut self, since: SinceHeld, context: &mut Context<'_>) {
         let Some(watch) = self.held.take() else { return };
         if let Some(progress) = &self.progress {
             progress.change(|run| {

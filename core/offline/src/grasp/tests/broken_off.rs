@@ -83,8 +83,7 @@ fn home(bench: &Bench, world: &mut TwinBody, toy: Toy) {
     let planner = bench.grasper().planner(Method::M5);
     let arm = planner.arm();
     let from = world.commanded().expect("known");
-    let fingers = arm.robot_from_palm(&from).isometry.rotation * nalgebra::Vector3::x();
-    let mut way = planner.vertical(fingers.y.atan2(fingers.x), &from, UP_M);
+    let mut way = planner.vertical(arm.heading_rad(&from), &from, UP_M);
     let up = way.last().unwrap_or(&from);
     way.push(up.with(arm.joints(), &arm.rig().home().of(arm.joints())));
     world.follow(&way, SPEED_RAD_S).expect("nobody ends it");

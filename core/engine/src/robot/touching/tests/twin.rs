@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use plumbline_model::Pixel;
-use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::robot::{JointIndex, Posture, Rig};
 use plumbline_model::touch_plan::Side;
 
 use crate::ground::bell::Bell;
@@ -130,18 +130,22 @@ fn an_arm_that_stands_higher_than_its_encoders_say_is_sent_lower_and_meets_the_g
     let file = folder.path().join("high.toml");
     let chain = rig.chain("right_index_tip").expect("a tip");
     let ready = rig.pose("touch-ready").expect("a pose").applied_to(&rig.home());
-    let elbow = rig.description.find_joint("r_elbow_y").expect("a joint");
-    let height_m = |by_rad: f64| {
-        let turned = ready.with(&[elbow], &[ready[elbow] + by_rad]);
+    // The joint that raises the tip most, turned so far that it is 20 mm higher; the sign is the twin's own affair, so
+    // that both are tried.
+    let height_m = |joint: JointIndex, by_rad: f64| {
+        let turned = ready.with(&[joint], &[ready[joint] + by_rad]);
         chain.robot_from_tip_in(&turned).translation_m().z
     };
-    // What raises the tip by 20 mm; the sign is the twin's own affair, so both are tried.
-    let zero_rad = 0.02 / ((height_m(0.05) - height_m(-0.05)) / 0.1);
+    let m_per_rad = |joint: JointIndex| (height_m(joint, 0.05) - height_m(joint, -0.05)) / 0.1;
+    let slopes = chain.joints().iter().map(|joint| (*joint, m_per_rad(*joint)));
+    let (joint, slope) = slopes.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).expect("it has joints");
+    let (zero_rad, name) = (0.02 / slope, &rig.description.joint(joint).name);
+    assert!(zero_rad.abs() < 0.2, "{name}: {zero_rad}");
     let mut ended = vec![];
     for zero_rad in [zero_rad, -zero_rad] {
         let text = format!(
             "format = 1\nname = \"high\"\ntitle = \"High\"\nabout = \"It stands high.\"\n[servo]\nholding = \"exact\"\n\
-             [joint.r_elbow_y]\nencoder_zero_rad = {zero_rad}\n"
+             [joint.{name}]\nencoder_zero_rad = {zero_rad}\n"
         );
         std::fs::write(&file, text).expect("written");
         let mut bench = Bench::start(file.to_str().expect("a name"));
