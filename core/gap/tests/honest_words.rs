@@ -88,6 +88,7 @@ fn few_touches_far_apart_say_nothing_of_their_noise_and_clear_no_arm() {
             "before {:.4}, floor {:.4}: {:?}",
             finding.shown.before, finding.shown.floor, finding.comparison.floor_source
         );
+        assert_ne!(finding.comparison.floor_source, plumbline_gap::finding::FloorSource::Neighbors);
         assert!(!finding.sentence.contains("no gap to close"), "{}", finding.sentence);
         if finding.verdict == Verdict::NoGap {
             assert!(finding.sentence.contains("noise is not known"), "{}", finding.sentence);

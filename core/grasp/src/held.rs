@@ -97,6 +97,11 @@ impl HoldWatch {
         self.grip.joints()
     }
 
+    /// Whether the hand felt empty at last, not yet for so long that it is sure.
+    pub fn doubts(&self) -> bool {
+        self.empty_since_s.is_some()
+    }
+
     /// What the servos of the hand say at a time (s, of any clock that only goes on). `None` of them: they are
     /// not all heard, or say nothing of what is held, as while the arm moves, when what it carries presses now
     /// more and now less. Since when the hand is empty, once that is sure.

@@ -52,11 +52,14 @@ fn what_was_lifted_is_put_down_again_at_every_place() {
             let off_m = planner.arm().palm(low).coords.coords - planner.arm().palm(&closed).coords.coords;
             assert!(off_m.norm() < 5e-3, "{name}: {place_m:?}: {off_m:?}");
             assert_eq!(low.of(planner.arm().hand()), closed.of(planner.arm().hand()), "fingers as they are");
-            let mut before = &lifted;
-            for next in &way {
-                assert!(next.distance_rad(before) < 0.95, "{name}: {place_m:?} jumps");
-                before = next;
+            for pair in way.windows(2) {
+                assert!(pair[0].distance_rad(&pair[1]) < 0.5, "{name}: {place_m:?} jumps");
             }
+            let sinks = way.windows(2).all(|pair| {
+                let height_m = |posture: &Posture| planner.arm().palm(posture).coords.z;
+                height_m(&pair[1]) < height_m(&pair[0])
+            });
+            assert!(sinks, "{name}: {place_m:?} does not go straight down");
             lifted_at += 1;
             let straight =
                 planner.vertical(planner.arm().heading_rad(&lifted), &lifted, -GraspPlanner::LIFT_M);
@@ -64,6 +67,8 @@ fn what_was_lifted_is_put_down_again_at_every_place() {
         }
         println!("{name}: {lifted_at} of 22 lifted and put down, {turned_round} by the way up turned round");
         assert!(lifted_at >= 20, "{name}: {lifted_at}");
+        let far = planner.lowered(&rig.home(), -0.5);
+        assert!(matches!(far, Ok(None) | Err(_)), "half a meter under the table is not reached");
     }
 }
 

@@ -30,6 +30,8 @@ const WINDOW_PX: [f64; 2] = [10.0, 5.0];
 const BESIDE_M: [f64; 3] = [0.0, -0.03, 0.03];
 /// Outlines whose middles are farther apart are different ones, m.
 const APART_M: f64 = 0.008;
+/// Or those that are turned by more, rad.
+const APART_RAD: f64 = 0.05;
 /// An outline somewhere else that as many edges fit, nearly, leaves open which of them is the screen's: from this share
 /// on.
 const RIVAL: f64 = 0.85;
@@ -111,7 +113,8 @@ impl Guess {
 
 /// Looks at the screen from some head poses and fits its outline. `rig` has its eyes where they sit, and
 /// `rest_sd_rad` says how well its head comes to rest (turn, nod); `start` is about where the screen lies.
-/// `None` when the rig does not describe its frame, or its edges are not seen. Only the head moves.
+/// `None` when the rig does not describe its frame, its edges are not seen or too few of them, or they fit in two places
+/// about as well. Only the head moves.
 ///
 /// # Errors
 /// When the robot does not carry it out, or it is cancelled.
@@ -187,7 +190,11 @@ fn fit(
     fits.sort_by(|a, b| b.1.total_cmp(&a.1));
     let (best, fitting) = fits.first()?;
     let middle = |seen: &SeenScreen| seen.robot_from_screen.translation.vector;
-    let elsewhere = fits.iter().find(|(other, _)| (middle(other) - middle(best)).norm() > APART_M);
+    let turned_rad =
+        |seen: &SeenScreen| seen.robot_from_screen.rotation.angle_to(&best.robot_from_screen.rotation);
+    let elsewhere = fits
+        .iter()
+        .find(|(other, _)| (middle(other) - middle(best)).norm() > APART_M || turned_rad(other) > APART_RAD);
     let rival = elsewhere.filter(|(_, others)| *others > RIVAL * fitting);
     rival.is_none().then(|| best.clone())
 }
@@ -284,7 +291,7 @@ impl Sums {
             else {
                 continue;
             };
-            self.looked_for += usize::from(is_inside(&picture.image, &pixel));
+            self.looked_for += usize::from(is_inside(&picture.image, &pixel, window_px));
             let Some(off_px) = edge(&picture.image, &pixel, &toward, window_px) else { continue };
             let slope = DVector::from_fn(count, |i, _| {
                 let left_from_screen = eyes[i] * moved[i].robot_from_screen;
@@ -320,9 +327,9 @@ fn left_from_robot(scene: &Scene<'_>, picture: &Picture, guess: &Guess) -> Isome
 }
 
 /// Whether an image holds a pixel with all that is looked at around it.
-fn is_inside(image: &GrayImage, pixel: &Vector2<f64>) -> bool {
+fn is_inside(image: &GrayImage, pixel: &Vector2<f64>, margin_px: f64) -> bool {
     let (width, height) = (f64::from(image.width()), f64::from(image.height()));
-    let within = |at_px: f64, size_px: f64| at_px > WINDOW_PX[0] && at_px < size_px - WINDOW_PX[0];
+    let within = |at_px: f64, size_px: f64| at_px > margin_px && at_px < size_px - margin_px;
     within(pixel.x, width) && within(pixel.y, height)
 }
 

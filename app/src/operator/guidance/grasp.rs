@@ -59,7 +59,12 @@ fn idle(view: &View) -> Guidance {
     let waits = grasp.run.as_ref().filter(|run| run.outcome.is_some() && run.told.is_none());
     let label = format!("Grasp {} with {by}", object_of(grasp));
     match waits.and_then(|run| run.outcome.as_ref()) {
-        Some(GraspOutcome::Success) if grasp.run.as_deref().is_some_and(has_slipped) => {
+        Some(GraspOutcome::Success)
+            if grasp
+                .run
+                .as_deref()
+                .is_some_and(|run| has_slipped(run) || run.since == SinceHeld::Unknown) =>
+        {
             let said = grasp.run.as_deref().map(held_now).unwrap_or_default();
             say(said).warn().then(label, Action::Grasp(GraspAction::Grasp))
         }
@@ -72,7 +77,7 @@ fn idle(view: &View) -> Guidance {
 }
 
 /// What is in a hand has to leave it before anything else is grasped.
-fn in_hand(held: &InHand, run: Option<&GraspRun>) -> Guidance {
+pub(super) fn in_hand(held: &InHand, run: Option<&GraspRun>) -> Guidance {
     let there = format!("The {} is in the {} hand.", held.object.to_lowercase(), held.hand.name());
     let asked = run.is_some_and(|run| run.outcome == Some(GraspOutcome::Success) && run.told.is_none());
     let then = match asked {

@@ -30,12 +30,14 @@ pub struct HeldWatch {
     since: Instant,
     /// How far its joints were sent toward the closed hand at most, the mean, rad.
     closed_rad: Option<f64>,
+    /// It was asked to leave the hand.
+    leaves: bool,
 }
 
 impl HeldWatch {
     /// Of an attempt that has just ended and holds something; `None`: the robot has no such hand.
-    pub fn of(attempt: &AttemptView, rig: &Rig, now: Instant) -> Option<Self> {
-        Some(Self {
+    pub fn of(attempt: &AttemptView, rig: &Rig, robot: &RobotView, now: Instant) -> Option<Self> {
+        let mut watch = Self {
             attempt: attempt.name.clone(),
             folder: attempt.folder.clone(),
             object: attempt.object.clone(),
@@ -43,7 +45,15 @@ impl HeldWatch {
             hold: HoldWatch::new(Grip::of_rig(rig, attempt.hand)?),
             since: now,
             closed_rad: None,
-        })
+            leaves: false,
+        };
+        watch.closed_rad = watch.sent_rad(robot);
+        Some(watch)
+    }
+
+    /// The hand is to let go of it: when it is empty, it did.
+    pub fn leaves(&mut self) {
+        self.leaves = true;
     }
 
     /// Looks at the hand; anything but [`SinceHeld::Held`] is the end of it.
@@ -61,6 +71,7 @@ impl HeldWatch {
         let servos = self.servos(robot).filter(|_| !matches!(robot.motion, MotionState::Moving { .. }));
         let now_s = now.saturating_duration_since(self.since).as_secs_f64();
         match self.hold.feel(servos.as_deref(), now_s) {
+            Some(_) if self.leaves => SinceHeld::LetGo,
             Some(empty_s) => SinceHeld::Slipped(Duration::from_secs_f64(empty_s)),
             None => SinceHeld::Held,
         }
@@ -143,7 +154,7 @@ mod tests {
     }
 
     fn watch(began: Instant) -> HeldWatch {
-        HeldWatch::of(&attempt(), &rig(), began).expect("it has a right hand")
+        HeldWatch::of(&attempt(), &rig(), &robot(0.2, 1.8, HOLDS), began).expect("it has a right hand")
     }
 
     #[test]
@@ -175,6 +186,19 @@ mod tests {
         assert_eq!(held.look(&robot(0.0, 0.0, HOLDS), began), SinceHeld::LetGo);
         let away = RobotView { connection: Connection::None, ..robot(0.2, 1.8, HOLDS) };
         assert_eq!(watch(began).look(&away, began), SinceHeld::Unknown);
+    }
+
+    #[test]
+    fn what_is_taken_out_on_purpose_has_not_slipped() {
+        let began = Instant::now();
+        let mut held = watch(began);
+        assert_eq!(held.look(&robot(0.2, 1.8, HOLDS), began), SinceHeld::Held);
+        held.leaves();
+        let at = |seconds| began + Duration::from_secs(seconds);
+        assert_eq!(held.look(&robot(0.0, 1.8, HOLDS), at(1)), SinceHeld::Held);
+        assert_eq!(held.look(&robot(0.0, 1.8, HOLDS), at(3)), SinceHeld::LetGo);
+        // Opened before anybody had looked.
+        assert_eq!(watch(began).look(&robot(0.0, 0.0, HOLDS), began), SinceHeld::LetGo);
     }
 
     #[test]

@@ -43,9 +43,8 @@ impl GraspWorkflow {
 
     /// What is looked at before anything moves; what is in a hand is among it.
     pub(super) fn gates(&self, around: &GraspAround, choice: HandChoice) -> Vec<Gate> {
-        let full = self.in_hand().filter(|held| choice.asked().is_none_or(|hand| hand == held.hand));
-        let full = full.iter().map(full_hand);
-        gates(around, choice, self.method).into_iter().chain(full).collect()
+        let full = self.in_hand();
+        gates(around, choice, self.method).into_iter().chain(full.iter().map(full_hand)).collect()
     }
 
     fn phase(&self) -> GraspPhase {

@@ -45,8 +45,8 @@ pub enum NoStep {
     #[error("the arm does not get down to the table here: hand it over instead, or take it out of the hand")]
     NoLower,
     /// Something is in the way.
-    #[error(transparent)]
-    NoWay(#[from] NoPlan),
+    #[error("no way down is free ({0}): hand it over instead, or take it out of the hand")]
+    NoWay(NoPlan),
     /// It would hand over.
     #[error("the arm does not reach where things are handed over")]
     OutOfReach,
@@ -121,7 +121,7 @@ impl Hand<'_> {
         let closes_m = closed_at_m.ok_or(NoStep::NotGrasped)? + ABOVE_SUPPORT_M;
         let mut low = from.clone();
         if self.planner.arm().palm(&from).coords.z > closes_m {
-            let way = self.planner.lowered(&from, closes_m)?.ok_or(NoStep::NoLower)?;
+            let way = self.planner.lowered(&from, closes_m).map_err(NoStep::NoWay)?.ok_or(NoStep::NoLower)?;
             low = way.last().cloned().unwrap_or(from);
             self.body.let_fingers_touch()?;
             self.body.follow(&way, SPEED_RAD_S)?;

@@ -7,4 +7,4 @@ mod ways;
 
 pub use no_way::NoWay;
 pub use path::{Hold, ScreenPlace, TouchPace, TouchPath, Wanted};
-pub use planner::{Planner, touch_allowances};
+pub use planner::{Planner, is_believed, touch_allowances};

@@ -102,17 +102,19 @@ pub struct Wanted {
     pub side: Side,
     /// How the hand is held.
     pub hold: Hold,
+    /// How much deeper than usual it goes on down where it meets nothing, m: the arm may stand higher than anybody knows.
+    pub deeper_m: f64,
 }
 
 impl Wanted {
     /// Sent to the place itself, the hand held as it has it.
     pub fn straight(target: Pixel<Screen>, place: Point<Robot>, side: Side) -> Self {
-        Self { target, place, sent: place, side, hold: Hold::default() }
+        Self { target, place, sent: place, side, hold: Hold::default(), deeper_m: 0.0 }
     }
 
-    /// Sent lower by this much, m: the arm is taken to stand higher than it is described.
-    pub fn lower(self, by_m: f64) -> Self {
-        Self { sent: Point::from(self.sent.coords - Vector3::z() * by_m), ..self }
+    /// Going on deeper by this much where it meets nothing, m.
+    pub fn deeper(self, by_m: f64) -> Self {
+        Self { deeper_m: by_m, ..self }
     }
 
     /// The point that is sent, less the place, m.
@@ -130,6 +132,8 @@ pub struct TouchPath {
     pub sent: Point<Robot>,
     /// That point, less the place where the tip is to end; robot axes, m.
     pub beside_m: Vector3<f64>,
+    /// How much deeper than usual it goes on down, m.
+    pub deeper_m: f64,
     /// On the way to the posture above the target, that one last.
     pub approach: Vec<Posture>,
     /// While lowering, [`STEP_M`] apart, from above to the lowest.

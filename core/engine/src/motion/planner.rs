@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 use plumbline_hardware::joints::{FARTHEST_FLOOR_M, FloorGuard};
-use plumbline_model::robot::collision::{Allowance, Body, CollisionModel};
+use plumbline_model::robot::collision::{Allowance, BesideModel, Body, CollisionModel};
 use plumbline_model::robot::ik::{Options, Solution, Solver, Target};
 use plumbline_model::robot::{Chain, JointIndex, LinkIndex, Posture, Rig};
 use plumbline_model::session::Screen;
@@ -72,7 +72,6 @@ pub struct Planner {
     ready: Posture,
     /// The arm above the middle of the screen: solutions near it are taken.
     pub(super) middle: Posture,
-    pub(super) allowances: Vec<Allowance>,
 }
 
 impl Planner {
@@ -105,7 +104,6 @@ impl Planner {
             hand: arm.hand.clone(),
             middle: ready.clone(),
             ready,
-            allowances: vec![],
         };
         let screen = &rig.touchscreen;
         let over_screen = raised(screen.point_at(screen.middle()), MIDDLE_ABOVE_M);
@@ -114,8 +112,6 @@ impl Planner {
             .upright(planner.over_patch(), screen.middle())
             .or_else(|_| planner.upright(over_screen, screen.middle()))?;
         planner.middle = planner.ready.with(planner.solver.joints(), &solution.joints);
-        planner.allowances =
-            touch_allowances(&planner.model, &planner.floor, &planner.chain, &planner.middle);
         Ok(planner)
     }
 
@@ -159,6 +155,7 @@ impl Planner {
             target,
             sent,
             beside_m: wanted.beside_m(),
+            deeper_m: wanted.deeper_m,
             direction: self.direction(&lowering, &tips, sent),
             drop_m: tips[0].distance_m(&sent),
             approach,
@@ -173,16 +170,13 @@ impl Planner {
 
     /// What may be met, for an arm that ends beside the points that it is sent to.
     fn around(&self, wanted: &Wanted) -> Result<Around, NoWay> {
-        let beside_m = wanted.beside_m();
-        let by_m = beside_m.norm();
-        if by_m > FARTHEST_BESIDE_M || beside_m.z.abs() > FARTHEST_FLOOR_M {
-            return Err(NoWay::TooFarBeside { target: wanted.target, by_m });
+        let (beside_m, deeper_m) = (wanted.beside_m(), wanted.deeper_m);
+        if !is_believed(&beside_m, deeper_m) {
+            return Err(NoWay::TooFarBeside { target: wanted.target, by_m: beside_m.norm().max(deeper_m) });
         }
-        let bodies = match by_m > 0.0 {
-            true => Arc::new(self.model.among(&self.rig.with_surroundings_moved(beside_m))),
-            false => self.model.clone(),
-        };
-        Ok(Around { bodies, up_m: beside_m.z })
+        let bodies = BesideModel::new(self.model.clone(), &self.rig, self.solver.joints(), beside_m);
+        let allowances = touch_allowances(&self.model, &self.floor, &self.chain, (&self.middle, deeper_m));
+        Ok(Around { bodies, allowances, up_m: beside_m.z })
     }
 
     /// Above the middle of the patch of the table that is worked on.
@@ -281,11 +275,11 @@ impl Planner {
         held: Held,
         around: &Around,
     ) -> Result<Lowering, NoWay> {
-        let Wanted { target, sent, side, .. } = *wanted;
+        let Wanted { target, sent, side, deeper_m, .. } = *wanted;
         let glass_m = self.rig.touchscreen.point_at(target).coords.z + around.up_m;
         let upper_m = sent.coords.z.max(glass_m) - sent.coords.z;
         let (top_m, least_m) = (upper_m + self.above_m, upper_m + ABOVE_MEASURED_M);
-        let bottom_m = sent.coords.z - sent.coords.z.min(glass_m) + BELOW_M;
+        let bottom_m = sent.coords.z - sent.coords.z.min(glass_m) + BELOW_M + deeper_m;
         let at = |height_m: f64| on_the_way(sent, side, held.heading_rad, height_m);
         let steps = |length_m: f64| (length_m / STEP_M).ceil() as usize;
         let up = self.follow(contact, steps(top_m), held.hold, |step| at(top_m.min(step as f64 * STEP_M)));
@@ -295,14 +289,15 @@ impl Planner {
         }
         let down =
             self.follow(contact, steps(bottom_m), held.hold, |step| at(-bottom_m.min(step as f64 * STEP_M)));
-        let floor_m = self.rig.gate.floor_m + around.up_m;
-        let allowed_m = floor_m + FLOOR_MARGIN_M;
-        let above_floor =
-            |posture: &&Posture| self.floor.lowest(posture).is_none_or(|(_, height_m)| height_m >= allowed_m);
+        let (allowed_m, down_m) = (self.rig.gate.floor_m + FLOOR_MARGIN_M, around.up_m - deeper_m);
+        let above_floor = |posture: &&Posture| {
+            let lowest = self.floor.lowest_shifted(posture, down_m);
+            lowest.is_none_or(|(_, height_m)| height_m >= allowed_m)
+        };
         let down: Vec<Posture> = down.iter().take_while(above_floor).cloned().collect();
         let below_m = down.last().map_or(0.0, |lowest| sent.coords.z - self.tip(lowest).coords.z);
         if below_m < LEAST_BELOW_M {
-            let above_floor_m = sent.coords.z - floor_m;
+            let above_floor_m = sent.coords.z - around.up_m - self.rig.gate.floor_m;
             return Err(NoWay::TooHigh { target, above_floor_m });
         }
         let dispensable = up.len() - least;
@@ -341,19 +336,34 @@ impl Planner {
     }
 }
 
+/// Whether an arm may err so that it is sent this much beside the place where it ends, and be higher than anybody knows
+/// by as much as it goes deeper, m.
+pub fn is_believed(beside_m: &Vector3<f64>, deeper_m: f64) -> bool {
+    beside_m.norm() <= FARTHEST_BESIDE_M
+        && beside_m.z.abs() <= FARTHEST_FLOOR_M
+        && deeper_m >= 0.0
+        && (beside_m.z - deeper_m).abs() <= FARTHEST_FLOOR_M
+}
+
 /// What may meet while the screen is touched: the part of the hand that hangs lowest in a posture, a
-/// finger, may enter the screen, and the table on which it lies, a little.
+/// finger, may enter the screen, and the table on which it lies, a little; and all of the hand as much as it goes
+/// deeper (m) where nothing is met.
 pub fn touch_allowances(
     model: &CollisionModel,
     floor: &FloorGuard,
     chain: &Chain,
-    posture: &Posture,
+    (posture, deeper_m): (&Posture, f64),
 ) -> Vec<Allowance> {
     let hand = chain.joints().last().map(|joint| model.links_moved_by(*joint)).unwrap_or_default();
     let links: Vec<LinkIndex> =
         floor.heights(posture, &hand).first().map(|(link, _)| *link).into_iter().collect();
-    let to = |body| Allowance { links: links.clone(), body, depth_m: TOUCH_DEPTH_M };
-    vec![to(Body::Touchscreen), to(Body::Table)]
+    let to = |body| Allowance { links: links.clone(), body, depth_m: TOUCH_DEPTH_M + deeper_m };
+    let mut allowances = vec![to(Body::Touchscreen), to(Body::Table)];
+    if deeper_m > 0.0 {
+        let deep = |body| Allowance { links: hand.clone(), body, depth_m: deeper_m };
+        allowances.extend([Body::Touchscreen, Body::Table, Body::Floor].map(deep));
+    }
+    allowances
 }
 
 /// Sign of a joint's motion.

@@ -1,11 +1,9 @@
 //! Ways to above a target and down that nothing is in.
 
-use std::sync::Arc;
-
 use plumbline_model::Pixel;
 use plumbline_model::Point;
 use plumbline_model::robot::Posture;
-use plumbline_model::robot::collision::{CollisionModel, PathCheck, PostureCheck};
+use plumbline_model::robot::collision::{Allowance, BesideModel, PathCheck, PostureCheck};
 use plumbline_model::robot::ik::{Options, Target};
 use plumbline_model::session::Screen;
 
@@ -24,7 +22,9 @@ const SAMPLES: usize = 16;
 
 /// What may be met, and where it lies for the arm as it is described.
 pub(super) struct Around {
-    pub(super) bodies: Arc<CollisionModel>,
+    pub(super) bodies: BesideModel,
+    /// What may meet while the finger is lowered.
+    pub(super) allowances: Vec<Allowance>,
     /// Higher than where it really lies by so much, m.
     pub(super) up_m: f64,
 }
@@ -82,7 +82,7 @@ impl Planner {
         around: &Around,
     ) -> Result<(), NoWay> {
         for posture in lowering.iter().rev().step_by(3).chain([&lowering[0]]) {
-            let found = around.bodies.check_posture(posture, &self.allowances)?;
+            let found = around.bodies.check_posture(posture, &around.allowances)?;
             if let PostureCheck::Collides { contact, .. } = found {
                 return Err(NoWay::Meets { target, a: contact.a_name, b: contact.b_name });
             }

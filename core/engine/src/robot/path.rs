@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use nalgebra::Vector3;
 use plumbline_hardware::joints::{FloorShift, Guard, Refusal};
-use plumbline_model::robot::collision::{Allowance, CollisionModel, PathCheck as Found};
-use plumbline_model::robot::{Posture, Rig};
+use plumbline_model::robot::collision::{Allowance, BesideModel, CollisionModel, PathCheck as Found};
+use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 use super::unable::InTheWay;
 use super::view::PathCheck;
@@ -26,20 +26,35 @@ pub struct Paths {
 
 /// Bodies, and what of them may meet at this moment.
 struct Around {
-    /// Where they lie.
+    /// The robot and what stands around it.
     model: Arc<CollisionModel>,
+    /// The robot that these are of.
     rig: Arc<Rig>,
-    /// Where they lie for the arm as it is described, while it is known to stand beside that.
-    beside: Option<Arc<CollisionModel>>,
+    /// Joints of the arm that is sent beside where its hand ends, and how far, m.
+    beside: Option<(Vec<JointIndex>, Vector3<f64>)>,
+    /// The same with that hand where it ends.
+    checked: Arc<BesideModel>,
     allowances: Arc<[Allowance]>,
+}
+
+impl Around {
+    fn new(rig: &Arc<Rig>) -> Self {
+        let model = Arc::new(CollisionModel::of_rig(rig));
+        let checked = Arc::new(BesideModel::new(model.clone(), rig, &[], Vector3::zeros()));
+        Self { model, rig: rig.clone(), beside: None, checked, allowances: Arc::from([]) }
+    }
+
+    fn look_anew(&mut self) {
+        let (joints, by_m) = self.beside.clone().unwrap_or_default();
+        self.checked = Arc::new(BesideModel::new(self.model.clone(), &self.rig, &joints, by_m));
+    }
 }
 
 impl Paths {
     /// For a robot on its table.
     pub fn new(rig: &Arc<Rig>) -> Self {
-        let model = Arc::new(CollisionModel::of_rig(rig));
-        let around = Around { model, rig: rig.clone(), beside: None, allowances: Arc::from([]) };
-        Self { around: Arc::new(RwLock::new(around)), floor: FloorShift::default(), rig: rig.clone() }
+        let around = Arc::new(RwLock::new(Around::new(rig)));
+        Self { around, floor: FloorShift::default(), rig: rig.clone() }
     }
 
     /// The shift of the floor that goes with these ways.
@@ -52,21 +67,36 @@ impl Paths {
         self.around.read().unwrap_or_else(PoisonError::into_inner).model.clone()
     }
 
-    /// The same robot among things that lie elsewhere.
+    /// The same robot among things that lie elsewhere. What is known of a hand stays.
     pub fn place(&self, rig: &Arc<Rig>) {
         let mut around = self.around.write().unwrap_or_else(PoisonError::into_inner);
         (around.model, around.rig) = (Arc::new(CollisionModel::of_rig(rig)), rig.clone());
-        around.beside = None;
-        self.floor.set_m(0.0);
+        around.look_anew();
     }
 
-    /// From now on the arm is sent this much beside where it is known to end (robot axes, m): what it must not
-    /// meet lies beside by as much, for the arm as it is described. Zero: it stands where it is sent.
-    pub fn sent_beside(&self, by_m: Vector3<f64>) {
+    /// From now on the arm of these joints is sent this much beside where its hand is known to end (robot axes, m):
+    /// what the hand must not meet lies beside by as much, for the arm as it is described.
+    pub fn sent_beside(&self, joints: &[JointIndex], by_m: Vector3<f64>) {
         let mut around = self.around.write().unwrap_or_else(PoisonError::into_inner);
-        let moved = (by_m.norm() > 0.0).then(|| around.rig.with_surroundings_moved(by_m));
-        around.beside = moved.map(|rig| Arc::new(around.model.among(&rig)));
+        around.beside = Some((joints.to_vec(), by_m));
+        around.look_anew();
         self.floor.set_m(by_m.z);
+    }
+
+    /// While the finger is lowered: what may meet, and how much deeper than usual it may go where it meets nothing, m.
+    pub fn lower(&self, allowances: Vec<Allowance>, deeper_m: f64) {
+        let mut around = self.around.write().unwrap_or_else(PoisonError::into_inner);
+        around.allowances = allowances.into();
+        let up_m = around.beside.as_ref().map_or(0.0, |(_, by_m)| by_m.z);
+        self.floor.set_m(up_m - deeper_m);
+    }
+
+    /// From now on nothing may meet, and every arm stands where it is sent.
+    pub fn as_described(&self) {
+        let mut around = self.around.write().unwrap_or_else(PoisonError::into_inner);
+        (around.beside, around.allowances) = (None, Arc::from([]));
+        around.look_anew();
+        self.floor.set_m(0.0);
     }
 
     /// What may meet from now on: a finger and the screen, while it is touched; usually nothing.
@@ -74,9 +104,9 @@ impl Paths {
         self.around.write().unwrap_or_else(PoisonError::into_inner).allowances = allowances.into();
     }
 
-    fn look(&self) -> (Arc<CollisionModel>, Arc<[Allowance]>) {
+    fn look(&self) -> (Arc<BesideModel>, Arc<[Allowance]>) {
         let around = self.around.read().unwrap_or_else(PoisonError::into_inner);
-        (around.beside.as_ref().unwrap_or(&around.model).clone(), around.allowances.clone())
+        (around.checked.clone(), around.allowances.clone())
     }
 
     /// The smallest distance on the straight way in joint space, or a sentence that says what

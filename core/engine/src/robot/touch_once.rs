@@ -15,7 +15,7 @@ use super::unable::{Interrupted, Unable};
 use super::view::Connection;
 use super::worker::Worker;
 use crate::ground::notice::NoticeLevel;
-use crate::motion::touch_allowances;
+use crate::motion::{is_believed, touch_allowances};
 
 impl Worker {
     /// How touches are doing, since the last call.
@@ -50,7 +50,8 @@ impl Worker {
         match Run::new(&self.rig, order.clone(), source, refusals.unwrap_or_default(), now) {
             Ok(run) => {
                 (self.preview, self.refusal) = (None, None);
-                self.paths.sent_beside(order.beside_m);
+                let chain = self.rig.chain(&order.tip).map_or(vec![], |chain| chain.joints().to_vec());
+                self.paths.sent_beside(&chain, order.beside_m);
                 self.touching.tell(&order, TouchRun::Doing(run.stage()));
                 self.touching.run = Some(run);
                 self.step_touch(now);
@@ -80,7 +81,7 @@ impl Worker {
             && order.lower.len() == order.lower_tip.len()
             && order.approach.iter().chain(&order.lower).all(fits);
         let positive = |value: f64| value > 0.0 && value.is_finite();
-        let known = order.beside_m.iter().all(|m| m.is_finite());
+        let known = is_believed(&order.beside_m, order.deeper_m);
         let paced = positive(order.lower_speed_m_s) && positive(order.speed_rad_s);
         if !(whole && paced && known && positive(order.plausible_px)) {
             return Err(Interrupted::NoWay);
@@ -112,12 +113,6 @@ impl Worker {
         }
     }
 
-    /// Whatever moves next may touch nothing, and is looked at as the arm is described.
-    fn touches_no_more(&self) {
-        self.paths.allow(vec![]);
-        self.paths.sent_beside(nalgebra::Vector3::zeros());
-    }
-
     fn went(&mut self, run: Run, step: Result<Step, Interrupted>) {
         match step {
             Ok(Step::Same) => self.touching.run = Some(run),
@@ -126,13 +121,13 @@ impl Worker {
                 self.touching.run = Some(run);
             }
             Ok(Step::End(end)) => {
-                self.touches_no_more();
+                self.paths.as_described();
                 self.touching.tell(run.order(), end);
             }
             Err(reason) => {
                 // Goals below the glass become where the finger is: the next move starts outside.
                 let _ = self.arm().map(|arm| arm.hold());
-                self.touches_no_more();
+                self.paths.as_described();
                 let (number, stage) = (run.order().number, run.stage().name());
                 let what = format!("Touch {number} was interrupted ({stage}). {reason}");
                 let end = match reason.is_unheard() {
@@ -182,7 +177,9 @@ impl Hand for Worker {
     fn allow_touch(&self, order: &TouchOrder) {
         let Ok(chain) = self.rig.chain(&order.tip) else { return };
         let floor = FloorGuard::new(&self.rig);
-        self.paths.allow(touch_allowances(&self.paths.model(), &floor, &chain, &order.lower[0]));
+        let posture = (&order.lower[0], order.deeper_m);
+        let allowances = touch_allowances(&self.paths.model(), &floor, &chain, posture);
+        self.paths.lower(allowances, order.deeper_m);
     }
 
     fn warn(&mut self, text: String) {

@@ -28,6 +28,8 @@ pub struct TouchOrder {
     pub lower_tip: Vec<Point<Robot>>,
     /// The point that is sent, less the place where the tip is known to end then; robot axes, m.
     pub beside_m: Vector3<f64>,
+    /// How much deeper than usual the finger goes on down where it meets nothing, m.
+    pub deeper_m: f64,
     /// Speed of the tip while lowering, m/s.
     pub lower_speed_m_s: f64,
     /// Peak joint speed on the way, rad/s.
@@ -59,6 +61,7 @@ impl TouchOrder {
             lower: path.lower,
             lower_tip: path.lower_tip,
             beside_m: path.beside_m,
+            deeper_m: path.deeper_m,
             lower_speed_m_s: pace.lower_speed_m_s,
             speed_rad_s: pace.speed_rad_s,
             dwell: pace.dwell,

@@ -32,7 +32,7 @@ pub mod view;
 pub mod work;
 mod workflow;
 
-pub use depth::LOWER_M;
+pub use depth::DEEPER_M;
 pub use plumbline_effects::observability::{Addition, Advice, EffectVisibility, PlanScore};
 pub use standing::RunStanding;
 pub use workflow::{TouchAround, TouchWorkflow};

@@ -162,7 +162,12 @@ fn what_the_arm_must_not_meet_is_looked_at_where_the_tip_will_be_not_where_it_is
                 assert!(why.contains("meet the touchscreen") || why.contains("low enough"), "{why}");
             }
         }
-        let far = planner.plan(&straight.lower(0.05), &from).expect_err("no arm errs so much").to_string();
+        let deep = planner.plan(&straight.deeper(0.024), &from).expect("it goes deeper");
+        let usual = planner.plan(&straight, &from).expect("in reach");
+        assert_eq!((&deep.contact, deep.above()), (&usual.contact, usual.above()), "from as high");
+        let lowest_m = |path: &TouchPath| path.lower_tip.last().expect("a way down").coords.z;
+        assert!((lowest_m(&usual) - lowest_m(&deep) - 0.024).abs() < 0.0021);
+        let far = planner.plan(&straight.deeper(0.05), &from).expect_err("no arm errs so much").to_string();
         assert!(far.contains("50 mm beside"), "{far}");
         let nan = Wanted { place: Point::new(f64::NAN, 0.0, 0.0), ..straight };
         assert!(planner.plan(&nan, &from).is_err());

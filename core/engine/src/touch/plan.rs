@@ -64,7 +64,7 @@ impl Aim {
     /// As it is planned.
     pub fn wanted(&self) -> Wanted {
         let PlannedTouch { target, side, .. } = self.touch;
-        Wanted { target, place: self.place(), sent: self.sent(), side, hold: self.hold }
+        Wanted { target, place: self.place(), sent: self.sent(), side, hold: self.hold, deeper_m: 0.0 }
     }
 
     /// Height of the block under the screen (m) and mass in the hand (kg) that it needs.

@@ -282,7 +282,11 @@ impl Run {
             return;
         };
         let screen = now.screen.raised(aim.touch.screen_height_m);
-        let planner = self.planner.as_ref().filter(|(of, _)| *of == screen);
+        if self.planner.as_ref().is_some_and(|(of, _)| *of != screen) {
+            // What was found of how low it lies is of its place before.
+            (self.planner, self.depth) = (None, Depth::default());
+        }
+        let planner = self.planner.as_ref();
         let rig = match planner {
             Some((_, planner)) => planner.rig().clone(),
             None => Arc::new(Rig { touchscreen: screen, ..(**now.rig).clone() }),
@@ -294,7 +298,7 @@ impl Run {
             order: next_order(),
             pace: TouchPace::default().at(speed(now.robot)),
             finger: self.plan.options.finger,
-            lower_m: self.depth.lower_m(aim.touch.number),
+            deeper_m: self.depth.deeper_m(aim.touch.number),
             from,
             aim: Box::new(aim),
         };
@@ -350,11 +354,6 @@ impl Run {
             Ok(order) if wanted => {
                 self.touch = Some(UnderWay { order: order.order, number, stage: None, at_end: AtEnd::Keep });
                 context.control(RobotControl::Touch(order));
-            }
-            Err(reason) if wanted && self.depth.is_lower(number) => {
-                self.depth.forget();
-                self.missed(number, format!("{MET_NOTHING} It cannot be looked for lower: {reason}"));
-                self.go_on(now, context);
             }
             Err(reason) if wanted => {
                 let text = format!("Touch {number} was not begun: {reason} Go on to try again, or skip it.");
@@ -445,10 +444,10 @@ impl Run {
     /// The finger ended above the glass: it is looked for a little lower, or missed.
     fn met_nothing(&mut self, number: usize, context: &mut Context<'_>) {
         match self.depth.met_nothing(number) {
-            Some(lower_m) => {
+            Some(deeper_m) => {
                 let text = format!(
-                    "Touch {number} met nothing: the arm may stand higher than its encoders say. The same place is touched again, {:.0} mm lower; the finger stops at what it meets.",
-                    lower_m * 1e3
+                    "Touch {number} met nothing: the arm may stand higher than its encoders say. The same place is touched again, as much as {:.0} mm deeper; the finger stops at what it meets.",
+                    deeper_m * 1e3
                 );
                 context.notices.add(NoticeLevel::Info, text);
             }
@@ -460,6 +459,7 @@ impl Run {
     }
 
     fn missed(&mut self, number: usize, why: String) {
+        self.depth.forget();
         self.end(number, Ended::Missed(why));
         self.misses += 1;
         if self.misses >= MISSES && self.phase == Phase::Working {

@@ -251,30 +251,37 @@ fn many_misses_in_a_row_pause_with_advice() {
 
 /// An arm that stands higher than its encoders say ends in the air.
 #[test]
-fn where_nothing_is_met_the_same_place_is_looked_for_lower_and_the_next_ones_from_there() {
+fn where_nothing_is_met_the_same_place_is_looked_for_deeper_and_so_are_the_next_ones() {
     let folder = folder();
     let mut desk = Desk::new(folder.path());
     desk.start(grid(2, 2));
-    let lowest_m = |order: &TouchOrder| order.lower_tip.last().expect("a way down").coords.z;
+    let ends_m = |order: &TouchOrder| {
+        [order.lower_tip.first(), order.lower_tip.last()].map(|tip| tip.expect("a way down").coords.z)
+    };
     let first = desk.order().expect("first");
-    assert_eq!(first.beside_m.norm(), 0.0);
+    assert_eq!((first.beside_m.norm(), first.deeper_m), (0.0, 0.0));
     desk.say(&first, TouchRun::MetNothing);
-    assert!(desk.said().contains("12 mm lower"), "{}", desk.said());
-    let lower = desk.order().expect("once more");
-    assert_eq!((lower.number, desk.view().counts.missed), (first.number, 0));
-    assert!((lowest_m(&first) - lowest_m(&lower) - 0.012).abs() < 1e-4);
-    assert!((lower.beside_m.z + 0.012).abs() < 1e-12, "so much lower than it is to end");
-    desk.touch(&lower);
+    assert!(desk.said().contains("12 mm deeper"), "{}", desk.said());
+    let deeper = desk.order().expect("once more");
+    assert_eq!((deeper.number, deeper.deeper_m, desk.view().counts.missed), (first.number, 0.012, 0));
+    let ([above_m, low_m], [as_high_m, deep_m]) = (ends_m(&first), ends_m(&deeper));
+    assert!((above_m - as_high_m).abs() < 1e-6, "from as high as always");
+    assert!((low_m - deep_m - 0.012).abs() < 0.0021, "{low_m} {deep_m}");
+    desk.touch(&deeper);
     let second = desk.order().expect("the next one");
-    assert!((second.beside_m.z + 0.012).abs() < 1e-12, "it begins where the glass was met");
+    assert_eq!(second.deeper_m, 0.012, "as deep as where the glass was met");
     desk.say(&second, TouchRun::MetNothing);
-    let lowest = desk.order().expect("lower still");
-    assert_eq!((lowest.number, desk.view().counts.missed), (second.number, 0));
-    assert!((lowest.beside_m.z + 0.024).abs() < 1e-12);
-    desk.say(&lowest, TouchRun::MetNothing);
+    let deepest = desk.order().expect("deeper still");
+    assert_eq!((deepest.number, deepest.deeper_m, desk.view().counts.missed), (second.number, 0.024, 0));
+    desk.say(&deepest, TouchRun::MetNothing);
     assert_eq!(desk.view().counts.missed, 1, "it was looked for everywhere");
     let third = desk.order().expect("it goes on");
-    assert!((third.beside_m.z + 0.012).abs() < 1e-12, "from where the glass was met last");
+    assert_eq!(third.deeper_m, 0.012, "as deep as where the glass was met last");
+    // What pushes is not looked for deeper.
+    desk.say(&third, TouchRun::Missed("It pushes.".to_owned()));
+    assert_eq!(desk.view().counts.missed, 2);
+    let fourth = desk.order().expect("it goes on");
+    assert!(fourth.number != third.number);
 }
 
 #[test]

@@ -127,8 +127,8 @@ pub struct RouteRequest {
     pub finger: Finger,
     /// The target.
     pub aim: Box<Aim>,
-    /// How much lower than planned the tip is sent, m.
-    pub lower_m: f64,
+    /// How much deeper than usual the finger may go, m.
+    pub deeper_m: f64,
     /// Where the arm stands.
     pub from: Posture,
     /// Counts orders.
@@ -345,8 +345,13 @@ fn route(request: RouteRequest) -> TouchResult {
             Err(reason) => return TouchResult::Routed { number, planner: None, order: Err(reason) },
         },
     };
-    let RouteRequest { aim, from, order, pace, rig, lower_m, .. } = request;
-    let path = planner.plan(&aim.wanted().lower(lower_m), &from);
+    let RouteRequest { aim, from, order, pace, rig, deeper_m, .. } = request;
+    // Where it cannot go so deep, it goes as deep as always.
+    let deeper = planner.plan(&aim.wanted().deeper(deeper_m), &from);
+    let path = deeper.or_else(|why| match deeper_m > 0.0 {
+        true => planner.plan(&aim.wanted(), &from),
+        false => Err(why),
+    });
     let along = |path| TouchOrder::along(path, planner.chain(), &rig.touchscreen, &pace, number, order);
     let order = path.map(|path| Box::new(along(path)));
     TouchResult::Routed { number, planner: Some(planner), order }

@@ -27,7 +27,7 @@ impl GraspPlanner {
         if straight.last().is_some_and(|low| is_at(low, height_m)) {
             return Ok(Some(straight));
         }
-        let mut barred = None;
+        let (mut barred, mut best): (_, Option<(f64, Vec<Posture>)>) = (None, None);
         for beside_rad in BESIDE_RAD {
             let heading_rad = held_rad + beside_rad;
             let below = Point::new(palm.x, palm.y, height_m);
@@ -38,11 +38,20 @@ impl GraspPlanner {
             else {
                 continue;
             };
-            match self.is_free(from, std::slice::from_ref(top))? {
-                None => return Ok(Some(up.into_iter().rev().chain([low]).collect())),
+            let turn_rad = top.distance_rad(from) + top.distance_rad(&low);
+            let way: Vec<Posture> = up.iter().rev().cloned().chain([low]).collect();
+            match self.is_free(from, &way[..1])?.or(self.stops_arm(&way)?) {
+                None if best.as_ref().is_none_or(|(least_rad, _)| turn_rad < *least_rad) => {
+                    best = Some((turn_rad, way));
+                }
+                None => {}
                 Some(why) => barred = barred.or(Some(why)),
             }
         }
-        barred.map_or(Ok(None), |why| Err(NoPlan::NotFree(why)))
+        match (best, barred) {
+            (Some((_, way)), _) => Ok(Some(way)),
+            (None, Some(why)) => Err(NoPlan::NotFree(why)),
+            (None, None) => Ok(None),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Free ways to above an object.
 
 use plumbline_model::robot::Posture;
-use plumbline_model::robot::collision::PathCheck;
+use plumbline_model::robot::collision::{Allowance, Body, PathCheck};
 
 use super::{GraspPlanner, NoPlan};
 
@@ -70,6 +70,25 @@ impl GraspPlanner {
             before = next;
         }
         Ok(room_m)
+    }
+
+    /// What stops the arm on a way down onto the table, the hand and what it holds left out; `None`: nothing.
+    pub(super) fn stops_arm(&self, way: &[Posture]) -> Result<Option<String>, NoPlan> {
+        let (_, hand) = &self.at_a_larger_table;
+        let may =
+            [Body::Table, Body::Touchscreen, Body::Floor].map(|body| Allowance { body, ..hand.clone() });
+        for pair in way.windows(2) {
+            match self.bodies.check_path(&pair[0], &pair[1], &may)? {
+                PathCheck::Clear { .. } => {}
+                PathCheck::Collides { contact, .. } => {
+                    return Ok(Some(format!("the {} would meet the {}", contact.a_name, contact.b_name)));
+                }
+                PathCheck::BeyondLimit { name, why, .. } => {
+                    return Ok(Some(format!("{name} would turn too far: {why}")));
+                }
+            }
+        }
+        Ok(None)
     }
 
     /// Whether the arm behind its hand comes so near to the table on the way down that it may meet it.

@@ -169,6 +169,13 @@ fn a_screen_that_is_half_covered_is_not_seen_or_where_it_is() {
         }
     }
     println!("{seen} of 8 seen");
+    // A corner of it covered is no reason to see nothing of it.
+    let corner: fn(&mut RgbImage) =
+        |image| spread(image, |[x, y], [width, height]| x > width * 5 / 8 && y > height * 5 / 8);
+    let mut body = Meddled { covers: corner, ..Meddled::new(&rig) };
+    let found = screen_placed_beside(&mut body, &rig, [0.0, 0.0], &around).expect("most of it is seen");
+    let (off_m, off_rad) = apart(&found, &there);
+    assert!(off_m < 0.004 && off_rad < 0.01, "{off_m} {off_rad}");
 }
 
 /// Paints where it is covered.

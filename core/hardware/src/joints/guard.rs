@@ -21,7 +21,7 @@ pub trait Guard: Send + Sync {
 /// Farther from where the rig has it the floor is never taken to lie, m.
 pub const FARTHEST_FLOOR_M: f64 = 0.04;
 
-/// By how much the floor lies elsewhere for an arm as it is described: one that is known to stand higher than
+/// By how much the floor lies elsewhere for hands as they are described: one that is known to stand higher than
 /// it is described has to be sent lower to get to the same height. Clones are the same shift.
 #[derive(Clone, Debug, Default)]
 pub struct FloorShift(Arc<AtomicU64>);
@@ -45,6 +45,8 @@ impl FloorShift {
 pub struct FloorGuard {
     description: Arc<Description>,
     parts: Vec<LinkIndex>,
+    /// By link: whether it belongs to a hand.
+    is_hand: Vec<bool>,
     floor_m: f64,
     shift: FloorShift,
 }
@@ -64,7 +66,8 @@ impl FloorGuard {
             is_arm[joint.child.0] = own || is_arm[joint.parent.0];
         }
         let parts = (0..is_arm.len()).filter(|link| is_arm[*link]).map(LinkIndex).collect();
-        Self { description, parts, floor_m: rig.gate.floor_m, shift: FloorShift::default() }
+        let is_hand = hands(rig);
+        Self { description, parts, is_hand, floor_m: rig.gate.floor_m, shift: FloorShift::default() }
     }
 
     /// The same, where a shift says that the floor lies.
@@ -74,8 +77,16 @@ impl FloorGuard {
 
     /// The lowest part of an arm in a posture, and the height of its lowest point (m).
     pub fn lowest(&self, posture: &Posture) -> Option<(LinkIndex, f64)> {
+        self.lowest_shifted(posture, 0.0)
+    }
+
+    /// The same with hands lower by this much than they are described (negative: higher), m.
+    pub fn lowest_shifted(&self, posture: &Posture, down_m: f64) -> Option<(LinkIndex, f64)> {
         let poses = self.description.forward(posture);
-        let height = |link: &LinkIndex| (*link, lowest_m(&self.description, *link, &poses.all()[link.0]));
+        let height = |link: &LinkIndex| {
+            let described_m = lowest_m(&self.description, *link, &poses.all()[link.0]);
+            (*link, described_m - if self.is_hand[link.0] { down_m } else { 0.0 })
+        };
         self.parts.iter().map(height).min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
@@ -92,18 +103,33 @@ impl FloorGuard {
 
 impl Guard for FloorGuard {
     fn check(&self, present: &Posture, goal: &Posture) -> Result<(), Refusal> {
-        let Some((link, height_m)) = self.lowest(goal) else { return Ok(()) };
-        let floor_m = self.floor_m + self.shift.up_m();
+        let down_m = self.shift.up_m();
+        let Some((link, height_m)) = self.lowest_shifted(goal, down_m) else { return Ok(()) };
+        let floor_m = self.floor_m;
         if height_m >= floor_m {
             return Ok(());
         }
-        let before_m = self.lowest(present).map_or(f64::INFINITY, |(_, height_m)| height_m);
+        let before_m = self.lowest_shifted(present, down_m).map_or(f64::INFINITY, |(_, height_m)| height_m);
         if before_m < floor_m && height_m >= before_m - NO_WORSE_M {
             return Ok(());
         }
         let link = self.description.links()[link.0].name.clone();
         Err(Refusal::Floor { link, height_m, floor_m })
     }
+}
+
+/// By link of a rig: whether it belongs to a hand, which the last joint of an arm moves.
+fn hands(rig: &Rig) -> Vec<bool> {
+    let description = &rig.description;
+    let mut is_hand = vec![false; description.links().len()];
+    for wrist in rig.arms.iter().filter_map(|arm| arm.joints.last()) {
+        is_hand[description.joint(*wrist).child.0] = true;
+    }
+    // Parents come before children.
+    for joint in description.joints() {
+        is_hand[joint.child.0] |= is_hand[joint.parent.0];
+    }
+    is_hand
 }
 
 /// Height of the lowest point of a link, m: of its shapes, or of its origin without any.

@@ -162,7 +162,12 @@ fn the_floor_refuses_what_goes_below_and_lets_out_who_is_there() {
     // For an arm that is known to stand higher the floor lies lower, by no more than is believed of one.
     let shift = FloorShift::default();
     let shifted = FloorGuard::new(&rig).shifted_by(shift.clone());
-    let little = below.iter().max_by(|a, b| lowest_m(a).total_cmp(&lowest_m(b))).expect("one below");
+    let is_hand = |posture: &&Posture| {
+        let shifted_m = floor.lowest_shifted(posture, 0.01).expect("it has parts").1;
+        (shifted_m - (lowest_m(posture) - 0.01)).abs() < 1e-9
+    };
+    let little = below.iter().filter(is_hand).max_by(|a, b| lowest_m(a).total_cmp(&lowest_m(b)));
+    let little = little.expect("a hand below");
     let down_m = rig.gate.floor_m - lowest_m(little);
     assert!(down_m < FARTHEST_FLOOR_M - 1e-3, "the least deep one is {down_m} below");
     for (up_m, passes) in
@@ -172,4 +177,19 @@ fn the_floor_refuses_what_goes_below_and_lets_out_who_is_there() {
         assert_eq!(shifted.check(&above, little).is_ok(), passes, "{up_m}");
     }
     assert!(floor.check(&above, little).is_err(), "another guard is not shifted");
+    // A hand that is known to stand lower is stopped earlier; an arm behind it is looked at as it is described.
+    shift.set_m(down_m);
+    let just_above = little.toward(&above, 0.3);
+    if lowest_m(&just_above) > rig.gate.floor_m && is_hand(&&just_above) {
+        let stopped = lowest_m(&just_above) - down_m < rig.gate.floor_m;
+        assert_eq!(shifted.check(&above, &just_above).is_err(), stopped);
+    }
+    let arm_is_lowest = below.iter().find(|posture| !is_hand(posture));
+    if let Some(low) = arm_is_lowest {
+        shift.set_m(-FARTHEST_FLOOR_M);
+        assert!(
+            shifted.check(&above, low).is_err(),
+            "of the arm behind the hand nobody knows how far it is off"
+        );
+    }
 }

@@ -12,7 +12,7 @@ use plumbline_engine::robot::TouchMeasurement;
 use plumbline_engine::touch::plan::{Aim, FORMAT, RunPlan, TIP};
 use plumbline_engine::touch::record::{Ended, Progress, TouchRecord};
 use plumbline_engine::touch::telling::{Candidate, Chosen, candidates, choose, in_short_ways};
-use plumbline_engine::touch::{LOWER_M, placement, store};
+use plumbline_engine::touch::{DEEPER_M, placement, store};
 use plumbline_fit::pose;
 use plumbline_handeye::{Tie, body, screen, table};
 use plumbline_model::robot::{Chain, Rig};
@@ -28,7 +28,7 @@ use super::robot::{Robot, SPEED_RAD_S};
 use super::steps::Step;
 
 /// The tip comes down with this speed, m/s.
-const LOWER_M_S: f64 = 0.02;
+const DEEPER_M_S: f64 = 0.02;
 /// Encoders are read once more so much later, s.
 const DWELL_S: f64 = 0.3;
 /// A contact farther from its target is not the finger's, m.
@@ -107,7 +107,7 @@ const NOTHING: &str = "the screen felt nothing near the target";
 /// glass when it is sent to it.
 pub(super) struct Depths {
     planner: Planner,
-    /// Of [`LOWER_M`], what met the glass last.
+    /// Of [`DEEPER_M`], what met the glass last.
     usual: usize,
 }
 
@@ -119,9 +119,10 @@ impl Depths {
     /// Touches what is wanted, lower where nothing was met; else why not.
     pub(super) fn touch(&mut self, robot: &mut Robot, wanted: &Wanted) -> Result<TouchMeasurement, String> {
         let mut why = NOTHING.to_owned();
-        for (k, lower_m) in LOWER_M.into_iter().enumerate().skip(self.usual) {
+        for (k, deeper_m) in DEEPER_M.into_iter().enumerate().skip(self.usual) {
             let stands = robot.lockstep().commanded().clone();
-            match self.planner.plan(&wanted.lower(lower_m), &stands) {
+            let planned = self.planner.plan(&wanted.deeper(deeper_m), &stands);
+            match planned.or_else(|_| self.planner.plan(wanted, &stands)) {
                 Ok(path) => {
                     if let Some(measured) = touch(robot, &path, self.planner.chain()) {
                         self.usual = k;
@@ -193,7 +194,9 @@ fn look_around(
     });
     let screen = screen::see(robot.body(), &rig, mounted.rest_sigma_rad, placed, &mut |_| {}, context)?;
     let Some(seen) = &screen else {
-        step.notes.push("The eyes do not see its edges.".to_owned());
+        step.notes.push(
+            "The eyes do not see its outline, see too little of it, or see it in two places.".to_owned(),
+        );
         return Ok(Tie { body, screen, table: None });
     };
     let off = seen.robot_from_screen * pose(placed).inverse();
@@ -315,5 +318,5 @@ pub(super) fn touch(robot: &mut Robot, path: &TouchPath, chain: &Chain) -> Optio
 fn lower_speed_rad_s(path: &TouchPath) -> f64 {
     let tips = path.lower_tip.windows(2).map(|pair| pair[0].distance_m(&pair[1])).sum::<f64>();
     let turns = path.lower.windows(2).map(|pair| pair[0].distance_rad(&pair[1])).sum::<f64>();
-    1.875 * turns / (tips / LOWER_M_S).max(1e-3)
+    1.875 * turns / (tips / DEEPER_M_S).max(1e-3)
 }

@@ -167,7 +167,7 @@ impl Bench {
         let grip = Grip::of_rig(&self.rig, record.hand).filter(|_| record.is_success());
         let mut watch = grip.map(HoldWatch::new);
         let ended_s = body.now_s();
-        while body.now_s() - ended_s < HOLDS_S {
+        while body.now_s() - ended_s < HOLDS_S || watch.as_ref().is_some_and(HoldWatch::doubts) {
             body.twin().wait(FEELS_S);
             let Some(felt) = &mut watch else { continue };
             record.slipped_after_s = felt.feel(body.servos().ok().as_deref(), body.now_s() - ended_s);

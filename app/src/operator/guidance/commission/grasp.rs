@@ -34,6 +34,9 @@ pub(super) fn said(view: &View) -> Said {
             vec![Action::Grasp(GraspAction::Held)],
         );
     }
+    if let Some(in_hand) = &of_view.held {
+        return grasp::in_hand(in_hand, run.map(|run| &**run)).into();
+    }
     if of_view.target.class.as_deref() != Some(FIRST_CLASS) || !is_laid_out(view) {
         return lay_out(view, run.is_some());
     }

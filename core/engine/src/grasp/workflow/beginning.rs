@@ -4,7 +4,7 @@ use super::{GraspWorkflow, Running, What};
 use crate::grasp::around::GraspAround;
 use crate::grasp::attempt::Attempt;
 use crate::grasp::body::{EyesOn, Ropes};
-use crate::grasp::command::GraspTarget;
+use crate::grasp::command::{GraspTarget, HandStep};
 use crate::grasp::gates::shut;
 use crate::grasp::keeping::grasps_in;
 use crate::grasp::progress::Progress;
@@ -32,6 +32,11 @@ impl GraspWorkflow {
             .collect();
         if let Some(gate) = shut(&needed) {
             return Err(Refusal::Shut(gate.text.clone()));
+        }
+        if let (What::Hand(HandStep::Open | HandStep::Place | HandStep::Give), Some(held)) =
+            (&what, &mut self.held)
+        {
+            held.leaves();
         }
         let reins = Reins::default();
         let title = match what {

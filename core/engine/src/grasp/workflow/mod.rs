@@ -93,8 +93,12 @@ impl GraspWorkflow {
         }
     }
 
-    /// The hand that a step is of: the one that was chosen, else the one that grasped last or is about to.
+    /// The hand that a step is of: the one that holds something, else the one that was chosen, else the one that grasped
+    /// last or is about to.
     pub(in crate::grasp) fn hand(&self) -> Hand {
+        if let Some(held) = &self.held {
+            return held.hand;
+        }
         let planned = self.plan.as_ref().map(|plan| plan.hand);
         let last = || self.attempts.first().map(|attempt| attempt.hand);
         self.choice.asked().or(planned).or_else(last).unwrap_or_default()

@@ -42,7 +42,9 @@ impl GraspWorkflow {
         self.plan = None;
         self.closed_at_m = attempt.closed_at_m.or(self.closed_at_m);
         self.held = match attempt.outcome {
-            Some(Outcome::Success) => HeldWatch::of(&attempt, &around.described, context.time.instant),
+            Some(Outcome::Success) => {
+                HeldWatch::of(&attempt, &around.described, &around.robot, context.time.instant)
+            }
             _ => None,
         };
         self.attempts.insert(0, attempt);

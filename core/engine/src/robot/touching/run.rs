@@ -24,6 +24,10 @@ const STILL_TICKS: f64 = 1.5;
 const SETTLE: Duration = Duration::from_secs(3);
 /// Share of the gate's load at which lowering ends: the gate itself would stop the arm.
 const LOAD_SHARE: f64 = 0.9;
+/// A finger that stays so far above the lowest place that it was sent to, by its encoders, was stopped, m…
+const STAYED_ABOVE_M: f64 = 0.006;
+/// …and so was one whose servos got so much more load on the way, a share of their stall torque.
+const ROSE: f64 = 0.2;
 /// A goal on the way down is followed for this long when nothing newer comes.
 const VALID: Duration = Duration::from_millis(300);
 /// After the last goal the arm gets this long to reach the lowest place.
@@ -69,6 +73,8 @@ struct Down {
     since: Instant,
     /// Number of the bus's cycle in which it began.
     cycle: u64,
+    /// Largest load of the chain's joints when it began, a share of the stall torque.
+    load: f64,
 }
 
 /// A touch that is under way.
@@ -240,7 +246,7 @@ impl Run {
             )));
         }
         hand.allow_touch(&self.order);
-        let down = Down { since: now, cycle: state.stamp.seq };
+        let down = Down { since: now, cycle: state.stamp.seq, load: self.load(state) };
         self.stage = Stage::Lowering(down);
         self.lower(hand, state, down, now).map(|_| Step::Next)
     }
@@ -266,11 +272,36 @@ impl Run {
         let whole = Duration::try_from_secs_f64(self.descent.length_m() / self.order.lower_speed_m_s)
             .unwrap_or(Duration::MAX);
         if lasted >= whole.saturating_add(LAST) {
-            return self.retreat(hand, TouchRun::MetNothing);
+            let end = match self.pushes(state, down, hand.rig()) {
+                Some(why) => TouchRun::Missed(why),
+                None => TouchRun::MetNothing,
+            };
+            return self.retreat(hand, end);
         }
         let posture = self.descent.at(lasted.as_secs_f64() * self.order.lower_speed_m_s);
         self.follow(hand, &posture, VALID)?;
         Ok(Step::Same)
+    }
+
+    /// Whether the finger that should be at its lowest place pushes on something that the screen does not feel.
+    fn pushes(&self, state: &JointState, down: Down, rig: &Rig) -> Option<String> {
+        let chain = rig.chain(&self.order.tip).ok()?;
+        let lowest = chain.robot_from_tip_in(self.order.lower.last()?).translation_m();
+        let stands = chain.robot_from_tip_in(state.measured.as_ref()?).translation_m();
+        let (above_m, rose) = (stands.z - lowest.z, self.load(state) - down.load);
+        (above_m > STAYED_ABOVE_M || rose > ROSE).then(|| {
+            format!(
+                "The finger stayed {:.0} mm above where it was sent, with {:.0} % more load than in the air: it pushes on something that the screen does not feel. Look whether the screen works and what is in the way.",
+                above_m.max(0.0) * 1e3,
+                rose.max(0.0) * 100.0
+            )
+        })
+    }
+
+    /// Largest load of the chain's joints, a share of the stall torque; 0 where none is known.
+    fn load(&self, state: &JointState) -> f64 {
+        let of_chain = state.joints.iter().filter(|reading| self.chain.contains(&reading.joint));
+        of_chain.filter_map(|reading| reading.load).fold(0.0, |most, load| most.max(load.abs()))
     }
 
     /// The screen felt something while the finger was lowered.

@@ -148,7 +148,11 @@ impl TrialsWorkflow {
                 context.control(TwinCommand::RemoveToy { toy }.into());
                 HandStep::Open
             }
-            false => HandStep::Place,
+            // What a person saw held is put down; a hand that holds nothing only opens.
+            false if around.grasp.newest.as_ref().is_some_and(|newest| newest.told == Some(true)) => {
+                HandStep::Place
+            }
+            false => HandStep::Open,
         };
         attempt.stage = Stage::Clearing(vec![first, HandStep::Home]);
     }

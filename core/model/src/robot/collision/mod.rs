@@ -6,6 +6,7 @@
 //! shapes are larger than the parts): those are computed, see
 //! [`CollisionModel::always_in_contact`].
 
+mod beside;
 mod bodies;
 mod model;
 mod path;
@@ -13,5 +14,6 @@ mod solid;
 #[cfg(test)]
 mod tests;
 
+pub use beside::BesideModel;
 pub use model::{Allowance, Body, CollisionError, CollisionModel, Contact, PostureCheck};
 pub use path::PathCheck;

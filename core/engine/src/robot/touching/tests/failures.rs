@@ -202,6 +202,55 @@ fn a_screen_that_is_gone_ends_it() {
     stands(&mut bench);
 }
 
+/// What a finger that goes on deeper may do, nothing may any more when its touch is over.
+#[test]
+fn what_a_touch_may_meet_and_how_low_is_over_with_it() {
+    let refusing = |bench: &Bench| {
+        use crate::robot::touching::Hand as _;
+        let paths = bench.worker.paths();
+        let low = bench.order.lower.last().expect("a way down").clone();
+        (paths.check(&bench.order.lower[0], &low).is_err(), paths.floor().up_m())
+    };
+    for how in ["ends", "is abandoned", "is interrupted"] {
+        let mut bench = Bench::new();
+        bench.order.deeper_m = 0.012;
+        assert_eq!(refusing(&bench), (true, 0.0), "{how}: before");
+        bench.start();
+        bench.until_stage(TouchStage::Lowering);
+        assert_eq!(refusing(&bench), (false, -0.012), "{how}: while it is lowered");
+        match how {
+            "ends" => drop(bench.until_end(|bench| bench.touch_at_the_glass())),
+            "is abandoned" => {
+                bench.worker.abandon_touch();
+                drop(bench.until_end(|_| {}));
+            }
+            _ => {
+                bench.show(Err(ScreenGone));
+                drop(bench.until_end(|_| {}));
+            }
+        }
+        assert_eq!(refusing(&bench), (true, 0.0), "{how}: afterward");
+    }
+    // More than is believed of an arm is not begun.
+    let mut bench = Bench::new();
+    bench.order.deeper_m = 0.05;
+    bench.start();
+    assert!(matches!(bench.collect(), Some(TouchRun::Interrupted(_))));
+}
+
+/// Glass that is broken feels nothing: the finger stays above where it is sent, and is not sent deeper.
+#[test]
+fn a_finger_that_pushes_on_what_the_screen_does_not_feel_is_told_from_one_in_the_air() {
+    let mut bench = Bench::new();
+    bench.start();
+    bench.until_stage(TouchStage::Lowering);
+    let text = missed(bench.until_end(|bench| {
+        let pushes = bench.height_m() < 0.0;
+        bench.arm().load = if pushes { 0.5 } else { 0.1 };
+    }));
+    assert!(text.contains("does not feel"), "{text}");
+}
+
 #[test]
 fn without_a_contact_it_ends_above_after_the_lowest_place() {
     let mut bench = Bench::new();
