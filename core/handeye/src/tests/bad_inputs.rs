@@ -141,10 +141,9 @@ fn in_the_dark_no_hand_is_found_and_what_to_do_is_said() {
     assert!(error.to_string().contains("light"), "{error}");
 }
 
-/// A cloth over a part of the screen, as bright as the table: what is left of the outline fits in more than one place,
-/// or in the right one.
+/// A cloth over half of the screen, as bright as the table: what is left of the outline would be drawn to its border.
 #[test]
-fn a_screen_that_is_half_covered_is_not_seen_or_where_it_is() {
+fn a_screen_that_is_half_covered_is_not_seen() {
     let rig = Rig::built_in("nico").expect("valid");
     let around = [0.0, -0.03, 0.03];
     let there = screen_placed_beside(&mut Meddled::new(&rig), &rig, [0.0, 0.0], &around).expect("seen");
@@ -154,21 +153,14 @@ fn a_screen_that_is_half_covered_is_not_seen_or_where_it_is() {
         |image| spread(image, |[_, y], [_, height]| y > height * 3 / 5),
         |image| spread(image, |[x, y], [width, height]| x > width / 3 && y > height / 2),
     ];
-    let mut seen = 0;
     for (k, covers) in covers.into_iter().enumerate() {
         for placed_m in [[0.0, 0.0], [-0.005, 0.035]] {
             let mut body = Meddled { covers, ..Meddled::new(&rig) };
-            let Some(found) = screen_placed_beside(&mut body, &rig, placed_m, &around) else {
-                println!("cover {k}, placed {placed_m:?}: not seen");
-                continue;
-            };
-            let (off_m, off_rad) = apart(&found, &there);
-            println!("cover {k}, placed {placed_m:?}: {:.1} mm, {off_rad:.4} rad", 1e3 * off_m);
-            assert!(off_m < 0.005 && off_rad < 0.01, "cover {k}, {placed_m:?}: {off_m} m {off_rad} rad");
-            seen += 1;
+            let found = screen_placed_beside(&mut body, &rig, placed_m, &around);
+            let off = found.map(|found| apart(&found, &there));
+            assert_eq!(off, None, "cover {k}, placed {placed_m:?}: it is drawn to whatever covers it");
         }
     }
-    println!("{seen} of 8 seen");
     // A corner of it covered is no reason to see nothing of it.
     let corner: fn(&mut RgbImage) =
         |image| spread(image, |[x, y], [width, height]| x > width * 5 / 8 && y > height * 5 / 8);
