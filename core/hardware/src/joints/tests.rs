@@ -179,17 +179,13 @@ fn the_floor_refuses_what_goes_below_and_lets_out_who_is_there() {
     assert!(floor.check(&above, little).is_err(), "another guard is not shifted");
     // A hand that is known to stand lower is stopped earlier; an arm behind it is looked at as it is described.
     shift.set_m(down_m);
-    let just_above = little.toward(&above, 0.3);
-    if lowest_m(&just_above) > rig.gate.floor_m && is_hand(&&just_above) {
-        let stopped = lowest_m(&just_above) - down_m < rig.gate.floor_m;
-        assert_eq!(shifted.check(&above, &just_above).is_err(), stopped);
-    }
-    let arm_is_lowest = below.iter().find(|posture| !is_hand(posture));
-    if let Some(low) = arm_is_lowest {
-        shift.set_m(-FARTHEST_FLOOR_M);
-        assert!(
-            shifted.check(&above, low).is_err(),
-            "of the arm behind the hand nobody knows how far it is off"
-        );
-    }
+    let (floor_m, up_from) = (rig.gate.floor_m, |i: u32| little.toward(&above, f64::from(i) / 200.0));
+    let stands_low = |posture: &Posture| (floor_m..floor_m + down_m - 1e-3).contains(&lowest_m(posture));
+    let just_above = (1..200).map(up_from).find(|posture| is_hand(&posture) && stands_low(posture));
+    let just_above = just_above.expect("a hand a little above the floor");
+    assert!(floor.check(&above, &just_above).is_ok() && shifted.check(&above, &just_above).is_err());
+    let arm_is_lowest = below.iter().find(|posture| !is_hand(posture)).expect("an arm below");
+    shift.set_m(-FARTHEST_FLOOR_M);
+    let refused = shifted.check(&above, arm_is_lowest);
+    assert!(refused.is_err(), "of the arm behind the hand nobody knows how far it is off");
 }
