@@ -8,6 +8,8 @@ use super::limiter::Limiter;
 use super::servo_unit::ServoUnit;
 use super::*;
 
+mod floor;
+
 fn nico() -> Arc<Rig> {
     Arc::new(Rig::built_in("nico").expect("comes with the program"))
 }
@@ -124,68 +126,4 @@ fn the_head_cannot_turn_into_its_counterweights_nor_nod_into_them() {
     // Somebody turned it there by hand: the way out is free.
     let stuck = rig.description.rest().with(&[pan, tilt], &[1.2, -0.7]);
     assert!(limiter.plan(&stuck, &stuck, &at(0.3, vec![(pan, 0.0)])).is_ok());
-}
-
-#[test]
-fn the_floor_refuses_what_goes_below_and_lets_out_who_is_there() {
-    let rig = nico();
-    let floor = FloorGuard::new(&rig);
-    let home = rig.home();
-    let arm = rig.arm("right").expect("it has one");
-    let lowest_m = |posture: &Posture| floor.lowest(posture).expect("it has parts").1;
-    // Some postures of the right arm above and below the floor.
-    let mut above = None;
-    let mut below = vec![];
-    for i in 0..400u32 {
-        let part = |k: u32| f64::from((i * (2 * k + 3) * 7919 + k * 104_729) % 1000) / 1000.0;
-        let angles: Vec<f64> = (0u32..)
-            .zip(&arm.joints)
-            .map(|(k, j)| rig.limits(*j).lower_rad + part(k) * rig.limits(*j).span_rad())
-            .collect();
-        let posture = home.with(&arm.joints, &angles);
-        if lowest_m(&posture) > rig.gate.floor_m + 0.05 {
-            above = Some(posture)
-        } else if lowest_m(&posture) < rig.gate.floor_m - 0.02 {
-            below.push(posture)
-        }
-    }
-    let above = above.expect("one above");
-    let deep = below.iter().min_by(|a, b| lowest_m(a).total_cmp(&lowest_m(b))).expect("one below").clone();
-    let refused = floor.check(&above, &deep).expect_err("below the floor");
-    assert!(refused.to_string().contains("mm below the floor"), "{refused}");
-    // From below upward, in small steps, and never further down.
-    let up = deep.toward(&above, 0.02);
-    let (first, second) = if lowest_m(&up) > lowest_m(&deep) { (&deep, &up) } else { (&up, &deep) };
-    assert!(floor.check(first, second).is_ok());
-    assert!(lowest_m(second) < lowest_m(first) + 1e-3 || floor.check(second, first).is_err());
-    assert!(floor.check(&above, &above).is_ok());
-    // For an arm that is known to stand higher the floor lies lower, by no more than is believed of one.
-    let shift = FloorShift::default();
-    let shifted = FloorGuard::new(&rig).shifted_by(shift.clone());
-    let is_hand = |posture: &&Posture| {
-        let shifted_m = floor.lowest_shifted(posture, 0.01).expect("it has parts").1;
-        (shifted_m - (lowest_m(posture) - 0.01)).abs() < 1e-9
-    };
-    let little = below.iter().filter(is_hand).max_by(|a, b| lowest_m(a).total_cmp(&lowest_m(b)));
-    let little = little.expect("a hand below");
-    let down_m = rig.gate.floor_m - lowest_m(little);
-    assert!(down_m < FARTHEST_FLOOR_M - 1e-3, "the least deep one is {down_m} below");
-    for (up_m, passes) in
-        [(0.0, false), (-down_m - 1e-3, true), (1e-3 - down_m, false), (-1.0, false), (f64::NAN, false)]
-    {
-        shift.set_m(up_m);
-        assert_eq!(shifted.check(&above, little).is_ok(), passes, "{up_m}");
-    }
-    assert!(floor.check(&above, little).is_err(), "another guard is not shifted");
-    // A hand that is known to stand lower is stopped earlier; an arm behind it is looked at as it is described.
-    shift.set_m(down_m);
-    let (floor_m, up_from) = (rig.gate.floor_m, |i: u32| little.toward(&above, f64::from(i) / 200.0));
-    let stands_low = |posture: &Posture| (floor_m..floor_m + down_m - 1e-3).contains(&lowest_m(posture));
-    let just_above = (1..200).map(up_from).find(|posture| is_hand(&posture) && stands_low(posture));
-    let just_above = just_above.expect("a hand a little above the floor");
-    assert!(floor.check(&above, &just_above).is_ok() && shifted.check(&above, &just_above).is_err());
-    let arm_is_lowest = below.iter().find(|posture| !is_hand(posture)).expect("an arm below");
-    shift.set_m(-FARTHEST_FLOOR_M);
-    let refused = shifted.check(&above, arm_is_lowest);
-    assert!(refused.is_err(), "of the arm behind the hand nobody knows how far it is off");
 }
