@@ -11,6 +11,10 @@ use super::output::Output;
 use crate::operator::snapshot::gap::{
     Comparison, CoordinateComparison, Finding, NamedEffect, NextExperiment, Shown, ShownUnit, Unexplained,
 };
+use crate::operator::words::gap::not_told;
+
+/// So many effects are written out, the others by their titles.
+const MOST_EFFECTS: usize = 3;
 
 /// Arguments of `gap`.
 #[derive(Debug, Args)]
@@ -103,10 +107,14 @@ fn compared(text: &mut String, comparison: &Comparison) {
             ));
         }
     }
-    let floor = if comparison.floor_from_repeats { "repeats" } else { "near neighbors, approximate" };
+    if !comparison.is_noise_known() {
+        text.push_str(&format!("  {}\n", comparison.floor_from().sentence()));
+        return;
+    }
     text.push_str(&format!(
-        "  {} noise deviations beyond the noise (noise from {floor}), p = {}\n",
+        "  {} noise deviations beyond the noise (noise from {}), p = {}\n",
         format::significant(comparison.size_sigmas, 2),
+        comparison.floor_from().words(),
         probability(comparison.p_value)
     ));
 }
@@ -121,16 +129,23 @@ fn found(text: &mut String, finding: &Finding) {
         return;
     }
     text.push_str("\nFound:\n");
-    for effect in &finding.effects {
+    for effect in finding.effects.iter().take(MOST_EFFECTS) {
         one(text, effect);
+    }
+    let more: Vec<&str> =
+        finding.effects.iter().skip(MOST_EFFECTS).map(|effect| effect.title.as_str()).collect();
+    if !more.is_empty() {
+        text.push_str(&format!("  and {} more, smaller: {}\n", more.len(), more.join("; ")));
     }
 }
 
 fn one(text: &mut String, effect: &NamedEffect) {
     let name =
         if effect.site.is_empty() { effect.id.clone() } else { format!("{}@{}", effect.id, effect.site) };
+    let (told, zero): (Vec<_>, Vec<_>) = effect.parameters.iter().partition(|found| found.is_told());
+    let not_told = not_told(told.len(), zero.len());
     text.push_str(&format!("  {} ({name}), {} sure\n", effect.title, format::percent(effect.probability)));
-    for found in &effect.parameters {
+    for found in told {
         let said = match &found.text {
             Some(joint) => joint.clone(),
             None => format!(
@@ -140,6 +155,9 @@ fn one(text: &mut String, effect: &NamedEffect) {
             ),
         };
         text.push_str(&format!("    {}: {said}\n", parameter::words(&found.name)));
+    }
+    if let Some(said) = not_told {
+        text.push_str(&format!("    {said}\n"));
     }
     if effect.class.len() > 1 {
         text.push_str(&format!(

@@ -131,6 +131,52 @@ fn no_gap_is_said_and_nothing_is_to_be_done() {
 }
 
 #[test]
+fn without_a_known_noise_nothing_is_all_clear() {
+    let mut finding = sample::no_gap();
+    finding.comparison.floor_from_repeats = false;
+    finding.comparison.floor_source = serde_json::from_str("\"fitted\"").expect("a source of the noise");
+    finding.comparison.is_gap = true;
+    let (_, mut window) = window_of(with(found(finding)));
+    assert!(says(&window, "the noise is not known, and nothing in the library explains what is left"));
+    assert!(!says(&window, "differ by more than the noise") && !says(&window, "near neighbors"));
+    click(&mut window, "Name and add");
+    assert!(shows(&window, "Not told from noise") && !shows(&window, "No gap"));
+    assert!(!says(&window, "Nothing has to be added"));
+}
+
+#[test]
+fn many_effects_and_warnings_are_counted_beside_the_first_three() {
+    let (_, mut window) = window_of(with(found(sample::crowded())));
+    click(&mut window, "Name and add");
+    assert!(says(&window, "residuals are 1000 times too large"), "warnings stand beside the verdict");
+    assert!(says(&window, "1 more warning under Compare."));
+    assert!(says(&window, "axis not square 2, class") && !says(&window, "axis not square 3, class"));
+    assert!(shows(&window, "4 more, smaller"));
+}
+
+#[test]
+fn values_that_may_be_zero_are_counted_and_not_listed() {
+    let mut finding = sample::named();
+    let mut other = finding.effects[0].parameters[0].clone();
+    (other.value, other.low, other.high) = (0.0123, -0.01, 0.0346);
+    finding.effects[0].parameters.push(other);
+    let (_, mut window) = window_of(with(found(finding)));
+    click(&mut window, "Name and add");
+    assert!(says(&window, "1.78°") && says(&window, "One more value is not told from zero."));
+    assert!(!says(&window, "0.70°"));
+}
+
+#[test]
+fn a_rest_that_held_out_rows_do_not_confirm_is_no_noise() {
+    let mut finding = sample::named();
+    finding.shown.after = 2.0 * finding.shown.floor;
+    let (_, mut window) = window_of(with(found(finding)));
+    click(&mut window, "Name and add");
+    assert!(says(&window, "Rows that were not used stay off by 5.96 mm"));
+    assert!(!says(&window, "The rest is what noise alone would leave"));
+}
+
+#[test]
 fn a_stale_finding_cannot_be_added() {
     let (fake, mut window) = window_of(with(stale()));
     assert!(says(&window, "changed or is gone since this was found"));

@@ -14,6 +14,15 @@ pub enum GapError {
         /// Needed.
         needed: usize,
     },
+    /// The arm did not move.
+    #[error(
+        "all {rows} rows are of one pose: they tell how far repeats scatter, but nothing of the arm. Measure at least a \
+         dozen poses that differ in every joint"
+    )]
+    OnePose {
+        /// There are.
+        rows: usize,
+    },
     /// A column is in another unit than its name says.
     #[error(
         "{session}: {column} seems to be {} (against the model off by a factor of {}): correct the column and \

@@ -5,9 +5,10 @@ use std::time::Instant;
 use plumbline_effects::{Kind, Measurements};
 use plumbline_model::{Cancelled, JobContext};
 
+use crate::bounds;
 use crate::compare::{self, Compared, compare};
 use crate::error::GapError;
-use crate::finding::{Dependence, FORMAT, Finding, FloorSource, NamedEffect, Shown, Unexplained, Verdict};
+use crate::finding::{FORMAT, Finding, FloorSource, NamedEffect, Shown, Unexplained, Verdict};
 use crate::floor::Floor;
 use crate::marker;
 use crate::next;
@@ -27,16 +28,6 @@ const PATIENCE_S: f64 = 60.0;
 /// A misfit smaller than this that nothing explains is dirt, not a gap; standard deviations of one
 /// measurement.
 const DIRT_SIGMAS: f64 = 0.6;
-/// Held-out rows stay far above the noise when they are this many times as far off …
-const FAR_ABOVE: f64 = 1.3;
-/// … and less than this share of the gap closes.
-const MOSTLY_OPEN: f64 = 0.5;
-/// Repeats that still depend on something by less than this (units of what is left) are noise enough …
-const LEAST_STRUCTURE: f64 = 0.4;
-/// … or by less than this share of the gap.
-const STRUCTURE_SHARE: f64 = 0.2;
-/// What closes less of the gap is no part of it.
-const LEAST_PART: f64 = 0.15;
 
 /// Looks for the gap, names what is missing and shows how far it closes.
 ///
@@ -83,8 +74,10 @@ fn found_in(
     let mut found =
         search::search(&used, &compared.floor, options, &Stage::new(context, COMPARED, SEARCHED))?;
     let search_s = searching.elapsed().as_secs_f64();
+    // Against a floor that says nothing of the noise nothing is dirt.
     if found.effects.is_empty()
         && found.verdict != Verdict::NoGap
+        && found.floor.source != FloorSource::Fitted
         && compared.comparison.size_sigmas < DIRT_SIGMAS
     {
         found.verdict = Verdict::NoGap;
@@ -111,12 +104,12 @@ fn found_in(
         found.effects = effects;
     }
     flag_outliers(&mut compared, &kept, &found);
-    still_structured(&mut found, &used, &compared);
-    bound_by_own_rows(&mut found, &used);
+    bounds::still_structured(&mut found, &used, &compared);
+    bounds::bound_by_own_rows(&mut found, &used);
     if let Some(words) = no_help(&found, &shown, options) {
         compared.warnings.push(words);
     }
-    let partial = bound_by_held_out(&mut found, &shown, &mut compared.warnings);
+    let partial = bounds::bound_by_held_out(&mut found, &used, &shown, &mut compared.warnings);
     let servos = servos::servos(&used, &compared.floor, &found.assumed);
     let mut finding = assemble(measurements, compared, Some(found), shown, options);
     finding.next = next;
@@ -169,82 +162,6 @@ fn without_search(
     finding.seconds = start.elapsed().as_secs_f64();
     finding.sentence = sentence::of(&finding);
     finding
-}
-
-/// What makes rows that were not used worse, or leaves most of the gap open there, has no name, whatever
-/// speaks for it on those that were; and a closure beyond one says that the floor was not the floor.
-/// Whether what was found is no name, but closes a part of the gap.
-fn bound_by_held_out(found: &mut Found, shown: &Shown, warnings: &mut Vec<String>) -> bool {
-    let Some(closure) = shown.closure else { return false };
-    let named = matches!(found.verdict, Verdict::Named | Verdict::Class);
-    let is_far = shown.after > FAR_ABOVE * shown.floor && closure < MOSTLY_OPEN;
-    if named && (shown.after >= shown.before || is_far) {
-        misled(found, 0.5);
-    }
-    if shown.closure.is_some_and(|closure| closure > 1.0) {
-        warnings.push(
-            "more of the gap closes than the noise leaves open: the noise was taken too large. Repeat a few measurements \
-             from the same side"
-                .to_owned(),
-        );
-    }
-    let holds_elsewhere = shown.unseen.as_ref().is_none_or(|unseen| unseen.after < unseen.before);
-    let is_certain = shown.closure_range.is_some_and(|[low, _]| low > 0.0);
-    // What was held out was predicted with all of them.
-    let addable =
-        !found.effects.is_empty() && found.effects.iter().all(|effect| effect.not_addable.is_none());
-    found.verdict == Verdict::NotInLibrary && closure > LEAST_PART && is_certain && holds_elsewhere && addable
-}
-
-/// What leaves most of the gap open on the very rows that it was fitted to has no name, and cannot be expected
-/// to hold elsewhere.
-fn bound_by_own_rows(found: &mut Found, used: &Measurements) {
-    let named = matches!(found.verdict, Verdict::Named | Verdict::Class);
-    if !named || found.unexplained.share < MOSTLY_OPEN {
-        return;
-    }
-    let left = compare::residuals(used, &found.assumed);
-    let (mut square, mut count) = (0.0, 0.0);
-    for ((row, left), weight) in used.rows.iter().zip(&left).zip(&found.weights) {
-        let Some(left) = left else { continue };
-        for (c, left) in left.iter().enumerate() {
-            let Some(sd) = found.floor.of(row.what).map(|floor| floor.of_row(row, c)) else { continue };
-            square += weight * (left / sd).powi(2);
-            count += weight;
-        }
-    }
-    if square > FAR_ABOVE * FAR_ABOVE * count {
-        misled(found, 0.5);
-    }
-}
-
-/// Where repeats still depend on something that was logged, with all that was found in the model, that is
-/// not explained, and no noise.
-fn still_structured(found: &mut Found, used: &Measurements, compared: &Compared) {
-    let Some(structure) = compare::structure_of(used, &compare::residuals(used, &found.assumed)) else {
-        return;
-    };
-    if structure.size_sigmas < LEAST_STRUCTURE.max(STRUCTURE_SHARE * compared.comparison.size_sigmas) {
-        return;
-    }
-    found.unexplained.depends_on.retain(|known| known.on != structure.on);
-    let share = 1.0 - structure.left.iter().copied().fold(1.0, f64::min);
-    let of = "spread of repeats".to_owned();
-    found.unexplained.depends_on.insert(0, Dependence { on: structure.on, of, share, formula: None });
-    misled(found, 0.95);
-}
-
-/// Something unknown is at work beside what was found: names are less sure than they look.
-fn misled(found: &mut Found, probability: f64) {
-    let unknown = &mut found.unexplained.probability;
-    let before = if found.verdict == Verdict::NotInLibrary { *unknown } else { 0.0 };
-    *unknown = unknown.max(probability);
-    let less = (1.0 - search::MISLED * *unknown) / (1.0 - search::MISLED * before);
-    for effect in &mut found.effects {
-        effect.probability *= less;
-        effect.class_probability *= less;
-    }
-    found.verdict = Verdict::NotInLibrary;
 }
 
 /// The comparison against the noise that was found along with the effects.

@@ -4,6 +4,8 @@ use nalgebra::Isometry3;
 use plumbline_effects::measurements::{LeftOut, Unit, What};
 use serde::{Deserialize, Serialize};
 
+pub use crate::floor_source::FloorSource;
+
 /// Version of the format of a saved finding. Format 1 had millimeters where this one has meters.
 pub const FORMAT: u32 = 2;
 
@@ -32,6 +34,11 @@ impl Finding {
         };
         let addable = |i: &usize| allowed && self.effects[*i].not_addable.is_none();
         (0..self.effects.len()).filter(addable).collect()
+    }
+
+    /// Whether model and measurement agree. Where nothing told the noise, a gap without a name is no agreement.
+    pub fn is_all_clear(&self) -> bool {
+        self.verdict == Verdict::NoGap && self.comparison.is_noise_known()
     }
 }
 
@@ -113,30 +120,15 @@ pub struct Comparison {
     pub residuals: Vec<Residual>,
 }
 
-/// Where a noise floor comes from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum FloorSource {
-    /// Spread of repeats of the same measurement.
-    Repeats,
-    /// The instrument's own standard deviation, as the session gives it.
-    Instrument,
-    /// Rows that were measured nearly alike in everything.
-    #[default]
-    Neighbors,
-    /// Nothing tells it: it is what the best model leaves.
-    Fitted,
-}
+impl Comparison {
+    /// Where the noise floor comes from; files that do not say so say whether it was repeats.
+    pub fn floor_from(&self) -> FloorSource {
+        if self.floor_from_repeats { FloorSource::Repeats } else { self.floor_source }
+    }
 
-impl FloorSource {
-    /// In a word, as in JSON.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Repeats => "repeats",
-            Self::Instrument => "instrument",
-            Self::Neighbors => "neighbors",
-            Self::Fitted => "fitted",
-        }
+    /// Whether anything but the best model tells the noise.
+    pub fn is_noise_known(&self) -> bool {
+        self.floor_from() != FloorSource::Fitted
     }
 }
 
@@ -263,6 +255,13 @@ pub struct FoundParameter {
     pub high: f64,
     /// A joint that the parameter speaks of (`from_joint`), where it does.
     pub text: Option<String>,
+}
+
+impl FoundParameter {
+    /// Whether its interval excludes zero, or it is no number.
+    pub fn is_told(&self) -> bool {
+        self.text.is_some() || self.low * self.high > 0.0
+    }
 }
 
 /// What the data say about a candidate.

@@ -2,6 +2,7 @@
 //! gap shrink.
 
 mod beforehand;
+mod bounds;
 mod compare;
 mod covariates;
 mod error;
@@ -9,6 +10,7 @@ mod file;
 mod find;
 pub mod finding;
 mod floor;
+mod floor_source;
 mod marker;
 mod next;
 mod options;

@@ -39,15 +39,14 @@ fn more(effects: &[NamedEffect]) -> Option<String> {
 
 fn no_gap(finding: &Finding) -> String {
     let (shown, comparison) = (&finding.shown, &finding.comparison);
-    if comparison.floor_source == FloorSource::Fitted {
+    if !comparison.is_noise_known() {
         return format!(
-            "Nothing in what model and measurement differ by has a name, but the noise is not known: no measurement was \
-             repeated. Once the frame is placed, the mean error is {}. Repeat a few measurements to see whether that is \
-             noise.",
+            "The noise is not known, and nothing in the library explains what is left: once the frame is placed, the mean \
+             error is {}. A few repeats of one pose would tell whether that is noise.",
             size(shown.before, shown.unit)
         );
     }
-    let approximate = if comparison.floor_from_repeats { "" } else { approximate(comparison.floor_source) };
+    let approximate = approximate(comparison.floor_from());
     let first = if comparison.is_gap {
         "Model and measurement differ by less than the noise, and nothing in that has a name."
     } else {
@@ -142,7 +141,7 @@ fn is_family(effect: &NamedEffect) -> bool {
 
 fn effect(effect: &NamedEffect) -> String {
     let (told, zero): (Vec<&FoundParameter>, Vec<&FoundParameter>) =
-        effect.parameters.iter().partition(|one| one.text.is_some() || one.low * one.high > 0.0);
+        effect.parameters.iter().partition(|one| one.is_told());
     let (told, more) = clearest(told);
     let mut parameters: Vec<String> = told.into_iter().filter_map(parameter).collect();
     if more > 0 {

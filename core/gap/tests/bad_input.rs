@@ -32,6 +32,57 @@ fn ten_rows_are_too_few() {
 }
 
 #[test]
+fn one_pose_that_was_repeated_tells_nothing_of_the_arm() {
+    let plan = Plan { places: 1, repeats: 24, ..Plan::default() };
+    for measurements in [poses(&plan, &[], 1), touches(&plan, &[elbow_zero(0.05)], 1)] {
+        let error = looked_at(&measurements).expect_err("nothing to look at");
+        assert_eq!(error, GapError::OnePose { rows: 24 });
+        assert!(error.to_string().contains("one pose"), "{error}");
+    }
+}
+
+#[test]
+fn poses_in_one_plane_are_said() {
+    let flat = |mut made: Measurements| {
+        // Where the glass was touched, measured from outside.
+        let nominal = plumbline_effects::Assumed::nominal(&made);
+        let mut random = StdRng::seed_from_u64(12);
+        for i in 0..made.rows.len() {
+            made.rows[i].what = plumbline_effects::What::Pose;
+            let place = made.predict(&made.rows[i], &nominal).expect("predictable");
+            made.rows[i].measured = place.iter().map(|at| at + 1e-3 * common::normal(&mut random)).collect();
+        }
+        made
+    };
+    let says = |made: &Measurements| {
+        let finding = looked_at(made).expect("can be looked at");
+        finding.warnings.iter().any(|words| words.contains("lie in one plane"))
+    };
+    assert!(says(&flat(touches(&Plan::default(), &[], 12))));
+    assert!(!says(&poses(&Plan::default(), &[], 12)), "these lie anywhere");
+    assert!(!says(&touches(&Plan::default(), &[], 12)), "a screen is flat");
+}
+
+#[test]
+fn encoders_that_are_copies_of_commands_or_behind_gears_are_said() {
+    let says = |made: &Measurements, words: &str| {
+        let finding = looked_at(made).expect("can be looked at");
+        finding.warnings.iter().any(|said| said.contains(words))
+    };
+    let mut made = poses(&one_by_one(60), &[], 13);
+    made.rows.iter_mut().for_each(|row| row.encoder_rad.clone_from(&row.commanded_rad));
+    assert!(says(&made, "5 of the enc_…_rad columns are copies of the commands"));
+    assert!(!says(&made, "encoders = "));
+    let mut random = StdRng::seed_from_u64(13);
+    for row in &mut made.rows {
+        row.encoder_rad.iter_mut().flatten().for_each(|angle| *angle += 1e-4 * common::normal(&mut random));
+        row.encoder_behind_gear = true;
+    }
+    assert!(!says(&made, "copies of the commands"));
+    assert!(says(&made, "encoders = \"joint\" is read but not used"));
+}
+
+#[test]
 fn a_joint_that_never_moved_is_named() {
     let mut measurements = poses(&one_by_one(60), &[], 1);
     let still = measurements.rows[0].commanded_rad.as_ref().expect("commanded")[4];

@@ -90,8 +90,14 @@ fn few_touches_far_apart_say_nothing_of_their_noise_and_clear_no_arm() {
         );
         assert_ne!(finding.comparison.floor_source, plumbline_gap::finding::FloorSource::Neighbors);
         assert!(!finding.sentence.contains("no gap to close"), "{}", finding.sentence);
+        // Nothing is clear of a gap where nothing tells the noise: neither in the verdict nor in its words.
+        if finding.comparison.floor_source == plumbline_gap::finding::FloorSource::Fitted {
+            assert!(!finding.is_all_clear() && !finding.sentence.contains("agree"), "{}", finding.sentence);
+        }
         if finding.verdict == Verdict::NoGap {
-            assert!(finding.sentence.contains("noise is not known"), "{}", finding.sentence);
+            for words in ["noise is not known", "nothing in the library explains", "repeats of one pose"] {
+                assert!(finding.sentence.contains(words), "{words}: {}", finding.sentence);
+            }
         }
     }
 }

@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use plumbline_effects::Measurements;
-use plumbline_gap::{Finding, Options, find};
+use plumbline_gap::{Finding, Options, Verdict, find};
 use plumbline_model::robot::Rig;
 use plumbline_model::{Session, Unattended, measured_data};
 
@@ -30,7 +30,9 @@ fn found(measurements: &Measurements) -> Finding {
     let start = Instant::now();
     let finding = find(measurements, &Options::default(), &Unattended).expect("can be looked at");
     println!("with held-out rows in {:.1} s", start.elapsed().as_secs_f64());
-    assert_eq!(verdict.verdict, finding.verdict);
+    // Held-out rows take names back, and give none.
+    let taken_back = finding.verdict == Verdict::NotInLibrary && !finding.effects.is_empty();
+    assert!(verdict.verdict == finding.verdict || taken_back, "{:?} {:?}", verdict.verdict, finding.verdict);
     print(&finding);
     finding
 }

@@ -55,6 +55,7 @@ fn found(view: &View, shown: &ShownFinding) -> Guidance {
     let unsure = finding.effects.iter().any(|effect| effect.probability < SURE);
     let touch = |guidance: Guidance| guidance.then(touch_label(view), Action::Gap(GapAction::NextExperiment));
     match finding.verdict {
+        Verdict::NoGap if !finding.is_all_clear() && experiment => touch(guidance),
         Verdict::NoGap => guidance,
         Verdict::NotInLibrary if experiment => touch(guidance.warn()),
         Verdict::NotInLibrary => guidance.warn(),

@@ -4,8 +4,12 @@ use plumbline_engine::View;
 use plumbline_widgets::format::{self, Quantity};
 
 use crate::operator::snapshot::gap::{
-    CoordinateComparison, Experiment, Finding, Knowledge, NamedEffect, Shown, ShownUnit, Unit, Verdict, What,
+    Candidate, CoordinateComparison, Experiment, Finding, Knowledge, NamedEffect, Shown, ShownUnit, Unit,
+    Verdict, What,
 };
+
+/// Less of a gap than this is said to be none.
+const LEAST_SHARE: f64 = 0.01;
 
 /// Quantity of a natural coordinate; residuals in SI.
 pub fn quantity(of: &CoordinateComparison) -> Quantity {
@@ -50,6 +54,59 @@ pub fn verdict(verdict: Verdict) -> &'static str {
     }
 }
 
+/// The answer of a finding as a heading: where nothing tells the noise, what has no name is no agreement.
+pub fn heading(finding: &Finding) -> &'static str {
+    match finding.verdict {
+        Verdict::NoGap if !finding.is_all_clear() => "Not told from noise",
+        of => verdict(of),
+    }
+}
+
+/// Whether there is a gap, in a sentence.
+pub fn is_there_a_gap(finding: &Finding) -> &'static str {
+    let comparison = &finding.comparison;
+    match (comparison.is_noise_known(), comparison.is_gap) {
+        (false, _) if finding.verdict == Verdict::NoGap => {
+            "That cannot be told: the noise is not known, and nothing in the library explains what is left. A few repeats of one pose would tell."
+        }
+        (false, _) => {
+            "The noise is not known: what the best model leaves was taken for it. A few repeats of one pose would tell how large it is."
+        }
+        (true, true) => "Yes: model and measurement differ by more than the noise.",
+        (true, false) => "No: model and measurement agree within the noise.",
+    }
+}
+
+/// What stays beside the names: whether it is what noise leaves, and a sentence.
+pub fn rest(finding: &Finding) -> (bool, String) {
+    let (left, shown) = (&finding.unexplained, &finding.shown);
+    if !shown.is_near_noise() {
+        let [after, noise] = [shown.after, shown.floor].map(|value| error(shown, value));
+        let said = format!("Rows that were not used stay off by {after}; noise alone would leave {noise}.");
+        return (false, said);
+    }
+    if left.p_value > 0.05 && finding.verdict != Verdict::NotInLibrary {
+        return (true, "The rest is what noise alone would leave.".to_owned());
+    }
+    if left.share < LEAST_SHARE {
+        let said = "What stays is no larger than the noise, but it is not spread like noise.";
+        return (false, said.to_owned());
+    }
+    let share = format::percent(left.share);
+    (false, format!("{share} of the gap stays, and noise alone does not explain it."))
+}
+
+/// Parameters whose intervals hold zero, counted beside those that are told.
+pub fn not_told(told: usize, not_told: usize) -> Option<String> {
+    match (told, not_told) {
+        (_, 0) => None,
+        (0, 1) => Some("Its size is not told from zero.".to_owned()),
+        (0, count) => Some(format!("None of its {count} values is told from zero.")),
+        (_, 1) => Some("One more value is not told from zero.".to_owned()),
+        (_, count) => Some(format!("{count} more values are not told from zero.")),
+    }
+}
+
 /// "joint zero of the right elbow": the kind in its short name, and where it sits.
 pub fn short(effect: &NamedEffect) -> String {
     named(&effect.id, &effect.site, &effect.title)
@@ -64,8 +121,28 @@ pub fn named(id: &str, site: &str, title: &str) -> String {
         }
         Some((whose, _)) => format!("{kind} of the {}", lower(whose)),
         None if matches!(site, "" | "screen" | "tip" | "base" | "eyes") => kind,
-        None => format!("{kind} of {}", site.replace('_', " ")),
+        None if site == "right" => format!("{kind} of the right eye"),
+        None => format!("{kind} of the {}", plain(site)),
     }
+}
+
+/// The same of an `id@site`, by the titles of those that were tried.
+pub fn of_name(name: &str, candidates: &[Candidate]) -> String {
+    let (id, site) = name.split_once('@').unwrap_or((name, ""));
+    let known = candidates.iter().find(|candidate| candidate.id == id && candidate.site == site);
+    named(id, site, known.map_or("", |candidate| &candidate.title))
+}
+
+/// "right forearm" of `forearm_r`: a site that has no title.
+fn plain(site: &str) -> String {
+    let side = |part: &str| match part {
+        "r" => Some("right"),
+        "l" => Some("left"),
+        _ => None,
+    };
+    let (sides, rest): (Vec<&str>, Vec<&str>) = site.split('_').partition(|part| side(part).is_some());
+    let sides = sides.into_iter().filter_map(side);
+    sides.chain(rest).collect::<Vec<_>>().join(" ")
 }
 
 /// Names of parts begin small inside of a sentence; abbreviations stay.
@@ -77,15 +154,16 @@ fn lower(text: &str) -> String {
     }
 }
 
-/// What the data say about a candidate: a word, and what it means.
-pub fn knowledge(knowledge: &Knowledge) -> (&'static str, String) {
+/// What the data say about one of the candidates: a word, and what it means.
+pub fn knowledge(knowledge: &Knowledge, candidates: &[Candidate]) -> (&'static str, String) {
     match knowledge {
         Knowledge::Dead => ("dead", "It would do nothing to these rows.".to_owned()),
         Knowledge::Flat => ("flat", "It would do less than the noise.".to_owned()),
-        Knowledge::TradeOff(with) => (
-            "trade-off",
-            format!("Seen only together with {}: they can trade against each other.", with.join(", ")),
-        ),
+        Knowledge::TradeOff(with) => {
+            let with: Vec<String> = with.iter().map(|name| of_name(name, candidates)).collect();
+            let with = with.join(", ");
+            ("trade-off", format!("Seen only together with {with}: they can trade against each other."))
+        }
         Knowledge::NotPinned => {
             ("not pinned", "Its size is hardly better known after than before.".to_owned())
         }
@@ -108,20 +186,19 @@ pub fn closure(shown: &Shown) -> Option<String> {
 pub fn trust(finding: &Finding) -> Vec<String> {
     let comparison = &finding.comparison;
     let mut said = vec![];
-    let p = if comparison.p_value < 1e-4 {
-        "less than 0.0001".to_owned()
-    } else {
-        format::significant(comparison.p_value, 2)
-    };
-    said.push(format!(
-        "What the model leaves is {} noise deviations beyond the noise; by noise alone so much comes with a probability of {p}.",
-        format::significant(comparison.size_sigmas, 2),
-    ));
-    said.push(if comparison.floor_from_repeats {
-        "The noise is known from repeats of the same command.".to_owned()
-    } else {
-        "No command was repeated: the noise is estimated from near neighbors and is approximate.".to_owned()
-    });
+    // Against a noise that was fitted to the same rows no probability says anything.
+    if comparison.is_noise_known() {
+        let p = if comparison.p_value < 1e-4 {
+            "less than 0.0001".to_owned()
+        } else {
+            format::significant(comparison.p_value, 2)
+        };
+        said.push(format!(
+            "What the model leaves is {} noise deviations beyond the noise; by noise alone so much comes with a probability of {p}.",
+            format::significant(comparison.size_sigmas, 2),
+        ));
+    }
+    said.push(comparison.floor_from().sentence().to_owned());
     let outliers = comparison.rows.saturating_sub(comparison.rows_kept);
     if outliers > 0 {
         said.push(format!(
@@ -165,6 +242,8 @@ pub fn touch_label(view: &View) -> String {
 
 #[cfg(test)]
 mod tests {
+    use plumbline_engine::gap::sample;
+
     use super::*;
 
     #[test]
@@ -173,6 +252,93 @@ mod tests {
         assert_eq!(named("joint-zero", "r_elbow_y", title), "joint zero of the right elbow");
         assert_eq!(named("axis-skew", "", "Every joint: axis not square"), "axis skew of every joint");
         assert_eq!(named("screen-tilt", "screen", "screen tilted or shifted"), "screen tilt");
-        assert_eq!(named("link-length", "forearm_r", "wrong length"), "link length of forearm r");
+        let title = "right upper arm: wrong length";
+        assert_eq!(named("link-length", "right_upper_arm", title), "link length of the right upper arm");
+        // Without a title the site is read.
+        assert_eq!(named("link-length", "forearm_r", "wrong length"), "link length of the right forearm");
+    }
+
+    #[test]
+    fn what_trades_against_a_candidate_is_called_by_its_title() {
+        let candidate = Candidate {
+            id: "joint-zero".to_owned(),
+            site: "r_elbow_y".to_owned(),
+            title: "Right elbow: zero position off".to_owned(),
+            probability: 0.5,
+            score_sigmas: 3.0,
+            knowledge: Knowledge::Known,
+        };
+        let with =
+            ["joint-zero@r_elbow_y", "axis-skew@l_wrist_x", "tip-offset@tip"].map(str::to_owned).to_vec();
+        let (_, said) = knowledge(&Knowledge::TradeOff(with), &[candidate]);
+        assert!(
+            said.contains("joint zero of the right elbow, axis skew of the left wrist x, tip offset:"),
+            "{said}"
+        );
+        assert!(!said.contains('@') && !said.contains('_'), "{said}");
+    }
+
+    /// A finding without a name, whose noise nothing told.
+    fn without_noise() -> Finding {
+        let mut finding = sample::no_gap();
+        finding.comparison.floor_from_repeats = false;
+        finding.comparison.floor_source = serde_json::from_str("\"fitted\"").expect("a source");
+        finding.comparison.is_gap = true;
+        finding
+    }
+
+    #[test]
+    fn without_a_known_noise_nothing_is_said_to_agree_or_to_be_a_gap() {
+        let finding = without_noise();
+        assert!(!finding.is_all_clear() && sample::no_gap().is_all_clear());
+        assert_ne!(heading(&finding), heading(&sample::no_gap()));
+        let said = [is_there_a_gap(&finding).to_owned(), trust(&finding).join(" ")].join(" ");
+        assert!(said.contains("noise is not known") && said.contains("A few repeats of one pose"), "{said}");
+        for wrong in ["Yes", "No:", "agree", "neighbors", "probability"] {
+            assert!(!said.contains(wrong), "{wrong}: {said}");
+        }
+    }
+
+    #[test]
+    fn what_tells_the_noise_is_called_by_its_name() {
+        let mut finding = without_noise();
+        for (source, words) in
+            [("instrument", "the instrument's own figure"), ("neighbors", "near neighbors")]
+        {
+            finding.comparison.floor_source = serde_json::from_str(&format!("{source:?}")).expect("a source");
+            let said = trust(&finding).join(" ");
+            assert!(said.contains(words), "{said}");
+            assert_eq!(said.contains("neighbors"), source == "neighbors", "{said}");
+        }
+        assert!(trust(&sample::named()).join(" ").contains("spread of repeats"));
+    }
+
+    #[test]
+    fn the_rest_is_noise_only_where_held_out_rows_say_so_too() {
+        let mut finding = sample::named();
+        assert_eq!(rest(&finding), (true, "The rest is what noise alone would leave.".to_owned()));
+        finding.shown.after = 2.6 * finding.shown.floor;
+        let (is_noise, said) = rest(&finding);
+        assert!(!is_noise && said.contains("7.75 mm") && said.contains("2.98 mm"), "{said}");
+    }
+
+    #[test]
+    fn no_share_of_nothing_is_left_unexplained() {
+        let mut finding = sample::named();
+        finding.unexplained.p_value = 1e-6;
+        for share in [0.0, 0.004, 0.0099] {
+            finding.unexplained.share = share;
+            let (is_noise, said) = rest(&finding);
+            assert!(!is_noise && !said.contains('%') && said.contains("not spread like noise"), "{said}");
+        }
+        finding.unexplained.share = 0.16;
+        assert!(rest(&finding).1.contains("of the gap stays, and noise alone does not explain it"));
+    }
+
+    #[test]
+    fn values_that_may_be_zero_are_counted() {
+        assert_eq!(not_told(3, 0), None);
+        assert_eq!(not_told(0, 1).as_deref(), Some("Its size is not told from zero."));
+        assert_eq!(not_told(2, 4).as_deref(), Some("4 more values are not told from zero."));
     }
 }

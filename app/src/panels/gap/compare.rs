@@ -150,18 +150,13 @@ fn model(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 fn compared(ui: &mut Ui, shown: &ShownFinding) {
     let finding = &shown.finding;
     let comparison = &finding.comparison;
-    let (sign, role) = match comparison.is_gap {
+    let (sign, role) = match comparison.is_gap || !comparison.is_noise_known() {
         true => (Glyph::Info, Role::Ink),
         false => (Glyph::Check, Role::Accepted),
     };
     ui.add_space(space::XS);
     theme::group_heading(ui, "Is there a gap?");
-    let text = if comparison.is_gap {
-        "Yes: model and measurement differ by more than the noise."
-    } else {
-        "No: model and measurement agree within the noise."
-    };
-    line(ui, sign, role, text);
+    line(ui, sign, role, words::is_there_a_gap(finding));
     for sentence in words::trust(finding) {
         ui.label(theme::small(ui, sentence));
     }

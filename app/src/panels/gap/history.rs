@@ -172,7 +172,7 @@ fn side_by_side(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         let rows = [
             ("model", of(&|s| s.entry.model.clone())),
             ("sessions", of(&|s| s.entry.sessions.join(", "))),
-            ("verdict", of(&|s| words::verdict(s.finding.verdict).to_owned())),
+            ("verdict", of(&|s| words::heading(&s.finding).to_owned())),
             ("before", of(&|s| words::error(&s.finding.shown, s.finding.shown.before))),
             ("after", of(&|s| words::error(&s.finding.shown, s.finding.shown.after))),
             ("noise alone", of(&|s| words::error(&s.finding.shown, s.finding.shown.floor))),

@@ -18,7 +18,7 @@ pub fn show(ui: &mut Ui, view: &View, _state: &mut PanelState, _outbox: &mut Out
         return;
     };
     let finding = &shown.finding;
-    ui.label(theme::strong(ui, words::verdict(finding.verdict)));
+    ui.label(theme::strong(ui, words::heading(finding)));
     let comparison = &finding.comparison;
     key_value_grid(
         ui,

@@ -1,5 +1,6 @@
 //! The gap between model and measurement, in the order compare, find, name, add, show.
 
+mod candidates;
 mod compare;
 mod drawn;
 mod history;
@@ -29,7 +30,7 @@ pub fn show(ui: &mut Ui, pane: Pane, cx: &mut PanelContext<'_>) {
     }
     match pane {
         Pane::GapNames => names::show(ui, cx),
-        Pane::GapCandidates => names::show_candidates(ui, cx),
+        Pane::GapCandidates => candidates::show(ui, cx),
         Pane::GapMap => map::show(ui, cx),
         Pane::GapShown => shown::show(ui, cx),
         Pane::GapNext => next::show(ui, cx),

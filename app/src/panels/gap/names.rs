@@ -1,20 +1,16 @@
-//! What is missing, by name: cards of the effects that were found, and what the data say about every
-//! other candidate.
+//! What is missing, by name: the verdict, and cards of the effects that were found.
 
 use egui::{Checkbox, Frame, Grid, Margin, RichText, ScrollArea, Ui};
 use plumbline_engine::GapCommand;
 use plumbline_engine::view::ShownFinding;
-use plumbline_widgets::buttons::choice;
-use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::glyph::Glyph;
 use plumbline_widgets::probability::{self, ShareRow, probability_bar, share_rows};
 use plumbline_widgets::theme::{self, Role, space};
 use plumbline_widgets::{format, parameter};
 
 use super::parts::{finding, line, state};
-use super::state::Sort;
 use crate::operator::GapAction;
-use crate::operator::snapshot::gap::{Candidate, Finding, NamedEffect, Shown, Verdict};
+use crate::operator::snapshot::gap::{Finding, NamedEffect, Shown, Verdict};
 use crate::operator::words::gap as words;
 use crate::panels::parts::action_button;
 use crate::panels::{PanelContext, padded};
@@ -27,10 +23,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             state(ui, cx.view);
             verdict(ui, &shown.finding);
             ui.add_space(space::S);
-            for i in 0..shown.finding.effects.len() {
-                card(ui, cx, &shown, i);
-                ui.add_space(space::S);
-            }
+            cards(ui, cx, &shown);
             unexplained(ui, &shown.finding);
             ui.add_space(space::S);
             add(ui, cx, &shown);
@@ -38,10 +31,35 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     });
 }
 
-/// The answer in a word and in a sentence.
+/// So many effects have a card at once, the largest; the others are behind "more".
+const MOST_CARDS: usize = 3;
+/// So many warnings stand beside the verdict; all of them are on the tab Compare.
+const MOST_WARNINGS: usize = 3;
+
+/// The effects, the largest first.
+fn cards(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding) {
+    let count = shown.finding.effects.len();
+    for i in 0..count.min(MOST_CARDS) {
+        card(ui, cx, shown, i);
+        ui.add_space(space::S);
+    }
+    if count > MOST_CARDS {
+        let title = format!("{} more, smaller", count - MOST_CARDS);
+        egui::CollapsingHeader::new(title).id_salt("more effects").show(ui, |ui| {
+            for i in MOST_CARDS..count {
+                card(ui, cx, shown, i);
+                ui.add_space(space::S);
+            }
+        });
+        ui.add_space(space::S);
+    }
+}
+
+/// The answer in a word and in a sentence, and what is odd about the data that it rests on.
 fn verdict(ui: &mut Ui, finding: &Finding) {
     let (sign, role) = match finding.verdict {
-        Verdict::NoGap => (Glyph::Check, Role::Accepted),
+        Verdict::NoGap if finding.is_all_clear() => (Glyph::Check, Role::Accepted),
+        Verdict::NoGap => (Glyph::Info, Role::Ink),
         Verdict::Named => (Glyph::Disc, Role::Accepted),
         Verdict::Class => (Glyph::Info, Role::Ink),
         Verdict::NotInLibrary => (Glyph::Warning, Role::Warning),
@@ -50,10 +68,12 @@ fn verdict(ui: &mut Ui, finding: &Finding) {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(egui::vec2(18.0, 20.0), egui::Sense::hover());
         plumbline_widgets::glyph::paint(ui.painter(), rect.center(), 14.0, sign, role.color(tokens));
-        ui.label(theme::strong(ui, words::verdict(finding.verdict)));
+        ui.label(theme::strong(ui, words::heading(finding)));
     });
     ui.label(&finding.sentence);
     let more = match finding.verdict {
+        // The sentence says that nothing tells the noise, and what would.
+        Verdict::NoGap if !finding.is_all_clear() => "",
         Verdict::NoGap => {
             "Nothing has to be added. Measure again when something was changed or after some weeks."
         }
@@ -70,6 +90,13 @@ fn verdict(ui: &mut Ui, finding: &Finding) {
     };
     if !more.is_empty() {
         ui.label(theme::small(ui, more));
+    }
+    for warning in finding.warnings.iter().take(MOST_WARNINGS) {
+        line(ui, Glyph::Warning, Role::Warning, warning);
+    }
+    if finding.warnings.len() > MOST_WARNINGS {
+        let rest = format::count(finding.warnings.len() - MOST_WARNINGS, "more warning");
+        ui.label(theme::small(ui, format!("{rest} under Compare.")));
     }
 }
 
@@ -102,6 +129,7 @@ fn card(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding, i: usize) 
                 .on_hover_text("Probability that this name is right");
         }
         if let Some((runner_up, margin)) = &effect.runner_up {
+            let runner_up = words::of_name(runner_up, &shown.finding.candidates);
             ui.label(theme::small(ui, format!("Runner-up: {runner_up}, {}.", odds(*margin))));
         }
         if let Some(why) = &effect.not_addable {
@@ -126,10 +154,12 @@ fn head(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding, i: usize) 
     ui.label(theme::strong(ui, &effect.title));
 }
 
-/// Parameters with their intervals, and what the effect does on the table.
+/// Parameters whose intervals exclude zero, the others counted, and what the effect does on the table.
 fn sizes(ui: &mut Ui, effect: &NamedEffect, shown: &Shown) {
+    let (told, zero): (Vec<_>, Vec<_>) = effect.parameters.iter().partition(|found| found.is_told());
+    let not_told = words::not_told(told.len(), zero.len());
     Grid::new(("size", &effect.id, &effect.site)).num_columns(3).spacing([space::M, 2.0]).show(ui, |ui| {
-        for found in &effect.parameters {
+        for found in told {
             ui.label(theme::weak(ui, parameter::words(&found.name)));
             match &found.text {
                 Some(text) => {
@@ -152,6 +182,9 @@ fn sizes(ui: &mut Ui, effect: &NamedEffect, shown: &Shown) {
             ui.end_row();
         }
     });
+    if let Some(said) = not_told {
+        ui.label(theme::small(ui, said));
+    }
 }
 
 /// All names that cannot be told apart, with their shares, and what would tell them apart.
@@ -193,13 +226,8 @@ fn unexplained(ui: &mut Ui, finding: &Finding) {
     }
     let left = &finding.unexplained;
     theme::group_heading(ui, "What stays unexplained");
-    let enough = left.p_value > 0.05 && finding.verdict != Verdict::NotInLibrary;
-    let (sign, role, said) = if enough {
-        (Glyph::Check, Role::Accepted, "The rest is what noise alone would leave.".to_owned())
-    } else {
-        let share = format::percent(left.share);
-        (Glyph::Info, Role::Ink, format!("{share} of the gap stays, and noise alone does not explain it."))
-    };
+    let (is_noise, said) = words::rest(finding);
+    let (sign, role) = if is_noise { (Glyph::Check, Role::Accepted) } else { (Glyph::Info, Role::Ink) };
     line(ui, sign, role, &said);
     ui.label(theme::small(
         ui,
@@ -257,86 +285,6 @@ fn add(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding) {
             action_button(ui, cx, GapAction::UseNominal, "Take all effects out");
         }
     });
-}
-
-/// Every candidate with what the data say about it.
-pub fn show_candidates(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    let what = "Every effect of the library is tried. Here stands what the data can say about each.";
-    let Some(shown) = finding(ui, cx, what) else { return };
-    let mut candidates: Vec<&Candidate> = shown.finding.candidates.iter().collect();
-    if candidates.is_empty() {
-        let text = "Model and measurement agree, so no candidate was tried.";
-        EmptyState::empty(Message::new("No candidates", text)).show(ui);
-        return;
-    }
-    padded(ui, |ui| {
-        let options = [(Sort::Probability, "Probability"), (Sort::Score, "Pull"), (Sort::Name, "Name")];
-        ui.horizontal(|ui| {
-            ui.label(theme::weak(ui, "Sorted by"));
-            choice(ui, "Sorted by", &mut cx.state.gap.sort, &options);
-        });
-        match cx.state.gap.sort {
-            Sort::Probability => candidates.sort_by(|a, b| b.probability.total_cmp(&a.probability)),
-            Sort::Score => candidates.sort_by(|a, b| b.score_sigmas.abs().total_cmp(&a.score_sigmas.abs())),
-            Sort::Name => candidates.sort_by(|a, b| a.title.cmp(&b.title)),
-        }
-        ui.add_space(space::XS);
-        table(ui, &candidates);
-    });
-}
-
-const CANDIDATE_ROW: f32 = 20.0;
-
-fn table(ui: &mut Ui, candidates: &[&Candidate]) {
-    let width = ui.available_width();
-    let columns = [width - 230.0, 70.0, 60.0, 84.0].map(|w: f32| w.max(50.0));
-    let header = ["", "probability", "pull, σ", "the data"];
-    candidate_row(ui, columns, header.map(|text| (text.to_owned(), true)), None);
-    ScrollArea::vertical().auto_shrink(false).show_rows(ui, CANDIDATE_ROW, candidates.len(), |ui, shown| {
-        ui.spacing_mut().item_spacing.y = 0.0;
-        for candidate in &candidates[shown] {
-            let (word, meaning) = words::knowledge(&candidate.knowledge);
-            let cells = [
-                (candidate.title.clone(), false),
-                (probability::percent(candidate.probability), candidate.probability < 0.05),
-                (format::fixed(candidate.score_sigmas, 1), candidate.score_sigmas.abs() < 3.0),
-                (word.to_owned(), word != "known"),
-            ];
-            let name = if candidate.site.is_empty() {
-                candidate.id.clone()
-            } else {
-                format!("{}@{}", candidate.id, candidate.site)
-            };
-            candidate_row(ui, columns, cells, Some(format!("{name}\n{meaning}")));
-        }
-    });
-}
-
-fn candidate_row(ui: &mut Ui, columns: [f32; 4], cells: [(String, bool); 4], help: Option<String>) {
-    let height = CANDIDATE_ROW;
-    let size = egui::vec2(ui.available_width(), height);
-    let (rect, response) = ui.allocate_exact_size(size, egui::Sense::hover());
-    let words = cells.iter().map(|(text, _)| text.as_str()).filter(|t| !t.is_empty()).collect::<Vec<_>>();
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, words.join(", ")));
-    let tokens = theme::tokens(ui);
-    if response.hovered() && help.is_some() {
-        ui.painter().rect_filled(rect, 3.0, tokens.raised.gamma_multiply(0.6));
-    }
-    let font = egui::TextStyle::Small.resolve(ui.style());
-    let mut x = rect.left();
-    for (i, ((text, weak), width)) in cells.into_iter().zip(columns).enumerate() {
-        let color = if weak { tokens.text_weak } else { tokens.text };
-        let mut job = egui::text::LayoutJob::simple_singleline(text, font.clone(), color);
-        job.wrap = egui::text::TextWrapping::truncate_at_width(width - 6.0);
-        let galley = ui.painter().layout_job(job);
-        // Numbers end below each other.
-        let left = if matches!(i, 1 | 2) { x + width - 14.0 - galley.size().x } else { x };
-        ui.painter().galley(egui::pos2(left, rect.center().y - galley.size().y / 2.0), galley, color);
-        x += width;
-    }
-    if let Some(help) = help {
-        response.on_hover_text(help);
-    }
 }
 
 #[cfg(test)]

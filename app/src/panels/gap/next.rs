@@ -18,6 +18,11 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let what = "A finding says which experiment would tell most.";
     let Some(shown) = finding(ui, cx, what) else { return };
     let Some(next) = &shown.finding.next else {
+        if shown.finding.verdict == Verdict::NoGap && !shown.finding.is_all_clear() {
+            let text = "The noise is not known: repeat one pose a few times, each time from the same side, and look again.";
+            EmptyState::empty(Message::new("Repeat some poses", text)).show(ui);
+            return;
+        }
         let text = match shown.finding.verdict {
             Verdict::NoGap => "Model and measurement agree; there is nothing to tell apart.",
             _ => "Nothing is left to tell apart with the experiments of the menu.",

@@ -47,6 +47,8 @@ fn bars(ui: &mut Ui, cx: &PanelContext<'_>, shown: &ShownFinding) {
         ui.label(theme::strong(ui, closed));
     } else if shown.finding.verdict == Verdict::NotInLibrary {
         ui.label(theme::strong(ui, "Nothing can be added, so nothing is closed."));
+    } else if shown.finding.verdict == Verdict::NoGap && !shown.finding.is_all_clear() {
+        ui.label(theme::strong(ui, "The noise is not known, so nobody knows what could be closed."));
     } else {
         ui.label(theme::strong(ui, "There is nothing to close: before is what noise alone would leave."));
     }

@@ -9,6 +9,7 @@ mod neighbors;
 mod noise;
 mod oddities;
 mod outliers;
+mod poses;
 mod spread;
 mod structure;
 mod turns;
@@ -70,6 +71,7 @@ pub(crate) fn refuse(measurements: &Measurements, context: &dyn JobContext) -> R
         return Err(GapError::TooFew { rows, needed: FEWEST_ROWS });
     }
     context.report(0.0, "looking at units and columns");
+    poses::stop_at_one_pose(measurements)?;
     oddities::stop_at_dead_columns(measurements)?;
     units::check(measurements, context)
 }

@@ -140,7 +140,7 @@ impl Evidence<'_> {
             Verdict::NotInLibrary
         } else if effects.is_empty() {
             Verdict::NoGap
-        } else if effects.iter().all(|effect| effect.class.len() == 1 || effect.probability >= ONE_NAME) {
+        } else if blocks.iter().zip(&effects).all(|(&block, effect)| self.has_one_name(block, effect)) {
             Verdict::Named
         } else {
             Verdict::Class
@@ -154,6 +154,15 @@ impl Evidence<'_> {
             }
         }
         Named { verdict, effects, blocks, names, unknown, p_value }
+    }
+
+    /// Whether one name stands for its class. Where every joint may be wrong and one of them as well, the most probable is
+    /// not one name: which joint it is stays open.
+    fn has_one_name(&self, block: usize, effect: &NamedEffect) -> bool {
+        let is_member = |member: &ClassMember| member.id == effect.id && member.site != effect.site;
+        let is_family = self.library.effects[block].is_of_every_site();
+        let is_open_family = is_family && effect.class.iter().any(is_member);
+        effect.class.len() == 1 || effect.probability >= ONE_NAME && !is_open_family
     }
 
     /// Whether it is play beside a finger that drags, or angles that were read early, and smaller. How far those

@@ -4,13 +4,13 @@
 mod coverage;
 mod folds;
 mod judged;
+mod strangers;
 mod telling;
 mod unseen;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use nalgebra::Vector3;
-use plumbline_effects::Assumed;
 use plumbline_effects::measurements::{Measurements, What};
 use plumbline_model::JobContext;
 use rand::rngs::StdRng;
@@ -20,7 +20,6 @@ use rayon::prelude::*;
 use crate::compare::{Compared, placed};
 use crate::error::GapError;
 use crate::finding::{Residual, Shown, ShownUnit};
-use crate::floor::Floor;
 use crate::options::Options;
 use crate::search::{self, Found};
 use judged::{Judged, judged, noise_of};
@@ -144,7 +143,7 @@ fn without(
     let known = measurements.only(training.iter().copied());
     let mut before = placed(measurements, training, context)?;
     let mut found = search::search(&known, &compared.floor, options, context)?;
-    place_strangers(measurements, &compared.floor, training, tested, &mut before, &mut found.assumed);
+    strangers::place(measurements, &compared.floor, training, tested, &mut before, &mut found.assumed);
     let scale = whole.doubt.noise_scale;
     Ok(tested
         .par_iter()
@@ -160,27 +159,6 @@ fn without(
             })
         })
         .collect())
-}
-
-/// The frame of a session without any training row can only come from its own rows.
-fn place_strangers(
-    measurements: &Measurements,
-    floor: &Floor,
-    training: &[usize],
-    tested: &[(usize, usize)],
-    before: &mut Assumed,
-    after: &mut Assumed,
-) {
-    for session in 0..measurements.apparatuses.len() {
-        let own = |i: usize| measurements.rows[i].session == session;
-        if training.iter().any(|&i| own(i)) || !tested.iter().any(|&(i, _)| own(i)) {
-            continue;
-        }
-        let rows = measurements.only(tested.iter().map(|(i, _)| *i).filter(|&i| own(i)));
-        for assumed in [&mut *before, &mut *after] {
-            assumed.placements[session] = search::place(&rows, floor, assumed).placements[session];
-        }
-    }
 }
 
 /// Meters wherever a length was measured.

@@ -5,6 +5,9 @@
 #[cfg(test)]
 mod tests;
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+
 use crate::frame::{Point, Robot, Tip};
 use crate::pixel::{Pixel, Raw};
 use crate::robot::{Chain, DescriptionError, JointIndex, Posture, Rig};
@@ -61,7 +64,8 @@ pub struct LocalizationPrediction {
 /// Where the tip should have been.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PosePrediction {
-    /// In the frame of the robot. The external frame of the measurement need not be the same one.
+    /// The frame that the row names, else the chain's tip, in the frame of the robot. The external frame of the
+    /// measurement need not be the same one.
     pub tip: Point<Robot>,
     /// From which angles.
     pub angles: Angles,
@@ -154,7 +158,7 @@ pub fn predict_session(
         prediction.localizations = localizations(table, rig)?;
     }
     if let Some(table) = &session.poses {
-        prediction.poses = poses(table, &Arm::of(rig, chain()?)?)?;
+        prediction.poses = poses(table, rig, chain()?)?;
     }
     Ok(prediction)
 }
@@ -175,8 +179,18 @@ fn touches(
     table.rows().enumerate().map(predict).collect()
 }
 
-fn poses(table: &PoseTable, arm: &Arm) -> Result<Vec<PosePrediction>, PredictError> {
+/// Each row is of the frame that it names, else of the chain's tip.
+fn poses(table: &PoseTable, rig: &Rig, logged: &SessionChain) -> Result<Vec<PosePrediction>, PredictError> {
+    let of_chain = Arm::of(rig, logged)?;
+    let mut others: BTreeMap<String, Arm> = BTreeMap::new();
+    for name in table.rows().filter_map(|row| row.tip).filter(|name| *name != logged.tip) {
+        if let Entry::Vacant(place) = others.entry(name) {
+            let marker = SessionChain { tip: place.key().clone(), joints: logged.joints.clone() };
+            place.insert(Arm::of(rig, &marker)?);
+        }
+    }
     let predict = |(i, row): (usize, crate::session::PoseRow)| {
+        let arm = row.tip.as_ref().and_then(|name| others.get(name)).unwrap_or(&of_chain);
         let (tip, angles) = arm.tip("poses.csv", i + 1, &row.encoder_rad, &row.commanded_rad)?;
         Ok(PosePrediction { tip, angles })
     };

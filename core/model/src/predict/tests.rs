@@ -139,6 +139,32 @@ fn poses_are_where_the_kinematics_put_the_tip() {
 }
 
 #[test]
+fn a_pose_of_another_marker_is_where_the_kinematics_put_that_one() {
+    let rig = nico();
+    let of = |tip: Option<&str>| PoseRow {
+        encoder_rad: POINTING_RAD.map(Some).into(),
+        measured: Some(Point::new(1.0, 2.0, 3.0)),
+        tip: tip.map(str::to_owned),
+        ..PoseRow::default()
+    };
+    let rows = [of(None), of(Some("right_palm_center")), of(Some("right_index_tip"))];
+    let mut session = empty(&rig);
+    session.poses = Some(PoseTable::from_rows(arm_joints(), &rows));
+    let predicted = predict_session(&session, &rig, None).expect("predicted").poses;
+    let palm = rig.chain("right_palm_center").expect("a frame of the hand");
+    let angles: Vec<f64> = POINTING_RAD.into_iter().rev().collect();
+    let palm = palm.robot_from_tip(&angles) * Point::<Tip>::new(0.0, 0.0, 0.0);
+    assert!(predicted[1].tip.distance_m(&palm) < 1e-12);
+    for of_chain in [predicted[0], predicted[2]] {
+        assert!(of_chain.tip.distance_m(&tip_at(&rig, POINTING_RAD)) < 1e-12);
+        assert!(of_chain.tip.distance_m(&palm) > 0.05, "another place");
+    }
+    session.poses = Some(PoseTable::from_rows(arm_joints(), &[of(Some("toe"))]));
+    let message = predict_session(&session, &rig, None).expect_err("no such frame").to_string();
+    assert!(message.contains("toe"), "{message}");
+}
+
+#[test]
 fn what_does_not_fit_together_is_said() {
     let rig = nico();
     let mut session = empty(&rig);

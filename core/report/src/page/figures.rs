@@ -48,6 +48,12 @@ fn gap(drawing: &mut Drawing, area: Area, finding: &Finding) {
     let y = bars::draw(drawing, area.below(HEADING), &all, 54.0, 17.0, Some(shown.floor));
     let mut lines = vec![];
     match (finding.verdict, shown.closure) {
+        (Verdict::NoGap, _) if !finding.is_all_clear() => {
+            lines.push(
+                "What noise alone leaves is not known: what stands there is what the best model leaves."
+                    .to_owned(),
+            );
+        }
         (Verdict::NoGap, _) => lines
             .push(format!("Noise alone leaves as much or more ({}).", p_value(finding.comparison.p_value))),
         (_, Some(closure)) => {
@@ -186,10 +192,14 @@ fn could_have_shown(drawing: &mut Drawing, area: Area, finding: &Finding) {
     let of = |is: fn(&Knowledge) -> bool| finding.candidates.iter().filter(|c| is(&c.knowledge)).count();
     let unseen = of(|k| matches!(k, Knowledge::Dead | Knowledge::Flat));
     let traded = of(|k| matches!(k, Knowledge::TradeOff(_)));
-    let mut lines = vec![format!(
-        "Beyond the noise of repeats the residual is {} times the floor; a gap starts at 0.3.",
-        significant(comparison.size_sigmas, 2)
-    )];
+    let mut lines = vec![if finding.is_all_clear() {
+        format!(
+            "Beyond the noise the residual is {} times the floor; a gap starts at 0.3.",
+            significant(comparison.size_sigmas, 2)
+        )
+    } else {
+        "There is no noise floor that the residual could be compared with.".to_owned()
+    }];
     if !finding.candidates.is_empty() {
         lines.push(format!(
             "{} at their places were looked for.",

@@ -52,7 +52,12 @@ fn wrapped(paragraphs: &Paragraphs, width: f64, detail: Detail) -> Vec<(String, 
 fn unexplained(finding: &Finding) -> Paragraphs {
     let rest = &finding.unexplained;
     if finding.verdict == Verdict::NoGap {
-        return vec![("Nothing above the noise of these rows.".to_owned(), true)];
+        let said = if finding.is_all_clear() {
+            "Nothing above the noise of these rows."
+        } else {
+            "All of it: nothing in the library explains it, and nothing tells how much of it is noise."
+        };
+        return vec![(said.to_owned(), true)];
     }
     let mut paragraphs = vec![];
     let p = p_value(rest.p_value).replace(' ', "\u{a0}");
@@ -94,6 +99,9 @@ fn unexplained(finding: &Finding) -> Paragraphs {
 fn next(finding: &Finding) -> Paragraphs {
     let Some(next) = &finding.next else {
         let text = match finding.verdict {
+            Verdict::NoGap if !finding.is_all_clear() => {
+                "Measure one pose a few times, and search again: the spread tells the noise."
+            }
             Verdict::NoGap => "None is needed. Measure again after anything was changed or bumped.",
             Verdict::NotInLibrary => "No experiment of the menu would tell more about it.",
             _ => "None is needed: no names are left to tell apart.",

@@ -130,6 +130,16 @@ fn each_verdict_has_its_own_words() {
     };
     says(&sample::no_gap(), "Model and measurement agree");
     says(&sample::no_gap(), "None is needed");
+    let mut unknown_noise = sample::no_gap();
+    unknown_noise.comparison.floor_from_repeats = false;
+    unknown_noise.comparison.floor_source = plumbline_gap::finding::FloorSource::Fitted;
+    says(&unknown_noise, "the noise is not known");
+    says(&unknown_noise, "nothing tells how much of it is noise");
+    says(&unknown_noise, "Measure one pose a few times");
+    let said_of_it = said(&draw(&unknown_noise, &sample::context()));
+    for wrong in ["agree", "None is needed", "Noise alone leaves as much", "Nothing above the noise"] {
+        assert!(!said_of_it.contains(wrong), "{wrong} in {said_of_it}");
+    }
     says(&sample::class(), "or as well: Shoulder, forward: encoder or gear off center");
     says(&sample::class(), "To tell them apart: repeat ten poses");
     says(&sample::class(), "Repeat 10 poses with a 250 g weight");

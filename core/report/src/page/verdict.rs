@@ -11,6 +11,7 @@ use crate::font;
 pub fn title(finding: &Finding) -> String {
     let effects = finding.effects.len();
     match finding.verdict {
+        Verdict::NoGap if !finding.is_all_clear() => "No name found, and the noise is not known".to_owned(),
         Verdict::NoGap => "Model and measurement agree".to_owned(),
         Verdict::Named => format!("{} found and named", count(effects, "missing effect", "missing effects")),
         Verdict::Class => {
@@ -29,8 +30,9 @@ pub fn title(finding: &Finding) -> String {
     }
 }
 
-pub fn color(verdict: Verdict) -> Color {
-    match verdict {
+pub fn color(finding: &Finding) -> Color {
+    match finding.verdict {
+        Verdict::NoGap if !finding.is_all_clear() => ink::UNKNOWN,
         Verdict::NoGap | Verdict::Named => ink::ACCEPTED,
         Verdict::Class => ink::WARNING,
         Verdict::NotInLibrary => ink::UNKNOWN,
@@ -49,7 +51,7 @@ pub fn draw(drawing: &mut Drawing, finding: &Finding, context: &ReportContext) -
     let about = font::fit(&about.join("  ·  "), 0.62 * width, small.size, small.weight);
     drawing.anchored([WIDTH - MARGIN, 44.0], about, small, Anchor::End);
     rule(drawing, MARGIN, 51.0, width);
-    drawing.rect(MARGIN, 63.5, 5.0, 17.0, color(finding.verdict));
+    drawing.rect(MARGIN, 63.5, 5.0, 17.0, color(finding));
     let style = Style::TITLE;
     drawing.text(
         [MARGIN + 13.0, 79.0],
@@ -109,11 +111,7 @@ fn listed(sessions: &[String]) -> String {
 }
 
 fn judged(finding: &Finding) -> String {
-    let floor = if finding.comparison.floor_from_repeats {
-        "The noise floor is the spread of repeats about their mean."
-    } else {
-        "No repeats were measured: the noise floor comes from near neighbors and is approximate."
-    };
+    let floor = finding.comparison.floor_from().sentence();
     if finding.shown.rows == 0 {
         return format!("How it was judged: every row was used to compare; none was held out. {floor}");
     }
@@ -122,4 +120,39 @@ fn judged(finding: &Finding) -> String {
         finding.shown.rows,
         if finding.shown.blocks.is_empty() { "blocks" } else { finding.shown.blocks.as_str() },
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_gap::finding::FloorSource;
+
+    use super::*;
+    use crate::sample;
+
+    #[test]
+    fn without_a_known_noise_no_page_is_green_or_says_that_anything_agrees() {
+        let mut finding = sample::no_gap();
+        assert_eq!(
+            (title(&finding).as_str(), color(&finding)),
+            ("Model and measurement agree", ink::ACCEPTED)
+        );
+        finding.comparison.floor_from_repeats = false;
+        finding.comparison.floor_source = FloorSource::Fitted;
+        assert!(!title(&finding).contains("agree"), "{}", title(&finding));
+        assert_ne!(color(&finding), ink::ACCEPTED);
+        assert!(judged(&finding).contains("the noise is not known"), "{}", judged(&finding));
+    }
+
+    #[test]
+    fn the_foot_says_what_told_the_noise() {
+        let mut finding = sample::no_gap();
+        assert!(judged(&finding).contains("spread of repeats"));
+        finding.comparison.floor_from_repeats = false;
+        for source in [FloorSource::Instrument, FloorSource::Neighbors, FloorSource::Fitted] {
+            finding.comparison.floor_source = source;
+            let said = judged(&finding);
+            assert!(said.contains(source.sentence()), "{said}");
+            assert_eq!(said.contains("near neighbors"), source == FloorSource::Neighbors, "{said}");
+        }
+    }
 }

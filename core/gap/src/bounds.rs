@@ -1,0 +1,229 @@
+//! What may not be a name, whatever speaks for it on the rows that it was found in: what repeats contradict,
+//! what leaves most of the gap open, and what does not hold on rows that were not used.
+
+use plumbline_effects::Measurements;
+
+use crate::compare::{self, Compared};
+use crate::finding::{Dependence, FloorSource, Shown, Verdict};
+use crate::search::{self, Found};
+
+/// Rows stay above the noise when they are this many times as far off …
+const ABOVE: f64 = 1.3;
+/// … and far above it when they are this many times as far off, however much of the gap closes.
+const FAR_ABOVE: f64 = 2.0;
+/// Less than this share of the gap closes: most of it is open.
+const MOSTLY_OPEN: f64 = 0.5;
+/// Where before is what noise leaves already, means that differ by less than this share are alike.
+const ALIKE: f64 = 0.02;
+/// Where the noise of neighbors or of an instrument was found to be so many times as large, no more was tried.
+const LARGEST_NOISE: f64 = 3.9;
+/// Repeats that still depend on something by less than this (units of what is left) are noise enough …
+const LEAST_STRUCTURE: f64 = 0.4;
+/// … or by less than this share of the gap.
+const STRUCTURE_SHARE: f64 = 0.2;
+/// What closes less of the gap is no part of it.
+const LEAST_PART: f64 = 0.15;
+
+/// What rows that were not used say of the names that were found on the others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum HeldOut {
+    /// They are nearer to the model with them.
+    Hold,
+    /// They are no nearer, or farther away.
+    Worse,
+    /// They stay far above the noise: something else is at work, too.
+    Far,
+}
+
+impl Shown {
+    /// Whether held-out rows are about as far off as noise leaves them; none held out contradict nothing.
+    pub fn is_near_noise(&self) -> bool {
+        self.rows == 0 || self.after <= ABOVE * self.floor
+    }
+
+    /// `is_floor_known`: whether a floor that is exceeded was no guess.
+    fn says(&self, is_floor_known: bool) -> HeldOut {
+        if self.rows == 0 {
+            return HeldOut::Hold;
+        }
+        // With nothing to close there is nothing to gain, but harm can be seen. Two means that only chance tells apart
+        // are no harm.
+        let is_worse = match self.closure {
+            Some(_) => self.after >= self.before,
+            None => self.after > (1.0 + ALIKE) * self.before,
+        };
+        if is_worse {
+            return HeldOut::Worse;
+        }
+        // Without a closure before is what noise leaves, or no row was held out after all.
+        let Some(closure) = self.closure else { return HeldOut::Hold };
+        let is_open = closure < MOSTLY_OPEN && !self.is_near_noise();
+        let is_far = is_floor_known && self.after > FAR_ABOVE * self.floor;
+        if is_open || is_far { HeldOut::Far } else { HeldOut::Hold }
+    }
+}
+
+/// Whether rows can be far above this floor. A fitted one is whatever was left. What an instrument says of itself, or
+/// neighbors tell, is fitted up to a factor: beyond it an arm may well scatter more. Of things that were watched a part of
+/// the noise is a guess of how well laws of time fit.
+fn is_floor_known(found: &Found, used: &Measurements) -> bool {
+    let is_watched = used.rows.iter().any(|row| row.stand.is_some());
+    match found.floor.source {
+        FloorSource::Repeats => true,
+        FloorSource::Instrument | FloorSource::Neighbors => {
+            !is_watched && found.doubt.noise_scale < LARGEST_NOISE
+        }
+        FloorSource::Fitted => false,
+    }
+}
+
+/// What makes rows that were not used worse, leaves most of the gap open there, or leaves them far above the noise, has
+/// no name, whatever speaks for it on those that were; and a closure beyond one says that the floor was not the floor.
+/// Whether what was found is no name, but closes a part of the gap.
+pub(crate) fn bound_by_held_out(
+    found: &mut Found,
+    used: &Measurements,
+    shown: &Shown,
+    warnings: &mut Vec<String>,
+) -> bool {
+    let named = matches!(found.verdict, Verdict::Named | Verdict::Class);
+    if named && shown.says(is_floor_known(found, used)) != HeldOut::Hold {
+        misled(found, 0.5);
+    }
+    let Some(closure) = shown.closure else { return false };
+    if closure > 1.0 {
+        warnings.push(
+            "more of the gap closes than the noise leaves open: the noise was taken too large. Repeat a few measurements \
+             from the same side"
+                .to_owned(),
+        );
+    }
+    let holds_elsewhere = shown.unseen.as_ref().is_none_or(|unseen| unseen.after < unseen.before);
+    let is_certain = shown.closure_range.is_some_and(|[low, _]| low > 0.0);
+    // What was held out was predicted with all of them.
+    let addable =
+        !found.effects.is_empty() && found.effects.iter().all(|effect| effect.not_addable.is_none());
+    found.verdict == Verdict::NotInLibrary && closure > LEAST_PART && is_certain && holds_elsewhere && addable
+}
+
+/// What leaves most of the gap open on the very rows that it was fitted to has no name, and cannot be expected
+/// to hold elsewhere.
+pub(crate) fn bound_by_own_rows(found: &mut Found, used: &Measurements) {
+    let named = matches!(found.verdict, Verdict::Named | Verdict::Class);
+    if !named || found.unexplained.share < MOSTLY_OPEN {
+        return;
+    }
+    let left = compare::residuals(used, &found.assumed);
+    let (mut square, mut count) = (0.0, 0.0);
+    for ((row, left), weight) in used.rows.iter().zip(&left).zip(&found.weights) {
+        let Some(left) = left else { continue };
+        for (c, left) in left.iter().enumerate() {
+            let Some(sd) = found.floor.of(row.what).map(|floor| floor.of_row(row, c)) else { continue };
+            square += weight * (left / sd).powi(2);
+            count += weight;
+        }
+    }
+    if square > ABOVE * ABOVE * count {
+        misled(found, 0.5);
+    }
+}
+
+/// Where repeats still depend on something that was logged, with all that was found in the model, that is
+/// not explained, and no noise.
+pub(crate) fn still_structured(found: &mut Found, used: &Measurements, compared: &Compared) {
+    let Some(structure) = compare::structure_of(used, &compare::residuals(used, &found.assumed)) else {
+        return;
+    };
+    if structure.size_sigmas < LEAST_STRUCTURE.max(STRUCTURE_SHARE * compared.comparison.size_sigmas) {
+        return;
+    }
+    found.unexplained.depends_on.retain(|known| known.on != structure.on);
+    let share = 1.0 - structure.left.iter().copied().fold(1.0, f64::min);
+    let of = "spread of repeats".to_owned();
+    found.unexplained.depends_on.insert(0, Dependence { on: structure.on, of, share, formula: None });
+    misled(found, 0.95);
+}
+
+/// Something unknown is at work beside what was found: names are less sure than they look.
+fn misled(found: &mut Found, probability: f64) {
+    let unknown = &mut found.unexplained.probability;
+    let before = if found.verdict == Verdict::NotInLibrary { *unknown } else { 0.0 };
+    *unknown = unknown.max(probability);
+    let less = (1.0 - search::MISLED * *unknown) / (1.0 - search::MISLED * before);
+    for effect in &mut found.effects {
+        effect.probability *= less;
+        effect.class_probability *= less;
+    }
+    found.verdict = Verdict::NotInLibrary;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::finding::ShownUnit;
+
+    /// Held-out rows of a gap of so many millimeters, and what is left of it beside half a millimeter of noise.
+    fn shown(before_mm: f64, after_mm: f64) -> Shown {
+        let (before, after, floor) = (before_mm * 1e-3, after_mm * 1e-3, 0.5e-3);
+        Shown {
+            blocks: "5 folds".to_owned(),
+            rows: 60,
+            unit: ShownUnit::Meter,
+            before,
+            after,
+            floor,
+            closure: (before > 1.02 * floor).then(|| (before - after) / (before - floor)),
+            closure_range: None,
+            worst_tenth: [before, after],
+            inside_95: 0.95,
+            unseen: None,
+            covariates: vec![],
+            telling: vec![],
+        }
+    }
+
+    #[test]
+    fn what_brings_held_out_rows_down_to_the_noise_holds() {
+        for after_mm in [0.45, 0.5, 0.64, 0.95] {
+            assert_eq!(shown(3.0, after_mm).says(true), HeldOut::Hold, "{after_mm}");
+        }
+        assert!(shown(3.0, 0.64).is_near_noise() && !shown(3.0, 0.66).is_near_noise());
+    }
+
+    #[test]
+    fn what_makes_held_out_rows_no_better_is_no_name() {
+        for after_mm in [3.0, 3.2] {
+            assert_eq!(shown(3.0, after_mm).says(true), HeldOut::Worse);
+            assert_eq!(shown(3.0, after_mm).says(false), HeldOut::Worse);
+        }
+    }
+
+    #[test]
+    fn rows_far_above_a_known_noise_take_the_name_back_even_where_most_of_the_gap_closes() {
+        let far = shown(3.0, 1.27);
+        assert!(far.closure.is_some_and(|closure| closure > 0.5));
+        assert_eq!(far.says(true), HeldOut::Far);
+        // Where the noise is itself a guess, it convicts nobody, unless most of the gap is open.
+        assert_eq!(far.says(false), HeldOut::Hold);
+        assert_eq!(shown(3.0, 2.0).says(false), HeldOut::Far);
+    }
+
+    #[test]
+    fn where_there_is_nothing_to_close_harm_is_seen_all_the_same() {
+        let [alike, worse, far] = [0.505, 0.6, 1.2].map(|after_mm| shown(0.5, after_mm));
+        assert_eq!(alike.closure, None);
+        assert_eq!(alike.says(true), HeldOut::Hold);
+        assert_eq!(worse.says(true), HeldOut::Worse);
+        assert_eq!(far.says(false), HeldOut::Worse);
+    }
+
+    #[test]
+    fn no_row_held_out_contradicts_nothing() {
+        let none = Shown { rows: 0, ..shown(3.0, 3.0) };
+        assert!(none.is_near_noise());
+        assert_eq!(none.says(true), HeldOut::Hold);
+        // What is shown where nothing was to be held out: the gap as it is.
+        let as_it_is = Shown { closure: None, ..shown(3.0, 3.0) };
+        assert_eq!(as_it_is.says(true), HeldOut::Hold);
+    }
+}
