@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 use plumbline_model::camera::{Camera, CameraModel, Fisheye};
 use plumbline_model::formats::native;
 use plumbline_model::{Pose, StereoCalibration, StereoCameras};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// No verb may take longer on these.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -468,4 +468,73 @@ fn eyes_that_cannot_be_are_refused_before_memory_is_asked_for() {
     desk.write("eyes.yaml", &sound);
     desk.write("points.csv", "u_px,v_px\n1e308,250\n");
     desk.refuses(&locate, &["points.csv, line 2", "column u_px"]);
+}
+
+/// A shard of an experiment of two attempts, in which the attempt of this number was made.
+fn shard(desk: &Desk, name: &str, number: usize, lifted: bool) {
+    let plan = json!({
+        "format": 1, "twin": "lab", "methods": ["m5"], "attempts": 2, "positions_m": [[0.3, 0.0]],
+        "hand": "auto", "object": "Tomato", "seed": 1, "lab": "of one lab"
+    });
+    desk.write(&format!("{name}/experiment.json"), &plan.to_string());
+    let attempt = json!({
+        "trial": { "number": number, "position": 0, "attempt": number, "method": "m5" },
+        "placed_m": [0.3, 0.0],
+        "record": {
+            "format": 1, "method": "m5", "object": "Tomato", "began": "2026-01-02T03:04:05Z", "model": "nominal",
+            "seen": [], "iterations": [], "moments": [], "seen_after": [], "seconds": 14.5
+        },
+        "judged": { "lifted": lifted, "at_first": lifted, "alignment_m": 0.001, "refused": false }
+    });
+    desk.write(&format!("{name}/attempts/{number:05}-m5.json"), &attempt.to_string());
+}
+
+#[test]
+fn shards_that_are_not_of_one_experiment_are_not_put_together() {
+    let merge = |shards: &[&'static str], out: &'static str| {
+        [&["grasp-trials", "--merge"], shards, &["--out", out]].concat()
+    };
+    let desk = Desk::new();
+    shard(&desk, "a", 0, true);
+    shard(&desk, "b", 1, false);
+    let whole = desk.works(&merge(&["a", "b"], "whole"));
+    let of = &whole["methods"]["m5"];
+    for key in [
+        "successes",
+        "attempts",
+        "inside",
+        "inside_attempts",
+        "hand_located",
+        "hand_positions",
+        "refused",
+        "failures",
+        "alignment_mm",
+        "reach_error_mm",
+        "camera_error_mm",
+        "seconds_median",
+        "positions",
+    ] {
+        assert!(of.get(key).is_some(), "{key} of {of}");
+    }
+    assert_eq!((of["successes"].as_u64(), of["attempts"].as_u64()), (Some(1), Some(2)));
+    assert_eq!(of["alignment_mm"]["median"].as_f64(), Some(1.0));
+    for file in ["attempts.csv", "report.html", "report.pdf", "summary.json"] {
+        assert!(desk.path("whole").join(file).is_file(), "{file}");
+    }
+
+    let corrupt = |change: &dyn Fn(&Desk)| {
+        let desk = Desk::new();
+        shard(&desk, "a", 0, true);
+        shard(&desk, "b", 1, false);
+        change(&desk);
+        desk
+    };
+    let refused = |desk: Desk, said: &[&str]| desk.refuses(&merge(&["a", "b"], "whole"), said);
+    refused(
+        corrupt(&|desk| desk.change("b/experiment.json", "of one lab", "of another lab")),
+        &["b", "another experiment"],
+    );
+    refused(corrupt(&|desk| shard(desk, "b", 0, false)), &["b", "something else"]);
+    refused(corrupt(&|desk| desk.write("b/experiment.json", "{")), &["experiment.json"]);
+    refused(corrupt(&|desk| desk.write("b/attempts/00001-m5.json", "[]")), &["00001-m5.json"]);
 }

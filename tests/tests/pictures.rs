@@ -64,3 +64,30 @@ fn the_steps_that_people_read_about_are_understood() {
         assert!(step.parse::<ScriptStep>().is_ok(), "{step}: {:?}", step.parse::<ScriptStep>());
     }
 }
+
+/// The recipes that put an experiment on many machines, as their machines fill them in.
+#[test]
+fn the_recipes_for_many_machines_are_understood() {
+    let text = repository_file("docs/command-line.md");
+    let calls: Vec<&str> = text
+        .split("```sh\n")
+        .skip(1)
+        .filter_map(|block| block.split("```").next())
+        .flat_map(str::lines)
+        .filter_map(|line| Some(&line[line.find("plumbline grasp-trials")?..]))
+        .map(|call| call.split(['\'', '#']).next().unwrap_or(call))
+        .map(|call| call.split(" ::: ").next().unwrap_or(call))
+        .collect();
+    assert!(calls.len() >= 4, "one for each way: {calls:?}");
+    for call in calls {
+        let filled = call
+            .replace("$((JOB_COMPLETION_INDEX + 1))", "3")
+            .replace("$JOB_COMPLETION_INDEX", "2")
+            .replace("$SLURM_ARRAY_TASK_ID", "3")
+            .replace("{}", "3");
+        assert!(!filled.contains(['$', '{']), "{filled}");
+        if let Err(why) = plumbline::understands(filled.split_whitespace().map(str::to_owned)) {
+            panic!("{filled}\n{why}");
+        }
+    }
+}

@@ -17,9 +17,9 @@ pub struct Grasp {
     /// Folder of a commissioned lab (see `plumbline commission`).
     #[arg(long, value_name = "FOLDER")]
     lab: PathBuf,
-    /// The twin: name of a scenario, or a TOML file.
-    #[arg(long, value_name = "NAME|FILE", default_value = "lab")]
-    twin: String,
+    /// The twin: name of a scenario, or a TOML file; without, the one that the lab was commissioned on.
+    #[arg(long, value_name = "NAME|FILE")]
+    twin: Option<String>,
     /// How: m1, m2, m3, m4 as published, m5 ours.
     #[arg(long, value_name = "METHOD", default_value = "m5", value_parser = method)]
     method: GraspMethod,
@@ -35,14 +35,17 @@ pub struct Grasp {
     /// Of all that is drawn by chance.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// Keeps the record and what both eyes saw in this folder.
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
 }
 
 /// Arguments of `grasp-trials`.
 #[derive(Debug, Args)]
 pub struct GraspTrials {
-    /// The twin: name of a scenario, or a TOML file.
-    #[arg(long, value_name = "NAME|FILE", default_value = "lab")]
-    twin: String,
+    /// The twin: name of a scenario, or a TOML file; without, the one that the lab was commissioned on.
+    #[arg(long, value_name = "NAME|FILE")]
+    twin: Option<String>,
     /// Folder of a commissioned lab (see `plumbline commission`).
     #[arg(long, value_name = "FOLDER", required_unless_present = "merge")]
     lab: Option<PathBuf>,
@@ -73,22 +76,49 @@ pub struct GraspTrials {
     /// Where to. The same call on the same folder goes on where it was interrupted.
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
+    /// Keeps what both eyes saw in every attempt, in the folder `images`: about 2 MB each.
+    #[arg(long)]
+    images: bool,
 }
 
 /// Grasps once.
 pub fn grasp(arguments: Grasp, output: &Output) -> anyhow::Result<()> {
-    let Grasp { lab, twin, method, hand, object, at, seed } = arguments;
-    let report = offline::grasp(&GraspArgs { twin, lab, method, hand, object, at_m: at, seed }, output)?;
+    let Grasp { lab, twin, method, hand, object, at, seed, out } = arguments;
+    let report = offline::grasp(&GraspArgs { twin, lab, method, hand, object, at_m: at, seed, out }, output)?;
     output.result(&report, told)
 }
 
 /// Runs the experiment, or puts shards of it together.
 pub fn trials(arguments: GraspTrials, output: &Output) -> anyhow::Result<()> {
-    let GraspTrials { twin, lab, methods, attempts, positions, hand, object, seed, shard, merge, out } =
-        arguments;
+    let GraspTrials {
+        twin,
+        lab,
+        methods,
+        attempts,
+        positions,
+        hand,
+        object,
+        seed,
+        shard,
+        merge,
+        out,
+        images,
+    } = arguments;
     let summary = match lab {
         Some(lab) => {
-            let args = TrialsArgs { twin, lab, methods, attempts, positions, hand, object, seed, shard, out };
+            let args = TrialsArgs {
+                twin,
+                lab,
+                methods,
+                attempts,
+                positions,
+                hand,
+                object,
+                seed,
+                shard,
+                out,
+                images,
+            };
             offline::grasp_trials(&args, output)?
         }
         None if merge.is_empty() => bail!("name the lab with --lab, or the folders of shards with --merge"),
@@ -103,7 +133,7 @@ fn told(report: &GraspReport) -> String {
         text.push_str(": ");
         text.push_str(why);
     }
-    text.push_str(&format!("\n  with the {} hand\n", report.hand.name()));
+    text.push_str(&format!("\n  with the {} hand, by the model \"{}\"\n", report.hand.name(), report.model));
     if let Some(seconds) = report.seconds {
         text.push_str(&format!("  {seconds:.1} s from the button to the end of the lift\n"));
     }

@@ -24,6 +24,7 @@ fn shown(made: usize) -> ShownTrials {
         hand: plumbline_engine::view::HandChoice::Auto,
         object: "Tomato".to_owned(),
         seed: 1,
+        lab: None,
     };
     let position = page::PagePosition {
         at_m: [0.3, -0.2],
@@ -42,6 +43,7 @@ fn shown(made: usize) -> ShownTrials {
         sentences: vec![],
         screen_m: rig().touchscreen.corners().map(|corner| [corner.coords.x, corner.coords.y]),
         area_m: [[0.27, 0.48], [-0.23, 0.23]],
+        beyond_m: vec![[0.5, -0.4]],
         methods: vec![method],
         version: "0".to_owned(),
     };

@@ -96,6 +96,15 @@ impl PalmArm {
         if self.is_left { Hand::Left } else { Hand::Right }
     }
 
+    /// Where the arm begins, robot frame, m.
+    pub fn shoulder_m(&self, posture: &Posture) -> Vector3<f64> {
+        let description = &self.rig.description;
+        let first = self.arm.joints().first().map(|joint| description.joint(*joint).child);
+        first.map_or_else(Vector3::zeros, |link| {
+            description.forward(posture).of(link).isometry.translation.vector
+        })
+    }
+
     /// Where the palm is, by the model, when a posture is commanded.
     pub fn palm(&self, commanded: &Posture) -> Point<Robot> {
         self.arm.tip(commanded, &Conditions::default())

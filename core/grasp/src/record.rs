@@ -108,6 +108,9 @@ pub enum Outcome {
 /// One look at the hand.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Iteration {
+    /// When both eyes saw it, clock of the robot, s; `None`: written before that was kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_s: Option<f64>,
     /// Where the palm was sent, m.
     pub sent_m: [f64; 3],
     /// Where the hand was found to be, m; `None`: it was not found.
@@ -173,6 +176,9 @@ pub struct Record {
     /// Tries before the last one, of which all the rest is; the moments are of all.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub earlier: Vec<Earlier>,
+    /// When both eyes saw the table at first, clock of the robot, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seen_at_s: Option<f64>,
     /// What was seen at first.
     pub seen: Vec<Seen>,
     /// The object that was chosen, by its place in `seen`.
@@ -189,6 +195,9 @@ pub struct Record {
     pub iterations: Vec<Iteration>,
     /// The arm after each step.
     pub moments: Vec<Moment>,
+    /// When both eyes looked at last whether it is held, clock of the robot, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seen_after_at_s: Option<f64>,
     /// What was seen at last.
     pub seen_after: Vec<Seen>,
     /// How far the fingers were kept from where they were sent after the lift, rad.
@@ -216,6 +225,7 @@ impl Record {
             model,
             step: None,
             earlier: vec![],
+            seen_at_s: None,
             seen: vec![],
             chosen: None,
             standing_m: None,
@@ -224,6 +234,7 @@ impl Record {
             heading_rad: None,
             iterations: vec![],
             moments: vec![],
+            seen_after_at_s: None,
             seen_after: vec![],
             fingers_open_rad: None,
             seconds: None,

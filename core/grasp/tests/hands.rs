@@ -45,12 +45,15 @@ fn what_was_lifted_is_put_down_again_at_every_place() {
             let Ok(plan) = plan(&planner, place_m, &rig.home()) else { continue };
             let closed = planner.closed(plan.down.last().expect("a way down"));
             let height_m = planner.arm().palm(&closed).coords.z;
-            let lifted = planner.lift(&plan, &closed, GraspPlanner::LIFT_M).pop().expect("it gets up");
+            let lifted =
+                planner.lift(&closed, plan.heading_rad, GraspPlanner::LIFT_M).pop().expect("it gets up");
             let way = planner.lowered(&lifted, height_m).expect("free");
             let way = way.unwrap_or_else(|| panic!("{name}: {place_m:?} is not reached from above"));
             let low = way.last().expect("a way");
-            let off_m = planner.arm().palm(low).coords.coords - planner.arm().palm(&closed).coords.coords;
-            assert!(off_m.norm() < 5e-3, "{name}: {place_m:?}: {off_m:?}");
+            let off_m = planner.arm().palm(low).coords.coords - planner.arm().palm(&lifted).coords.coords;
+            assert!(off_m.xy().norm() < 5e-3, "{name}: {place_m:?}: not straight down, {off_m:?}");
+            let height_off_m = planner.arm().palm(low).coords.z - height_m;
+            assert!(height_off_m.abs() < 5e-3, "{name}: {place_m:?}: {height_off_m} m off");
             assert_eq!(low.of(planner.arm().hand()), closed.of(planner.arm().hand()), "fingers as they are");
             for pair in way.windows(2) {
                 assert!(pair[0].distance_rad(&pair[1]) < 0.5, "{name}: {place_m:?} jumps");
@@ -70,6 +73,41 @@ fn what_was_lifted_is_put_down_again_at_every_place() {
         let far = planner.lowered(&rig.home(), -0.5);
         assert!(matches!(far, Ok(None) | Err(_)), "half a meter under the table is not reached");
     }
+}
+
+/// Out of a tilted hand things creep.
+#[test]
+fn a_stretched_arm_brings_what_it_lifts_nearer_instead_of_tilting_it() {
+    let rig = rig();
+    let planner = planner(&rig, Hand::Right);
+    let arm = planner.arm();
+    let shoulder_m =
+        |posture: &Posture| (arm.palm(posture).coords.coords - arm.shoulder_m(posture)).xy().norm();
+    let (mut straight_ones, mut nearer_ones) = (0, 0);
+    for place_m in PLACES_M {
+        let Ok(plan) = plan(&planner, place_m, &rig.home()) else { continue };
+        let closed = planner.closed(plan.down.last().expect("a way down"));
+        let straight = planner.vertical(plan.heading_rad, &closed, GraspPlanner::LIFT_M);
+        let way = planner.lift(&closed, plan.heading_rad, GraspPlanner::LIFT_M);
+        let (top, straight_top) = (way.last().expect("a way"), straight.last().expect("a way"));
+        let rise_m = arm.palm(top).coords.z - arm.palm(&closed).coords.z;
+        assert!(rise_m > 0.05, "{place_m:?}: lifted by {rise_m} m");
+        assert!(arm.level(top) >= arm.level(straight_top), "{place_m:?} tilts more");
+        for posture in &way {
+            assert_eq!(posture.of(arm.hand()), closed.of(arm.hand()), "{place_m:?}: fingers as they are");
+        }
+        if way == straight {
+            straight_ones += 1;
+            continue;
+        }
+        nearer_ones += 1;
+        assert!(arm.level(straight_top) < 0.9985, "{place_m:?} was level");
+        assert!(shoulder_m(top) < shoulder_m(&closed), "{place_m:?} goes away from the shoulder");
+        // Straight up at first, until it is clear of the table.
+        assert_eq!(way[..4], straight[..4], "{place_m:?}");
+        println!("{place_m:?}: level {:.4} instead of {:.4}", arm.level(top), arm.level(straight_top));
+    }
+    assert!(straight_ones >= 15 && nearer_ones >= 1, "{straight_ones} straight, {nearer_ones} nearer");
 }
 
 /// A robot whose right arm errs: effect, joint, value.

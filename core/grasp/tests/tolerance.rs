@@ -89,7 +89,7 @@ fn lifted_m(toy: Toy, at_m: [f64; 2], off_m: [f64; 3]) -> Result<(f64, f64, f64)
     twin.follow(&[closing.with(&thumb, &close.of(&thumb))], GRIP_RAD_S);
     twin.follow(std::slice::from_ref(&close), GRIP_RAD_S);
     twin.wait(0.3);
-    let up: Vec<Posture> = planner.lift(&plan, &close, GraspPlanner::LIFT_M);
+    let up: Vec<Posture> = planner.lift(&close, plan.heading_rad, GraspPlanner::LIFT_M);
     twin.follow(&up, 0.4);
     let seconds = twin.now_s() - began_s;
     if std::env::var_os("PLUMBLINE_CREEP").is_some() {

@@ -277,6 +277,9 @@ pub enum OfflineError {
     /// A file itself cannot be read or written, or is an input that would be lost.
     #[error(transparent)]
     File(#[from] plumbline_model::files::FileError),
+    /// What is kept of a grasp.
+    #[error(transparent)]
+    Keeping(#[from] plumbline_engine::grasp::KeepingError),
     /// A file cannot be read or written.
     #[error("{}: {error}. Check the path, the permissions and the free space", .path.display())]
     Io {

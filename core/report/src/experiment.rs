@@ -12,7 +12,7 @@ const GUTTER: f64 = 18.0;
 /// Height of a map with its heading.
 const MAP_HEIGHT: f64 = 176.0;
 /// What the maps show of the table, robot frame: x (up the page) and y (to the left), m.
-const SHOWN_M: [[f64; 2]; 2] = [[0.12, 0.56], [-0.48, 0.38]];
+const SHOWN_M: [[f64; 2]; 2] = [[0.12, 0.56], [-0.46, 0.46]];
 /// Radius of a position.
 const DOT: f64 = 8.5;
 
@@ -27,6 +27,8 @@ pub struct Experiment {
     pub screen_m: [[f64; 2]; 4],
     /// The area of the published networks: x and y, from and to, m.
     pub area_m: [[f64; 2]; 2],
+    /// Places of the published grid that the published arm does not reach: x, y, m.
+    pub beyond_m: Vec<[f64; 2]>,
     /// One per method, in the order in which they are shown.
     pub methods: Vec<Method>,
     /// Name and version of the program.
@@ -45,8 +47,18 @@ pub struct Method {
 }
 
 /// Headings of the table behind the name of the method.
-pub const TABLE: [&str; 8] =
-    ["all", "published", "inside", "published", "hand found", "refused", "palm off, mm", "time, s"];
+pub const TABLE: [&str; 10] = [
+    "all",
+    "published",
+    "inside",
+    "published",
+    "hand found",
+    "refused",
+    "palm off, mm",
+    "eyes, mm",
+    "arm, mm",
+    "time, s",
+];
 
 /// What came of a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,6 +172,13 @@ fn map(drawing: &mut Drawing, frame: &Frame, experiment: &Experiment, method: &M
     let area = [[x0, y0], [x0, y1], [x1, y1], [x1, y0], [x0, y0]];
     let dashed = Stroke::new(ink::WEAK, 0.7).dashed(3.0, 2.0);
     drawing.line(area.map(|corner| frame.at(corner)).to_vec(), dashed);
+    for at_m in &experiment.beyond_m {
+        if !method.positions.iter().any(|position| position.at_m == *at_m) {
+            let at = frame.at(*at_m);
+            drawing.circle(at, 0.35 * DOT, ink::WEAK, 1.0);
+            drawing.circle(at, 0.35 * DOT - 0.8, ink::TRACK, 1.0);
+        }
+    }
     for position in &method.positions {
         let at = frame.at(position.at_m);
         let share = position.successes as f64 / position.attempts.max(1) as f64;
@@ -187,8 +206,9 @@ fn color(share: f64, hand_found: Option<bool>) -> Color {
 
 fn legend(drawing: &mut Drawing, y: f64) {
     let text = "In the dots: lifted; small beside them: lifted of three in the published experiment on the robot. Blue: \
-                always lifted, orange: never, gray: the hand was not found. Light gray: touchscreen; dashed: area of \
-                the published networks.";
+                always lifted, orange: never, gray: the hand was not found; small rings: beyond the reach of \
+                the published arm. Light gray: touchscreen; dashed: area of the published networks. Palm off: where \
+                the hand closed, median … worst; eyes and arm: medians of what each of the two errs by itself.";
     drawing.paragraph([MARGIN, y - 10.0], WIDTH - 2.0 * MARGIN, text, Style::SMALL, 3);
 }
 
@@ -209,6 +229,7 @@ mod tests {
             sentences: vec!["66 attempts.".to_owned()],
             screen_m: [[0.55, 0.24], [0.55, -0.24], [0.28, -0.24], [0.28, 0.24]],
             area_m: [[0.27, 0.48], [-0.23, 0.23]],
+            beyond_m: vec![[0.5, -0.4], [0.5, 0.4]],
             methods: (1..=5)
                 .map(|k| Method {
                     name: format!("M{k}"),

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use jiff::Timestamp;
 use plumbline_grasp::attempt::{AIR_RAD_S, DOWN_RAD_S, LIFT_RAD_S};
-use plumbline_grasp::plan::{GraspPlan, GraspPlanner};
+use plumbline_grasp::plan::GraspPlan;
 use plumbline_grasp::see::Seen;
 use plumbline_grasp::things::Thing;
 use plumbline_grasp::{Body, Grasper, Halt, HandChoice, Method, Order, Outcome, Record};
@@ -184,7 +184,7 @@ impl Attempt {
     fn shown(&self, grasper: &Grasper, from: &Posture, plan: &GraspPlan, record: &Record) -> PlannedGrasp {
         let planner = grasper.planner(self.method);
         let closed = plan.closing().map(|open| planner.closed(open)).unwrap_or_else(|| from.clone());
-        let lift = planner.lift(plan, &closed, GraspPlanner::LIFT_M);
+        let lift = grasper.lift(self.method, &closed, plan.heading_rad);
         let mut postures = vec![from.clone()];
         postures.extend(plan.approach.iter().chain(&plan.down).cloned());
         postures.push(closed);

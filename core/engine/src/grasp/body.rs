@@ -283,7 +283,7 @@ impl Body for LedBody<'_> {
             left: frame.left,
             right: frame.right,
             posture,
-            at_s: self.now_s(),
+            at_s: frame.stamp.captured_at.saturating_duration_since(self.began).as_secs_f64(),
             eyes_on_s: self.ropes.eyes_on.map(|eyes_on| eyes_on.seconds_at(frame.stamp.captured_at)),
             seq: self.pairs,
         })

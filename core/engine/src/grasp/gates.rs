@@ -5,6 +5,7 @@ use plumbline_model::robot::JointIndex;
 
 use super::around::GraspAround;
 use super::method::lacks;
+use super::rest::rest;
 use super::view::{Gate, GateState, InHand};
 use super::warmth::warmth;
 use crate::ground::text::sentence;
@@ -22,6 +23,7 @@ pub fn gates(around: &GraspAround, choice: HandChoice, method: Method) -> Vec<Ga
         gates.push(stop(robot));
         gates.push(of_any(hands, |hand| joints(around, hand.name())));
         gates.push(of_any(hands, |hand| load(around, hand.name())));
+        gates.push(of_any(hands, |hand| rest(around, hand.name())));
     }
     gates.extend([eyes(around), places(around)]);
     let evidence = around.calibration.as_ref().and_then(|calibration| calibration.evidence.as_ref());
@@ -63,15 +65,15 @@ pub fn shut(gates: &[Gate]) -> Option<&Gate> {
     gates.iter().find(|gate| gate.state == GateState::Shut)
 }
 
-fn open(name: &'static str, text: impl Into<String>) -> Gate {
+pub(super) fn open(name: &'static str, text: impl Into<String>) -> Gate {
     Gate { name, state: GateState::Open, text: text.into() }
 }
 
-fn closed(name: &'static str, text: impl Into<String>) -> Gate {
+pub(super) fn closed(name: &'static str, text: impl Into<String>) -> Gate {
     Gate { name, state: GateState::Shut, text: text.into() }
 }
 
-fn doubtful(name: &'static str, text: impl Into<String>) -> Gate {
+pub(super) fn doubtful(name: &'static str, text: impl Into<String>) -> Gate {
     Gate { name, state: GateState::Doubtful, text: text.into() }
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use image::DynamicImage;
 use jiff::Timestamp;
-use plumbline_grasp::{Method, Record, Sight, record};
+use plumbline_grasp::{Method, Record, Sight, Step, record};
 use plumbline_model::files::{self, FileError, Size};
 
 use super::view::AttemptView;
@@ -45,6 +45,17 @@ pub enum KeepingError {
         /// What the system says.
         error: std::io::Error,
     },
+}
+
+/// What the images of a look are called: from the second try (`number`, from 1) on with its number, so that
+/// those of the tries before stay; `look` counts the looks at the hand.
+pub fn image_name(number: usize, step: Step, look: usize) -> String {
+    let name = match step {
+        Step::Align => format!("aligned_{look}"),
+        Step::Check => "after".to_owned(),
+        _ => "before".to_owned(),
+    };
+    if number > 1 { format!("try{number}_{name}") } else { name }
 }
 
 /// Where attempts of a world are kept.
@@ -167,6 +178,7 @@ pub fn list(grasps: &Path) -> (Vec<AttemptView>, Vec<KeepingError>) {
 #[cfg(test)]
 mod tests {
     use plumbline_grasp::Step;
+    use plumbline_grasp::record::Iteration;
 
     use super::*;
 
@@ -190,5 +202,41 @@ mod tests {
         assert_eq!(attempts.len(), 1);
         assert_eq!((attempts[0].reached, &attempts[0].outcome), (Some(Step::Approach), &None));
         assert!(problems[0].to_string().contains("is no record of a grasp"), "{}", problems[0]);
+    }
+
+    /// Without a key that older programs did not write.
+    fn without(value: &mut serde_json::Value, key: &str) {
+        assert!(value.as_object_mut().and_then(|of| of.remove(key)).is_some(), "{key} is written");
+    }
+
+    #[test]
+    fn when_it_was_looked_is_kept_and_a_record_that_does_not_say_is_read_all_the_same() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let keeping =
+            Keeping::begin(&grasps_in(folder.path()), Method::M5, Timestamp::UNIX_EPOCH).expect("writable");
+        let look = Iteration {
+            at_s: Some(6.5),
+            sent_m: [0.3, -0.1, 0.2],
+            hand_m: None,
+            not_found: Some("hidden".to_owned()),
+            distance_m: None,
+            sigma_m: None,
+        };
+        let mut record = Record::new(Method::M5, "Tomato", Timestamp::UNIX_EPOCH, "as described".to_owned());
+        (record.seen_at_s, record.seen_after_at_s) = (Some(0.25), Some(12.0));
+        record.iterations.push(look.clone());
+        keeping.record(&record).expect("writable");
+        assert_eq!(keeping.read().expect("there"), record);
+
+        let file = keeping.folder.join(RECORD);
+        let text = std::fs::read_to_string(&file).expect("there");
+        let mut older: serde_json::Value = serde_json::from_str(&text).expect("a record");
+        without(&mut older, "seen_at_s");
+        without(&mut older, "seen_after_at_s");
+        without(&mut older["iterations"][0], "at_s");
+        std::fs::write(&file, older.to_string()).expect("writable");
+        let read = keeping.read().expect("older ones are read");
+        assert_eq!(read.iterations, [Iteration { at_s: None, ..look }]);
+        assert_eq!((read.seen_at_s, read.seen_after_at_s), (None, None));
     }
 }

@@ -5,6 +5,7 @@
 //! ([`crate::robot::Leader`]) and waits for pairs of the source; everything that moves passes the limits
 //! of the bus.
 
+mod area;
 mod around;
 mod attempt;
 pub(crate) mod body;
@@ -16,6 +17,7 @@ mod method;
 mod pointing;
 mod progress;
 mod refusal;
+mod rest;
 mod rests_on;
 mod shown;
 pub(crate) mod sights;
@@ -30,7 +32,7 @@ mod workflow;
 
 pub use around::GraspAround;
 pub(crate) use body::{EyesOn, LedBody, Ropes};
-pub use keeping::KeepingError;
+pub use keeping::{Keeping, KeepingError, image_name};
 pub(crate) use sights::Sights;
 pub use standing::read_record;
 pub use workflow::GraspWorkflow;

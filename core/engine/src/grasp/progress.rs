@@ -9,7 +9,7 @@ use plumbline_grasp::{Failure, Knowledge, Method, Outcome, Record, Sight, Step, 
 use plumbline_model::robot::Posture;
 use plumbline_model::{Eye, JobContext};
 
-use super::keeping::{Keeping, KeepingError};
+use super::keeping::{Keeping, KeepingError, image_name};
 use super::view::{GraspIteration, GraspRun, LampState};
 use crate::robot::Reins;
 
@@ -70,6 +70,9 @@ pub struct Watcher<'a> {
     context: &'a dyn JobContext,
     reins: Reins,
     knowledge: Knowledge,
+    /// Which try it is, from 1.
+    number: usize,
+    /// Looks at the hand in this try.
     looks: usize,
     /// Where the joints were at the last look.
     looked_from: Option<Posture>,
@@ -88,8 +91,9 @@ impl<'a> Watcher<'a> {
         reins: Reins,
         knowledge: Knowledge,
     ) -> Self {
+        let (number, looks) = (1, 0);
         let (plan, problem, looked_from) = (None, None, None);
-        Self { progress, keeping, context, reins, knowledge, looks: 0, looked_from, plan, problem }
+        Self { progress, keeping, context, reins, knowledge, number, looks, looked_from, plan, problem }
     }
 
     /// Where a point (robot frame, m) is in both eyes at the last look, raw px.
@@ -119,6 +123,7 @@ impl<'a> Watcher<'a> {
 
 impl Watch for Watcher<'_> {
     fn again(&mut self, number: usize, tries: usize, why: &str) {
+        (self.number, self.looks) = (number, 0);
         self.progress.change(|run| {
             run.tries = [number, tries];
             run.again = Some(why.to_owned());
@@ -146,14 +151,8 @@ impl Watch for Watcher<'_> {
     }
 
     fn saw(&mut self, step: Step, sight: &Sight, seen: &[Seen]) {
-        let name = match step {
-            Step::Align => {
-                self.looks += 1;
-                format!("aligned_{}", self.looks)
-            }
-            Step::Check => "after".to_owned(),
-            _ => "before".to_owned(),
-        };
+        self.looks += usize::from(step == Step::Align);
+        let name = image_name(self.number, step, self.looks);
         self.keep(|keeping| keeping.images(&name, sight));
         self.looked_from = Some(sight.posture.clone());
         if !seen.is_empty() || step != Step::Align {
@@ -180,5 +179,63 @@ impl Watch for Watcher<'_> {
     fn about_to(&mut self, record: &Record) {
         self.keep(|keeping| keeping.record(record));
         self.progress.change(|run| run.chosen = record.chosen);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use image::{Rgb, RgbImage};
+    use jiff::Timestamp;
+    use plumbline_effects::RobotModel;
+    use plumbline_grasp::Corrections;
+    use plumbline_model::robot::Rig;
+    use plumbline_model::{StereoCalibration, Unattended};
+
+    use super::*;
+
+    fn knowledge() -> Knowledge {
+        let rig = Arc::new(Rig::built_in("nico").expect("comes with the program"));
+        Knowledge {
+            model: RobotModel::nominal(rig.clone()),
+            calibration: Arc::new(StereoCalibration::bare(rig.eyes.cameras)),
+            described: rig,
+            corrections: Corrections::default(),
+        }
+    }
+
+    /// A pair that is gray all over.
+    fn pair(knowledge: &Knowledge, gray: u8) -> Sight {
+        let image = Arc::new(RgbImage::from_pixel(4, 3, Rgb([gray; 3])));
+        let posture = knowledge.described.home();
+        Sight { left: image.clone(), right: image, posture, at_s: 0.0, eyes_on_s: None, seq: 1 }
+    }
+
+    #[test]
+    fn images_of_every_try_stay_on_disk() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let keeping = Keeping::begin(folder.path(), Method::M5, Timestamp::UNIX_EPOCH).expect("writable");
+        let attempt = folder.path().join(keeping.name());
+        let (knowledge, progress) = (knowledge(), Progress::new(Method::M5, "Tomato"));
+        let mut watcher =
+            Watcher::new(progress, Some(keeping), &Unattended, Reins::default(), knowledge.clone());
+        for (number, gray) in [(1, 50), (2, 100), (3, 150)] {
+            if number > 1 {
+                watcher.again(number, 3, "the hand closed beside the tomato");
+            }
+            for step in [Step::Look, Step::Align, Step::Align, Step::Check] {
+                watcher.saw(step, &pair(&knowledge, gray), &[]);
+            }
+        }
+        assert!(watcher.problem.is_none(), "{:?}", watcher.problem);
+        for (before, gray) in [("", 50), ("try2_", 100), ("try3_", 150)] {
+            for name in ["before", "aligned_1", "aligned_2", "after"] {
+                for eye in ["left", "right"] {
+                    let file = attempt.join(format!("{before}{name}_{eye}.png"));
+                    let seen = image::open(&file).unwrap_or_else(|error| panic!("{file:?}: {error}"));
+                    assert_eq!(seen.to_rgb8().get_pixel(1, 1), &Rgb([gray; 3]), "{file:?}");
+                }
+            }
+        }
+        assert_eq!(std::fs::read_dir(&attempt).expect("there").count(), 24, "and nothing else");
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use plumbline_grasp::Hand;
 use plumbline_grasp::things::Thing;
 
+use super::area::area;
 use super::around::GraspAround;
 use super::gates::{full_hand, gates};
 use super::method::methods;
@@ -44,7 +45,21 @@ impl GraspWorkflow {
     /// What is looked at before anything moves; what is in a hand is among it.
     pub(super) fn gates(&self, around: &GraspAround, choice: HandChoice) -> Vec<Gate> {
         let full = self.in_hand();
-        gates(around, choice, self.method).into_iter().chain(full.iter().map(full_hand)).collect()
+        let area = self.stands_at_m(around).and_then(|at_m| area(around, self.method, at_m));
+        let gates = gates(around, choice, self.method).into_iter();
+        gates.chain(area).chain(full.iter().map(full_hand)).collect()
+    }
+
+    /// Where what is to be grasped stands, as far as that is known before it is looked for, robot frame, m.
+    fn stands_at_m(&self, around: &GraspAround) -> Option<[f64; 2]> {
+        let seen = || {
+            let class = self.target.class.as_ref()?;
+            let of_class =
+                around.found.as_ref()?.objects.iter().filter(|seen| seen.name.eq_ignore_ascii_case(class));
+            let at = of_class.filter_map(|seen| seen.place.as_ref().ok()).next()?.point_in_robot.coords;
+            Some([at.x, at.y])
+        };
+        self.plan.as_ref().map(|plan| plan.at_m).or(self.target.near_m).or_else(seen)
     }
 
     fn phase(&self) -> GraspPhase {

@@ -108,7 +108,7 @@ impl Hand<'_> {
 
     fn lift(&mut self) -> Result<(), NoStep> {
         let from = self.body.commanded()?;
-        let way = self.planner.vertical(self.planner.arm().heading_rad(&from), &from, GraspPlanner::LIFT_M);
+        let way = self.planner.lift(&from, self.planner.arm().heading_rad(&from), GraspPlanner::LIFT_M);
         if way.is_empty() {
             return Err(NoStep::NoHigher);
         }

@@ -28,7 +28,7 @@ pub enum TrialsError {
         error: serde_json::Error,
     },
     /// Two folders hold different experiments.
-    #[error("{} holds another experiment (other twin, methods, positions, object or seed): choose a new folder", .folder.display())]
+    #[error("{} holds another experiment (other twin, lab, methods, positions, object or seed): choose a new folder", .folder.display())]
     OtherExperiment {
         /// Which.
         folder: PathBuf,

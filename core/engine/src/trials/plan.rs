@@ -14,6 +14,9 @@ const FARTHEST_M: f64 = 10.0;
 /// A person puts a thing this near to where it belongs, m per axis (standard deviation).
 const PLACING_M: f64 = 0.002;
 
+/// What stands before the name of a real robot where the name of a scenario would stand.
+pub(super) const ROBOT: &str = "robot ";
+
 /// What the experiment is; the same in every shard of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Experiment {
@@ -34,6 +37,10 @@ pub struct Experiment {
     pub object: String,
     /// Of all that is drawn by chance.
     pub seed: u64,
+    /// A number that differs between labs that know different things or are of different twins, whatever
+    /// these are called; `None`: not told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lab: Option<String>,
 }
 
 fn right() -> HandChoice {

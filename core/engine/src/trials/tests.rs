@@ -341,6 +341,7 @@ fn a_scatter_depends_on_seed_and_number_alone() {
         hand: plumbline_grasp::HandChoice::Auto,
         object: "Tomato".to_owned(),
         seed,
+        lab: None,
     };
     let (first, other) = (experiment(1), experiment(2));
     let trials: Vec<_> = first.trials().collect();
@@ -363,6 +364,7 @@ fn parts_are_put_together_unless_they_disagree() {
         hand: plumbline_grasp::HandChoice::Auto,
         object: "Tomato".to_owned(),
         seed: 1,
+        lab: None,
     };
     let trials: Vec<_> = experiment.trials().collect();
     let attempt = |k: usize, lifted| {
@@ -381,6 +383,11 @@ fn parts_are_put_together_unless_they_disagree() {
     assert_eq!(store::merge(&[a.clone(), b.clone()], &whole).expect("one experiment"), experiment);
     let summary = store::conclude(&whole, &experiment, &rig()).expect("written");
     assert_eq!((summary.missing, summary.methods["m5"].successes, summary.methods["m5"].attempts), (0, 1, 2));
+    let other_lab = folder.path().join("other lab");
+    store::begin(&other_lab, &Experiment { lab: Some("another".to_owned()), ..experiment.clone() })
+        .expect("begun");
+    let said = store::merge(&[a.clone(), other_lab], &folder.path().join("mixed")).expect_err("of two labs");
+    assert!(said.to_string().contains("experiment"), "{said}");
     let other = part("other", &[attempt(1, true)]);
     let said = store::merge(&[b, other], &folder.path().join("torn")).expect_err("they disagree").to_string();
     assert!(said.contains("says something else"), "{said}");
@@ -398,6 +405,7 @@ fn a_file_of_an_experiment_that_cannot_be_is_refused_with_what_is_wrong() {
         positions_m: vec![[0.3, 0.0]],
         object: "Tomato".to_owned(),
         seed: 1,
+        lab: None,
     };
     let write = |experiment: &Experiment| {
         let text = serde_json::to_string(experiment).expect("plain data");

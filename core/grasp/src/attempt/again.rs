@@ -47,6 +47,7 @@ impl Running<'_> {
             fingers_open_rad: self.record.fingers_open_rad.take(),
         });
         self.record.seen_after.clear();
+        self.record.seen_after_at_s = None;
         match self.try_once() {
             Err(End::Failed(Failure::Halted, halted)) => Err(End::Failed(Failure::Halted, halted)),
             Err(End::Failed(_, second) | End::Refused(second)) => {

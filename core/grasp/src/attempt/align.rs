@@ -19,6 +19,9 @@ const PUBLISHED_NEAR_M: f64 = 0.01;
 const PUBLISHED_LOOKS: usize = 8;
 /// A shift of the target beyond this is no correction any more, m.
 pub(super) const FARTHEST_M: f64 = 0.08;
+/// What is taken for the hand farther than this from where the arm's description has it is a forearm, or
+/// something beside the robot, m: the published robot was off by up to 0.1 m, and a box tells a few more.
+const HAND_WITHIN_M: f64 = 0.25;
 /// Between looks, rad/s.
 pub(super) const SPEED_RAD_S: f64 = 0.5;
 
@@ -82,18 +85,20 @@ impl Running<'_> {
             let sight = self.body.look()?;
             let arm = self.grasper.arm.described.arm();
             let (sent, turned) = (arm.palm(&above).coords.coords, arm.body(&shown));
-            let hand = self.detected_hand(&sight, turned)?;
-            let Some(hand) = hand else {
-                self.looked(sent, Err("no hand was detected in both eyes".to_owned()), None, None);
-                let why = "the hand was not found by the detector".to_owned();
-                return Err(End::Failed(Failure::HandWrong, why));
+            let hand = match self.detected_hand(&sight, turned)? {
+                Ok(hand) => hand,
+                Err(HandMissing(why)) => {
+                    let said = format!("the hand was not found by the detector: {why}");
+                    self.looked(&sight, sent, Err(why), None, None);
+                    return Err(End::Failed(Failure::HandWrong, said));
+                }
             };
             // The box is around the body of a palm that is turned to the eyes; how that lies to the palm
             // over the object, the description says.
             let palm = hand + (sent - turned);
             let wanted = plan.palm_m;
             let missing = (wanted - palm).xy();
-            self.looked(sent, Ok(palm), Some(missing.norm()), None);
+            self.looked(&sight, sent, Ok(palm), Some(missing.norm()), None);
             if missing.norm() < PUBLISHED_NEAR_M {
                 break;
             }
@@ -107,14 +112,18 @@ impl Running<'_> {
         Ok(plan)
     }
 
-    /// Where the detector sees the hand that is nearest to where it may be.
-    fn detected_hand(&mut self, sight: &Sight, near: Vector3<f64>) -> Result<Option<Vector3<f64>>, End> {
+    /// Where the detector sees the hand that is nearest to where it may be; inside, why it sees none there.
+    fn detected_hand(
+        &mut self,
+        sight: &Sight,
+        near: Vector3<f64>,
+    ) -> Result<Result<Vector3<f64>, HandMissing>, End> {
         let grasper = &mut *self.grasper;
         let seen = grasper.looker.look(sight, &grasper.knowledge)?;
         self.watch.saw(Step::Align, sight, &seen);
         let hands = seen.iter().filter(|thing| thing.class.ends_with("Hand"));
         let places = hands.filter_map(|thing| Some(thing.place.as_ref().ok()?.point().coords.coords));
-        Ok(places.min_by(|a, b| (a - near).norm().total_cmp(&(b - near).norm())))
+        Ok(nearest_hand(places, &near))
     }
 
     /// The plan from above the same object, the palm sent elsewhere.
@@ -125,6 +134,7 @@ impl Running<'_> {
 
     pub(super) fn looked(
         &mut self,
+        sight: &Sight,
         sent: Vector3<f64>,
         hand: Result<Vector3<f64>, String>,
         distance_m: Option<f64>,
@@ -134,10 +144,31 @@ impl Running<'_> {
             Ok(hand) => (Some(hand.into()), None),
             Err(why) => (None, Some(why)),
         };
-        let iteration = Iteration { sent_m: sent.into(), hand_m, not_found, distance_m, sigma_m };
+        let (at_s, sent_m) = (Some(sight.at_s), sent.into());
+        let iteration = Iteration { at_s, sent_m, hand_m, not_found, distance_m, sigma_m };
         self.watch.aligned(&iteration);
         self.record.iterations.push(iteration);
     }
+}
+
+/// The place of a detected hand that is nearest to where the hand may be (robot frame, m), if it is near
+/// enough to be that hand.
+fn nearest_hand(
+    places: impl Iterator<Item = Vector3<f64>>,
+    near: &Vector3<f64>,
+) -> Result<Vector3<f64>, HandMissing> {
+    let off_m = |place: &Vector3<f64>| (place - near).norm();
+    let nearest = places.min_by(|a, b| off_m(a).total_cmp(&off_m(b)));
+    let nearest = nearest.ok_or_else(|| HandMissing("no hand was detected in both eyes".to_owned()))?;
+    if off_m(&nearest) <= HAND_WITHIN_M {
+        return Ok(nearest);
+    }
+    Err(HandMissing(format!(
+        "what was taken for a hand is {:.0} mm from where the arm has it, more than {:.0} mm: look what else is \
+         before the eyes",
+        off_m(&nearest) * 1e3,
+        HAND_WITHIN_M * 1e3
+    )))
 }
 
 /// Refuses to send a hand far from where it belongs by the model.
@@ -151,4 +182,22 @@ pub(super) fn near_enough(shift_m: &Vector3<f64>) -> Result<(), End> {
 
 pub(super) fn above(plan: &GraspPlan) -> Result<Posture, End> {
     plan.above().cloned().ok_or_else(|| End::Refused("there is no way to above the object".to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_forearm_that_is_taken_for_a_hand_far_from_the_arm_is_none_and_the_reason_is_said() {
+        let sent = Vector3::new(0.3, -0.1, 0.15);
+        let beside = |x_m: f64| sent + Vector3::new(x_m, 0.0, 0.0);
+        // An arm that nothing was learned of is off by a hand's breadth.
+        let found = nearest_hand([beside(-0.4), beside(0.12)].into_iter(), &sent);
+        assert_eq!(found, Ok(beside(0.12)));
+        let HandMissing(why) = nearest_hand([beside(-0.4), beside(0.3)].into_iter(), &sent).expect_err("far");
+        assert!(why.contains("300 mm from where the arm has it, more than 250 mm"), "{why}");
+        let HandMissing(why) = nearest_hand(std::iter::empty(), &sent).expect_err("there is none");
+        assert!(why.contains("no hand was detected"), "{why}");
+    }
 }

@@ -19,6 +19,9 @@ const LEVELER: f64 = 0.02;
 const PER_SIGMA_RAD_M: f64 = 100.0;
 /// A hand that came up empty counts as if it turned so much more, rad.
 const CAME_UP_EMPTY_RAD: f64 = 0.4;
+/// A palm that is level where it closes and tilts as it is lifted counts as if it turned so much more for each
+/// cosine of its inclination, rad: out of a tilted hand things creep.
+const PER_TILT_RAD: f64 = 40.0;
 /// The usual hand is used unless the other one turns less by this, rad: changing hands is no end in itself.
 const USUAL_RAD: f64 = 0.4;
 
@@ -90,10 +93,11 @@ impl Running<'_> {
     /// The hands that may grasp and are fit to move; the first reason where none is.
     pub(super) fn fit_hands(&mut self) -> Result<Vec<Hand>, End> {
         let asked = self.order.method.hands(self.order.hand)?;
+        let turning = self.turning()?;
         let mut fit = vec![];
         let mut why = None;
         for hand in asked {
-            let is_fit = self.take(*hand).and_then(|()| self.ready());
+            let is_fit = self.take(*hand).and_then(|()| self.ready(&turning));
             match is_fit {
                 Ok(()) => fit.push(*hand),
                 Err(unfit) => why = why.or(Some(unfit)),
@@ -160,7 +164,10 @@ impl Running<'_> {
         let covariance_m2 = planner.arm().covariance_m2(closing);
         let sigma_m = covariance_m2.fixed_view::<2, 2>(0, 0).trace().max(0.0).sqrt();
         let empty = self.record.earlier.iter().filter(|earlier| earlier.hand == hand).count() as f64;
-        let cost_rad = plan.effort_rad + PER_SIGMA_RAD_M * sigma_m + CAME_UP_EMPTY_RAD * empty;
+        let lifted = grasper.lift(method, closing, plan.heading_rad);
+        let tilt = lifted.last().map_or(0.0, |top| (plan.level - planner.arm().level(top)).max(0.0));
+        let cost_rad =
+            plan.effort_rad + PER_SIGMA_RAD_M * sigma_m + CAME_UP_EMPTY_RAD * empty + PER_TILT_RAD * tilt;
         Ok(Offer { hand, plan, cost_rad })
     }
 

@@ -41,7 +41,7 @@ impl Running<'_> {
             .filter(is_of_class)
             .filter(|thing| !holds || is_untouched(thing, before))
             .any(|thing| is_where_it_was(thing, before, &chosen.point, &others));
-        self.record.seen_after = seen;
+        (self.record.seen_after_at_s, self.record.seen_after) = (Some(sight.at_s), seen);
         let object = object.to_lowercase();
         Ok(match (holds, left) {
             (true, false) => Outcome::Success,

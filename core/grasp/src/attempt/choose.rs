@@ -40,7 +40,7 @@ impl Running<'_> {
         let grasper = &mut *self.grasper;
         let seen = grasper.looker.look_at_table(sight, &grasper.knowledge)?;
         self.watch.saw(Step::Look, sight, &seen);
-        self.record.seen = seen;
+        (self.record.seen_at_s, self.record.seen) = (Some(sight.at_s), seen);
         let object = &self.order.object;
         let thing = Thing::of_class(object)
             .ok_or_else(|| End::Refused(format!("nothing is known of a thing called {object}")))?;
@@ -92,6 +92,10 @@ impl Running<'_> {
         {
             let support_m = knowledge.support_m(found.xy_m.x, found.xy_m.y);
             point = Vector3::new(found.xy_m.x, found.xy_m.y, support_m + 0.5 * thing.height_m);
+            // Boxes and height alone. What is not known of the mount of the eyes and of their effects is left
+            // out: the hand is then found by the same eyes beside the thing, and what moves both alike does not
+            // bring one away from the other, which is all that the sum of both is looked at for (`sure.rs`). Of a
+            // hand that is not found this says too little: the arm's word does not move with the eyes.
             covariance_m2 = Matrix3::identity() * HEIGHT_SIGMA_M.powi(2);
             covariance_m2.fixed_view_mut::<2, 2>(0, 0).copy_from(&found.covariance_m2);
         }

@@ -8,6 +8,7 @@ mod choose;
 mod over;
 mod ready;
 mod rendered;
+mod sure;
 
 use jiff::Timestamp;
 use nalgebra::Vector3;
@@ -28,6 +29,7 @@ use arms::OneArm;
 
 pub use align::{FoundHand, HandFinder, HandMissing};
 pub use choose::Chosen;
+pub use ready::HANGS_RAD;
 pub use rendered::{NoHand, RenderedHand};
 
 /// Peak joint speed through the air, rad/s.
@@ -180,6 +182,16 @@ impl Grasper {
         self.arm.planner(method)
     }
 
+    /// Up from where the hand closed. The published methods go straight up.
+    pub fn lift(&self, method: Method, closed: &Posture, heading_rad: f64) -> Vec<Posture> {
+        let planner = self.planner(method);
+        if method.knows_effects() {
+            planner.lift(closed, heading_rad, GraspPlanner::LIFT_M)
+        } else {
+            planner.vertical(heading_rad, closed, GraspPlanner::LIFT_M)
+        }
+    }
+
     /// Grasps once, beginning now. Whatever happens, the record says it, and the arm holds where it is.
     pub fn attempt(
         &mut self,
@@ -276,6 +288,9 @@ impl Running<'_> {
         self.begin(Step::Look);
         let before = self.body.look()?;
         let mut chosen = self.find(&before)?;
+        if self.order.method == Method::M5 {
+            sure::sure_of_object(&self.order.object, &chosen.covariance_m2)?;
+        }
         self.begin(Step::Plan);
         let beside = self.beside(&chosen);
         self.grasper.leave(&beside);
@@ -324,7 +339,7 @@ impl Running<'_> {
         self.begin(Step::Close);
         let closed = self.close(&plan)?;
         self.begin(Step::Lift);
-        let up = self.grasper.planner(method).lift(&plan, &closed, GraspPlanner::LIFT_M);
+        let up = self.grasper.lift(method, &closed, plan.heading_rad);
         self.follow(Step::Lift, &up, LIFT_RAD_S)?;
         self.record.seconds = Some(self.body.now_s() - self.began_s);
         self.body.grip()?;

@@ -6,6 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 use plumbline_model::robot::{JointIndex, Posture};
 
 use super::align::{FARTHEST_M, FoundHand, HandFinder, HandMissing, SPEED_RAD_S, near_enough};
+use super::sure::{over_table_m, sure_enough};
 use super::{Chosen, End, Running, STILL_S};
 use crate::body::Sight;
 use crate::plan::GraspPlan;
@@ -27,12 +28,6 @@ const SHARES: [f64; 5] = [1.0, 0.75, 0.5, 0.25, 0.0];
 const LOW_M: f64 = 0.04;
 /// Looks at the hand, at most.
 const LOOKS: usize = 5;
-/// How far off a hand may be over the table, in the worst direction, and still lift what it closes around,
-/// m: 6 mm to either side are lifted at all places of `tests/tolerance.rs` (`off_by`), 12 mm are not.
-const HOLDS_M: f64 = 0.009;
-/// Hand and object together may be this uncertain over the table, m: of a hundred hands eighty are then
-/// nearer than [`HOLDS_M`].
-const MOST_SIGMA_M: f64 = HOLDS_M / 1.28;
 /// Standard deviation of the height that its model has over the table, m: both were taught by touching.
 /// What the eyes say of a height is off by millimeters as their mount and lenses are, and off the same way
 /// at every look, while the object's height is the table's: a hand that is believed to be higher or lower
@@ -121,7 +116,7 @@ impl Running<'_> {
             over = self.corrected(over, &mut error)?;
             over = self.go_over(over, &mut error)?;
         }
-        self.sure_enough(chosen, &error.covariance_m2)?;
+        sure_enough(&chosen.covariance_m2, &error.covariance_m2)?;
         Ok(over.plan)
     }
 
@@ -147,7 +142,7 @@ impl Running<'_> {
         let found = match found {
             Ok(found) => found,
             Err(HandMissing(why)) => {
-                self.looked(sent, Err(why), None, Some(over_table_m(&error.covariance_m2)));
+                self.looked(&sight, sent, Err(why), None, Some(over_table_m(&error.covariance_m2)));
                 return Ok(None);
             }
         };
@@ -155,7 +150,7 @@ impl Running<'_> {
         error.looked(palm - modeled, covariance_m2);
         let palm = modeled + error.m;
         let missing_m = (plan.palm_m - palm).xy().norm();
-        self.looked(sent, Ok(palm), Some(missing_m), Some(over_table_m(&error.covariance_m2)));
+        self.looked(&sight, sent, Ok(palm), Some(missing_m), Some(over_table_m(&error.covariance_m2)));
         if error.m.norm() > FARTHEST_M {
             let why = "the hand seems to be far from where the model has it: touch again in Touch";
             return Err(End::Failed(Failure::HandWrong, why.to_owned()));
@@ -240,19 +235,6 @@ impl Running<'_> {
         error.moved(drift_m2);
         Ok(())
     }
-
-    /// Refuses when hand and object together are not known well enough.
-    fn sure_enough(&self, chosen: &Chosen, hand_m2: &Matrix3<f64>) -> Result<(), End> {
-        let sigma_m = over_table_m(&(chosen.covariance_m2 + hand_m2));
-        if sigma_m <= MOST_SIGMA_M {
-            return Ok(());
-        }
-        Err(End::Refused(format!(
-            "hand and object are known to {:.0} mm only, {:.0} mm are needed: calibrate the mount of the eyes, or name the effects in Gap",
-            sigma_m * 1e3,
-            MOST_SIGMA_M * 1e3
-        )))
-    }
 }
 
 /// The hand that was found, with what the arm's model says of its height.
@@ -261,13 +243,6 @@ fn at_height(found: &FoundHand, height_m: f64) -> (Vector3<f64>, Matrix3<f64>) {
     let gain = covariance_m2.column(2) / (covariance_m2[(2, 2)] + ARM_HEIGHT_SIGMA_M.powi(2));
     let row = covariance_m2.row(2).into_owned();
     (palm - gain * (palm.z - height_m), covariance_m2 - gain * row)
-}
-
-/// Standard deviation in the worst direction over the table, m.
-fn over_table_m(covariance_m2: &Matrix3<f64>) -> f64 {
-    let (a, b, c) = (covariance_m2[(0, 0)], covariance_m2[(0, 1)], covariance_m2[(1, 1)]);
-    let (mean, half) = (0.5 * (a + c), 0.5 * (a - c));
-    (mean + half.hypot(b)).max(0.0).sqrt()
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 mod beside;
 mod fingers;
 mod headed;
+mod lifted;
 mod lowered;
 mod standing;
 mod ways;
@@ -273,11 +274,6 @@ impl GraspPlanner {
         Err(why.unwrap_or(out_of_reach))
     }
 
-    /// Straight up from where the hand closed, fingers as they are.
-    pub fn lift(&self, plan: &GraspPlan, closed: &Posture, by_m: f64) -> Vec<Posture> {
-        self.vertical(plan.heading_rad, closed, by_m)
-    }
-
     /// Straight up (down where `by_m` is negative) as far as the arm gets, fingers as they are.
     pub fn vertical(&self, heading_rad: f64, from: &Posture, by_m: f64) -> Vec<Posture> {
         let start = self.arm.palm(from).coords;
@@ -292,9 +288,6 @@ impl GraspPlanner {
         }
         way
     }
-
-    /// How high things are usually lifted, m.
-    pub const LIFT_M: f64 = LIFT_M;
 
     /// The way down onto what stands somewhere; a palm that cannot be level comes from where it is
     /// turned to.

@@ -179,4 +179,39 @@ mod tests {
             assert!(there.may_meet_table(above, &plan.down).expect("postures"), "{xy_m:?}");
         }
     }
+
+    /// Low over a place from which a hand has no room to sag on its way to another one.
+    fn low_over(planner: &GraspPlanner, xy_m: [f64; 2]) -> Posture {
+        const STEPS_DOWN: usize = 4;
+        let rig = planner.arm().rig();
+        let standing = Standing { xy_m, support_m: rig.table.height_m, height_m: 0.054, lower_m: 0.0 };
+        let plan = planner.plan(&standing, &Vector3::zeros(), &rig.home()).expect("a plan");
+        plan.down.get(STEPS_DOWN - 1).or(plan.closing()).cloned().expect("a way down")
+    }
+
+    #[test]
+    fn where_the_straight_way_would_sweep_over_the_table_the_arm_goes_over_its_home() {
+        let rig = Arc::new(Rig::built_in("nico").expect("valid"));
+        let planner = planner(&rig);
+        let arm = planner.arm().joints().to_vec();
+        let places = [[0.2, -0.1], [0.3, -0.1], [0.3, -0.2], [0.4, -0.2], [0.4, 0.0], [0.3, 0.1]];
+        let low = places.map(|xy_m| low_over(&planner, xy_m));
+        let (mut straight, mut over_home) = (0, 0);
+        for (from, to) in low.iter().flat_map(|from| low.iter().map(move |to| (from, to))) {
+            let barred = planner.is_free(from, std::slice::from_ref(to)).expect("postures");
+            let Ok(way) = planner.free_way(from, to) else { continue };
+            assert_eq!(way.last(), Some(to));
+            let free = planner.is_free(from, &way);
+            assert_eq!(free, Ok(None), "what is given out is free");
+            let is_home = |posture: &Posture| posture.of(&arm) == rig.home().of(&arm);
+            if barred.is_none() {
+                assert_eq!(way.len(), 1, "no detour where none is needed");
+                straight += 1;
+            } else {
+                assert!(way.iter().any(is_home), "{barred:?}: {way:?}");
+                over_home += usize::from(barred.is_some_and(|why| why.contains("sweep over the table")));
+            }
+        }
+        assert!(straight > 0 && over_home > 0, "{straight} straight, {over_home} over home");
+    }
 }

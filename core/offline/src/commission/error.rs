@@ -45,6 +45,36 @@ pub enum CommissionError {
         /// Who is to be commissioned.
         wanted: String,
     },
+    /// A lab of another twin than the one that is to grasp.
+    #[error(
+        "{} was commissioned on the twin \"{of}\", and \"{asked}\" is another one or has changed since: name the twin that it was commissioned on with --twin, or commission \"{asked}\"",
+        .folder.display()
+    )]
+    LabOfOther {
+        /// The lab.
+        folder: PathBuf,
+        /// Its twin.
+        of: String,
+        /// The twin that was asked for.
+        asked: String,
+    },
+    /// A lab of a scenario that is in a file, which the lab cannot name.
+    #[error(
+        "{} was commissioned on the twin \"{of}\", whose file it does not know: name the file with --twin",
+        .folder.display()
+    )]
+    LabOfFile {
+        /// The lab.
+        folder: PathBuf,
+        /// Its twin.
+        of: String,
+    },
+    /// A folder that does not say of which twin it is.
+    #[error("{} does not say on which twin it was commissioned: name it with --twin", .folder.display())]
+    NoTwin {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// What was written about the steps cannot be read.
     #[error("{} cannot be used ({reason}): give another folder with --out, or remove it", .file.display())]
     Steps {

@@ -22,7 +22,7 @@ mod plan;
 pub(crate) mod published;
 mod robot;
 mod see;
-mod steps;
+pub(crate) mod steps;
 #[cfg(test)]
 mod tests;
 mod touches;

@@ -108,9 +108,79 @@ impl Steps {
     }
 }
 
+/// The twin that a lab was commissioned on: the one that is asked for, and where none is, the one of which the
+/// lab says that it is.
+///
+/// # Errors
+/// When the lab was commissioned on another one, or does not say on which and none is asked for.
+pub(crate) fn twin_of(folder: &Path, asked: Option<&str>) -> Result<Scenario, CommissionError> {
+    #[derive(Deserialize)]
+    struct Whose {
+        twin: String,
+        fingerprint: String,
+    }
+    let file = folder.join(FILE);
+    if !files::present(&file)? {
+        let unsaid = || CommissionError::NoTwin { folder: folder.to_owned() };
+        return Ok(Scenario::named_or_file(asked.ok_or_else(unsaid)?)?);
+    }
+    let text = files::read_text(&file, Size::TEXT)?;
+    let whose: Whose = serde_json::from_str(&text)
+        .map_err(|error| CommissionError::Steps { file: file.clone(), reason: error.to_string() })?;
+    let other = |asked: String| CommissionError::LabOfOther {
+        folder: folder.to_owned(),
+        of: whose.twin.clone(),
+        asked,
+    };
+    let scenario = match asked {
+        Some(asked) => Scenario::named_or_file(asked)?,
+        None => Scenario::named_or_file(&whose.twin)
+            .map_err(|_| CommissionError::LabOfFile { folder: folder.to_owned(), of: whose.twin.clone() })?,
+    };
+    if whose.fingerprint == fingerprint(&scenario) { Ok(scenario) } else { Err(other(scenario.name)) }
+}
+
+/// A number that differs between labs: of what is written about their commissioning, and of their twin.
+pub(crate) fn identity(folder: &Path, scenario: &Scenario) -> Result<String, CommissionError> {
+    let file = folder.join(FILE);
+    let steps = if files::present(&file)? { files::read_text(&file, Size::TEXT)? } else { String::new() };
+    let mut hasher = std::hash::DefaultHasher::new();
+    (fingerprint(scenario), steps).hash(&mut hasher);
+    Ok(format!("{:016x}", hasher.finish()))
+}
+
 /// A number that differs between scenarios. It tells nothing of what they hide.
 fn fingerprint(scenario: &Scenario) -> String {
     let mut hasher = std::hash::DefaultHasher::new();
     format!("{scenario:?}").hash(&mut hasher);
     format!("{:016x}", hasher.finish())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lab_says_of_which_twin_it_is_and_no_other_one_is_taken_for_it() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let lab = folder.path();
+        let said = twin_of(lab, None).expect_err("it says nothing").to_string();
+        assert!(said.contains("name it with --twin"), "{said}");
+        assert_eq!(twin_of(lab, Some("perfect")).expect("as asked").name, "perfect");
+
+        let perfect = Scenario::named_or_file("perfect").expect("comes with the program");
+        let nothing = identity(lab, &perfect).expect("readable");
+        let mut steps = Steps::read(lab, &perfect, 1).expect("begun");
+        steps.add(lab, Step::new("eyes", "pixels")).expect("written");
+        assert_eq!(twin_of(lab, None).expect("its own").name, "perfect");
+        assert_eq!(twin_of(lab, Some("perfect")).expect("the same").name, "perfect");
+        let said = twin_of(lab, Some("lab")).expect_err("another one").to_string();
+        assert!(said.contains("\"perfect\"") && said.contains("\"lab\""), "{said}");
+        assert_ne!(identity(lab, &perfect).expect("readable"), nothing, "more was done");
+
+        let text = std::fs::read_to_string(lab.join(FILE)).expect("written");
+        std::fs::write(lab.join(FILE), text.replace("\"perfect\"", "\"of a file\"")).expect("written");
+        let said = twin_of(lab, None).expect_err("a file").to_string();
+        assert!(said.contains("name the file with --twin"), "{said}");
+    }
 }

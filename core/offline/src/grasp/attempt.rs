@@ -1,9 +1,11 @@
 //! One attempt on a twin, carried out and judged.
 
 use std::cell::RefCell;
+use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
 
+use plumbline_engine::grasp::{Keeping, KeepingError, image_name};
 use plumbline_engine::trials::Judged;
 use plumbline_grasp::attempt::HandFinder;
 use plumbline_grasp::plan::GraspPlan;
@@ -66,6 +68,10 @@ pub(super) struct Bench {
     scenario: Scenario,
     grasper: Grasper,
     eyes: Option<EyeRenderer>,
+    /// Where records and images of attempts go.
+    keeping: Option<Keeping>,
+    /// Why something of the last attempt was not kept.
+    problem: Option<KeepingError>,
 }
 
 /// A thing at a place, and how it is to be grasped.
@@ -89,7 +95,14 @@ impl Bench {
         let options = DetectorOptions { threads: Some(1), ..DetectorOptions::default() };
         let looker = Looker::new(shipped.open(&options)?, &knowledge, DetectSettings::default());
         let grasper = Grasper::new(knowledge, looker, finder)?;
-        Ok(Self { rig, scenario, grasper, eyes: None })
+        Ok(Self { rig, scenario, grasper, eyes: None, keeping: None, problem: None })
+    }
+
+    /// From now on, record and images of an attempt go into this folder, as in the window.
+    pub fn keep_in(&mut self, folder: PathBuf) -> Result<(), OfflineError> {
+        plumbline_model::files::make_folder(&folder)?;
+        self.keeping = Some(Keeping::of(folder));
+        Ok(())
     }
 
     /// The robot as described.
@@ -119,6 +132,12 @@ impl Bench {
         let mut body = self.world(task)?;
         let done = self.attempt_in(&mut body, task, meddler);
         self.put_away(body);
+        if let Some(problem) = self.problem.take() {
+            return Err(problem.into());
+        }
+        if let Some(keeping) = &self.keeping {
+            keeping.record(&done.0)?;
+        }
         Ok(done)
     }
 
@@ -154,9 +173,11 @@ impl Bench {
             meddler: &meddler,
             last: Step::Ready,
         };
-        let mut watch = Steps { step, meddler: &meddler };
+        let keeping = self.keeping.as_ref();
+        let mut watch = Steps { step, meddler: &meddler, keeping, number: 1, looks: 0, problem: None };
         let mut record =
             self.grasper.attempt(&mut watched, &task.order, jiff::Timestamp::UNIX_EPOCH, &mut watch);
+        self.problem = watch.problem;
         self.hold(body, &mut record);
         let judged = judge.borrow().judge(body.twin(), &record);
         (record, judged)
@@ -178,10 +199,17 @@ impl Bench {
     }
 }
 
-/// Tells the judge where the attempt is, and the meddler what is kept.
+/// Tells the judge where the attempt is, and the meddler what is kept; keeps what is seen.
 struct Steps<'a, 'm> {
     step: Rc<RefCell<Step>>,
     meddler: &'a RefCell<&'m mut dyn Meddler>,
+    keeping: Option<&'a Keeping>,
+    /// Which try it is, from 1.
+    number: usize,
+    /// Looks at the hand in this try.
+    looks: usize,
+    /// Why something was not kept.
+    problem: Option<KeepingError>,
 }
 
 impl Watch for Steps<'_, '_> {
@@ -191,9 +219,22 @@ impl Watch for Steps<'_, '_> {
 
     fn about_to(&mut self, record: &Record) {
         self.meddler.borrow_mut().keeps(record);
+        if let Some(Err(problem)) = self.keeping.map(|keeping| keeping.record(record)) {
+            self.problem = Some(problem);
+        }
     }
 
-    fn saw(&mut self, _step: Step, _sight: &Sight, _seen: &[Seen]) {}
+    fn again(&mut self, number: usize, _of: usize, _why: &str) {
+        (self.number, self.looks) = (number, 0);
+    }
+
+    fn saw(&mut self, step: Step, sight: &Sight, _seen: &[Seen]) {
+        self.looks += usize::from(step == Step::Align);
+        let name = image_name(self.number, step, self.looks);
+        if let Some(Err(problem)) = self.keeping.map(|keeping| keeping.images(&name, sight)) {
+            self.problem = Some(problem);
+        }
+    }
 
     fn planned(&mut self, _plan: &GraspPlan) {}
 

@@ -17,13 +17,14 @@ use plumbline_twin::{Scenario, Toy};
 use super::attempt::{Bench, Task};
 use super::lab;
 use crate::OfflineError;
+use crate::commission::steps;
 use crate::table::Table;
 
 /// An experiment, or a part of it.
 #[derive(Clone, Debug)]
 pub struct TrialsArgs {
-    /// Name of a scenario, or a file.
-    pub twin: String,
+    /// Name of a scenario, or a file; `None`: the one that the lab was commissioned on.
+    pub twin: Option<String>,
     /// Folder of a commissioned lab.
     pub lab: PathBuf,
     /// Methods to compare.
@@ -42,6 +43,8 @@ pub struct TrialsArgs {
     pub shard: Option<(usize, usize)>,
     /// Where to.
     pub out: PathBuf,
+    /// Whether what both eyes saw is kept beside every attempt.
+    pub images: bool,
 }
 
 /// Runs an experiment, or goes on where it was interrupted.
@@ -49,7 +52,7 @@ pub struct TrialsArgs {
 /// # Errors
 /// When the lab is not ready, or files cannot be written; what was done before stays.
 pub fn grasp_trials(args: &TrialsArgs, context: &dyn JobContext) -> Result<Summary, OfflineError> {
-    let scenario = crate::commission::scenario(&args.twin)?;
+    let scenario = steps::twin_of(&args.lab, args.twin.as_deref())?;
     let thing = Thing::of_class(&args.object).ok_or_else(|| OfflineError::unknown_thing(&args.object))?;
     let toy = Toy::from_name(&thing.class.to_lowercase())
         .ok_or_else(|| OfflineError::unknown_thing(&args.object))?;
@@ -66,10 +69,11 @@ pub fn grasp_trials(args: &TrialsArgs, context: &dyn JobContext) -> Result<Summa
         hand: args.hand,
         object: thing.class.to_owned(),
         seed: args.seed,
+        lab: Some(steps::identity(&args.lab, &scenario)?),
     };
     store::begin(&args.out, &experiment)?;
     let mut bench = bench(&args.lab, scenario, &args.methods, context)?;
-    carry_out(&experiment, &mut bench, toy, args.shard, &args.out, context)?;
+    carry_out(&experiment, &mut bench, (toy, args.shard, args.images), &args.out, context)?;
     conclude(&args.out, &experiment)
 }
 
@@ -77,8 +81,7 @@ pub fn grasp_trials(args: &TrialsArgs, context: &dyn JobContext) -> Result<Summa
 pub(super) fn carry_out(
     experiment: &Experiment,
     bench: &mut Bench,
-    toy: Toy,
-    shard: Option<(usize, usize)>,
+    (toy, shard, images): (Toy, Option<(usize, usize)>, bool),
     out: &Path,
     context: &dyn JobContext,
 ) -> Result<(), OfflineError> {
@@ -88,6 +91,9 @@ pub(super) fn carry_out(
         context.report(done as f64 / mine.len().max(1) as f64, "grasping");
         if store::is_made(out, trial) {
             continue;
+        }
+        if images {
+            bench.keep_in(out.join("images").join(format!("{:05}-{}", trial.number, trial.method.name())))?;
         }
         let task = task(experiment, trial, toy);
         let (record, judged) = bench.attempt(&task)?;

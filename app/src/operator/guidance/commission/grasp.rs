@@ -47,8 +47,7 @@ pub(super) fn said(view: &View) -> Said {
         }
         return Said::wait(trouble, None).warn();
     }
-    let grasps =
-        "Both eyes look for the tomato; then the right arm reaches for it, closes the hand and lifts it.";
+    let grasps = "Both eyes look for the tomato; then one arm reaches for it, closes the hand and lifts it.";
     let sentence = match run.and_then(|run| run.outcome.as_ref()) {
         _ if slipped => format!("It was held and has slipped out. It is tried once more. {grasps}"),
         Some(GraspOutcome::Failed { why, .. } | GraspOutcome::Refused { why }) => {
@@ -82,7 +81,7 @@ fn lay_out(view: &View, again: bool) -> Said {
     }
     if again {
         // The hand may hold it, or stand where it is to lie.
-        let sentence = format!("The right arm goes home; an unseen hand lays the tomato {place}.");
+        let sentence = format!("The arm goes home; an unseen hand lays the tomato {place}.");
         let home = Action::Grasp(GraspAction::Hand(HandStep::Home));
         return Said::press(sentence, "Lay the tomato out again", vec![home, lay]);
     }

@@ -132,7 +132,7 @@ fn start(ui: &mut Ui, cx: &mut PanelContext<'_>, draft: &Drafted) {
             let minutes = (count * ATTEMPT_S).div_ceil(60);
             ui.label(theme::small(
                 ui,
-                format!("About {minutes} min. The right arm moves at each; the head and the left arm stay. It can be paused, and goes on after a restart."),
+                format!("About {minutes} min. One arm moves at each, M1 to M4 the right one; the head stays. It can be paused, and goes on after a restart."),
             ));
         }
     }

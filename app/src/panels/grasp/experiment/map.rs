@@ -8,7 +8,7 @@ use plumbline_widgets::theme::{self, Role};
 use crate::operator::snapshot::trials::{Page, PageMethod, PagePosition};
 
 /// What is shown of the table, robot frame: x (up) and y (to the left), m.
-const SHOWN_M: [[f64; 2]; 2] = [[0.12, 0.56], [-0.48, 0.38]];
+const SHOWN_M: [[f64; 2]; 2] = [[0.12, 0.56], [-0.46, 0.46]];
 const DOT: f32 = 11.0;
 
 pub fn show(ui: &mut Ui, page: &Page, method: &PageMethod) {
@@ -30,6 +30,11 @@ pub fn show(ui: &mut Ui, page: &Page, method: &PageMethod) {
     let [[x0, x1], [y0, y1]] = page.area_m;
     let area = [[x0, y0], [x0, y1], [x1, y1], [x1, y0], [x0, y0]].map(|at_m| on(rect, at_m));
     painter.extend(Shape::dashed_line(&area, Stroke::new(1.0, tokens.text_weak), 4.0, 3.0));
+    for at_m in &page.beyond_m {
+        if !method.positions.iter().any(|position| position.at_m == *at_m) {
+            painter.circle_stroke(on(rect, *at_m), 0.35 * DOT, Stroke::new(1.0, tokens.text_weak));
+        }
+    }
     for position in &method.positions {
         dot(ui, &painter, rect, position);
     }

@@ -131,6 +131,44 @@ fn killed_in_any_step_the_record_says_how_far_it_came_and_the_next_grasp_works()
     assert_eq!(run.outcome, Some(GraspOutcome::Success), "{run:?}");
 }
 
+/// STOP in a step: the arm holds, and a grasp under STOP moves nothing. Then the hand opens, goes home, and the
+/// tomato is where it was.
+fn stop_in(bench: &Bench, step: GraspStep) {
+    bench.begin();
+    bench.until_step(step);
+    std::thread::sleep(Duration::from_millis(150));
+    bench.stop();
+    let view = bench.until_idle();
+    let run = view.grasp.run.clone().expect("there was one");
+    assert!(
+        matches!(&run.outcome, Some(GraspOutcome::Failed { failure: Failure::Halted, why }) if why.contains("STOP")),
+        "{step:?}: {}",
+        words(run.outcome.as_ref())
+    );
+    assert_eq!(bench.kept().step, Some(step), "the record says where it came to");
+    // A beginning under STOP is refused, and nothing moves.
+    bench.send(GraspCommand::Grasp);
+    let moved_rad = bench.creeps_rad();
+    println!("stopped in {step:?}: moves by {moved_rad:.4} rad after that");
+    assert!(moved_rad < 0.02, "{step:?}: it moved by {moved_rad:.3} rad");
+    bench.send(RobotCommand::ReleaseStop);
+    bench.until("release", |view| !view.robot.stopped);
+    for step in [HandStep::Open, HandStep::Home] {
+        bench.hand(step);
+    }
+    bench.place(Toy::Tomato, EASY_M);
+    bench.settle();
+}
+
+#[test]
+fn stopped_while_it_lowers_or_lifts_the_arm_holds_and_the_next_grasp_comes_as_far() {
+    let Some(bench) = Bench::start("perfect", Toy::Tomato, EASY_M) else { return };
+    // The second one is lowered and closes where the first one was stopped.
+    for step in [GraspStep::Lower, GraspStep::Lift] {
+        stop_in(&bench, step);
+    }
+}
+
 #[test]
 #[ignore = "three minutes of a robot's time: once through every step"]
 fn stopped_in_any_step_the_arm_holds_and_the_next_grasp_works() {
@@ -143,39 +181,7 @@ fn stopped_in_any_step_the_arm_holds_and_the_next_grasp_works() {
         GraspStep::Lift,
         GraspStep::Check,
     ] {
-        bench.send(GraspCommand::Grasp);
-        bench.until_step(step);
-        std::thread::sleep(Duration::from_millis(150));
-        bench.stop();
-        let view = bench.until_idle();
-        let run = view.grasp.run.clone().expect("there was one");
-        assert!(
-            matches!(&run.outcome, Some(GraspOutcome::Failed { failure: Failure::Halted, why }) if why.contains("STOP")),
-            "{step:?}: {}",
-            words(run.outcome.as_ref())
-        );
-        // A beginning under STOP is refused, and nothing moves.
-        bench.send(GraspCommand::Grasp);
-        std::thread::sleep(Duration::from_millis(700));
-        let posture = |what| bench.until(what, |view| view.robot.measured.is_some()).robot.measured.clone();
-        let stood = posture("angles").expect("read");
-        std::thread::sleep(Duration::from_millis(700));
-        let moved_rad = stood.distance_rad(&posture("angles").expect("read"));
-        println!("stopped in {step:?}: moves by {moved_rad:.4} rad after that");
-        assert!(moved_rad < 0.02, "{step:?}: it moved by {moved_rad:.3} rad");
-        bench.send(RobotCommand::ReleaseStop);
-        bench.until("release", |view| !view.robot.stopped);
-        for step in [HandStep::Open, HandStep::Home] {
-            // A hand that is open already is open at once.
-            let sent = Instant::now();
-            bench.send(GraspCommand::Hand(step));
-            bench.until("it to begin", |view| {
-                view.grasp.phase.moves() || sent.elapsed() > Duration::from_millis(700)
-            });
-            bench.until_idle();
-        }
-        bench.place(Toy::Tomato, EASY_M);
-        bench.settle();
+        stop_in(&bench, step);
     }
     let run = bench.grasp();
     assert_eq!(run.outcome, Some(GraspOutcome::Success), "{run:?}");

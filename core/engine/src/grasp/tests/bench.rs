@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use plumbline_grasp::Record;
 use plumbline_twin::Toy;
 use tempfile::TempDir;
 
-use crate::command::{Command, GraspCommand, RobotCommand, TwinCommand};
+use crate::command::{Command, GraspCommand, HandStep, RobotCommand, TwinCommand};
 use crate::engine::Engine;
 use crate::engine::settings::EngineSettings;
 use crate::view::{GraspOutcome, GraspPhase, GraspRun, GraspStep, LampState, SourceStatus, View};
@@ -46,25 +47,30 @@ impl Bench {
         };
         let engine = Engine::start(settings, Arc::new(|| {}));
         let bench = Self { engine, folder: folder.to_owned(), _temporary: None };
-        bench.until("the twin is connected", |view| view.robot.measured.is_some() && view.twin.running);
+        bench.make_ready(toy, at_m).then_some(bench)
+    }
+
+    /// Waits for a twin that was started; with one toy on its table it holds and its eyes are open. `false`: they
+    /// cannot be rendered.
+    pub fn make_ready(&self, toy: Toy, at_m: [f64; 2]) -> bool {
+        self.until("the twin is connected", |view| view.robot.measured.is_some() && view.twin.running);
         // A busy machine starts it so slowly that STOP may have been pressed.
-        bench.send(RobotCommand::ReleaseStop);
-        bench.send(RobotCommand::Torque { joints: vec![], on: true });
+        self.send(RobotCommand::ReleaseStop);
+        self.send(RobotCommand::Torque { joints: vec![], on: true });
         for other in Toy::ALL.into_iter().filter(|other| *other != toy) {
-            bench.send(TwinCommand::RemoveToy { toy: other.name().to_owned() });
+            self.remove(other);
         }
-        bench.place(toy, at_m);
-        let view = bench.until("the eyes are open or lost", |view| {
+        self.place(toy, at_m);
+        let view = self.until("the eyes are open or lost", |view| {
             matches!(view.source.status, SourceStatus::Running | SourceStatus::Lost { .. })
                 && (view.live.raw.is_some() || !matches!(view.source.status, SourceStatus::Running))
         });
         if let SourceStatus::Lost { reason, .. } = &view.source.status {
             println!("skipped: {reason}");
-            return None;
+            return false;
         }
-        bench
-            .until("joints hold", |view| view.robot.joints.iter().all(|joint| joint.torque_on == Some(true)));
-        Some(bench)
+        self.until("joints hold", |view| view.robot.joints.iter().all(|joint| joint.torque_on == Some(true)));
+        true
     }
 
     pub fn place(&self, toy: Toy, [x_m, y_m]: [f64; 2]) {
@@ -118,10 +124,43 @@ impl Bench {
         self.until("the end", |view| view.grasp.phase == GraspPhase::Idle)
     }
 
-    /// Grasps, to its end.
-    pub fn grasp(&self) -> Arc<GraspRun> {
+    /// One step of the hand by itself, to its end; a hand that is open already is open at once.
+    pub fn hand(&self, step: HandStep) -> Arc<View> {
+        let sent = Instant::now();
+        self.send(GraspCommand::Hand(step));
+        self.until("it to begin", |view| {
+            view.grasp.phase.moves() || sent.elapsed() > Duration::from_millis(700)
+        });
+        self.until_idle()
+    }
+
+    /// How far a joint of an arm that is to hold turns within 0.7 s, once it has come to rest, rad.
+    pub fn creeps_rad(&self) -> f64 {
+        let posture = || {
+            std::thread::sleep(Duration::from_millis(700));
+            let view = self.until("angles", |view| view.robot.measured.is_some());
+            view.robot.measured.clone().expect("just seen")
+        };
+        posture().distance_rad(&posture())
+    }
+
+    /// What was kept of the newest attempt.
+    pub fn kept(&self) -> Record {
+        let grasps = std::fs::read_dir(self.folder.join("twin/grasps")).expect("attempts were kept");
+        let newest = grasps.flatten().map(|entry| entry.path()).max().expect("one at least");
+        let text = std::fs::read_to_string(newest.join("record.json")).expect("readable");
+        serde_json::from_str(&text).expect("a record")
+    }
+
+    /// Begins a grasp: from then on the window shows this one, and not the one before.
+    pub fn begin(&self) {
         self.send(GraspCommand::Grasp);
         self.until("the beginning", |view| view.grasp.phase.moves());
+    }
+
+    /// Grasps, to its end.
+    pub fn grasp(&self) -> Arc<GraspRun> {
+        self.begin();
         let view = self.until_idle();
         view.grasp.run.clone().expect("there was one")
     }

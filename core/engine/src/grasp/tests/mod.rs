@@ -4,6 +4,8 @@
 
 mod bad;
 mod bench;
+mod bus;
 mod lab;
 mod refusals;
+mod steps;
 mod twin;

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use plumbline_grasp::{Failure, Record};
+use plumbline_grasp::Failure;
 use plumbline_twin::Toy;
 
 use super::bench::{Bench, words};
@@ -10,16 +10,6 @@ use crate::command::{GraspCommand, HandStep, RobotCommand};
 use crate::view::{GraspOutcome, GraspStep, LampState, MotionState, SinceHeld, View};
 
 const EASY_M: [f64; 2] = [0.32, -0.15];
-
-/// What was kept of the newest attempt.
-fn kept(bench: &Bench) -> Record {
-    let grasps = bench.folder.join("twin/grasps");
-    let mut folders: Vec<_> =
-        std::fs::read_dir(grasps).expect("attempts were kept").flatten().map(|entry| entry.path()).collect();
-    folders.sort();
-    let file = folders.last().expect("one at least").join("record.json");
-    serde_json::from_str(&std::fs::read_to_string(file).expect("readable")).expect("a record")
-}
 
 #[test]
 fn a_thing_is_grasped_put_down_and_grasped_again() {
@@ -43,13 +33,13 @@ fn a_thing_is_grasped_put_down_and_grasped_again() {
     assert_eq!(run.outcome, Some(GraspOutcome::Success), "{run:?}");
     assert!(began.elapsed() < Duration::from_secs(60), "{:?}", began.elapsed());
     assert!(run.lamps.iter().all(|(_, lamp)| *lamp == LampState::Done), "{:?}", run.lamps);
-    let record = kept(&bench);
+    let record = bench.kept();
     assert_eq!(record.outcome, Some(GraspOutcome::Success));
     bench.send(GraspCommand::Judge { attempt: run.name.clone(), held: false });
     bench.until("the word of the operator", |view| {
         view.grasp.attempts.first().is_some_and(|attempt| attempt.told == Some(false))
     });
-    assert_eq!(kept(&bench).told_by_operator, Some(false));
+    assert_eq!(bench.kept().told_by_operator, Some(false));
     bench.send(GraspCommand::Hand(HandStep::Place));
     bench.until("it to begin", |view| view.grasp.phase.moves());
     let view = bench.until_idle();
@@ -75,7 +65,7 @@ fn stop_ends_it_the_arm_holds_and_the_next_one_works() {
     );
     let view = bench.until("it holds", |view| matches!(view.robot.motion, MotionState::Holding { .. }));
     assert!(view.robot.stopped);
-    assert_eq!(kept(&bench).step, Some(GraspStep::Approach));
+    assert_eq!(bench.kept().step, Some(GraspStep::Approach));
     bench.send(RobotCommand::ReleaseStop);
     bench.until("STOP to be released", |view| !view.robot.stopped);
     let run = bench.grasp();
@@ -99,7 +89,7 @@ fn what_is_held_and_slips_out_later_is_told() {
     let said = view.notices.iter().any(|notice| notice.text.contains("was held and has slipped out of the"));
     assert!(said, "{:?}", view.notices);
     bench.until("it to be kept", |view| view.grasp.attempts[0].slipped_after.is_some());
-    let record = kept(&bench);
+    let record = bench.kept();
     assert!(record.slipped_after_s.is_some_and(|after_s| after_s > 5.0) && !record.is_success());
     assert_eq!(record.outcome, Some(GraspOutcome::Success), "what it took itself for stays");
 }

@@ -6,6 +6,7 @@ use std::time::Instant;
 use plumbline_model::robot::Rig;
 use plumbline_model::{Point, Robot};
 
+use super::super::plan::ROBOT;
 use crate::grasp::view::AttemptView;
 use crate::robot::view::RobotView;
 use crate::twin::view::TwinView;
@@ -41,7 +42,7 @@ pub struct TrialsAround {
 impl TrialsAround {
     /// What an experiment is made with, for its file.
     pub(super) fn who(&self) -> String {
-        if self.is_twin { self.twin.scenario.clone() } else { format!("robot {}", self.rig.name) }
+        if self.is_twin { self.twin.scenario.clone() } else { format!("{ROBOT}{}", self.rig.name) }
     }
 
     /// How high a thing stands on the twin's table, as the scene shows it, m.

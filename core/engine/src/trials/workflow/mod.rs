@@ -67,8 +67,17 @@ impl TrialsWorkflow {
                 let positions_m = positions_m.unwrap_or_else(|| PLACES_M.to_vec());
                 let twin = around.who();
                 let (format, hand) = (FORMAT, HandChoice::Auto);
-                let experiment =
-                    Experiment { format, twin, methods, attempts, positions_m, hand, object, seed };
+                let experiment = Experiment {
+                    format,
+                    twin,
+                    methods,
+                    attempts,
+                    positions_m,
+                    hand,
+                    object,
+                    seed,
+                    lab: None,
+                };
                 self.begin(experiment, around, context)?;
             }
             TrialsCommand::Open { folder } => {

@@ -235,12 +235,14 @@ fn two_shards_put_together_are_one_run_byte_for_byte() {
         hand: HandChoice::Auto,
         object: "Tomato".to_owned(),
         seed: 7,
+        lab: None,
     };
     let run = |name: &str, shard| {
         let out = folder.path().join(name);
         begin(&out, &experiment).expect("begun");
         let mut bench = bench("perfect");
-        carry_out(&experiment, &mut bench, Toy::Tomato, shard, &out, &Unattended).expect("carried out");
+        carry_out(&experiment, &mut bench, (Toy::Tomato, shard, false), &out, &Unattended)
+            .expect("carried out");
         (conclude(&out, &experiment).expect("concluded"), out)
     };
     let (whole, whole_in) = run("whole", None);
@@ -328,7 +330,7 @@ fn in_a_lab() {
     let attempts = told("PLUMBLINE_ATTEMPTS", "1").parse().expect("a number");
     let out = tempfile::tempdir().expect("a folder");
     let args = super::TrialsArgs {
-        twin,
+        twin: Some(twin),
         lab: lab.into(),
         methods,
         attempts,
@@ -338,6 +340,7 @@ fn in_a_lab() {
         seed,
         shard: None,
         out: out.path().to_owned(),
+        images: false,
     };
     let summary = super::grasp_trials(&args, &context).expect("carried out");
     for (name, of) in &summary.methods {
