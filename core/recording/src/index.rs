@@ -12,7 +12,7 @@ use crate::error::RecordingError;
 use crate::records::each_record;
 use crate::topic::Topic;
 use crate::whose::Whose;
-use crate::writer::Attached;
+use crate::writer::{Attached, END};
 
 /// A record longer than this is no record of a recording, bytes.
 const LONGEST: usize = 256 << 20;
@@ -55,6 +55,8 @@ pub(crate) struct Index {
     pub attached: Vec<Attached>,
     /// Whether it ends as a recording does that was finished.
     pub is_whole: bool,
+    /// Pairs and messages that are not in it.
+    pub dropped: Option<u64>,
 }
 
 impl Index {
@@ -88,6 +90,10 @@ impl Scan {
             Record::Channel(channel) => self.channel(&channel),
             Record::Metadata(metadata) if metadata.name == "plumbline" => {
                 (self.index.whose, self.index.is_ours) = (Whose::of(&metadata), true);
+            }
+            Record::Metadata(metadata) if metadata.name == END => {
+                self.index.dropped =
+                    metadata.metadata.get("dropped").and_then(|dropped| dropped.parse().ok());
             }
             Record::Attachment { header, data, .. } => self.index.attached.push(Attached {
                 name: header.name,

@@ -84,6 +84,12 @@ impl Recording {
         self.index.is_whole
     }
 
+    /// Pairs and messages that are not in it, because disk or processor did not keep up; `None`: it does not say,
+    /// as one that was cut.
+    pub fn dropped(&self) -> Option<u64> {
+        self.index.dropped
+    }
+
     /// Files that belong to it.
     pub fn attached(&self) -> &[Attached] {
         &self.index.attached

@@ -21,6 +21,8 @@ use crate::topic::Topic;
 const CHUNK: SignedDuration = SignedDuration::from_secs(1);
 /// Or when it holds so many bytes.
 const CHUNK_BYTES: u64 = 16 << 20;
+/// What is known at the end only stands under this name.
+pub(crate) const END: &str = "plumbline.end";
 
 /// An image as the camera has compressed it, or as it was compressed for the recording.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,6 +72,7 @@ pub struct RecordingWriter {
     channels: BTreeMap<Topic, u16>,
     chunk_began: Option<Timestamp>,
     counts: Counts,
+    dropped: Option<u64>,
 }
 
 impl RecordingWriter {
@@ -94,6 +97,7 @@ impl RecordingWriter {
             channels: BTreeMap::new(),
             chunk_began: None,
             counts: Counts::default(),
+            dropped: None,
         };
         writer.begin(at, about)?;
         Ok(writer)
@@ -198,11 +202,23 @@ impl RecordingWriter {
         self.counts
     }
 
+    /// So many pairs and messages are not in it, because disk or processor did not keep up: that is written at the
+    /// end.
+    pub fn set_dropped(&mut self, dropped: u64) {
+        self.dropped = Some(dropped);
+    }
+
     /// Closes the file, with the index that readers wind by.
     ///
     /// # Errors
     /// When it cannot be written; what was written before is whole.
     pub fn finish(mut self) -> Result<Counts, RecordingError> {
+        if let Some(dropped) = self.dropped {
+            let told = [("pairs", self.counts.pairs), ("dropped", dropped)];
+            let told = told.map(|(key, value)| (key.to_owned(), value.to_string()));
+            let metadata = mcap::records::Metadata { name: END.to_owned(), metadata: told.into() };
+            self.mcap.write_metadata(&metadata).map_err(RecordingError::mcap(&self.file))?;
+        }
         self.mcap.finish().map_err(RecordingError::mcap(&self.file))?;
         let synced = self.mcap.into_inner().into_inner();
         let file = synced.map_err(|error| error.into_error()).map_err(RecordingError::io(&self.file))?;

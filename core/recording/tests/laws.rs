@@ -117,6 +117,22 @@ fn what_was_written_is_read_in_any_order() {
 }
 
 #[test]
+fn how_much_is_missing_stands_in_the_file_and_is_not_known_of_one_that_was_cut() {
+    let folder = folder();
+    let [file, cut] = ["log.mcap", "cut.mcap"].map(|name| folder.path().join(name));
+    let mut writer = write(&file, 2);
+    writer.set_dropped(7);
+    writer.finish().expect("finished");
+    let mut recording = Recording::open(&file).expect("a recording");
+    assert_eq!((recording.dropped(), recording.is_whole()), (Some(7), true));
+    assert_eq!(check(&mut recording), 20);
+    assert_eq!(recording.whose().rig.as_deref(), Some("nico"), "what stands at its beginning is still known");
+    let bytes = fs::read(&file).expect("there");
+    fs::write(&cut, &bytes[..bytes.len() / 2]).expect("written");
+    assert_eq!(Recording::open(&cut).expect("a recording").dropped(), None);
+}
+
+#[test]
 fn what_was_cut_anywhere_is_whole_up_to_its_last_second() {
     let folder = folder();
     let file = written(folder.path(), 4);

@@ -25,6 +25,8 @@ const BOX_SHARE: f64 = 0.8;
 pub struct DriftAround {
     /// Whether a source delivers pairs.
     pub is_live: bool,
+    /// Whether it was recorded at another time.
+    pub is_recorded: bool,
     /// Which source, counted.
     pub opened: u64,
     /// The robot as it is known in the world that is shown.
@@ -35,6 +37,8 @@ pub struct DriftAround {
     pub robot: Arc<RobotView>,
     /// Time since the eyes were switched on, s.
     pub eyes_on_s: Option<f64>,
+    /// The same when the calibration in use was made, min; `None`: nobody knows.
+    pub calibrated_min: Option<f64>,
     /// How many times faster than a clock the eyes' one runs; 1 but for a twin that was asked to.
     pub clock_pace: f64,
     /// The world that is shown, where the arm is of it, too.

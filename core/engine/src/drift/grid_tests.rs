@@ -34,11 +34,13 @@ impl Desk {
         let connection = Connection::Connected { to: "a robot".to_owned(), twin: false };
         let around = DriftAround {
             is_live: true,
+            is_recorded: false,
             opened: 1,
             model: Arc::new(RobotModel::nominal(default_rig())),
             own_eyes: true,
             robot: Arc::new(RobotView { connection, ..RobotView::default() }),
             eyes_on_s: Some(60.0),
+            calibrated_min: None,
             clock_pace: 1.0,
             world: Some(World::Robot),
             twin: None,

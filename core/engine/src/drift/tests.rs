@@ -20,7 +20,7 @@ use crate::ground::jobs::list::JobList;
 use crate::ground::notice::Notices;
 use crate::ground::stage::{Skipped, Stage as _, Timed};
 use crate::ground::step::StepState;
-use crate::ground::{Context, Moment, Time, Workflow as _};
+use crate::ground::{Context, Moment, Time, Workflow as _, World};
 
 const EVERY: Duration = Duration::from_secs(3);
 
@@ -40,11 +40,13 @@ impl Desk {
     fn new() -> Self {
         let around = DriftAround {
             is_live: true,
+            is_recorded: false,
             opened: 1,
             model: Arc::new(RobotModel::nominal(default_rig())),
             own_eyes: false,
             robot: Arc::default(),
             eyes_on_s: Some(3600.0),
+            calibrated_min: None,
             clock_pace: 1.0,
             world: None,
             twin: None,
@@ -263,6 +265,30 @@ fn a_clock_of_the_eyes_that_goes_back_a_little_is_no_switching_on() {
     assert_eq!(desk.said(), [""; 0], "nobody switched them on again");
     let times: Vec<f64> = course.points.iter().map(|point| point.at_s).collect();
     assert!(times.len() == 5 && times.windows(2).all(|two| two[0] <= two[1]), "{times:?}");
+}
+
+/// What is said when ten minutes of eyes that stand still are to be explained.
+fn said_when_explained(calibrated_min: Option<f64>) -> Vec<String> {
+    let mut desk = Desk::new();
+    (desk.around.world, desk.around.calibrated_min) = (Some(World::Robot), calibrated_min);
+    let still = desk.pair(0.0);
+    desk.ask(DriftCommand::Start);
+    for _ in 0..20 {
+        desk.time = desk.time.after(Duration::from_secs(27));
+        desk.around.eyes_on_s = desk.around.eyes_on_s.map(|on_s| on_s + 27.0);
+        desk.see(&still);
+    }
+    assert_eq!(desk.view().unexplained, None);
+    desk.ask(DriftCommand::Explain);
+    assert!(desk.view().is_busy, "{:?}", desk.said());
+    desk.said()
+}
+
+#[test]
+fn that_a_correction_would_count_twice_what_a_warm_calibration_holds_is_said() {
+    assert_eq!(said_when_explained(Some(0.5)), [""; 0], "calibrated with cold eyes");
+    let said = said_when_explained(Some(25.0));
+    assert!(said.iter().any(|text| text.contains("on for 25 min") && text.contains("twice")), "{said:?}");
 }
 
 /// Time that all threads of this program were on a processor, s; `None` where the system does not say.

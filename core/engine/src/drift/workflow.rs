@@ -21,6 +21,18 @@ use crate::ground::step::StepState;
 use crate::ground::{Moment, Time, Workflow};
 use crate::robot::RobotControl;
 
+/// Eyes that have been on for no longer are cold: by then they have gone a seventh of their way at most.
+const COLD_MIN: f64 = 1.0;
+
+/// A law that begins at switching on, and a calibration that was not made then.
+fn counted_twice(minutes: f64) -> String {
+    format!(
+        "The calibration in use was made when the cameras had been on for {minutes:.0} min: what the eyes had turned \
+         until then is in it already, and correcting by what is found would count it twice. Take it for how long to \
+         wait; to correct by it, calibrate the eyes cold first."
+    )
+}
+
 /// Watching drift. There is one at a time, of what is shown.
 #[derive(Clone, Debug, Default)]
 pub struct DriftWorkflow {
@@ -144,6 +156,9 @@ impl DriftWorkflow {
             return context.refuse(format!("What was watched cannot be explained: {why}."));
         }
         let (Some(watch), Some(world)) = (&self.watch, around.world) else { return };
+        if let Some(minutes) = around.calibrated_min.filter(|minutes| *minutes > COLD_MIN) {
+            context.notices.add(NoticeLevel::Warning, counted_twice(minutes));
+        }
         self.logging = Some(context.start(DriftWork::WriteLog {
             sessions: world.folder(&self.data_dir).join("sessions"),
             samples: watch.monitor.samples().into(),
@@ -159,9 +174,13 @@ impl DriftWorkflow {
         if self.logging.is_some() || self.retelling.is_some() {
             return Some("it is being worked at already; wait a moment");
         }
+        if !watch.from_switching_on && around.is_recorded {
+            return Some("a recording does not say when its cameras were switched on");
+        }
         if !watch.from_switching_on {
             return Some(
-                "nobody knows when the cameras were switched on; say it on the screen Eyes, then watch anew",
+                "nobody knows when the cameras were switched on; say it at the clock in the top line, and it is \
+                 watched anew",
             );
         }
         if around.world.is_none() {

@@ -272,6 +272,7 @@ impl Pipeline {
             any = true;
         }
         if let Some((opened, frame)) = self.frames.try_take() {
+            state.pairs_replaced(self.frames_in.skipped());
             state.frame(opened, frame, now);
             any = true;
         }

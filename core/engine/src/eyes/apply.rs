@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use plumbline_hardware::SourceSpec;
 use plumbline_model::Chessboard;
 
+use super::clock::is_live;
 use super::collection::CollectError;
 use super::command::{ExportFormat, Exported};
 use super::view::CollectedPair;
@@ -33,12 +34,18 @@ impl EyesWorkflow {
         }
     }
 
-    pub(super) fn set_minutes(&mut self, minutes: Option<f64>, context: &mut Context<'_>) {
+    pub(super) fn set_minutes(
+        &mut self,
+        minutes: Option<f64>,
+        around: &EyesAround,
+        context: &mut Context<'_>,
+    ) {
         match minutes {
             Some(value) if !(0.0..=LONGEST_ON_MINUTES).contains(&value) => {
                 context.refuse(format!("Give the minutes since the cameras were switched on as a number from 0 to {LONGEST_ON_MINUTES}, or leave it empty."));
             }
-            minutes => self.minutes_since_on = minutes,
+            minutes if is_live(&around.source) => self.clock.say(minutes, context.time.instant),
+            minutes => self.minutes_of_pairs = minutes,
         }
     }
 
@@ -120,7 +127,10 @@ impl EyesWorkflow {
             sizes_px,
             dropped: self.collection.dropped().iter().cloned().collect(),
             options: self.options.clone(),
-            minutes_since_on: self.minutes_since_on,
+            minutes_since_on: match self.taken_at {
+                Some(taken_at) => self.clock.on_s(taken_at).map(|on_s| on_s / 60.0),
+                None => self.minutes_of_pairs,
+            },
             source: around.source.description.clone(),
             in_use: self.in_use().cloned(),
             workspace: self.workspace,
@@ -192,7 +202,7 @@ impl EyesWorkflow {
         let dropped = evidence.dropped_pairs.iter().cloned().collect();
         self.collection.replace(evidence.board, pairs, sizes_px, dropped);
         self.options = evidence.options.clone();
-        self.minutes_since_on = evidence.minutes_since_on;
+        (self.minutes_of_pairs, self.taken_at) = (evidence.minutes_since_on, None);
         self.board_chosen = true;
     }
 

@@ -94,6 +94,8 @@ impl EyesWorkflow {
             Ok(()) => {
                 self.board_chosen = true;
                 self.board_seen = None;
+                // Pairs of cameras have no name yet.
+                self.taken_at = frame.name.is_none().then_some(frame.stamp.captured_at);
                 self.hint = Some(CaptureHint::Captured { pair: name.clone() });
                 self.keep(&name, frame, context);
                 let count = self.collection.pairs().len();
@@ -140,7 +142,7 @@ impl EyesWorkflow {
         let placed = |pair: CollectedPair| CollectedPair { place: self.place(&pair, sizes_px[0]), ..pair };
         let pairs = collected.pairs.into_iter().map(placed).collect();
         match self.collection.add_all(pairs, sizes_px) {
-            Ok(_) => self.board_chosen = true,
+            Ok(_) => (self.board_chosen, self.taken_at) = (true, None),
             Err(error) => context.refuse(error),
         }
     }

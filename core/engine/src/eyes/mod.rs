@@ -6,6 +6,9 @@
 mod apply;
 pub mod assess;
 pub mod auto_capture;
+mod clock;
+#[cfg(test)]
+mod clock_tests;
 pub mod collection;
 pub mod command;
 mod corners;

@@ -1,20 +1,25 @@
 //! What the window shows while the eyes are being calibrated.
 
 use std::sync::Arc;
+use std::time::Instant;
 
+use super::clock::is_live;
 use super::view::EyesView;
 use super::workflow::EyesWorkflow;
 use crate::ground::step::StepState;
+use crate::source::view::SourceView;
 
 impl EyesWorkflow {
     /// What the window shows.
-    pub(super) fn shown(&self) -> EyesView {
+    pub(super) fn shown(&self, source: &SourceView, now: Instant) -> EyesView {
+        let minutes_since_on =
+            if is_live(source) { self.clock.shown_min(now) } else { self.minutes_of_pairs };
         EyesView {
             step: self.step(),
             board: *self.board(),
             board_chosen: self.board_chosen,
             options: self.options.clone(),
-            minutes_since_on: self.minutes_since_on,
+            minutes_since_on,
             board_seen: self.board_seen.clone(),
             auto_capture: self.auto_capture,
             hint: self.hint.clone(),

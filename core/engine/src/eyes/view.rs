@@ -24,7 +24,8 @@ pub struct EyesView {
     pub board_chosen: bool,
     /// How to solve.
     pub options: CalibrationOptions,
-    /// Minutes since the cameras were switched on.
+    /// Minutes since the cameras were switched on; it goes on while they are live. Of what was recorded: how long
+    /// they had been on then.
     pub minutes_since_on: Option<f64>,
     /// What [`crate::command::EyesCommand::RecognizeBoard`] or a failed search found.
     pub board_seen: Option<BoardSeen>,

@@ -11,6 +11,7 @@ use plumbline_model::{
 };
 
 use super::auto_capture::AutoCapture;
+use super::clock::{BEGINS_ANEW, CamerasClock, is_live};
 use super::collection::Collection;
 use super::command::EyesCommand;
 use super::look::Look;
@@ -46,7 +47,12 @@ pub struct EyesWorkflow {
     pub(super) collection: Collection,
     pub(super) board_chosen: bool,
     pub(super) options: CalibrationOptions,
-    pub(super) minutes_since_on: Option<f64>,
+    /// For how long the cameras have been on.
+    pub(super) clock: CamerasClock,
+    /// How long they had been on when the collected pairs were taken, min, as far as those were not taken live.
+    pub(super) minutes_of_pairs: Option<f64>,
+    /// When the newest collected pair was taken; `None`: it was not taken live.
+    pub(super) taken_at: Option<Instant>,
     pub(super) auto_capture: bool,
     pub(super) auto: AutoCapture,
     /// The newest look, for when capturing is switched on.
@@ -127,9 +133,18 @@ impl EyesWorkflow {
         self.auto_capture
     }
 
-    /// Minutes since the cameras were switched on, as the operator said; `None`: not said.
-    pub fn minutes_since_on(&self) -> Option<f64> {
-        self.minutes_since_on
+    /// For how long the eyes that this source shows have been on, s; `None`: nobody knows. What was said of
+    /// photographs stands still; a recording does not say it.
+    pub fn on_s(&self, source: &SourceView, now: Instant) -> Option<f64> {
+        match is_live(source) {
+            true => self.clock.on_s(now),
+            false => self.minutes_of_pairs.filter(|_| source.photographs).map(|minutes| 60.0 * minutes),
+        }
+    }
+
+    /// The source says how it is doing; a word for the operator where that changes what is known of the cameras.
+    pub fn follow(&mut self, source: &SourceView, now: Instant) -> Option<&'static str> {
+        self.clock.follow(source, now).then_some(BEGINS_ANEW)
     }
 
     /// The calibration in use.
@@ -246,7 +261,9 @@ impl Workflow for EyesWorkflow {
             collection: Collection::new(board),
             board_chosen: false,
             options: CalibrationOptions::default(),
-            minutes_since_on: None,
+            clock: CamerasClock::default(),
+            minutes_of_pairs: None,
+            taken_at: None,
             auto_capture: false,
             auto: AutoCapture::default(),
             last_look: None,
@@ -270,8 +287,8 @@ impl Workflow for EyesWorkflow {
         }
     }
 
-    fn view(&mut self, _: &EyesAround, _: &Moment) -> Arc<EyesView> {
-        Arc::new(self.shown())
+    fn view(&mut self, around: &EyesAround, moment: &Moment) -> Arc<EyesView> {
+        Arc::new(self.shown(&around.source, moment.now))
     }
 
     fn restore(&mut self, _: &EyesAround, context: &mut Context<'_>) {
@@ -286,7 +303,7 @@ impl Workflow for EyesWorkflow {
             }
             EyesCommand::RecognizeBoard => self.recognize_board(around, context),
             EyesCommand::ChooseOptions(options) => self.options = options,
-            EyesCommand::MinutesSinceOn(minutes) => self.set_minutes(minutes, context),
+            EyesCommand::MinutesSinceOn(minutes) => self.set_minutes(minutes, around, context),
             EyesCommand::Capture => self.capture(around, context),
             EyesCommand::AutoCapture(on) => self.set_auto_capture(on, around, context),
             EyesCommand::CollectRecording => self.collect_recording(around, context),

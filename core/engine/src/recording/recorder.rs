@@ -95,6 +95,11 @@ impl Recorder {
         }
     }
 
+    /// So many pairs came that nobody could hand over.
+    pub fn missed(&self, pairs: u64) {
+        self.told.dropped.fetch_add(pairs, Ordering::Relaxed);
+    }
+
     /// Pairs, bytes, and what was dropped.
     pub fn so_far(&self) -> (u64, u64, u64) {
         let read = |number: &AtomicU64| number.load(Ordering::Relaxed);
@@ -147,6 +152,8 @@ fn write(mut writer: RecordingWriter, items: &Receiver<Item>, told: &Told) -> Re
         told.pairs.store(counts.pairs, Ordering::Relaxed);
         told.bytes.store(counts.bytes, Ordering::Relaxed);
     }
+    // Whoever hands over has ended, and so has counting.
+    writer.set_dropped(told.dropped.load(Ordering::Relaxed));
     writer.finish()
 }
 

@@ -33,6 +33,7 @@ impl Desk {
         let around = RecordingAround {
             world: World::Twin,
             is_live,
+            opened: 1,
             rig: "nico".to_owned(),
             cameras: Some(default_rig().eyes.cameras),
         };
@@ -41,14 +42,7 @@ impl Desk {
     }
 
     fn apply(&mut self, command: RecordingCommand) {
-        let mut asked = Vec::new();
-        let Self { room, around, notices, jobs } = self;
-        let mut context = Context::new(notices, jobs, Time::now(), &mut asked);
-        room.apply(command, around, &mut context);
-        for asked in asked {
-            let Asked::Start(id, work) = asked else { continue };
-            self.finish(id, work);
-        }
+        self.act(|room, around, context| room.apply(command, around, context));
     }
 
     fn finish(&mut self, id: crate::ground::jobs::JobId, work: RecordingWork) {
@@ -65,10 +59,21 @@ impl Desk {
         }
     }
 
+    fn follow_source(&mut self) {
+        self.act(|room, around, context| room.follow_source(around, context));
+    }
+
     fn look_after(&mut self) {
+        self.act(|room, _, context| room.look_after(context));
+    }
+
+    fn act(
+        &mut self,
+        act: impl FnOnce(&mut RecordingWorkflow, &RecordingAround, &mut super::work::Context<'_>),
+    ) {
         let mut asked = Vec::new();
-        let Self { room, notices, jobs, .. } = self;
-        room.look_after(&mut Context::new(notices, jobs, Time::now(), &mut asked));
+        let Self { room, around, notices, jobs } = self;
+        act(room, around, &mut Context::new(notices, jobs, Time::now(), &mut asked));
         for asked in asked {
             let Asked::Start(id, work) = asked else { continue };
             self.finish(id, work);
@@ -133,6 +138,7 @@ fn what_came_while_it_was_on_is_in_the_file_and_nothing_else() {
     let notes: Vec<String> =
         recording.notes().expect("readable").into_iter().map(|told| told.what.text).collect();
     assert_eq!(notes, ["before", "after"]);
+    assert_eq!(recording.dropped(), Some(0), "that nothing is missing stands in it");
     assert_eq!(recording.told(Topic::Commands).expect("readable")[0].what, json!({ "workflow": "grasp" }));
     assert!(recording.joints().expect("readable").is_empty(), "no joint was read");
     let attached: Vec<&str> = recording.attached().iter().map(|file| file.name.as_str()).collect();
@@ -178,6 +184,51 @@ fn a_recorder_that_does_not_keep_up_counts_what_it_drops() {
     let so_far = desk.view().last.as_ref().expect("finished").so_far;
     assert!(so_far.dropped > 0, "{so_far:?}");
     assert_eq!(so_far.pairs + so_far.dropped, pairs, "none is lost without being counted");
+    let session = desk.view().last.as_ref().expect("finished").session.clone();
+    let recording = Recording::open(&session.join(FILE)).expect("a recording");
+    assert_eq!(recording.dropped(), Some(so_far.dropped), "the file says it, too");
+}
+
+#[test]
+fn pairs_that_were_replaced_before_they_came_are_missing_and_counted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut desk = Desk::new(folder.path(), true);
+    // What was replaced before it was begun is not missing in it.
+    desk.room.were_replaced(7);
+    desk.apply(RecordingCommand::Start);
+    for number in 0..10 {
+        desk.room.were_replaced(7 + 2 * number);
+        desk.room.saw(&frame(number), Time::now());
+    }
+    let RecordingState::On { so_far, .. } = desk.view().state else { panic!("{:?}", desk.view()) };
+    assert_eq!(so_far.dropped, 18);
+    desk.apply(RecordingCommand::Stop);
+    desk.room.were_replaced(100);
+    let last = desk.view().last.clone().expect("finished");
+    assert_eq!((last.so_far.pairs, last.so_far.dropped), (10, 18));
+    let recording = Recording::open(&last.session.join(FILE)).expect("a recording");
+    assert_eq!(recording.dropped(), Some(18));
+}
+
+#[test]
+fn another_source_ends_the_recording_with_a_word() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut desk = Desk::new(folder.path(), true);
+    desk.apply(RecordingCommand::Start);
+    desk.room.saw(&frame(1), Time::now());
+    desk.follow_source();
+    assert!(desk.view().is_on(), "it is the same one");
+    desk.around.opened += 1;
+    desk.follow_source();
+    assert!(desk.said().contains("the recording has ended"), "{}", desk.said());
+    let last = desk.view().last.clone().expect("finished");
+    desk.room.saw(&frame(2), Time::now());
+    let recording = Recording::open(&last.session.join(FILE)).expect("a recording");
+    assert!(recording.is_whole() && recording.pair_count() == 1);
+    // The next one is of the source that is open now.
+    desk.apply(RecordingCommand::Start);
+    desk.follow_source();
+    assert!(desk.view().is_on());
 }
 
 const FULL: &str = "PLUMBLINE_TEST_FULL_DISK";

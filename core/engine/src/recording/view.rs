@@ -46,7 +46,8 @@ pub struct RecordedSoFar {
     pub time: Duration,
     /// Pairs of images.
     pub pairs: u64,
-    /// Pairs and messages that are not in it, because the disk or the processor did not keep up.
+    /// Pairs and messages that are not in it, because the disk or the processor did not keep up, this program itself
+    /// included.
     pub dropped: u64,
     /// Bytes of messages.
     pub bytes: u64,

@@ -24,6 +24,8 @@ pub struct RecordingAround {
     pub world: World,
     /// Whether a source delivers, and nothing that was recorded before.
     pub is_live: bool,
+    /// Which source, counted.
+    pub opened: u64,
     /// Name of the rig.
     pub rig: String,
     /// The calibration of the eyes in use.
@@ -37,6 +39,10 @@ pub struct RecordingWorkflow {
     phase: Phase,
     /// When it was begun.
     since: Option<Time>,
+    /// Of which source, counted.
+    source: u64,
+    /// Pairs of all sources that were replaced by a newer one before anybody saw them.
+    replaced: u64,
     /// Number of the newest message that is in it.
     noted: u64,
     last: Option<Arc<Recorded>>,
@@ -83,6 +89,23 @@ impl RecordingWorkflow {
             images: [frame.left.clone(), frame.right.clone()],
             right_later_s: frame.time_difference_s,
         });
+    }
+
+    /// So many pairs, since the program was started, were replaced by a newer one before they came here.
+    pub fn were_replaced(&mut self, replaced: u64) {
+        let before = std::mem::replace(&mut self.replaced, replaced);
+        if let Some(recorder) = self.recorder() {
+            recorder.missed(replaced.saturating_sub(before));
+        }
+    }
+
+    /// Pairs of another source are not of this recording: it ends with a word.
+    pub fn follow_source(&mut self, around: &RecordingAround, context: &mut Context<'_>) {
+        if self.is_on() && around.opened != self.source {
+            let text = "Another source was opened, or this one closed: the recording has ended with what came before.";
+            context.notices.add(NoticeLevel::Warning, text);
+            self.stop(context);
+        }
     }
 
     /// Joints were read.
@@ -152,7 +175,7 @@ impl RecordingWorkflow {
             of_twin: around.world == World::Twin,
             cameras: around.cameras.map(Box::new),
         };
-        self.since = Some(context.time);
+        (self.since, self.source) = (Some(context.time), around.opened);
         self.phase = Phase::Begins(context.start(work));
     }
 
@@ -230,13 +253,14 @@ impl Workflow for RecordingWorkflow {
         &mut self,
         id: JobId,
         result: RecordingResult,
-        _: &RecordingAround,
+        around: &RecordingAround,
         context: &mut Context<'_>,
     ) {
         match (result, std::mem::take(&mut self.phase)) {
             (RecordingResult::Begun(recorder), Phase::Begins(begun)) if begun == id => {
                 self.since = Some(context.time);
                 self.phase = Phase::On(recorder);
+                self.follow_source(around, context);
             }
             (RecordingResult::Ended(counts), Phase::Ends(ended, mut recorded)) if ended == id => {
                 (recorded.so_far.pairs, recorded.so_far.bytes) = (counts.pairs, counts.bytes);

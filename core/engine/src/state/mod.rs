@@ -245,18 +245,29 @@ impl State {
         }
     }
 
-    /// How long the eyes that are shown have been on, s: a twin knows it, of other eyes the operator does.
-    fn eyes_on_s(&self) -> Option<f64> {
-        match self.shown {
+    /// How long the eyes of a world have been on, s: a twin knows it, of other eyes the operator does. Of what was
+    /// recorded nobody does, whatever runs now.
+    fn eyes_on_s(&self, world: World) -> Option<f64> {
+        let source = self.rooms.source.view();
+        match world {
+            World::Twin if self.shown == World::Twin && !self.shows_own_eyes() => None,
             World::Twin => self.twin.running.then_some(self.twin.eyes_on_s),
-            World::Robot => self.rooms.eyes.of(World::Robot).minutes_since_on().map(|minutes| minutes * 60.0),
+            World::Robot => self.rooms.eyes.of(World::Robot).on_s(source, self.clock.time().instant),
         }
     }
 
-    /// Tells whoever looks live.
+    /// Tells whoever looks live; by whole seconds, because nothing moves in less.
     fn use_eyes_clock(&mut self) {
-        let on_s = self.eyes_on_s();
+        let on_s = self.eyes_on_s(self.shown).map(f64::floor);
         self.rooms.live.set_eyes_on(on_s);
+    }
+
+    /// The cameras may have been away.
+    fn follow_cameras(&mut self, source: &SourceView) {
+        let now = self.clock.time().instant;
+        if let Some(words) = self.rooms.eyes.of_mut(World::Robot).follow(source, now) {
+            self.notices.add(NoticeLevel::Warning, words);
+        }
     }
 
     fn put_together(&mut self, world: World) {
@@ -304,11 +315,20 @@ impl State {
         self.rooms.eyes.of_mut(self.shown).set_image_size(frame.left.dimensions());
         self.rooms.grasp.of(self.arm_of).saw(&frame);
         self.rooms.handeye.of(self.arm_of).saw(&frame);
-        self.record(|recording, time| recording.saw(&frame, time));
+        self.use_eyes_clock();
+        // What a source delivers before it is known of is not of the recording of the one before.
+        if opened == self.rooms.source.view().opened {
+            self.record(|recording, time| recording.saw(&frame, time));
+        }
         self.with::<DriftWorkflow>(World::default(), |drift, around, context| {
             drift.saw(&frame, around, context);
         });
         self.rooms.live.frame(frame, now);
+    }
+
+    /// So many pairs of the source, since the program was started, were replaced before they came here.
+    pub fn pairs_replaced(&mut self, replaced: u64) {
+        self.rooms.recording.were_replaced(replaced);
     }
 
     /// The thread that watches drift has looked.
@@ -331,8 +351,12 @@ impl State {
         // A recording was made by these eyes, whose head stood otherwise.
         let is_recorded = matches!(view.spec, Some(SourceSpec::Recording { .. }));
         let own_lenses = is_recorded || is_of_this_robot(view.spec.as_ref());
+        self.follow_cameras(&view);
         self.rooms.source.update(view);
         self.source_before_silence = None;
+        self.with::<RecordingWorkflow>(World::default(), |recording, around, context| {
+            recording.follow_source(around, context);
+        });
         self.use_models();
         self.rooms.live.use_nominal_lenses(own_lenses);
     }

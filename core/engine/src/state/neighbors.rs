@@ -146,6 +146,7 @@ impl Neighbors<RecordingWorkflow> for State {
         RecordingAround {
             world: self.shown,
             is_live: source.replay.is_none() && source.status == SourceStatus::Running,
+            opened: source.opened,
             rig: self.rig.name.clone(),
             cameras,
         }
@@ -167,14 +168,21 @@ impl Neighbors<DetectWorkflow> for State {
 impl Neighbors<DriftWorkflow> for State {
     fn around(&self, _world: World) -> DriftAround {
         let source = self.rooms.source.view();
+        let calibration = self.rooms.eyes.of(self.shown).in_use();
         DriftAround {
             is_live: source.status == SourceStatus::Running && !source.photographs,
+            is_recorded: source.replay.is_some(),
             opened: source.opened,
             model: self.models.of(self.shown).clone(),
             own_eyes: self.shows_own_eyes() && self.shown == self.arm_of,
             robot: self.robot.clone(),
-            eyes_on_s: self.eyes_on_s(),
-            clock_pace: if self.shown == World::Twin { self.twin.warm_up_pace } else { 1.0 },
+            eyes_on_s: self.eyes_on_s(self.shown),
+            calibrated_min: calibration
+                .and_then(|calibration| calibration.evidence.as_ref()?.minutes_since_on),
+            clock_pace: match self.shown {
+                World::Twin if self.shows_own_eyes() => self.twin.warm_up_pace,
+                _ => 1.0,
+            },
             world: (self.shown == self.arm_of).then_some(self.shown),
             twin: (self.shown == World::Twin && self.twin.running).then(|| self.twin.clone()),
             found: self.rooms.detect.found().cloned(),
@@ -334,10 +342,7 @@ impl Neighbors<GraspWorkflow> for State {
             model: self.models.of(world).clone(),
             robot: self.robot.clone(),
             calibration: eyes.of(world).in_use().cloned(),
-            eyes_on_min: match world {
-                World::Twin => self.twin.running.then(|| self.twin.eyes_on_s / 60.0),
-                World::Robot => eyes.of(world).minutes_since_on(),
-            },
+            eyes_on_min: self.eyes_on_s(world).map(|on_s| on_s / 60.0),
             has_mount: mount.of(world).in_use().is_some(),
             has_screen: touch.of(world).screen().is_some(),
             corrections: Corrections {
