@@ -73,7 +73,8 @@ impl PlumblineWindow {
         if let Some(command) = self.command_of(action) {
             // Showing the board is for capturing pairs of it.
             let collecting = self.settings.screen == Screen::Collect && !self.view.eyes.auto_capture;
-            let shows = matches!(action, Action::Robot(RobotAction::TourBoard | RobotAction::TourFew));
+            use RobotAction::{TourBoard, TourFew, TourRest};
+            let shows = matches!(action, Action::Robot(TourBoard | TourFew | TourRest));
             if shows && collecting {
                 self.send(EyesCommand::AutoCapture(true).into());
             }

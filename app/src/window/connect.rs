@@ -117,17 +117,21 @@ fn present(ui: &mut Ui, robot: &RobotView) {
 
 fn found(ui: &mut Ui, robot: &RobotView) {
     let bus = &robot.bus;
-    let answering = robot.joints.iter().filter(|joint| !bus.missing.contains(&joint.servo)).count();
+    let is_heard = |id: &u8| !bus.missing.contains(id) && !bus.late.contains(id);
+    let answering = robot.joints.iter().filter(|joint| is_heard(&joint.servo)).count();
     let of = robot.joints.len();
-    ui.label(if bus.missing.is_empty() {
+    ui.label(if answering == of && bus.missing.is_empty() {
         format!("All {} answer.", format::count(of, "servo"))
     } else {
-        format!("{answering} of {} answer.", format::count(of, "servo"))
+        format!("{answering} of {} answer in time.", format::count(of, "servo"))
     });
     ScrollArea::vertical().id_salt("servos").max_height(150.0).auto_shrink([false, true]).show(ui, |ui| {
         for id in &bus.missing {
             let name = robot.joints.iter().find(|joint| joint.servo == *id).map_or("unknown", |j| &j.title);
             warn(ui, &format!("Servo {id} ({name}) does not answer: look at its cable and its supply."));
+        }
+        if let Some(late) = bus.late_answers() {
+            warn(ui, &late);
         }
         for (id, model) in &bus.unexpected {
             warn(ui, &format!("Servo {id} ({model}) is not in the rig file; it is left alone."));

@@ -28,6 +28,9 @@ pub fn command_for(paths: &[PathBuf], screen: Screen) -> Result<Command, String>
 /// On the screens that look at pairs.
 fn command_elsewhere(paths: &[PathBuf]) -> Result<Command, String> {
     match paths {
+        [set] if is_data_set(set) => {
+            Err(format!("{} is a data set: go to Detect, Images, and drop it there.", name(set)))
+        }
         paths if paths.iter().all(|path| is_calibration(path)) && paths.len() <= 2 => {
             Ok(EyesCommand::Import { files: ordered(paths), length: FileLength::AsPrescribed }.into())
         }
@@ -65,6 +68,12 @@ pub fn paint_preview(ctx: &Context, text: &str) {
     painter.rect_stroke(frame, 8.0, Stroke::new(2.0, tokens.accent), StrokeKind::Inside);
     let font = TextStyle::Heading.resolve(&ctx.global_style());
     painter.text(rect.center(), Align2::CENTER_CENTER, text, font, tokens.text_strong);
+}
+
+/// A folder with a `data.yaml` and no eyes beside it, or that file.
+fn is_data_set(path: &Path) -> bool {
+    let has_eyes = ["left", "right", "stereo"].iter().any(|folder| path.join(folder).is_dir());
+    name(path) == "data.yaml" || (path.join("data.yaml").is_file() && !has_eyes)
 }
 
 fn is_calibration(path: &Path) -> bool {
@@ -121,6 +130,24 @@ mod tests {
         let models = command_for(&paths(&["a.onnx", "b.ONNX"]), Screen::Scores);
         assert_eq!(models, Ok(ScoresCommand::AddModels { files: paths(&["a.onnx", "b.ONNX"]) }.into()));
         assert!(command_for(&paths(&["a", "b"]), Screen::Images).is_err());
+    }
+
+    #[test]
+    fn a_data_set_elsewhere_is_told_where_it_belongs_and_no_source() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let set = folder.path().join("toys");
+        std::fs::create_dir_all(set.join("images")).expect("a folder");
+        let says = |paths: &[PathBuf]| preview(paths, Screen::Live);
+        assert_eq!(says(std::slice::from_ref(&set)), "Drop to open toys as the source");
+        std::fs::write(set.join("data.yaml"), "names: [tomato]").expect("written");
+        for path in [set.clone(), set.join("data.yaml")] {
+            let said = command_for(std::slice::from_ref(&path), Screen::Live).expect_err("it is no source");
+            assert!(said.contains("is a data set: go to Detect, Images"), "{said}");
+            assert_eq!(says(&[path]), said, "said before it is dropped");
+        }
+        // Pairs that were labeled are pairs all the same.
+        std::fs::create_dir(set.join("left")).expect("a folder");
+        assert!(command_for(&[set], Screen::Live).is_ok());
     }
 
     #[test]

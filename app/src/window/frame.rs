@@ -53,9 +53,12 @@ impl PlumblineWindow {
     /// Whether something moves, or goes on moving by itself.
     fn moves(&self) -> bool {
         let view = &self.view;
+        // The evaluation on a grid is none of them: only things are laid, by a person or in the twin.
         let runs = matches!(view.touch.phase, TouchPhase::Waiting { .. } | TouchPhase::Running { .. })
             || view.grasp.phase.moves()
-            || matches!(view.trials.phase, TrialsPhase::Running { .. });
+            || matches!(view.trials.phase, TrialsPhase::Running { .. })
+            || view.mount.tour.is_some()
+            || view.handeye.is_looking;
         runs || self.may_move()
     }
 

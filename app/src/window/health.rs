@@ -14,7 +14,7 @@ use plumbline_widgets::lamp::Health;
 use plumbline_widgets::theme::{self, space};
 
 use super::lamps::{Then, TopLamp};
-use super::{PlumblineWindow, faults, lamps, robot_lamps, world_menu};
+use super::{PlumblineWindow, faults, lamps, robot_lamps, running_lamp, world_menu};
 use crate::operator::{Action, Outbox, RobotAction, Screen, shortcut_text};
 use crate::panels::source_age;
 
@@ -73,6 +73,7 @@ pub(super) fn show(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
 fn lamps(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
     let view = &window.view;
     let mut all = faults::lamps(view);
+    all.extend(running_lamp::lamp(view));
     all.extend(recording_lamp(view));
     all.extend(eyes_lamps(view));
     all.extend(robot_lamps::lamps(view));

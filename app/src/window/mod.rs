@@ -35,6 +35,7 @@ mod rail;
 pub mod renderer;
 mod rest;
 mod robot_lamps;
+mod running_lamp;
 mod saving;
 mod script;
 mod script_step;

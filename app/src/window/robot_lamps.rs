@@ -90,6 +90,10 @@ fn connected(robot: &RobotView) -> (String, Health, Option<String>) {
             Some(format!("No answer from servo {ids}: look at cable and supply.")),
         );
     }
+    // Load, not a cable: nobody is sent to look at one.
+    if let Some(late) = bus.late_answers() {
+        return (value, Health::Warning, Some(late));
+    }
     if let Some(warning) = bus.warnings.first() {
         return (value, Health::Warning, Some(warning.clone()));
     }

@@ -18,7 +18,7 @@ use plumbline_engine::{RobotCommand, View, WatchedThread};
 
 use crate::fake::Fake;
 use crate::layout::{Line, SLACK, cut, lines, much_to_show, overlapping};
-use crate::{made_up, made_up_gap};
+use crate::{made_up, made_up_gap, made_up_touch};
 
 /// What senses clicks and is thinner than this is the bar of a scrolled area, which floats over its edge, pt.
 const SCROLL_BAR: f32 = 12.0;
@@ -135,6 +135,7 @@ fn crowded() -> View {
         source: Arc::new(SourceView { status: SourceStatus::Running, ..SourceView::default() }),
         live: Arc::new(live),
         threads: Arc::from([fault(WatchedThread::Detect), fault(WatchedThread::Corners)]),
+        touch: Arc::new(made_up_touch::running()),
         kept: Arc::new(KeptView {
             problem: Some("the disk is nearly full".into()),
             journal_lost: 12,

@@ -3,13 +3,15 @@
 use std::sync::Arc;
 
 use egui::Key;
-use plumbline::{Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::view::{DetectView, DetectorFacts, DetectorState};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
+use plumbline_engine::view::{DetectView, DetectorFacts, DetectorState, ObjectView, SeenBox};
 use plumbline_engine::{Command, DetectCommand, DetectorChoice, LiveCommand, Products};
-use plumbline_model::detection::ClassNames;
+use plumbline_model::detection::{ClassNames, PixelBox};
 
 use crate::fake::{Fake, click, says, shows};
-use crate::made_up_objects::{banana, detect, facts, found, live};
+use crate::made_up_objects::{banana, detect, facts, found, hand, live, tomato};
 
 fn settings() -> WindowSettings {
     WindowSettings { screen: Screen::Live, ..WindowSettings::default() }
@@ -39,6 +41,48 @@ fn the_list_says_what_is_where_and_a_click_tells_all() {
     click(&mut window, "Banana, only the left eye: no place");
     assert!(says(&window, "one eye alone tells no range"));
     assert!(says(&window, "nothing of this kind"));
+}
+
+/// This object where the eyes see it now, pixels, and how sure they are.
+fn seen_at(object: ObjectView, across_px: f32, confidence: f32) -> ObjectView {
+    let area = PixelBox::from_middle(across_px, 240.0, 60.0, 60.0);
+    let moved = |seen: &Option<SeenBox>| seen.clone().map(|seen| SeenBox { confidence, area, ..seen });
+    ObjectView { left: moved(&object.left), right: moved(&object.right), ..object }
+}
+
+/// The lines of the list from top to bottom.
+fn listed(window: &Harness<'_, PlumblineWindow>) -> Vec<String> {
+    let rows = window.query_all_by_role(egui::accesskit::Role::ListBoxOption);
+    let mut named: Vec<_> = rows
+        .map(|row| (row.rect().top(), row.accesskit_node().label().unwrap_or_default()))
+        .filter(|(_, label)| ["Banana", "RightHand", "Tomato"].iter().any(|name| label.starts_with(name)))
+        .collect();
+    named.sort_by(|a, b| a.0.total_cmp(&b.0));
+    named.into_iter().map(|(_, label)| label).collect()
+}
+
+#[test]
+fn lines_stay_where_they_are_when_another_object_becomes_the_surest() {
+    let pair = |objects| live(DetectView { found: Some(Arc::new(found(objects))), ..detect() });
+    let fake = Fake::over(pair(vec![seen_at(tomato(), 100.0, 0.9), hand(), banana()]));
+    let mut window = fake.window_of_size(settings(), TALL);
+    window.run_steps(2);
+    let before = listed(&window);
+    let begins = |names: &[&str], lines: &[String]| {
+        names.len() == lines.len() && names.iter().zip(lines).all(|(name, line)| line.starts_with(name))
+    };
+    assert!(
+        begins(&["Banana", "RightHand", "Tomato, 331"], &before),
+        "by class, not by confidence: {before:?}"
+    );
+    // Another tomato comes, surer and farther left; the first one moves a little.
+    let left_eye_alone = ObjectView { right: None, place: banana().place, ..tomato() };
+    let newcomer = seen_at(left_eye_alone, 20.0, 0.95);
+    fake.show(pair(vec![newcomer, banana(), hand(), seen_at(tomato(), 104.0, 0.5)]));
+    window.run_steps(3);
+    let after = listed(&window);
+    let wanted = ["Banana", "RightHand", "Tomato, 331", "Tomato, only the left eye"];
+    assert!(begins(&wanted, &after), "the first tomato keeps its line: {after:?}");
 }
 
 #[test]

@@ -259,6 +259,7 @@ fn connecting_says_that_nothing_moves_and_keeps_the_sheet_open() {
     assert_eq!(robot_commands(&fake), [RobotCommand::ConnectPort { path: "/dev/ttyUSB0".into() }]);
     let bus = BusView {
         missing: vec![31],
+        late: vec![5, 7],
         unexpected: vec![(77, "MX-28".to_owned())],
         warnings: vec!["the latency timer of the adapter is 16 ms: set it to 1 ms".to_owned()],
         ..BusView::default()
@@ -266,6 +267,9 @@ fn connecting_says_that_nothing_moves_and_keeps_the_sheet_open() {
     fake.show(with_robot(RobotView { bus, ..connected() }));
     window.run_steps(3);
     assert!(says(&window, "Servo 31 (Right wrist turn) does not answer"));
+    assert!(says(&window, "Servos 5, 7 answer too late: the computer was too busy"), "load is named load");
+    let cables = window.query_all_by_label_contains("look at its cable and its supply").count();
+    assert_eq!(cables, 1, "nobody is sent to look at the cables of those that are late");
     assert!(says(&window, "Servo 77 (MX-28) is not in the rig file"));
     assert!(says(&window, "latency timer"));
 }

@@ -8,7 +8,8 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, WindowSettings};
 use plumbline_engine::view::{
-    EyesView, JobState, JobView, MotionState, ReplayView, RobotView, SourceStatus, SourceView,
+    EyesView, HandEyeView, JobState, JobView, MotionState, MountTour, MountView, ReplayView, RobotView,
+    SourceStatus, SourceView,
 };
 use plumbline_engine::{Command, EyesCommand, JobCommand, JobId, SourceCommand, View};
 
@@ -90,6 +91,16 @@ fn moving() -> View {
     View { robot: Arc::new(RobotView { motion, ..RobotView::default() }), ..everything_runs() }
 }
 
+/// The head stands at a pose of its tour, or the hands are looked at: it goes on moving by itself.
+fn between_two_poses() -> [View; 2] {
+    let motion = MotionState::Holding { why: None };
+    let robot = Arc::new(RobotView { motion, ..RobotView::default() });
+    let tour = Some(MountTour { pose: 3, of: 8, waits: false });
+    let mount = Arc::new(MountView { tour, ..MountView::default() });
+    let handeye = Arc::new(HandEyeView { is_looking: true, ..HandEyeView::default() });
+    [View { robot: robot.clone(), mount, ..everything_runs() }, View { robot, handeye, ..everything_runs() }]
+}
+
 /// What Esc does with the palette open: what was stopped, and whether the palette is still there.
 fn escape_in_the_palette(view: View, modifiers: Modifiers) -> (Vec<Command>, usize, bool) {
     let fake = Fake::over(view);
@@ -109,6 +120,19 @@ fn escape_stops_what_moves_while_a_text_is_typed_and_with_other_keys_held() {
         let (sent, stops, _) = escape_in_the_palette(moving(), modifiers);
         assert_eq!(sent, stopped(), "{modifiers:?}");
         assert!(stops > 0, "{modifiers:?}");
+    }
+}
+
+#[test]
+fn escape_stops_what_stands_between_two_poses_of_a_tour_and_closing_asks() {
+    for view in between_two_poses() {
+        let (sent, stops, _) = escape_in_the_palette(view.clone(), Modifiers::NONE);
+        assert_eq!(sent, stopped());
+        assert!(stops > 0);
+        let fake = Fake::over(view);
+        let mut window = fake.window(WindowSettings::default());
+        close(&mut window);
+        assert!(says(&window, "Close while the robot moves?"));
     }
 }
 
@@ -145,18 +169,20 @@ fn where_nothing_moves_escape_closes_what_lies_on_top_and_stops_only_then() {
     }
 }
 
+/// As the system asks a window to close.
+fn close(window: &mut Harness<'_, PlumblineWindow>) {
+    let viewport = window.input_mut().viewports.entry(egui::ViewportId::ROOT).or_default();
+    viewport.events.push(egui::ViewportEvent::Close);
+    window.run_steps(1);
+    let viewport = window.input_mut().viewports.entry(egui::ViewportId::ROOT).or_default();
+    viewport.events.clear();
+    window.run_steps(2);
+}
+
 #[test]
 fn closing_while_something_moves_asks_and_stops_first() {
     let fake = Fake::over(moving());
     let mut window = fake.window(WindowSettings::default());
-    let close = |window: &mut Harness<'_, PlumblineWindow>| {
-        let viewport = window.input_mut().viewports.entry(egui::ViewportId::ROOT).or_default();
-        viewport.events.push(egui::ViewportEvent::Close);
-        window.run_steps(1);
-        let viewport = window.input_mut().viewports.entry(egui::ViewportId::ROOT).or_default();
-        viewport.events.clear();
-        window.run_steps(2);
-    };
     close(&mut window);
     assert!(says(&window, "Close while the robot moves?"));
     assert_eq!(fake.take_stops(), 0, "nothing is done before it was answered");

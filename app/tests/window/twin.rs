@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use plumbline::{Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::view::{SourceStatus, SourceView, TwinView};
+use plumbline_engine::view::{BoardTour, EyesView, SourceStatus, SourceView, TwinView};
 use plumbline_engine::{Command, EyesCommand, RobotCommand, SourceSpec, TwinCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
@@ -80,6 +80,28 @@ fn the_eyes_of_the_twin_are_calibrated_from_clicks() {
         sent,
         [Command::from(EyesCommand::AutoCapture(true)), Command::from(TwinCommand::TourBoard(true))]
     );
+}
+
+#[test]
+fn a_tour_of_the_board_is_counted_and_goes_on_where_it_was_broken_off() {
+    let source =
+        SourceView { spec: Some(SourceSpec::Twin), status: SourceStatus::Running, ..SourceView::default() };
+    let view = |twin: TwinView| View {
+        source: Arc::new(source.clone()),
+        eyes: Arc::new(EyesView { auto_capture: true, ..EyesView::default() }),
+        twin: Arc::new(twin),
+        ..everything()
+    };
+    let tour = Some(BoardTour { place: 9, of: 24 });
+    let fake = Fake::over(view(TwinView { board: Some(lying_board()), board_tour: tour, ..twin() }));
+    let mut window = fake.window(on(Screen::Collect));
+    assert!(says(&window, "The board is at place 9 of 24: 0 pairs captured by themselves."));
+    fake.show(view(TwinView { board: Some(lying_board()), board_places_left: 16, ..twin() }));
+    window.run_steps(3);
+    assert!(says(&window, "the board was not shown at 16 places yet"));
+    fake.take_sent();
+    click(&mut window, "Show the board at the other places");
+    assert_eq!(fake.take_sent(), [Command::from(TwinCommand::TourRest)]);
 }
 
 #[test]

@@ -50,6 +50,12 @@ pub enum SourceError {
         /// The folder.
         path: PathBuf,
     },
+    /// A folder of single images with boxes.
+    #[error("{} is a data set for detectors, not a source of pairs: open it in Detect, Images", .path.display())]
+    DataSet {
+        /// The folder.
+        path: PathBuf,
+    },
     /// Two folders with images, none of which belong together.
     #[error(
         "no image of {} has a partner in {}: the images of a pair must have the same name in both folders (found {left_example} and {right_example})",

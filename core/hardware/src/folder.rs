@@ -73,7 +73,7 @@ impl PairFolder {
         {
             return Self::open_two(&left, &right);
         }
-        let files = image_files(folder)?;
+        let files = image_files(folder).map_err(|error| unless_data_set(folder, error))?;
         let mut reports = files.ignored;
         let (mut left, mut right) = (Vec::new(), Vec::new());
         for file in files.images {
@@ -90,7 +90,7 @@ impl PairFolder {
             if let Some((left, right)) = with_sibling(folder) {
                 return Self::open_two(&left, &right);
             }
-            return Err(SourceError::NoLayout { path: folder.to_path_buf() });
+            return Err(unless_data_set(folder, SourceError::NoLayout { path: folder.to_path_buf() }));
         }
         Self::join(folder, folder, left, right, reports)
     }
@@ -261,6 +261,15 @@ fn with_sibling(folder: &Path) -> Option<(PathBuf, PathBuf)> {
 fn best(folders: Vec<PathBuf>, plain: &str) -> Option<PathBuf> {
     let exact = folders.iter().find(|path| file_name(path).eq_ignore_ascii_case(plain)).cloned();
     exact.or_else(|| <[PathBuf; 1]>::try_from(folders).ok().map(|[only]| only))
+}
+
+/// Why a folder is no source: what is in it says more than what is not.
+fn unless_data_set(folder: &Path, error: SourceError) -> SourceError {
+    let lacks_pairs = matches!(error, SourceError::NoImages { .. } | SourceError::NoLayout { .. });
+    match lacks_pairs && folder.join("data.yaml").is_file() {
+        true => SourceError::DataSet { path: folder.to_path_buf() },
+        false => error,
+    }
 }
 
 /// Refuses a folder most of whose files say that they are the other eye's.

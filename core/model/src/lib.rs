@@ -22,6 +22,7 @@ pub mod parameter_words;
 pub mod pixel;
 pub mod plausible;
 pub mod predict;
+pub mod priority;
 pub mod robot;
 pub mod session;
 pub mod session_names;

@@ -38,6 +38,8 @@ pub enum RobotAction {
     TourBoard,
     /// Shows it at the few places that suffice where it is then looked at on the table.
     TourFew,
+    /// Goes on with showing it where that was broken off.
+    TourRest,
     /// Lays the board on the twin's table.
     LayBoard,
     /// Puts the board away.
@@ -87,7 +89,7 @@ fn when(possible: bool, why: &'static str) -> Refusal {
 
 impl RobotAction {
     /// All of them, in the palette's order.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Connect,
         Self::ConnectTwin,
         Self::TwinEyes,
@@ -102,6 +104,7 @@ impl RobotAction {
         Self::SavePose,
         Self::TourBoard,
         Self::TourFew,
+        Self::TourRest,
         Self::LayBoard,
         Self::HideBoard,
         Self::WarmUp,
@@ -126,6 +129,7 @@ impl RobotAction {
             Self::SavePose => "Save this posture…",
             Self::TourBoard => "Show the board at all places",
             Self::TourFew => "Show the board at the places that suffice",
+            Self::TourRest => "Show the board at the other places",
             Self::LayBoard => "Lay the board on the table",
             Self::HideBoard => "Put the board away",
             Self::WarmUp => "Warm the twin's eyes by 10 minutes",
@@ -167,6 +171,10 @@ impl RobotAction {
                 view.twin.running && view.twin.board_places > 0,
                 "the twin does not run; connect it first",
             ),
+            Self::TourRest => when(
+                view.twin.running && view.twin.board_places_left > 0,
+                "the board was not on its way through places",
+            ),
             Self::TwinEyes if matches!(view.source.spec, Some(SourceSpec::Twin)) => {
                 Some("the twin's eyes are open".into())
             }
@@ -191,6 +199,7 @@ impl RobotAction {
             Self::TorqueOn => RobotCommand::Torque { joints: all(), on: true }.into(),
             Self::TourBoard => TwinCommand::TourBoard(true).into(),
             Self::TourFew => TwinCommand::TourFew.into(),
+            Self::TourRest => TwinCommand::TourRest.into(),
             Self::LayBoard => {
                 let [x_m, y_m] = BOARD_ON_TABLE_M;
                 TwinCommand::LayBoard { x_m, y_m, yaw_rad: BOARD_TURN_RAD }.into()

@@ -154,6 +154,9 @@ fn collect(view: &View) -> Guidance {
         let label = format!("Use {columns}×{rows} squares");
         return say(seen.text.clone()).warn().then(label, Action::UseSeenBoard);
     }
+    if let Some(guidance) = robot::board_on_its_way(view, count) {
+        return guidance;
+    }
     if eyes.collected.is_empty() {
         if let Some(guidance) = source_trouble(view) {
             return guidance;
@@ -316,8 +319,12 @@ pub fn verdict(proposal: &Proposal) -> Verdict {
             let error_px = summary.cross_validated_px.unwrap_or(summary.rms_stereo_px);
             let kind =
                 if summary.cross_validated_px.is_some() { "on unseen pairs" } else { "on its own pairs" };
+            let agree = match pairs {
+                1 => "1 pair agrees".to_owned(),
+                pairs => format!("{} agree", format::count(pairs, "pair")),
+            };
             format!(
-                "Good: {pairs} pairs agree to {error_px:.3} px {kind}, and the board's squares measure {:.2} mm.",
+                "Good: {agree} to {error_px:.3} px {kind}, and the board's squares measure {:.2} mm.",
                 summary.square_mean_m * 1000.0
             )
         }

@@ -1,7 +1,7 @@
 //! What to do next with the robot and with the mount of its eyes.
 
 use plumbline_engine::View;
-use plumbline_engine::view::{Connection, MotionState, RobotView, StepState};
+use plumbline_engine::view::{Connection, MotionState, RobotView, SourceStatus, StepState};
 use plumbline_widgets::format;
 
 use super::sentence::{Guidance, say};
@@ -157,6 +157,30 @@ pub(super) fn mount(view: &View) -> Guidance {
 /// The engine's own sentence, where it has one.
 fn next_or(view: &View, otherwise: &str) -> String {
     if view.mount.next.is_empty() { otherwise.to_owned() } else { view.mount.next.clone() }
+}
+
+/// The twin's board is shown at places, or was and is not at all of them.
+pub(super) fn board_on_its_way(view: &View, pairs: usize) -> Option<Guidance> {
+    let twin = &view.twin;
+    if !twin.running || view.source.status != SourceStatus::Running {
+        return None;
+    }
+    let so_far = format::count(pairs, "pair");
+    if let Some(tour) = twin.board_tour {
+        let how = match view.eyes.auto_capture {
+            true => format!("{so_far} captured by themselves"),
+            false => format!("{so_far} collected, none is captured by itself"),
+        };
+        return Some(say(format!(
+            "The board is at place {} of {}: {how}. Esc or space ends it.",
+            tour.place, tour.of
+        )));
+    }
+    (twin.board_places_left > 0).then(|| {
+        let left = format::count(twin.board_places_left, "place");
+        say(format!("{so_far} collected; the board was not shown at {left} yet."))
+            .then(RobotAction::TourRest.label(), Action::Robot(RobotAction::TourRest))
+    })
 }
 
 /// With the twin, showing it the board is the first step of calibrating its eyes.

@@ -29,10 +29,16 @@ impl ObjectKey {
 
     /// The same object among these.
     pub fn find<'a>(&self, objects: &'a [ObjectView]) -> Option<&'a ObjectView> {
-        let of_class = objects.iter().filter(|object| object.class == self.class);
-        let near = of_class.map(|object| (self.moved_px(object), object));
+        let objects: Vec<&ObjectView> = objects.iter().collect();
+        self.nearest(&objects).map(|i| objects[i])
+    }
+
+    /// The place of the same object in this list.
+    pub fn nearest(&self, objects: &[&ObjectView]) -> Option<usize> {
+        let of_class = objects.iter().enumerate().filter(|(_, object)| object.class == self.class);
+        let near = of_class.map(|(i, object)| (self.moved_px(object), i));
         let nearest = near.min_by(|(a, _), (b, _)| a.total_cmp(b));
-        nearest.filter(|(by_px, _)| *by_px < MOVED_PX).map(|(_, object)| object)
+        nearest.filter(|(by_px, _)| *by_px < MOVED_PX).map(|(_, i)| i)
     }
 
     /// How far it would have moved, in the eye that knows; infinite if no eye does.
@@ -48,7 +54,8 @@ impl ObjectKey {
     }
 }
 
-fn middle_px(seen: &SeenBox) -> [f64; 2] {
+/// The middle of a box, pixels.
+pub fn middle_px(seen: &SeenBox) -> [f64; 2] {
     let Pixel::<Raw> { u_px, v_px, .. } = seen.area.middle();
     [u_px, v_px]
 }

@@ -8,6 +8,7 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::theme::{self, space};
 
 use super::drawing::{DOUBT, color};
+use super::order::in_order;
 use super::state::{ObjectsPanels, objects};
 
 const ROW_HEIGHT: f32 = 38.0;
@@ -17,7 +18,7 @@ const SWATCH: f32 = 10.0;
 pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
-        for object in objects(view) {
+        for object in in_order(&panels.listed, objects(view)) {
             row(ui, object, panels);
         }
     });

@@ -8,6 +8,7 @@ mod drawing;
 mod inspector;
 mod key;
 mod list;
+mod order;
 pub mod state;
 
 pub(crate) use drawing::{raw, rectified, stale};

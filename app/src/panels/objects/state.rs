@@ -5,6 +5,7 @@ use plumbline_engine::view::ObjectView;
 use plumbline_model::Eye;
 
 use super::key::{self, ObjectKey};
+use super::order::in_order;
 
 /// How objects are looked at.
 #[derive(Clone, Debug)]
@@ -17,6 +18,8 @@ pub struct ObjectsPanels {
     hovered_next: Option<Hovered>,
     /// Whether the threshold of each class can be moved.
     pub own_thresholds: bool,
+    /// The lines of the list as they stand.
+    pub listed: Vec<ObjectKey>,
 }
 
 /// An object under the pointer.
@@ -29,7 +32,14 @@ struct Hovered {
 
 impl Default for ObjectsPanels {
     fn default() -> Self {
-        Self { shown: true, chosen: None, hovered: None, hovered_next: None, own_thresholds: false }
+        Self {
+            shown: true,
+            chosen: None,
+            hovered: None,
+            hovered_next: None,
+            own_thresholds: false,
+            listed: Vec::new(),
+        }
     }
 }
 
@@ -82,12 +92,13 @@ impl ObjectsPanels {
     }
 
     /// At the end of a frame: what was pointed at is highlighted in the next, and the chosen object
-    /// is followed to where it is now.
+    /// and the lines of the list are followed to where they are now.
     pub fn end_frame(&mut self, view: &View) {
         self.hovered = self.hovered_next.take();
         if let Some(object) = self.chosen(view) {
             self.chosen = Some(ObjectKey::of(object));
         }
+        self.listed = in_order(&self.listed, objects(view)).into_iter().map(ObjectKey::of).collect();
     }
 }
 

@@ -265,8 +265,10 @@ fn links(kind: Kind, arm: &Arm) -> Vec<Effect> {
         .collect()
 }
 
-/// Two directions at right angles to an axis and to each other.
-fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
+/// Two directions at right angles to an axis and to each other: those along which the values of an axis that
+/// is not square are told, in the frame of its joint.
+#[must_use]
+pub fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
     let start = Vector3::ith(axis.iamin(), 1.0);
     let a = axis.cross(&start).normalize();
     [a, axis.cross(&a)]

@@ -17,7 +17,7 @@ mod report;
 mod situation;
 mod surface;
 
-pub use effect::{Effect, Growth};
+pub use effect::{Effect, Growth, across};
 pub(crate) use entry::Shape;
 pub use kind::{Kind, Parameter};
 pub(crate) use known::{Known, MOST_MOMENTS, differ, moments, sorted, thinned, with_shapes};

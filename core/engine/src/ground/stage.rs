@@ -4,6 +4,7 @@ use std::panic::AssertUnwindSafe;
 use std::time::{Duration, Instant};
 
 use plumbline_model::Stamp;
+use plumbline_model::priority::step_back;
 
 use super::bell::Bell;
 use super::jobs::panic_message;
@@ -90,7 +91,8 @@ pub fn start_stage<S: Stage>(pulse: Pulse, bell: Bell) -> std::io::Result<StageT
     run_stage(pulse, bell, S::stamp, make)
 }
 
-/// Runs what `make` makes on a watched thread. `stamp` tells the stamp of an input.
+/// Runs what `make` makes on a watched thread, which steps back behind the joint bus and the window.
+/// `stamp` tells the stamp of an input.
 pub fn run_stage<I, O, P>(
     pulse: Pulse,
     bell: Bell,
@@ -106,6 +108,8 @@ where
     let (outputs, output) = newest_value_slot();
     let stage = pulse.thread();
     let work = move |(): &mut (), pulse: &Pulse| {
+        // Before anything that starts threads of its own.
+        step_back();
         let mut process = make();
         pulse.rest();
         while let Some(input) = inputs.take() {

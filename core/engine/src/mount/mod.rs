@@ -6,6 +6,8 @@
 
 pub mod command;
 mod shown;
+#[cfg(test)]
+mod tests;
 mod tour;
 pub mod view;
 pub mod work;

@@ -4,7 +4,7 @@ use plumbline_model::counted;
 use plumbline_vision::mount::{HeadView, MountCalibration, MountChange};
 
 use super::tour::Tour;
-use super::view::{HeadViewSummary, MountSummary, MountView};
+use super::view::{HeadViewSummary, MountSummary, MountTour, MountView};
 use super::workflow::{LEAST_VIEWS, MountAround, MountWorkflow};
 use crate::ground::step::StepState;
 
@@ -15,6 +15,7 @@ impl MountWorkflow {
             step: self.step_state(around),
             views: self.views.iter().map(|view| self.summary(view, around)).collect(),
             planned: self.still_to_be_seen().into(),
+            tour: self.tour.as_ref().map(|tour| self.tour_view(tour)),
             next: self.next(around),
             proposal: self.proposal.as_deref().map(summary),
             in_use: self.in_use.as_deref().map(summary),
@@ -22,9 +23,14 @@ impl MountWorkflow {
     }
 
     /// Those of the planned poses that the tour has not been to.
-    fn still_to_be_seen(&self) -> &[(f64, f64)] {
-        let left = self.tour.as_ref().map_or(self.planned.len(), Tour::remaining);
-        &self.planned[self.planned.len().saturating_sub(left)..]
+    pub(super) fn still_to_be_seen(&self) -> Vec<(f64, f64)> {
+        self.tour.as_ref().map_or_else(|| self.planned.clone(), Tour::rest)
+    }
+
+    fn tour_view(&self, tour: &Tour) -> MountTour {
+        let of = self.planned.len();
+        let pose = (of + 1).saturating_sub(tour.remaining()).clamp(1, of.max(1));
+        MountTour { pose, of, waits: tour.waits() }
     }
 
     fn step_state(&self, around: &MountAround) -> StepState {
@@ -42,6 +48,10 @@ impl MountWorkflow {
 
     fn next(&self, around: &MountAround) -> String {
         if let Some(tour) = &self.tour {
+            if tour.waits() {
+                return "The head holds because its joints were not heard: it turns on by itself once they are."
+                    .to_owned();
+            }
             return format!(
                 "The head turns and looks: {} left. Only the head moves.",
                 counted(tour.remaining(), "pose")

@@ -1,9 +1,12 @@
 //! Turning the head from pose to pose and waiting at each until it stands.
+//!
+//! Where joints were not heard for a moment, the head holds; the same pose is asked for again once they are.
 
 use std::time::{Duration, Instant};
 
-use plumbline_model::robot::Rig;
+use plumbline_model::robot::{Posture, Rig};
 
+use crate::robot::patience::{Look, Patience};
 use crate::robot::view::{MotionState, RobotView};
 
 /// After the head has come to rest, images are waited for that were taken this much later: the
@@ -20,6 +23,7 @@ pub struct Tour {
     /// (pan, tilt) still to be seen, the next one last; rad.
     left: Vec<(f64, f64)>,
     phase: Phase,
+    patience: Patience,
 }
 
 #[derive(Clone, Debug)]
@@ -29,8 +33,15 @@ enum Phase {
     Going {
         to: (f64, f64),
         since: Instant,
+        /// How often something had been refused before: an old refusal says nothing of this turn.
+        refused: u64,
+    },
+    /// Joints were not heard, so the head holds on its way.
+    Unheard {
+        to: (f64, f64),
     },
     Standing {
+        at: (f64, f64),
         since: Instant,
     },
 }
@@ -42,6 +53,10 @@ pub enum Wish {
     Nothing,
     /// Turn the head there (pan, tilt; rad).
     Turn(f64, f64),
+    /// The head holds because joints were not heard; why, a sentence. It goes on by itself once they are.
+    Wait(String),
+    /// They are heard again: turn the head on there (pan, tilt; rad).
+    TurnOn(f64, f64),
     /// All poses were seen.
     Finished,
     /// It cannot go on; a sentence.
@@ -51,12 +66,32 @@ pub enum Wish {
 impl Tour {
     /// Through these poses (pan, tilt; rad), in their order.
     pub fn new(poses: &[(f64, f64)]) -> Self {
-        Self { left: poses.iter().rev().copied().collect(), phase: Phase::Ready }
+        let left = poses.iter().rev().copied().collect();
+        Self { left, phase: Phase::Ready, patience: Patience::default() }
     }
 
     /// Poses that are still to be seen.
     pub fn remaining(&self) -> usize {
-        self.left.len() + usize::from(!matches!(self.phase, Phase::Ready))
+        self.left.len() + usize::from(self.pose().is_some())
+    }
+
+    /// The same, in their order; the first one may be under way.
+    pub fn rest(&self) -> Vec<(f64, f64)> {
+        self.pose().into_iter().chain(self.left.iter().rev().copied()).collect()
+    }
+
+    /// The pose that is under way.
+    fn pose(&self) -> Option<(f64, f64)> {
+        match self.phase {
+            Phase::Ready => None,
+            Phase::Going { to, .. } | Phase::Unheard { to } => Some(to),
+            Phase::Standing { at, .. } => Some(at),
+        }
+    }
+
+    /// Whether it waits until joints are heard.
+    pub fn waits(&self) -> bool {
+        matches!(self.phase, Phase::Unheard { .. })
     }
 
     /// The robot's state is new, or time has passed.
@@ -75,49 +110,95 @@ impl Tour {
             Phase::Ready => match self.left.pop() {
                 None => Wish::Finished,
                 Some(to) => {
-                    self.phase = Phase::Going { to, since: now };
+                    self.go(to, robot, now);
                     Wish::Turn(to.0, to.1)
                 }
             },
-            Phase::Going { to, since } => {
-                let (pan, tilt) = (rig.eyes.pan, rig.eyes.tilt);
-                let near = |angle_rad: f64, goal_rad: f64| (angle_rad - goal_rad).abs() < NEAR_RAD;
-                let there =
-                    robot.measured.as_ref().is_some_and(|p| near(p[pan], to.0) && near(p[tilt], to.1));
-                let standing = matches!(robot.motion, MotionState::Holding { .. });
-                if there && standing {
-                    self.phase = Phase::Standing { since: now };
-                } else if let (Some(refusal), true) = (&robot.refusal, standing) {
-                    return Wish::GiveUp(format!("The head does not turn on: {refusal}"));
-                } else if now.saturating_duration_since(since) > PATIENCE {
-                    return Wish::GiveUp(
-                        "The head did not arrive. Look whether something holds it, then go on with the rest."
-                            .to_owned(),
-                    );
-                }
-                Wish::Nothing
-            }
+            Phase::Going { to, since, refused } => self.on_the_way(to, since, refused, robot, rig, now),
+            Phase::Unheard { to } => self.look_again(to, robot, rig, now),
             Phase::Standing { .. } => Wish::Nothing,
+        }
+    }
+
+    fn go(&mut self, to: (f64, f64), robot: &RobotView, now: Instant) {
+        self.phase = Phase::Going { to, since: now, refused: robot.refused };
+    }
+
+    fn on_the_way(
+        &mut self,
+        to: (f64, f64),
+        since: Instant,
+        refused: u64,
+        robot: &RobotView,
+        rig: &Rig,
+        now: Instant,
+    ) -> Wish {
+        let standing = matches!(robot.motion, MotionState::Holding { .. });
+        if standing && is_there(to, robot, rig) {
+            self.phase = Phase::Standing { at: to, since: now };
+            return Wish::Nothing;
+        }
+        let refusal = robot.refusal.as_ref().filter(|_| robot.refused != refused);
+        match refusal.filter(|_| standing) {
+            Some(refusal) if robot.is_unheard && self.patience.begin(now) => {
+                self.phase = Phase::Unheard { to };
+                Wish::Wait(format!(
+                    "The head holds: {refusal} It turns on by itself once its joints are heard."
+                ))
+            }
+            Some(refusal) => Wish::GiveUp(format!("The head does not turn on: {refusal}")),
+            None if now.saturating_duration_since(since) > PATIENCE => Wish::GiveUp(
+                "The head did not arrive. Look whether something holds it, then go on with the rest."
+                    .to_owned(),
+            ),
+            None => Wish::Nothing,
+        }
+    }
+
+    /// Looks whether the head's joints are heard again.
+    fn look_again(&mut self, to: (f64, f64), robot: &RobotView, rig: &Rig, now: Instant) -> Wish {
+        let head = [rig.eyes.pan, rig.eyes.tilt].map(|joint| rig.servo_of(joint));
+        let names: Vec<String> = head.into_iter().flatten().map(|servo| servo.joint_name.clone()).collect();
+        match self.patience.look(robot, None, &names, now) {
+            Look::Same => Wish::Nothing,
+            Look::GoesOn => {
+                self.go(to, robot, now);
+                Wish::TurnOn(to.0, to.1)
+            }
+            Look::GivesUp(why) => {
+                Wish::GiveUp(format!("The head does not turn on: {why} Then go on with the rest."))
+            }
         }
     }
 
     /// Whether an image taken at this time shows what the head looks at while it stands.
     pub fn accepts(&self, captured_at: Instant) -> bool {
-        matches!(self.phase, Phase::Standing { since } if captured_at > since + SETTLE)
+        matches!(self.phase, Phase::Standing { since, .. } if captured_at > since + SETTLE)
     }
 
     /// The pose was seen, or nothing is to be seen from it: on to the next.
     pub fn advance(&mut self) {
         self.phase = Phase::Ready;
+        self.patience.done();
     }
+}
+
+/// Whether the head has the angles (pan, tilt; rad) that it was sent to.
+fn is_there(to: (f64, f64), robot: &RobotView, rig: &Rig) -> bool {
+    let near = |angle_rad: f64, goal_rad: f64| (angle_rad - goal_rad).abs() < NEAR_RAD;
+    let is_near = |posture: &Posture| near(posture[rig.eyes.pan], to.0) && near(posture[rig.eyes.tilt], to.1);
+    robot.measured.as_ref().is_some_and(is_near)
 }
 
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
 
+    use plumbline_model::robot::Limits;
+
     use super::*;
-    use crate::robot::view::Connection;
+    use crate::robot::patience::MOST;
+    use crate::robot::view::{Connection, JointView};
 
     fn robot(rig: &Rig, pan_rad: f64, tilt_rad: f64, motion: MotionState) -> RobotView {
         let posture = rig.home().with(&[rig.eyes.pan, rig.eyes.tilt], &[pan_rad, tilt_rad]);
@@ -170,5 +251,65 @@ mod tests {
         let away = robot(&rig, 0.0, -0.5, HOLDING);
         tour.step(&away, &rig, start);
         assert!(matches!(tour.step(&away, &rig, start + PATIENCE * 2), Wish::GiveUp(_)));
+    }
+
+    /// It holds on its way, because the head was not heard for a moment; both joints are heard again.
+    fn unheard(rig: &Rig, refused: u64) -> RobotView {
+        let limits = Limits { lower_rad: -1.5, upper_rad: 1.5 };
+        let heard = |servo| JointView {
+            torque_on: Some(true),
+            age: Some(Duration::from_millis(10)),
+            ..JointView::unheard(servo, limits)
+        };
+        RobotView {
+            joints: rig.servos.iter().map(heard).collect(),
+            refusal: Some("The servo of Head turn was not heard in time.".to_owned()),
+            is_unheard: true,
+            refused,
+            ..robot(rig, 0.0, -0.5, HOLDING)
+        }
+    }
+
+    #[test]
+    fn joints_that_were_not_heard_are_waited_for_and_the_same_pose_is_asked_for_again() {
+        let rig = rig();
+        let start = Instant::now();
+        let mut tour = Tour::new(&[(0.2, -0.5), (-0.2, -0.4)]);
+        let away = robot(&rig, 0.0, -0.5, HOLDING);
+        assert_eq!(tour.step(&away, &rig, start), Wish::Turn(0.2, -0.5));
+        let held = unheard(&rig, 1);
+        assert!(
+            matches!(tour.step(&held, &rig, start), Wish::Wait(why) if why.contains("not heard in time"))
+        );
+        assert!(tour.waits());
+        assert_eq!(tour.rest(), [(0.2, -0.5), (-0.2, -0.4)]);
+        assert_eq!(tour.step(&held, &rig, start), Wish::Nothing, "one reading is not enough");
+        let later = start + Duration::from_secs(2);
+        assert_eq!(tour.step(&held, &rig, later), Wish::TurnOn(0.2, -0.5));
+        assert_eq!(tour.step(&held, &rig, later), Wish::Nothing, "what was refused before is over");
+        tour.step(&robot(&rig, 0.2, -0.5, HOLDING), &rig, later);
+        assert!(tour.accepts(later + Duration::from_secs(1)), "it arrived");
+    }
+
+    #[test]
+    fn it_waits_a_few_times_in_a_row_only_and_never_where_the_head_is_refused_for_another_reason() {
+        let rig = rig();
+        let start = Instant::now();
+        let mut tour = Tour::new(&[(0.2, -0.5)]);
+        tour.step(&robot(&rig, 0.0, -0.5, HOLDING), &rig, start);
+        let at = |i: usize, second: u64| start + Duration::from_secs(4 * i as u64 + second);
+        for i in 0..MOST {
+            let held = unheard(&rig, 1 + i as u64);
+            assert!(matches!(tour.step(&held, &rig, at(i, 0)), Wish::Wait(_)), "{i}");
+            tour.step(&held, &rig, at(i, 1));
+            assert_eq!(tour.step(&held, &rig, at(i, 3)), Wish::TurnOn(0.2, -0.5), "{i}");
+        }
+        let held = unheard(&rig, 1 + MOST as u64);
+        assert!(matches!(tour.step(&held, &rig, at(MOST, 0)), Wish::GiveUp(_)));
+
+        let mut tour = Tour::new(&[(0.2, -0.5)]);
+        tour.step(&robot(&rig, 0.0, -0.5, HOLDING), &rig, start);
+        let refused = RobotView { is_unheard: false, ..unheard(&rig, 1) };
+        assert!(matches!(tour.step(&refused, &rig, start), Wish::GiveUp(_)));
     }
 }

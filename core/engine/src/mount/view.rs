@@ -15,12 +15,25 @@ pub struct MountView {
     pub views: Arc<[HeadViewSummary]>,
     /// Planned head poses (pan, tilt; rad) that are still to be seen.
     pub planned: Arc<[(f64, f64)]>,
+    /// The tour of the head through them, while it is under way.
+    pub tour: Option<MountTour>,
     /// What to do next, a sentence.
     pub next: String,
     /// A solution that waits to be accepted.
     pub proposal: Option<MountSummary>,
     /// The one in use; `None`: nominal.
     pub in_use: Option<MountSummary>,
+}
+
+/// The head on its tour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MountTour {
+    /// Number of the pose that is under way, from 1.
+    pub pose: usize,
+    /// Of so many.
+    pub of: usize,
+    /// Whether it waits until joints are heard.
+    pub waits: bool,
 }
 
 /// A collected view.

@@ -187,6 +187,12 @@ impl MountWorkflow {
             Wish::Turn(pan_rad, tilt_rad) => {
                 context.control(RobotControl::TurnHead { pan_rad, tilt_rad });
             }
+            Wish::Wait(why) => context.notices.add(NoticeLevel::Warning, why),
+            Wish::TurnOn(pan_rad, tilt_rad) => {
+                let text = "The joints are heard again: the head turns on by itself.";
+                context.notices.add(NoticeLevel::Info, text);
+                context.control(RobotControl::TurnHead { pan_rad, tilt_rad });
+            }
             Wish::Finished => {
                 (self.tour, self.planned) = (None, Vec::new());
                 let text =
@@ -194,10 +200,16 @@ impl MountWorkflow {
                 context.notices.add(NoticeLevel::Success, text);
             }
             Wish::GiveUp(reason) => {
-                self.tour = None;
+                self.end_tour();
                 context.refuse(reason);
             }
         }
+    }
+
+    /// The tour ends; what it has not been to stays planned, so that the next one goes on there.
+    fn end_tour(&mut self) {
+        self.planned = self.still_to_be_seen();
+        self.tour = None;
     }
 
     fn take(&mut self, look: &Look, around: &MountAround) -> Result<(), Refusal> {
@@ -256,14 +268,16 @@ impl Workflow for MountWorkflow {
                 if self.planned.is_empty() {
                     return context.refuse("No head poses are planned yet. Plan them first.");
                 }
+                self.end_tour();
                 self.tour = Some(Tour::new(&self.planned));
                 self.step(around, context);
             }
             MountCommand::Capture => self.wait_for_image(Waiting::Capture, around, context),
             MountCommand::Delete { view } => self.views.retain(|known| known.name != view),
             MountCommand::DeleteAll => {
+                self.end_tour();
                 self.views.clear();
-                (self.tour, self.proposal) = (None, None);
+                self.proposal = None;
             }
             MountCommand::Solve => self.solve(around, context),
             MountCommand::Accept => match self.proposal.clone() {

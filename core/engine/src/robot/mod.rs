@@ -9,6 +9,7 @@ mod history;
 mod jog;
 pub mod lead;
 mod path;
+pub(crate) mod patience;
 mod poses;
 mod publish;
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use plumbline_effects::rig_model::Conditions;
 use plumbline_effects::robot_model::worst_sigma_m;
 use plumbline_hardware::joints::{HoldReason, JointReading, JointState, Motion};
-use plumbline_model::robot::{Posture, Servo};
+use plumbline_model::robot::{JointIndex, Posture, Servo};
 
 use super::view::{BusView, JointView, MotionState, RobotView, TipPlace};
 use super::worker::{News, Worker};
@@ -60,6 +60,8 @@ impl Worker {
             trail: self.trail.iter().map(|(_, place)| *place).collect(),
             preview: self.preview.as_ref().map(|(_, preview)| preview.clone()),
             refusal: self.refusal.clone(),
+            is_unheard: self.is_unheard && self.refusal.is_some(),
+            refused: self.refused,
             poses: self.poses.all(&self.rig).into(),
             bus: self.bus(state),
             ports: self.ports.clone(),
@@ -149,7 +151,8 @@ impl Worker {
         let census = self.arm.as_ref().map(|arm| arm.census()).unwrap_or_default();
         let Some(state) = state else { return BusView::default() };
         let counts = &state.bus.counts;
-        let silent = state.unknown.iter().filter_map(|joint| Some(self.rig.servo_of(*joint)?.id));
+        let servo = |joint: &JointIndex| Some(self.rig.servo_of(*joint)?.id);
+        let silent = state.unknown.iter().filter(|joint| !state.late.contains(joint)).filter_map(servo);
         let is_board = |id: &u8| self.rig.boards.iter().any(|board| board.id == *id);
         let boards = census.missing.iter().copied().filter(is_board);
         BusView {
@@ -158,6 +161,7 @@ impl Worker {
             faults: super::connect::faults(counts),
             retries: super::connect::retries(counts),
             missing: silent.chain(boards).collect(),
+            late: state.late.iter().filter_map(servo).collect(),
             slow_answers: state.slow_answers,
             unexpected: census.unexpected,
             warnings: census.warnings.into_iter().chain(state.warnings.iter().cloned()).collect(),
@@ -180,6 +184,7 @@ impl RobotView {
             && self.stopped == other.stopped
             && self.preview == other.preview
             && self.refusal == other.refusal
+            && self.refused == other.refused
             && self.poses == other.poses
             && self.ports == other.ports
             && self.tip == other.tip
@@ -239,6 +244,8 @@ impl TwinView {
             && self.failed == other.failed
             && self.scenario == other.scenario
             && self.board == other.board
+            && self.board_tour == other.board_tour
+            && self.board_places_left == other.board_places_left
             && (self.warm_up_pace - other.warm_up_pace).abs() < f64::EPSILON
             && self.faults == other.faults
             && self.toys.len() == other.toys.len()

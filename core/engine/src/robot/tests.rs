@@ -34,6 +34,7 @@ enum Asked {
 struct Record {
     asked: Vec<Asked>,
     unknown: Vec<JointIndex>,
+    late: Vec<JointIndex>,
     gone: Option<String>,
 }
 
@@ -56,7 +57,7 @@ impl Arm for FakeArm {
             stopped: false,
             measured: Some(self.posture.clone()),
             unknown,
-            late: Arc::from([]),
+            late: self.record.lock().expect("no test panics in here").late.clone().into(),
             slow_answers: 0,
             commanded: Some(self.posture.clone()),
             bus: BusStatistics::default(),
@@ -147,6 +148,22 @@ impl Bench {
     fn joint(&self, name: &str) -> JointIndex {
         self.rig.description.find_joint(name).expect("a joint of NICO")
     }
+}
+
+#[test]
+fn servos_that_answer_too_late_are_not_said_to_be_missing() {
+    let mut bench = Bench::connected();
+    let (elbow, shoulder) = (bench.joint("r_elbow_y"), bench.joint("r_shoulder_y"));
+    {
+        let mut record = bench.record.lock().expect("no test panics in here");
+        (record.unknown, record.late) = (vec![elbow, shoulder], vec![shoulder]);
+    }
+    let bus = bench.worker.take_news().expect("it is new").robot.bus.clone();
+    let servo = |joint| bench.rig.servo_of(joint).expect("a servo").id;
+    assert_eq!((bus.missing.clone(), bus.late.clone()), (vec![servo(elbow)], vec![servo(shoulder)]));
+    let said = bus.late_answers().expect("one is late");
+    assert!(said.starts_with(&format!("Servo {} answers too late: ", servo(shoulder))), "{said}");
+    assert!(said.contains("close other programs") && !said.contains("cable"), "{said}");
 }
 
 #[test]

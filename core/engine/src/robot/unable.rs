@@ -204,7 +204,9 @@ pub enum Interrupted {
     #[error("The joints have not been read yet. Wait a moment, then go on.")]
     NotRead,
     /// Nobody knows any more where the arm is.
-    #[error("Not all joints have been read. Wait a moment; if it stays so, look at cables and power.")]
+    #[error(
+        "Not all joints have been read. Wait a moment; if it stays so, close other programs, then look at cables and power."
+    )]
     Unknown,
     /// Nobody knows where it was sent.
     #[error("The goals of the joints are not known. Connect again.")]
@@ -233,15 +235,37 @@ impl Interrupted {
     /// Whether joints were merely not heard, so that the arm holds and nothing of what it was to do was
     /// refused.
     pub fn is_unheard(&self) -> bool {
-        let of_refusal =
-            |refusal: &Refusal| matches!(refusal, Refusal::Unknown { .. } | Refusal::UnknownInChain { .. });
         match self {
             Self::NotRead | Self::Unknown => true,
-            Self::Arm(refusal) | Self::Unable(Unable::Arm(refusal)) => of_refusal(refusal),
-            Self::Holds(HoldReason::Refused(refusal)) => of_refusal(refusal),
-            Self::Holds(HoldReason::Slow { .. } | HoldReason::NoAnswer { .. }) => true,
+            Self::Arm(refusal) | Self::Unable(Unable::Arm(refusal)) => is_unheard(refusal),
+            Self::Holds(reason) => holds_unheard(reason),
             _ => false,
         }
+    }
+}
+
+impl Unable {
+    /// Whether joints were merely not heard.
+    pub fn is_unheard(&self) -> bool {
+        match self {
+            Self::NotRead => true,
+            Self::Arm(refusal) => is_unheard(refusal),
+            _ => false,
+        }
+    }
+}
+
+/// Whether something is refused merely because joints were not heard.
+pub(super) fn is_unheard(refusal: &Refusal) -> bool {
+    matches!(refusal, Refusal::Unknown { .. } | Refusal::UnknownInChain { .. })
+}
+
+/// Whether the arm holds merely because joints were not heard.
+pub(super) fn holds_unheard(reason: &HoldReason) -> bool {
+    match reason {
+        HoldReason::Refused(refusal) => is_unheard(refusal),
+        HoldReason::Slow { .. } | HoldReason::NoAnswer { .. } => true,
+        _ => false,
     }
 }
 
@@ -263,5 +287,41 @@ fn at(fraction: f64) -> String {
     match fraction {
         fraction if fraction <= 0.0 => "at once".to_owned(),
         fraction => format!("after {:.0} % of the way", 100.0 * fraction),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_hardware::joints::Unheard;
+    use plumbline_model::robot::JointIndex;
+
+    use super::*;
+
+    #[test]
+    fn what_would_be_written_as_nothing_is_no_number() {
+        let beyond = |by_deg: f64, at_fraction: f64| {
+            let (joint, why) = ("Right elbow".to_owned(), "its end".to_owned());
+            InTheWay::BeyondLimit { joint, by_rad: by_deg.to_radians(), why, at_fraction }.to_string()
+        };
+        let end = "(its end). Choose another pose.";
+        assert_eq!(
+            beyond(0.01, 0.0),
+            format!("Right elbow would turn just past its end at once {end}"),
+            "never 0.0° too far after 0 %"
+        );
+        assert_eq!(
+            beyond(2.44, 0.5),
+            format!("Right elbow would turn 2.4° too far after 50 % of the way {end}")
+        );
+    }
+
+    #[test]
+    fn a_joint_that_was_not_heard_is_told_from_one_that_cannot_go_there() {
+        let why = Unheard::TooBusy;
+        let unheard = Refusal::Unknown { joint: JointIndex(0), name: "Head turn".to_owned(), why };
+        assert!(Unable::from(unheard.clone()).is_unheard() && Unable::NotRead.is_unheard());
+        assert!(holds_unheard(&HoldReason::Refused(unheard)));
+        assert!(!Unable::from(Refusal::Stopped).is_unheard() && !Unable::NoPreview.is_unheard());
+        assert!(!holds_unheard(&HoldReason::Refused(Refusal::Stopped)) && !holds_unheard(&HoldReason::Stop));
     }
 }

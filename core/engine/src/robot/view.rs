@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use plumbline_hardware::joints::Unheard;
 use plumbline_model::frame::{Point, Robot};
 use plumbline_model::robot::{JointIndex, Limits, Posture, Rig, Servo};
 
@@ -42,6 +43,10 @@ pub struct RobotView {
     pub preview: Option<Preview>,
     /// Why the last request was not carried out, and what to do; gone with the next that is.
     pub refusal: Option<String>,
+    /// Whether that was merely because joints were not heard, so that it can be asked for again.
+    pub is_unheard: bool,
+    /// How many requests were not carried out so far: tells a new refusal from an old one.
+    pub refused: u64,
     /// Poses to choose from: those of the rig, then the operator's own.
     pub poses: Arc<[PoseView]>,
     /// How the bus is doing.
@@ -293,12 +298,27 @@ pub struct BusView {
     pub retries: u64,
     /// Ids that the rig has and the bus has not.
     pub missing: Vec<u8>,
+    /// Ids of servos that answer, but later than this computer can wait.
+    pub late: Vec<u8>,
     /// Ids on the bus that the rig does not know, with their model.
     pub unexpected: Vec<(u8, String)>,
     /// Servos that wait longer before each answer than they need to.
     pub slow_answers: usize,
     /// What the operator should know, with what to do (latency timer, one id twice).
     pub warnings: Vec<String>,
+}
+
+impl BusView {
+    /// Which servos answer too late and what to do, a sentence; `None` where none does.
+    pub fn late_answers(&self) -> Option<String> {
+        let ids = self.late.iter().map(u8::to_string).collect::<Vec<_>>().join(", ");
+        let who = match self.late.len() {
+            0 => return None,
+            1 => format!("Servo {ids} answers"),
+            _ => format!("Servos {ids} answer"),
+        };
+        Some(format!("{who} too late: {}.", Unheard::TooBusy.advice()))
+    }
 }
 
 /// A serial port of this machine.

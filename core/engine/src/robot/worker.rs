@@ -26,7 +26,7 @@ use super::lead::Leading;
 use super::path::{Paths, duration};
 use super::poses::PoseLibrary;
 use super::touching::Touching;
-use super::unable::{FASTEST_JOG, NoDestination, SPEEDS, Unable};
+use super::unable::{FASTEST_JOG, NoDestination, SPEEDS, Unable, holds_unheard, is_unheard};
 use super::view::{Connection, PortView, Preview, RobotView};
 use crate::ground::notice::NoticeLevel;
 use crate::ground::text::sentence;
@@ -90,6 +90,10 @@ pub struct Worker {
     pub(super) running: Option<Running>,
     pub(super) jog: Option<Jog>,
     pub(super) refusal: Option<String>,
+    /// Whether that was merely because joints were not heard.
+    pub(super) is_unheard: bool,
+    /// How often something was not carried out.
+    pub(super) refused: u64,
     seen_refusal: u64,
     pub(super) speed: f64,
     pub(super) ports: Option<Arc<[PortView]>>,
@@ -131,6 +135,8 @@ impl Worker {
             running: None,
             jog: None,
             refusal: None,
+            is_unheard: false,
+            refused: 0,
             seen_refusal: 0,
             speed: 1.0,
             ports: None,
@@ -217,7 +223,7 @@ impl Worker {
         };
         match result {
             Ok(()) => {}
-            Err(reason) => self.refuse(reason.to_string()),
+            Err(reason) => self.refuse_because(reason.to_string(), reason.is_unheard()),
         }
     }
 
@@ -253,8 +259,13 @@ impl Worker {
     }
 
     fn refuse(&mut self, reason: String) {
+        self.refuse_because(reason, false);
+    }
+
+    fn refuse_because(&mut self, reason: String, is_unheard: bool) {
         self.notes.push((NoticeLevel::Warning, reason.clone()));
-        self.refusal = Some(reason);
+        (self.refusal, self.is_unheard) = (Some(reason), is_unheard);
+        self.refused += 1;
     }
 
     fn robot(&mut self, command: RobotCommand) -> Result<(), Unable> {
@@ -437,6 +448,7 @@ impl Worker {
     }
 
     fn turn_head(&mut self, pan_rad: f64, tilt_rad: f64) -> Result<(), Unable> {
+        self.refusal = None;
         let present = self.present().ok_or(Unable::NotRead)?;
         let joints = vec![self.rig.eyes.pan, self.rig.eyes.tilt];
         self.knows(&joints)?;
@@ -573,14 +585,14 @@ impl Worker {
             && *number > self.seen_refusal
         {
             self.seen_refusal = *number;
-            self.refuse(sentence(&refusal.to_string()));
+            self.refuse_because(sentence(&refusal.to_string()), is_unheard(refusal));
         }
         if let Some(running) = &self.running
             && let Some(outcome) = state.outcome(running.id)
         {
             if let MoveOutcome::Held(reason) = outcome {
                 let text = format!("Not finished: {}. {}", running.title, sentence(&reason.to_string()));
-                self.refuse(text);
+                self.refuse_because(text, holds_unheard(reason));
             }
             self.running = None;
         }

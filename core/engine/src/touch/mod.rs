@@ -11,7 +11,6 @@ mod figures;
 mod kept_tests;
 #[cfg(test)]
 mod path_tests;
-mod patience;
 #[cfg(test)]
 mod patience_tests;
 pub mod placement;

@@ -5,9 +5,9 @@ use std::time::Duration;
 use plumbline_model::robot::Limits;
 
 use super::command::TouchCommand;
-use super::patience::MOST;
 use super::testing::{Desk, grid};
 use super::view::TouchPhase;
+use crate::robot::patience::MOST;
 use crate::robot::view::{JointView, MotionState};
 use crate::robot::{TouchOrder, TouchRun};
 

@@ -9,7 +9,6 @@ use plumbline_model::robot::Rig;
 use plumbline_model::session::{Screen, Touchscreen};
 
 use super::depth::Depth;
-use super::patience::{Look, Patience};
 use super::plan::{Aim, RunPlan};
 use super::record::{Ended, Fate, Progress, TouchRecord};
 use super::refusal::{Refusal, Trouble};
@@ -18,6 +17,7 @@ use super::work::{Context, RouteRequest, TouchWork};
 use crate::ground::jobs::JobId;
 use crate::ground::notice::NoticeLevel;
 use crate::motion::{NoWay, Planner, ScreenPlace, TouchPace};
+use crate::robot::patience::{Look, Patience};
 use crate::robot::view::{Connection, RobotView};
 use crate::robot::{RobotControl, TouchNews, TouchOrder, TouchRun, TouchStage};
 use crate::twin::command::TwinCommand;
@@ -434,7 +434,7 @@ impl Run {
                 self.unwritten = Some(number);
                 self.misses = 0;
                 self.depth.met(number);
-                self.patience.touched();
+                self.patience.done();
                 self.changed();
             }
             None => self.missed(number, "The contact had no place.".to_owned()),

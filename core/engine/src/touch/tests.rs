@@ -16,6 +16,7 @@ use super::view::{ContactSource, TouchOutcome, TouchPhase};
 use crate::ground::step::StepState;
 use crate::robot::view::Connection;
 use crate::robot::{RobotControl, TouchOrder, TouchRun, TouchStage};
+use crate::twin::command::TwinCommand;
 
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().expect("a folder for the test")
@@ -401,7 +402,10 @@ fn the_left_finger_touches_what_it_reaches_and_its_session_says_so() {
     let data = TouchData::of_session(&session, &rig().chain(&chain.tip).expect("the tip")).expect("touches");
     let model = train(&data, Method::M1, &TrainOptions::default(), &Unattended, &mut |_| {});
     desk.models = vec![Arc::new(model.expect("trained"))];
+    desk.controls.clear();
     desk.apply(TouchCommand::Close);
+    let ends = |control: &RobotControl| matches!(control, RobotControl::Twin(TwinCommand::EndTouch));
+    assert!(desk.controls.iter().any(ends), "toys that made room come back: {:?}", desk.controls);
     desk.apply(TouchCommand::CorrectWith(Some(Method::M1.into())));
     desk.apply(TouchCommand::Plan(options));
     assert!(desk.said().contains("right index finger"), "{}", desk.said());

@@ -1,8 +1,10 @@
 //! What is measured, less what is so. Rounded to what people read, so that the window is not drawn anew
 //! for less.
 
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use plumbline_effects::RigModel;
+use plumbline_effects::library::across;
+use plumbline_effects::rig_model::ModelEffect;
 use plumbline_model::robot::{Joint, JointKind, Posture, Rig};
 
 use super::judge::Facts;
@@ -70,38 +72,53 @@ fn eyes(facts: &Facts, around: &TruthAround, posture: &Posture) -> Vec<TruthRow>
 }
 
 /// Of each joint that turns: the part of its difference about its axis is its zero (with its play, and
-/// what its bracket gives way), the part across it its axis.
+/// what its bracket gives way), the part across it its axis. Of both, what the model in use has is taken off.
 fn joints(facts: &Facts, around: &TruthAround) -> Vec<TruthRow> {
     let (rig, added) = (around.model.rig(), around.model.added());
     let mut rows = vec![];
     for joint in rig.description.joints() {
         let JointKind::Revolute { axis, index, .. } = &joint.kind else { continue };
-        let Some(turned) = turned_rad(joint, facts) else { continue };
+        let angle_rad = facts.encoders[*index] + known_zero_rad(rig, added, &joint.name);
+        let skew_rad = known_skew_rad(rig, added, &joint.name, axis);
+        // A joint sits askew before it turns.
+        let turn =
+            UnitQuaternion::from_scaled_axis(skew_rad) * UnitQuaternion::from_axis_angle(axis, angle_rad);
+        let Some(left_rad) = left_rad(joint, &turn, facts) else { continue };
         let Some(servo) = rig.servo_of(*index) else { continue };
-        let about_rad = turned.dot(axis);
-        let across = turned - axis.into_inner() * about_rad;
-        let known_rad = known_zero_rad(rig, added, &joint.name);
-        rows.push(row(TruthOf::Zero, &servo.title, None, Some(known_rad - about_rad)));
+        let about_rad = left_rad.dot(axis);
+        let across = left_rad - axis.into_inner() * about_rad;
+        rows.push(row(TruthOf::Zero, &servo.title, None, Some(-about_rad)));
         rows.push(row(TruthOf::Axis, &servo.title, None, Some(across.norm())));
     }
     rows
 }
 
-/// How the carried link is really turned against where its encoder and its description put it: rotation
-/// vector, axes of the joint, rad.
-fn turned_rad(joint: &Joint, facts: &Facts) -> Option<Vector3<f64>> {
+/// How the carried link is really turned against where this turn of the joint puts it: rotation vector, axes
+/// of the joint, rad.
+fn left_rad(joint: &Joint, turn: &UnitQuaternion<f64>, facts: &Facts) -> Option<Vector3<f64>> {
     let of = |link: usize| facts.robot_from_link.get(link)?.as_ref();
     let stands = of(joint.parent.0)?.inverse() * of(joint.child.0)?;
-    let described = joint.parent_from_child(&facts.encoders);
-    Some((described.inverse() * stands).rotation.scaled_axis())
+    let known = joint.parent_from_joint.rotation * turn;
+    Some((known.inverse() * stands.rotation).scaled_axis())
 }
 
 /// The zero of a joint that the model in use has, rad.
 fn known_zero_rad(rig: &Rig, added: &RigModel, joint: &str) -> f64 {
-    let zeros = added.effects().iter().filter(|effect| effect.id == "joint-zero");
-    let of = |effect: &plumbline_effects::rig_model::ModelEffect| {
+    known(rig, added, "joint-zero", joint, 1).into_iter().flatten().sum()
+}
+
+/// How a joint's axis is askew in the model in use: rotation vector, axes of the joint, rad.
+fn known_skew_rad(rig: &Rig, added: &RigModel, joint: &str, axis: &Vector3<f64>) -> Vector3<f64> {
+    let [a, b] = across(axis);
+    let skews = known(rig, added, "axis-skew", joint, 2);
+    skews.into_iter().map(|values| a * values[0] + b * values[1]).sum()
+}
+
+/// Values of a joint, `count` from each effect of this kind that the model in use has.
+fn known<'a>(rig: &Rig, added: &'a RigModel, id: &str, joint: &str, count: usize) -> Vec<&'a [f64]> {
+    let of = |effect: &'a ModelEffect| {
         if effect.site == joint {
-            return effect.values.first().copied();
+            return effect.values.get(..count);
         }
         if rig.description.find_joint(&effect.site).is_ok() {
             return None;
@@ -109,16 +126,16 @@ fn known_zero_rad(rig: &Rig, added: &RigModel, joint: &str) -> f64 {
         // Of every joint of an arm, in the order of its chain.
         let chain = rig.chain(effect.tip.as_deref()?).ok()?;
         let at = chain.names().iter().position(|name| name == joint)?;
-        effect.values.get(at).copied()
+        effect.values.get(at * count..(at + 1) * count)
     };
-    zeros.filter_map(of).sum()
+    added.effects().iter().filter(|effect| effect.id == id).filter_map(of).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
 
-    use nalgebra::{Translation3, UnitQuaternion};
+    use nalgebra::Translation3;
     use plumbline_effects::RobotModel;
     use plumbline_model::Point;
 
@@ -196,5 +213,39 @@ mod tests {
         let known = rows(&facts, &around(known));
         let zero = of(&known, TruthOf::Zero, title).off_rad.expect("an angle");
         assert!(zero.abs() < 3e-4, "{zero}");
+    }
+
+    #[test]
+    fn an_axis_that_the_model_knows_to_be_askew_is_taken_off() {
+        let rig = plumbline_model::robot::default_rig();
+        let mut facts = facts(&rig);
+        let joint = rig.description.joints().iter().find(|joint| joint.name == "r_elbow_y").expect("there");
+        let JointKind::Revolute { axis, index, .. } = &joint.kind else { panic!("it turns") };
+        // The elbow is bent, so it matters that the axis is askew before it turns.
+        facts.encoders = rig.home().with(&[*index], &[1.2]);
+        let places = rig.description.forward(&facts.encoders);
+        for (link, stands) in facts.robot_from_link.iter_mut().enumerate() {
+            *stands = Some(places.of(plumbline_model::robot::LinkIndex(link)).isometry);
+        }
+        let [a, b] = across(axis);
+        let turn = UnitQuaternion::from_scaled_axis(a * 0.01 - b * 0.004)
+            * UnitQuaternion::from_axis_angle(axis, 1.2);
+        let upper_arm = facts.robot_from_link[joint.parent.0].expect("there");
+        facts.robot_from_link[joint.child.0] = Some(upper_arm * joint.parent_from_joint * turn);
+        let title = &rig.servo_of(*index).expect("a servo").title;
+        let off_rad = |model: RobotModel, kind: TruthOf| {
+            of(&rows(&facts, &around(model)), kind, title).off_rad.expect("an angle")
+        };
+        let unknown = off_rad(RobotModel::nominal(rig.clone()), TruthOf::Axis);
+        assert!((unknown - 0.01_f64.hypot(0.004)).abs() < 3e-4, "{unknown}");
+        let known = |values: &[f64]| {
+            let added = model_with(&rig, &[("axis-skew", "r_elbow_y", values)]);
+            RobotModel::new(rig.clone(), Arc::new(added)).expect("it fits")
+        };
+        let right = off_rad(known(&[0.01, -0.004]), TruthOf::Axis);
+        assert!(right < 3e-4, "{right}");
+        assert!(off_rad(known(&[0.01, -0.004]), TruthOf::Zero).abs() < 3e-4);
+        let wrong = off_rad(known(&[-0.01, 0.004]), TruthOf::Axis);
+        assert!((wrong - 2.0 * 0.01_f64.hypot(0.004)).abs() < 3e-4, "twice as far off: {wrong}");
     }
 }

@@ -39,6 +39,8 @@ pub enum TwinCommand {
     TourBoard(bool),
     /// The same at the few places that suffice where the board is then looked at as it lies on the table.
     TourFew,
+    /// Goes on with showing it where that was broken off.
+    TourRest,
     /// Puts the chessboard away.
     HideBoard,
     /// Makes room on the touchscreen, puts it on a block and a weight into the right palm.
@@ -48,6 +50,8 @@ pub enum TwinCommand {
         /// The weight, kg.
         payload_kg: f64,
     },
+    /// Nobody touches the screen any more: toys that made room on it stand where they stood.
+    EndTouch,
     /// Lets the clock of the eyes' warming up run ahead.
     AdvanceWarmUp {
         /// Minutes.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use plumbline_model::Point;
 use plumbline_model::frame::{Board, Pose, Robot};
@@ -11,6 +11,7 @@ use plumbline_twin::{
     Fault, Scenario, Toy, Twin, TwinSettings, TwinTouchscreen, board_presets, few_board_presets,
 };
 
+use super::board_tour::{BoardTours, TourStep};
 use super::command::TwinCommand;
 use super::eyes::TwinEyesPlug;
 use super::unable::TwinUnable;
@@ -18,51 +19,11 @@ use super::view::{FaultView, ToyView, TwinView};
 use crate::ground::notice::NoticeLevel;
 use crate::truth::TruthPlug;
 
-/// While the board is shown at all places it stays at each for this long: long enough to be
-/// found still, sharp and new.
-const AT_EACH_PLACE: Duration = Duration::from_millis(1600);
-/// Where the machine is slow, it stays until it was looked at so often: a few looks must agree.
-const LOOKS_AT_EACH_PLACE: u64 = 8;
-/// After this it goes on all the same when nobody looks…
-const NOBODY_LOOKS: Duration = Duration::from_secs(12);
-/// …and after this also when somebody does: the machine is too slow.
-const LONGEST_AT_A_PLACE: Duration = Duration::from_secs(60);
 /// So much around the touchscreen is kept free of toys while it is touched: a hand is broad, m.
 const BESIDE_SCREEN_M: f64 = 0.06;
 const PHYSICS_FAILED: &str = "The twin's physics have failed inside, so the twin has ended. Nothing real is hurt: connect to the twin again, and report it with the log.";
 /// The same twin every time.
 const SEED: u64 = 1;
-
-/// The board on its way through places.
-struct Tour {
-    /// Where it is held, one after the other.
-    places: Vec<Pose<Robot, Board>>,
-    /// The place that is next.
-    next: usize,
-    /// When it was held at the one before; `None`: at none yet.
-    held: Option<Instant>,
-    /// How often the eyes had looked then.
-    looks: u64,
-}
-
-impl Tour {
-    fn through(places: Vec<Pose<Robot, Board>>) -> Self {
-        Self { places, next: 0, held: None, looks: 0 }
-    }
-
-    /// Whether the board was seen where it is.
-    fn is_seen(&self, now: Instant, looks: u64) -> bool {
-        let Some(held) = self.held else { return true };
-        let since = now.saturating_duration_since(held);
-        let looked = looks.saturating_sub(self.looks);
-        let waits_for = match looked {
-            LOOKS_AT_EACH_PLACE.. => AT_EACH_PLACE,
-            0 => NOBODY_LOOKS,
-            _ => LONGEST_AT_A_PLACE,
-        };
-        since >= waits_for
-    }
-}
 
 /// The twin and what the operator does with it.
 pub struct TwinDesk {
@@ -73,10 +34,12 @@ pub struct TwinDesk {
     failed: Option<String>,
     board_places: Vec<Pose<Robot, Board>>,
     few_places: Vec<Pose<Robot, Board>>,
-    tour: Option<Tour>,
+    tours: BoardTours,
     /// Toys that made room for the board that lies on the table, and where they stood (x, y in the robot's
     /// frame, m).
     made_room: Vec<(Toy, [f64; 2])>,
+    /// The same of those that made room on the screen that is touched.
+    off_screen: Vec<(Toy, [f64; 2])>,
     notes: Vec<(NoticeLevel, String)>,
 }
 
@@ -91,8 +54,9 @@ impl TwinDesk {
             failed: None,
             board_places: Vec::new(),
             few_places: Vec::new(),
-            tour: None,
+            tours: BoardTours::default(),
             made_room: Vec::new(),
+            off_screen: Vec::new(),
             notes: Vec::new(),
         }
     }
@@ -126,8 +90,10 @@ impl TwinDesk {
     /// Starts a twin in place of a running one; gives the port of its servos.
     pub fn start(&mut self, scenario: &str, rig: &Arc<Rig>) -> Result<PathBuf, TwinUnable> {
         self.eyes.set(None);
-        (self.twin, self.tour) = (None, None);
+        self.twin = None;
+        self.tours = BoardTours::default();
         self.made_room.clear();
+        self.off_screen.clear();
         scenario.clone_into(&mut self.scenario);
         let started = self.try_start(scenario, rig);
         self.failed = started.as_ref().err().map(ToString::to_string);
@@ -156,12 +122,15 @@ impl TwinDesk {
             TwinCommand::HoldBoard { .. }
                 | TwinCommand::TourBoard(true)
                 | TwinCommand::TourFew
+                | TwinCommand::TourRest
                 | TwinCommand::HideBoard
         );
         let resets = matches!(command, TwinCommand::Reset);
         self.carry_out(command, rig)?;
         // Whoever was put somewhere by hand stays there.
-        self.made_room.retain(|(toy, _)| !resets && Some(*toy) != touched);
+        for away in [&mut self.made_room, &mut self.off_screen] {
+            away.retain(|(toy, _)| !resets && Some(*toy) != touched);
+        }
         if takes_board {
             self.put_back(rig);
         }
@@ -189,11 +158,11 @@ impl TwinDesk {
                 let robot_from_board = self.board_places.get(place).copied();
                 let robot_from_board =
                     robot_from_board.ok_or(TwinUnable::NoPlace(self.board_places.len()))?;
-                self.tour = None;
+                self.tours.break_off();
                 send(To::PlaceBoard { robot_from_board })
             }
             TwinCommand::LayBoard { x_m, y_m, yaw_rad } => {
-                self.tour = None;
+                self.tours.break_off();
                 let robot_from_board = lying(rig, x_m, y_m, yaw_rad)?;
                 self.make_room(&robot_from_board, rig);
                 let twin = self.twin.as_ref().ok_or(TwinUnable::NotRunning)?;
@@ -201,30 +170,41 @@ impl TwinDesk {
                 Ok(())
             }
             TwinCommand::TourBoard(on) => {
-                self.tour = on.then(|| Tour::through(self.board_places.clone()));
+                self.tours.break_off();
+                if on {
+                    self.tours.begin(self.board_places.clone());
+                }
                 Ok(())
             }
             TwinCommand::TourFew => {
-                self.tour = Some(Tour::through(self.few_places.clone()));
+                self.tours.begin(self.few_places.clone());
+                Ok(())
+            }
+            TwinCommand::TourRest => {
+                self.tours.go_on(&self.board_places);
                 Ok(())
             }
             TwinCommand::HideBoard => {
-                self.tour = None;
+                self.tours.break_off();
                 send(To::HideBoard)
             }
             TwinCommand::PrepareTouch { screen_height_m, payload_kg } => {
-                self.tour = None;
+                self.tours.break_off();
                 self.free_screen(rig);
-                // Whoever stood on the screen comes back with the next change of the board.
+                // Whoever made room for the board on the screen comes back when nobody touches it any more.
                 let on_screen = |at: &[f64; 2]| is_on_screen([at[0], at[1], rig.table.height_m].into(), rig);
                 let before = std::mem::take(&mut self.made_room);
                 let (later, back): (Vec<_>, Vec<_>) = before.into_iter().partition(|(_, at)| on_screen(at));
                 self.made_room = back;
                 self.put_back(rig);
-                self.made_room = later;
+                self.off_screen.extend(later);
                 let twin = self.twin.as_ref().ok_or(TwinUnable::NotRunning)?;
                 twin.send(To::HideBoard);
                 twin.send(To::PrepareTouch { screen_height_m, payload_kg });
+                Ok(())
+            }
+            TwinCommand::EndTouch => {
+                self.leave_screen(rig);
                 Ok(())
             }
             TwinCommand::AdvanceWarmUp { minutes } => {
@@ -240,7 +220,7 @@ impl TwinDesk {
                 send(To::Fault { fault, on })
             }
             TwinCommand::Reset => {
-                self.tour = None;
+                self.tours = BoardTours::default();
                 send(To::Reset)
             }
         }
@@ -274,7 +254,16 @@ impl TwinDesk {
         self.made_room = [stay_away, away].concat();
     }
 
-    /// Toys that made room for the board stand where they stood.
+    /// Nobody touches the screen any more. Where the board is out, toys come back once it is put away.
+    fn leave_screen(&mut self, rig: &Rig) {
+        let is_board_out = self.twin.as_ref().is_some_and(|twin| twin.state().board.is_some());
+        self.made_room.append(&mut self.off_screen);
+        if !is_board_out {
+            self.put_back(rig);
+        }
+    }
+
+    /// Toys that made room stand where they stood.
     fn put_back(&mut self, rig: &Rig) {
         let Some(twin) = &self.twin else { return };
         let mut back = vec![];
@@ -297,14 +286,20 @@ impl TwinDesk {
         let Some(twin) = &self.twin else { return };
         let mut away = vec![];
         for (toy, place) in &twin.state().toys {
-            if place.is_some_and(|place| is_on_screen(place, rig)) {
-                twin.send(plumbline_twin::TwinCommand::RemoveObject { toy: *toy });
-                away.push(toy.name());
-            }
+            let Some(place) = place.filter(|place| is_on_screen(*place, rig)) else { continue };
+            twin.send(plumbline_twin::TwinCommand::RemoveObject { toy: *toy });
+            away.push((*toy, [place.x, place.y]));
         }
+        // One that was put away just now may still be seen.
+        away.retain(|(toy, _)| !self.off_screen.iter().any(|(known, _)| known == toy));
         if !away.is_empty() {
-            let text = format!("Put away, so that the screen can be touched: {}.", away.join(", "));
+            let names: Vec<&str> = away.iter().map(|(toy, _)| toy.name()).collect();
+            let text = format!(
+                "Put away, so that the screen can be touched, and back where they stood once the run is closed: {}.",
+                names.join(", ")
+            );
             self.notes.push((NoticeLevel::Info, text));
+            self.off_screen.extend(away);
         }
     }
 
@@ -314,21 +309,16 @@ impl TwinDesk {
             return self.let_go_of_the_failed();
         }
         self.truth.look(self.twin.as_ref(), now);
-        let looks = self.eyes.looks();
-        let (Some(twin), Some(tour)) = (&self.twin, &mut self.tour) else { return };
-        if !tour.is_seen(now, looks) {
-            return;
-        }
-        match tour.places.get(tour.next).copied() {
-            Some(robot_from_board) => {
+        let Some(twin) = &self.twin else { return };
+        match self.tours.step(now, self.eyes.looks()) {
+            TourStep::Stays => {}
+            TourStep::Holds(robot_from_board) => {
                 twin.send(plumbline_twin::TwinCommand::PlaceBoard { robot_from_board });
-                (tour.next, tour.held, tour.looks) = (tour.next + 1, Some(now), looks);
             }
-            None => {
+            TourStep::Ends { places } => {
                 twin.send(plumbline_twin::TwinCommand::HideBoard);
-                let all = if tour.places.len() == self.board_places.len() { "all " } else { "" };
-                let text = format!("The board was shown at {all}{} places.", tour.places.len());
-                self.tour = None;
+                let all = if places == self.board_places.len() { "all " } else { "" };
+                let text = format!("The board was shown at {all}{places} places.");
                 self.notes.push((NoticeLevel::Info, text));
             }
         }
@@ -338,7 +328,8 @@ impl TwinDesk {
     /// that is said too.
     fn let_go_of_the_failed(&mut self) {
         self.eyes.set(None);
-        (self.twin, self.tour) = (None, None);
+        self.twin = None;
+        self.tours = BoardTours::default();
         self.notes.push((NoticeLevel::Error, PHYSICS_FAILED.to_owned()));
         self.failed = Some(PHYSICS_FAILED.to_owned());
     }
@@ -356,6 +347,8 @@ impl TwinDesk {
             scenario: self.scenario.clone(),
             board_places: self.board_places.len(),
             few_board_places: self.few_places.len(),
+            board_tour: self.tours.view(),
+            board_places_left: self.tours.left(),
             ..TwinView::default()
         };
         let Some(twin) = &self.twin else { return view };
@@ -453,17 +446,59 @@ const BOARD_THICKNESS_M: f64 = 0.006;
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
+    use plumbline_model::Pixel;
+
+    use super::super::board_tour::NOBODY_LOOKS;
+    use super::super::view::BoardTour;
     use super::*;
 
+    fn place(desk: &TwinDesk, toy: Toy) -> Option<nalgebra::Vector3<f64>> {
+        let twin = desk.twin.as_ref().expect("it runs");
+        twin.state().toys.iter().find(|(known, _)| *known == toy).and_then(|(_, place)| *place)
+    }
+
+    fn until(desk: &TwinDesk, what: &str, holds: &dyn Fn(&TwinDesk) -> bool) {
+        let begun = Instant::now();
+        while !holds(desk) {
+            assert!(begun.elapsed() < Duration::from_secs(30), "never: {what}");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    fn put(desk: &mut TwinDesk, toy: Toy, [x_m, y_m]: [f64; 2], rig: &Rig) {
+        let command = TwinCommand::PlaceToy { toy: toy.name().to_owned(), x_m, y_m };
+        desk.control(command, rig).expect("on the table");
+        until(desk, "it stands", &|desk| {
+            place(desk, toy).is_some_and(|at| (at.x - x_m).hypot(at.y - y_m) < 0.03 && at.z < 0.15)
+        });
+    }
+
     #[test]
-    fn the_board_stays_until_it_was_looked_at_often_enough() {
-        let held = Instant::now();
-        let tour = Tour { places: vec![], next: 1, held: Some(held), looks: 100 };
-        let seen = |after_ms: u64, looks: u64| tour.is_seen(held + Duration::from_millis(after_ms), looks);
-        assert!(!seen(500, 200), "not found still yet");
-        assert!(seen(1600, 108));
-        assert!(!seen(30_000, 104) && seen(60_000, 104), "a slow machine has looked four times");
-        assert!(seen(12_000, 100), "nobody looks");
+    fn toys_make_room_on_the_screen_and_come_back_when_nobody_touches_it_any_more() {
+        let rig = Arc::new(Rig::built_in("nico").expect("the rig that comes with the program"));
+        let mut desk = TwinDesk::new(TwinEyesPlug::default());
+        desk.start("perfect", &rig).expect("a twin");
+        let screen = &rig.touchscreen;
+        let middle = Pixel::new(0.5 * f64::from(screen.width_px), 0.5 * f64::from(screen.height_px));
+        let middle = screen.point_at(middle).coords;
+        put(&mut desk, Toy::Tomato, [middle.x, middle.y], &rig);
+        let stood = place(&desk, Toy::Tomato).expect("it stands");
+        desk.control(TwinCommand::PrepareTouch { screen_height_m: 0.0, payload_kg: 0.0 }, &rig)
+            .expect("free");
+        // The next touch makes sure, perhaps before anything has moved.
+        desk.free_screen(&rig);
+        until(&desk, "room", &|desk| place(desk, Toy::Tomato).is_none());
+        desk.control(TwinCommand::EndTouch, &rig).expect("as asked");
+        until(&desk, "the tomato is back", &|desk| {
+            place(desk, Toy::Tomato).is_some_and(|at| (at.x - stood.x).hypot(at.y - stood.y) < 0.03)
+        });
+        let said = desk.take_notes();
+        let count = |begins: &str| said.iter().filter(|(_, text)| text.starts_with(begins)).count();
+        assert_eq!((count("Put away"), count("Back where they stood: tomato.")), (1, 1), "{said:?}");
+        desk.control(TwinCommand::EndTouch, &rig).expect("as asked");
+        assert!(desk.take_notes().is_empty(), "once");
     }
 
     #[test]
@@ -471,33 +506,15 @@ mod tests {
         let rig = Arc::new(Rig::built_in("nico").expect("the rig that comes with the program"));
         let mut desk = TwinDesk::new(TwinEyesPlug::default());
         desk.start("perfect", &rig).expect("a twin");
-        let place = |desk: &TwinDesk, toy: Toy| {
-            let twin = desk.twin.as_ref().expect("it runs");
-            twin.state().toys.iter().find(|(known, _)| *known == toy).and_then(|(_, place)| *place)
-        };
-        let until = |desk: &TwinDesk, what: &str, holds: &dyn Fn(&TwinDesk) -> bool| {
-            let begun = Instant::now();
-            while !holds(desk) {
-                assert!(begun.elapsed() < Duration::from_secs(30), "never: {what}");
-                std::thread::sleep(Duration::from_millis(5));
-            }
-        };
-        let put = |desk: &mut TwinDesk, toy: Toy, [x_m, y_m]: [f64; 2]| {
-            let command = TwinCommand::PlaceToy { toy: toy.name().to_owned(), x_m, y_m };
-            desk.control(command, &rig).expect("on the table");
-            until(desk, "it stands", &|desk| {
-                place(desk, toy).is_some_and(|at| (at.x - x_m).hypot(at.y - y_m) < 0.03 && at.z < 0.15)
-            });
-        };
-        put(&mut desk, Toy::Tomato, [0.35, 0.0]);
-        put(&mut desk, Toy::Duck, [0.30, 0.05]);
+        put(&mut desk, Toy::Tomato, [0.35, 0.0], &rig);
+        put(&mut desk, Toy::Duck, [0.30, 0.05], &rig);
         let stood = place(&desk, Toy::Tomato).expect("it stands");
         let lay = |x_m: f64, y_m: f64| TwinCommand::LayBoard { x_m, y_m, yaw_rad: 0.0 };
         desk.control(lay(0.35, 0.0), &rig).expect("it lies");
         until(&desk, "room", &|desk| [Toy::Tomato, Toy::Duck].iter().all(|toy| place(desk, *toy).is_none()));
         assert!(desk.take_notes().iter().any(|(_, text)| text.contains("make room")));
         // What is put somewhere by hand meanwhile stays there.
-        put(&mut desk, Toy::Duck, [0.30, -0.45]);
+        put(&mut desk, Toy::Duck, [0.30, -0.45], &rig);
         desk.control(TwinCommand::HideBoard, &rig).expect("hidden");
         until(&desk, "the tomato is back", &|desk| {
             place(desk, Toy::Tomato).is_some_and(|at| (at.x - stood.x).hypot(at.y - stood.y) < 0.02)
@@ -509,6 +526,29 @@ mod tests {
         assert!(back.is_some_and(|(_, text)| text.contains("tomato") && !text.contains("duck")), "{said:?}");
         desk.control(TwinCommand::HideBoard, &rig).expect("hidden");
         assert!(desk.take_notes().is_empty(), "once");
+    }
+
+    #[test]
+    fn a_tour_of_the_board_that_was_broken_off_goes_on_where_it_was() {
+        let rig = Arc::new(Rig::built_in("nico").expect("the rig that comes with the program"));
+        let mut desk = TwinDesk::new(TwinEyesPlug::default());
+        desk.start("perfect", &rig).expect("a twin");
+        let all = desk.view().board_places;
+        assert_eq!((desk.view().board_tour, desk.view().board_places_left), (None, 0));
+        desk.control(TwinCommand::TourBoard(true), &rig).expect("as asked");
+        // Nobody looks: it goes on all the same after a while.
+        let begun = Instant::now();
+        (0..3).for_each(|i| desk.tick(begun + NOBODY_LOOKS * i, &rig));
+        assert_eq!(desk.view().board_tour, Some(BoardTour { place: 3, of: all }));
+        desk.control(TwinCommand::TourBoard(false), &rig).expect("as asked");
+        assert_eq!((desk.view().board_tour, desk.view().board_places_left), (None, all - 2));
+        desk.control(TwinCommand::TourRest, &rig).expect("as asked");
+        desk.tick(begun, &rig);
+        assert_eq!(desk.view().board_tour, Some(BoardTour { place: 3, of: all }), "the third once more");
+        assert_eq!(desk.view().board_places_left, 0);
+        desk.control(TwinCommand::TourBoard(true), &rig).expect("as asked");
+        desk.tick(begun, &rig);
+        assert_eq!(desk.view().board_tour, Some(BoardTour { place: 1, of: all }), "all means all");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The twin: starting it, what stands on its table, its clock, its faults, and its eyes.
 
+mod board_tour;
 pub mod command;
 mod desk;
 mod eyes;

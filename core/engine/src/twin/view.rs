@@ -30,6 +30,10 @@ pub struct TwinView {
     pub board_places: usize,
     /// So many of them suffice where the board is then looked at as it lies on the table.
     pub few_board_places: usize,
+    /// The board on its way through places.
+    pub board_tour: Option<BoardTour>,
+    /// Places that are missing since that was broken off.
+    pub board_places_left: usize,
     /// Height of the block under the touchscreen, m.
     pub screen_height_m: f64,
     /// Weight in the right palm, kg.
@@ -54,11 +58,22 @@ impl Default for TwinView {
             board: None,
             board_places: 0,
             few_board_places: 0,
+            board_tour: None,
+            board_places_left: 0,
             screen_height_m: 0.0,
             payload_kg: 0.0,
             faults: Vec::new(),
         }
     }
+}
+
+/// The board on its way through places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoardTour {
+    /// Number of the place where it is, from 1.
+    pub place: usize,
+    /// Of so many.
+    pub of: usize,
 }
 
 /// A toy.

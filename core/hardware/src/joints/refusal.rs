@@ -16,7 +16,7 @@ pub enum Unheard {
 
 impl Unheard {
     /// What to do.
-    pub(super) fn advice(self) -> &'static str {
+    pub fn advice(self) -> &'static str {
         match self {
             Self::Silent => "check its cable and power",
             Self::TooBusy => {

@@ -197,6 +197,8 @@ fn folders_that_cannot_be_a_source_are_refused_precisely() {
     world.save("others/something.png", &picture(Eye::Right, 1));
     world.save("wrong/right_1.png", &picture(Eye::Right, 1));
     world.write("file.txt", "text");
+    world.save("toys/images/1.png", &picture(Eye::Left, 1));
+    world.write("toys/data.yaml", "names: [tomato]");
     let (left, right) = (world.at("left"), world.at("right"));
     let folders = |left: &std::path::Path, right: &std::path::Path| SourceSpec::Folders {
         left: left.to_path_buf(),
@@ -207,6 +209,7 @@ fn folders_that_cannot_be_a_source_are_refused_precisely() {
         (SourceSpec::Folder(world.at("empty")), "holds no PNG or JPEG image"),
         (SourceSpec::Folder(world.at("file.txt")), "file.txt is not a folder"),
         (SourceSpec::Folder(world.at("mixed")), "no pairs were recognized"),
+        (SourceSpec::Folder(world.at("toys")), "toys is a data set for detectors"),
         (folders(&left, &world.at("empty")), "empty holds no PNG or JPEG image"),
         (folders(&left, &left), "was given for both eyes"),
         (folders(&left, &world.at("others")), "(found frame_1.png and something.png)"),

@@ -6,15 +6,13 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use plumbline_hardware::{Counters, Next, Report, SourceDescription, SourceError, SourceKind, StereoSource};
+use plumbline_model::priority::step_back;
 use plumbline_model::{Stamp, StereoFrame, duration};
 
 use super::error::RenderError;
 use super::renderer::{EyeOptions, EyeRenderer};
 use super::sensor::Sensor;
 use crate::scene::{Scenery, Snapshot};
-
-/// How far drawing steps back, on the scale of the system (0 usual, 19 last).
-const NICE: i32 = 10;
 
 /// Gives the newest scenery and where everything is; called once per pair from the eyes' own thread, so
 /// it must not wait long.
@@ -108,6 +106,7 @@ impl TwinEyes {
         let thread = std::thread::Builder::new()
             .name("twin eyes".to_owned())
             .spawn(move || {
+                // Without a graphics card the processor draws. Threads of the driver inherit it.
                 step_back();
                 match EyeRenderer::new(options.eyes) {
                     Ok(renderer) => {
@@ -141,15 +140,6 @@ impl EyeControls {
         sensor.check()?;
         self.shared.state().sensor = sensor;
         Ok(())
-    }
-}
-
-/// Lets everything else go first: without a graphics card the images are drawn by the processor,
-/// which would leave the joint bus waiting. Threads of the driver inherit it, so it comes before
-/// the device is opened.
-fn step_back() {
-    if let Err(error) = rustix::process::nice(NICE) {
-        log::debug!("drawing keeps its usual priority: {error}");
     }
 }
 

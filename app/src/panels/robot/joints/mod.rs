@@ -148,6 +148,8 @@ fn freshness<'a>(robot: &RobotView, joint: &JointView, servo: &'a str) -> Freshn
     }
     match joint.age {
         _ if !robot.connection.is_connected() => Freshness::Stale(joint.age),
+        // It answers too late.
+        _ if robot.bus.late.contains(&joint.servo) => Freshness::Stale(joint.age),
         Some(age) if age > OLD => Freshness::Stale(Some(age)),
         _ => Freshness::Live,
     }

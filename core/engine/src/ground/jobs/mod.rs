@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, TryRecvError};
 use plumbline_model::files::FileError;
+use plumbline_model::priority::step_back;
 use plumbline_model::{Cancelled, JobContext, duration};
 
 use super::text::sentence;
@@ -115,7 +116,8 @@ impl JobContext for Shared {
 }
 
 impl<T: Send + 'static> JobHandle<T> {
-    /// Starts `work` on a thread of its own. `changed` is called from there when there is
+    /// Starts `work` on a thread of its own, which steps back behind the joint bus and the window; so do
+    /// threads that it starts, those of a detector among them. `changed` is called from there when there is
     /// progress to show and when the job has ended.
     pub fn start(
         id: JobId,
@@ -136,6 +138,7 @@ impl<T: Send + 'static> JobHandle<T> {
         let (ended, outcome) = crossbeam_channel::bounded(1);
         let (for_thread, in_thread) = (ended.clone(), shared.clone());
         let thread = std::thread::Builder::new().name(format!("job {}", id.0)).spawn(move || {
+            step_back();
             // Work owns its snapshot, so nothing that it leaves half done is seen by anybody.
             let result = std::panic::catch_unwind(AssertUnwindSafe(|| work(in_thread.as_ref())));
             // The receiver is gone when the program is closing; then nobody wants the outcome.
@@ -215,7 +218,12 @@ pub fn on_job_workers<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     static WORKERS: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
     let workers = WORKERS.get_or_init(|| {
         let named = rayon::ThreadPoolBuilder::new().thread_name(|i| format!("job worker {i}"));
-        named.build().map_err(|error| log::warn!("jobs share the workers of the live view: {error}")).ok()
+        // Whoever asks for them first need not be a job.
+        named
+            .start_handler(|_| step_back())
+            .build()
+            .map_err(|error| log::warn!("jobs share the workers of the live view: {error}"))
+            .ok()
     });
     match workers {
         Some(workers) => workers.install(work),
@@ -292,6 +300,19 @@ mod tests {
         let job = start(|_| Ok(7));
         assert_eq!(job.wait(), Outcome::Done(7));
         assert_eq!(job.take_outcome(), None);
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_job_and_its_workers_step_back_behind_whoever_started_them() {
+        let nice = || rustix::process::getpriority_process(None).expect("a thread has a priority");
+        let before = nice();
+        let job = start(move |_| Ok((nice(), on_job_workers(nice))));
+        // Run with `nice`, the tests stand far back already.
+        let stands_back = |now: i32| now > before || before >= 10;
+        let Outcome::Done((job, worker)) = job.wait() else { panic!("it ends well") };
+        assert!(stands_back(job) && stands_back(worker), "{before}: the job {job}, its worker {worker}");
+        assert_eq!(nice(), before, "whoever started it goes on as before");
     }
 
     #[test]

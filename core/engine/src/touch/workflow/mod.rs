@@ -175,7 +175,7 @@ impl Workflow for TouchWorkflow {
             TouchCommand::CorrectWith(correction) => self.correct_with(correction, around, context),
             TouchCommand::Start => self.start(around, context),
             TouchCommand::Open { session } => self.open(session, around, context),
-            TouchCommand::Close => self.close(context),
+            TouchCommand::Close => self.close(around, context),
             TouchCommand::AcceptPlacement => self.accept_placement(context),
             TouchCommand::DiscardPlacement => {
                 self.proposal = None;

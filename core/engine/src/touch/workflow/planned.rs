@@ -12,9 +12,12 @@ use super::super::command::Correction;
 use super::super::plan::{Corrector, PlanRequest};
 use super::super::refusal::Refusal;
 use super::super::store;
+use super::super::view::ContactSource;
 use super::super::work::{Context, TouchWork};
-use super::{TouchAround, TouchWorkflow};
+use super::{TouchAround, TouchWorkflow, source};
 use crate::robot::RobotControl;
+use crate::robot::view::MotionState;
+use crate::twin::command::TwinCommand;
 
 impl TouchWorkflow {
     pub(super) fn plan(
@@ -121,7 +124,7 @@ impl TouchWorkflow {
         Ok(())
     }
 
-    pub(super) fn close(&mut self, context: &mut Context<'_>) -> Result<(), Refusal> {
+    pub(super) fn close(&mut self, around: &TouchAround, context: &mut Context<'_>) -> Result<(), Refusal> {
         if self.run.as_ref().is_some_and(|run| !run.is_on_disk()) {
             return Err(Refusal::NotOnDisk);
         }
@@ -132,6 +135,11 @@ impl TouchWorkflow {
         let Some(run) = self.run.take() else { return Ok(()) };
         if run.touch.is_some() {
             context.control(RobotControl::AbandonTouch);
+        }
+        // While the arm moves, nothing is put beside it.
+        let stands = run.touch.is_none() && !matches!(around.robot.motion, MotionState::Moving { .. });
+        if stands && source(&around.robot) == ContactSource::Twin {
+            context.control(TwinCommand::EndTouch.into());
         }
         if run.is_active() && !run.progress.finished {
             self.runs.unfinished.insert(0, store::unfinished(&run.session, &run.progress));

@@ -1,0 +1,145 @@
+//! The tour of the head as the workflow drives it.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use plumbline_model::robot::Rig;
+use plumbline_model::{StereoCalibration, default_board};
+
+use super::command::MountCommand;
+use super::work::Context;
+use super::{MountAround, MountWorkflow};
+use crate::ground::context::Asked;
+use crate::ground::jobs::list::JobList;
+use crate::ground::notice::Notices;
+use crate::ground::stage::Skipped;
+use crate::ground::time::Time;
+use crate::ground::{Moment, Workflow as _};
+use crate::mount::view::{MountTour, MountView};
+use crate::robot::RobotControl;
+use crate::robot::view::{Connection, MotionState, RobotView};
+
+const POSES: [(f64, f64); 3] = [(0.2, -0.5), (-0.2, -0.4), (0.0, -0.6)];
+
+/// A workflow whose poses are planned, and a head that turns where it is told to at once.
+struct Bench {
+    room: MountWorkflow,
+    around: MountAround,
+    notices: Notices,
+    jobs: JobList,
+    time: Time,
+    told: Vec<(f64, f64)>,
+    _folder: tempfile::TempDir,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let rig = Arc::new(Rig::built_in("nico").expect("comes with the program"));
+        let robot = RobotView {
+            rig: Some(rig.clone()),
+            connection: Connection::Connected { to: "it".to_owned(), twin: true },
+            measured: Some(rig.home()),
+            motion: MotionState::Holding { why: None },
+            ..RobotView::default()
+        };
+        let around = MountAround {
+            calibration: Some(Arc::new(StereoCalibration::bare(rig.eyes.cameras))),
+            rig,
+            robot: Arc::new(robot),
+            board: default_board(),
+            has_eyes: true,
+        };
+        let mut room = MountWorkflow::new(folder.path());
+        room.planned = POSES.to_vec();
+        Self {
+            room,
+            around,
+            notices: Notices::default(),
+            jobs: JobList::default(),
+            time: Time::now(),
+            told: vec![],
+            _folder: folder,
+        }
+    }
+
+    fn with(&mut self, act: impl FnOnce(&mut MountWorkflow, &MountAround, &mut Context<'_>)) {
+        let mut asked = vec![];
+        let Self { room, around, notices, jobs, time, told, .. } = self;
+        act(room, around, &mut Context::new(notices, jobs, *time, &mut asked));
+        for one in asked {
+            if let Asked::Control(RobotControl::TurnHead { pan_rad, tilt_rad }) = one {
+                told.push((pan_rad, tilt_rad));
+            }
+        }
+    }
+
+    fn tour(&mut self) {
+        self.with(|room, around, context| room.apply(MountCommand::Tour, around, context));
+    }
+
+    /// The head stands where it was told to turn, and what is to be seen there was seen.
+    fn arrives(&mut self) {
+        let (pan_rad, tilt_rad) = *self.told.last().expect("it was told to turn");
+        let eyes = &self.around.rig.eyes;
+        let there = self.around.rig.home().with(&[eyes.pan, eyes.tilt], &[pan_rad, tilt_rad]);
+        self.change(|robot| robot.measured = Some(there));
+        self.time = self.time.after(Duration::from_secs(1));
+        if let Some(tour) = &mut self.room.tour {
+            tour.advance();
+        }
+        self.step();
+    }
+
+    fn change(&mut self, how: impl FnOnce(&mut RobotView)) {
+        let mut robot = (*self.around.robot).clone();
+        how(&mut robot);
+        self.around.robot = Arc::new(robot);
+        self.step();
+    }
+
+    fn step(&mut self) {
+        self.with(|room, around, context| room.step(around, context));
+    }
+
+    fn view(&mut self) -> Arc<MountView> {
+        let moment = Moment { now: self.time.instant, skipped: Skipped::default() };
+        self.room.view(&self.around, &moment)
+    }
+}
+
+#[test]
+fn after_stop_the_rest_stays_planned_and_the_next_tour_goes_on_there() {
+    let mut bench = Bench::new();
+    bench.tour();
+    assert_eq!(bench.told, [POSES[0]]);
+    assert_eq!(bench.view().tour, Some(MountTour { pose: 1, of: 3, waits: false }));
+    bench.arrives();
+    assert_eq!(bench.told, POSES[..2]);
+    assert_eq!(bench.view().tour, Some(MountTour { pose: 2, of: 3, waits: false }));
+    bench.change(|robot| robot.stopped = true);
+    let view = bench.view();
+    assert_eq!((view.tour, &*view.planned), (None, &POSES[1..]), "the first one was seen");
+    bench.change(|robot| robot.stopped = false);
+    bench.tour();
+    assert_eq!(bench.told, [POSES[0], POSES[1], POSES[1]], "the one that was under way, not the first one");
+    bench.arrives();
+    bench.arrives();
+    let view = bench.view();
+    assert_eq!((view.tour, view.planned.len()), (None, 0), "all were seen");
+}
+
+#[test]
+fn a_head_that_was_not_heard_is_said_and_turns_on_by_itself() {
+    let mut bench = Bench::new();
+    bench.tour();
+    bench.change(|robot| {
+        robot.refusal = Some("The servo of Head turn was not heard in time.".to_owned());
+        (robot.is_unheard, robot.refused) = (true, 1);
+    });
+    let view = bench.view();
+    assert!(view.tour.is_some_and(|tour| tour.waits) && view.next.contains("by itself"), "{}", view.next);
+    let said = bench.notices.view();
+    assert!(said.iter().any(|notice| notice.text.contains("not heard in time")), "{said:?}");
+    assert_eq!(bench.told, [POSES[0]], "nothing moves meanwhile");
+}
