@@ -59,7 +59,7 @@ fn text(report: &GapReport) -> String {
     let mut text = format!("{}\n", finding.sentence);
     compared(&mut text, &finding.comparison);
     found(&mut text, finding);
-    shown(&mut text, &finding.shown);
+    shown(&mut text, &finding.shown, finding.comparison.is_noise_known());
     unexplained(&mut text, &finding.unexplained);
     if let Some(next) = &finding.next {
         next_experiment(&mut text, next);
@@ -135,7 +135,7 @@ fn found(text: &mut String, finding: &Finding) {
     let more: Vec<&str> =
         finding.effects.iter().skip(MOST_EFFECTS).map(|effect| effect.title.as_str()).collect();
     if !more.is_empty() {
-        text.push_str(&format!("  and {} more, smaller: {}\n", more.len(), more.join("; ")));
+        text.push_str(&format!("  and {} more: {}\n", more.len(), more.join("; ")));
     }
 }
 
@@ -182,7 +182,7 @@ fn one(text: &mut String, effect: &NamedEffect) {
     }
 }
 
-fn shown(text: &mut String, shown: &Shown) {
+fn shown(text: &mut String, shown: &Shown, is_noise_known: bool) {
     let of = |value: f64| match shown.unit {
         ShownUnit::Meter => format::mm(value),
         ShownUnit::Pixel => format::px(value),
@@ -190,13 +190,17 @@ fn shown(text: &mut String, shown: &Shown) {
     if shown.rows == 0 {
         return;
     }
+    let noise = if is_noise_known {
+        format!("noise alone would leave {}", of(shown.floor))
+    } else {
+        "nothing tells the noise".to_owned()
+    };
     text.push_str(&format!(
-        "\nOn {} that were not used ({}): {} before, {} after; noise alone would leave {}\n",
+        "\nOn {} that were not used ({}): {} before, {} after; {noise}\n",
         format::count(shown.rows, "row"),
         shown.blocks,
         of(shown.before),
-        of(shown.after),
-        of(shown.floor)
+        of(shown.after)
     ));
     if let Some(closure) = shown.closure {
         let range = shown.closure_range.map_or_else(String::new, |[low, high]| {

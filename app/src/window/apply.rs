@@ -73,8 +73,10 @@ impl PlumblineWindow {
         if let Some(command) = self.command_of(action) {
             // Showing the board is for capturing pairs of it.
             let collecting = self.settings.screen == Screen::Collect && !self.view.eyes.auto_capture;
-            use RobotAction::{TourBoard, TourFew, TourRest};
-            let shows = matches!(action, Action::Robot(TourBoard | TourFew | TourRest));
+            let shows = matches!(
+                action,
+                Action::Robot(RobotAction::TourBoard | RobotAction::TourFew | RobotAction::TourRest)
+            );
             if shows && collecting {
                 self.send(EyesCommand::AutoCapture(true).into());
             }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use egui::{Align, Button, DragValue, Layout, Panel, Popup, Ui};
+use egui::{Align, Button, DragValue, Layout, Panel, Popup, Response, Ui};
 use jiff::Timestamp;
 use plumbline_engine::view::{RecordingState, SourceStatus, StepState};
 use plumbline_engine::{EyesCommand, View};
@@ -272,19 +272,45 @@ fn clock_lamp(window: &PlumblineWindow) -> TopLamp {
 }
 
 fn clock_details(window: &PlumblineWindow, ui: &mut Ui, outbox: &mut Outbox) {
+    let source = &window.view.source;
     let minutes_on = window.view.eyes.minutes_since_on;
     ui.label("How long the cameras were on when the pairs were taken is kept with the calibration.");
+    if source.replay.is_some() && !source.photographs {
+        ui.label(
+            "Of a recording nothing else uses it: it is not known how long they had been on at each pair.",
+        );
+    }
     ui.horizontal(|ui| {
         let label = ui.label("Cameras on for");
-        let mut minutes = minutes_on.unwrap_or(0.0);
-        let drag = DragValue::new(&mut minutes).range(0.0..=10_000.0).max_decimals(0).suffix(" min");
-        if ui.add(drag).labelled_by(label.id).changed() {
+        if let Some(minutes) = minutes_field(ui, &label, minutes_on) {
             outbox.send(EyesCommand::MinutesSinceOn(Some(minutes)));
         }
         if minutes_on.is_some() && ui.button("Not known").clicked() {
             outbox.send(EyesCommand::MinutesSinceOn(None));
         }
     });
+}
+
+/// The minutes, once the operator is done with them: whoever watches by them begins anew with each that are said.
+/// While they are edited the clock that runs does not change them.
+fn minutes_field(ui: &mut Ui, label: &Response, minutes_on: Option<f64>) -> Option<f64> {
+    let draft = label.id.with("draft");
+    let held: Option<(f64, bool)> = ui.data(|data| data.get_temp(draft));
+    let (mut minutes, was_dragged) = held.unwrap_or((minutes_on.map_or(0.0, f64::round), false));
+    let drag = DragValue::new(&mut minutes)
+        .range(0.0..=10_000.0)
+        .max_decimals(0)
+        .suffix(" min")
+        .update_while_editing(false);
+    let response = ui.add(drag).labelled_by(label.id);
+    let (dragged, changed) = (response.dragged(), response.changed());
+    if dragged || response.has_focus() {
+        ui.data_mut(|data| data.insert_temp(draft, (minutes, dragged && (was_dragged || changed))));
+    } else {
+        ui.data_mut(|data| data.remove_temp::<(f64, bool)>(draft));
+    }
+    let is_done = !dragged && changed || response.drag_stopped() && was_dragged;
+    is_done.then_some(minutes)
 }
 
 /// The twin knows how long its eyes have been on.

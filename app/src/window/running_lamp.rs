@@ -1,7 +1,9 @@
 //! What is under way, in the top line on every screen: how far it is, and by a click the way back to it.
 
 use plumbline_engine::View;
-use plumbline_engine::view::{GraspPhase, JobState, JobView, PartState, TouchPhase, TrialsPhase};
+use plumbline_engine::view::{
+    GraspPhase, GraspRun, JobState, JobView, LampState, PartState, TouchPhase, TrialsPhase,
+};
 use plumbline_widgets::format;
 use plumbline_widgets::lamp::Health;
 
@@ -52,7 +54,7 @@ fn experiment(view: &View) -> Option<TopLamp> {
     let name = "Experiment";
     match &view.trials.phase {
         TrialsPhase::Idle | TrialsPhase::Paused { .. } => None,
-        TrialsPhase::Running { .. } => Some(under_way(name, value, fraction, Screen::Grasp)),
+        TrialsPhase::Running { .. } => Some(arm(view, name, value, fraction)),
         TrialsPhase::Asks { .. } => {
             Some(waits(name, value, "The thing has to be laid down for the next trial.", Screen::Grasp))
         }
@@ -62,22 +64,35 @@ fn experiment(view: &View) -> Option<TopLamp> {
     }
 }
 
-fn grasp(view: &View) -> Option<TopLamp> {
-    let (name, screen) = ("Grasp", Screen::Grasp);
-    let phase = &view.grasp.phase;
-    if phase.is_paused() {
-        return Some(waits(name, "paused".to_owned(), "The arm holds until you go on.", screen));
+/// What grasps; an arm that was made to hold goes on when somebody says so, an experiment's, too.
+fn arm(view: &View, name: &'static str, value: String, fraction: f64) -> TopLamp {
+    if view.grasp.phase.is_paused() {
+        return waits(name, value, "The arm holds until you go on.", Screen::Grasp);
     }
-    let value = match phase {
+    under_way(name, value, fraction, Screen::Grasp)
+}
+
+fn grasp(view: &View) -> Option<TopLamp> {
+    let phase = &view.grasp.phase;
+    let run = view.grasp.run.as_deref();
+    let (value, fraction) = match phase {
         GraspPhase::Idle => return None,
-        GraspPhase::Planning => "looks".to_owned(),
+        _ if phase.is_paused() => ("paused".to_owned(), 0.0),
+        GraspPhase::Planning => ("looks".to_owned(), 0.0),
         GraspPhase::Grasping { .. } => {
-            let object = view.grasp.run.as_ref().map(|run| run.object.to_lowercase());
-            object.filter(|object| !object.is_empty()).unwrap_or_else(|| "moves".to_owned())
+            let object = run.map(|run| run.object.to_lowercase()).filter(|object| !object.is_empty());
+            (object.unwrap_or_else(|| "moves".to_owned()), run.map_or(0.0, steps_done))
         }
-        GraspPhase::Hand { step, .. } => step.title().to_lowercase(),
+        // One step of the hand is not counted.
+        GraspPhase::Hand { step, .. } => (step.title().to_lowercase(), 0.0),
     };
-    Some(under_way(name, value, 0.5, screen))
+    Some(arm(view, "Grasp", value, fraction))
+}
+
+/// The share of its steps that is done.
+fn steps_done(run: &GraspRun) -> f64 {
+    let done = run.lamps.iter().filter(|(_, lamp)| *lamp == LampState::Done).count();
+    done as f64 / run.lamps.len().max(1) as f64
 }
 
 fn hands(view: &View) -> Option<TopLamp> {
@@ -131,7 +146,7 @@ mod tests {
     use std::sync::Arc;
 
     use plumbline_engine::view::{
-        GraspView, HandEyeView, ModelsView, MountTour, MountView, TouchCounts, TouchView,
+        GraspStep, GraspView, HandEyeView, ModelsView, MountTour, MountView, TouchCounts, TouchView,
     };
 
     use super::*;
@@ -170,6 +185,28 @@ mod tests {
         ] {
             assert_eq!(told(&view).map(|(.., goes)| goes), Some(screen));
         }
+    }
+
+    fn grasping(paused: bool) -> View {
+        let steps = [GraspStep::Approach, GraspStep::Lower, GraspStep::Close, GraspStep::Lift];
+        let states = [LampState::Done, LampState::Lit, LampState::Dark, LampState::Dark];
+        let lamps = steps.into_iter().zip(states).collect();
+        let run = GraspRun { object: "Tomato".to_owned(), lamps, ..GraspRun::default() };
+        let phase = GraspPhase::Grasping { paused, ending: false };
+        let grasp = GraspView { phase, run: Some(Arc::new(run)), ..GraspView::default() };
+        View { grasp: Arc::new(grasp), ..View::default() }
+    }
+
+    #[test]
+    fn a_grasp_is_as_far_as_its_steps_and_paused_it_waits_also_in_an_experiment() {
+        let moves = lamp(&grasping(false)).expect("it is under way");
+        assert_eq!((moves.value.as_str(), moves.health), ("tomato", Health::Working(0.25)));
+        let paused = lamp(&grasping(true)).expect("it is under way");
+        assert_eq!((paused.value.as_str(), paused.health), ("paused", Health::Warning));
+        let of_experiment = |paused| arm(&grasping(paused), "Experiment", "3 of 22".to_owned(), 0.1);
+        assert_eq!(of_experiment(false).health, Health::Working(0.1));
+        assert_eq!(of_experiment(true).health, Health::Warning);
+        assert_eq!(of_experiment(true).value, "3 of 22", "how far it is stays");
     }
 
     #[test]

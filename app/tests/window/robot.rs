@@ -167,7 +167,7 @@ fn an_arm_of_which_one_joint_is_not_known_cannot_be_jogged() {
     let of_arm = |arm: usize| RobotView { unknown: [rig().arms[arm].joints[3]].into(), ..connected() };
     let fake = Fake::over(with_robot(of_arm(0)));
     let mut window = fake.window(on_robot());
-    let why = "it is not known where Right elbow is: check the cable and power of its servo";
+    let why = "it is not known where Right elbow is: check its cable and power";
     for label in [why, "Forward"] {
         assert!(window.get_by_label(label).accesskit_node().is_disabled(), "{label}");
     }

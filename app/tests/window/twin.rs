@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use plumbline::{Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::view::{BoardTour, EyesView, SourceStatus, SourceView, TwinView};
+use plumbline_engine::view::{BoardTour, CollectedPair, EyesView, SourceStatus, SourceView, TwinView};
 use plumbline_engine::{Command, EyesCommand, RobotCommand, SourceSpec, TwinCommand, View};
 
 use crate::fake::{Fake, click, says, shows};
@@ -102,6 +102,22 @@ fn a_tour_of_the_board_is_counted_and_goes_on_where_it_was_broken_off() {
     fake.take_sent();
     click(&mut window, "Show the board at the other places");
     assert_eq!(fake.take_sent(), [Command::from(TwinCommand::TourRest)]);
+    // Enough pairs can be solved, whatever places are left.
+    let mut enough = view(TwinView { board: Some(lying_board()), board_places_left: 9, ..twin() });
+    let pair = |number: usize| CollectedPair {
+        name: format!("pair {number}"),
+        left: None,
+        right: None,
+        left_image: None,
+        right_image: None,
+        place: None,
+        taken: None,
+    };
+    let pairs = (0..12).map(|number| Arc::new(pair(number))).collect();
+    enough.eyes = Arc::new(EyesView { collected: pairs, ..(*enough.eyes).clone() });
+    fake.show(enough);
+    window.run_steps(3);
+    assert!(shows(&window, "Solve 12 pairs"));
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use image::GrayImage;
+use image::{GrayImage, Rgb, RgbImage};
 use nalgebra::Vector3;
 use plumbline_drift::{
     Monitor, Mover, Reference, ReferenceKind, Sample, Verdict, Watcher, WatcherSetup, words,
@@ -23,6 +23,8 @@ const NOTICED_WITHIN_S: f64 = 10.0;
 const RECOVERED_TO_DEG: f64 = 0.02;
 /// So far a thing is seen aside that was moved, px.
 const ASIDE_PX: u32 = 4;
+/// A toy that is moved by 4 cm changes more pixels of an eye than this.
+const MOVED_PX: usize = 200;
 const TOYS: [(Toy, [f64; 2]); 2] = [(Toy::Tomato, [0.32, 0.12]), (Toy::Banana, [0.42, -0.18])];
 
 struct Bench {
@@ -109,6 +111,12 @@ impl Bench {
     fn newest(&self) -> &Sample {
         self.monitor.samples().last().expect("looked")
     }
+}
+
+/// In how many pixels two images differ by more than noise.
+fn changed_px(a: &RgbImage, b: &RgbImage) -> usize {
+    let differs = |(a, b): (&Rgb<u8>, &Rgb<u8>)| a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 40);
+    a.pixels().zip(b.pixels()).filter(|pixels| differs(*pixels)).count()
 }
 
 /// A gray sheet over what lies in an outline, and a little more.
@@ -248,13 +256,23 @@ fn the_laboratory_warms_up_and_that_is_said() {
 fn toys_that_are_moved_and_an_arm_that_moves_are_no_fault_of_the_eyes() {
     let Some(mut bench) = warm(&with_right_eye([0.0; 3])) else { return };
     bench.watch(18);
+    let before = bench.twin.look().expect("drawn before");
     bench.twin.place_toy(Toy::Tomato, 0.30, 0.16).expect("on the table");
     bench.twin.wait(0.5);
+    let after = bench.twin.look().expect("drawn before");
+    let [in_left, in_right] =
+        [(&before.left, &after.left), (&before.right, &after.right)].map(|(a, b)| changed_px(a, b));
+    assert!(in_left > MOVED_PX && in_right > MOVED_PX, "the eyes see it move: {in_left} and {in_right} px");
     bench.watch(3);
-    // A smooth toy may have too few corners to be a reference; of nothing else is told that it moved.
+    // A smooth toy may have too few corners to be a reference, so that it moved need not be told; the eyes stand
+    // still, and so does all else.
     let moved = bench.monitor.own_motions();
     moved.iter().for_each(|motion| println!("{}", words::own_motion(motion)));
-    assert!(moved.iter().all(|motion| motion.name == "Tomato"), "{moved:?}");
+    let others: Vec<&str> =
+        moved.iter().map(|motion| motion.name.as_str()).filter(|name| *name != "Tomato").collect();
+    assert_eq!(others, [""; 0], "only the tomato was moved");
+    assert_eq!(bench.monitor.alarms(), &[], "a toy that is moved turns no eye");
+    assert!(matches!(bench.monitor.verdict(), Verdict::Steady { .. }), "{:?}", bench.monitor.verdict());
     let rig = bench.twin.rig().clone();
     let arm = &rig.arms[0].joints;
     for k in 0..20 {

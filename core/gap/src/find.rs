@@ -107,7 +107,7 @@ fn found_in(
     bounds::still_structured(&mut found, &used, &compared);
     bounds::bound_by_own_rows(&mut found, &used);
     if let Some(words) = no_help(&found, &shown, options) {
-        compared.warnings.push(words);
+        compared.warnings.insert(0, words);
     }
     let partial = bounds::bound_by_held_out(&mut found, &used, &shown, &mut compared.warnings);
     let servos = servos::servos(&used, &compared.floor, &found.assumed);

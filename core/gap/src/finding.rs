@@ -258,9 +258,9 @@ pub struct FoundParameter {
 }
 
 impl FoundParameter {
-    /// Whether its interval excludes zero, or it is no number.
+    /// Whether its interval excludes zero, or it is no number, or one of which zero is no absence.
     pub fn is_told(&self) -> bool {
-        self.text.is_some() || self.low * self.high > 0.0
+        self.text.is_some() || self.name.ends_with("phase_rad") || self.low * self.high > 0.0
     }
 }
 

@@ -1,6 +1,6 @@
 //! The answer in a sentence or two, for someone in the lab.
 
-use crate::finding::{Finding, FloorSource, FoundParameter, NamedEffect, Shown, ShownUnit, Verdict};
+use crate::finding::{Finding, FloorSource, FoundParameter, NamedEffect, ShownUnit, Verdict};
 use crate::watched::WATCHED;
 use plumbline_model::parameter_words;
 
@@ -19,7 +19,7 @@ pub(crate) fn of(finding: &Finding) -> String {
                     .take(1)
                     .map(|one| one.words.clone()),
             );
-            said.push(shrink(&finding.shown));
+            said.push(shrink(finding));
             said.join(" ")
         }
         Verdict::NotInLibrary => not_in_library(finding),
@@ -34,7 +34,7 @@ const MOST_PARAMETERS: usize = 3;
 /// The effects that are not told one by one.
 fn more(effects: &[NamedEffect]) -> Option<String> {
     let rest: Vec<&str> = effects.iter().skip(MOST_EFFECTS).map(|effect| effect.title.as_str()).collect();
-    (!rest.is_empty()).then(|| format!("And {} more, smaller: {}.", rest.len(), rest.join("; ")))
+    (!rest.is_empty()).then(|| format!("And {} more: {}.", rest.len(), rest.join("; ")))
 }
 
 fn no_gap(finding: &Finding) -> String {
@@ -78,11 +78,14 @@ fn approximate(source: FloorSource) -> &'static str {
 
 fn not_in_library(finding: &Finding) -> String {
     let shown = &finding.shown;
-    let gap = format!(
-        "There is a gap ({} where noise alone leaves {}), and no effect of the library explains it.",
-        size(shown.before, shown.unit),
-        size(shown.floor, shown.unit)
-    );
+    let before = size(shown.before, shown.unit);
+    let gap = if finding.comparison.is_noise_known() {
+        format!("There is a gap ({before} where noise alone leaves {})", size(shown.floor, shown.unit))
+    } else {
+        format!(
+            "The mean error is {before}, how much of it is noise is not known (nothing was measured twice)"
+        )
+    };
     let article = |on: &str| if on.starts_with("where ") { on.to_owned() } else { format!("the {on}") };
     let depends: Vec<String> = finding
         .unexplained
@@ -101,14 +104,11 @@ fn not_in_library(finding: &Finding) -> String {
             finding.addable().into_iter().map(|i| &finding.effects[i]).map(self::effect).collect();
         let told: Vec<String> = parts.iter().take(MOST_EFFECTS).cloned().collect();
         let more = parts.len().saturating_sub(MOST_EFFECTS);
-        let more = if more > 0 { format!(" And {more} more, smaller.") } else { String::new() };
+        let more = if more > 0 { format!(" And {more} more.") } else { String::new() };
         return format!(
-            "There is a gap ({} where noise alone leaves {}), and no name explains it. A part of it can be added: {}{more} \
-             {}{on}",
-            size(shown.before, shown.unit),
-            size(shown.floor, shown.unit),
+            "{gap}, and no name explains it. A part of it can be added: {}{more} {}{on}",
             told.join(" "),
-            shrink(shown)
+            shrink(finding)
         );
     }
     let partly: Vec<&str> = finding.effects.iter().map(|effect| effect.title.as_str()).take(2).collect();
@@ -117,7 +117,7 @@ fn not_in_library(finding: &Finding) -> String {
     } else {
         format!(" It looks partly like: {}.", partly.join("; "))
     };
-    format!("{gap}{on}{partly}")
+    format!("{gap}, and no effect of the library explains it.{on}{partly}")
 }
 
 /// The parameters that stand out most, in their order, and the number of the others.
@@ -221,18 +221,23 @@ fn digits(width: f64) -> usize {
     (1.0 - width.log10().floor()).clamp(0.0, 4.0) as usize
 }
 
-fn shrink(shown: &Shown) -> String {
+fn shrink(finding: &Finding) -> String {
+    let shown = &finding.shown;
     let rows = match shown.unit {
         ShownUnit::Meter | ShownUnit::Pixel if shown.closure.is_none() => {
             return format!("The mean error is {}.", size(shown.before, shown.unit));
         }
         _ => "rows that were not used",
     };
+    let noise = if finding.comparison.is_noise_known() {
+        format!("noise alone leaves {}", size(shown.floor, shown.unit))
+    } else {
+        "nothing tells how much of that is noise".to_owned()
+    };
     format!(
-        "With it the error on {rows} falls from {} to {}; noise alone leaves {}.",
+        "With it the error on {rows} falls from {} to {}; {noise}.",
         size(shown.before, shown.unit),
-        size(shown.after, shown.unit),
-        size(shown.floor, shown.unit)
+        size(shown.after, shown.unit)
     )
 }
 

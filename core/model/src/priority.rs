@@ -30,12 +30,13 @@ mod tests {
     #[test]
     fn a_thread_steps_back_alone_and_once() {
         let before = getpriority_process(None).expect("a thread has a priority");
-        let stepped = std::thread::spawn(|| {
+        let stepped = std::thread::Builder::new().name("steps back".to_owned()).spawn(|| {
             step_back();
             let once = getpriority_process(None);
             step_back();
             (once, getpriority_process(None))
         });
+        let stepped = stepped.expect("the system gives a thread");
         let (once, twice) = stepped.join().expect("it does not panic");
         assert_eq!(once, Ok(before.max(NICE)));
         assert_eq!(twice, once, "it goes back no further");

@@ -277,6 +277,9 @@ pub enum OfflineError {
     /// A file itself cannot be read or written, or is an input that would be lost.
     #[error(transparent)]
     File(#[from] plumbline_model::files::FileError),
+    /// A folder with an attempt in it, which another one would be mixed with.
+    #[error("{} holds an attempt already: name a new folder, or remove that one", .0.display())]
+    KeptAlready(std::path::PathBuf),
     /// What is kept of a grasp.
     #[error(transparent)]
     Keeping(#[from] plumbline_engine::grasp::KeepingError),

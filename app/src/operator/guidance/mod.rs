@@ -171,8 +171,10 @@ fn collect(view: &View) -> Guidance {
         ))
         .then(collect_label(view), collect_action(view));
     }
-    // The twin's board was shown everywhere it can be held; nobody can hold it to the outline.
-    let toured = view.twin.running && view.twin.board.is_none();
+    // The twin's board was shown everywhere it can be held, or a tour of it was broken off; nobody can hold it
+    // to the outline.
+    let twin = &view.twin;
+    let toured = twin.running && (twin.board.is_none() || twin.board_places_left > 0);
     let enough = count >= ENOUGH_PAIRS && (eyes.ghost.is_none() || toured);
     if enough || view.source.replay.is_some() || view.source.status == SourceStatus::None {
         let said = if count < ENOUGH_PAIRS {

@@ -176,7 +176,9 @@ pub(super) fn board_on_its_way(view: &View, pairs: usize) -> Option<Guidance> {
             tour.place, tour.of
         )));
     }
-    (twin.board_places_left > 0).then(|| {
+    // With enough pairs the rest of the places is left to the operator's choice: they can be solved.
+    let goes_on = twin.board_places_left > 0 && twin.board.is_some() && pairs < super::ENOUGH_PAIRS;
+    goes_on.then(|| {
         let left = format::count(twin.board_places_left, "place");
         say(format!("{so_far} collected; the board was not shown at {left} yet."))
             .then(RobotAction::TourRest.label(), Action::Robot(RobotAction::TourRest))

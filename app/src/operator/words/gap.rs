@@ -80,7 +80,11 @@ pub fn is_there_a_gap(finding: &Finding) -> &'static str {
 /// What stays beside the names: whether it is what noise leaves, and a sentence.
 pub fn rest(finding: &Finding) -> (bool, String) {
     let (left, shown) = (&finding.unexplained, &finding.shown);
-    if !shown.is_near_noise() {
+    if !finding.comparison.is_noise_known() {
+        let said = "Whether the rest is noise cannot be told: nothing was measured twice.";
+        return (false, said.to_owned());
+    }
+    if !finding.effects.is_empty() && !shown.is_near_noise() {
         let [after, noise] = [shown.after, shown.floor].map(|value| error(shown, value));
         let said = format!("Rows that were not used stay off by {after}; noise alone would leave {noise}.");
         return (false, said);

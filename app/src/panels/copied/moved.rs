@@ -191,7 +191,7 @@ fn attempt(attempt: &AttemptView) -> Vec<String> {
         attempt.object.clone(),
         result(attempt).to_owned(),
         mm(attempt.alignment_m),
-        mm(attempt.closed_at_m),
+        mm(attempt.closed_at_m.map(|[.., z_m]| z_m)),
         number(attempt.seconds, 1.0, 1),
     ]
 }

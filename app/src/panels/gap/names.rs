@@ -44,7 +44,7 @@ fn cards(ui: &mut Ui, cx: &mut PanelContext<'_>, shown: &ShownFinding) {
         ui.add_space(space::S);
     }
     if count > MOST_CARDS {
-        let title = format!("{} more, smaller", count - MOST_CARDS);
+        let title = format!("{} more", count - MOST_CARDS);
         egui::CollapsingHeader::new(title).id_salt("more effects").show(ui, |ui| {
             for i in MOST_CARDS..count {
                 card(ui, cx, shown, i);

@@ -36,6 +36,7 @@ fn rows(attempt: &AttemptView) -> Vec<KeyValue> {
         KeyValue::text("When", clock(attempt.began)),
         KeyValue::text("Method", method(attempt.method)),
         KeyValue::text("Hand", attempt.hand.name()),
+        KeyValue::text("Robot", &*attempt.model).help("The model of the robot that the arm was sent by"),
         KeyValue::text("Object", attempt.object.to_lowercase()),
         KeyValue::text("Result", result(attempt)),
     ];

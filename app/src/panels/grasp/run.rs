@@ -115,8 +115,9 @@ fn planned(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.label(theme::weak(
         ui,
         format!(
-            "With the {}, about {} s. Turns in all: {}; the head and the other arm stay.",
+            "With the {}, by the robot {}, about {} s. Turns in all: {}; the head and the other arm stay.",
             hand_words(plan.hand),
+            plan.model,
             plan.duration.as_secs(),
             turns.join(", ")
         ),

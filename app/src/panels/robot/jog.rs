@@ -28,6 +28,7 @@ fn contents(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     ui.horizontal(|ui| {
         choose_tip(ui, &view.robot, &mut |link| cx.outbox.send(RobotCommand::ChooseTip { link }));
     });
+    ui.label(theme::small(ui, format!("Moved by the robot {}.", view.robot.model)));
     gamepad(ui, cx.state.robot.gamepad.as_ref());
     let why = cannot_jog(&view.robot);
     let tip = tip_title(&view.robot).to_lowercase();

@@ -128,11 +128,5 @@ pub fn cannot_jog(robot: &RobotView) -> Option<Cow<'static, str>> {
     let mut joints = arm.joints.iter().chain(&arm.hand);
     let unknown = joints.find(|joint| robot.unknown.contains(joint))?;
     let title = rig.servo_of(*unknown).map_or("one of its joints", |servo| &servo.title);
-    if robot.late.contains(unknown) {
-        let why = format!(
-            "it is not known where {title} is: the computer was too busy to hear its servo in time, close other programs"
-        );
-        return Some(why.into());
-    }
-    Some(format!("it is not known where {title} is: check the cable and power of its servo").into())
+    Some(format!("it is not known where {title} is: {}", robot.advice_for(*unknown)).into())
 }

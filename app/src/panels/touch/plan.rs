@@ -133,6 +133,9 @@ fn reach(ui: &mut Ui, plan: &PlanView) {
     }
     if plan.reachable > 0 {
         ui.label(theme::weak(ui, what_moves(plan)));
+        if !plan.model.is_empty() {
+            ui.label(theme::weak(ui, format!("Corrected by the robot {}.", plan.model)));
+        }
         if plan.options.beside_described {
             ui.label(theme::weak(ui, "Every place twice: by the robot as described, then with the effects."));
         }

@@ -36,7 +36,10 @@ pub fn prompt(view: &View) -> Option<Prompt> {
     };
     match (&view.trials.phase, &view.trials.shown) {
         (TrialsPhase::Asks { at_m, .. }, Some(shown)) => Some(Prompt {
-            asked: format!("{} Then an arm moves.", ask(&shown.experiment.object, *at_m)),
+            asked: format!(
+                "{} Then an arm moves; the other one goes home first where it is in the way.",
+                ask(&shown.experiment.object, *at_m)
+            ),
             answers: vec![("Placed", Action::Trials(TrialsAction::Placed))],
         }),
         (TrialsPhase::WaitsForWord { .. }, _) => Some(held()),

@@ -37,7 +37,11 @@ pub struct DriftAround {
     pub robot: Arc<RobotView>,
     /// Time since the eyes were switched on, s.
     pub eyes_on_s: Option<f64>,
-    /// The same when the calibration in use was made, min; `None`: nobody knows.
+    /// Counts how often that time was set, by the operator or because cameras were away.
+    pub clock_settings: u64,
+    /// Whether a calibration is in use.
+    pub is_calibrated: bool,
+    /// The time since the eyes were switched on when it was made, min; `None`: nobody knows.
     pub calibrated_min: Option<f64>,
     /// How many times faster than a clock the eyes' one runs; 1 but for a twin that was asked to.
     pub clock_pace: f64,

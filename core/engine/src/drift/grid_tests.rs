@@ -40,6 +40,8 @@ impl Desk {
             own_eyes: true,
             robot: Arc::new(RobotView { connection, ..RobotView::default() }),
             eyes_on_s: Some(60.0),
+            clock_settings: 0,
+            is_calibrated: false,
             calibrated_min: None,
             clock_pace: 1.0,
             world: Some(World::Robot),

@@ -1,6 +1,7 @@
 //! Watching drift: whether places stay where they are, looked at again and again in the background.
 
 mod around;
+mod cold;
 pub mod command;
 mod figures;
 mod grid;

@@ -46,6 +46,8 @@ impl Desk {
             own_eyes: false,
             robot: Arc::default(),
             eyes_on_s: Some(3600.0),
+            clock_settings: 0,
+            is_calibrated: false,
             calibrated_min: None,
             clock_pace: 1.0,
             world: None,
@@ -271,6 +273,7 @@ fn a_clock_of_the_eyes_that_goes_back_a_little_is_no_switching_on() {
 fn said_when_explained(calibrated_min: Option<f64>) -> Vec<String> {
     let mut desk = Desk::new();
     (desk.around.world, desk.around.calibrated_min) = (Some(World::Robot), calibrated_min);
+    desk.around.is_calibrated = true;
     let still = desk.pair(0.0);
     desk.ask(DriftCommand::Start);
     for _ in 0..20 {
@@ -286,9 +289,34 @@ fn said_when_explained(calibrated_min: Option<f64>) -> Vec<String> {
 
 #[test]
 fn that_a_correction_would_count_twice_what_a_warm_calibration_holds_is_said() {
-    assert_eq!(said_when_explained(Some(0.5)), [""; 0], "calibrated with cold eyes");
+    assert_eq!(said_when_explained(Some(0.2)), [""; 0], "calibrated with cold eyes");
     let said = said_when_explained(Some(25.0));
     assert!(said.iter().any(|text| text.contains("on for 25 min") && text.contains("twice")), "{said:?}");
+    // Of a calibration that was imported nobody knows it.
+    let said = said_when_explained(None);
+    assert!(said.iter().any(|text| text.contains("not known") && text.contains("twice")), "{said:?}");
+}
+
+#[test]
+fn a_clock_that_was_set_begins_the_watch_anew_with_words_of_its_own() {
+    let mut desk = Desk::new();
+    let still = desk.pair(0.0);
+    desk.ask(DriftCommand::Start);
+    (0..3).for_each(|_| _ = desk.see(&still));
+    for (nth, on_s) in [7200.0, 60.0].into_iter().enumerate() {
+        (desk.around.eyes_on_s, desk.around.clock_settings) = (Some(on_s), nth as u64 + 1);
+        (0..2).for_each(|_| _ = desk.see(&still));
+        let course = desk.view().course.clone().expect("looked");
+        assert_eq!(course.points.len(), 2, "what was seen by the other clock is no part of it");
+        assert!(
+            (course.points[0].at_s - on_s - EVERY.as_secs_f64()).abs() < 1e-6,
+            "{}",
+            course.points[0].at_s
+        );
+    }
+    let said = desk.said();
+    assert_eq!(said.iter().filter(|text| text.contains("was set")).count(), 2, "{said:?}");
+    assert!(!said.iter().any(|text| text.contains("switched on again")), "{said:?}");
 }
 
 /// Time that all threads of this program were on a processor, s; `None` where the system does not say.

@@ -29,7 +29,9 @@ pub(super) struct Watch {
     pub began: Instant,
     /// Of which source, counted.
     pub opened: u64,
-    /// Whether the eyes' clock is known.
+    /// How often the eyes' clock had been set.
+    pub clock_settings: u64,
+    /// Whether it is known.
     pub from_switching_on: bool,
     pub monitor: Monitor,
     /// The model that it is told with.
@@ -50,6 +52,7 @@ impl Watch {
         Self {
             began: now.instant,
             opened: around.opened,
+            clock_settings: around.clock_settings,
             from_switching_on: around.eyes_on_s.is_some(),
             monitor: Monitor::default(),
             model: around.model.clone(),

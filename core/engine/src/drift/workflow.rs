@@ -7,6 +7,7 @@ use plumbline_drift::{Monitor, Sample, Verdict, is_too_short};
 use plumbline_model::StereoFrame;
 
 use super::DriftAround;
+use super::cold::counted_twice;
 use super::command::DriftCommand;
 use super::grid_room::GridRoom;
 use super::stage::{DriftInput, DriftOutput};
@@ -21,17 +22,9 @@ use crate::ground::step::StepState;
 use crate::ground::{Moment, Time, Workflow};
 use crate::robot::RobotControl;
 
-/// Eyes that have been on for no longer are cold: by then they have gone a seventh of their way at most.
-const COLD_MIN: f64 = 1.0;
-
-/// A law that begins at switching on, and a calibration that was not made then.
-fn counted_twice(minutes: f64) -> String {
-    format!(
-        "The calibration in use was made when the cameras had been on for {minutes:.0} min: what the eyes had turned \
-         until then is in it already, and correcting by what is found would count it twice. Take it for how long to \
-         wait; to correct by it, calibrate the eyes cold first."
-    )
-}
+/// Times before and after are of different clocks.
+const CLOCK_WAS_SET: &str =
+    "The time since the cameras were switched on was set: watching drift begins anew.";
 
 /// Watching drift. There is one at a time, of what is shown.
 #[derive(Clone, Debug, Default)]
@@ -59,7 +52,12 @@ impl DriftWorkflow {
         let now = context.time;
         self.grid.saw(&self.data_dir, around, context);
         let Some(watch) = &self.watch else { return };
-        if watch.opened != around.opened || watch.from_switching_on != around.eyes_on_s.is_some() {
+        if watch.opened != around.opened {
+            self.begin(around, now);
+        } else if watch.clock_settings != around.clock_settings {
+            context.notices.add(NoticeLevel::Info, CLOCK_WAS_SET);
+            self.begin(around, now);
+        } else if watch.from_switching_on != around.eyes_on_s.is_some() {
             self.begin(around, now);
         } else if watch.went_back(around) {
             let text = "The cameras were switched on again: watching drift begins anew.";
@@ -156,8 +154,8 @@ impl DriftWorkflow {
             return context.refuse(format!("What was watched cannot be explained: {why}."));
         }
         let (Some(watch), Some(world)) = (&self.watch, around.world) else { return };
-        if let Some(minutes) = around.calibrated_min.filter(|minutes| *minutes > COLD_MIN) {
-            context.notices.add(NoticeLevel::Warning, counted_twice(minutes));
+        if let Some(words) = counted_twice(around) {
+            context.notices.add(NoticeLevel::Warning, words);
         }
         self.logging = Some(context.start(DriftWork::WriteLog {
             sessions: world.folder(&self.data_dir).join("sessions"),

@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use plumbline_hardware::SourceSpec;
 use plumbline_model::Chessboard;
 
-use super::clock::is_live;
 use super::collection::CollectError;
 use super::command::{ExportFormat, Exported};
+use super::times::taken;
 use super::view::CollectedPair;
 use super::work::{
     Accept, Capture, CollectRecording, Context, Export, EyesWork, Open, OpenWhat, Recognize, Solve,
@@ -34,21 +34,6 @@ impl EyesWorkflow {
         }
     }
 
-    pub(super) fn set_minutes(
-        &mut self,
-        minutes: Option<f64>,
-        around: &EyesAround,
-        context: &mut Context<'_>,
-    ) {
-        match minutes {
-            Some(value) if !(0.0..=LONGEST_ON_MINUTES).contains(&value) => {
-                context.refuse(format!("Give the minutes since the cameras were switched on as a number from 0 to {LONGEST_ON_MINUTES}, or leave it empty."));
-            }
-            minutes if is_live(&around.source) => self.clock.say(minutes, context.time.instant),
-            minutes => self.minutes_of_pairs = minutes,
-        }
-    }
-
     pub(super) fn recognize_board(&mut self, around: &EyesAround, context: &mut Context<'_>) {
         match &around.newest {
             Some(frame) => {
@@ -68,6 +53,7 @@ impl EyesWorkflow {
             return context.refuse(CollectError::Twice(name.clone()));
         }
         let name = frame.name.clone().unwrap_or_else(|| self.collection.next_name());
+        self.capturing_taken = taken(frame, around);
         let work = Capture { frame: frame.clone(), name, board: *self.board() };
         self.busy.capturing = Some(context.start(EyesWork::Capture(work)));
     }
@@ -127,10 +113,7 @@ impl EyesWorkflow {
             sizes_px,
             dropped: self.collection.dropped().iter().cloned().collect(),
             options: self.options.clone(),
-            minutes_since_on: match self.taken_at {
-                Some(taken_at) => self.clock.on_s(taken_at).map(|on_s| on_s / 60.0),
-                None => self.minutes_of_pairs,
-            },
+            minutes_since_on: self.minutes_of_collected(),
             source: around.source.description.clone(),
             in_use: self.in_use().cloned(),
             workspace: self.workspace,
@@ -195,6 +178,7 @@ impl EyesWorkflow {
                 left_image: None,
                 right_image: None,
                 place: None,
+                taken: None,
             };
             CollectedPair { place: self.place(&pair, sizes_px[0]), ..pair }
         });
@@ -202,7 +186,7 @@ impl EyesWorkflow {
         let dropped = evidence.dropped_pairs.iter().cloned().collect();
         self.collection.replace(evidence.board, pairs, sizes_px, dropped);
         self.options = evidence.options.clone();
-        (self.minutes_of_pairs, self.taken_at) = (evidence.minutes_since_on, None);
+        self.minutes_of_pairs = evidence.minutes_since_on;
         self.board_chosen = true;
     }
 
@@ -227,6 +211,4 @@ impl EyesWorkflow {
     }
 }
 
-/// A year: nobody knows better how long cameras were on.
-const LONGEST_ON_MINUTES: f64 = 527_040.0;
 const NO_IMAGE: &str = "There is no image yet. Open a folder of pairs, two videos or the cameras first.";

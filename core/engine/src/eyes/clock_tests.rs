@@ -74,18 +74,33 @@ impl Desk {
         self.time = self.time.after(Duration::from_secs(seconds));
     }
 
+    /// What the cameras tell.
+    fn cameras(&mut self, status: SourceStatus) {
+        let opened = self.opened;
+        self.tell(SourceView { opened, spec: Some(CAMERAS), status, ..SourceView::default() });
+    }
+
+    /// No source is open any more.
+    fn close(&mut self) {
+        self.opened += 1;
+        self.tell(SourceView { opened: self.opened, ..SourceView::default() });
+    }
+
     /// The cameras go away and are back so much later.
     fn away_for(&mut self, seconds: u64) {
-        let there = SourceView {
-            opened: self.opened,
-            spec: Some(CAMERAS),
-            status: SourceStatus::Running,
-            ..SourceView::default()
-        };
-        let status = SourceStatus::Lost { reason: "gone".to_owned(), since: self.time.instant, attempts: 0 };
-        self.tell(SourceView { status, ..there.clone() });
+        self.cameras(lost(self.time.instant));
         self.later(seconds);
-        self.tell(there);
+        self.cameras(SourceStatus::Running);
+    }
+
+    /// The machine sleeps: only the time of day goes on.
+    fn sleep(&mut self, seconds: u64) {
+        self.time.day = self.time.after(Duration::from_secs(seconds)).day;
+        self.cameras(SourceStatus::Running);
+    }
+
+    fn is_told(&mut self, words: &str) -> bool {
+        self.view().notices.iter().any(|notice| notice.text.contains(words))
     }
 
     fn say(&mut self, minutes: f64) {
@@ -115,6 +130,10 @@ impl Desk {
     fn view(&mut self) -> View {
         self.state.view(Skipped::default(), 0, self.time.instant)
     }
+}
+
+fn lost(since: Instant) -> SourceStatus {
+    SourceStatus::Lost { reason: "gone".to_owned(), since, attempts: 0 }
 }
 
 fn is_about(on_s: Option<f64>, expected_s: f64) -> bool {
@@ -182,14 +201,83 @@ fn a_recording_of_the_twin_has_not_the_clock_of_the_twin_that_runs() {
 }
 
 #[test]
+fn a_clock_that_is_corrected_begins_a_watch_anew_whichever_way_it_was_wrong() {
+    let mut desk = Desk::watching(CAMERAS);
+    desk.say(12.0);
+    let mut before = desk.look(60);
+    assert_eq!(desk.look(60).watch, before.watch, "nothing was set");
+    for (minutes, on_s) in [(40.0, 2460.0), (5.0, 360.0)] {
+        desk.say(minutes);
+        let after = desk.look(60);
+        assert!(is_about(after.setup.eyes_on_s, on_s), "{:?}", after.setup.eyes_on_s);
+        assert_ne!(after.watch, before.watch, "{minutes} min: times of two clocks are no one course");
+        before = after;
+    }
+    assert!(desk.is_told("was set: watching drift begins anew"));
+    assert!(!desk.is_told("switched on again"), "nobody did");
+}
+
+#[test]
+fn cameras_that_could_not_be_opened_again_after_a_loss_were_away_all_the_time() {
+    let mut desk = Desk::watching(CAMERAS);
+    desk.say(30.0);
+    desk.cameras(lost(desk.time.instant));
+    desk.later(20);
+    desk.close();
+    desk.later(20);
+    desk.open(CAMERAS);
+    assert!(is_about(desk.on_s(5), 5.0), "they were away for 40 s");
+    assert!(desk.is_told("counts from now"));
+}
+
+#[test]
+fn of_other_cameras_nobody_knows_how_long_they_have_been_on() {
+    let mut desk = Desk::watching(CAMERAS);
+    desk.say(30.0);
+    desk.open(SourceSpec::Cameras { left_index: 2, right_index: 0 });
+    assert!(is_about(desk.on_s(5), 1805.0), "the same two, the other way round");
+    desk.open(SourceSpec::Cameras { left_index: 0, right_index: 4 });
+    assert_eq!(desk.on_s(5), None);
+    assert_eq!(desk.view().eyes.minutes_since_on, None);
+}
+
+#[test]
+fn after_a_sleep_of_the_computer_it_is_not_known_how_long_the_cameras_have_been_on() {
+    let mut desk = Desk::watching(CAMERAS);
+    desk.sleep(3600);
+    assert!(!desk.is_told("slept"), "nothing was known that is known no more");
+    desk.say(30.0);
+    desk.sleep(20);
+    assert!(is_about(desk.on_s(5), 1805.0), "the time of day was corrected a little");
+    desk.sleep(3600);
+    assert_eq!(desk.on_s(5), None);
+    assert!(desk.is_told("slept"));
+    desk.say(95.0);
+    assert!(is_about(desk.on_s(60), 5760.0), "once it was said again, it goes on");
+}
+
+#[test]
+fn what_is_said_while_no_source_is_open_is_not_of_the_cameras() {
+    let mut desk = Desk::watching(CAMERAS);
+    desk.close();
+    desk.say(12.0);
+    assert_eq!(desk.view().eyes.minutes_since_on, Some(12.0), "of pairs that are collected");
+    desk.later(60);
+    assert_eq!(desk.view().eyes.minutes_since_on, Some(12.0), "nothing is live");
+    desk.open(CAMERAS);
+    assert_eq!(desk.on_s(5), None);
+}
+
+#[test]
 fn before_it_was_switched_on_a_camera_was_not_on() {
-    let now = Instant::now();
-    let at = |seconds| now + Duration::from_secs(seconds);
+    let start = Time::now();
+    let said_at = |seconds| start.after(Duration::from_secs(seconds));
+    let at = |seconds| said_at(seconds).instant;
     let mut clock = CamerasClock::default();
-    clock.say(Some(1.0), at(100));
+    clock.say(Some(1.0), said_at(100));
     assert!(is_about(clock.on_s(at(50)), 10.0));
     assert_eq!(clock.on_s(at(30)), None);
     assert_eq!(clock.shown_min(at(100)), Some(1.0), "as it was said");
-    clock.say(None, at(120));
+    clock.say(None, said_at(120));
     assert_eq!(clock.on_s(at(130)), None);
 }

@@ -287,6 +287,7 @@ mod tests {
             left_image: None,
             right_image: None,
             place: None,
+            taken: None,
         }
     }
 

@@ -174,6 +174,7 @@ mod tests {
             left_image: None,
             right_image: None,
             place: Some(place),
+            taken: None,
         }
     }
 

@@ -9,6 +9,7 @@ use super::assess::{Assessment, STATED_AT_M};
 use super::collection::Collection;
 use super::coverage::Novelty;
 use super::look::Look;
+use super::times::taken;
 use super::view::{CaptureHint, CollectedPair, Origin, Proposal};
 use super::work::{Captured, Collected, Context, EyesWork, Keep, Opened, Restored, Solved};
 use super::workflow::{EyesAround, EyesWorkflow};
@@ -36,7 +37,7 @@ impl EyesWorkflow {
         self.last_look = Some(look.clone());
         let hint = self.judge(&look, size_px, around);
         if hint == CaptureHint::Ready && self.auto_capture && self.busy.capturing.is_none() {
-            self.capture_look(look, context);
+            self.capture_look(look, around, context);
             return;
         }
         let captured_lately = self
@@ -70,11 +71,12 @@ impl EyesWorkflow {
         })
     }
 
-    fn capture_look(&mut self, look: Look, context: &mut Context<'_>) {
+    fn capture_look(&mut self, look: Look, around: &EyesAround, context: &mut Context<'_>) {
         let name = look.frame.name.clone().unwrap_or_else(|| self.collection.next_name());
         let sizes_px = [look.frame.left.dimensions(), look.frame.right.dimensions()];
         self.captured_at = Some(look.frame.stamp.captured_at);
-        if !self.add(pair_of(&look, name), &look.frame, sizes_px, context) {
+        let pair = CollectedPair { taken: taken(&look.frame, around), ..pair_of(&look, name) };
+        if !self.add(pair, &look.frame, sizes_px, context) {
             // Saying it once per look would flood the operator.
             self.auto_capture = false;
         }
@@ -94,8 +96,6 @@ impl EyesWorkflow {
             Ok(()) => {
                 self.board_chosen = true;
                 self.board_seen = None;
-                // Pairs of cameras have no name yet.
-                self.taken_at = frame.name.is_none().then_some(frame.stamp.captured_at);
                 self.hint = Some(CaptureHint::Captured { pair: name.clone() });
                 self.keep(&name, frame, context);
                 let count = self.collection.pairs().len();
@@ -126,7 +126,8 @@ impl EyesWorkflow {
     pub(super) fn captured(&mut self, captured: Captured, context: &mut Context<'_>) {
         if captured.board == *self.board() {
             self.captured_at = Some(captured.frame.stamp.captured_at);
-            self.add(captured.pair, &captured.frame, captured.sizes_px, context);
+            let pair = CollectedPair { taken: self.capturing_taken.take(), ..captured.pair };
+            self.add(pair, &captured.frame, captured.sizes_px, context);
         } else {
             context.refuse("The board was changed while the pair was searched. Capture it again.");
         }
@@ -142,7 +143,7 @@ impl EyesWorkflow {
         let placed = |pair: CollectedPair| CollectedPair { place: self.place(&pair, sizes_px[0]), ..pair };
         let pairs = collected.pairs.into_iter().map(placed).collect();
         match self.collection.add_all(pairs, sizes_px) {
-            Ok(_) => (self.board_chosen, self.taken_at) = (true, None),
+            Ok(_) => self.board_chosen = true,
             Err(error) => context.refuse(error),
         }
     }
@@ -185,6 +186,7 @@ fn pair_of(look: &Look, name: String) -> CollectedPair {
         left_image,
         right_image,
         place: None,
+        taken: None,
     }
 }
 

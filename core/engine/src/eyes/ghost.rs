@@ -201,6 +201,7 @@ mod tests {
                 left_image: None,
                 right_image: None,
                 place: Some(candidate.place),
+                taken: None,
             });
             assert!(pairs.len() < 60, "the ghost never lets go");
             covered = coverage::coverage(&board, (640, 480), &pairs);

@@ -22,6 +22,7 @@ pub mod place;
 pub mod sharpness;
 mod shown;
 pub mod store;
+mod times;
 pub mod view;
 pub mod work;
 mod workflow;

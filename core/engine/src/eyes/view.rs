@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use std::time::Instant;
 
 use image::GrayImage;
 use jiff::Timestamp;
@@ -108,6 +109,17 @@ pub struct CollectedPair {
     pub right_image: Option<Arc<GrayImage>>,
     /// Where the board was, roughly; `None` when that could not be told.
     pub place: Option<BoardPlace>,
+    /// When it was taken, where it was taken live.
+    pub taken: Option<Taken>,
+}
+
+/// When a pair was taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Taken {
+    /// By cameras, at this moment: how long they had been on may be said later.
+    At(Instant),
+    /// By eyes that had been on for so long then, min.
+    After(f64),
 }
 
 impl CollectedPair {

@@ -11,7 +11,7 @@ use plumbline_model::{
 };
 
 use super::auto_capture::AutoCapture;
-use super::clock::{BEGINS_ANEW, CamerasClock, is_live};
+use super::clock::CamerasClock;
 use super::collection::Collection;
 use super::command::EyesCommand;
 use super::look::Look;
@@ -19,7 +19,7 @@ use super::place::{nominal_cameras, place_of, rough_pose};
 use super::store::Store;
 use super::view::{
     AcceptedCalibration, BoardPlace, BoardSeen, CaptureHint, CollectedPair, Coverage, EarlierCalibration,
-    EyesView, GhostBoard, Origin, Proposal,
+    EyesView, GhostBoard, Origin, Proposal, Taken,
 };
 use super::work::{Context, EyesResult, EyesWork, OpenWhat, Restore};
 use super::{coverage, ghost};
@@ -33,6 +33,8 @@ pub struct EyesAround {
     pub newest: Option<StereoFrame>,
     /// How the source is doing.
     pub source: Arc<SourceView>,
+    /// For how long the eyes of the twin have been on, s, where it is what the source shows.
+    pub twin_on_s: Option<f64>,
 }
 
 /// The whole workflow.
@@ -51,8 +53,10 @@ pub struct EyesWorkflow {
     pub(super) clock: CamerasClock,
     /// How long they had been on when the collected pairs were taken, min, as far as those were not taken live.
     pub(super) minutes_of_pairs: Option<f64>,
-    /// When the newest collected pair was taken; `None`: it was not taken live.
-    pub(super) taken_at: Option<Instant>,
+    /// The clock as it was before the cameras were away or became others, with when that was seen.
+    pub(super) clocks_before: Vec<(Instant, CamerasClock)>,
+    /// When the pair was taken that is being searched.
+    pub(super) capturing_taken: Option<Taken>,
     pub(super) auto_capture: bool,
     pub(super) auto: AutoCapture,
     /// The newest look, for when capturing is switched on.
@@ -131,20 +135,6 @@ impl EyesWorkflow {
     /// Whether pairs are captured without asking, for which the board must be looked for.
     pub fn auto_capture(&self) -> bool {
         self.auto_capture
-    }
-
-    /// For how long the eyes that this source shows have been on, s; `None`: nobody knows. What was said of
-    /// photographs stands still; a recording does not say it.
-    pub fn on_s(&self, source: &SourceView, now: Instant) -> Option<f64> {
-        match is_live(source) {
-            true => self.clock.on_s(now),
-            false => self.minutes_of_pairs.filter(|_| source.photographs).map(|minutes| 60.0 * minutes),
-        }
-    }
-
-    /// The source says how it is doing; a word for the operator where that changes what is known of the cameras.
-    pub fn follow(&mut self, source: &SourceView, now: Instant) -> Option<&'static str> {
-        self.clock.follow(source, now).then_some(BEGINS_ANEW)
     }
 
     /// The calibration in use.
@@ -263,7 +253,8 @@ impl Workflow for EyesWorkflow {
             options: CalibrationOptions::default(),
             clock: CamerasClock::default(),
             minutes_of_pairs: None,
-            taken_at: None,
+            clocks_before: Vec::new(),
+            capturing_taken: None,
             auto_capture: false,
             auto: AutoCapture::default(),
             last_look: None,

@@ -31,8 +31,8 @@ pub(super) fn area(around: &GraspAround, method: Method, [x_m, y_m]: [f64; 2]) -
     let nearest = screen.point_at(border.nearest_inside(pixel)).coords;
     let beside_mm = (nearest.x - x_m).hypot(nearest.y - y_m) * 1e3;
     let text = format!(
-        "The thing stands {beside_mm:.0} mm beside the touches from which {name} was trained: it goes on as there, which \
-         may be off. Put it nearer, or choose M5."
+        "The thing stands {beside_mm:.0} mm beside the touches from which {name} was trained: its correction there is \
+         that of the border, and may be off. Put it nearer, or choose M5."
     );
     Some(Gate { name: NAME, state: GateState::Doubtful, text })
 }

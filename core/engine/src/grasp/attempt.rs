@@ -194,6 +194,7 @@ impl Attempt {
         PlannedGrasp {
             method: self.method,
             hand: plan.hand,
+            model: record.model.clone(),
             object: record.object.clone(),
             at_m: plan.standing.xy_m,
             sigma_m: place.map(plumbline_grasp::see::SeenPlace::sigma_on_table_m),

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use plumbline_grasp::body::{closes, turning};
 use plumbline_grasp::{Body, Halt, ServoState, Sight};
-use plumbline_hardware::joints::JointState;
+use plumbline_hardware::joints::{JointReading, JointState, Unheard};
 use plumbline_model::JobContext;
 use plumbline_model::robot::collision::{Allowance, Body as Solid, CollisionModel};
 use plumbline_model::robot::{JointIndex, Posture, Rig};
@@ -25,6 +25,8 @@ const LONGEST: Duration = Duration::from_secs(60);
 const PAIR_WITHIN: Duration = Duration::from_secs(20);
 /// The angles of a moment have been read after this long.
 const READ_WITHIN: Duration = Duration::from_secs(1);
+/// After this long it is looked again whether joints have been read anew: a fraction of a cycle of the bus.
+const READ_AGAIN: Duration = Duration::from_millis(5);
 /// Fingers around a thing may come so much nearer to what it stands on than their shapes say, m: they
 /// are softer and thinner than drawn.
 const AROUND_DEPTH_M: f64 = 0.012;
@@ -76,6 +78,8 @@ pub struct LedBody<'a> {
     given_way: Vec<(JointIndex, f64)>,
     /// Whether fingers may meet what things stand on.
     may_touch: bool,
+    /// When the angles that were given last were read.
+    given: Vec<Option<Instant>>,
 }
 
 impl<'a> LedBody<'a> {
@@ -103,6 +107,7 @@ impl<'a> LedBody<'a> {
             acting: 0,
             given_way: vec![],
             may_touch: false,
+            given: vec![],
         }
     }
 
@@ -194,18 +199,25 @@ impl Body for LedBody<'_> {
         self.began.elapsed().as_secs_f64()
     }
 
+    /// Each time of readings that are newer than those of the time before: who compares the two would take an
+    /// arm that was not read in between for one that stands.
     fn servos(&mut self) -> Result<Vec<ServoState>, Halt> {
-        let state = self.state()?;
-        let known = |reading: &plumbline_hardware::joints::JointReading| {
-            Some(ServoState {
-                joint: reading.joint,
-                angle_rad: reading.angle_rad?,
-                load: reading.load,
-                current_a: reading.current_a,
-                temperature_c: reading.temperature_c,
-            })
-        };
-        state.joints.iter().map(known).collect::<Option<Vec<_>>>().ok_or_else(|| unknown(&self.rig, &state))
+        let began = Instant::now();
+        loop {
+            let state = self.state()?;
+            let servos = state.joints.iter().map(|reading| known(&state, reading)).collect::<Option<_>>();
+            let servos = servos.ok_or_else(|| unknown(&self.rig, &state))?;
+            let read: Vec<_> = state.joints.iter().map(|reading| reading.read_at).collect();
+            if are_newer(&read, &self.given) {
+                self.given = read;
+                return Ok(servos);
+            }
+            if began.elapsed() > READ_WITHIN {
+                let what = Unheard::TooBusy.advice();
+                return Err(Halt::Lost(format!("the joints are not read any more: {what}")));
+            }
+            std::thread::sleep(READ_AGAIN);
+        }
     }
 
     fn commanded(&mut self) -> Result<Posture, Halt> {
@@ -314,10 +326,29 @@ impl LedBody<'_> {
     }
 }
 
+/// A servo as it was read last; `None` where it is not known where its joint is.
+fn known(state: &JointState, reading: &JointReading) -> Option<ServoState> {
+    Some(ServoState {
+        joint: reading.joint,
+        angle_rad: reading.angle_rad.filter(|_| state.knows(reading.joint))?,
+        load: reading.load,
+        current_a: reading.current_a,
+        temperature_c: reading.temperature_c,
+    })
+}
+
+/// Whether each was read after it was read before; nothing was read before the first time.
+fn are_newer(read: &[Option<Instant>], before: &[Option<Instant>]) -> bool {
+    read.iter().zip(before).all(|(read, before)| read > before)
+}
+
 fn unknown(rig: &Rig, state: &JointState) -> Halt {
-    let silent = state.unknown.first().and_then(|joint| rig.servo_of(*joint));
-    let which = silent.map_or_else(|| "a joint".to_owned(), |servo| servo.title.to_lowercase());
-    Halt::Lost(format!("it is not known where {which} is: look at its cable and power"))
+    let unheard = state.unknown.first();
+    let servo = unheard.and_then(|joint| rig.servo_of(*joint));
+    let which = servo.map_or_else(|| "a joint".to_owned(), |servo| servo.title.to_lowercase());
+    let is_late = unheard.is_some_and(|joint| state.late.contains(joint));
+    let why = if is_late { Unheard::TooBusy } else { Unheard::Silent };
+    Halt::Lost(format!("it is not known where {which} is: {}", why.advice()))
 }
 
 impl From<GivenUp> for Halt {
@@ -327,5 +358,20 @@ impl From<GivenUp> for Halt {
             GivenUp::Lost(what) => Self::Lost(what),
             GivenUp::Refused(what) => Self::Refused(what),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn readings_are_new_where_every_joint_was_read_since() {
+        let then = Instant::now();
+        let at = |milliseconds| Some(then + Duration::from_millis(milliseconds));
+        assert!(are_newer(&[at(0), at(3)], &[]), "the first ones are");
+        assert!(are_newer(&[at(20), at(23)], &[at(0), at(3)]));
+        assert!(!are_newer(&[at(0), at(3)], &[at(0), at(3)]), "the same ones");
+        assert!(!are_newer(&[at(20), at(3)], &[at(0), at(3)]), "one of them was not heard in this cycle");
     }
 }

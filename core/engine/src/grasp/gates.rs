@@ -109,7 +109,8 @@ fn joints(around: &GraspAround, arm: &str) -> Gate {
     let trouble = of_arm.find_map(|joint| {
         let title = &joint.title;
         if robot.unknown.contains(&joint.joint) {
-            return Some(format!("It is not known where {title} is: look at its cable and power."));
+            let advice = robot.advice_for(joint.joint);
+            return Some(format!("It is not known where {title} is: {advice}."));
         }
         if joint.torque_on != Some(true) || joint.let_go || joint.no_force {
             return Some(format!("{title} does not hold: choose Hold all joints in Robot."));
@@ -222,6 +223,24 @@ mod tests {
             ..RobotView::default()
         };
         GraspAround { robot: Arc::new(robot), ..GraspAround::bare(&rig) }
+    }
+
+    #[test]
+    fn where_a_joint_is_not_known_power_is_looked_at_only_where_its_servo_is_silent() {
+        let unheard = |late: bool| {
+            let mut around = around(0.0, 31.0);
+            let elbow = around.described.description.find_joint("r_elbow_y").expect("an elbow");
+            let robot = Arc::make_mut(&mut around.robot);
+            robot.unknown = Arc::from([elbow]);
+            robot.late = if late { Arc::from([elbow]) } else { Arc::from([]) };
+            joints(&around, "right")
+        };
+        for (late, says, does_not_say) in [(false, "cable and power", "busy"), (true, "busy", "cable")] {
+            let gate = unheard(late);
+            assert_eq!(gate.state, GateState::Shut);
+            assert!(gate.text.contains("where Right elbow is") && gate.text.contains(says), "{}", gate.text);
+            assert!(!gate.text.contains(does_not_say), "{}", gate.text);
+        }
     }
 
     #[test]

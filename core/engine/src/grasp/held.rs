@@ -123,6 +123,7 @@ mod tests {
             began: Timestamp::UNIX_EPOCH,
             method: Method::M5,
             hand: Hand::Right,
+            model: "as described".to_owned(),
             object: "Tomato".to_owned(),
             outcome: Some(Outcome::Success),
             reached: None,

@@ -144,13 +144,14 @@ impl Keeping {
             began: record.began,
             method: record.method,
             hand: record.hand,
+            model: record.model.clone(),
             object: record.object.clone(),
             outcome: record.outcome.clone(),
             reached: record.step,
             told: record.told_by_operator,
             slipped_after: record.slipped_after_s.and_then(plumbline_model::duration::seconds),
             alignment_m: record.alignment_m(),
-            closed_at_m: record.wanted_m.map(|[.., z_m]| z_m),
+            closed_at_m: record.wanted_m,
             seconds: record.seconds,
         }
     }

@@ -56,8 +56,8 @@ impl GraspWorkflow {
             let class = self.target.class.as_ref()?;
             let of_class =
                 around.found.as_ref()?.objects.iter().filter(|seen| seen.name.eq_ignore_ascii_case(class));
-            let at = of_class.filter_map(|seen| seen.place.as_ref().ok()).next()?.point_in_robot.coords;
-            Some([at.x, at.y])
+            let placed = of_class.filter_map(|seen| seen.place.as_ref().ok());
+            nearest_m(placed.map(|place| [place.point_in_robot.coords.x, place.point_in_robot.coords.y]))
         };
         self.plan.as_ref().map(|plan| plan.at_m).or(self.target.near_m).or_else(seen)
     }
@@ -73,9 +73,27 @@ impl GraspWorkflow {
     }
 }
 
+/// Of several things of a class the grasp takes the one that is nearest to the robot.
+fn nearest_m(places_m: impl Iterator<Item = [f64; 2]>) -> Option<[f64; 2]> {
+    let far_m = |[x_m, y_m]: &[f64; 2]| x_m.hypot(*y_m);
+    places_m.min_by(|a, b| far_m(a).total_cmp(&far_m(b)))
+}
+
 /// With which hands this robot may grasp; with both there is a choice.
 fn hands(around: &GraspAround) -> Vec<HandChoice> {
     let has = |hand: &Hand| around.described.arm(hand.name()).is_some_and(|arm| !arm.tips.is_empty());
     let there: Vec<HandChoice> = Hand::BOTH.into_iter().filter(has).map(HandChoice::from).collect();
     if there.len() > 1 { HandChoice::ALL.to_vec() } else { there }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_several_things_the_one_nearest_to_the_robot_is_meant() {
+        let places_m = [[0.45, 0.0], [0.3, -0.1], [0.25, 0.4]];
+        assert_eq!(nearest_m(places_m.into_iter()), Some([0.3, -0.1]));
+        assert_eq!(nearest_m([].into_iter()), None);
+    }
 }

@@ -63,8 +63,8 @@ pub struct HandWork {
     pub arm: String,
     /// Orders to the arm, pause and end.
     pub ropes: Ropes,
-    /// Height of the palm when the hand closed last, robot frame, m.
-    pub closed_at_m: Option<f64>,
+    /// Where the palm belonged when the hand closed last, robot frame, m.
+    pub closed_at_m: Option<[f64; 3]>,
 }
 
 impl HandWork {
@@ -108,7 +108,7 @@ impl Hand<'_> {
 
     fn lift(&mut self) -> Result<(), NoStep> {
         let from = self.body.commanded()?;
-        let way = self.planner.lift(&from, self.planner.arm().heading_rad(&from), GraspPlanner::LIFT_M);
+        let way = self.planner.vertical(self.planner.arm().heading_rad(&from), &from, GraspPlanner::LIFT_M);
         if way.is_empty() {
             return Err(NoStep::NoHigher);
         }
@@ -116,12 +116,14 @@ impl Hand<'_> {
         Ok(self.body.follow(&way, SPEED_RAD_S)?)
     }
 
-    fn place(&mut self, closed_at_m: Option<f64>) -> Result<(), NoStep> {
+    fn place(&mut self, closed_at_m: Option<[f64; 3]>) -> Result<(), NoStep> {
         let from = self.body.commanded()?;
-        let closes_m = closed_at_m.ok_or(NoStep::NotGrasped)? + ABOVE_SUPPORT_M;
+        let [x_m, y_m, z_m] = closed_at_m.ok_or(NoStep::NotGrasped)?;
+        let closes_m = z_m + ABOVE_SUPPORT_M;
         let mut low = from.clone();
         if self.planner.arm().palm(&from).coords.z > closes_m {
-            let way = self.planner.lowered(&from, closes_m).map_err(NoStep::NoWay)?.ok_or(NoStep::NoLower)?;
+            let way = self.planner.put_back(&from, [x_m, y_m, closes_m]).map_err(NoStep::NoWay)?;
+            let way = way.ok_or(NoStep::NoLower)?;
             low = way.last().cloned().unwrap_or(from);
             self.body.let_fingers_touch()?;
             self.body.follow(&way, SPEED_RAD_S)?;

@@ -136,6 +136,8 @@ pub struct PlannedGrasp {
     pub method: GraspMethod,
     /// With which hand.
     pub hand: GraspHand,
+    /// The model of the robot that it was planned with, for people: "as described", "with 2 effects".
+    pub model: String,
     /// What would be grasped.
     pub object: String,
     /// Where it stands, robot frame, m.
@@ -236,6 +238,8 @@ pub struct AttemptView {
     pub method: GraspMethod,
     /// With which hand.
     pub hand: GraspHand,
+    /// The model of the robot that was used, for people.
+    pub model: String,
     /// What was grasped.
     pub object: String,
     /// What it took itself for; `None`: the program ended before.
@@ -248,8 +252,8 @@ pub struct AttemptView {
     pub slipped_after: Option<Duration>,
     /// Distance of the hand from where it belongs at the last look, m.
     pub alignment_m: Option<f64>,
-    /// Height of the palm where the hand closes, robot frame, m.
-    pub closed_at_m: Option<f64>,
+    /// Where the palm belongs when the hand closes, robot frame, m.
+    pub closed_at_m: Option<[f64; 3]>,
     /// From its beginning to the end of the lift, s.
     pub seconds: Option<f64>,
 }

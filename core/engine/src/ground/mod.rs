@@ -19,6 +19,7 @@ pub mod text;
 pub mod time;
 pub mod watched;
 pub mod work;
+mod workers;
 pub mod workflow;
 pub mod world;
 

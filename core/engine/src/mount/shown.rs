@@ -22,9 +22,15 @@ impl MountWorkflow {
         }
     }
 
-    /// Those of the planned poses that the tour has not been to.
-    pub(super) fn still_to_be_seen(&self) -> Vec<(f64, f64)> {
-        self.tour.as_ref().map_or_else(|| self.planned.clone(), Tour::rest)
+    /// Those of the planned poses that no tour has been to.
+    pub(super) fn still_to_be_seen(&self) -> &[(f64, f64)] {
+        self.planned.get(self.seen_so_far()..).unwrap_or_default()
+    }
+
+    /// How many of the planned poses were seen, in this tour and before it.
+    pub(super) fn seen_so_far(&self) -> usize {
+        let by_tour = |tour: &Tour| self.planned.len().saturating_sub(tour.remaining());
+        self.tour.as_ref().map_or(self.seen, by_tour)
     }
 
     fn tour_view(&self, tour: &Tour) -> MountTour {
@@ -72,14 +78,15 @@ impl MountWorkflow {
         if around.robot.measured.is_none() {
             return "Connect to the robot or the twin: the head's angles have to be known.".to_owned();
         }
-        if self.views.len() >= LEAST_VIEWS && self.planned.is_empty() {
+        let left = self.still_to_be_seen().len();
+        if self.views.len() >= LEAST_VIEWS && left == 0 {
             return format!("{} taken. Solve the mount.", counted(self.views.len(), "view"));
         }
-        if self.planned.is_empty() {
+        if left == 0 {
             return "Lay the board flat on the table where both eyes see all of it, then plan the head poses."
                 .to_owned();
         }
-        format!("Turn the head to {}. Only the head moves.", counted(self.planned.len(), "pose"))
+        format!("Turn the head to {}. Only the head moves.", counted(left, "pose"))
     }
 
     fn summary(&self, view: &HeadView, around: &MountAround) -> HeadViewSummary {

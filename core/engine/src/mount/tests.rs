@@ -3,12 +3,14 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use image::{GrayImage, RgbImage};
 use plumbline_model::robot::Rig;
-use plumbline_model::{StereoCalibration, default_board};
+use plumbline_model::{Pixel, Stamp, StereoCalibration, StereoFrame, default_board};
 
 use super::command::MountCommand;
 use super::work::Context;
 use super::{MountAround, MountWorkflow};
+use crate::eyes::Look;
 use crate::ground::context::Asked;
 use crate::ground::jobs::list::JobList;
 use crate::ground::notice::Notices;
@@ -78,17 +80,41 @@ impl Bench {
         self.with(|room, around, context| room.apply(MountCommand::Tour, around, context));
     }
 
-    /// The head stands where it was told to turn, and what is to be seen there was seen.
+    /// The head stands where it was told to turn, and the board is seen from there once it has settled.
     fn arrives(&mut self) {
         let (pan_rad, tilt_rad) = *self.told.last().expect("it was told to turn");
         let eyes = &self.around.rig.eyes;
         let there = self.around.rig.home().with(&[eyes.pan, eyes.tilt], &[pan_rad, tilt_rad]);
         self.change(|robot| robot.measured = Some(there));
+        let told = self.told.len();
+        self.look();
+        assert_eq!(self.told.len(), told, "what it saw may still have swung");
         self.time = self.time.after(Duration::from_secs(1));
-        if let Some(tour) = &mut self.room.tour {
-            tour.advance();
-        }
-        self.step();
+        self.look();
+    }
+
+    /// The board was looked for in an image that was captured now, and both eyes see it.
+    fn look(&mut self) {
+        let image = Arc::new(RgbImage::new(8, 8));
+        let frame = StereoFrame {
+            stamp: Stamp { seq: 1, captured_at: self.time.instant },
+            left: image.clone(),
+            right: image,
+            time_difference_s: None,
+            name: None,
+        };
+        let corners = Some(vec![Some(Pixel::new(4.0, 4.0)); 40]);
+        let gray = Arc::new(GrayImage::new(8, 8));
+        let look = Look {
+            frame,
+            board: self.around.board,
+            left: corners.clone(),
+            right: corners,
+            gray: [gray.clone(), gray],
+            edge_width_px: None,
+            other_board: None,
+        };
+        self.with(|room, around, context| room.look(look, around, context));
     }
 
     fn change(&mut self, how: impl FnOnce(&mut RobotView)) {
@@ -126,7 +152,40 @@ fn after_stop_the_rest_stays_planned_and_the_next_tour_goes_on_there() {
     bench.arrives();
     bench.arrives();
     let view = bench.view();
-    assert_eq!((view.tour, view.planned.len()), (None, 0), "all were seen");
+    assert_eq!((view.tour, view.planned.len(), view.views.len()), (None, 0, 3), "all were seen");
+}
+
+#[test]
+fn without_its_views_every_pose_is_to_be_seen_again_also_after_stop() {
+    let mut bench = Bench::new();
+    bench.tour();
+    bench.arrives();
+    bench.change(|robot| robot.stopped = true);
+    let view = bench.view();
+    assert_eq!((view.views.len(), view.planned.len()), (1, 2));
+    bench.with(|room, around, context| room.apply(MountCommand::DeleteAll, around, context));
+    let view = bench.view();
+    assert_eq!((view.views.len(), &*view.planned), (0, &POSES[..]));
+    bench.change(|robot| robot.stopped = false);
+    bench.tour();
+    assert_eq!(bench.told.last(), Some(&POSES[0]), "not the rest only");
+    (0..3).for_each(|_| bench.arrives());
+    let view = bench.view();
+    assert_eq!((view.tour, view.views.len()), (None, 3));
+}
+
+#[test]
+fn poses_that_are_planned_during_a_tour_take_the_place_of_its_rest() {
+    const NEW: [(f64, f64); 2] = [(0.1, -0.5), (-0.1, -0.5)];
+    let mut bench = Bench::new();
+    bench.tour();
+    bench.arrives();
+    bench.with(|room, _, context| room.use_plan(NEW.to_vec(), context));
+    let view = bench.view();
+    assert_eq!((view.tour, &*view.planned), (None, &NEW[..]));
+    bench.tour();
+    assert_eq!(bench.told.last(), Some(&NEW[0]));
+    assert_eq!(bench.view().tour, Some(MountTour { pose: 1, of: 2, waits: false }));
 }
 
 #[test]

@@ -75,11 +75,6 @@ impl Tour {
         self.left.len() + usize::from(self.pose().is_some())
     }
 
-    /// The same, in their order; the first one may be under way.
-    pub fn rest(&self) -> Vec<(f64, f64)> {
-        self.pose().into_iter().chain(self.left.iter().rev().copied()).collect()
-    }
-
     /// The pose that is under way.
     fn pose(&self) -> Option<(f64, f64)> {
         match self.phase {
@@ -282,7 +277,7 @@ mod tests {
             matches!(tour.step(&held, &rig, start), Wish::Wait(why) if why.contains("not heard in time"))
         );
         assert!(tour.waits());
-        assert_eq!(tour.rest(), [(0.2, -0.5), (-0.2, -0.4)]);
+        assert_eq!(tour.remaining(), 2, "the one that was under way is still to be seen");
         assert_eq!(tour.step(&held, &rig, start), Wish::Nothing, "one reading is not enough");
         let later = start + Duration::from_secs(2);
         assert_eq!(tour.step(&held, &rig, later), Wish::TurnOn(0.2, -0.5));

@@ -73,7 +73,10 @@ pub struct MountWorkflow {
     shelf: Shelf,
     pub(super) views: Vec<HeadView>,
     pub(super) board: Option<Chessboard>,
+    /// All poses of the plan, also those that were seen: without their views they are to be seen again.
     pub(super) planned: Vec<(f64, f64)>,
+    /// So many of them, from the first, were seen by tours before the present one.
+    pub(super) seen: usize,
     pub(super) tour: Option<Tour>,
     pub(super) proposal: Option<Arc<MountCalibration>>,
     pub(super) in_use: Option<Arc<MountCalibration>>,
@@ -172,7 +175,7 @@ impl MountWorkflow {
         self.last_look = Some(look);
         if let Some((Waiting::Plan, _)) = waiting {
             match self.plan(around) {
-                Ok(planned) => self.planned = planned,
+                Ok(planned) => self.use_plan(planned, context),
                 Err(reason) => context.refuse(reason),
             }
         }
@@ -194,7 +197,7 @@ impl MountWorkflow {
                 context.control(RobotControl::TurnHead { pan_rad, tilt_rad });
             }
             Wish::Finished => {
-                (self.tour, self.planned) = (None, Vec::new());
+                (self.tour, self.planned, self.seen) = (None, Vec::new(), 0);
                 let text =
                     format!("The head was in all planned poses: {}.", counted(self.views.len(), "view"));
                 context.notices.add(NoticeLevel::Success, text);
@@ -208,8 +211,17 @@ impl MountWorkflow {
 
     /// The tour ends; what it has not been to stays planned, so that the next one goes on there.
     fn end_tour(&mut self) {
-        self.planned = self.still_to_be_seen();
+        self.seen = self.seen_so_far();
         self.tour = None;
+    }
+
+    /// A tour of what was planned before is over: its rest is none of the new plan's.
+    pub(super) fn use_plan(&mut self, planned: Vec<(f64, f64)>, context: &mut Context<'_>) {
+        if self.tour.take().is_some() {
+            let text = "The head's tour ended, because poses were planned anew.";
+            context.notices.add(NoticeLevel::Info, text);
+        }
+        (self.planned, self.seen) = (planned, 0);
     }
 
     fn take(&mut self, look: &Look, around: &MountAround) -> Result<(), Refusal> {
@@ -242,6 +254,7 @@ impl Workflow for MountWorkflow {
             views: Vec::new(),
             board: None,
             planned: Vec::new(),
+            seen: 0,
             tour: None,
             proposal: None,
             in_use: None,
@@ -265,17 +278,18 @@ impl Workflow for MountWorkflow {
         match command {
             MountCommand::Plan => self.wait_for_image(Waiting::Plan, around, context),
             MountCommand::Tour => {
-                if self.planned.is_empty() {
+                if self.still_to_be_seen().is_empty() {
                     return context.refuse("No head poses are planned yet. Plan them first.");
                 }
                 self.end_tour();
-                self.tour = Some(Tour::new(&self.planned));
+                self.tour = Some(Tour::new(self.still_to_be_seen()));
                 self.step(around, context);
             }
             MountCommand::Capture => self.wait_for_image(Waiting::Capture, around, context),
             MountCommand::Delete { view } => self.views.retain(|known| known.name != view),
             MountCommand::DeleteAll => {
-                self.end_tour();
+                // Without its view no pose was seen.
+                (self.tour, self.seen) = (None, 0);
                 self.views.clear();
                 self.proposal = None;
             }

@@ -50,7 +50,16 @@ struct Told {
     pairs: AtomicU64,
     bytes: AtomicU64,
     dropped: AtomicU64,
-    thread: Mutex<Option<JoinHandle<Result<Counts, RecordingError>>>>,
+    thread: Mutex<Option<JoinHandle<Result<Written, RecordingError>>>>,
+}
+
+/// What is in the file in the end.
+#[derive(Clone, Copy, Debug)]
+pub struct Written {
+    /// What was written.
+    pub counts: Counts,
+    /// Pairs and messages that are missing in it, as it says itself.
+    pub dropped: u64,
 }
 
 /// Why a recording ended otherwise than asked.
@@ -121,7 +130,7 @@ impl Recorder {
     ///
     /// # Errors
     /// Why it is not.
-    pub fn finish(mut self) -> Result<Counts, Broken> {
+    pub fn finish(mut self) -> Result<Written, Broken> {
         self.close();
         let thread = self.told.thread.lock().unwrap_or_else(PoisonError::into_inner).take();
         match thread.map(JoinHandle::join) {
@@ -131,7 +140,11 @@ impl Recorder {
     }
 }
 
-fn write(mut writer: RecordingWriter, items: &Receiver<Item>, told: &Told) -> Result<Counts, RecordingError> {
+fn write(
+    mut writer: RecordingWriter,
+    items: &Receiver<Item>,
+    told: &Told,
+) -> Result<Written, RecordingError> {
     for item in items {
         match item {
             Item::Pair { at, number, images, right_later_s } => {
@@ -153,8 +166,9 @@ fn write(mut writer: RecordingWriter, items: &Receiver<Item>, told: &Told) -> Re
         told.bytes.store(counts.bytes, Ordering::Relaxed);
     }
     // Whoever hands over has ended, and so has counting.
-    writer.set_dropped(told.dropped.load(Ordering::Relaxed));
-    writer.finish()
+    let dropped = told.dropped.load(Ordering::Relaxed);
+    writer.set_dropped(dropped);
+    Ok(Written { counts: writer.finish()?, dropped })
 }
 
 #[cfg(test)]
@@ -200,7 +214,8 @@ mod tests {
         }
         drop(items);
         let before = on_processor_s().expect("this system says");
-        let counts = write(writer.expect("begun"), &waiting, &Told::default()).expect("written");
+        let Written { counts, .. } =
+            write(writer.expect("begun"), &waiting, &Told::default()).expect("written");
         let took_s = on_processor_s().expect("this system says") - before;
         let share = took_s * 30.0 / f64::from(PAIRS);
         println!(

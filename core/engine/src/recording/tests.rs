@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use image::{Rgb, RgbImage};
+use plumbline_hardware::SourceSpec;
 use plumbline_model::robot::default_rig;
 use plumbline_model::session::Session;
 use plumbline_model::{Stamp, StereoFrame, Unattended};
@@ -34,6 +35,8 @@ impl Desk {
             world: World::Twin,
             is_live,
             opened: 1,
+            spec: Some(SourceSpec::Twin),
+            superseded: 0,
             rig: "nico".to_owned(),
             cameras: Some(default_rig().eyes.cameras),
         };
@@ -219,6 +222,7 @@ fn another_source_ends_the_recording_with_a_word() {
     desk.follow_source();
     assert!(desk.view().is_on(), "it is the same one");
     desk.around.opened += 1;
+    desk.around.spec = Some(SourceSpec::Cameras { left_index: 0, right_index: 2 });
     desk.follow_source();
     assert!(desk.said().contains("the recording has ended"), "{}", desk.said());
     let last = desk.view().last.clone().expect("finished");
@@ -229,6 +233,51 @@ fn another_source_ends_the_recording_with_a_word() {
     desk.apply(RecordingCommand::Start);
     desk.follow_source();
     assert!(desk.view().is_on());
+}
+
+#[test]
+fn the_same_source_opened_again_goes_on_and_a_closed_one_ends() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut desk = Desk::new(folder.path(), true);
+    desk.apply(RecordingCommand::Start);
+    desk.room.saw(&frame(1), Time::now());
+    // Its thread ended and was started again: none is open for a moment, under the same number.
+    let spec = desk.around.spec.take();
+    desk.follow_source();
+    assert!(desk.view().is_on(), "{}", desk.said());
+    (desk.around.spec, desk.around.opened) = (spec, 2);
+    desk.follow_source();
+    desk.room.saw(&frame(2), Time::now());
+    assert!(desk.view().is_on() && desk.said().is_empty(), "{}", desk.said());
+    (desk.around.spec, desk.around.opened) = (None, 3);
+    desk.follow_source();
+    assert!(desk.said().contains("the recording has ended"), "{}", desk.said());
+    assert_eq!(desk.view().last.as_ref().map(|last| last.so_far.pairs), Some(2));
+}
+
+#[test]
+fn pairs_that_the_source_itself_replaced_are_missing_and_counted() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut desk = Desk::new(folder.path(), true);
+    let told = |desk: &mut Desk, opened: u64, is_live: bool, superseded: u64| {
+        (desk.around.opened, desk.around.is_live, desk.around.superseded) = (opened, is_live, superseded);
+        desk.follow_source();
+    };
+    // Before it was begun.
+    told(&mut desk, 1, true, 50);
+    desk.apply(RecordingCommand::Start);
+    told(&mut desk, 1, true, 53);
+    // Held still by the operator: nobody wants these.
+    told(&mut desk, 1, false, 80);
+    told(&mut desk, 1, true, 90);
+    told(&mut desk, 1, true, 91);
+    // Opened again it counts anew.
+    told(&mut desk, 2, true, 2);
+    desk.apply(RecordingCommand::Stop);
+    let last = desk.view().last.clone().expect("finished");
+    assert_eq!(last.so_far.dropped, 3 + 1 + 2);
+    let recording = Recording::open(&last.session.join(FILE)).expect("a recording");
+    assert_eq!(recording.dropped(), Some(6), "the file says it, too");
 }
 
 const FULL: &str = "PLUMBLINE_TEST_FULL_DISK";

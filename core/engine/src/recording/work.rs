@@ -8,9 +8,9 @@ use plumbline_model::formats::native;
 use plumbline_model::robot::Rig;
 use plumbline_model::session::{Manifest, RigReference, names};
 use plumbline_model::{JobContext, StereoCalibration, StereoCameras, counted};
-use plumbline_recording::{About, Attached, Counts, FILE, RecordingWriter};
+use plumbline_recording::{About, Attached, FILE, RecordingWriter};
 
-use super::recorder::Recorder;
+use super::recorder::{Recorder, Written};
 use crate::ground::jobs::JobError;
 use crate::ground::sessions::free_folder;
 use crate::ground::{self, LongWork, software};
@@ -41,7 +41,7 @@ pub enum RecordingResult {
     /// It records.
     Begun(Recorder),
     /// It is on disk.
-    Ended(Counts),
+    Ended(Written),
 }
 
 /// What the handlers of this room may reach besides their own workflow.
@@ -124,7 +124,7 @@ impl RecordingResult {
     pub fn summary(&self) -> String {
         match self {
             Self::Begun(_) => "It records.".to_owned(),
-            Self::Ended(counts) => format!(
+            Self::Ended(Written { counts, .. }) => format!(
                 "Recorded {}, {:.1} MB.",
                 counted(usize::try_from(counts.pairs).unwrap_or(usize::MAX), "pair"),
                 counts.bytes as f64 * 1e-6

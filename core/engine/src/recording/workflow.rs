@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use jiff::Timestamp;
+use plumbline_hardware::SourceSpec;
 use plumbline_model::{PixelBox, StereoCameras, StereoFrame};
 use plumbline_recording::{JointReading, Level, Note, Topic};
 use serde_json::{Value, json};
 
 use super::command::RecordingCommand;
-use super::recorder::{Item, Recorder};
+use super::recorder::{Item, Recorder, Written};
 use super::view::{Recorded, RecordedSoFar, RecordingState, RecordingView};
 use super::work::{Context, RecordingResult, RecordingWork};
 use crate::detect::view::{DetectionsView, SeenBox};
@@ -26,6 +27,10 @@ pub struct RecordingAround {
     pub is_live: bool,
     /// Which source, counted.
     pub opened: u64,
+    /// What it is; `None`: none is open.
+    pub spec: Option<SourceSpec>,
+    /// Pairs that its own queue replaced by newer ones, counted since it was opened.
+    pub superseded: u64,
     /// Name of the rig.
     pub rig: String,
     /// The calibration of the eyes in use.
@@ -39,13 +44,28 @@ pub struct RecordingWorkflow {
     phase: Phase,
     /// When it was begun.
     since: Option<Time>,
-    /// Of which source, counted.
-    source: u64,
+    /// Of which source.
+    spec: Option<SourceSpec>,
+    /// Its number, counted, when it was opened last.
+    opened: u64,
+    /// The source as it was seen last.
+    seen: Seen,
     /// Pairs of all sources that were replaced by a newer one before anybody saw them.
     replaced: u64,
     /// Number of the newest message that is in it.
     noted: u64,
     last: Option<Arc<Recorded>>,
+}
+
+/// A source as it was seen last.
+#[derive(Clone, Copy, Debug, Default)]
+struct Seen {
+    /// Counted.
+    opened: u64,
+    /// Whether it delivered.
+    is_live: bool,
+    /// Pairs that its own queue had replaced.
+    superseded: u64,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -99,12 +119,33 @@ impl RecordingWorkflow {
         }
     }
 
-    /// Pairs of another source are not of this recording: it ends with a word.
+    /// Pairs of another source are not of this recording: it ends with a word. The same one may be opened again,
+    /// after a loss or because its thread was started again.
     pub fn follow_source(&mut self, around: &RecordingAround, context: &mut Context<'_>) {
-        if self.is_on() && around.opened != self.source {
+        self.count_superseded(around);
+        // A source whose thread ended is none for a moment, under the same number.
+        let is_closed = around.spec.is_none() && around.opened != self.opened;
+        let is_another = around.spec.is_some() && around.spec != self.spec;
+        if self.is_on() && (is_closed || is_another) {
             let text = "Another source was opened, or this one closed: the recording has ended with what came before.";
             context.notices.add(NoticeLevel::Warning, text);
-            self.stop(context);
+            return self.stop(context);
+        }
+        if around.spec == self.spec {
+            self.opened = around.opened;
+        }
+    }
+
+    /// Pairs that the source's own queue replaced are missing, too; not those of a source that is held still.
+    fn count_superseded(&mut self, around: &RecordingAround) {
+        let Seen { opened, is_live, superseded } = self.seen;
+        let seen = Seen { opened: around.opened, is_live: around.is_live, superseded: around.superseded };
+        self.seen = seen;
+        // A source that was opened anew counts anew.
+        let is_anew = opened != seen.opened || seen.superseded < superseded;
+        let before = if is_anew { 0 } else { superseded };
+        if let Some(recorder) = self.recorder().filter(|_| seen.is_live && (is_live || is_anew)) {
+            recorder.missed(seen.superseded - before);
         }
     }
 
@@ -175,7 +216,8 @@ impl RecordingWorkflow {
             of_twin: around.world == World::Twin,
             cameras: around.cameras.map(Box::new),
         };
-        (self.since, self.source) = (Some(context.time), around.opened);
+        (self.spec, self.opened) = (around.spec.clone(), around.opened);
+        self.since = Some(context.time);
         self.phase = Phase::Begins(context.start(work));
     }
 
@@ -262,8 +304,10 @@ impl Workflow for RecordingWorkflow {
                 self.phase = Phase::On(recorder);
                 self.follow_source(around, context);
             }
-            (RecordingResult::Ended(counts), Phase::Ends(ended, mut recorded)) if ended == id => {
-                (recorded.so_far.pairs, recorded.so_far.bytes) = (counts.pairs, counts.bytes);
+            (RecordingResult::Ended(written), Phase::Ends(ended, mut recorded)) if ended == id => {
+                let Written { counts, dropped } = written;
+                let time = recorded.so_far.time;
+                recorded.so_far = RecordedSoFar { time, pairs: counts.pairs, dropped, bytes: counts.bytes };
                 self.last = Some(Arc::new(recorded));
             }
             (_, phase) => self.phase = phase,

@@ -1,6 +1,6 @@
 //! What holds because joints were not heard for a moment goes on by itself once they are.
 //!
-//! Only where the arm holds with torque and nothing was refused; a few times in a row at most, and not
+//! Only where what moves holds with torque and nothing was refused; a few times in a row at most, and not
 //! when the operator, STOP or anything else speaks in between.
 
 use std::time::{Duration, Instant};
@@ -95,16 +95,16 @@ impl Patience {
 /// What only a person can judge.
 fn in_the_way(robot: &RobotView, joints: &[String]) -> Option<String> {
     if let MotionState::Moving { what, .. } = &robot.motion {
-        return Some(format!("Something else moves the arm ({what})."));
+        return Some(format!("Something else is being moved ({what})."));
     }
     let needs_hold = |joint: &&JointView| {
         joints.contains(&joint.name) && (joint.let_go || joint.no_force || joint.torque_on == Some(false))
     };
     let joint = robot.joints.iter().find(needs_hold)?;
-    Some(format!("{} does not hold: support the arm, then switch its torque on.", joint.title))
+    Some(format!("{} does not hold: support what it carries, then switch its torque on.", joint.title))
 }
 
-/// Whether the arm holds, and every joint of it was read just now and is well.
+/// Whether all holds, and every one of these joints was read just now and is well.
 fn is_heard(robot: &RobotView, joints: &[String]) -> bool {
     let is_well = |name: &String| {
         robot.joints.iter().find(|joint| joint.name == *name).is_some_and(|joint| {

@@ -14,6 +14,7 @@ use plumbline_model::robot::{JointIndex, Posture, Rig};
 use super::arm::{Arm, Census};
 use super::command::{Destination, JogRates, RobotCommand};
 use super::control::RobotControl;
+use super::lead::{LeadAnswer, LeadOrder, Leader, Reins};
 use super::view::Connection;
 use super::{Switches, Worker};
 use crate::rig_models::made_up::model_with;
@@ -49,7 +50,11 @@ impl Arm for FakeArm {
     }
 
     fn state(&self) -> Option<Arc<JointState>> {
-        let unknown = self.record.lock().expect("no test panics in here").unknown.clone().into();
+        // Once: what is locked in the literal stays locked to its end.
+        let (unknown, late, gone) = {
+            let record = self.record.lock().expect("no test panics in here");
+            (record.unknown.clone().into(), record.late.clone().into(), record.gone.clone())
+        };
         Some(Arc::new(JointState {
             stamp: Stamp { seq: 1, captured_at: Instant::now() },
             joints: Arc::<[JointReading]>::from([]),
@@ -57,7 +62,7 @@ impl Arm for FakeArm {
             stopped: false,
             measured: Some(self.posture.clone()),
             unknown,
-            late: self.record.lock().expect("no test panics in here").late.clone().into(),
+            late,
             slow_answers: 0,
             commanded: Some(self.posture.clone()),
             bus: BusStatistics::default(),
@@ -65,7 +70,7 @@ impl Arm for FakeArm {
             refusal: None,
             warnings: Arc::from([]),
             scan: Arc::default(),
-            gone: self.record.lock().expect("no test panics in here").gone.clone(),
+            gone,
         }))
     }
 
@@ -221,6 +226,32 @@ fn jogging_ends_by_itself_when_the_key_is_no_longer_heard_of() {
     let sent = bench.asked().len();
     bench.worker.tick(Instant::now() + Duration::from_secs(2));
     assert_eq!(bench.asked().len(), sent, "it stays ended");
+}
+
+#[test]
+fn a_lead_that_is_ended_holds_the_arm_at_once_whether_or_not_its_leader_has_noticed() {
+    let mut bench = Bench::connected();
+    let elbow = bench.joint("r_elbow_y");
+    let reins = Reins::default();
+    let (leader, led) = Leader::pair("grasping", true, &reins);
+    bench.worker.control(RobotControl::Lead(led));
+    let way = vec![vec![(elbow, 1.6)]];
+    leader.order(LeadOrder::Follow { way: way.clone(), speed_rad_s: 0.5 }).expect("it is led");
+    bench.worker.tick(Instant::now());
+    assert!(matches!(bench.asked()[..], [Asked::Move(_)]), "{:?}", bench.asked());
+    reins.end();
+    bench.worker.tick(Instant::now());
+    assert_eq!(bench.asked().last(), Some(&Asked::Hold), "nobody has told it so");
+    leader.order(LeadOrder::Follow { way, speed_rad_s: 0.5 }).expect("it is led");
+    bench.worker.tick(Instant::now());
+    let moves = bench.asked().iter().filter(|asked| matches!(asked, Asked::Move(_))).count();
+    assert_eq!(moves, 1, "it is ended for good: {:?}", bench.asked());
+    // What is called off is answered once.
+    leader.order(LeadOrder::Hold).expect("it is led");
+    bench.worker.tick(Instant::now());
+    let answer = || leader.answer(Duration::ZERO).expect("not given up");
+    assert!(matches!(answer(), Some(LeadAnswer::Done)));
+    assert!(answer().is_none(), "an answer more would be that of the next order");
 }
 
 #[test]

@@ -62,6 +62,12 @@ impl RobotView {
     pub fn known(&self, joints: &[JointIndex]) -> Option<&Posture> {
         self.measured.as_ref().filter(|_| joints.iter().all(|joint| !self.unknown.contains(joint)))
     }
+
+    /// What to do where it is not known where a joint is: load is called load.
+    pub fn advice_for(&self, joint: JointIndex) -> &'static str {
+        let why = if self.late.contains(&joint) { Unheard::TooBusy } else { Unheard::Silent };
+        why.advice()
+    }
 }
 
 /// How the robot is connected.

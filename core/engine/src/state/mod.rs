@@ -264,7 +264,7 @@ impl State {
 
     /// The cameras may have been away.
     fn follow_cameras(&mut self, source: &SourceView) {
-        let now = self.clock.time().instant;
+        let now = self.clock.time();
         if let Some(words) = self.rooms.eyes.of_mut(World::Robot).follow(source, now) {
             self.notices.add(NoticeLevel::Warning, words);
         }

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use plumbline_correction::Method;
 use plumbline_grasp::Corrections;
+use plumbline_hardware::SourceSpec;
 use plumbline_model::touch_plan::Finger;
 use plumbline_vision::detect::Provider;
 
@@ -147,6 +148,8 @@ impl Neighbors<RecordingWorkflow> for State {
             world: self.shown,
             is_live: source.replay.is_none() && source.status == SourceStatus::Running,
             opened: source.opened,
+            spec: source.spec.clone(),
+            superseded: source.counters.superseded,
             rig: self.rig.name.clone(),
             cameras,
         }
@@ -177,6 +180,11 @@ impl Neighbors<DriftWorkflow> for State {
             own_eyes: self.shows_own_eyes() && self.shown == self.arm_of,
             robot: self.robot.clone(),
             eyes_on_s: self.eyes_on_s(self.shown),
+            clock_settings: match self.shown {
+                World::Twin => 0,
+                World::Robot => self.rooms.eyes.of(World::Robot).clock_settings(),
+            },
+            is_calibrated: calibration.is_some(),
             calibrated_min: calibration
                 .and_then(|calibration| calibration.evidence.as_ref()?.minutes_since_on),
             clock_pace: match self.shown {
@@ -250,7 +258,13 @@ impl Neighbors<ScoresWorkflow> for State {
 
 impl Neighbors<EyesWorkflow> for State {
     fn around(&self, _world: World) -> EyesAround {
-        EyesAround { newest: self.rooms.live.newest().cloned(), source: self.rooms.source.view().clone() }
+        let source = self.rooms.source.view();
+        let shows_twin = source.spec == Some(SourceSpec::Twin);
+        EyesAround {
+            newest: self.rooms.live.newest().cloned(),
+            source: source.clone(),
+            twin_on_s: self.eyes_on_s(World::Twin).filter(|_| shows_twin),
+        }
     }
 
     fn after(&mut self, _world: World) {

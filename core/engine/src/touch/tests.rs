@@ -14,7 +14,7 @@ use super::store::{PLAN, PROGRESS, REJECTED};
 use super::testing::{Desk, area, grid, only_session, rig};
 use super::view::{ContactSource, TouchOutcome, TouchPhase};
 use crate::ground::step::StepState;
-use crate::robot::view::Connection;
+use crate::robot::view::{Connection, MotionState};
 use crate::robot::{RobotControl, TouchOrder, TouchRun, TouchStage};
 use crate::twin::command::TwinCommand;
 
@@ -410,6 +410,35 @@ fn the_left_finger_touches_what_it_reaches_and_its_session_says_so() {
     desk.apply(TouchCommand::Plan(options));
     assert!(desk.said().contains("right index finger"), "{}", desk.said());
     assert!(desk.view().plan.is_none());
+}
+
+#[test]
+fn what_made_room_on_the_screen_comes_back_when_no_hand_is_there_any_more() {
+    let folder = folder();
+    let mut desk = Desk::new(folder.path());
+    desk.start(grid(2, 1));
+    let order = desk.order().expect("an order");
+    let away = desk.robot.measured.clone();
+    let ends = |desk: &mut Desk| {
+        let controls = desk.controls.drain(..);
+        controls.filter(|one| matches!(one, RobotControl::Twin(TwinCommand::EndTouch))).count()
+    };
+    desk.robot.measured = order.lower.last().cloned();
+    desk.robot.motion = MotionState::Moving { what: "up".to_owned(), fraction: None, remaining: None };
+    desk.apply(TouchCommand::Close);
+    desk.step();
+    assert_eq!(ends(&mut desk), 0, "nothing is put beside an arm that moves");
+    desk.robot.motion = MotionState::Holding { why: None };
+    desk.step();
+    assert_eq!(ends(&mut desk), 0, "the finger is on the glass");
+    desk.robot.measured = order.lower.first().cloned();
+    desk.step();
+    assert_eq!(ends(&mut desk), 0, "what is put under a finger that hovers meets it");
+    desk.robot.measured = away;
+    desk.step();
+    assert_eq!(ends(&mut desk), 1, "nobody has to ask again");
+    desk.step();
+    assert_eq!(ends(&mut desk), 0, "once");
 }
 
 #[test]

@@ -26,7 +26,7 @@ pub fn page(experiment: &Experiment, summary: &Summary, rig: &Rig) -> page::Expe
     let (who, seed) = (&experiment.twin, experiment.seed);
     let mut sentences = match who.strip_prefix(ROBOT) {
         Some(name) => vec![
-            format!("{made} robot {name}. Judged by the person who stood beside it, or by its own fingers and eyes."),
+            format!("{made} robot {name}. Judged by the person who stood beside it; what was refused counts as not lifted."),
             "Published: three attempts at each of 22 positions (Gavura and Farkaš 2026).".to_owned(),
         ],
         None => vec![
@@ -34,6 +34,11 @@ pub fn page(experiment: &Experiment, summary: &Summary, rig: &Rig) -> page::Expe
             "Published: the real robot, three attempts at each of 22 positions (Gavura and Farkaš 2026). It is another robot than the twin.".to_owned(),
         ],
     };
+    if experiment.lab.is_none() && experiment.methods.iter().any(|method| *method != Method::M5) {
+        sentences.push(
+            "M1 to M4 used what was learned here, from touches, and not what was published.".to_owned(),
+        );
+    }
     sentences.extend(not_lifted(experiment, summary));
     if summary.missing > 0 {
         sentences.push(format!("{} attempts are still to be made.", summary.missing));

@@ -75,6 +75,14 @@ impl Experiment {
         far.map(|[x_m, y_m]| format!("a position at {x_m}, {y_m} m"))
     }
 
+    /// Whether attempts of both can be put together; what does not tell its lab is taken for one of the same.
+    pub fn is_same(&self, other: &Self) -> bool {
+        let told = |lab: &Option<String>, or: &Option<String>| lab.clone().or_else(|| or.clone());
+        let lab = told(&self.lab, &other.lab);
+        Self { lab: lab.clone(), ..self.clone() } == Self { lab, ..other.clone() }
+            && (self.lab.is_none() || other.lab.is_none() || self.lab == other.lab)
+    }
+
     /// All attempts, in their order: every method at a position before the next attempt there.
     pub fn trials(&self) -> impl Iterator<Item = Trial> + '_ {
         let of_position = move |position: usize| {

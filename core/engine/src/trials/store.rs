@@ -31,7 +31,7 @@ pub fn begin(out: &Path, experiment: &Experiment) -> Result<(), TrialsError> {
     let plan = out.join(PLAN);
     if plan.exists() {
         let found = read_experiment(out)?;
-        return if found == *experiment { Ok(()) } else { Err(TrialsError::other(out)) };
+        return if found.is_same(experiment) { Ok(()) } else { Err(TrialsError::other(out)) };
     }
     write_json(&plan, experiment)
 }
@@ -119,7 +119,7 @@ pub fn merge(parts: &[PathBuf], out: &Path) -> Result<Experiment, TrialsError> {
                 begin(out, &found)?;
                 experiment = Some(found);
             }
-            Some(first) if *first != found => return Err(TrialsError::other(part)),
+            Some(first) if !first.is_same(&found) => return Err(TrialsError::other(part)),
             Some(_) => {}
         }
         for (file, text) in attempt_files(part)? {

@@ -152,6 +152,7 @@ impl Lab {
             began: Timestamp::UNIX_EPOCH,
             method: Method::M5,
             hand: plumbline_grasp::Hand::Right,
+            model: "as described".to_owned(),
             object: "Tomato".to_owned(),
             outcome: Some(outcome),
             reached: None,
@@ -205,7 +206,8 @@ fn on_the_twin_it_goes_through_all_attempts_by_itself() {
     lab.stands_at(0.19);
     lab.around.grasp.is_idle = true;
     assert_eq!(stage(&lab.after_s(0.1)), Some(TrialStage::Judging));
-    let view = lab.after_s(2.0);
+    assert_eq!(stage(&lab.after_s(8.0)), Some(TrialStage::Judging), "it may still slip out");
+    let view = lab.after_s(3.0);
     assert_eq!(stage(&view), Some(TrialStage::Clearing));
     let shown = view.shown.clone().expect("one is shown");
     assert_eq!((shown.made, shown.all, shown.page.methods[0].positions[0].successes), (1, 2, 1));
@@ -222,7 +224,7 @@ fn on_the_twin_it_goes_through_all_attempts_by_itself() {
     // It took itself for good; the scene shows that it still stands.
     lab.grasped("second", Outcome::Success);
     lab.after_s(0.1);
-    let view = lab.after_s(2.0);
+    let view = lab.after_s(11.0);
     let shown = view.shown.clone().expect("one is shown");
     assert_eq!((shown.made, shown.page.methods[0].positions[1].successes), (2, 0));
     for _ in 0..3 {

@@ -15,6 +15,7 @@ const LOOKS_AT_EACH_PLACE: u64 = 8;
 pub(super) const NOBODY_LOOKS: Duration = Duration::from_secs(12);
 /// …and after this also when somebody does: the machine is too slow.
 const LONGEST_AT_A_PLACE: Duration = Duration::from_secs(60);
+
 /// The way that is under way, and the one that was broken off.
 #[derive(Default)]
 pub(super) struct BoardTours {

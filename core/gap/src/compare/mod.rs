@@ -71,8 +71,8 @@ pub(crate) fn refuse(measurements: &Measurements, context: &dyn JobContext) -> R
         return Err(GapError::TooFew { rows, needed: FEWEST_ROWS });
     }
     context.report(0.0, "looking at units and columns");
-    poses::stop_at_one_pose(measurements)?;
     oddities::stop_at_dead_columns(measurements)?;
+    poses::stop_at_one_pose(measurements)?;
     units::check(measurements, context)
 }
 

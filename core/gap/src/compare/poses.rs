@@ -9,6 +9,8 @@ use crate::error::GapError;
 
 /// Commands that differ by less in every joint are one pose, rad.
 const ONE_POSE_RAD: f64 = 5e-3;
+/// Encoders of one pose differ by less, however an arm comes there, rad.
+const ENCODERS_RAD: f64 = 0.05;
 /// Weights that differ by less are one, kg.
 const ONE_WEIGHT_KG: f64 = 1e-3;
 /// Poses lie in one plane when they scatter across it by less than this, m …
@@ -27,12 +29,20 @@ pub fn stop_at_one_pose(measurements: &Measurements) -> Result<(), GapError> {
     let is_same = |row: &Observation| {
         row.what.is_placed()
             && (row.payload_kg - first.payload_kg).abs() < ONE_WEIGHT_KG
-            && sent_to(row).iter().zip(sent_to(first)).all(|(one, other)| (one - other).abs() < ONE_POSE_RAD)
+            && is_alike(sent_to(row), sent_to(first), ONE_POSE_RAD)
+            && row.encoder_rad.as_deref().zip(first.encoder_rad.as_deref()).is_none_or(
+                // An arm that was led by hand with its commands left as they were.
+                |(row, first)| is_alike(row, first, ENCODERS_RAD),
+            )
     };
     if measurements.rows.iter().all(is_same) {
         return Err(GapError::OnePose { rows: measurements.rows.len() });
     }
     Ok(())
+}
+
+fn is_alike(one: &[f64], other: &[f64], within_rad: f64) -> bool {
+    one.iter().zip(other).all(|(one, other)| (one - other).abs() < within_rad)
 }
 
 /// Where the joints were sent; where that was not logged, where they were.

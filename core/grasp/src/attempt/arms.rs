@@ -164,8 +164,9 @@ impl Running<'_> {
         let covariance_m2 = planner.arm().covariance_m2(closing);
         let sigma_m = covariance_m2.fixed_view::<2, 2>(0, 0).trace().max(0.0).sqrt();
         let empty = self.record.earlier.iter().filter(|earlier| earlier.hand == hand).count() as f64;
-        let lifted = grasper.lift(method, closing, plan.heading_rad);
-        let tilt = lifted.last().map_or(0.0, |top| (plan.level - planner.arm().level(top)).max(0.0));
+        let lifted = grasper.lift(method, &planner.closed(closing), plan.heading_rad);
+        // What does not come up at all is no better than what tilts.
+        let tilt = lifted.last().map_or(1.0, |top| (plan.level - planner.arm().level(top)).max(0.0));
         let cost_rad =
             plan.effort_rad + PER_SIGMA_RAD_M * sigma_m + CAME_UP_EMPTY_RAD * empty + PER_TILT_RAD * tilt;
         Ok(Offer { hand, plan, cost_rad })

@@ -13,30 +13,25 @@ const MOST_SIGMA_M: f64 = HOLDS_M / 1.28;
 
 /// Refuses when hand and object together are not known well enough.
 pub(super) fn sure_enough(object_m2: &Matrix3<f64>, hand_m2: &Matrix3<f64>) -> Result<(), End> {
-    let sigma_m = over_table_m(&(object_m2 + hand_m2));
-    if sigma_m <= MOST_SIGMA_M {
-        return Ok(());
-    }
-    Err(End::Refused(format!(
-        "hand and object are known to {:.0} mm only, {:.0} mm are needed: calibrate the mount of the eyes, or name the effects in Gap",
-        sigma_m * 1e3,
-        MOST_SIGMA_M * 1e3
-    )))
+    let what = "hand and object are known";
+    known_to(what, &(object_m2 + hand_m2), "calibrate the mount of the eyes, or name the effects in Gap")
 }
 
 /// Refuses, before anything moves, an object whose place alone is not known well enough: whatever is known
 /// of the hand later, both together would be refused over the object.
 pub(super) fn sure_of_object(object: &str, object_m2: &Matrix3<f64>) -> Result<(), End> {
-    let sigma_m = over_table_m(object_m2);
+    let what = format!("where the {} stands is known", object.to_lowercase());
+    known_to(&what, object_m2, "put it nearer to the middle of what both eyes see, or calibrate the eyes")
+}
+
+fn known_to(what: &str, covariance_m2: &Matrix3<f64>, remedy: &str) -> Result<(), End> {
+    let sigma_m = over_table_m(covariance_m2);
     if sigma_m <= MOST_SIGMA_M {
         return Ok(());
     }
-    let object = object.to_lowercase();
-    Err(End::Refused(format!(
-        "where the {object} stands is known to {:.0} mm only, {:.0} mm are needed: put it nearer to the middle of what both eyes see, or calibrate the eyes",
-        sigma_m * 1e3,
-        MOST_SIGMA_M * 1e3
-    )))
+    let (sigma_mm, needed_mm) = (sigma_m * 1e3, MOST_SIGMA_M * 1e3);
+    let how = if sigma_m.is_finite() { format!("to {sigma_mm:.1} mm only") } else { "not at all".to_owned() };
+    Err(End::Refused(format!("{what} {how}, {needed_mm:.1} mm are needed: {remedy}")))
 }
 
 /// Standard deviation in the worst direction over the table, m; infinite where it is no number.

@@ -9,10 +9,45 @@ use super::{GraspPlanner, NoPlan};
 const BESIDE_RAD: [f64; 9] = [0.0, 0.1, -0.1, 0.2, -0.2, 0.35, -0.35, 0.5, -0.5];
 /// A way down that begins farther from where the arm stands holds it in another way, rad.
 const FARTHEST_RAD: f64 = 0.9;
+/// The same back over where a thing was taken.
+const FARTHEST_BACK_RAD: f64 = 1.4;
 /// The palm is at a height to within this, m.
 const THERE_M: f64 = 0.004;
 
+/// What was lifted goes back over where it was taken at this height over there, m: clear of the table.
+const OVER_M: f64 = 0.04;
+/// What is over where it was taken to within this was lifted straight, m.
+const STRAIGHT_M: f64 = 0.01;
+
 impl GraspPlanner {
+    /// The way back down to where the palm was when the hand closed (robot frame, m), fingers as they are; where it does not
+    /// get over there, straight down to that height, as [`Self::lowered`]. `None`: it does not get down.
+    ///
+    /// # Errors
+    /// When the way to where it goes down is not free.
+    pub fn put_back(&self, from: &Posture, palm_m: [f64; 3]) -> Result<Option<Vec<Posture>>, NoPlan> {
+        let [x_m, y_m, z_m] = palm_m;
+        let arm = self.arm();
+        let now_m = arm.palm(from).coords;
+        let is_over = (now_m.x - x_m).hypot(now_m.y - y_m) < STRAIGHT_M;
+        if is_over || now_m.z < z_m + OVER_M {
+            return self.lowered(from, z_m);
+        }
+        for beside_rad in BESIDE_RAD {
+            let heading_rad = arm.heading_rad(from) + beside_rad;
+            let over = arm.sent_to(Point::new(x_m, y_m, z_m + OVER_M), heading_rad, from);
+            let Some(over) = over.filter(|over| over.distance_rad(from) < FARTHEST_BACK_RAD) else {
+                continue;
+            };
+            let down = self.vertical(heading_rad, &over, -OVER_M);
+            let is_down = down.last().is_some_and(|low| (arm.palm(low).coords.z - z_m).abs() < THERE_M);
+            if is_down && self.is_free(from, std::slice::from_ref(&over))?.is_none() {
+                return Ok(Some([vec![over], down].concat()));
+            }
+        }
+        self.lowered(from, z_m)
+    }
+
     /// The way down to where the palm is at a height (robot frame, m), fingers as they are. An arm that went up gets not
     /// always down again the way it would find from above: then it is the way up from there, turned round. `None`: the
     /// arm does not get down there.

@@ -120,6 +120,14 @@ pub enum PredictError {
         /// The joint.
         joint: String,
     },
+    /// A frame that a row names cannot be predicted.
+    #[error("poses.csv, row {row}: {reason}")]
+    Frame {
+        /// Counted from 1 without the header.
+        row: usize,
+        /// Why.
+        reason: Box<PredictError>,
+    },
     /// A known place that the eyes cannot see.
     #[error(
         "localizations.csv, row {row}: the known place cannot be projected into the eyes of the model ({reason}): check the place and the head's angles"
@@ -183,10 +191,12 @@ fn touches(
 fn poses(table: &PoseTable, rig: &Rig, logged: &SessionChain) -> Result<Vec<PosePrediction>, PredictError> {
     let of_chain = Arm::of(rig, logged)?;
     let mut others: BTreeMap<String, Arm> = BTreeMap::new();
-    for name in table.rows().filter_map(|row| row.tip).filter(|name| *name != logged.tip) {
+    for (i, row) in table.rows().enumerate() {
+        let Some(name) = row.tip.filter(|name| *name != logged.tip) else { continue };
         if let Entry::Vacant(place) = others.entry(name) {
             let marker = SessionChain { tip: place.key().clone(), joints: logged.joints.clone() };
-            place.insert(Arm::of(rig, &marker)?);
+            let of_row = |reason| PredictError::Frame { row: i + 1, reason: Box::new(reason) };
+            place.insert(Arm::of(rig, &marker).map_err(of_row)?);
         }
     }
     let predict = |(i, row): (usize, crate::session::PoseRow)| {

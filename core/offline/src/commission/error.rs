@@ -58,9 +58,9 @@ pub enum CommissionError {
         /// The twin that was asked for.
         asked: String,
     },
-    /// A lab of a scenario that is in a file, which the lab cannot name.
+    /// A lab of a scenario that is in a file, which the lab cannot name, or that has changed since.
     #[error(
-        "{} was commissioned on the twin \"{of}\", whose file it does not know: name the file with --twin",
+        "{} was commissioned on the twin \"{of}\" of a file, or as it was before: name the file with --twin, or commission it anew",
         .folder.display()
     )]
     LabOfFile {

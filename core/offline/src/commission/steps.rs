@@ -137,7 +137,14 @@ pub(crate) fn twin_of(folder: &Path, asked: Option<&str>) -> Result<Scenario, Co
         None => Scenario::named_or_file(&whose.twin)
             .map_err(|_| CommissionError::LabOfFile { folder: folder.to_owned(), of: whose.twin.clone() })?,
     };
-    if whose.fingerprint == fingerprint(&scenario) { Ok(scenario) } else { Err(other(scenario.name)) }
+    match whose.fingerprint == fingerprint(&scenario) {
+        true => Ok(scenario),
+        // A file may be called as one that comes with the program.
+        false if asked.is_none() => {
+            Err(CommissionError::LabOfFile { folder: folder.to_owned(), of: whose.twin.clone() })
+        }
+        false => Err(other(scenario.name)),
+    }
 }
 
 /// A number that differs between labs: of what is written about their commissioning, and of their twin.

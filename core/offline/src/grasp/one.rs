@@ -69,6 +69,9 @@ pub fn grasp(args: &GraspArgs, context: &dyn JobContext) -> Result<GraspReport, 
     let toy = Toy::from_name(&thing.class.to_lowercase()).ok_or_else(unknown)?;
     let mut bench = bench(&args.lab, scenario, &[args.method], context)?;
     if let Some(out) = &args.out {
+        if plumbline_model::files::present(&out.join("record.json"))? {
+            return Err(OfflineError::KeptAlready(out.clone()));
+        }
         bench.keep_in(out.clone())?;
     }
     context.report(0.5, "grasping");

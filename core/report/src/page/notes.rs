@@ -62,7 +62,9 @@ fn unexplained(finding: &Finding) -> Paragraphs {
     let mut paragraphs = vec![];
     let p = p_value(rest.p_value).replace(' ', "\u{a0}");
     paragraphs.push((
-        if rest.p_value.is_finite() && rest.p_value < 0.01 {
+        if !finding.comparison.is_noise_known() {
+            format!("{} of the gap is left; how much of that is noise is not known.", share(rest.share))
+        } else if rest.p_value.is_finite() && rest.p_value < 0.01 {
             format!("{} of the gap is left, more than noise leaves ({p}).", share(rest.share))
         } else {
             format!("{} of the gap is left; noise alone may leave that much ({p}).", share(rest.share))

@@ -12,7 +12,7 @@ use crate::panels::PanelContext;
 use crate::panels::parts::warning;
 
 /// An attempt takes about so long on the twin, s.
-const ATTEMPT_S: usize = 40;
+const ATTEMPT_S: usize = 50;
 /// The same object is laid out the same way with this.
 const SEED: u64 = 1;
 
@@ -132,7 +132,7 @@ fn start(ui: &mut Ui, cx: &mut PanelContext<'_>, draft: &Drafted) {
             let minutes = (count * ATTEMPT_S).div_ceil(60);
             ui.label(theme::small(
                 ui,
-                format!("About {minutes} min. One arm moves at each, M1 to M4 the right one; the head stays. It can be paused, and goes on after a restart."),
+                format!("About {minutes} min. One arm moves at each attempt (M1 to M4: the right one; M5 with Auto: now this one, now that one); the other one goes home first where it is in the way. The head stays. It can be paused, and goes on after a restart."),
             ));
         }
     }

@@ -10,6 +10,8 @@ use crate::operator::snapshot::trials::{Page, PageMethod, PagePosition};
 /// What is shown of the table, robot frame: x (up) and y (to the left), m.
 const SHOWN_M: [[f64; 2]; 2] = [[0.12, 0.56], [-0.46, 0.46]];
 const DOT: f32 = 11.0;
+/// Places that differ by less are the same, m.
+const SAME_M: f64 = 1e-6;
 
 pub fn show(ui: &mut Ui, page: &Page, method: &PageMethod) {
     let width = ui.available_width().min(460.0);
@@ -31,7 +33,7 @@ pub fn show(ui: &mut Ui, page: &Page, method: &PageMethod) {
     let area = [[x0, y0], [x0, y1], [x1, y1], [x1, y0], [x0, y0]].map(|at_m| on(rect, at_m));
     painter.extend(Shape::dashed_line(&area, Stroke::new(1.0, tokens.text_weak), 4.0, 3.0));
     for at_m in &page.beyond_m {
-        if !method.positions.iter().any(|position| position.at_m == *at_m) {
+        if !method.positions.iter().any(|position| is_same(position.at_m, *at_m)) {
             painter.circle_stroke(on(rect, *at_m), 0.35 * DOT, Stroke::new(1.0, tokens.text_weak));
         }
     }
@@ -41,6 +43,10 @@ pub fn show(ui: &mut Ui, page: &Page, method: &PageMethod) {
     let small = TextStyle::Small.resolve(ui.style());
     let robot = pos2(on(rect, [near, 0.0]).x, rect.bottom() - 2.0);
     painter.text(robot, Align2::CENTER_BOTTOM, "robot", small, tokens.text_weak);
+}
+
+fn is_same([ax_m, ay_m]: [f64; 2], [bx_m, by_m]: [f64; 2]) -> bool {
+    (ax_m - bx_m).hypot(ay_m - by_m) < SAME_M
 }
 
 fn on(rect: Rect, [x_m, y_m]: [f64; 2]) -> Pos2 {

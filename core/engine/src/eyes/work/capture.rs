@@ -75,6 +75,7 @@ pub fn find_in_both(
         left_image: Some(Arc::new(left_image)),
         right_image: Some(Arc::new(right_image)),
         place: None,
+        taken: None,
     })
 }
 

@@ -189,7 +189,8 @@ impl<'a> VideoSearch<'a> {
             let [left_image, right_image] = images.map(|image| Some(std::sync::Arc::new(image)));
             let name = frame.name.clone().unwrap_or_else(|| format!("frame {index:06}"));
             self.collected.sizes_px = Some([size_px, size(&frame.right)]);
-            self.collected.pairs.push(CollectedPair { name, left, right, left_image, right_image, place });
+            let pair = CollectedPair { name, left, right, left_image, right_image, place, taken: None };
+            self.collected.pairs.push(pair);
         }
     }
 }

@@ -56,8 +56,8 @@ pub struct GraspWorkflow {
     /// What the operator said of it.
     pub(in crate::grasp) attempts: Vec<AttemptView>,
     sights: Sights,
-    /// Height of the palm when the hand closed last, m.
-    closed_at_m: Option<f64>,
+    /// Where the palm belonged when the hand closed last, robot frame, m.
+    closed_at_m: Option<[f64; 3]>,
     /// What the hand holds, while it is looked whether it still does.
     pub(super) held: Option<HeldWatch>,
 }

@@ -22,6 +22,7 @@ pub use pulse::{Pulse, Trouble};
 pub use trial::{Strike, Trial};
 
 use super::jobs::panic_message;
+use super::workers::start_shared_workers;
 
 /// When a thread is let go, it gets this long to come to its end.
 const COMING_TO_ITS_END: Duration = Duration::from_secs(10);
@@ -206,6 +207,8 @@ pub fn spawn<S: Send + 'static>(
     mut owned: S,
     work: impl FnOnce(&mut S, &Pulse) + Send + 'static,
 ) -> std::io::Result<Watched> {
+    // Before anything of the engine can ask for one of them.
+    start_shared_workers();
     let watching = pulse.clone();
     let thread = std::thread::Builder::new().name(pulse.thread().name().to_owned()).spawn(move || {
         // What it owned is only dropped afterwards, so nothing half done is used by anybody.

@@ -104,6 +104,14 @@ impl Worker {
                 Err(TryRecvError::Disconnected) => return self.leader_is_gone(),
             }
         }
+        // Before it is asked whether it ended: who ends what pauses lets it loose afterwards.
+        let pauses = led.reins.is_tight();
+        if led.reins.is_ended() {
+            // The arm waits for nobody to notice. Whoever leads gives the order up by himself and gets his
+            // answer then: another one now would be taken for that of his next order.
+            self.break_off();
+            return;
+        }
         let Some(doing) = self.leading.doing.take() else { return };
         let state = match self.state_that_may_move() {
             Ok(state) => state,
@@ -111,11 +119,11 @@ impl Worker {
         };
         let (doing, stepped) = match doing {
             Doing::Following(mut following) => {
-                let stepped = following.step(self, &state, led.reins.is_tight());
+                let stepped = following.step(self, &state, pauses);
                 (Doing::Following(following), stepped)
             }
             Doing::Closing(mut closing) => {
-                let stepped = closing.step(self, &state, led.reins.is_tight(), now);
+                let stepped = closing.step(self, &state, pauses, now);
                 (Doing::Closing(closing), stepped)
             }
         };

@@ -3,6 +3,7 @@
 mod contacts;
 mod placed;
 mod planned;
+mod room;
 mod running;
 
 use std::path::{Path, PathBuf};
@@ -67,6 +68,8 @@ pub struct TouchWorkflow {
     pub(super) run: Option<Run>,
     pub(super) runs: Runs,
     last_session: Option<PathBuf>,
+    /// What made room on the twin's screen is to come back.
+    owes_room: bool,
     pub(super) window: Option<ScreenWindow>,
     pub(super) last_contact: Option<ContactView>,
     /// What [`Self::screen`] gives.

@@ -16,8 +16,6 @@ use super::super::view::ContactSource;
 use super::super::work::{Context, TouchWork};
 use super::{TouchAround, TouchWorkflow, source};
 use crate::robot::RobotControl;
-use crate::robot::view::MotionState;
-use crate::twin::command::TwinCommand;
 
 impl TouchWorkflow {
     pub(super) fn plan(
@@ -132,19 +130,19 @@ impl TouchWorkflow {
             context.cancel(id);
         }
         (self.planned, self.options) = (None, None);
+        // A run that gave way to a plan was closed by nobody: what it put away comes back, too.
+        self.owes_room |= source(&around.robot) == ContactSource::Twin;
         let Some(run) = self.run.take() else { return Ok(()) };
         if run.touch.is_some() {
             context.control(RobotControl::AbandonTouch);
-        }
-        // While the arm moves, nothing is put beside it.
-        let stands = run.touch.is_none() && !matches!(around.robot.motion, MotionState::Moving { .. });
-        if stands && source(&around.robot) == ContactSource::Twin {
-            context.control(TwinCommand::EndTouch.into());
         }
         if run.is_active() && !run.progress.finished {
             self.runs.unfinished.insert(0, store::unfinished(&run.session, &run.progress));
         }
         self.last_session = Some(run.session);
+        if run.touch.is_none() {
+            self.give_room_back(around, context);
+        }
         Ok(())
     }
 }

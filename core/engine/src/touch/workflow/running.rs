@@ -80,6 +80,7 @@ impl TouchWorkflow {
 
     /// The robot has something new, or time has passed.
     pub fn step(&mut self, around: &TouchAround, context: &mut Context<'_>) {
+        self.give_room_back(around, context);
         let screen = self.placed_screen(&around.rig);
         let now = self.now(around, &screen);
         let Some(run) = &mut self.run else { return };

@@ -15,6 +15,8 @@ use crate::twin::command::TwinCommand;
 
 /// A thing that was laid down comes to rest within this.
 pub(super) const SETTLES: Duration = Duration::from_millis(1500);
+/// What is still in the hand so long after the attempt is held, as the command line judges it.
+const HOLDS: Duration = Duration::from_secs(10);
 /// The eyes have seen it lie there within this, or they are blind, which grasping says.
 const SEEN_WITHIN: Duration = Duration::from_secs(10);
 /// A thing that is this much higher than before is lifted, m.
@@ -114,7 +116,7 @@ impl TrialsWorkflow {
         }
         let lifted = match around.is_twin {
             // The hand comes to rest first, or what slips would count.
-            true if context.time.instant < since + SETTLES => return,
+            true if context.time.instant < since + looked_at_for(newest.outcome.as_ref()) => return,
             true => {
                 let now_m = around.height_m(&shown.experiment.object);
                 now_m.zip(height_m).is_some_and(|(now_m, before_m)| now_m - before_m > LIFTED_M)
@@ -199,4 +201,9 @@ impl TrialsWorkflow {
         let count = u32::try_from(last.len()).ok().filter(|count| *count > 0)?;
         Some(last.iter().sum::<Duration>() / count * left)
     }
+}
+
+/// For how long a thing is looked at before it counts.
+fn looked_at_for(outcome: Option<&Outcome>) -> Duration {
+    if outcome == Some(&Outcome::Success) { HOLDS } else { SETTLES }
 }

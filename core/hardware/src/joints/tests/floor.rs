@@ -92,18 +92,18 @@ fn of_the_arm_behind_the_hand_nobody_knows_how_far_it_is_off() {
         let [arm_m, hand_m] = arm_and_hand_m(&floor, posture);
         hand_m - arm_m
     };
-    let elbow_down = drawn
-        .iter()
-        .max_by(|a, b| hand_above_arm_m(a).total_cmp(&hand_above_arm_m(b)))
-        .expect("some posture");
-    assert!(hand_above_arm_m(&elbow_down) > 0.05, "a raised hand");
+    let height_m = |posture: &&Posture| lowest_m(&floor, posture);
+    let by_height = |a: &&Posture, b: &&Posture| height_m(a).total_cmp(&height_m(b));
+    let raised_hands = drawn.iter().filter(|posture| hand_above_arm_m(posture) > FARTHEST_FLOOR_M + 0.01);
+    let elbow_down = raised_hands.min_by(by_height).expect("a raised hand");
+    let above = drawn.iter().max_by(by_height).expect("some posture");
     // No elbow reaches down to the floor of this robot, so the floor comes up to the elbow.
     let elbow_m = lowest_m(&floor, elbow_down);
     let shift = FloorShift::default();
     for (floor_m, passes) in [(elbow_m + 0.01, false), (elbow_m - 0.01, true)] {
         let mut raised = (*rig).clone();
         raised.gate.floor_m = floor_m;
-        let above = drawn.iter().find(|p| lowest_m(&floor, p) > floor_m + 0.05).expect("one above");
+        assert!(height_m(&above) > floor_m, "an arm that is raised");
         let shifted = FloorGuard::new(&raised).shifted_by(shift.clone());
         for up_m in [0.0, -FARTHEST_FLOOR_M, FARTHEST_FLOOR_M] {
             shift.set_m(up_m);
