@@ -30,4 +30,7 @@ pub mod gap {
         Candidate, Comparison, CoordinateComparison, Experiment, Finding, Knowledge, NamedEffect,
         NextExperiment, Residual, Shown, ShownUnit, Unexplained, Unit, Verdict, What, plan_for,
     };
+
+    #[cfg(test)]
+    pub use plumbline_engine::gap::sample;
 }

@@ -246,7 +246,7 @@ pub fn touch_label(view: &View) -> String {
 
 #[cfg(test)]
 mod tests {
-    use plumbline_engine::gap::sample;
+    use crate::operator::snapshot::gap::sample;
 
     use super::*;
 

@@ -385,11 +385,16 @@ fn parts_are_put_together_unless_they_disagree() {
     assert_eq!(store::merge(&[a.clone(), b.clone()], &whole).expect("one experiment"), experiment);
     let summary = store::conclude(&whole, &experiment, &rig()).expect("written");
     assert_eq!((summary.missing, summary.methods["m5"].successes, summary.methods["m5"].attempts), (0, 1, 2));
-    let other_lab = folder.path().join("other lab");
-    store::begin(&other_lab, &Experiment { lab: Some("another".to_owned()), ..experiment.clone() })
-        .expect("begun");
-    let said = store::merge(&[a.clone(), other_lab], &folder.path().join("mixed")).expect_err("of two labs");
+    let of_lab = |name: &str| {
+        let part = folder.path().join(name);
+        store::begin(&part, &Experiment { lab: Some(name.to_owned()), ..experiment.clone() }).expect("begun");
+        part
+    };
+    let (one, another) = (of_lab("one lab"), of_lab("another lab"));
+    let said = store::merge(&[one.clone(), another], &folder.path().join("mixed")).expect_err("of two labs");
     assert!(said.to_string().contains("experiment"), "{said}");
+    // A part that does not tell its lab is taken for one of the same.
+    store::merge(&[a.clone(), one], &folder.path().join("old and new")).expect("one experiment");
     let other = part("other", &[attempt(1, true)]);
     let said = store::merge(&[b, other], &folder.path().join("torn")).expect_err("they disagree").to_string();
     assert!(said.contains("says something else"), "{said}");

@@ -72,16 +72,17 @@ mod tests {
         assert_eq!(refused(sure_enough(&worst_m2(0.004), &worst_m2(0.004))), None);
         // Each by itself would do.
         let why = refused(sure_enough(&worst_m2(0.006), &worst_m2(0.006))).expect("refused");
-        assert!(why.contains("known to 8 mm only, 7 mm are needed") && why.contains("calibrate"), "{why}");
+        assert!(why.contains("known to 8.5 mm only, 7.0 mm are needed") && why.contains("calibrate"), "{why}");
         let unknown = Matrix3::from_element(f64::NAN);
-        assert!(refused(sure_enough(&worst_m2(0.001), &unknown)).is_some(), "nothing is known of it");
+        let why = refused(sure_enough(&worst_m2(0.001), &unknown)).expect("nothing is known of it");
+        assert!(why.contains("are known not at all, 7.0 mm are needed"), "{why}");
     }
 
     #[test]
     fn an_object_that_is_too_uncertain_by_itself_is_refused_before_anything_moves() {
         assert_eq!(refused(sure_of_object("Tomato", &worst_m2(0.0069))), None);
         let why = refused(sure_of_object("Tomato", &worst_m2(0.012))).expect("refused");
-        assert!(why.contains("the tomato stands is known to 12 mm only"), "{why}");
+        assert!(why.contains("the tomato stands is known to 12.0 mm only"), "{why}");
         // What is refused so would be refused later with the best of hands.
         assert!(refused(sure_enough(&worst_m2(0.012), &Matrix3::zeros())).is_some());
     }
