@@ -316,7 +316,8 @@ fn a_clock_that_was_set_begins_the_watch_anew_with_words_of_its_own() {
     }
     let said = desk.said();
     // The same words twice take one line, which counts them.
-    let times = desk.notices.view().iter().filter(|notice| notice.text.contains("was set")).map(|n| n.times);
+    let notices = desk.notices.view();
+    let times = notices.iter().filter(|notice| notice.text.contains("was set")).map(|notice| notice.times);
     assert_eq!(times.sum::<u32>(), 2, "{said:?}");
     assert!(!said.iter().any(|text| text.contains("switched on again")), "{said:?}");
 }
