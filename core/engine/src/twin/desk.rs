@@ -496,7 +496,7 @@ mod tests {
         });
         let said = desk.take_notes();
         let count = |begins: &str| said.iter().filter(|(_, text)| text.starts_with(begins)).count();
-        assert_eq!((count("Put away"), count("Back where they stood: tomato.")), (1, 1), "{said:?}");
+        assert_eq!((count("Put away"), count("Back where they stood: tomato")), (1, 1), "{said:?}");
         desk.control(TwinCommand::EndTouch, &rig).expect("as asked");
         assert!(desk.take_notes().is_empty(), "once");
     }
