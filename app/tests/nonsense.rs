@@ -440,6 +440,14 @@ fn eyes_that_cannot_be_are_refused_before_memory_is_asked_for() {
     let located = desk.works(&locate);
     assert_eq!(located["points"][1]["x_m"], Value::Null, "{located}");
     desk.works(&disparity);
+    // Whose eyes they are is said once.
+    let both = desk.run(&[&locate[..], &["--lab", "lab"]].concat());
+    assert!(both.status == Some(2) && both.said.contains("cannot be used with"), "{}", both.said);
+    let neither =
+        desk.run(&["locate", "--points", "points.csv", "--left", "left.png", "--right", "right.png"]);
+    assert!(neither.status == Some(2) && neither.said.contains("--cameras"), "{}", neither.said);
+    let in_lab = [&["locate", "--lab", "lab"][..], &locate[1..3], &of_images[2..]].concat();
+    desk.refuses(&in_lab, &["lab is no commissioned lab", "plumbline commission"]);
     let sound = desk.text("eyes.yaml");
     let older = sound.split("self_test:").next().expect("before").to_owned() + "complete: true\n";
     for (from, to, said) in [
@@ -487,6 +495,10 @@ fn shard(desk: &Desk, name: &str, number: usize, lifted: bool) {
         "judged": { "lifted": lifted, "at_first": lifted, "alignment_m": 0.001, "refused": false }
     });
     desk.write(&format!("{name}/attempts/{number:05}-m5.json"), &attempt.to_string());
+    // Attempts of earlier versions have no joint tracks.
+    if number == 1 {
+        desk.write(&format!("{name}/attempts/{number:05}-m5.tracks.csv"), "t_s,step\n0.000,ready\n");
+    }
 }
 
 #[test]
@@ -518,9 +530,12 @@ fn shards_that_are_not_of_one_experiment_are_not_put_together() {
     }
     assert_eq!((of["successes"].as_u64(), of["attempts"].as_u64()), (Some(1), Some(2)));
     assert_eq!(of["alignment_mm"]["median"].as_f64(), Some(1.0));
-    for file in ["attempts.csv", "report.html", "report.pdf", "summary.json"] {
+    for file in ["attempts.csv", "report.html", "report.pdf", "summary.json", "attempts/00001-m5.tracks.csv"]
+    {
         assert!(desk.path("whole").join(file).is_file(), "{file}");
     }
+    desk.change("b/attempts/00001-m5.tracks.csv", "ready", "look");
+    desk.refuses(&merge(&["a", "b"], "whole"), &["b", "something else of 00001-m5.tracks.csv"]);
 
     let corrupt = |change: &dyn Fn(&Desk)| {
         let desk = Desk::new();

@@ -115,6 +115,20 @@ pub fn mm_with(length_m: f64, sigma_m: f64) -> String {
     Quantity::Length.text_with(length_m, sigma_m)
 }
 
+/// Meters as centimeters: `1.4 cm`. For what a calibration costs on the table.
+pub fn cm(length_m: f64) -> String {
+    let number = fixed(100.0 * length_m, 1);
+    if length_m.is_finite() { format!("{number} cm") } else { number }
+}
+
+/// Meters as centimeters with one standard deviation: `1.4 ± 0.2 cm`.
+pub fn cm_with(length_m: f64, sigma_m: f64) -> String {
+    if !(length_m.is_finite() && sigma_m.is_finite()) {
+        return cm(length_m);
+    }
+    format!("{} ± {}", fixed(100.0 * length_m, 1), cm(sigma_m))
+}
+
 /// Meters: `0.450 m`. For distances from the eyes; errors and positions are in [`mm`].
 pub fn meters(depth_m: f64) -> String {
     Quantity::Depth.text(depth_m)
@@ -308,5 +322,13 @@ mod tests {
         assert_eq!(count(2, "touch"), "2 touches");
         assert_eq!(pixel_position([312.44, -0.01]), "(312.4, 0.0)");
         assert_eq!(position_mm([0.412, -0.035_2, 0.0]), "x 412 mm, y −35.2 mm, z 0 mm");
+    }
+
+    #[test]
+    fn what_a_calibration_costs_is_in_centimeters() {
+        assert_eq!(cm(0.0137), "1.4 cm");
+        assert_eq!(cm_with(0.0137, 0.002), "1.4 ± 0.2 cm");
+        assert_eq!(cm_with(0.0137, f64::NAN), "1.4 cm");
+        assert_eq!((cm(f64::NAN), cm_with(f64::NAN, 0.1)), (NONE.to_owned(), NONE.to_owned()));
     }
 }

@@ -62,6 +62,12 @@ pub fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number that is one.
+pub fn finite(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| "is not a number".to_owned())
+}
+
 /// Lines under a heading, or nothing.
 pub fn listed(heading: &str, lines: impl IntoIterator<Item = String>) -> String {
     let lines: Vec<String> = lines.into_iter().map(|line| format!("  {line}\n")).collect();

@@ -35,7 +35,7 @@ pub struct Grasp {
     /// Of all that is drawn by chance.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Keeps the record and what both eyes saw in this folder.
+    /// Keeps the record, the joints over time and what both eyes saw in this folder.
     #[arg(long, value_name = "FOLDER")]
     out: Option<PathBuf>,
 }

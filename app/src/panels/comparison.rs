@@ -8,7 +8,8 @@ use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, space};
 
 use super::PanelContext;
-use crate::operator::{Action, Screen, verdict};
+use crate::operator::words::health;
+use crate::operator::{Action, Screen, Verdict, verdict};
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let eyes = &cx.view.eyes;
@@ -25,7 +26,8 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     super::padded(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             if let Some(proposal) = eyes.proposal.as_ref().filter(|proposal| proposal.stale.is_none()) {
-                super::verdict_line::show(ui, &verdict(proposal));
+                let against = health::not_offered(eyes).map(|sentence| Verdict { good: false, sentence });
+                super::verdict_line::show(ui, &against.unwrap_or_else(|| verdict(proposal)));
                 ui.add_space(space::S);
             }
             let proposed =
@@ -40,6 +42,10 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
                 if ui.button("Discard the proposal").clicked() {
                     cx.outbox.act(Action::Discard);
                 }
+            }
+            if eyes.in_use.is_some() {
+                ui.add_space(space::M);
+                super::health::show(ui, cx.view, cx.outbox);
             }
         });
     });

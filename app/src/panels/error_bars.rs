@@ -9,6 +9,7 @@ use plumbline_widgets::empty::{EmptyState, Message};
 use plumbline_widgets::theme;
 
 use super::PanelContext;
+use crate::operator::words::eyes::cold_among;
 
 /// A pair this many times worse than the median deserves a look.
 const SUSPICIOUS: f64 = 2.5;
@@ -22,7 +23,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     let bars = bars(&calibration, &cx.view.eyes);
     let chosen = cx.state.chosen_pair.as_ref().and_then(|name| bars.iter().position(|bar| bar.name == *name));
     super::padded(ui, |ui| {
+        let cold = cold_among(&cx.view.eyes, calibration.per_pair.iter().map(|fit| fit.name.as_str()));
         let footer = if cx.view.eyes.dropped.is_empty() { 0.0 } else { 32.0 };
+        let footer = footer + if cold.is_some() { 44.0 } else { 0.0 };
         let height = (ui.available_height() - 34.0 - footer).clamp(80.0, 400.0);
         let shown = PairBars::new("Rms of the corners", &bars)
             .threshold(threshold(&bars))
@@ -32,6 +35,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         if let Some(bar) = shown.clicked {
             cx.state.chosen_pair = Some(bars[bar.pair].name.clone());
             cx.state.chosen_eye = Some(bar.eye);
+        }
+        if let Some(cold) = cold {
+            ui.label(theme::weak(ui, cold));
         }
         dropped(ui, cx);
     });

@@ -41,7 +41,8 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
     }
     if grasping {
         let boxes = grasp::overlay(view, eye);
-        overlay = boxes.unwrap_or_else(|| objects::raw(view, &cx.state.objects, eye));
+        let focused = grasp::focused(view, &cx.state.objects);
+        overlay = boxes.unwrap_or_else(|| objects::raw_boxes(view, &cx.state.objects, eye, focused));
     }
     let picture = view.live.raw.as_ref().map(|frame| {
         let image = if eye == Eye::Left { &frame.left } else { &frame.right };
@@ -59,6 +60,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>, eye: Eye) {
         source_state::button_clicked(view, cx.outbox);
     }
     if grasping {
+        grasp::hover(cx, eye, &shown);
         grasp::click(view, cx.outbox, eye, shown.clicked_px);
     } else if !collecting {
         let point = |at: [f64; 2]| ProbePoint::Raw { eye, u_px: at[0], v_px: at[1] };

@@ -9,11 +9,14 @@ use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::PanelContext;
+use crate::operator::words::eyes::{minutes_on, warmth};
 use crate::operator::{Action, RobotAction, hint_text};
 
 const ROW: f32 = 24.0;
 /// A distance needs so much beside the name.
 const DISTANCE: f32 = 60.0;
+/// And so much how warm the eyes were.
+const WARMTH: f32 = 95.0;
 
 pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     cx.outbox.want(Products { corners: true, ..Products::default() });
@@ -43,6 +46,9 @@ fn controls(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         }
     });
     let live = cx.view.source.replay.is_none();
+    if live && cx.view.eyes.accepting_ended_capture {
+        ui.label(theme::weak(ui, "Capturing by itself ended when the calibration was accepted."));
+    }
     if let (true, Some(hint)) = (live, &cx.view.eyes.hint) {
         ui.label(theme::weak(ui, hint_text(hint)));
     }
@@ -132,6 +138,11 @@ fn pair_row(ui: &mut Ui, cx: &mut PanelContext<'_>, pair: &CollectedPair) {
             // It stands under the mouse too; it must not run into the name.
             if let Some(place) = pair.place.filter(|_| ui.available_width() > DISTANCE) {
                 ui.label(theme::small(ui, format::meters(place.distance_m)));
+            }
+            if let Some(minutes) = minutes_on(&cx.view.eyes, &pair.name)
+                && ui.available_width() > WARMTH
+            {
+                ui.label(theme::small(ui, warmth(minutes)));
             }
         });
     });

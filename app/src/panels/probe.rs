@@ -6,6 +6,7 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
 use plumbline_widgets::theme::{self, Role, space};
 
+use super::parts::warning;
 use crate::operator::words::capitalized;
 
 /// What is known about the measured point, for the inspector.
@@ -21,13 +22,17 @@ pub fn probe_readout(ui: &mut Ui, probe: Option<&ProbeView>) {
         }
         Ok(reading) => {
             let range_m = reading.point_in_left.range_m();
-            big_figure(ui, "from the left eye", &format::mm_with(range_m, reading.sigma_m), Role::Ink);
+            big_figure(ui, "from the left eye", &format::mm_with(range_m, reading.range_sigma_m), Role::Ink);
             ui.add_space(space::S);
             let robot = reading.point_in_robot.coords;
             let hint =
                 "The robot with what was calibrated, and with the effects that were added to its model";
             ui.label(theme::small(ui, format!("Robot frame, robot {}", reading.model))).on_hover_text(hint);
             coordinates(ui, "robot", [robot.x, robot.y, robot.z]);
+            key_value_grid(ui, "robot within", &[place_sigma(reading)]);
+            if let Some(why) = reading.wide_because {
+                warning(ui, why);
+            }
             let left = reading.point_in_left.coords;
             ui.add_space(space::XS);
             ui.label(theme::small(ui, "Left eye's frame"));
@@ -48,13 +53,16 @@ fn coordinates(ui: &mut Ui, id: &str, meters: [f64; 3]) {
     key_value_grid(ui, id, &rows);
 }
 
+fn place_sigma(reading: &ProbeReading) -> KeyValue {
+    KeyValue::quantity("±", Quantity::Length, reading.sigma_m)
+        .help("One standard deviation along the worst direction, from the match, the calibrations, the effects of the model, and what nobody measured")
+}
+
 fn image_rows(reading: &ProbeReading) -> Vec<KeyValue> {
     let at = |u: f64, v: f64| format::pixel_position([u, v]);
     vec![
         KeyValue::text("Left", at(reading.left_raw.u_px, reading.left_raw.v_px)).unit("px"),
         KeyValue::text("Right", at(reading.right_raw.u_px, reading.right_raw.v_px)).unit("px"),
         KeyValue::optional("Disparity", Quantity::Pixels, reading.disparity_px),
-        KeyValue::quantity("Uncertainty", Quantity::Length, reading.sigma_m)
-            .help("One standard deviation along the worst direction, from the match, the calibration and the effects of the model"),
     ]
 }

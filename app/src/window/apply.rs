@@ -248,6 +248,7 @@ impl PlumblineWindow {
             Action::DeleteLast => EyesCommand::DeleteLast.into(),
             Action::Undo => EyesCommand::Undo.into(),
             Action::Solve => EyesCommand::Solve.into(),
+            Action::JudgeHealth => EyesCommand::JudgeHealth.into(),
             Action::Accept => EyesCommand::Accept.into(),
             Action::Discard => EyesCommand::Discard.into(),
             Action::Robot(action) => return action.command(&self.view),

@@ -44,7 +44,7 @@ pub(super) fn show(window: &mut PlumblineWindow, ui: &mut Ui, outbox: &mut Outbo
             Screen::Grasp => show_grasp_inspector(ui, &view, state),
             Screen::Scores => show_scores_inspector(ui, &view, state, outbox),
             Screen::Images => show_labels_inspector(ui, &view, state, outbox),
-            Screen::Drift => show_drift_inspector(ui, &view),
+            Screen::Drift => show_drift_inspector(ui, &view, outbox),
             Screen::Timeline => show_timeline_inspector(ui, &view),
             Screen::Robot => show_robot_inspector(ui, &view, &mut state.robot, outbox),
         });

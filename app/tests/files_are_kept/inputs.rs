@@ -5,7 +5,7 @@ use std::process::Command;
 use super::desk::Desk;
 
 /// Every verb with one of its inputs in place of FILE.
-const READERS: [&str; 14] = [
+const READERS: [&str; 15] = [
     "train --model m1 --session FILE --out model.json",
     "gap --session FILE",
     "gap --session s --rig-model FILE",
@@ -16,6 +16,7 @@ const READERS: [&str; 14] = [
     "disparity --left FILE --right FILE --rectified --max-disparity 64 --out map.pfm",
     "disparity --left a.png --right a.png --cameras FILE --max-disparity 64 --out map.pfm",
     "locate --cameras FILE --left a.png --right a.png --points points.csv",
+    "locate --lab FILE --left a.png --right a.png --points points.csv",
     "calibrate stereo --left FILE --right FILE --board 8x5 --square-mm 30 --out cameras.yaml",
     "calibrate check --cameras FILE --left s --right s --board 8x5 --square-mm 30",
     "detect --model FILE --images a.png",

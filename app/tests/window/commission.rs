@@ -18,7 +18,7 @@ use plumbline_engine::{
 use plumbline_model::StereoCalibration;
 use plumbline_model::touch_plan::{PlanOptions, Purpose};
 
-use crate::fake::{Fake, says, shows};
+use crate::fake::{Fake, click, says, shows};
 use crate::made_up::{everything, looked_at_hands, lying_board, rig, twin};
 use crate::made_up_touch;
 
@@ -336,4 +336,25 @@ fn before_a_second_try_it_is_said_why_and_what_will_move() {
     assert!(says(&window, "The hand closed beside the tomato, which is where it was."));
     assert!(says(&window, "Try 2 of 3: the hand opens, the arm goes back to where it began"));
     assert!(!says(&window, "Next: "), "nothing is to be pressed but what stops it");
+}
+
+#[test]
+fn a_first_grasp_that_goes_step_by_step_names_the_step_that_the_button_does() {
+    let mut view = at(CommissionStep::Grasp);
+    let between = plumbline_engine::view::BetweenSteps {
+        done: plumbline_engine::view::GraspStep::Approach,
+        next: plumbline_engine::view::GraspStep::Lower,
+    };
+    let run = plumbline_engine::view::GraspRun {
+        object: "Tomato".to_owned(),
+        between: Some(between),
+        ..Default::default()
+    };
+    let grasp = Arc::make_mut(&mut view.grasp);
+    grasp.phase = plumbline_engine::view::GraspPhase::Grasping { paused: true, ending: false };
+    (grasp.run, grasp.stops_after_each) = (Some(Arc::new(run)), true);
+    let fake = Fake::over(view);
+    let mut window = fake.window(on(Screen::Grasp));
+    click(&mut window, "Next: lower");
+    assert_eq!(fake.take_sent(), [Command::from(GraspCommand::Resume)]);
 }

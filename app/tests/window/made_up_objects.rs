@@ -40,6 +40,7 @@ pub fn tomato() -> ObjectView {
     let place = ObjectPlaceView {
         point_in_robot: Point::new(0.331, -0.118, 0.082),
         sigma_m,
+        wide_because: None,
         covariance_m2: Matrix3::from_diagonal(&nalgebra::Vector3::from(sigma_m.map(|s: f64| s * s))),
         range_m: 0.452,
         range_sigma_m: 0.0043,

@@ -6,7 +6,9 @@ use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use plumbline::{PlumblineWindow, Screen, ThemeChoice, WindowSettings};
-use plumbline_engine::view::{DetectView, DetectorFacts, DetectorState, ObjectView, SeenBox};
+use plumbline_engine::view::{
+    DetectView, DetectorFacts, DetectorState, ObjectPlaceView, ObjectView, SeenBox,
+};
 use plumbline_engine::{Command, DetectCommand, DetectorChoice, LiveCommand, Products};
 use plumbline_model::detection::{ClassNames, PixelBox};
 
@@ -41,6 +43,21 @@ fn the_list_says_what_is_where_and_a_click_tells_all() {
     click(&mut window, "Banana, only the left eye: no place");
     assert!(says(&window, "one eye alone tells no range"));
     assert!(says(&window, "nothing of this kind"));
+}
+
+#[test]
+fn a_place_that_rests_on_what_nobody_measured_says_why_its_uncertainty_is_wide() {
+    let why = "The ± is wide because nobody measured how the eyes sit in the head.";
+    let unmeasured = |object: ObjectView| {
+        let place = object.place.clone().map(|place| ObjectPlaceView { wide_because: Some(why), ..place });
+        ObjectView { place, ..object }
+    };
+    for (object, is_told) in [(unmeasured(tomato()), true), (tomato(), false)] {
+        let fake = Fake::over(live(DetectView { found: Some(Arc::new(found(vec![object]))), ..detect() }));
+        let mut window = fake.window_of_size(settings(), TALL);
+        click(&mut window, "Tomato, 331, −118, 82 ± 4 mm");
+        assert_eq!(says(&window, why), is_told);
+    }
 }
 
 /// This object where the eyes see it now, pixels, and how sure they are.

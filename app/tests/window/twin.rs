@@ -121,6 +121,33 @@ fn a_tour_of_the_board_is_counted_and_goes_on_where_it_was_broken_off() {
 }
 
 #[test]
+fn that_accepting_ended_capturing_stands_at_its_switch_and_pairs_say_how_warm_the_eyes_were() {
+    let pair = |name: &str| CollectedPair {
+        name: name.to_owned(),
+        left: None,
+        right: None,
+        left_image: None,
+        right_image: None,
+        place: None,
+        taken: None,
+    };
+    let eyes = EyesView {
+        accepting_ended_capture: true,
+        collected: [Arc::new(pair("first")), Arc::new(pair("later")), Arc::new(pair("file"))].into(),
+        minutes_on: [Some(3.0), Some(25.0), None].into(),
+        ..EyesView::default()
+    };
+    let over = |eyes: EyesView| Fake::over(View { eyes: Arc::new(eyes), ..everything() });
+    let ended = "Capturing by itself ended when the calibration was accepted";
+    let window = over(eyes.clone()).window_of_size(on(Screen::Collect), TALL);
+    assert!(says(&window, ended) && says(&window, "cold, 3 min") && says(&window, "warm, 25 min"));
+    let plain = EyesView { accepting_ended_capture: false, minutes_on: [None; 3].into(), ..eyes };
+    let window = over(plain).window_of_size(on(Screen::Collect), TALL);
+    assert!(shows(&window, "later") && !says(&window, ended));
+    assert!(!says(&window, "cold, 3") && !says(&window, "warm, 25"), "what is not known is not said");
+}
+
+#[test]
 fn a_twin_that_failed_says_why_and_can_be_started_again() {
     let failed = TwinView {
         failed: Some("no graphics device answers: see the doctor".to_owned()),

@@ -29,6 +29,10 @@ impl Effect {
                 [Self::sites(*kind, arm, eyes), in_sets].concat()
             })
             .flat_map(|effect| known.shapes(effect))
+            .map(|effect| match eyes {
+                Some(eyes) => effect.beside(&eyes.calibrated_at),
+                None => effect,
+            })
             .collect()
     }
 

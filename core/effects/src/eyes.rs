@@ -1,7 +1,7 @@
 //! The eyes on their neck, and what they see and estimate when something deviates.
 
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
-use plumbline_model::robot::{DescriptionError, Rig};
+use plumbline_model::robot::{CalibratedAt, DescriptionError, Rig};
 use plumbline_model::stereo::StereoCameras;
 use plumbline_model::{Pixel, Raw};
 
@@ -17,6 +17,8 @@ pub struct Eyes {
     pub head_from_left: Isometry3<f64>,
     /// Lenses and how the eyes sit to each other.
     pub cameras: StereoCameras,
+    /// How warm they were when they were calibrated.
+    pub calibrated_at: CalibratedAt,
 }
 
 /// What is different from the nominal eyes. All zero is the nominal eyes exactly.
@@ -149,6 +151,7 @@ impl Eyes {
             neck: Arm::of_rig(rig, link)?,
             head_from_left: rig.eyes.head_from_left.isometry,
             cameras: rig.eyes.cameras,
+            calibrated_at: rig.eyes.calibrated_at,
         })
     }
 

@@ -199,6 +199,10 @@ pub struct NamedEffect {
     /// [`plumbline_effects::Effect::shape`].
     #[serde(default)]
     pub shape: Option<f64>,
+    /// Time since the eyes were switched on at which the calibration that it was found beside holds, s; see
+    /// [`plumbline_effects::Effect::reference_s`].
+    #[serde(default)]
+    pub reference_s: f64,
     /// Parameters as the model takes them, one per [`plumbline_effects::Effect::parameters`].
     pub values: Vec<f64>,
     /// Their covariance, row by row.

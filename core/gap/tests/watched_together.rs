@@ -91,6 +91,7 @@ fn corrected(rig: &Arc<Rig>, finding: &Finding) -> RobotModel {
             title: found.title.clone(),
             tip: None,
             shape: found.shape,
+            reference_s: 0.0,
             values: found.values.clone(),
             covariance: found.covariance.clone(),
             probability: Some(found.probability),

@@ -113,6 +113,7 @@ mod tests {
             title: String::new(),
             tip: None,
             shape: Some(Effect::yaw_growth(400.0, 0.0)),
+            reference_s: 0.0,
             values: vec![0.01],
             covariance: vec![],
             probability: None,

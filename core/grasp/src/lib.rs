@@ -17,6 +17,7 @@ pub mod published;
 pub mod record;
 pub mod see;
 pub mod things;
+pub mod tracks;
 
 pub use arm::{NoArm, PalmArm};
 pub use attempt::{Grasper, Order, Watch};

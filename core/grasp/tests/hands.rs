@@ -118,6 +118,7 @@ fn with_effects(rig: &Arc<Rig>, effects: &[(&str, &str, f64)]) -> RobotModel {
         title: String::new(),
         tip: Some("right_index_tip".to_owned()),
         shape: None,
+        reference_s: 0.0,
         values: vec![*value],
         covariance: vec![],
         probability: None,

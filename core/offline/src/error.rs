@@ -8,7 +8,7 @@ use plumbline_gap::GapError;
 use plumbline_hardware::{ImageProblem, SourceError};
 use plumbline_model::predict::PredictError;
 use plumbline_model::robot::ik::{IkError, SolverError};
-use plumbline_model::robot::{DescriptionError, RigError};
+use plumbline_model::robot::{DescriptionError, Limits, RigError};
 use plumbline_model::{AimError, BoardError, Cancelled, FormatError, PlacementError, SessionError};
 use plumbline_recording::RecordingError;
 use plumbline_report::ReportError;
@@ -61,6 +61,31 @@ pub enum OfflineError {
     /// A calibrated mount cannot be read.
     #[error(transparent)]
     Mount(#[from] MountFileError),
+    /// A folder in which nothing, or not enough, was accepted.
+    #[error(
+        "{} is no commissioned lab ({why}): give the folder that plumbline commission wrote, and let it finish there",
+        .folder.display()
+    )]
+    NoLab {
+        /// The folder.
+        folder: PathBuf,
+        /// What is missing.
+        why: &'static str,
+    },
+    /// A head that cannot have stood so.
+    #[error(
+        "the joint {joint} of the head cannot stand at {angle_rad} rad, for it turns from {:.2} to {:.2} rad: give what its encoder said, in radians",
+        .limits.lower_rad,
+        .limits.upper_rad
+    )]
+    HeadAngle {
+        /// The joint.
+        joint: String,
+        /// What was asked for.
+        angle_rad: f64,
+        /// How far it turns.
+        limits: Limits,
+    },
     /// A calibration file cannot be read or written.
     #[error(transparent)]
     Format(#[from] FormatError),

@@ -4,14 +4,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use image::GrayImage;
-use nalgebra::Point3;
 use plumbline_engine::ground::text::sentence;
-use plumbline_model::robot::{Rig, RigPart};
 use plumbline_model::session::StereoImagePair;
-use plumbline_model::{JobContext, LeftCamera, Point, Session, StereoCameras};
+use plumbline_model::{JobContext, Session, StereoCameras};
 use plumbline_recording::{Jpeg, Recording};
 use plumbline_vision::calibration_file;
-use plumbline_vision::health::{Match, Turn, cost, epipolar_px, find_matches, fit_turn, fits_better_by};
+use plumbline_vision::health::{Better, Match, TableRows, Turn, better, find_matches, judge};
 use serde::Serialize;
 
 use super::OfflineError;
@@ -21,17 +19,6 @@ use super::session;
 
 /// Pairs that are looked at, spread over the session.
 const PAIRS: usize = 8;
-/// A calibration that puts places farther off than this is not good any more, m: what a hand that grasps
-/// bears.
-const BEARABLE_M: f64 = 0.008;
-/// A turn is believed when it is so many standard deviations away from none.
-const SURE: f64 = 3.0;
-/// One calibration beats another by so many standard deviations: those by which its right eye stands where the
-/// images say, or those by which it fits the same places.
-const BETTER: f64 = 3.0;
-/// Places across the table, shares of its half width.
-const ACROSS: [f64; 3] = [-0.6, 0.0, 0.6];
-
 /// Whose health.
 #[derive(Clone, Debug)]
 pub struct HealthArgs {
@@ -120,23 +107,26 @@ pub fn health(args: &HealthArgs, context: &dyn JobContext) -> Result<HealthRepor
     let (matches, _) = find_matches(&cameras, &images)?;
     context.checkpoint()?;
     context.report(0.9, "judging");
-    let table = Table::of(&rig, &cameras);
+    let table = TableRows::of(&rig, &cameras);
     let (in_use_health, turn) = judged(&in_use, &cameras, &matches, &table)?;
-    let mut better = "undecided";
+    let mut better_one = "undecided";
     let proposed_health = match &proposed {
         None => None,
         Some((file, other)) => {
             let (judged, other_turn) = judged(file, other, &matches, &table)?;
-            let fits_by = fits_better_by(&cameras, other, &matches)?;
-            better = beats(fits_by, turn.sigmas().zip(other_turn.sigmas()));
+            better_one = match better((&cameras, &turn), (other, &other_turn), &matches)? {
+                Better::InUse => "in_use",
+                Better::Proposed => "proposed",
+                Better::Undecided => "undecided",
+            };
             Some(judged)
         }
     };
-    let said = words(&in_use_health, proposed_health.as_ref(), better);
+    let said = words(&in_use_health, proposed_health.as_ref(), better_one);
     Ok(HealthReport {
         in_use: in_use_health,
         proposed: proposed_health,
-        better,
+        better: better_one,
         seconds: began.elapsed().as_secs_f64(),
         pairs: wanted.len(),
         matches: matches.len(),
@@ -208,74 +198,32 @@ impl<'a> Pairs<'a> {
     }
 }
 
-/// Places on the table, in the left eye: near, in the middle, far.
-struct Table {
-    rows: [Vec<Point<LeftCamera>>; 3],
-}
-
-impl Table {
-    /// The patch on which the robot works; straight ahead where the rig has no eyes.
-    fn of(rig: &Rig, cameras: &StereoCameras) -> Self {
-        if rig.need(RigPart::Eyes).is_err() {
-            let ahead = |z_m: f64| ACROSS.map(|share| Point::new(0.3 * share, 0.15, z_m)).to_vec();
-            let reach_m = cameras.baseline_m() * 10.0;
-            return Self { rows: [0.5, 0.75, 1.0].map(|share| ahead(share * reach_m)) };
-        }
-        let left_from_robot = rig.robot_from_left(&rig.home()).isometry.inverse();
-        let [near_m, far_m] = rig.work_patch.x_range_m;
-        let [right_m, left_m] = rig.work_patch.y_range_m;
-        let row = |x_m: f64| {
-            let at = |share: &f64| {
-                let y_m = 0.5 * (right_m + left_m) + share * 0.5 * (left_m - right_m);
-                Point::from(left_from_robot * Point3::new(x_m, y_m, rig.table.height_m))
-            };
-            ACROSS.iter().map(at).collect()
-        };
-        Self { rows: [near_m, 0.5 * (near_m + far_m), far_m].map(row) }
-    }
-}
-
+/// How a calibration does, and how its right eye has turned.
 fn judged(
     file: &Path,
     cameras: &StereoCameras,
     matches: &[Match],
-    table: &Table,
+    table: &TableRows,
 ) -> Result<(CalibrationHealth, Turn), OfflineError> {
-    let turn = fit_turn(cameras, matches)?;
-    let mut errors = vec![];
-    for row in &table.rows {
-        errors.push(cost(cameras, &turn, row).ok_or_else(|| OfflineError::TableNotSeen(file.to_path_buf()))?);
-    }
-    let worst = errors.iter().any(|cost| cost.error_m > BEARABLE_M && cost.error_m > SURE * cost.sigma_m);
-    let [near_mm, middle_mm, far_mm] = [0, 1, 2].map(|k| errors[k].error_m * 1e3);
+    let Some(judged) = judge(cameras, matches, table)? else {
+        return Err(OfflineError::TableNotSeen(file.to_path_buf()));
+    };
+    let turn = judged.turn;
+    let [near_mm, middle_mm, far_mm] = judged.costs.map(|cost| cost.error_m * 1e3);
     let degrees = |axis: usize| turn.covariance_rad2[(axis, axis)].max(0.0).sqrt().to_degrees();
     let health = CalibrationHealth {
         file: file.to_path_buf(),
-        ok: !worst,
+        ok: judged.is_good(),
         near_mm,
         middle_mm,
         far_mm,
-        far_sigma_mm: errors[2].sigma_m * 1e3,
+        far_sigma_mm: judged.costs[2].sigma_m * 1e3,
         turn_deg: turn.angle_rad().to_degrees(),
         turn_axes_deg: turn.rotation_rad.map(f64::to_degrees).into(),
         turn_sigma_deg: [0, 1, 2].map(degrees),
-        epipolar_px: epipolar_px(cameras, matches)?,
+        epipolar_px: judged.epipolar_px,
     };
     Ok((health, turn))
-}
-
-/// Which of two calibrations is better beyond doubt, from how much better the second fits and how far both
-/// are from where the images say that the eye stands.
-fn beats(second_fits_by: f64, turns_sigmas: Option<(f64, f64)>) -> &'static str {
-    let stands_by = turns_sigmas.map_or(0.0, |(first, second)| first - second);
-    let most = if second_fits_by.abs() > stands_by.abs() { second_fits_by } else { stands_by };
-    // Both have to point the same way.
-    let agree = second_fits_by * stands_by >= 0.0;
-    match most {
-        by if agree && by > BETTER => "proposed",
-        by if agree && by < -BETTER => "in_use",
-        _ => "undecided",
-    }
 }
 
 fn words(in_use: &CalibrationHealth, proposed: Option<&CalibrationHealth>, better: &str) -> String {

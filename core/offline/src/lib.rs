@@ -58,7 +58,9 @@ pub use grid::{GridArgs, GridCorrection, GridReport, GridRow, grid};
 pub use health::{CalibrationHealth, HealthArgs, HealthReport, health};
 pub use ik::{IkArgs, IkReport, IkSolution, ik};
 pub use lerobot::{LerobotArgs, LerobotReport, lerobot};
-pub use locate::{LocateArgs, LocateReport, LocateRobot, LocatedPoint, PointInRobot, locate};
+pub use locate::{
+    LocateArgs, LocateEyes, LocateReport, LocateRobot, LocatedPoint, PointInRobot, Stood, locate,
+};
 pub use plumbline_twin::training_set::SetWorld;
 pub use plumbline_vision::detect as detector;
 pub use plumbline_vision::detect_score as scores;

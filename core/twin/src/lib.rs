@@ -6,6 +6,7 @@
 //! hides stays hidden, but for judges and tests: [`truth`].
 
 mod board_presets;
+mod course;
 mod error;
 pub mod eyes;
 mod hand_look;
@@ -23,6 +24,7 @@ mod twin;
 mod warm_up;
 
 pub use board_presets::{board_presets, default_board, few_board_presets};
+pub use course::CoursePoint;
 pub use error::TwinError;
 pub use lockstep::{Lockstep, ServoState, Touched};
 pub use physics::places_of_bodies;

@@ -11,6 +11,7 @@ use plumbline_model::robot::{JointIndex, Posture, Rig};
 use plumbline_model::{Board, Pose, Robot};
 
 use crate::board_presets::default_board;
+use crate::course::{Course, CoursePoint};
 use crate::error::TwinError;
 use crate::eyes::{EyeOptions, EyeRenderer, RenderError, RenderedPair, Sensor};
 use crate::physics::{Contact, Reading, World};
@@ -68,6 +69,7 @@ pub struct Lockstep {
     out: Vec<bool>,
     seed: u64,
     pairs: u64,
+    course: Option<Course>,
 }
 
 impl Lockstep {
@@ -81,7 +83,7 @@ impl Lockstep {
         let scenery = scenery(&world, default_board(), 0);
         let out = visible(&world);
         let sensor = Sensor::default();
-        Ok(Self { world, commanded, eyes: None, sensor, scenery, out, seed, pairs: 0 })
+        Ok(Self { world, commanded, eyes: None, sensor, scenery, out, seed, pairs: 0, course: None })
     }
 
     /// The robot as described.
@@ -153,8 +155,23 @@ impl Lockstep {
     /// Time passes while everything holds.
     pub fn wait(&mut self, duration_s: f64) {
         for _ in 0..(duration_s / World::STEP_S).round() as usize {
-            self.world.step();
+            self.step();
         }
+    }
+
+    /// From now on keeps what the joints do, a point this often (s), beginning with this moment.
+    pub fn keep_course(&mut self, every_s: f64) {
+        self.course = Some(Course::new(every_s, self.course_point()));
+    }
+
+    /// What the joints did since this was asked last, oldest first; nothing while nobody keeps it.
+    pub fn take_course(&mut self) -> Vec<CoursePoint> {
+        self.course.as_mut().map(Course::take).unwrap_or_default()
+    }
+
+    /// Keeps it no longer; what was not taken is gone.
+    pub fn end_course(&mut self) {
+        self.course = None;
     }
 
     /// What both eyes see now.
@@ -235,12 +252,25 @@ impl Lockstep {
             let t = cycle as f64 / cycles as f64;
             self.command(start.toward(end, t * t * t * (10.0 + t * (6.0 * t - 15.0))));
             for _ in 0..CYCLE_STEPS {
-                self.world.step();
+                self.step();
             }
             if stop(self) {
                 break;
             }
         }
+    }
+
+    /// Physics goes on. To look at it changes nothing.
+    fn step(&mut self) {
+        self.world.step();
+        if self.course.as_mut().is_some_and(Course::is_due) {
+            let point = self.course_point();
+            self.course.iter_mut().for_each(|course| course.add(point.clone()));
+        }
+    }
+
+    fn course_point(&self) -> CoursePoint {
+        CoursePoint { at_s: self.now_s(), commanded: self.commanded.clone(), encoders: self.encoders() }
     }
 
     fn command(&mut self, posture: Posture) {

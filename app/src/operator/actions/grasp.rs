@@ -22,6 +22,8 @@ pub enum GraspAction {
     Resume,
     /// Ends what is under way; the arm holds.
     End,
+    /// Attempts hold after each step, or no longer.
+    StopAfterEach,
     /// One step of the hand by itself. The arm moves.
     Hand(HandStep),
     /// The operator saw that the object was held.
@@ -34,13 +36,14 @@ type Refusal = Option<Cow<'static, str>>;
 
 impl GraspAction {
     /// All of them, in the palette's order.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Plan,
         Self::Forget,
         Self::Grasp,
         Self::Pause,
         Self::Resume,
         Self::End,
+        Self::StopAfterEach,
         Self::Hand(HandStep::Open),
         Self::Hand(HandStep::Close),
         Self::Hand(HandStep::Lift),
@@ -60,6 +63,7 @@ impl GraspAction {
             Self::Pause => "Pause the grasp",
             Self::Resume => "Go on grasping",
             Self::End => "End the grasp, hold the arm",
+            Self::StopAfterEach => "Stop after each step of a grasp, or not",
             Self::Hand(HandStep::Open) => "Open the grasping hand",
             Self::Hand(HandStep::Close) => "Close the grasping hand",
             Self::Hand(HandStep::Lift) => "Lift the grasping hand",
@@ -85,6 +89,8 @@ impl GraspAction {
             Self::Pause => when(grasp.phase.moves() && !grasp.phase.is_paused(), "nothing moves"),
             Self::Resume => when(grasp.phase.is_paused(), "nothing is paused"),
             Self::End => when(under_way, "nothing is under way"),
+            // Also in the middle of an attempt.
+            Self::StopAfterEach => None,
             Self::Held | Self::NotHeld => when(judged(view).is_some(), "no grasp has ended yet"),
         }
     }
@@ -100,6 +106,7 @@ impl GraspAction {
                 Self::Pause => GraspCommand::Pause,
                 Self::Resume => GraspCommand::Resume,
                 Self::End => GraspCommand::End,
+                Self::StopAfterEach => GraspCommand::StopAfterEachStep(!view.grasp.stops_after_each),
                 Self::Hand(step) => GraspCommand::Hand(step),
                 Self::Held => judge(true)?,
                 Self::NotHeld => judge(false)?,
@@ -130,6 +137,10 @@ fn said(text: &str) -> Cow<'static, str> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use plumbline_engine::view::GraspView;
+
     use super::*;
 
     #[test]
@@ -140,5 +151,16 @@ mod tests {
         assert_eq!(why(GraspAction::End), "nothing is under way");
         assert_eq!(why(GraspAction::Held), "no grasp has ended yet");
         assert_eq!(GraspAction::Held.command(&view), None);
+    }
+
+    #[test]
+    fn the_switch_is_turned_to_what_it_is_not() {
+        for on in [false, true] {
+            let grasp = GraspView { stops_after_each: on, ..GraspView::default() };
+            let view = View { grasp: Arc::new(grasp), ..View::default() };
+            assert_eq!(GraspAction::StopAfterEach.refusal(&view), None);
+            let turned = GraspAction::StopAfterEach.command(&view);
+            assert_eq!(turned, Some(GraspCommand::StopAfterEachStep(!on).into()));
+        }
     }
 }

@@ -96,6 +96,8 @@ pub enum Action {
     Undo,
     /// Solves what is collected.
     Solve,
+    /// Judges the calibration in use, and a proposed one, by what the eyes see.
+    JudgeHealth,
     /// Puts the proposal in use.
     Accept,
     /// Forgets the proposal.
@@ -258,6 +260,7 @@ const ALL: &[Action] = &[
     Action::DeleteAll,
     Action::Undo,
     Action::Solve,
+    Action::JudgeHealth,
     Action::Accept,
     Action::Discard,
     Action::Import,
@@ -354,6 +357,7 @@ impl Action {
             Self::DeleteAll => "Delete all pairs",
             Self::Undo => "Undo the last change of the pairs",
             Self::Solve => "Solve the collected pairs",
+            Self::JudgeHealth => "Is the calibration still good?",
             Self::Accept => "Accept calibration",
             Self::Discard => "Discard the proposal",
             Self::Import => "Import a calibration…",
@@ -433,6 +437,12 @@ impl Action {
             Self::Undo => when(eyes.can_undo, "nothing was changed"),
             Self::Solve if eyes.solving.is_some() => Some("a solution is being computed".into()),
             Self::Solve => when(!eyes.collected.is_empty(), "no pair is collected"),
+            Self::JudgeHealth if eyes.health.is_busy() => Some("it is being looked at".into()),
+            Self::JudgeHealth if eyes.in_use.is_none() => Some("no calibration is in use".into()),
+            Self::JudgeHealth => when(view.source.status != SourceStatus::None, "no source is open"),
+            Self::Accept if eyes.health.is_against_proposal() => {
+                Some("by what the eyes see it is not better than the one in use".into())
+            }
             Self::Accept | Self::Discard => when(eyes.proposal.is_some(), "nothing is proposed"),
             Self::Export(Exported::InUse, _) => when(eyes.in_use.is_some(), "no calibration is in use"),
             Self::Export(Exported::Proposal, _) => when(eyes.proposal.is_some(), "nothing is proposed"),

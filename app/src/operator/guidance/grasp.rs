@@ -8,7 +8,7 @@ use plumbline_widgets::format;
 
 use super::robot;
 use super::sentence::{Guidance, say};
-use crate::operator::words::grasp::{again, closed, held_now, method, object_of, try_of};
+use crate::operator::words::grasp::{again, closed, go_on, held_now, holds, method, object_of, try_of};
 use crate::operator::words::trials::ask;
 use crate::operator::{Action, GraspAction, RobotAction, TrialsAction};
 
@@ -18,7 +18,8 @@ pub(super) fn grasp(view: &View) -> Guidance {
         GraspPhase::Planning => say("Looks and plans. Nothing moves."),
         GraspPhase::Grasping { ending: true, .. } => say("Ends; the arm holds where it is."),
         phase if phase.is_paused() => {
-            say("Paused: the arm holds. Going on moves it.").then("Go on", Action::Grasp(GraspAction::Resume))
+            let said = holds(grasp).unwrap_or_else(|| "Paused: the arm holds. Going on moves it.".to_owned());
+            say(said).then(go_on(grasp), Action::Grasp(GraspAction::Resume))
         }
         GraspPhase::Grasping { .. } => say(under_way(grasp)).then("Pause", Action::Grasp(GraspAction::Pause)),
         GraspPhase::Hand { step, .. } => say(format!("{}. The arm moves; Esc or space stops.", step.title()))

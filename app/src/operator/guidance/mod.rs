@@ -22,6 +22,7 @@ use plumbline_engine::View;
 use plumbline_engine::view::{CaptureHint, EyesView, Proposal, SourceStatus};
 use plumbline_widgets::format;
 
+use super::words::health::not_offered;
 use super::{Action, CommissionAction, RobotAction, Screen, faults};
 use sentence::say;
 
@@ -249,6 +250,9 @@ fn judge(eyes: &EyesView) -> Guidance {
     if let Some(why) = &proposal.stale {
         return say(why.clone()).then(format!("Solve {} again", format::count(count, "pair")), Action::Solve);
     }
+    if let Some(why) = not_offered(eyes) {
+        return say(why).warn().then("Discard the proposal", Action::Discard);
+    }
     let verdict = verdict(proposal);
     if !verdict.good {
         return say(verdict.sentence).warn().then("Collect more pairs", Action::Go(Screen::Collect));
@@ -268,6 +272,9 @@ fn accept(eyes: &EyesView) -> Guidance {
             say(proposal.stale.clone().unwrap_or_default()).then("Solve again", Action::Solve)
         }
         (Some(proposal), _) => {
+            if let Some(why) = not_offered(eyes) {
+                return say(why).warn().then("Discard the proposal", Action::Discard);
+            }
             let verdict = verdict(proposal);
             if verdict.good {
                 let changes = proposal.difference.as_ref().and_then(|map| map.greatest_m());

@@ -1,8 +1,10 @@
 //! A grasp in words.
 
 use plumbline_engine::view::{
-    AttemptView, GraspHand, GraspMethod, GraspOutcome, GraspRun, GraspView, HandChoice, SinceHeld,
+    AttemptView, BetweenSteps, GraspHand, GraspMethod, GraspOutcome, GraspRun, GraspStep, GraspView,
+    HandChoice, SinceHeld,
 };
+use plumbline_widgets::format;
 
 /// "M5".
 pub fn method(method: GraspMethod) -> String {
@@ -54,6 +56,72 @@ pub fn again(run: &GraspRun) -> Option<String> {
     ))
 }
 
+/// What makes an attempt that holds go on: "Next step: lower" where it will hold again, else "Go on".
+pub fn go_on(grasp: &GraspView) -> String {
+    match grasp.between().filter(|_| grasp.stops_after_each) {
+        Some(between) => format!("Next step: {}", between.next.title().to_lowercase()),
+        None => "Go on".to_owned(),
+    }
+}
+
+/// Where an attempt holds by itself: what is done, which step comes next and what moves by it. `None` where it
+/// does not.
+pub fn holds(grasp: &GraspView) -> Option<String> {
+    let (between, run) = (grasp.between()?, grasp.run.as_deref()?);
+    let rest = match grasp.stops_after_each {
+        true => "",
+        false => " All that comes after follows without a stop.",
+    };
+    if between.next == GraspStep::Again {
+        return Some(format!("{}{rest}", again(run).unwrap_or_else(|| "It is tried again.".to_owned())));
+    }
+    let (done, next) = (is_done(between, run), between.next.title().to_lowercase());
+    Some(format!("{done}; the arm holds. Next, {next}: {}.{rest}", what_moves(between, run)))
+}
+
+fn is_done(between: BetweenSteps, run: &GraspRun) -> String {
+    let object = run.object.to_lowercase();
+    match between.done {
+        GraspStep::Plan => "The way is planned".to_owned(),
+        GraspStep::Approach => format!("The hand is above the {object}"),
+        GraspStep::Align => match run.iterations.last() {
+            Some(look) => match look.distance_m {
+                Some(m) => format!("Both eyes have seen the hand {} beside where it belongs", format::mm(m)),
+                None => "Both eyes have looked for the hand and have not found it".to_owned(),
+            },
+            None => "Nothing was to be aligned".to_owned(),
+        },
+        GraspStep::Lower => format!("The open hand is down at the {object}"),
+        GraspStep::Close => "Thumb and fingers are closed".to_owned(),
+        GraspStep::Lift => "The hand is up".to_owned(),
+        other => format!("{} is done", other.title()),
+    }
+}
+
+fn what_moves(between: BetweenSteps, run: &GraspRun) -> String {
+    let object = run.object.to_lowercase();
+    match between.next {
+        GraspStep::Approach => {
+            let hand = run.hand.map_or_else(|| "hand".to_owned(), hand);
+            format!("the {hand} goes to above the {object}; an arm that is in its way goes home first")
+        }
+        GraspStep::Align if between.done == GraspStep::Align => {
+            format!("the arm brings the hand nearer to where it belongs over the {object}")
+        }
+        GraspStep::Align if run.method == Some(GraspMethod::M4) => {
+            "the arm turns the palm to the eyes, which look at it".to_owned()
+        }
+        GraspStep::Align => "both eyes look at the hand; the arm stays".to_owned(),
+        GraspStep::Lower => format!("the arm goes straight down at the {object}"),
+        GraspStep::Close => "the thumb closes, then the fingers; the arm stays".to_owned(),
+        GraspStep::Lift => "the arm goes up with the closed hand".to_owned(),
+        GraspStep::Check => {
+            format!("fingers and eyes tell whether the {object} is held; the arm stays")
+        }
+        GraspStep::Ready | GraspStep::Look | GraspStep::Plan | GraspStep::Again => "the arm stays".to_owned(),
+    }
+}
+
 /// How it is with what was found to be held, as a sentence.
 pub fn held_now(run: &GraspRun) -> String {
     let object = run.object.to_lowercase();
@@ -78,5 +146,105 @@ pub fn result(attempt: &AttemptView) -> &'static str {
         (None, Some(GraspOutcome::Failed { .. })) => "not held",
         (None, Some(GraspOutcome::Refused { .. })) => "refused",
         (None, None) => "broken off",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use plumbline_engine::view::{GraspIteration, GraspPhase};
+
+    use super::*;
+
+    fn held(done: GraspStep, next: GraspStep, stops_after_each: bool) -> GraspView {
+        let run = GraspRun {
+            object: "Tomato".to_owned(),
+            method: Some(GraspMethod::M5),
+            hand: Some(GraspHand::Right),
+            tries: [1, 3],
+            between: Some(BetweenSteps { done, next }),
+            ..GraspRun::default()
+        };
+        GraspView {
+            phase: GraspPhase::Grasping { paused: true, ending: false },
+            run: Some(Arc::new(run)),
+            stops_after_each,
+            ..GraspView::default()
+        }
+    }
+
+    #[test]
+    fn a_hold_says_what_is_done_what_comes_next_and_what_moves() {
+        let said = |done, next| holds(&held(done, next, true)).expect("it holds");
+        assert_eq!(
+            said(GraspStep::Plan, GraspStep::Approach),
+            "The way is planned; the arm holds. Next, approach: the right hand goes to above the tomato; an arm \
+             that is in its way goes home first."
+        );
+        assert_eq!(
+            said(GraspStep::Lower, GraspStep::Close),
+            "The open hand is down at the tomato; the arm holds. Next, close: the thumb closes, then the fingers; \
+             the arm stays."
+        );
+        assert_eq!(go_on(&held(GraspStep::Align, GraspStep::Lower, true)), "Next step: lower");
+        // Every step that it can hold before is said, with what moves.
+        for pair in GraspStep::ALL.windows(2).skip(2) {
+            let said = said(pair[0], pair[1]);
+            let next = format!("Next, {}: ", pair[1].title().to_lowercase());
+            assert!(said.contains(&next) && said.ends_with('.'), "{said}");
+        }
+    }
+
+    #[test]
+    fn between_two_looks_it_says_how_far_the_hand_was_beside_or_that_it_was_not_found() {
+        let mut grasp = held(GraspStep::Align, GraspStep::Align, true);
+        let mut look = GraspIteration {
+            at_s: None,
+            sent_m: [0.3, -0.1, 0.2],
+            hand_m: None,
+            not_found: None,
+            distance_m: Some(0.0042),
+            sigma_m: None,
+        };
+        let mut said = |look: &GraspIteration| {
+            let run = Arc::make_mut(grasp.run.as_mut().expect("made up"));
+            run.iterations = vec![look.clone()];
+            holds(&grasp).expect("it holds")
+        };
+        assert!(said(&look).contains("seen the hand 4.2 mm beside where it belongs"), "{}", said(&look));
+        look.distance_m = None;
+        assert!(said(&look).contains("have not found it"), "{}", said(&look));
+    }
+
+    #[test]
+    fn with_the_switch_turned_off_meanwhile_going_on_is_going_on_to_the_end() {
+        let grasp = held(GraspStep::Approach, GraspStep::Align, false);
+        assert_eq!(go_on(&grasp), "Go on");
+        assert!(holds(&grasp).expect("it holds").ends_with("All that comes after follows without a stop."));
+    }
+
+    #[test]
+    fn a_pause_in_the_middle_of_a_step_and_a_step_of_the_hand_are_no_holds() {
+        let mut grasp = held(GraspStep::Approach, GraspStep::Align, true);
+        for phase in [
+            GraspPhase::Grasping { paused: false, ending: false },
+            GraspPhase::Grasping { paused: true, ending: true },
+            GraspPhase::Hand { step: plumbline_engine::HandStep::Lift, paused: true },
+            GraspPhase::Idle,
+        ] {
+            grasp.phase = phase;
+            assert_eq!((holds(&grasp), go_on(&grasp)), (None, "Go on".to_owned()), "{:?}", grasp.phase);
+        }
+    }
+
+    #[test]
+    fn before_it_tries_again_it_says_why_and_what_will_move() {
+        let mut grasp = held(GraspStep::Check, GraspStep::Again, true);
+        let run = Arc::make_mut(grasp.run.as_mut().expect("made up"));
+        (run.tries, run.again) = ([2, 3], Some("the hand is empty".to_owned()));
+        let said = holds(&grasp).expect("it holds");
+        assert!(said.starts_with("The hand is empty. Try 2 of 3: the hand opens"), "{said}");
+        assert_eq!(go_on(&grasp), "Next step: again");
     }
 }

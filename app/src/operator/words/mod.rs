@@ -1,7 +1,9 @@
 //! What several panels, the bottom line and the window say in the same words.
 
+pub mod eyes;
 pub mod gap;
 pub mod grasp;
+pub mod health;
 pub mod robot;
 pub mod timeline;
 pub mod trials;

@@ -4,6 +4,7 @@ use plumbline_engine::view::{CollectedPair, EyesView, TableMap};
 use plumbline_model::{Eye, PairFit, StereoCalibration};
 
 use super::{Table, degrees, meters, mm, number, pixels};
+use crate::operator::words::eyes::minutes_on;
 use crate::panels::PanelState;
 
 pub fn pairs(eyes: &EyesView) -> Table {
@@ -59,7 +60,7 @@ pub fn coverage(state: &PanelState) -> Table {
     Table::new(&["eye", "column", "row", "corners", "lens_shows_it"], rows)
 }
 
-pub fn pair_errors(calibration: &StereoCalibration) -> Table {
+pub fn pair_errors(calibration: &StereoCalibration, eyes: &EyesView) -> Table {
     let row = |fit: &PairFit| {
         vec![
             fit.name.clone(),
@@ -67,10 +68,11 @@ pub fn pair_errors(calibration: &StereoCalibration) -> Table {
             pixels(fit.right_px),
             pixels(fit.epipolar_px),
             meters(fit.left_from_board.translation_m().norm()),
+            minutes_on(eyes, &fit.name).map_or_else(String::new, |minutes| format!("{minutes:.1}")),
         ]
     };
     Table::new(
-        &["pair", "left_px", "right_px", "epipolar_px", "distance_m"],
+        &["pair", "left_px", "right_px", "epipolar_px", "distance_m", "eyes_on_min"],
         calibration.per_pair.iter().map(row),
     )
 }

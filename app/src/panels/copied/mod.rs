@@ -41,7 +41,7 @@ pub fn table_of(pane: Pane, view: &View, state: &PanelState) -> Option<Table> {
         Pane::CommissionSteps => judged::commission(view),
         Pane::Coverage => eyes::coverage(state),
         Pane::Pairs => eyes::pairs(&view.eyes),
-        Pane::PairErrors => eyes::pair_errors(shown_calibration_ref(&view.eyes)?),
+        Pane::PairErrors => eyes::pair_errors(shown_calibration_ref(&view.eyes)?, &view.eyes),
         Pane::Residuals => eyes::corners(residuals::chosen_fit(view, state.chosen_pair.as_deref())?),
         Pane::Figures | Pane::Comparison => eyes::figures(&view.eyes),
         Pane::Uncertainty => eyes::map(eyes::uncertainty(&view.eyes)?, "sd_mm"),

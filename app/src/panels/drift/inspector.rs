@@ -1,4 +1,4 @@
-//! What moved: the eyes' turns, the references, and what was told.
+//! What moved: the eyes' turns, the references, and what was told; and whether the calibration still holds.
 
 use egui::{RichText, Ui};
 use plumbline_engine::View;
@@ -6,7 +6,15 @@ use plumbline_widgets::format::{self, Quantity};
 use plumbline_widgets::key_value::{KeyValue, big_figure, key_value_grid};
 use plumbline_widgets::theme::{self, Role, group_heading, space};
 
-pub fn show(ui: &mut Ui, view: &View) {
+use crate::operator::Outbox;
+use crate::panels::health;
+
+pub fn show(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
+    moved(ui, view);
+    health::show(ui, view, outbox);
+}
+
+fn moved(ui: &mut Ui, view: &View) {
     let Some(course) = &view.drift.course else {
         group_heading(ui, "What this is for");
         let text = "Eyes turn in their mounts while they warm up, and when somebody knocks against one. Then \

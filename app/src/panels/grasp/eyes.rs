@@ -4,10 +4,13 @@ use plumbline_engine::view::{GraspPhase, SeenThing};
 use plumbline_engine::{GraspCommand, View};
 use plumbline_model::Eye;
 use plumbline_widgets::class_color;
+use plumbline_widgets::image_view::ImageViewResponse;
 use plumbline_widgets::overlay::{Emphasis, LabeledBox, Mark, Overlay, PointShape};
 use plumbline_widgets::theme::Role;
 
+use super::things::click_chooses;
 use crate::operator::Outbox;
+use crate::panels::PanelContext;
 
 /// While something is under way the attempt looks for itself.
 pub fn wants_detections(view: &View) -> bool {
@@ -44,6 +47,18 @@ pub fn overlay(view: &View, eye: Eye) -> Option<Overlay> {
 
 fn words(thing: &SeenThing) -> String {
     format!("{} {:.2}", thing.class, thing.confidence)
+}
+
+/// What is pointed at is strong in both eyes and in the scene, and it is said what a click would do.
+pub fn hover(cx: &mut PanelContext<'_>, eye: Eye, shown: &ImageViewResponse) {
+    let is_idle = cx.view.grasp.phase == GraspPhase::Idle;
+    if !is_idle || !cx.state.objects.point(cx.view, eye, shown.hover_px, false) {
+        return;
+    }
+    let can_be_held = |name: &str| cx.view.grasp.classes.iter().any(|class| class.eq_ignore_ascii_case(name));
+    if let Some(object) = cx.state.objects.under_pointer(cx.view).filter(|object| can_be_held(&object.name)) {
+        shown.response.clone().on_hover_text_at_pointer(click_chooses(&object.name));
+    }
 }
 
 /// What is clicked on is grasped.

@@ -11,9 +11,11 @@ pub mod parts;
 mod result;
 mod run;
 pub mod state;
+pub mod things;
 
 pub use attempts::show as show_attempts;
 pub use experiment::show as show_experiment;
-pub use eyes::{click, overlay, wants_detections};
+pub use eyes::{click, hover, overlay, wants_detections};
 pub use inspector::show as show_inspector;
 pub use run::show as show_run;
+pub use things::focused;

@@ -2,14 +2,14 @@
 
 use egui::{RichText, ScrollArea, Slider, Ui};
 use plumbline_engine::view::{GateState, GraspPhase, GraspView};
-use plumbline_engine::{HandStep, View};
+use plumbline_engine::{GraspCommand, HandStep, View};
 use plumbline_widgets::format;
 use plumbline_widgets::theme::{self, Role, space};
 
 use super::{aligned, choice, lamps, result};
 use crate::operator::GraspAction;
 use crate::operator::words::capitalized;
-use crate::operator::words::grasp::{again, hand as hand_words, try_of};
+use crate::operator::words::grasp::{again, go_on, hand as hand_words, holds, try_of};
 use crate::panels::parts::action_button;
 use crate::panels::{PanelContext, padded};
 
@@ -46,29 +46,51 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 
 /// The attempt as a whole.
 fn buttons(ui: &mut Ui, cx: &mut PanelContext<'_>) {
-    ui.horizontal_wrapped(|ui| match &cx.view.grasp.phase {
-        GraspPhase::Idle => {
-            action_button(ui, cx, GraspAction::Plan, "Plan");
-            if cx.view.grasp.plan.is_some() {
-                action_button(ui, cx, GraspAction::Forget, "Forget the plan");
+    ui.horizontal_wrapped(|ui| {
+        match &cx.view.grasp.phase {
+            GraspPhase::Idle => {
+                action_button(ui, cx, GraspAction::Plan, "Plan");
+                if cx.view.grasp.plan.is_some() {
+                    action_button(ui, cx, GraspAction::Forget, "Forget the plan");
+                }
+            }
+            GraspPhase::Planning => {
+                ui.spinner();
+                ui.label(theme::weak(ui, doing(cx.view)));
+                action_button(ui, cx, GraspAction::End, "End");
+            }
+            phase if phase.is_paused() => {
+                let label = go_on(&cx.view.grasp);
+                action_button(ui, cx, GraspAction::Resume, &label);
+                action_button(ui, cx, GraspAction::End, "End");
+            }
+            GraspPhase::Grasping { .. } | GraspPhase::Hand { .. } => {
+                action_button(ui, cx, GraspAction::Pause, "Pause");
+                action_button(ui, cx, GraspAction::End, "End");
             }
         }
-        GraspPhase::Planning => {
-            ui.spinner();
-            ui.label(theme::weak(ui, doing(cx.view)));
-            action_button(ui, cx, GraspAction::End, "End");
-        }
-        phase if phase.is_paused() => {
-            action_button(ui, cx, GraspAction::Resume, "Go on");
-            action_button(ui, cx, GraspAction::End, "End");
-            ui.label(theme::weak(ui, "Paused: the arm holds."));
-        }
-        GraspPhase::Grasping { .. } | GraspPhase::Hand { .. } => {
-            action_button(ui, cx, GraspAction::Pause, "Pause");
-            action_button(ui, cx, GraspAction::End, "End");
-            ui.label(theme::weak(ui, doing(cx.view)));
+        stop_after_each(ui, cx);
+        match &cx.view.grasp.phase {
+            GraspPhase::Idle | GraspPhase::Planning => {}
+            phase if phase.is_paused() => {
+                let said = holds(&cx.view.grasp).unwrap_or_else(|| "Paused: the arm holds.".to_owned());
+                ui.label(theme::weak(ui, said));
+            }
+            GraspPhase::Grasping { .. } | GraspPhase::Hand { .. } => {
+                ui.label(theme::weak(ui, doing(cx.view)));
+            }
         }
     });
+}
+
+/// Whether an attempt goes step by step. Also while one is under way.
+fn stop_after_each(ui: &mut Ui, cx: &mut PanelContext<'_>) {
+    let mut on = cx.view.grasp.stops_after_each;
+    let about = "A grasp holds after each step, says what comes next and what will move, and goes on when you say \
+                 so. The experiment goes on without a stop.";
+    if ui.checkbox(&mut on, "Stop after each step").on_hover_text(about).changed() {
+        cx.outbox.send(GraspCommand::StopAfterEachStep(on));
+    }
 }
 
 /// What is done just now, in a few words.

@@ -1,5 +1,7 @@
 //! How grasping is looked at.
 
+use plumbline_engine::GraspTarget;
+
 use super::experiment::Drafted;
 
 /// How grasping is looked at: kept from frame to frame, never saved.
@@ -7,6 +9,8 @@ use super::experiment::Drafted;
 pub struct GraspPanels {
     /// Where along the planned motion the ghost stands, 0–1.
     pub along: f64,
+    /// What would be chosen where the pointer is in the scene.
+    pub pointed: Option<GraspTarget>,
     /// The attempt that the inspector speaks of, by name; `None`: the newest.
     pub chosen: Option<String>,
     /// The experiment that is being put together.
@@ -18,6 +22,6 @@ pub struct GraspPanels {
 impl Default for GraspPanels {
     /// The ghost stands at the end of the way.
     fn default() -> Self {
-        Self { along: 0.7, chosen: None, experiment: Drafted::default(), experiment_method: 0 }
+        Self { along: 0.7, pointed: None, chosen: None, experiment: Drafted::default(), experiment_method: 0 }
     }
 }

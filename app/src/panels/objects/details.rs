@@ -9,6 +9,7 @@ use plumbline_widgets::theme::{self, Role, space};
 
 use super::drawing::DOUBT;
 use super::state::ObjectsPanels;
+use crate::panels::parts::warning;
 
 /// Draws it; a hint while nothing is looked at.
 pub fn show(ui: &mut Ui, view: &View, panels: &mut ObjectsPanels) {
@@ -61,6 +62,9 @@ fn placed(ui: &mut Ui, object: &ObjectView, place: &ObjectPlaceView) {
         .map(|((name, value), sigma)| KeyValue::uncertain(name, Quantity::Length, value, sigma))
         .collect();
     key_value_grid(ui, "object place", &rows);
+    if let Some(why) = place.wide_because {
+        warning(ui, why);
+    }
     let voted = object.voted.iter().map(|cell| cell.area_px2()).sum::<f32>();
     let share = object.left.as_ref().map(|seen| f64::from(voted / seen.area.area_px2().max(1.0)));
     key_value_grid(

@@ -33,6 +33,16 @@ pub fn raw(view: &View, panels: &ObjectsPanels, eye: Eye) -> Overlay {
             line(&mut overlay, seen, color);
         }
     }
+    overlay.append(raw_boxes(view, panels, eye, focused));
+    overlay
+}
+
+/// The boxes alone over the raw image of an eye, one of them strong.
+pub fn raw_boxes(view: &View, panels: &ObjectsPanels, eye: Eye, focused: Option<&ObjectView>) -> Overlay {
+    let mut overlay = Overlay::new();
+    if !panels.shown {
+        return overlay;
+    }
     let boxes = objects(view).iter().filter_map(|object| {
         let seen = object.seen(eye)?;
         let [x0, y0, x1, y1] = [seen.area.x0_px, seen.area.y0_px, seen.area.x1_px, seen.area.y1_px].map(edge);

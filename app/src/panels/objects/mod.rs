@@ -11,5 +11,6 @@ mod list;
 mod order;
 pub mod state;
 
-pub(crate) use drawing::{raw, rectified, stale};
+pub(crate) use drawing::{raw, raw_boxes, rectified, stale};
 pub(crate) use inspector::show_inspector;
+pub(crate) use state::objects as found;

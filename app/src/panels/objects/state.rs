@@ -46,8 +46,12 @@ impl Default for ObjectsPanels {
 impl ObjectsPanels {
     /// The object that is looked at: the one under the pointer, else the one that was clicked.
     pub fn focused<'a>(&self, view: &'a View) -> Option<&'a ObjectView> {
-        let hovered = self.hovered.as_ref().and_then(|hovered| hovered.key.find(objects(view)));
-        hovered.or_else(|| self.chosen(view))
+        self.under_pointer(view).or_else(|| self.chosen(view))
+    }
+
+    /// The object under the pointer, in a picture, a list or the scene.
+    pub fn under_pointer<'a>(&self, view: &'a View) -> Option<&'a ObjectView> {
+        self.hovered.as_ref().and_then(|hovered| hovered.key.find(objects(view)))
     }
 
     /// The object that is described: as [`Self::focused`], but pointing at a line of the list, which
@@ -75,7 +79,7 @@ impl ObjectsPanels {
         true
     }
 
-    /// A line of the list is pointed at.
+    /// A line of the list, or what stands for the object in the scene, is pointed at.
     pub fn hover(&mut self, object: &ObjectView) {
         self.hovered_next = Some(Hovered { key: ObjectKey::of(object), in_list: true });
     }

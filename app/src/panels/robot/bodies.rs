@@ -41,6 +41,11 @@ pub fn thing(id: PickId) -> Thing {
     }
 }
 
+/// Whether a part of the robot was picked.
+pub fn is_part_of_robot(id: PickId) -> bool {
+    matches!(thing(id), Thing::Joint(_))
+}
+
 /// Everything there is to see; empty until the joints were read once.
 ///
 /// `names` false leaves the names of the toys out, where there is no room for them.

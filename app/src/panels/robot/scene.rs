@@ -8,10 +8,10 @@ use plumbline_widgets::format;
 use plumbline_widgets::scene3d::{Line, Scene3d, Tint};
 use plumbline_widgets::theme::{self, space};
 
-use super::bodies::{Thing, scene, thing};
+use super::bodies::{Thing, is_part_of_robot, scene, thing};
 use super::parts::{cannot_show, refusal_line, stale_sentence};
 use super::state::Asked;
-use crate::operator::{Action, RobotAction};
+use crate::operator::{Action, RobotAction, Screen};
 use crate::panels::PanelContext;
 
 /// Below the picture: the chosen point and what can be done with it.
@@ -31,6 +31,7 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
     if palm_way.len() > 1 {
         drawn.lines.push(Line::new(palm_way, Tint::Ghost).width(2.0));
     }
+    crate::panels::mark_things(cx, &mut drawn);
     if drawn.is_empty() && super::parts::without_joints(ui, cx, None) {
         return;
     }
@@ -45,7 +46,9 @@ pub fn show(ui: &mut Ui, cx: &mut PanelContext<'_>) {
         .stale(stale.as_deref())
         .empty(Message::new("Nothing to draw yet", "The scene follows the first reading of the joints."))
         .show(ui, &mut cx.state.robot.camera);
-    if let Some(picked) = shown.clicked {
+    // A click on a thing chooses what is grasped; one beside it, a part of the robot or a point to look at.
+    let taken = crate::panels::point_at_thing(ui, cx, &shown, is_part_of_robot);
+    if let Some(picked) = shown.clicked.filter(|_| !taken) {
         if let Some(Thing::Joint(joint)) = picked.pick.map(thing) {
             cx.state.robot.chosen_joint = Some(joint);
         }
@@ -85,6 +88,9 @@ fn strip(ui: &mut Ui, cx: &mut PanelContext<'_>) {
 
 fn hint(cx: &PanelContext<'_>) -> &'static str {
     match &cx.view.robot.connection {
+        Connection::Connected { .. } if cx.screen == Screen::Grasp => {
+            "Click a thing to grasp it, or a point to look there. Drag turns, wheel zooms."
+        }
         Connection::Connected { .. } => "Click a point to look there. Drag turns, wheel zooms.",
         _ => "Drag turns, wheel zooms.",
     }

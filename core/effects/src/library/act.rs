@@ -57,6 +57,15 @@ impl Effect {
         t_secs.zip(self.growth()).map_or(0.0, |(t_secs, growth)| growth.share(t_secs))
     }
 
+    /// How much of it is there beside the calibration of the eyes: all, or of what grows the part that it has grown
+    /// since the calibration; less than nothing before. Nothing where the time is not known.
+    pub(super) fn part(&self, t_secs: Option<f64>) -> f64 {
+        let Some(growth) = self.growth() else { return 1.0 };
+        // A law without a time constant is all there at once: what begins cold began with nothing.
+        let held = if self.reference_s > 0.0 { growth.share(self.reference_s) } else { 0.0 };
+        t_secs.map_or(0.0, |t_secs| growth.share(t_secs) - held)
+    }
+
     /// 1 after the moment of the step, 0 before.
     pub(super) fn stepped(&self, t_secs: Option<f64>) -> f64 {
         let after = t_secs.zip(self.shape);

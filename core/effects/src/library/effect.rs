@@ -1,6 +1,7 @@
 //! Effects at their sites.
 
 use nalgebra::Vector3;
+use plumbline_model::robot::CalibratedAt;
 
 use super::entry::{EyeSite, Shape, Site};
 use super::{Kind, Parameter};
@@ -26,6 +27,9 @@ pub struct Effect {
     pub shape: Option<f64>,
     /// Between which shapes the true one lies, as far as the grid of candidates tells.
     pub shape_range: Option<[f64; 2]>,
+    /// Of an effect of the eyes that grows: time since they were switched on at which the calibration that it corrects
+    /// holds, s. What has grown until then is in the calibration; see [`Self::part`].
+    pub reference_s: f64,
     /// Place of the joint in the arm (or neck), for effects of one joint or link.
     pub(super) joint: Option<usize>,
     /// Two directions across the axis of its joint, own frame.
@@ -92,6 +96,21 @@ impl Effect {
         self
     }
 
+    /// The same beside a calibration that holds at this time since the eyes were switched on, s.
+    pub fn with_reference(mut self, reference_s: f64) -> Self {
+        self.reference_s = reference_s;
+        self
+    }
+
+    /// The same beside the calibration of these eyes. Where it is not known how warm they were, they count as cold.
+    pub(crate) fn beside(self, calibrated_at: &CalibratedAt) -> Self {
+        if !self.kind.is_growth_of_eyes(self.shape) {
+            return self;
+        }
+        let reference_s = self.kind.held_at_s(calibrated_at).unwrap_or(0.0);
+        self.with_reference(reference_s)
+    }
+
     pub(super) fn new(kind: Kind, site: &str, whose: &str, joint: Option<usize>) -> Self {
         let title =
             if whose.is_empty() { kind.about().to_owned() } else { format!("{whose}: {}", kind.about()) };
@@ -101,6 +120,7 @@ impl Effect {
             title,
             shape: None,
             shape_range: None,
+            reference_s: 0.0,
             joint,
             across: None,
             partner: None,

@@ -1,9 +1,10 @@
 //! Kinds of effects by name. All that is known of each stands in its entry.
 
+use plumbline_model::robot::CalibratedAt;
 use serde::{Deserialize, Serialize};
 use strum::{EnumString, IntoStaticStr, VariantArray};
 
-use super::entry::{Is, Site};
+use super::entry::{Is, Shape, Site};
 
 /// What kind of effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -155,6 +156,17 @@ impl Kind {
     /// Whether it concerns the eyes.
     pub fn is_of_eyes(self) -> bool {
         matches!(self.entry().site, Site::OfEyes(_))
+    }
+
+    /// Whether an effect of this kind in this shape turns or shifts the eyes the more, the longer they are on.
+    pub(crate) fn is_growth_of_eyes(self, shape: Option<f64>) -> bool {
+        shape.is_some() && matches!(self.entry().shape, Shape::Growth(_))
+    }
+
+    /// When the calibration holds that it corrects, s since the eyes were switched on: the mount holds how both sit in
+    /// the head, the lenses hold all else. `None`: nobody knows.
+    pub(crate) fn held_at_s(self, calibrated_at: &CalibratedAt) -> Option<f64> {
+        if self == Self::CameraMount { calibrated_at.mount_s } else { calibrated_at.cameras_s }
     }
 
     /// Whether an encoder sees it, so that a prediction from encoder angles already holds it.

@@ -21,6 +21,12 @@ const SAME_SCREEN_M: f64 = 1e-6;
 /// No effect is so many times its usual size.
 const MOST_TYPICAL: f64 = 100.0;
 
+/// Whether a calibration holds for eyes that were just switched on, as in files of before that was kept.
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde hands over a reference")]
+fn is_cold(reference_s: &f64) -> bool {
+    *reference_s == 0.0
+}
+
 /// Refuses a screen that cannot be.
 fn usable_screen(screen: &Touchscreen) -> Result<(), String> {
     let sides = plausible::SCREEN_SIDE_M.check_all(&[screen.width_m, screen.height_m]);
@@ -70,6 +76,10 @@ pub struct ModelEffect {
     /// What of it is no matter of degree: an order, a moment, a time constant; see [`Effect::shape`].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shape: Option<f64>,
+    /// Time since the eyes were switched on at which the calibration that it corrects holds, s; see
+    /// [`Effect::reference_s`].
+    #[serde(default, skip_serializing_if = "is_cold")]
+    pub reference_s: f64,
     /// One value per parameter of [`Effect::parameters`].
     pub values: Vec<f64>,
     /// Their covariance, row by row; empty when it is not known.
@@ -298,7 +308,7 @@ impl ModelEffect {
     pub(super) fn on(&self, arm: Option<&Arm>, eyes: Option<&Eyes>) -> Option<Present> {
         let effect = Effect::find(&self.id, &self.site, self.shape, arm, eyes)?;
         (effect.parameters().len() == self.values.len())
-            .then(|| Present { effect, values: self.values.clone() })
+            .then(|| Present { effect: effect.with_reference(self.reference_s), values: self.values.clone() })
     }
 
     /// Covariance of its values; `None` when it is not known.
@@ -362,6 +372,13 @@ impl Contents {
             let numbers = effect.values.iter().chain(&effect.covariance).chain(&effect.shape).copied();
             if let Some(number) = numbers.chain(reported).find(|number| !number.is_finite()) {
                 return Err(format!("its effect {name} holds {number}"));
+            }
+            if !(effect.reference_s.is_finite() && effect.reference_s >= 0.0) {
+                return Err(format!(
+                    "its effect {name} corrects a calibration of {} s after switching on, which is no such time: a \
+                     number was changed or damaged; search the gap and write the file again",
+                    effect.reference_s
+                ));
             }
             if let Some(share) = effect.probability.filter(|share| !(0.0..=1.0).contains(share)) {
                 return Err(format!(

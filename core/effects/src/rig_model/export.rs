@@ -251,9 +251,9 @@ impl RigModel {
 /// Whether an effect on the eyes is where they sit, at whatever time.
 fn is_place_of_eyes(kind: Kind, shape: Option<f64>) -> bool {
     match kind {
-        Kind::CameraMount | Kind::HeadJoint | Kind::EyeRoll => true,
+        Kind::HeadJoint => true,
         // With a shape it grows with time.
-        Kind::EyeYaw => shape.is_none(),
+        Kind::CameraMount | Kind::EyeYaw | Kind::EyeRoll => shape.is_none(),
         // With a shape it is the baseline, without the focal length.
         Kind::FocalOrBaseline => shape.is_some(),
         _ => false,

@@ -1,11 +1,12 @@
 //! With which eyes effects on the eyes were found. A mount or lenses that are calibrated anew hold what
-//! such an effect had to explain: in force beside them, it would count twice.
+//! such an effect had to explain: in force beside them, it would count twice. Of what grows while the eyes warm up they
+//! hold what has grown until they were calibrated: where that time is known, the rest stays in force.
 
 use std::sync::Arc;
 
-use plumbline_model::robot::Rig;
+use plumbline_model::robot::{CalibratedAt, Rig};
 
-use super::{ModelEffect, RigModel};
+use super::{Contents, ModelEffect, RigModel};
 use crate::library::Kind;
 
 /// Numbers of eyes that differ by less are the same, m, rad or px: a file keeps them to the last digits.
@@ -33,25 +34,58 @@ pub(super) fn is_of_eyes(effect: &ModelEffect) -> bool {
     Kind::of_id(&effect.id).is_some_and(Kind::is_of_eyes)
 }
 
-impl RigModel {
-    /// Effects on the eyes that were found with other eyes than those of `rig` (its lenses and mount).
-    /// Where it is not known with which eyes they were found, there are none.
-    pub fn effects_of_other_eyes(&self, rig: &Rig) -> Vec<&ModelEffect> {
-        let known = &self.contents.eyes;
-        if known.is_empty() || are_same(known, &numbers_of_eyes(rig)) {
-            return vec![];
+/// When a calibration of other eyes holds for an effect that it does not make void, s: for what grows, where that is
+/// known.
+fn held_at_s(effect: &ModelEffect, calibrated_at: &CalibratedAt) -> Option<f64> {
+    let kind = Kind::of_id(&effect.id)?;
+    kind.held_at_s(calibrated_at).filter(|_| kind.is_growth_of_eyes(effect.shape))
+}
+
+impl Contents {
+    /// Takes effects on the eyes to other eyes: what grows goes on from the new calibration, all else goes.
+    pub(super) fn take_to_eyes(&mut self, calibrated_at: &CalibratedAt) {
+        self.effects.retain_mut(|effect| {
+            if !is_of_eyes(effect) {
+                return true;
+            }
+            let held_at_s = held_at_s(effect, calibrated_at);
+            effect.reference_s = held_at_s.unwrap_or(effect.reference_s);
+            held_at_s.is_some()
+        });
+        if !self.effects.iter().any(is_of_eyes) {
+            self.eyes_left = None;
         }
-        self.effects().iter().filter(|effect| is_of_eyes(effect)).collect()
+    }
+}
+
+impl RigModel {
+    /// Whether effects on the eyes were found with the eyes of `rig` (its lenses and mount), or nobody knows with which.
+    fn is_of_eyes_of(&self, rig: &Rig) -> bool {
+        let known = &self.contents.eyes;
+        known.is_empty() || are_same(known, &numbers_of_eyes(rig))
     }
 
-    /// The model for these eyes: without effects that were found with others.
+    /// Effects on the eyes that are not in force with the eyes of `rig` (its lenses and mount), for they were found with
+    /// others. Where it is not known with which eyes they were found, there are none.
+    pub fn effects_of_other_eyes(&self, rig: &Rig) -> Vec<&ModelEffect> {
+        if self.is_of_eyes_of(rig) {
+            return vec![];
+        }
+        let is_void = |effect: &&ModelEffect| {
+            is_of_eyes(effect) && held_at_s(effect, &rig.eyes.calibrated_at).is_none()
+        };
+        self.effects().iter().filter(is_void).collect()
+    }
+
+    /// The model for these eyes: effects that were found with others go, and what grows goes on from when these were
+    /// calibrated.
     #[must_use]
     pub fn for_eyes_of(self: &Arc<Self>, rig: &Rig) -> Arc<Self> {
-        if self.effects_of_other_eyes(rig).is_empty() {
+        if self.is_of_eyes_of(rig) || !self.effects().iter().any(is_of_eyes) {
             return self.clone();
         }
         let mut model = Self::clone(self);
-        model.contents.effects.retain(|effect| !is_of_eyes(effect));
+        model.contents.take_to_eyes(&rig.eyes.calibrated_at);
         Arc::new(model)
     }
 }
@@ -72,6 +106,7 @@ mod tests {
             title: String::new(),
             tip: Some("right_index_tip".to_owned()),
             shape: None,
+            reference_s: 0.0,
             values: values.to_vec(),
             covariance: vec![],
             probability: None,
@@ -132,6 +167,48 @@ mod tests {
         let mut mounted = rig.clone();
         mounted.eyes.head_from_left.isometry.translation.vector.x += 0.002;
         assert!(model.effects_of_other_eyes(&mounted).is_empty());
+    }
+
+    #[test]
+    fn what_grows_goes_on_from_a_new_calibration_of_which_it_is_known_how_warm_the_eyes_were() {
+        let rig = nico();
+        let grown = |id, site, values| ModelEffect { shape: Some(300.0), ..effect(id, site, values) };
+        let found = vec![
+            grown("eye-yaw", "right", &[0.006]),
+            grown("camera-mount", "eyes", &[0.0, 0.004, 0.0]),
+            effect("head-joint", "head_z", &[0.01]),
+        ];
+        let mut model = RigModel::nominal(&rig);
+        model.add(&rig, addition(found, &rig)).expect("they fit");
+        let mut calibrated = rig.clone();
+        calibrated.eyes.cameras.right_from_left.isometry.translation.vector.x -= 0.001;
+        let references = |model: &RigModel| -> Vec<(String, f64)> {
+            model.effects().iter().map(|effect| (effect.id.clone(), effect.reference_s)).collect()
+        };
+        let in_force = |calibrated_at: CalibratedAt| {
+            let mut rig = calibrated.clone();
+            rig.eyes.calibrated_at = calibrated_at;
+            let model = Arc::new(model.clone());
+            let void = model.effects_of_other_eyes(&rig).len();
+            let left = references(&model.for_eyes_of(&rig));
+            assert_eq!(void + left.len(), 3, "what is not in force is said: {left:?}");
+            left
+        };
+        assert!(in_force(CalibratedAt::default()).is_empty());
+        let eyes = CalibratedAt { cameras_s: Some(720.0), mount_s: None };
+        assert_eq!(in_force(eyes), [("eye-yaw".to_owned(), 720.0)]);
+        let both = CalibratedAt { mount_s: Some(900.0), ..eyes };
+        assert_eq!(in_force(both), [("eye-yaw".to_owned(), 720.0), ("camera-mount".to_owned(), 900.0)]);
+        // The calibration that they were found with comes back.
+        assert_eq!(references(&Arc::new(model.clone()).for_eyes_of(&rig)), references(&model));
+        // A search beside the new one adds to what was in force in it.
+        calibrated.eyes.calibrated_at = both;
+        model
+            .add(&calibrated, addition(vec![effect("box-bias", "eyes", &[1.0, 0.0])], &calibrated))
+            .expect("fits");
+        let after = [("eye-yaw", 720.0), ("camera-mount", 900.0), ("box-bias", 0.0)];
+        assert_eq!(references(&model), after.map(|(id, reference_s)| (id.to_owned(), reference_s)));
+        assert!(model.effects_of_other_eyes(&calibrated).is_empty());
     }
 
     #[test]

@@ -26,6 +26,9 @@ const IMAGE: &str = "is of the image, not of where the eyes sit";
 pub(super) fn why(effect: &ModelEffect) -> &'static str {
     use Kind as K;
     let Some(kind) = Kind::of_id(&effect.id) else { return "is not known to this program" };
+    if kind.is_growth_of_eyes(effect.shape) {
+        return TIME;
+    }
     match kind {
         K::ServoDroop | K::JointSag | K::SidewaysGive | K::LinkBending | K::TorsoLean | K::PayloadMass => {
             LOAD

@@ -78,8 +78,8 @@ impl RigModel {
     }
 
     /// Adds effects that were found. The same effect may be added twice, when a later search has
-    /// found more of it: both parts are in force. Effects on the eyes that were found with other eyes go: what
-    /// comes was found without them. Placements of the new sessions take the place of
+    /// found more of it: both parts are in force. Effects on the eyes that were found with other eyes go as with
+    /// [`Self::for_eyes_of`]: what comes was found without them. Placements of the new sessions take the place of
     /// older ones of the same screen or session.
     ///
     /// # Errors
@@ -95,8 +95,7 @@ impl RigModel {
         let mut contents = if addition.replaces { Contents::default() } else { before.clone() };
         if !addition.eyes.is_empty() {
             if !eyes::are_same(&contents.eyes, &addition.eyes) && !contents.eyes.is_empty() {
-                contents.effects.retain(|effect| !eyes::is_of_eyes(effect));
-                contents.eyes_left = None;
+                contents.take_to_eyes(&rig.eyes.calibrated_at);
             }
             contents.eyes = addition.eyes;
         }

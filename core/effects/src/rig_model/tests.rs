@@ -19,6 +19,7 @@ pub(super) fn effect(id: &str, site: &str, values: &[f64]) -> ModelEffect {
         title: String::new(),
         tip: Some(TIP.to_owned()),
         shape: None,
+        reference_s: 0.0,
         values: values.to_vec(),
         covariance: vec![],
         probability: Some(0.97),

@@ -23,6 +23,7 @@ fn effect(id: &str, site: &str, shape: Option<f64>, values: &[f64]) -> ModelEffe
         title: String::new(),
         tip: Some(TIPS[0].to_owned()),
         shape,
+        reference_s: 0.0,
         values: values.to_vec(),
         covariance: vec![],
         probability: None,

@@ -18,18 +18,28 @@ const WATCHING_RAD: f64 = 7.5e-5;
 
 impl RobotModel {
     /// What this model leaves of rows in which things were watched, root mean square, with what watching is off by.
-    /// `None`: nothing was watched.
+    /// Rows count from the calibration, or from the first look, at which places come out where they are whatever has
+    /// grown by then: as which they leave less. `None`: nothing was watched.
     pub fn left_of(&self, table: &LocalizationTable) -> Option<EyesLeft> {
         let rows: Vec<LocalizationRow> =
             table.rows().filter(|row| row.valid && row.t_secs.is_some()).collect();
         let times = |row: &LocalizationRow| rows.iter().filter(|other| other.truth == row.truth).count();
         let watched = rows.iter().filter(|row| times(row) >= LEAST_TIMES);
-        let left: Vec<Vector3<f64>> = watched.filter_map(|row| self.left_of_row(table, row)).collect();
+        let first_s = rows.iter().filter_map(|row| row.t_secs).fold(f64::INFINITY, f64::min);
+        let left = |row: &LocalizationRow| {
+            let left = self.left_of_row(table, row)?;
+            Some([left, left + self.grown_of_row(table, row, first_s)?])
+        };
+        let left: Vec<[Vector3<f64>; 2]> = watched.filter_map(left).collect();
         if left.len() < LEAST_TIMES {
             return None;
         }
-        let sum: Vector3<f64> = left.iter().map(|left| left.component_mul(left)).sum();
-        let mean = sum / left.len() as f64;
+        let mean = |from: usize| {
+            let squares = left.iter().map(|left| left[from].component_mul(&left[from]));
+            squares.sum::<Vector3<f64>>() / left.len() as f64
+        };
+        let [by_calibration, by_first] = [0, 1].map(mean);
+        let mean = if by_first.sum() < by_calibration.sum() { by_first } else { by_calibration };
         let watching = WATCHING_RAD * WATCHING_RAD;
         Some(EyesLeft {
             bearing_rad: (mean.x.max(mean.y) + watching).sqrt(),
@@ -46,10 +56,28 @@ impl RobotModel {
         let (left, right) = self.project(&row.truth?, &posture, &seen)?;
         let predicted = self.rig.eyes.cameras.triangulate(left, right)?;
         let measured = self.rig.robot_from_left(&posture).inverse() * row.estimate?;
-        let natural =
-            |at: Point<LeftCamera>| (at.coords.z > 0.0).then(|| Vector3::from(self.eyes.natural(&at.coords)));
-        let (measured, predicted) = (natural(measured)?, natural(predicted)?);
+        let (measured, predicted) = (self.natural(measured)?, self.natural(predicted)?);
         Some((measured - predicted) / tangents_per_angle(predicted.x, predicted.y))
+    }
+
+    /// What the model has of a row at another time (s), beside eyes as they were calibrated: to the right, down, and
+    /// between the rays of both eyes, rad.
+    fn grown_of_row(
+        &self,
+        table: &LocalizationTable,
+        row: &LocalizationRow,
+        at_s: f64,
+    ) -> Option<Vector3<f64>> {
+        let posture = self.posture_of(table, row);
+        let seen = SeenUnder { t_secs: Some(at_s), background_m: row.background_m };
+        let (left, right) = self.project(&row.truth?, &posture, &seen)?;
+        let grown = self.natural(self.rig.eyes.cameras.triangulate(left, right)?)?;
+        let still = self.natural(self.rig.robot_from_left(&posture).inverse() * row.truth?)?;
+        Some((grown - still) / tangents_per_angle(still.x, still.y))
+    }
+
+    fn natural(&self, at: Point<LeftCamera>) -> Option<Vector3<f64>> {
+        (at.coords.z > 0.0).then(|| Vector3::from(self.eyes.natural(&at.coords)))
     }
 
     fn posture_of(&self, table: &LocalizationTable, row: &LocalizationRow) -> Posture {

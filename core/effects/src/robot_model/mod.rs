@@ -11,6 +11,11 @@ mod left;
 mod mounted;
 mod place;
 mod uncertainty;
+mod unmeasured;
+#[cfg(test)]
+mod unmeasured_laws;
+#[cfg(test)]
+mod warm_laws;
 
 use std::sync::Arc;
 
@@ -24,6 +29,8 @@ use crate::rig_model::{Measured, RigModel, RigModelError};
 pub use arm::ModelArm;
 pub use mounted::Mounted;
 pub use place::{PlaceInRobot, SeenUnder, worst_sigma_m};
+use unmeasured::Prior;
+pub use unmeasured::Unmeasured;
 
 /// The robot as it is known now: its description with what was calibrated (lenses, mount of the
 /// eyes, place of the screen), and the effects that were accepted. Cheap to clone.
@@ -34,8 +41,10 @@ pub struct RobotModel {
     eyes: Arc<Eyes>,
     /// Effects on the eyes.
     of_eyes: Arc<Measured>,
-    /// How well their mount is known; `None`: it counts as known.
+    /// How well their mount is known; `None`: nobody measured it.
     mounted: Option<Mounted>,
+    /// How far off is what nobody measured of them.
+    prior: Prior,
 }
 
 impl RobotModel {
@@ -60,7 +69,8 @@ impl RobotModel {
     fn put_together(rig: Arc<Rig>, added: Arc<RigModel>) -> Self {
         let eyes = Eyes::of_rig(&rig).expect("the link of the eyes is one of the description");
         let of_eyes = added.measured(None, None, Some(&eyes));
-        Self { rig, added, eyes: Arc::new(eyes), of_eyes: Arc::new(of_eyes), mounted: None }
+        let prior = Prior::default();
+        Self { rig, added, eyes: Arc::new(eyes), of_eyes: Arc::new(of_eyes), mounted: None, prior }
     }
 
     /// The same, with how well the mount of the eyes is known: places are as uncertain by that, too.
@@ -69,9 +79,28 @@ impl RobotModel {
         Self { mounted, ..self }
     }
 
-    /// How well the mount of the eyes is known; `None`: it counts as known.
+    /// How well the mount of the eyes is known; `None`: nobody measured it.
     pub fn mounted(&self) -> Option<&Mounted> {
         self.mounted.as_ref()
+    }
+
+    /// The same, with what nobody calibrated of the eyes: places are as uncertain by that as it usually is off. What
+    /// is not named counts as known.
+    #[must_use]
+    pub fn with_not_calibrated(self, not_calibrated: Unmeasured) -> Self {
+        let prior = Prior::new(not_calibrated, &self.rig, &self.of_eyes);
+        Self { prior, ..self }
+    }
+
+    /// What nobody calibrated of the eyes, whatever effects in force say of it.
+    pub fn not_calibrated(&self) -> Unmeasured {
+        self.prior.not_calibrated
+    }
+
+    /// What nobody measured of the eyes: neither a calibration nor an effect in force says it.
+    pub fn unmeasured(&self) -> Unmeasured {
+        let Prior { mounted, lenses, .. } = &self.prior;
+        Unmeasured { mount: self.mounted.is_none() && mounted.is_some(), lenses: lenses.is_some() }
     }
 
     /// The same effects on a rig whose calibrations are others.
@@ -79,7 +108,8 @@ impl RobotModel {
     /// # Errors
     /// As [`Self::new`].
     pub fn with_rig(&self, rig: Arc<Rig>) -> Result<Self, RigModelError> {
-        Ok(Self::new(rig, self.added.clone())?.with_mounted(self.mounted))
+        let model = Self::new(rig, self.added.clone())?.with_mounted(self.mounted);
+        Ok(model.with_not_calibrated(self.not_calibrated()))
     }
 
     /// The description with what was calibrated.

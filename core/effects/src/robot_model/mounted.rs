@@ -9,7 +9,8 @@ pub struct Mounted {
     /// Covariance of the left eye's place in the head: rotation vector (rad), translation (m), axes of
     /// the head, the eye turns about itself.
     pub covariance: Matrix6<f64>,
-    /// The head comes to rest elsewhere each time: standard deviation of its angles (pan, tilt), rad.
+    /// The head comes to rest elsewhere each time: standard deviation of its angles (pan, tilt), rad. Where nobody
+    /// measured the mount, that of the zeros of its joints.
     pub rest_sigma_rad: [f64; 2],
 }
 

@@ -30,8 +30,12 @@ pub struct PlaceInRobot {
     /// Robot frame.
     pub point: Point<Robot>,
     /// Covariance in the robot's axes, m²: that of what was seen, that of the effects' values with what they
-    /// leave of the rows that they were found in, and that of the mount of the eyes where it is known.
+    /// leave of the rows that they were found in, and that of mount and lenses, or how far those usually are off where
+    /// nobody measured them.
     pub covariance_m2: Matrix3<f64>,
+    /// The part of it by the mount of the eyes, m²: it moves all that is seen alike, and nothing nearer to the eyes or
+    /// farther away.
+    pub by_mount_m2: Matrix3<f64>,
 }
 
 impl PlaceInRobot {
@@ -39,6 +43,16 @@ impl PlaceInRobot {
     /// is no number.
     pub fn sigma_m(&self) -> f64 {
         worst_sigma_m(&self.covariance_m2)
+    }
+
+    /// How far it is from an eye at `eye_m` (robot frame, m), and one standard deviation of that, m; infinite where it
+    /// is no number.
+    pub fn range_m(&self, eye_m: &Vector3<f64>) -> (f64, f64) {
+        let from_eye_m = self.point.coords.coords - eye_m;
+        let along = from_eye_m.try_normalize(0.0).unwrap_or_default();
+        let variance_m2 = (along.transpose() * (self.covariance_m2 - self.by_mount_m2) * along).x;
+        let sigma_m = if variance_m2.is_nan() { f64::INFINITY } else { variance_m2.max(0.0).sqrt() };
+        (from_eye_m.norm(), sigma_m)
     }
 }
 
@@ -84,13 +98,15 @@ impl RobotModel {
         seen: &SeenUnder,
     ) -> Option<PlaceInRobot> {
         let robot_from_left = self.rig.robot_from_left(posture);
-        let by_mount = self.mounted.map_or_else(Matrix3::zeros, |mounted| {
-            mounted.covariance_m2(&self.rig, posture, &in_left.coords.coords)
-        });
+        let seen_at = in_left.coords.coords;
+        let (mounted, lenses) = (self.mounted.or(self.prior.mounted), self.prior.lenses);
+        let by_mount_m2 = mounted.map(|mounted| mounted.covariance_m2(&self.rig, posture, &seen_at));
+        let by_lenses_m2 = lenses.map(|lenses| lenses.covariance_m2(&self.rig.eyes.cameras, &seen_at));
+        let [by_mount_m2, by_lenses_m2] = [by_mount_m2, by_lenses_m2].map(Option::unwrap_or_default);
         if self.of_eyes.present.is_empty() {
             let turn = robot_from_left.rotation();
-            let covariance_m2 = turn * covariance_m2 * turn.transpose() + by_mount;
-            return Some(PlaceInRobot { point: robot_from_left * *in_left, covariance_m2 });
+            let covariance_m2 = turn * (covariance_m2 + by_lenses_m2) * turn.transpose() + by_mount_m2;
+            return Some(PlaceInRobot { point: robot_from_left * *in_left, covariance_m2, by_mount_m2 });
         }
         let row = self.row(posture, seen);
         let present = &self.of_eyes.present;
@@ -99,7 +115,6 @@ impl RobotModel {
             let looking = Looking { eyes: &self.eyes, row: &row, effects };
             Some(looking.place_of(apparent)?.coords.coords)
         };
-        let seen_at = in_left.coords.coords;
         let here = undone(&seen_at, present)?;
         let mut slopes = Matrix3::zeros();
         for k in 0..3 {
@@ -111,10 +126,10 @@ impl RobotModel {
             self.added.contents.eyes_left.map_or_else(Matrix3::zeros, |left| {
                 left.covariance_m2(&seen_at, self.eyes.cameras.baseline_m())
             });
-        let by_sight = slopes * (covariance_m2 + left_m2) * slopes.transpose();
+        let by_sight = slopes * (covariance_m2 + by_lenses_m2 + left_m2) * slopes.transpose();
         let by_values = of_values(&self.of_eyes, |effects| undone(&seen_at, effects))?;
-        let covariance_m2 = by_sight + by_values + by_mount;
-        Some(PlaceInRobot { point: Point::new(here.x, here.y, here.z), covariance_m2 })
+        let covariance_m2 = by_sight + by_values + by_mount_m2;
+        Some(PlaceInRobot { point: Point::new(here.x, here.y, here.z), covariance_m2, by_mount_m2 })
     }
 
     /// Where both eyes see a point of the robot frame, with the effects, raw px: left, right. `None`:

@@ -154,15 +154,14 @@ fn object_view(
 /// Where the middle of an object is by the model in use.
 fn place_view(place: &Place, setup: &LiveSetup) -> Result<ObjectPlaceView, NoPlace> {
     let found = setup.place(&place.middle.point, &place.middle.covariance_m2)?;
-    let from_eye = found.point.coords.coords - setup.robot_from_left().translation_m();
-    let along = from_eye.try_normalize(0.0).unwrap_or_default();
-    let range_variance_m2 = (along.transpose() * found.covariance_m2 * along).x;
+    let (range_m, range_sigma_m) = found.range_m(&setup.robot_from_left().translation_m());
     Ok(ObjectPlaceView {
         point_in_robot: found.point,
         sigma_m: [0, 1, 2].map(|i| found.covariance_m2[(i, i)].max(0.0).sqrt()),
+        wide_because: setup.wide_because(),
         covariance_m2: found.covariance_m2,
-        range_m: from_eye.norm(),
-        range_sigma_m: range_variance_m2.max(0.0).sqrt(),
+        range_m,
+        range_sigma_m,
         model: setup.title.clone(),
     })
 }

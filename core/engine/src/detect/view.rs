@@ -287,8 +287,11 @@ pub struct SeenBox {
 pub struct ObjectPlaceView {
     /// Its middle, in the robot's frame, by the model in use.
     pub point_in_robot: Point<Robot>,
-    /// Standard deviations along x, y, z of the robot, with those of the model's effects, meters.
+    /// Standard deviations along x, y, z of the robot, with those of the model's effects and of what nobody measured
+    /// of the eyes, meters.
     pub sigma_m: [f64; 3],
+    /// Why they are wide, and what to do; `None`: all that the place rests on was measured.
+    pub wide_because: Option<&'static str>,
     /// Covariance in the robot's frame, m².
     pub covariance_m2: nalgebra::Matrix3<f64>,
     /// Distance from the left eye, meters.

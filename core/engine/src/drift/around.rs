@@ -39,10 +39,10 @@ pub struct DriftAround {
     pub eyes_on_s: Option<f64>,
     /// Counts how often that time was set, by the operator or because cameras were away.
     pub clock_settings: u64,
-    /// Whether a calibration is in use.
+    /// Whether a calibration of the eyes is in use; how warm they were, the model says.
     pub is_calibrated: bool,
-    /// The time since the eyes were switched on when it was made, min; `None`: nobody knows.
-    pub calibrated_min: Option<f64>,
+    /// Whether a calibrated mount is.
+    pub is_mounted: bool,
     /// How many times faster than a clock the eyes' one runs; 1 but for a twin that was asked to.
     pub clock_pace: f64,
     /// The world that is shown, where the arm is of it, too.

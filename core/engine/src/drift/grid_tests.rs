@@ -42,7 +42,7 @@ impl Desk {
             eyes_on_s: Some(60.0),
             clock_settings: 0,
             is_calibrated: false,
-            calibrated_min: None,
+            is_mounted: false,
             clock_pace: 1.0,
             world: Some(World::Robot),
             twin: None,

@@ -8,7 +8,7 @@ use image::{GrayImage, RgbImage};
 use nalgebra::{Isometry3, Vector3};
 use plumbline_drift::{Mover, Verdict};
 use plumbline_effects::RobotModel;
-use plumbline_model::robot::default_rig;
+use plumbline_model::robot::{CalibratedAt, Rig, default_rig};
 use plumbline_model::{Stamp, StereoFrame};
 use plumbline_vision::health::turned;
 use plumbline_vision::synthetic::{Plane, Scene, granite_texture};
@@ -48,7 +48,7 @@ impl Desk {
             eyes_on_s: Some(3600.0),
             clock_settings: 0,
             is_calibrated: false,
-            calibrated_min: None,
+            is_mounted: false,
             clock_pace: 1.0,
             world: None,
             twin: None,
@@ -270,10 +270,13 @@ fn a_clock_of_the_eyes_that_goes_back_a_little_is_no_switching_on() {
 }
 
 /// What is said when ten minutes of eyes that stand still are to be explained.
-fn said_when_explained(calibrated_min: Option<f64>) -> Vec<String> {
+fn said_when_explained(calibrated_at: CalibratedAt) -> Vec<String> {
     let mut desk = Desk::new();
-    (desk.around.world, desk.around.calibrated_min) = (Some(World::Robot), calibrated_min);
-    desk.around.is_calibrated = true;
+    let mut rig = Rig::clone(&default_rig());
+    rig.eyes.calibrated_at = calibrated_at;
+    desk.around.model = Arc::new(RobotModel::nominal(Arc::new(rig)));
+    desk.around.world = Some(World::Robot);
+    (desk.around.is_calibrated, desk.around.is_mounted) = (true, true);
     let still = desk.pair(0.0);
     desk.ask(DriftCommand::Start);
     for _ in 0..20 {
@@ -288,13 +291,20 @@ fn said_when_explained(calibrated_min: Option<f64>) -> Vec<String> {
 }
 
 #[test]
-fn that_a_correction_would_count_twice_what_a_warm_calibration_holds_is_said() {
-    assert_eq!(said_when_explained(Some(0.2)), [""; 0], "calibrated with cold eyes");
-    let said = said_when_explained(Some(25.0));
-    assert!(said.iter().any(|text| text.contains("on for 25 min") && text.contains("twice")), "{said:?}");
-    // Of a calibration that was imported nobody knows it.
-    let said = said_when_explained(None);
-    assert!(said.iter().any(|text| text.contains("not known") && text.contains("twice")), "{said:?}");
+fn that_a_correction_may_count_twice_what_a_calibration_of_unknown_time_holds_is_said() {
+    let known = CalibratedAt { cameras_s: Some(1500.0), mount_s: Some(1560.0) };
+    assert_eq!(said_when_explained(known), [""; 0], "a correction goes on from there");
+    // Of what was imported, or made before that was kept, nobody knows it.
+    let unknown = [
+        (CalibratedAt { cameras_s: None, ..known }, "the calibration in use was"),
+        (CalibratedAt { mount_s: None, ..known }, "the mount in use was"),
+        (CalibratedAt::default(), "the calibration and the mount in use were"),
+    ];
+    for (calibrated_at, words) in unknown {
+        let said = said_when_explained(calibrated_at);
+        let is_said = |text: &String| ["not known", words, "twice"].iter().all(|part| text.contains(part));
+        assert!(said.iter().any(is_said), "{said:?}");
+    }
 }
 
 #[test]

@@ -53,7 +53,9 @@ pub enum EyesCommand {
         /// Its name.
         pair: String,
     },
-    /// Makes the proposal the calibration in use.
+    /// Judges the calibration in use by what the eyes see, without a board, and the proposal beside it.
+    JudgeHealth,
+    /// Makes the proposal the calibration in use; refused where it was judged and is not better.
     Accept,
     /// Forgets the proposal; the calibration in use stays.
     Discard,

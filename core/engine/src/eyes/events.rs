@@ -11,7 +11,7 @@ use super::coverage::Novelty;
 use super::look::Look;
 use super::times::taken;
 use super::view::{CaptureHint, CollectedPair, Origin, Proposal};
-use super::work::{Captured, Collected, Context, EyesWork, Keep, Opened, Restored, Solved};
+use super::work::{Accepted, Captured, Collected, Context, EyesWork, Keep, Opened, Restored, Solved};
 use super::workflow::{EyesAround, EyesWorkflow};
 use super::{auto_capture, coverage};
 use crate::ground::notice::NoticeLevel;
@@ -151,6 +151,21 @@ impl EyesWorkflow {
     pub(super) fn solved(&mut self, solved: Solved) {
         self.solved_from = Some((solved.revision, solved.options));
         self.proposal = Some(Arc::new(proposal(solved.calibration, Origin::Solved, solved.assessment)));
+    }
+
+    pub(super) fn accepted_now(&mut self, accepted: Accepted) {
+        let same =
+            |proposal: &Arc<Proposal>| Arc::ptr_eq(&proposal.calibration, &accepted.in_use.calibration);
+        // A newer proposal that came meanwhile still waits for a decision.
+        if self.proposal.as_ref().is_some_and(same) {
+            (self.proposal, self.solved_from) = (None, None);
+        }
+        // The board lies there for the mount next: what the eyes see of it then is none of their pairs.
+        self.accepting_ended_capture |= self.auto_capture;
+        self.auto_capture = false;
+        self.in_use = Some(Arc::new(accepted.in_use));
+        self.is_known = true;
+        self.earlier = accepted.earlier.into();
     }
 
     pub(super) fn opened(&mut self, opened: Opened) {

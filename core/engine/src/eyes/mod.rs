@@ -16,6 +16,10 @@ pub mod coverage;
 mod events;
 pub mod geometry;
 pub mod ghost;
+mod health;
+#[cfg(test)]
+mod health_tests;
+mod health_view;
 mod look;
 pub mod map;
 pub mod place;

@@ -22,8 +22,10 @@ impl EyesWorkflow {
             minutes_since_on,
             board_seen: self.board_seen.clone(),
             auto_capture: self.auto_capture,
+            accepting_ended_capture: self.accepting_ended_capture,
             hint: self.hint.clone(),
             collected: self.derived.collected.clone(),
+            minutes_on: self.minutes_of_each(),
             dropped: Arc::new(self.collection.dropped().clone()),
             not_collected: self.not_collected.clone(),
             can_undo: self.collection.can_undo(),
@@ -33,6 +35,7 @@ impl EyesWorkflow {
             proposal: self.proposal.clone(),
             in_use: self.in_use.clone(),
             earlier: self.earlier.clone(),
+            health: self.shown_health(),
         }
     }
 

@@ -1,5 +1,6 @@
 //! For how long the eyes had been on: now, and when pairs were taken.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_hardware::SourceSpec;
@@ -72,6 +73,11 @@ impl EyesWorkflow {
         (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
     }
 
+    /// For how long the eyes had been on when each collected pair was taken, min.
+    pub(super) fn minutes_of_each(&self) -> Arc<[Option<f64>]> {
+        self.derived.collected.iter().map(|pair| self.minutes_at(pair.taken?)).collect()
+    }
+
     fn minutes_at(&self, taken: Taken) -> Option<f64> {
         match taken {
             Taken::After(minutes) => Some(minutes),
@@ -94,11 +100,11 @@ pub(super) fn taken(frame: &StereoFrame, around: &EyesAround) -> Option<Taken> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
     use std::time::Duration;
 
     use image::RgbImage;
     use plumbline_model::Stamp;
+    use plumbline_model::robot::default_rig;
 
     use super::super::view::CollectedPair;
     use super::*;
@@ -142,6 +148,11 @@ mod tests {
         room.follow(&cameras(SourceStatus::Running), at(500));
         room.clock.say(Some(1.0), at(510));
         assert!(is_mean(&room, 22.0), "they were away later: {:?}", room.minutes_of_collected());
+        room.refresh();
+        let each = room.minutes_of_each();
+        let is =
+            |minutes: Option<f64>, expected: f64| minutes.is_some_and(|min| (min - expected).abs() < 1e-6);
+        assert!(each.len() == 2 && is(each[0], 21.0) && is(each[1], 23.0), "each by its own time: {each:?}");
         room.collection.drop_pair("a").expect("it is there");
         assert!(is_mean(&room, 23.0), "of those that are used: {:?}", room.minutes_of_collected());
     }
@@ -149,7 +160,8 @@ mod tests {
     #[test]
     fn pairs_of_the_twin_are_taken_by_the_clock_of_the_twin() {
         let source = SourceView { spec: Some(SourceSpec::Twin), ..SourceView::default() };
-        let around = EyesAround { newest: None, source: Arc::new(source), twin_on_s: Some(600.0) };
+        let around =
+            EyesAround { newest: None, source: Arc::new(source), twin_on_s: Some(600.0), rig: default_rig() };
         let gray = Arc::new(RgbImage::new(64, 48));
         let stamp = Stamp { seq: 0, captured_at: Instant::now() };
         let frame =

@@ -10,6 +10,7 @@ use plumbline_model::{
     CalibrationOptions, Chessboard, Corners, Eye, InnerCorners, Pixel, Raw, StereoCalibration,
 };
 
+pub use super::health_view::{EyesHealth, HealthFigures, HealthState, HealthView, ProposalHealth};
 use super::map::TableMap;
 use crate::ground::jobs::JobId;
 use crate::ground::step::StepState;
@@ -32,10 +33,14 @@ pub struct EyesView {
     pub board_seen: Option<BoardSeen>,
     /// Whether pairs are captured without asking.
     pub auto_capture: bool,
+    /// Whether that was switched off because a calibration was accepted.
+    pub accepting_ended_capture: bool,
     /// What capturing waits for; `None` without an image.
     pub hint: Option<CaptureHint>,
     /// Pairs in the order of capture.
     pub collected: Arc<[Arc<CollectedPair>]>,
+    /// For how long the eyes had been on when each of them was taken, min; `None`: nobody knows.
+    pub minutes_on: Arc<[Option<f64>]>,
     /// Names of pairs left out of the next solution.
     pub dropped: Arc<BTreeSet<String>>,
     /// Pairs of the last recording that were not taken, and why.
@@ -54,6 +59,8 @@ pub struct EyesView {
     pub in_use: Option<Arc<AcceptedCalibration>>,
     /// Accepted before, newest first.
     pub earlier: Arc<[EarlierCalibration]>,
+    /// Whether the calibration in use still holds, and whether the proposed one is better.
+    pub health: HealthView,
 }
 
 /// A board that was seen although another one was looked for, or was asked about.
@@ -285,8 +292,10 @@ impl Default for EyesView {
             minutes_since_on: None,
             board_seen: None,
             auto_capture: false,
+            accepting_ended_capture: false,
             hint: None,
             collected: Arc::from([]),
+            minutes_on: Arc::from([]),
             dropped: Arc::default(),
             not_collected: Arc::from([]),
             can_undo: false,
@@ -296,6 +305,7 @@ impl Default for EyesView {
             proposal: None,
             in_use: None,
             earlier: Arc::from([]),
+            health: HealthView::default(),
         }
     }
 }

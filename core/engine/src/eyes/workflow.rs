@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use plumbline_model::default_board;
-use plumbline_model::robot::default_rig;
+use plumbline_model::robot::{Rig, default_rig};
 use plumbline_model::{
     CalibrationOptions, Chessboard, StereoCalibration, StereoCameras, StereoFrame, Workspace,
 };
@@ -14,6 +14,7 @@ use super::auto_capture::AutoCapture;
 use super::clock::CamerasClock;
 use super::collection::Collection;
 use super::command::EyesCommand;
+use super::health::HealthRoom;
 use super::look::Look;
 use super::place::{nominal_cameras, place_of, rough_pose};
 use super::store::Store;
@@ -35,6 +36,8 @@ pub struct EyesAround {
     pub source: Arc<SourceView>,
     /// For how long the eyes of the twin have been on, s, where it is what the source shows.
     pub twin_on_s: Option<f64>,
+    /// The robot, for where it works.
+    pub rig: Arc<Rig>,
 }
 
 /// The whole workflow.
@@ -58,6 +61,8 @@ pub struct EyesWorkflow {
     /// When the pair was taken that is being searched.
     pub(super) capturing_taken: Option<Taken>,
     pub(super) auto_capture: bool,
+    /// Whether that was switched off because a calibration was accepted.
+    pub(super) accepting_ended_capture: bool,
     pub(super) auto: AutoCapture,
     /// The newest look, for when capturing is switched on.
     pub(super) last_look: Option<Look>,
@@ -73,6 +78,7 @@ pub struct EyesWorkflow {
     pub(super) is_known: bool,
     pub(super) earlier: Arc<[EarlierCalibration]>,
     pub(super) busy: Busy,
+    pub(super) health: HealthRoom,
     pub(super) image_size_px: Option<(u32, u32)>,
     pub(super) derived: Derived,
 }
@@ -256,6 +262,7 @@ impl Workflow for EyesWorkflow {
             clocks_before: Vec::new(),
             capturing_taken: None,
             auto_capture: false,
+            accepting_ended_capture: false,
             auto: AutoCapture::default(),
             last_look: None,
             hint: None,
@@ -268,6 +275,7 @@ impl Workflow for EyesWorkflow {
             is_known: false,
             earlier: Arc::from([]),
             busy: Busy::default(),
+            health: HealthRoom::default(),
             image_size_px: None,
             derived: Derived {
                 of: None,
@@ -305,7 +313,11 @@ impl Workflow for EyesWorkflow {
             EyesCommand::DropPair { pair } => self.edit(context, |pairs| pairs.drop_pair(&pair)),
             EyesCommand::RestorePair { pair } => self.edit(context, |pairs| pairs.restore_pair(&pair)),
             EyesCommand::Solve => self.solve(around, context),
-            EyesCommand::Accept => self.accept(context),
+            EyesCommand::JudgeHealth => self.judge_health(around, context),
+            EyesCommand::Accept => match self.not_offered() {
+                Some(why) => context.refuse(why),
+                None => self.accept(context),
+            },
             EyesCommand::Discard => (self.proposal, self.solved_from) = (None, None),
             EyesCommand::Import { files, length } => self.open(OpenWhat::Files { files, length }, context),
             EyesCommand::ProposeEarlier { id } => self.open(OpenWhat::Earlier { id }, context),
@@ -325,18 +337,8 @@ impl Workflow for EyesWorkflow {
             EyesResult::Collected(collected) => self.collected(collected, context),
             EyesResult::Solved(solved) => self.solved(solved),
             EyesResult::Opened(opened) => self.opened(opened),
-            EyesResult::Accepted(accepted) => {
-                let same = |proposal: &Arc<Proposal>| {
-                    Arc::ptr_eq(&proposal.calibration, &accepted.in_use.calibration)
-                };
-                // A newer proposal that came meanwhile still waits for a decision.
-                if self.proposal.as_ref().is_some_and(same) {
-                    (self.proposal, self.solved_from) = (None, None);
-                }
-                self.in_use = Some(Arc::new(accepted.in_use));
-                self.is_known = true;
-                self.earlier = accepted.earlier.into();
-            }
+            EyesResult::Accepted(accepted) => self.accepted_now(accepted),
+            EyesResult::Health(state) => self.judged_health(id, state),
             EyesResult::Exported(_) => {}
             EyesResult::Restored(restored) => self.restored(restored, context),
             EyesResult::UsedEarlier(restored) => {
@@ -347,7 +349,8 @@ impl Workflow for EyesWorkflow {
         self.refresh();
     }
 
-    fn work_ended(&mut self, id: JobId, _: Option<&str>, _: &EyesAround, _: &mut Context<'_>) {
+    fn work_ended(&mut self, id: JobId, why: Option<&str>, _: &EyesAround, _: &mut Context<'_>) {
         self.busy.forget(id);
+        self.not_judged(id, why);
     }
 }

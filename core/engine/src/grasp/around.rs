@@ -40,6 +40,8 @@ pub struct GraspAround {
     pub own_eyes: bool,
     /// What was detected last.
     pub found: Option<Arc<DetectionsView>>,
+    /// Whether an experiment makes its attempts.
+    pub in_experiment: bool,
 }
 
 impl GraspAround {
@@ -72,6 +74,7 @@ impl GraspAround {
             source: Arc::default(),
             own_eyes: true,
             found: None,
+            in_experiment: false,
         }
     }
 }

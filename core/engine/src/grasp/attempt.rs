@@ -16,9 +16,10 @@ use plumbline_vision::detect::DetectError;
 
 use super::body::{LedBody, Ropes};
 use super::command::GraspTarget;
-use super::keeping::Keeping;
+use super::keeping::{Keeping, KeepingError};
 use super::progress::{Progress, Watcher};
 use super::rests_on::RestsOn;
+use super::stepwise::StopAfterEach;
 use super::view::{AttemptView, PlannedGrasp};
 use crate::ground::jobs::JobError;
 use crate::robot::duration;
@@ -47,6 +48,8 @@ pub struct Attempt {
     pub at: Timestamp,
     /// For the window.
     pub progress: Progress,
+    /// Whether it holds after each step.
+    pub stops: StopAfterEach,
 }
 
 /// What came of looking and planning.
@@ -129,6 +132,7 @@ impl Attempt {
         context.report(0.0, "getting ready");
         let mut grasper = self.rests_on.grasper(self.method)?;
         let mut body = self.body(context);
+        let tracks = body.keep_tracks(keeping.tracks(body.rig()).map_err(JobError::told)?);
         let ropes = &self.ropes;
         let kept = Some(keeping.clone());
         let mut watcher = Watcher::new(
@@ -138,6 +142,8 @@ impl Attempt {
             ropes.reins.clone(),
             grasper.knowledge().clone(),
         );
+        watcher.stops = self.stops.clone();
+        watcher.tracks = Some(tracks.clone());
         let mut record = match self.order(&mut grasper, &mut body) {
             Ok(order) => {
                 self.progress.change(|run| run.object.clone_from(&order.object));
@@ -150,7 +156,7 @@ impl Attempt {
                 record
             }
         };
-        if let Some(problem) = watcher.problem {
+        if let Some(problem) = watcher.problem.or(tracks.end().map(KeepingError::from)) {
             let why = format!("it could not be kept: {problem}");
             record.outcome = Some(Outcome::Failed { failure: plumbline_grasp::Failure::Halted, why });
         }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use plumbline_grasp::body::{closes, turning};
+use plumbline_grasp::tracks::Tracks;
 use plumbline_grasp::{Body, Halt, ServoState, Sight};
 use plumbline_hardware::joints::{JointReading, JointState, Unheard};
 use plumbline_model::JobContext;
@@ -12,6 +13,7 @@ use plumbline_model::robot::collision::{Allowance, Body as Solid, CollisionModel
 use plumbline_model::robot::{JointIndex, Posture, Rig};
 
 use super::sights::Sights;
+use super::tracks::LedTracks;
 use crate::robot::{GivenUp, LeadAnswer, LeadOrder, Leader, Reins};
 
 /// Joints that differ by less are the same, rad.
@@ -80,6 +82,8 @@ pub struct LedBody<'a> {
     may_touch: bool,
     /// When the angles that were given last were read.
     given: Vec<Option<Instant>>,
+    /// Where what the joints do is kept, if it is.
+    tracks: Option<LedTracks>,
 }
 
 impl<'a> LedBody<'a> {
@@ -108,7 +112,14 @@ impl<'a> LedBody<'a> {
             given_way: vec![],
             may_touch: false,
             given: vec![],
+            tracks: None,
         }
+    }
+
+    /// From now on what the joints do goes into these tracks.
+    pub fn keep_tracks(&mut self, tracks: Tracks) -> LedTracks {
+        let tracks = LedTracks::begin(tracks, &self.ropes, self.began);
+        self.tracks.insert(tracks).clone()
     }
 
     /// For one hand of the robot, which acts before its fingers are sent anywhere.
@@ -148,6 +159,9 @@ impl<'a> LedBody<'a> {
         self.ropes.leader.order(order)?;
         let mut left = LONGEST;
         loop {
+            if let Some(tracks) = &self.tracks {
+                tracks.take();
+            }
             if let Some(answer) = self.ropes.leader.answer(ASKED_EVERY)? {
                 return Ok(answer);
             }

@@ -35,6 +35,9 @@ pub enum GraspCommand {
     Resume,
     /// Ends what is under way; the arm holds.
     End,
+    /// An attempt holds by itself after each of its steps, until it is told to go on; or no longer. Also while one
+    /// is under way. Attempts of an experiment do not.
+    StopAfterEachStep(bool),
     /// One step of a hand by itself. The arm moves.
     Hand(HandStep),
     /// What the operator saw of an attempt.

@@ -183,8 +183,12 @@ fn places(around: &GraspAround) -> Gate {
         [first @ .., last] => format!("{} and {last}", first.join(", ")),
         [] => String::new(),
     };
-    doubtful("Places", format!("Not calibrated, taken as described: {what}."))
+    let wide = if around.model.unmeasured().mount { WIDE } else { "" };
+    doubtful("Places", format!("Not calibrated, taken as described: {what}.{wide}"))
 }
+
+/// Said while nobody measured how the eyes sit in the head.
+const WIDE: &str = " The ± of places holds how far mounts usually are off: calibrate it in step 2, Mount.";
 
 fn method_gate(around: &GraspAround, method: Method) -> Gate {
     let name = method.name().to_uppercase();
@@ -198,6 +202,8 @@ fn method_gate(around: &GraspAround, method: Method) -> Gate {
 mod tests {
     use std::sync::Arc;
 
+    use plumbline_effects::RobotModel;
+    use plumbline_effects::robot_model::Unmeasured;
     use plumbline_model::robot::{Limits, Rig};
 
     use super::*;
@@ -241,6 +247,23 @@ mod tests {
             assert!(gate.text.contains("where Right elbow is") && gate.text.contains(says), "{}", gate.text);
             assert!(!gate.text.contains(does_not_say), "{}", gate.text);
         }
+    }
+
+    #[test]
+    fn a_mount_that_nobody_measured_is_told_with_what_it_does_to_places() {
+        let rig = Arc::new(Rig::built_in("nico").expect("comes with the program"));
+        let of = |not_calibrated| {
+            let model = RobotModel::nominal(rig.clone()).with_not_calibrated(not_calibrated);
+            places(&GraspAround { model: Arc::new(model), ..GraspAround::bare(&rig) })
+        };
+        let gate = of(Unmeasured::ALL);
+        assert_eq!(gate.state, GateState::Doubtful, "published methods grasp without it");
+        assert!(
+            gate.text.contains("the mount of the eyes") && gate.text.contains("step 2, Mount"),
+            "{}",
+            gate.text
+        );
+        assert!(!of(Unmeasured::default()).text.contains("step 2"));
     }
 
     #[test]

@@ -1,12 +1,14 @@
-//! What is kept of an attempt: a folder `grasps/<time>_<method>` with `record.json` and images of both
-//! eyes before, while the hand is aligned, and after.
+//! What is kept of an attempt: a folder `grasps/<time>_<method>` with `record.json`, the joints over time in
+//! `tracks.csv`, and images of both eyes before, while the hand is aligned, and after.
 
 use std::path::{Path, PathBuf};
 
 use image::DynamicImage;
 use jiff::Timestamp;
+use plumbline_grasp::tracks::{self, Tracks};
 use plumbline_grasp::{Method, Record, Sight, Step, record};
 use plumbline_model::files::{self, FileError, Size};
+use plumbline_model::robot::Rig;
 
 use super::view::AttemptView;
 
@@ -107,6 +109,14 @@ impl Keeping {
         let text = serde_json::to_vec_pretty(record)
             .map_err(|error| KeepingError::NoRecord { file: file.clone(), why: error.to_string() })?;
         Ok(files::write(&file, text)?)
+    }
+
+    /// Begins the table of what the joints do.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn tracks(&self, rig: &Rig) -> Result<Tracks, KeepingError> {
+        Ok(Tracks::begin(&self.folder.join(tracks::FILE), rig)?)
     }
 
     /// Writes both images of a pair.

@@ -23,8 +23,10 @@ mod shown;
 pub(crate) mod sights;
 mod standing;
 mod steps;
+mod stepwise;
 #[cfg(test)]
 mod tests;
+mod tracks;
 pub mod view;
 mod warmth;
 pub mod work;
@@ -34,5 +36,5 @@ pub use around::GraspAround;
 pub(crate) use body::{EyesOn, LedBody, Ropes};
 pub use keeping::{Keeping, KeepingError, image_name};
 pub(crate) use sights::Sights;
-pub use standing::read_record;
+pub use standing::{read_record, read_tracks};
 pub use workflow::GraspWorkflow;

@@ -63,6 +63,7 @@ mod tests {
             place: Ok(ObjectPlaceView {
                 point_in_robot: Point::new(0.3, y_m, 0.08),
                 sigma_m: [0.002; 3],
+                wide_because: None,
                 covariance_m2: Matrix3::identity() * 4e-6,
                 range_m: 0.45,
                 range_sigma_m: 0.003,

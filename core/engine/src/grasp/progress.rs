@@ -10,7 +10,9 @@ use plumbline_model::robot::Posture;
 use plumbline_model::{Eye, JobContext};
 
 use super::keeping::{Keeping, KeepingError, image_name};
-use super::view::{GraspIteration, GraspRun, LampState};
+use super::stepwise::StopAfterEach;
+use super::tracks::LedTracks;
+use super::view::{BetweenSteps, GraspIteration, GraspRun, LampState};
 use crate::robot::Reins;
 
 /// What the window sees of an attempt while it goes on. Clones share it.
@@ -69,6 +71,10 @@ pub struct Watcher<'a> {
     keeping: Option<Keeping>,
     context: &'a dyn JobContext,
     reins: Reins,
+    /// Whether it holds after each step.
+    pub stops: StopAfterEach,
+    /// Where what the joints do is kept, if it is.
+    pub tracks: Option<LedTracks>,
     knowledge: Knowledge,
     /// Which try it is, from 1.
     number: usize,
@@ -93,7 +99,21 @@ impl<'a> Watcher<'a> {
     ) -> Self {
         let (number, looks) = (1, 0);
         let (plan, problem, looked_from) = (None, None, None);
-        Self { progress, keeping, context, reins, knowledge, number, looks, looked_from, plan, problem }
+        let (stops, tracks) = (StopAfterEach::default(), None);
+        Self {
+            progress,
+            keeping,
+            context,
+            reins,
+            stops,
+            tracks,
+            knowledge,
+            number,
+            looks,
+            looked_from,
+            plan,
+            problem,
+        }
     }
 
     /// Where a point (robot frame, m) is in both eyes at the last look, raw px.
@@ -134,6 +154,9 @@ impl Watch for Watcher<'_> {
     }
 
     fn step(&mut self, step: Step) {
+        if let Some(tracks) = &self.tracks {
+            tracks.step(step);
+        }
         self.progress.change(|run| {
             if step != Step::Again {
                 run.again = None;
@@ -179,6 +202,14 @@ impl Watch for Watcher<'_> {
     fn about_to(&mut self, record: &Record) {
         self.keep(|keeping| keeping.record(record));
         self.progress.change(|run| run.chosen = record.chosen);
+    }
+
+    fn holds_between(&mut self, done: Step, next: Step) -> bool {
+        let holds = self.stops.hold_between(BetweenSteps { done, next }, &self.progress, &self.reins);
+        if holds {
+            self.context.report(0.5, &format!("holds before {}", next.title().to_lowercase()));
+        }
+        holds
     }
 }
 

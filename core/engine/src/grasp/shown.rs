@@ -29,6 +29,7 @@ impl GraspWorkflow {
             hand: self.choice,
             classes: Thing::held().map(|thing| thing.class).collect(),
             target: self.target.clone(),
+            stops_after_each: self.stops.is_on(),
             held: self.in_hand(),
             gates: self.gates(around, self.choice).into(),
             phase,

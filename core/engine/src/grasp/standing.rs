@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use plumbline_grasp::Record;
+use plumbline_grasp::{Record, tracks};
+use plumbline_model::files::{self, FileError, Size};
 
 use super::keeping::{Keeping, KeepingError};
 use super::view::AttemptView;
@@ -31,4 +32,13 @@ impl GraspWorkflow {
 /// When its folder holds no record that can be read.
 pub fn read_record(folder: &Path) -> Result<Record, KeepingError> {
     Keeping::of(folder.to_owned()).read()
+}
+
+/// The joint tracks that are kept of an attempt; `None`: there are none.
+///
+/// # Errors
+/// When there are some that cannot be read.
+pub fn read_tracks(folder: &Path) -> Result<Option<String>, FileError> {
+    let file = folder.join(tracks::FILE);
+    if files::present(&file)? { files::read_text(&file, Size::TEXT).map(Some) } else { Ok(None) }
 }

@@ -30,6 +30,8 @@ pub struct GraspView {
     pub classes: Arc<[&'static str]>,
     /// What is grasped.
     pub target: GraspTarget,
+    /// Whether attempts hold by themselves after each step.
+    pub stops_after_each: bool,
     /// What was grasped and is in a hand still.
     pub held: Option<InHand>,
     /// What is looked at before anything moves.
@@ -49,6 +51,21 @@ impl GraspView {
     pub fn trouble(&self) -> Option<&str> {
         self.gates.iter().find(|gate| gate.state == GateState::Shut).map(|gate| gate.text.as_str())
     }
+
+    /// Between which steps the attempt holds by itself, until it is told to go on.
+    pub fn between(&self) -> Option<BetweenSteps> {
+        let holds = matches!(self.phase, GraspPhase::Grasping { paused: true, ending: false });
+        self.run.as_ref().filter(|_| holds)?.between
+    }
+}
+
+/// Where an attempt holds by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BetweenSteps {
+    /// What was done last.
+    pub done: GraspStep,
+    /// What is done when it goes on; after a look at the hand it may be another one.
+    pub next: GraspStep,
 }
 
 /// Something in a hand.
@@ -185,6 +202,8 @@ pub struct GraspRun {
     pub object: String,
     /// Its steps in their order.
     pub lamps: Vec<(GraspStep, LampState)>,
+    /// Between which steps it came to hold by itself; `None` once it has been told to go on.
+    pub between: Option<BetweenSteps>,
     /// Which try it is, from 1, and how many there may be.
     pub tries: [usize; 2],
     /// Why the try before failed, while the arm goes back to try again.
@@ -207,7 +226,7 @@ pub struct GraspRun {
     pub since: SinceHeld,
     /// How far the fingers were kept open after the lift, rad.
     pub fingers_open_rad: Option<f64>,
-    /// From its beginning to the end of the lift, s.
+    /// From its beginning to the end of the lift, without what it held by itself between steps, s.
     pub seconds: Option<f64>,
 }
 

@@ -37,6 +37,7 @@ fn model(rig: &Rig, before: &RigModel, value: f64) -> RigModel {
         title: String::new(),
         tip: Some("right_index_tip".to_owned()),
         shape: None,
+        reference_s: 0.0,
         values: vec![value],
         covariance: vec![1e-6],
         probability: Some(0.9),

@@ -81,6 +81,7 @@ impl ProbeStage {
             None => return Err(NoReading::Nothing),
         };
         let place = setup.place(&located.point, &located.covariance_m2)?;
+        let (_, range_sigma_m) = place.range_m(&setup.robot_from_left().translation_m());
         let in_views = setup.pair.project(located.point).ok();
         let left_rectified =
             in_views.map(|(left, _)| left).filter(|pixel| pixel.is_inside(setup.pair.size_px()));
@@ -91,7 +92,9 @@ impl ProbeStage {
             disparity_px: in_views.map(|(left, right)| left.u_px - right.u_px),
             point_in_left: located.point,
             point_in_robot: place.point,
+            range_sigma_m,
             sigma_m: place.sigma_m(),
+            wide_because: setup.wide_because(),
             model: setup.title.clone(),
         })
     }

@@ -13,6 +13,7 @@ use plumbline_model::{
 };
 
 use super::command::AimChoice;
+use super::wide::wide_because;
 use crate::ground::text::sentence;
 
 /// What rectification and measuring rest on. Results of an older one are not shown any more.
@@ -50,6 +51,11 @@ impl LiveSetup {
         let seen = SeenUnder { t_secs: self.eyes_on_s, ..SeenUnder::default() };
         let place = self.model.place(in_left, covariance_m2, &self.posture, &seen);
         place.ok_or(NoPlace)
+    }
+
+    /// Why the uncertainty of places is wide, and what to do; `None`: all that they rest on was measured.
+    pub fn wide_because(&self) -> Option<&'static str> {
+        wide_because(self.model.unmeasured())
     }
 
     /// Where the left eye is.

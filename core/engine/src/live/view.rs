@@ -150,9 +150,13 @@ pub struct ProbeReading {
     pub point_in_left: Point<LeftCamera>,
     /// In the robot's frame, by the model in use.
     pub point_in_robot: Point<Robot>,
+    /// One standard deviation of its distance from the left eye, meters.
+    pub range_sigma_m: f64,
     /// One standard deviation of its place in the robot's frame, along its worst direction, with that
-    /// of the model's effects, meters.
+    /// of the model's effects and of what nobody measured of the eyes, meters.
     pub sigma_m: f64,
+    /// Why that is wide, and what to do; `None`: all that the place rests on was measured.
+    pub wide_because: Option<&'static str>,
     /// The model of the robot, for people: "as described", "with 2 effects".
     pub model: Arc<str>,
 }

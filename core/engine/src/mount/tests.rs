@@ -51,6 +51,7 @@ impl Bench {
             robot: Arc::new(robot),
             board: default_board(),
             has_eyes: true,
+            eyes_on_s: None,
         };
         let mut room = MountWorkflow::new(folder.path());
         room.planned = POSES.to_vec();
@@ -172,6 +173,22 @@ fn without_its_views_every_pose_is_to_be_seen_again_also_after_stop() {
     (0..3).for_each(|_| bench.arrives());
     let view = bench.view();
     assert_eq!((view.tour, view.views.len()), (None, 3));
+}
+
+#[test]
+fn views_keep_for_how_long_the_eyes_had_been_on() {
+    let mut bench = Bench::new();
+    bench.tour();
+    for on_s in [None, Some(600.0), Some(660.0)] {
+        bench.around.eyes_on_s = on_s;
+        bench.arrives();
+    }
+    assert_eq!(bench.room.minutes_of_views(), Some(10.5), "in the mean of those of which it is known");
+    let last = bench.view().views.last().expect("three").name.clone();
+    bench.with(|room, around, context| room.apply(MountCommand::Delete { view: last }, around, context));
+    assert_eq!(bench.room.minutes_of_views(), Some(10.0), "of those that are left");
+    bench.with(|room, around, context| room.apply(MountCommand::DeleteAll, around, context));
+    assert_eq!(bench.room.minutes_of_views(), None);
 }
 
 #[test]

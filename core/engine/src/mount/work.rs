@@ -27,6 +27,8 @@ pub enum MountWork {
         eyes: Arc<StereoCalibration>,
         /// What was seen.
         views: Vec<HeadView>,
+        /// For how long the eyes had been on by then, min.
+        minutes_since_on: Option<f64>,
         /// What was looked at.
         target: Target,
     },
@@ -101,11 +103,14 @@ impl LongWork for MountWork {
 
     fn run(self, context: &dyn JobContext) -> Result<MountResult, JobError> {
         match self {
-            Self::Solve { rig, eyes, views, target } => {
+            Self::Solve { rig, eyes, views, minutes_since_on, target } => {
                 let solved =
                     calibrate_mount(&rig, eyes.as_ref(), &views, &target, &MountOptions::default(), context);
                 match solved {
-                    Ok(mount) => Ok(MountResult::Solved(Arc::new(mount))),
+                    Ok(mut mount) => {
+                        mount.evidence.minutes_since_on = minutes_since_on;
+                        Ok(MountResult::Solved(Arc::new(mount)))
+                    }
                     Err(MountError::Cancelled(_)) => Err(JobError::Cancelled(Cancelled)),
                     Err(error) => Err(JobError::failed(sentence(&error.to_string()))),
                 }

@@ -1,5 +1,6 @@
 //! What was seen, what was solved, what is in use.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
@@ -64,6 +65,8 @@ pub struct MountAround {
     pub board: Chessboard,
     /// Whether eyes are open.
     pub has_eyes: bool,
+    /// Time since they were switched on, s; `None`: nobody knows.
+    pub eyes_on_s: Option<f64>,
 }
 
 /// The whole workflow, of one world.
@@ -72,6 +75,8 @@ pub struct MountWorkflow {
     kept: InUse,
     shelf: Shelf,
     pub(super) views: Vec<HeadView>,
+    /// For how long the eyes had been on when they were taken, by name, min; those of which it is known.
+    taken_min: BTreeMap<String, f64>,
     pub(super) board: Option<Chessboard>,
     /// All poses of the plan, also those that were seen: without their views they are to be seen again.
     pub(super) planned: Vec<(f64, f64)>,
@@ -150,6 +155,7 @@ impl MountWorkflow {
             rig: around.rig.clone(),
             eyes,
             views: self.views.clone(),
+            minutes_since_on: self.minutes_of_views(),
             target: Target::UnknownBoard(board),
         };
         self.solving = Some(context.start(work));
@@ -224,14 +230,24 @@ impl MountWorkflow {
         (self.planned, self.seen) = (planned, 0);
     }
 
+    /// For how long the eyes had been on when the views were taken, min, in the mean of those of which it is known.
+    pub(super) fn minutes_of_views(&self) -> Option<f64> {
+        let known = |view: &HeadView| self.taken_min.get(&view.name).copied();
+        let known: Vec<f64> = self.views.iter().filter_map(known).collect();
+        (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64)
+    }
+
     fn take(&mut self, look: &Look, around: &MountAround) -> Result<(), Refusal> {
         let (_, posture) = ready(around)?;
         if self.board.is_some_and(|board| board != look.board) && !self.views.is_empty() {
             return Err(Refusal::OtherBoard);
         }
         let name = format!("view {:02}", self.counted + 1);
-        let view = head_view(look, name, &posture).ok_or(Refusal::NoBoard)?;
+        let view = head_view(look, name.clone(), &posture).ok_or(Refusal::NoBoard)?;
         self.board = Some(look.board);
+        if let Some(on_s) = around.eyes_on_s {
+            self.taken_min.insert(name, on_s / 60.0);
+        }
         self.counted += 1;
         self.views.push(view);
         Ok(())
@@ -252,6 +268,7 @@ impl Workflow for MountWorkflow {
             shelf: mounts_in(folder),
             is_known: false,
             views: Vec::new(),
+            taken_min: BTreeMap::new(),
             board: None,
             planned: Vec::new(),
             seen: 0,

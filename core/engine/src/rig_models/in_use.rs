@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use jiff::Timestamp;
 use plumbline_effects::rig_model::ModelEffect;
-use plumbline_effects::robot_model::Mounted;
+use plumbline_effects::robot_model::{Mounted, Unmeasured};
 use plumbline_effects::{RigModel, RigModelError, RobotModel};
-use plumbline_model::StereoCameras;
 use plumbline_model::frame::{Head, LeftCamera, Pose};
-use plumbline_model::robot::Rig;
+use plumbline_model::robot::{CalibratedAt, Rig};
 use plumbline_model::session::Touchscreen;
 use plumbline_model::touchscreen::ScreenPlacement;
+use plumbline_model::{StereoCalibration, StereoCameras};
 use plumbline_vision::mount::MountCalibration;
 
 use super::{ModelInUseError, load};
@@ -26,6 +26,8 @@ pub struct Accepted<'a> {
     pub cameras: Option<&'a StereoCameras>,
     /// How the eyes sit in the head.
     pub head_from_left: Option<Pose<Head, LeftCamera>>,
+    /// How warm the eyes were when both were calibrated.
+    pub calibrated_at: CalibratedAt,
     /// How well that is known.
     pub mounted: Option<Mounted>,
     /// Where the touchscreen lies.
@@ -38,26 +40,36 @@ impl Accepted<'_> {
     /// Whether a model is of just that.
     pub fn is_in(&self, model: &RobotModel, described: &Rig) -> bool {
         let rig = model.rig();
-        let same_effects = match self.effects {
-            None => model.is_nominal(),
-            Some(effects) if effects.effects_of_other_eyes(rig).is_empty() => {
-                Arc::ptr_eq(model.added(), effects)
-            }
-            Some(effects) => *model.added() == effects.for_eyes_of(rig),
-        };
+        let same_effects = self.effects.map_or_else(
+            || model.is_nominal(),
+            |effects| {
+                let for_eyes = effects.for_eyes_of(rig);
+                let is_new = !Arc::ptr_eq(&for_eyes, effects);
+                Arc::ptr_eq(model.added(), &for_eyes) || is_new && *model.added() == for_eyes
+            },
+        );
         same_effects
+            && rig.eyes.calibrated_at == self.calibrated_at
             && rig.eyes.cameras == *self.cameras.unwrap_or(&described.eyes.cameras)
             && rig.eyes.head_from_left == self.head_from_left.unwrap_or(described.eyes.head_from_left)
             && model.mounted() == self.mounted.as_ref()
+            && model.not_calibrated() == self.not_calibrated()
             && rig.touchscreen == *self.screen.unwrap_or(&described.touchscreen)
     }
 
-    /// The description with it. Effects on the eyes that were found with other eyes are not in force.
+    /// What of the eyes nobody calibrated: it is taken as described.
+    fn not_calibrated(&self) -> Unmeasured {
+        Unmeasured { mount: self.mounted.is_none(), lenses: self.cameras.is_none() }
+    }
+
+    /// The description with it. Effects on the eyes that were found with other eyes are not in force, but for what
+    /// grows while they warm up, beside a calibration of which it is known how warm they were.
     ///
     /// # Errors
     /// When the effects are of another robot, or have no place in this one.
     pub fn robot_model(&self, described: &Rig) -> Result<RobotModel, RigModelError> {
         let mut rig = described.clone();
+        rig.eyes.calibrated_at = self.calibrated_at;
         if let Some(cameras) = self.cameras {
             rig.eyes.cameras = *cameras;
         }
@@ -75,7 +87,17 @@ impl Accepted<'_> {
                 RobotModel::new(rig, effects)?
             }
         };
-        Ok(model.with_mounted(self.mounted))
+        Ok(model.with_mounted(self.mounted).with_not_calibrated(self.not_calibrated()))
+    }
+}
+
+/// How warm the eyes were when the calibrations in use were made.
+pub fn calibrated_at(eyes: Option<&StereoCalibration>, mount: Option<&MountCalibration>) -> CalibratedAt {
+    // A time before switching on is none, whatever file it comes from.
+    let seconds = |minutes: f64| Some(60.0 * minutes).filter(|seconds| *seconds >= 0.0);
+    CalibratedAt {
+        cameras_s: eyes.and_then(|eyes| eyes.evidence.as_ref()?.minutes_since_on).and_then(seconds),
+        mount_s: mount.and_then(|mount| mount.evidence.minutes_since_on).and_then(seconds),
     }
 }
 
@@ -114,6 +136,7 @@ pub fn in_use(folder: &Path, described: &Rig) -> Result<RobotModel, ModelInUseEr
     let accepted = Accepted {
         cameras: calibration.as_ref().map(|calibration| &calibration.cameras),
         head_from_left: mount.as_ref().map(|mount| mount.head_from_left),
+        calibrated_at: calibrated_at(calibration.as_ref(), mount.as_ref()),
         mounted: mount.as_ref().map(mounted),
         screen: placement.as_ref().map(|placement| &placement.screen),
         effects: Some(&effects),

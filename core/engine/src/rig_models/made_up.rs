@@ -13,6 +13,7 @@ pub fn model_with(rig: &Rig, effects: &[(&str, &str, &[f64])]) -> RigModel {
         title: String::new(),
         tip: Some("right_index_tip".to_owned()),
         shape: None,
+        reference_s: 0.0,
         values: values.to_vec(),
         covariance: vec![],
         probability: None,

@@ -22,11 +22,13 @@ mod in_use;
 pub(crate) mod made_up;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod warm_tests;
 mod whole;
 
 pub use error::ModelInUseError;
 pub use in_use::{
-    Accepted, in_use, made_at, mount_in, mounted, mounts_in, other_eyes, screen_in, screens_in,
+    Accepted, calibrated_at, in_use, made_at, mount_in, mounted, mounts_in, other_eyes, screen_in, screens_in,
 };
 pub use whole::{WholeError, name_of, whole};
 
@@ -179,6 +181,7 @@ fn model_effect(effect: &NamedEffect, tip: Option<&String>) -> ModelEffect {
         title: effect.title.clone(),
         tip: tip.cloned(),
         shape: effect.shape,
+        reference_s: effect.reference_s,
         values: effect.values.clone(),
         covariance: effect.covariance.clone(),
         probability: Some(effect.probability),

@@ -53,6 +53,7 @@ fn named(id: &str, site: &str, value: f64) -> NamedEffect {
             text: None,
         }],
         shape: None,
+        reference_s: 0.0,
         values: vec![value],
         covariance: vec![1e-6],
         size_sigmas: 3.0,
@@ -215,6 +216,32 @@ fn all_that_was_accepted_is_put_together() {
     std::fs::write(mount_in(folder.path()).file(), "format = 1\n").expect("written");
     let said = in_use(folder.path(), &rig).expect_err("no mount").to_string();
     assert!(said.contains("mount.toml") && said.ends_with('.'), "{said}");
+}
+
+#[test]
+fn what_was_not_accepted_of_the_eyes_is_unmeasured_and_whatever_is_accepted_makes_another_model() {
+    use nalgebra::Matrix6;
+    use plumbline_effects::robot_model::{Mounted, Unmeasured};
+
+    let rig = nico();
+    let mounted = Mounted { covariance: Matrix6::identity() * 1e-6, rest_sigma_rad: [0.001; 2] };
+    let cameras = Some(&rig.eyes.cameras);
+    // A calibration that came out as described, and a mount, are measured all the same.
+    let steps = [
+        (Accepted::default(), Unmeasured::ALL),
+        (Accepted { cameras, ..Accepted::default() }, Unmeasured { mount: true, lenses: false }),
+        (Accepted { cameras, mounted: Some(mounted), ..Accepted::default() }, Unmeasured::default()),
+    ];
+    let models = steps.map(|(accepted, unmeasured)| {
+        let model = accepted.robot_model(&rig).expect("it fits");
+        assert_eq!(model.unmeasured(), unmeasured);
+        assert!(accepted.is_in(&model, &rig));
+        model
+    });
+    for (accepted, _) in steps {
+        let of_it = models.iter().filter(|model| accepted.is_in(model, &rig)).count();
+        assert_eq!(of_it, 1, "{accepted:?}");
+    }
 }
 
 /// Touches by an arm with small errors, and its session as [`ArmTouches`] wants them.

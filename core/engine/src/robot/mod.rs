@@ -25,6 +25,8 @@ mod worker;
 use plumbline_hardware::joints::{Heartbeat, StopSwitch};
 
 pub use control::RobotControl;
+#[cfg(test)]
+pub(crate) use lead::made_up;
 pub use lead::{GivenUp, LeadAnswer, LeadOrder, Leader, Led, Reins};
 pub use path::duration;
 pub use poses::PoseLibrary;

@@ -255,6 +255,24 @@ fn a_lead_that_is_ended_holds_the_arm_at_once_whether_or_not_its_leader_has_noti
 }
 
 #[test]
+fn who_leads_is_told_what_the_joints_do_also_while_an_order_is_carried_out() {
+    let mut bench = Bench::connected();
+    let elbow = bench.joint("r_elbow_y");
+    let (leader, led) = Leader::pair("grasping", true, &Reins::default());
+    bench.worker.control(RobotControl::Lead(led));
+    bench.worker.tick(Instant::now());
+    assert!(leader.take_course().0.is_empty(), "nobody asked");
+    leader.keep_course(Duration::ZERO);
+    leader.order(LeadOrder::Follow { way: vec![vec![(elbow, 1.6)]], speed_rad_s: 0.5 }).expect("it is led");
+    for _ in 0..3 {
+        bench.worker.tick(Instant::now());
+    }
+    let (states, lost) = leader.take_course();
+    assert_eq!((states.len(), lost), (3, 0));
+    assert!(leader.answer(Duration::ZERO).expect("not given up").is_none(), "and no answer is in its place");
+}
+
+#[test]
 fn while_stop_is_latched_nothing_is_jogged() {
     let mut bench = Bench::connected();
     bench.worker.switches.stop.press();

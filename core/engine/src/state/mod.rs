@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use plumbline_effects::robot_model::Unmeasured;
 use plumbline_effects::{RigModel, RobotModel};
 use plumbline_hardware::SourceSpec;
 use plumbline_model::StereoFrame;
@@ -42,7 +43,7 @@ use crate::labels::work::LabelsWork;
 use crate::live::{ProbeInput, ProbeOutput, RectifyInput, RectifyOutput};
 use crate::mount::MountWorkflow;
 use crate::recording::{Recorder, RecordingWorkflow};
-use crate::rig_models::{Accepted, mounted, other_eyes};
+use crate::rig_models::{Accepted, calibrated_at, mounted, other_eyes};
 use crate::robot::view::{Connection, RobotView};
 use crate::robot::{News, RobotControl, TouchNews};
 use crate::source::view::SourceView;
@@ -96,7 +97,8 @@ pub struct State {
 impl State {
     /// Nothing opened; what was accepted before is read as the first job.
     pub fn new(data_dir: &Path) -> Self {
-        let nominal = Arc::new(RobotModel::nominal(default_rig()));
+        let nominal = RobotModel::nominal(default_rig()).with_not_calibrated(Unmeasured::ALL);
+        let nominal = Arc::new(nominal);
         let mut state = Self {
             rooms: Rooms::new(data_dir),
             robot: Arc::default(),
@@ -276,6 +278,7 @@ impl State {
         let accepted = Accepted {
             cameras: eyes.map(|calibration| &calibration.cameras),
             head_from_left: mount.map(|mount| mount.head_from_left),
+            calibrated_at: calibrated_at(eyes.map(|eyes| &**eyes), mount.map(|mount| &**mount)),
             mounted: mount.map(|mount| mounted(mount)),
             screen: touch.of(world).screen(),
             effects: gap.of(world).model().filter(|effects| {
@@ -323,6 +326,9 @@ impl State {
         self.with::<DriftWorkflow>(World::default(), |drift, around, context| {
             drift.saw(&frame, around, context);
         });
+        if self.rooms.eyes.of(self.shown).wants_pairs() {
+            self.with::<EyesWorkflow>(self.shown, |eyes, around, context| eyes.saw(&frame, around, context));
+        }
         self.rooms.live.frame(frame, now);
     }
 

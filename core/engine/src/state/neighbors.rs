@@ -171,7 +171,7 @@ impl Neighbors<DetectWorkflow> for State {
 impl Neighbors<DriftWorkflow> for State {
     fn around(&self, _world: World) -> DriftAround {
         let source = self.rooms.source.view();
-        let calibration = self.rooms.eyes.of(self.shown).in_use();
+        let Rooms { eyes, mount, .. } = &self.rooms;
         DriftAround {
             is_live: source.status == SourceStatus::Running && !source.photographs,
             is_recorded: source.replay.is_some(),
@@ -184,9 +184,8 @@ impl Neighbors<DriftWorkflow> for State {
                 World::Twin => 0,
                 World::Robot => self.rooms.eyes.of(World::Robot).clock_settings(),
             },
-            is_calibrated: calibration.is_some(),
-            calibrated_min: calibration
-                .and_then(|calibration| calibration.evidence.as_ref()?.minutes_since_on),
+            is_calibrated: eyes.of(self.shown).in_use().is_some(),
+            is_mounted: mount.of(self.shown).in_use().is_some(),
             clock_pace: match self.shown {
                 World::Twin if self.shows_own_eyes() => self.twin.warm_up_pace,
                 _ => 1.0,
@@ -257,13 +256,14 @@ impl Neighbors<ScoresWorkflow> for State {
 }
 
 impl Neighbors<EyesWorkflow> for State {
-    fn around(&self, _world: World) -> EyesAround {
+    fn around(&self, world: World) -> EyesAround {
         let source = self.rooms.source.view();
         let shows_twin = source.spec == Some(SourceSpec::Twin);
         EyesAround {
             newest: self.rooms.live.newest().cloned(),
             source: source.clone(),
             twin_on_s: self.eyes_on_s(World::Twin).filter(|_| shows_twin),
+            rig: self.models.of(world).rig().clone(),
         }
     }
 
@@ -281,6 +281,7 @@ impl Neighbors<MountWorkflow> for State {
             calibration: eyes.in_use().cloned(),
             board: *eyes.board(),
             has_eyes: self.rooms.source.view().spec.is_some(),
+            eyes_on_s: self.eyes_on_s(world),
         }
     }
 
@@ -347,7 +348,7 @@ impl Neighbors<GapWorkflow> for State {
 
 impl Neighbors<GraspWorkflow> for State {
     fn around(&self, world: World) -> GraspAround {
-        let Rooms { eyes, mount, touch, models, detect, source, .. } = &self.rooms;
+        let Rooms { eyes, mount, touch, models, detect, source, trials, .. } = &self.rooms;
         let usable = models.of(world).usable();
         let model = |method| usable.iter().find(|model| model.method() == method).cloned();
         let (detector, provider) = detect.chosen();
@@ -369,6 +370,7 @@ impl Neighbors<GraspWorkflow> for State {
             own_eyes: self.shown == world && self.shows_own_eyes(),
             source: source.view().clone(),
             found: detect.found().cloned(),
+            in_experiment: trials.of(world).is_under_way(),
         }
     }
 }

@@ -19,6 +19,8 @@ use super::summary::{Summary, csv, summary};
 const PLAN: &str = "experiment.json";
 /// Folder of the attempts.
 const ATTEMPTS: &str = "attempts";
+/// Ending of the joint tracks of an attempt, which are called as it is.
+const TRACKS: &str = "tracks.csv";
 /// What came of it.
 const SUMMARY: &str = "summary.json";
 
@@ -65,6 +67,11 @@ pub fn is_made(out: &Path, trial: &Trial) -> bool {
 /// When it cannot be written.
 pub fn keep(out: &Path, attempt: &Attempt) -> Result<(), TrialsError> {
     write_json(&file_of(out, &attempt.trial), attempt)
+}
+
+/// Where the joint tracks of an attempt are, beside it. They are there before the attempt counts as made.
+pub fn tracks_of(out: &Path, trial: &Trial) -> PathBuf {
+    file_of(out, trial).with_extension(TRACKS)
 }
 
 /// All attempts so far of an experiment, in their order.
@@ -123,15 +130,27 @@ pub fn merge(parts: &[PathBuf], out: &Path) -> Result<Experiment, TrialsError> {
             Some(_) => {}
         }
         for (file, text) in attempt_files(part)? {
-            let target = out.join(ATTEMPTS).join(&file);
-            match files::read_text(&target, Size::TEXT) {
-                Ok(there) if there != text => return Err(TrialsError::disagree(part, &file)),
-                Ok(_) => {}
-                Err(_) => files::write(&target, text)?,
+            // Attempts of earlier versions have none.
+            let tracks = Path::new(&file).with_extension(TRACKS);
+            let from = part.join(ATTEMPTS).join(&tracks);
+            if files::present(&from)? {
+                let name = tracks.to_string_lossy();
+                put_together(part, out, &name, &files::read_text(&from, Size::TEXT)?)?;
             }
+            put_together(part, out, &file, &text)?;
         }
     }
     experiment.ok_or(TrialsError::NothingToMerge)
+}
+
+/// Puts a file of a part beside those of the others, unless it is there already.
+fn put_together(part: &Path, out: &Path, file: &str, text: &str) -> Result<(), TrialsError> {
+    let target = out.join(ATTEMPTS).join(file);
+    match files::read_text(&target, Size::TEXT) {
+        Ok(there) if there != text => Err(TrialsError::disagree(part, file)),
+        Ok(_) => Ok(()),
+        Err(_) => Ok(files::write(&target, text)?),
+    }
 }
 
 fn file_of(out: &Path, trial: &Trial) -> PathBuf {

@@ -200,9 +200,12 @@ fn on_the_twin_it_goes_through_all_attempts_by_itself() {
     assert_eq!(stage(&lab.after_s(2.0)), Some(TrialStage::Grasping));
     let wishes = lab.wishes();
     assert_eq!((&wishes[0], wishes.last()), (&GraspCommand::Method(Method::M5), Some(&GraspCommand::Grasp)));
+    assert!(lab.room.is_under_way(), "grasping knows whose attempt it is");
     lab.around.grasp.is_idle = false;
     assert_eq!(stage(&lab.after_s(20.0)), Some(TrialStage::Grasping));
     lab.grasped("first", Outcome::Success);
+    let tracks = "t_s,head_z_rad,head_z_commanded_rad,step\n0.000,0.0100,0.0000,lift\n";
+    std::fs::write(lab.folder.path().join("grasps/first/tracks.csv"), tracks).expect("written");
     lab.stands_at(0.19);
     lab.around.grasp.is_idle = true;
     assert_eq!(stage(&lab.after_s(0.1)), Some(TrialStage::Judging));
@@ -212,6 +215,8 @@ fn on_the_twin_it_goes_through_all_attempts_by_itself() {
     let shown = view.shown.clone().expect("one is shown");
     assert_eq!((shown.made, shown.all, shown.page.methods[0].positions[0].successes), (1, 2, 1));
     assert!(shown.folder.join("report.html").exists() && shown.folder.join("attempts.csv").exists());
+    let kept = std::fs::read_to_string(shown.folder.join("attempts/00000-m5.tracks.csv"));
+    assert_eq!(kept.expect("beside its attempt"), tracks);
     // The hand is emptied, then comes the second place.
     lab.after_s(0.1);
     assert_eq!(lab.wishes(), [GraspCommand::Hand(HandStep::Open)]);
@@ -232,6 +237,7 @@ fn on_the_twin_it_goes_through_all_attempts_by_itself() {
         lab.wishes();
     }
     assert_eq!(lab.view().phase, TrialsPhase::Idle);
+    assert!(!lab.room.is_under_way());
 }
 
 #[test]

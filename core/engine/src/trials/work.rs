@@ -15,7 +15,7 @@ use super::plan::{Experiment, Trial};
 use super::store;
 use super::summary::{csv, summary};
 use super::view::{EarlierTrials, ShownTrials};
-use crate::grasp::read_record;
+use crate::grasp::{read_record, read_tracks};
 use crate::ground::jobs::JobError;
 use crate::ground::{self, LongWork};
 use crate::robot::RobotControl;
@@ -123,6 +123,9 @@ impl LongWork for TrialsWork {
                 let record = read_record(&grasp).map_err(JobError::told)?;
                 let judged = Judged::by_eye(&record, lifted);
                 let attempt = Attempt { trial, placed_m, record, judged };
+                if let Some(tracks) = read_tracks(&grasp).map_err(JobError::told)? {
+                    files::write(&store::tracks_of(&folder, &trial), tracks).map_err(JobError::told)?;
+                }
                 store::keep(&folder, &attempt).map_err(JobError::told)?;
                 store::conclude(&folder, &experiment, &rig).map_err(JobError::told)?;
                 let (shown, open) = shown(folder, &rig).map_err(JobError::told)?;

@@ -96,6 +96,36 @@ fn capturing_by_itself_takes_what_is_new_and_nothing_twice() {
 }
 
 #[test]
+fn accepting_a_calibration_ends_capturing_by_itself_until_it_is_switched_on_again() {
+    let folder = folder();
+    let mut desk = collected(folder.path());
+    desk.apply(EyesCommand::AutoCapture(true));
+    desk.apply(EyesCommand::Solve);
+    assert!(desk.view().eyes.auto_capture, "what is solved may be collected on");
+    desk.apply(EyesCommand::Accept);
+    let eyes = desk.view().eyes;
+    assert!(eyes.in_use.is_some() && !eyes.auto_capture && eyes.accepting_ended_capture);
+
+    // The head turns for the mount: the eyes see the board where it never was, and collect nothing.
+    desk.apply(EyesCommand::DeleteAll);
+    desk.apply(corners_wanted());
+    for pair in board_pairs() {
+        desk.show(pair);
+    }
+    assert!(desk.view().eyes.collected.is_empty());
+    desk.apply(EyesCommand::AutoCapture(true));
+    let eyes = desk.view().eyes;
+    assert!(eyes.auto_capture && !eyes.accepting_ended_capture);
+    assert_eq!(eyes.collected.len(), 1, "what stands there");
+
+    // Nothing is said where nothing was switched off.
+    desk.apply(EyesCommand::AutoCapture(false));
+    desk.apply(EyesCommand::ProposeEarlier { id: eyes.earlier[0].id.clone() });
+    desk.apply(EyesCommand::Accept);
+    assert!(!desk.view().eyes.accepting_ended_capture);
+}
+
+#[test]
 fn a_failing_solution_leaves_what_was_accepted() {
     let folder = folder();
     let mut desk = collected(folder.path());

@@ -4,8 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use jiff::Timestamp;
+use nalgebra::Matrix3;
 use plumbline_effects::rig_model::{Conditions, ModelEffect, numbers_of_eyes};
-use plumbline_effects::{RigModel, RobotModel};
+use plumbline_effects::{RigModel, RobotModel, SeenUnder};
 use plumbline_engine::eyes::store::Store;
 use plumbline_engine::robot::RobotControl;
 use plumbline_engine::view::ProbeReading;
@@ -27,6 +28,7 @@ fn effect(id: &str, site: &str, value: f64) -> ModelEffect {
         title: String::new(),
         tip: Some("right_index_tip".to_owned()),
         shape: None,
+        reference_s: 0.0,
         values: vec![value],
         covariance: vec![1e-4],
         probability: None,
@@ -78,11 +80,16 @@ fn from_the_moment_effects_are_accepted_everybody_uses_them() {
     let should = rig.robot_from_left(&nodding) * nominal.point_in_left;
     assert!(with.point_in_robot.distance_m(&should) < 1e-6);
     assert!(with.point_in_robot.distance_m(&nominal.point_in_robot) > 5e-3);
-    // A zero that is known to 0.01 rad is 4 mm at 0.4 m.
-    let effects_own_m = (with.sigma_m.powi(2) - nominal.sigma_m.powi(2)).max(0.0).sqrt();
-    assert!(with.sigma_m > 3.5e-3 && effects_own_m > 0.0, "{} after {}", with.sigma_m, nominal.sigma_m);
-
+    // Nobody measured the mount: what the model says of that is in what is shown.
     let known = told(&desk);
+    let place = known.place(&with.point_in_left, &Matrix3::zeros(), &home, &SeenUnder::default());
+    let by_model_m = place.expect("a place").sigma_m();
+    assert!(by_model_m > 0.02 && with.sigma_m >= by_model_m, "{} {by_model_m}", with.sigma_m);
+    assert!(nominal.sigma_m > 0.02 && with.range_sigma_m < with.sigma_m, "{nominal:?}");
+    let told_to =
+        |reading: &ProbeReading| reading.wide_because.is_some_and(|why| why.contains("step 2, Mount"));
+    assert!(told_to(&nominal) && told_to(&with), "an effect of one joint is no mount");
+
     assert_eq!(known.title(), "with 2 effects");
     let accepted = rig_models::in_use(folder.path(), &rig).expect("it can be used");
     assert_eq!((accepted.rig(), accepted.added().effects()), (known.rig(), known.added().effects()));

@@ -106,6 +106,7 @@ fn effects_that_the_command_line_added_are_on_the_line_and_are_taken_back() {
         title: "zero of the right elbow".to_owned(),
         tip: Some("right_index_tip".to_owned()),
         shape: None,
+        reference_s: 0.0,
         values: vec![0.03],
         covariance: vec![1e-4],
         probability: None,

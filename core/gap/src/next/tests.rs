@@ -126,6 +126,7 @@ fn named(effect: &Effect, probability: f64) -> NamedEffect {
         class_probability: probability,
         parameters: vec![],
         shape: None,
+        reference_s: 0.0,
         values: vec![],
         covariance: vec![],
         size_sigmas: 2.0,

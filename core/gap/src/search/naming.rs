@@ -331,6 +331,7 @@ impl Evidence<'_> {
             parameters: parameters(effect, &values, &covariance),
             covariance: covariance.transpose().iter().copied().collect(),
             shape: effect.shape,
+            reference_s: effect.reference_s,
             values,
             size_sigmas: size,
             size_m: size * self.floor_m,

@@ -81,6 +81,7 @@ fn of_effect(effect: &Effect, slope: Slope, size: &Size, probability: f64) -> Na
         class_probability: probability,
         parameters: parameters.collect(),
         shape: None,
+        reference_s: 0.0,
         values: vec![slope.value],
         covariance: vec![slope.sd * slope.sd],
         size_sigmas: size.sigmas,

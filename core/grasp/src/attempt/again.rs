@@ -29,7 +29,11 @@ impl Running<'_> {
             return Ok(Outcome::Failed { failure, why });
         };
         self.watch.again(number, self.order.method.tries(), &why);
-        self.begin(Step::Again);
+        if let Err(held) = self.hold_before(Step::Again) {
+            // The try is over and has failed, whatever ends the hold after it.
+            return Err(not_again(failure, &why, held));
+        }
+        self.start(Step::Again);
         self.body.wait(SAID_S)?;
         self.follow(Step::Again, std::slice::from_ref(&opened), AIR_RAD_S)?;
         self.follow(Step::Again, &back, AIR_RAD_S)?;
@@ -56,6 +60,12 @@ impl Running<'_> {
             Ok(outcome) => Ok(outcome),
         }
     }
+}
+
+/// A try that failed, and after which it was not tried again.
+fn not_again(failure: Failure, why: &str, end: End) -> End {
+    let (End::Failed(_, ended) | End::Refused(ended)) = end;
+    End::Failed(failure, format!("{why}; it was not tried again: {ended}"))
 }
 
 /// Near which place the object is looked for again: near where it stood, so that another one of its class is not

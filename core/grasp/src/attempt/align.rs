@@ -78,6 +78,9 @@ impl Running<'_> {
         mut shift_m: Vector3<f64>,
     ) -> Result<GraspPlan, End> {
         for k in 1..=PUBLISHED_LOOKS {
+            if k > 1 {
+                self.hold_before(Step::Align)?;
+            }
             let above = above(&plan)?;
             let shown = self.grasper.arm.described.palm_to_eyes(&above);
             self.follow(Step::Align, std::slice::from_ref(&shown), SPEED_RAD_S)?;

@@ -3,6 +3,7 @@
 mod again;
 mod align;
 mod arms;
+mod between;
 mod check;
 mod choose;
 mod over;
@@ -73,8 +74,13 @@ pub trait Watch {
     /// began. `number` of `tries` counts from 1; `why` the try before failed.
     fn again(&mut self, _number: usize, _tries: usize, _why: &str) {}
     /// All that is known so far, before a step is begun: `record.step` is that step. To be kept before
-    /// it goes on.
+    /// it goes on. Once more before it holds between two steps: `record.step` is the one that is done then.
     fn about_to(&mut self, _record: &Record) {}
+    /// Between two steps, or two looks at the hand: whether to hold until somebody lets it go on. Whoever wants
+    /// that has told the body, which holds while it waits.
+    fn holds_between(&mut self, _done: Step, _next: Step) -> bool {
+        false
+    }
 }
 
 /// Nobody watches.
@@ -283,15 +289,15 @@ impl<'a> Running<'a> {
 impl Running<'_> {
     /// Looks, and plans what would be sent. Nothing moves.
     fn prepare(&mut self) -> Result<Prepared, End> {
-        self.begin(Step::Ready);
+        self.begin(Step::Ready)?;
         let hands = self.fit_hands()?;
-        self.begin(Step::Look);
+        self.begin(Step::Look)?;
         let before = self.body.look()?;
         let mut chosen = self.find(&before)?;
         if self.order.method == Method::M5 {
             sure::sure_of_object(&self.order.object, &chosen.covariance_m2)?;
         }
-        self.begin(Step::Plan);
+        self.begin(Step::Plan)?;
         let beside = self.beside(&chosen);
         self.grasper.leave(&beside);
         let method = self.order.method;
@@ -326,28 +332,34 @@ impl Running<'_> {
     fn try_once(&mut self) -> Result<Outcome, End> {
         let Prepared { before, chosen, shift_m, mut plan } = self.prepare()?;
         let method = self.order.method;
-        self.begin(Step::Approach);
+        self.begin(Step::Approach)?;
         self.follow(Step::Approach, &plan.approach.clone(), AIR_RAD_S)?;
         if method.aligns() {
-            self.begin(Step::Align);
+            self.begin(Step::Align)?;
             plan = self.align(plan, shift_m, &chosen, &before)?;
         }
-        self.begin(Step::Lower);
+        self.begin(Step::Lower)?;
         self.follow(Step::Lower, &plan.down, DOWN_RAD_S)?;
         // An arm that still swings or lags behind its commands would close beside the object.
         self.body.wait(STILL_S)?;
-        self.begin(Step::Close);
+        self.begin(Step::Close)?;
         let closed = self.close(&plan)?;
-        self.begin(Step::Lift);
+        self.begin(Step::Lift)?;
         let up = self.grasper.lift(method, &closed, plan.heading_rad);
         self.follow(Step::Lift, &up, LIFT_RAD_S)?;
         self.record.seconds = Some(self.body.now_s() - self.began_s);
         self.body.grip()?;
-        self.begin(Step::Check);
+        self.begin(Step::Check)?;
         self.check(&chosen)
     }
 
-    fn begin(&mut self, step: Step) {
+    fn begin(&mut self, step: Step) -> Result<(), End> {
+        self.hold_before(step)?;
+        self.start(step);
+        Ok(())
+    }
+
+    fn start(&mut self, step: Step) {
         self.record.step = Some(step);
         self.watch.about_to(self.record);
         self.watch.step(step);

@@ -113,6 +113,7 @@ impl Running<'_> {
                 over.plan = self.nudged(over.plan, &error.m);
                 break;
             }
+            self.hold_before(Step::Align)?;
             over = self.corrected(over, &mut error)?;
             over = self.go_over(over, &mut error)?;
         }

@@ -6,9 +6,12 @@
 //! **Writing** goes to a temporary file beside the target, to the disk, and then to its name, so
 //! that a crash, a kill or a full disk leaves the old file or the new one, never half of one.
 //!
+//! **What grows** while something goes on ([`Growing`]) is added to piece by piece, and never half of one.
+//!
 //! **An output is never one of the inputs**: [`output`] is asked before the work begins.
 
 mod error;
+mod grow;
 mod image;
 mod output;
 mod presence;
@@ -23,6 +26,7 @@ mod tests_write;
 mod write;
 
 pub use error::{FileError, Kind};
+pub use grow::Growing;
 pub use image::{open_image, read_image, write_png};
 pub use output::{export, output};
 pub use presence::{is_hidden, present};

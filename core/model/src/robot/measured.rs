@@ -10,7 +10,7 @@ use serde::Deserialize;
 use super::description::{Description, JointIndex, LinkIndex};
 use super::error::RigError;
 use super::outlines::Outlines;
-use super::rig::{Bus, EyeMount, Gate, Rig, RigPart, TableTop, WorkPatch};
+use super::rig::{Bus, CalibratedAt, EyeMount, Gate, Rig, RigPart, TableTop, WorkPatch};
 use super::rig_file::{ArmPart, EyesPart, PosePart, Reader, ScreenPart, TablePart, WorkspacePart};
 use crate::camera::{Camera, CameraModel, Fisheye};
 use crate::files::{self, Size, told};
@@ -171,6 +171,7 @@ fn no_eyes() -> EyeMount {
             right: camera,
             right_from_left: Pose::from_rotation_vector(Vector3::zeros(), Vector3::zeros()),
         },
+        calibrated_at: CalibratedAt::default(),
     }
 }
 

@@ -40,7 +40,7 @@ pub use outlines::{BodyEdges, Outlines, ScreenFrame};
 pub use posture::Posture;
 pub use reach::{Plan, Reach, ReachError, ReachOptions, Refusal};
 pub use rig::{
-    Arm, Board, Bus, CoupledLimit, Direction as ServoDirection, EyeMount, Gate, NamedPose, Rig, RigPart,
-    Servo, TableTop, TipName, WorkPatch,
+    Arm, Board, Bus, CalibratedAt, CoupledLimit, Direction as ServoDirection, EyeMount, Gate, NamedPose, Rig,
+    RigPart, Servo, TableTop, TipName, WorkPatch,
 };
 pub use rig_file::default_rig;

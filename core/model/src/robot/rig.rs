@@ -208,6 +208,18 @@ pub struct EyeMount {
     pub head_from_left: Pose<Head, LeftCamera>,
     /// Lenses and how the eyes sit to each other, nominal unless calibrated.
     pub cameras: StereoCameras,
+    /// How warm the eyes were when both were calibrated.
+    pub calibrated_at: CalibratedAt,
+}
+
+/// Time since the eyes were switched on when the pairs of a calibration were taken, in the mean, s. Eyes turn while they
+/// warm up: what they had turned until then is in the calibration. `None`: not known, or not calibrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CalibratedAt {
+    /// Of lenses, and of how the eyes sit to each other.
+    pub cameras_s: Option<f64>,
+    /// Of the mount in the head.
+    pub mount_s: Option<f64>,
 }
 
 impl EyeMount {

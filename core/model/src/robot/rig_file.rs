@@ -11,8 +11,8 @@ use super::description::{Description, JointIndex, Limits};
 use super::error::{DescriptionError, RigError};
 use super::outlines::OutlinesPart;
 use super::rig::{
-    Arm, Board, Bus, CoupledLimit, Direction, EyeMount, Gate, NamedPose, Rig, Servo, TableTop, TipName,
-    WorkPatch,
+    Arm, Board, Bus, CalibratedAt, CoupledLimit, Direction, EyeMount, Gate, NamedPose, Rig, Servo, TableTop,
+    TipName, WorkPatch,
 };
 use crate::camera::{Camera, CameraModel, Fisheye};
 use crate::files::{self, Size, told};
@@ -471,6 +471,7 @@ impl Reader<'_> {
                 right: self.lens("eyes.right", &part.right)?,
                 right_from_left: Pose::from_rotation_vector(right_rotation, right_translation),
             },
+            calibrated_at: CalibratedAt::default(),
         })
     }
 

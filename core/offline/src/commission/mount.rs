@@ -34,7 +34,10 @@ pub(super) fn run(lab: &Lab, context: &dyn JobContext) -> Result<Step, Commissio
         Ok(tried) => step.after_mm = wander_mm(&tried.applied_to(&lab.rig), cameras, &used, &back),
         Err(error) => step.notes.push(format!("Nothing was held back: {error}.")),
     }
-    let mount = calibrate_mount(&lab.rig, &calibration, &views, &target, &options, context)?;
+    let mut mount = calibrate_mount(&lab.rig, &calibration, &views, &target, &options, context)?;
+    // The views are those that the eyes were calibrated with.
+    mount.evidence.minutes_since_on =
+        calibration.evidence.as_ref().and_then(|evidence| evidence.minutes_since_on);
     step.notes.push(format!("{} views, {:.3} px.", mount.per_view.len(), mount.rms_px));
     step.notes.extend(mount.not_seen.iter().chain(&mount.remarks).cloned());
     lab.accept_mount(&mount)?;

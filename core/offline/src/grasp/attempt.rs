@@ -20,6 +20,7 @@ use plumbline_twin::{Lockstep, Scenario, Toy};
 use plumbline_vision::detect::{DetectSettings, DetectorOptions, shipped_detector};
 
 use super::judge::Judge;
+use super::tracked::Tracked;
 use crate::OfflineError;
 use crate::twin_body::TwinBody;
 
@@ -70,6 +71,8 @@ pub(super) struct Bench {
     eyes: Option<EyeRenderer>,
     /// Where records and images of attempts go.
     keeping: Option<Keeping>,
+    /// Where the joint tracks of the next attempt go.
+    tracks: Option<PathBuf>,
     /// Why something of the last attempt was not kept.
     problem: Option<KeepingError>,
 }
@@ -95,7 +98,7 @@ impl Bench {
         let options = DetectorOptions { threads: Some(1), ..DetectorOptions::default() };
         let looker = Looker::new(shipped.open(&options)?, &knowledge, DetectSettings::default());
         let grasper = Grasper::new(knowledge, looker, finder)?;
-        Ok(Self { rig, scenario, grasper, eyes: None, keeping: None, problem: None })
+        Ok(Self { rig, scenario, grasper, eyes: None, keeping: None, tracks: None, problem: None })
     }
 
     /// From now on, record and images of an attempt go into this folder, as in the window.
@@ -103,6 +106,11 @@ impl Bench {
         plumbline_model::files::make_folder(&folder)?;
         self.keeping = Some(Keeping::of(folder));
         Ok(())
+    }
+
+    /// From now on, the joints of an attempt go into this file as it goes on, in place of what was in it.
+    pub fn track_in(&mut self, file: PathBuf) {
+        self.tracks = Some(file);
     }
 
     /// The robot as described.
@@ -166,18 +174,25 @@ impl Bench {
         let judge = Rc::new(RefCell::new(Judge::new(body.twin(), task.toy, &self.rig)));
         let step = Rc::new(RefCell::new(Step::Ready));
         let meddler = RefCell::new(meddler);
+        let tracked = match &self.tracks {
+            Some(file) => Tracked::begin(file, body.twin()),
+            None => Tracked::default(),
+        };
         let mut watched = Watched {
             body: &mut *body,
             judge: judge.clone(),
             step: step.clone(),
             meddler: &meddler,
+            tracked: tracked.clone(),
             last: Step::Ready,
         };
         let keeping = self.keeping.as_ref();
-        let mut watch = Steps { step, meddler: &meddler, keeping, number: 1, looks: 0, problem: None };
+        let (kept, number) = (tracked.clone(), 1);
+        let mut watch =
+            Steps { step, meddler: &meddler, tracked: kept, keeping, number, looks: 0, problem: None };
         let mut record =
             self.grasper.attempt(&mut watched, &task.order, jiff::Timestamp::UNIX_EPOCH, &mut watch);
-        self.problem = watch.problem;
+        self.problem = watch.problem.or(tracked.end(body.twin()).map(KeepingError::from));
         self.hold(body, &mut record);
         let judged = judge.borrow().judge(body.twin(), &record);
         (record, judged)
@@ -203,6 +218,7 @@ impl Bench {
 struct Steps<'a, 'm> {
     step: Rc<RefCell<Step>>,
     meddler: &'a RefCell<&'m mut dyn Meddler>,
+    tracked: Tracked,
     keeping: Option<&'a Keeping>,
     /// Which try it is, from 1.
     number: usize,
@@ -215,6 +231,7 @@ struct Steps<'a, 'm> {
 impl Watch for Steps<'_, '_> {
     fn step(&mut self, step: Step) {
         *self.step.borrow_mut() = step;
+        self.tracked.step(step);
     }
 
     fn about_to(&mut self, record: &Record) {
@@ -247,6 +264,7 @@ struct Watched<'a, 'm> {
     judge: Rc<RefCell<Judge>>,
     step: Rc<RefCell<Step>>,
     meddler: &'a RefCell<&'m mut dyn Meddler>,
+    tracked: Tracked,
     /// Of the last move.
     last: Step,
 }
@@ -277,8 +295,9 @@ impl Body for Watched<'_, '_> {
             self.judge.borrow_mut().closing(self.body.twin());
         }
         self.last = step;
-        self.body.follow(way, speed_rad_s)?;
-        Ok(())
+        let done = self.body.follow(way, speed_rad_s);
+        self.tracked.take(self.body.twin());
+        done
     }
 
     fn grip(&mut self) -> Result<(), Halt> {
@@ -286,7 +305,9 @@ impl Body for Watched<'_, '_> {
     }
 
     fn wait(&mut self, duration_s: f64) -> Result<(), Halt> {
-        self.body.wait(duration_s)
+        let done = self.body.wait(duration_s);
+        self.tracked.take(self.body.twin());
+        done
     }
 
     fn look(&mut self) -> Result<Sight, Halt> {

@@ -6,6 +6,7 @@ mod lab;
 mod one;
 #[cfg(test)]
 mod tests;
+mod tracked;
 mod trials;
 
 pub use one::{GraspArgs, GraspReport, grasp};

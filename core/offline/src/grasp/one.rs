@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use plumbline_engine::trials::Judged;
 use plumbline_grasp::things::Thing;
-use plumbline_grasp::{Failure, Hand, HandChoice, Method, Order, Outcome, Record};
+use plumbline_grasp::{Failure, Hand, HandChoice, Method, Order, Outcome, Record, tracks};
 use plumbline_model::JobContext;
 use plumbline_twin::Toy;
 use serde::Serialize;
@@ -31,7 +31,7 @@ pub struct GraspArgs {
     pub at_m: [f64; 2],
     /// Of all that is drawn by chance.
     pub seed: u64,
-    /// Where the record and the images go; `None`: they are not kept.
+    /// Where the record, the joint tracks and the images go; `None`: they are not kept.
     pub out: Option<PathBuf>,
 }
 
@@ -73,6 +73,7 @@ pub fn grasp(args: &GraspArgs, context: &dyn JobContext) -> Result<GraspReport, 
             return Err(OfflineError::KeptAlready(out.clone()));
         }
         bench.keep_in(out.clone())?;
+        bench.track_in(out.join(tracks::FILE));
     }
     context.report(0.5, "grasping");
     let (method, hand) = (args.method, args.hand);

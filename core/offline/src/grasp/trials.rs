@@ -95,6 +95,7 @@ pub(super) fn carry_out(
         if images {
             bench.keep_in(out.join("images").join(format!("{:05}-{}", trial.number, trial.method.name())))?;
         }
+        bench.track_in(store::tracks_of(out, trial));
         let task = task(experiment, trial, toy);
         let (record, judged) = bench.attempt(&task)?;
         let attempt = Attempt { trial: *trial, placed_m: task.at_m, record, judged };

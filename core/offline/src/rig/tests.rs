@@ -21,6 +21,7 @@ fn effect(id: &str, site: &str, tip: Option<&str>, values: &[f64]) -> ModelEffec
         title: String::new(),
         tip: tip.map(str::to_owned),
         shape: None,
+        reference_s: 0.0,
         values: values.to_vec(),
         covariance: vec![],
         probability: None,
@@ -168,6 +169,7 @@ fn what_no_description_can_hold_is_left_out_with_the_reason() {
         effect("backlash", "r_arm_x", tip, &[0.01]),
         effect("image-shift", "right", None, &[1.0, 0.5]),
         ModelEffect { shape: Some(300.0), ..effect("eye-yaw", "right", None, &[0.008]) },
+        ModelEffect { shape: Some(300.0), ..effect("camera-mount", "eyes", None, &[0.0, 0.004, 0.0]) },
     ];
     for format in [RigFormat::Urdf, RigFormat::Mjcf] {
         let (_, report) = export(&rig, effects.clone(), format);
@@ -179,6 +181,7 @@ fn what_no_description_can_hold_is_left_out_with_the_reason() {
             ("backlash@r_arm_x", "direction"),
             ("image-shift@right", "image"),
             ("eye-yaw@right", "time"),
+            ("camera-mount@eyes", "time"),
         ];
         for ((effect, reason), (name, word)) in told.iter().zip(expected) {
             assert!(*effect == name && reason.contains(word), "{told:?}");

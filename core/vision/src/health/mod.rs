@@ -10,6 +10,7 @@
 
 mod align;
 mod cost;
+mod judged;
 mod matches;
 mod turn;
 
@@ -17,5 +18,6 @@ mod turn;
 mod tests;
 
 pub use cost::{Cost, cost};
+pub use judged::{BEARABLE_M, Better, Judged, TableRows, better, judge};
 pub use matches::{HealthError, Match, MatchCount, find_matches};
 pub use turn::{Turn, epipolar_px, fit_turn, fits_better_by, turned};

@@ -69,6 +69,7 @@ pub(super) fn calibration(
             views: views.to_vec(),
             created: jiff::Timestamp::now(),
             software: concat!("plumbline ", env!("CARGO_PKG_VERSION")).to_owned(),
+            minutes_since_on: None,
         },
     })
 }

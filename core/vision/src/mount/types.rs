@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Matrix6, SMatrix, UnitQuaternion, Vector3};
 use plumbline_model::decompose;
 use plumbline_model::frame::{Board, Head, LeftCamera};
-use plumbline_model::robot::{EyeMount, Posture, Rig};
+use plumbline_model::robot::{CalibratedAt, EyeMount, Posture, Rig};
 use plumbline_model::session::Touchscreen;
 use plumbline_model::{
     Chessboard, Corners, Eye, PairObservation, ParameterCovariance, Point, Pose, RejectedPair, Robot,
@@ -196,6 +196,9 @@ pub struct MountEvidence {
     pub created: jiff::Timestamp,
     /// Program and version.
     pub software: String,
+    /// Minutes since the cameras were switched on when the views were taken, in the mean; `None`: nobody knows. Eyes
+    /// turn as they warm up.
+    pub minutes_since_on: Option<f64>,
 }
 
 /// A solved mount.
@@ -254,6 +257,10 @@ impl MountCalibration {
         let eyes = EyeMount {
             head_from_left: self.head_from_left,
             cameras: self.evidence.cameras,
+            calibrated_at: CalibratedAt {
+                mount_s: self.evidence.minutes_since_on.map(|minutes| 60.0 * minutes),
+                ..rig.eyes.calibrated_at
+            },
             ..rig.eyes.clone()
         };
         Rig { eyes, ..rig.clone() }

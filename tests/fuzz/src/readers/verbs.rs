@@ -6,8 +6,8 @@ use plumbline_correction::Method;
 use plumbline_model::{InnerCorners, ModelKind, Unattended};
 use plumbline_offline::{
     CalibrateArgs, CheckArgs, CorrectArgs, DetectEvalArgs, DisparityArgs, GapArgs, IkArgs, LocateArgs,
-    PredictArgs, Split, TrainArgs, calibrate_stereo, check, correct, detect_eval, disparity, gap, ik, locate,
-    predict, scores, train,
+    LocateEyes, PredictArgs, Split, TrainArgs, calibrate_stereo, check, correct, detect_eval, disparity, gap,
+    ik, locate, predict, scores, train,
 };
 use plumbline_vision::detect::DetectorOptions;
 
@@ -158,11 +158,10 @@ fn solved(folder: &Path, targets: &str, own_rig: bool) -> Heard {
 
 fn located(folder: &Path) -> Heard {
     let args = LocateArgs {
-        cameras: vec![folder.join("views/cameras.yaml")],
+        eyes: LocateEyes::Calibrated { cameras: vec![folder.join("views/cameras.yaml")], robot: None },
         left: folder.join("views/left.png"),
         right: folder.join("views/right.png"),
         points: folder.join("views/points.csv"),
-        robot: None,
     };
     match locate(&args, &Unattended) {
         Ok(report) => {

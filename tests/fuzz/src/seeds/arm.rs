@@ -150,6 +150,7 @@ fn rig_model(rig: &Rig, session: &Session) -> Result<RigModel, Problem> {
         title: format!("{id} of {site}"),
         tip: Some(TIP.to_owned()),
         shape: None,
+        reference_s: 0.0,
         covariance: vec![],
         values,
         probability: Some(0.9),

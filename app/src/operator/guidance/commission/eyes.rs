@@ -6,6 +6,7 @@ use plumbline_widgets::format;
 
 use super::super::{ENOUGH_PAIRS, dropped, source_trouble, verdict};
 use super::Said;
+use crate::operator::words::health::not_offered;
 use crate::operator::{Action, RobotAction};
 
 /// Pairs that suffice on the way: the board is then looked at as it lies on the table.
@@ -21,6 +22,9 @@ pub(super) fn said(view: &View) -> Said {
         return Said::wait("The eyes have to deliver: let the source go on.", None).warn();
     }
     if let Some(proposal) = view.eyes.proposal.as_ref().filter(|proposal| proposal.stale.is_none()) {
+        if let Some(why) = not_offered(&view.eyes) {
+            return Said::press(why, "Discard the proposal", vec![Action::Discard]).warn();
+        }
         let verdict = verdict(proposal);
         if verdict.good {
             return Said::press(verdict.sentence, "Accept the calibration of the eyes", accepting(view));

@@ -6,7 +6,7 @@ use plumbline_engine::{HandStep, View};
 use super::super::{grasp, robot};
 use super::Said;
 use crate::operator::actions::{FIRST_CLASS, FIRST_PLACE_M};
-use crate::operator::words::grasp::closed;
+use crate::operator::words::grasp::{closed, holds};
 use crate::operator::{Action, CommissionAction, GraspAction, RobotAction};
 
 /// What lies farther from where it was laid out has rolled away, m.
@@ -16,7 +16,13 @@ pub(super) fn said(view: &View) -> Said {
     let of_view = &view.grasp;
     match &of_view.phase {
         GraspPhase::Idle => {}
-        phase if phase.is_paused() => return grasp::grasp(view).into(),
+        // The button says "Next: " by itself.
+        phase if phase.is_paused() => {
+            let next = of_view.between().filter(|_| of_view.stops_after_each);
+            let Some((next, said)) = next.zip(holds(of_view)) else { return grasp::grasp(view).into() };
+            let resume = vec![Action::Grasp(GraspAction::Resume)];
+            return Said::press(said, next.next.title().to_lowercase(), resume);
+        }
         GraspPhase::Planning => return Said::wait("Looks and plans. Nothing moves.", None),
         _ => return Said::wait(grasp::under_way(of_view), None),
     }

@@ -1,7 +1,6 @@
 //! What can be wrong with the eyes, and with what they make of an image.
 
 use super::{Act, Effect, Entry, EyeSite, Parameter, Shape, Site, TILT, parameter, vector};
-use crate::eyes::EyeSituation;
 
 /// Eyes that warm up turn; they do not wander through the head.
 const TURN: [Parameter; 3] =
@@ -10,11 +9,6 @@ const TURN: [Parameter; 3] =
 const ROLL_AND_NOD: [Parameter; 2] = [parameter("roll_rad", 0.01), parameter("pitch_rad", 0.01)];
 /// What grows is told along the rows alone: across them it would stand for any turn of both eyes.
 const SHIFT_ALONG: [Parameter; 1] = [parameter("du_px", 1.5)];
-
-/// How much of it is there at the time of a row: all, unless it grows.
-fn part(effect: &Effect, situation: &EyeSituation) -> f64 {
-    if effect.shape.is_some() { effect.grown(situation.t_secs) } else { 1.0 }
-}
 
 pub(super) static CAMERA_MOUNT: Entry = Entry {
     about: "eyes sit elsewhere in the head than in the model",
@@ -33,7 +27,7 @@ pub(super) static CAMERA_MOUNT: Entry = Entry {
     shown: |rows| rows.eyes,
     act: Act::Eyes(|effect, situation, values, deviation| {
         if effect.shape.is_some() {
-            deviation.mount_rad += vector(values) * part(effect, situation);
+            deviation.mount_rad += vector(values) * effect.part(situation.t_secs);
         } else {
             deviation.mount_m += vector(values);
             deviation.mount_rad += vector(&values[3..]);
@@ -69,7 +63,7 @@ pub(super) static EYE_YAW: Entry = Entry {
     shape: Shape::Growth(&[parameter("amplitude_rad", 0.01)]),
     shown: |rows| rows.eyes,
     act: Act::Eyes(|effect, situation, values, deviation| {
-        deviation.right_rad.y += values[0] * part(effect, situation);
+        deviation.right_rad.y += values[0] * effect.part(situation.t_secs);
     }),
     reported: Effect::plain,
     is: &[],
@@ -84,7 +78,7 @@ pub(super) static IMAGE_SHIFT: Entry = Entry {
     shape: Shape::Growth(&SHIFT_ALONG),
     shown: |rows| rows.eyes,
     act: Act::Eyes(|effect, situation, values, deviation| {
-        let part = part(effect, situation);
+        let part = effect.part(situation.t_secs);
         deviation.right_shift_px[0] += values[0] * part;
         deviation.right_shift_px[1] += values.get(1).copied().unwrap_or(0.0) * part;
     }),
@@ -117,7 +111,7 @@ pub(super) static EYE_ROLL: Entry = Entry {
     shape: Shape::Growth(&ROLL_AND_NOD),
     shown: |rows| rows.eyes,
     act: Act::Eyes(|effect, situation, values, deviation| {
-        let part = part(effect, situation);
+        let part = effect.part(situation.t_secs);
         deviation.right_rad.z += values[0] * part;
         deviation.right_rad.x += values[1] * part;
     }),

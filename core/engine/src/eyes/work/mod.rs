@@ -3,6 +3,7 @@
 mod accept;
 mod capture;
 mod export;
+mod health;
 mod keep;
 mod open;
 mod recording;
@@ -11,7 +12,7 @@ mod solve;
 
 use plumbline_model::{JobContext, counted};
 
-use super::view::BoardSeen;
+use super::view::{BoardSeen, HealthState};
 use crate::ground;
 use crate::ground::LongWork;
 use crate::ground::jobs::JobError;
@@ -19,6 +20,7 @@ use crate::ground::jobs::JobError;
 pub use accept::{Accept, Accepted};
 pub use capture::{Capture, Captured, Recognize, board_seen, find_in_both, glimpse_in_both, gray};
 pub use export::Export;
+pub use health::{Health, Pictures};
 pub use keep::Keep;
 pub use open::{Open, OpenWhat, Opened};
 pub use recording::{CollectRecording, Collected, collect_folder};
@@ -40,6 +42,8 @@ pub enum EyesWork {
     Solve(Solve),
     /// Read a calibration as a proposal.
     Open(Open),
+    /// Judge the calibration in use, and a proposed one.
+    Health(Health),
     /// Keep a calibration and make it the one in use.
     Accept(Accept),
     /// Write a calibration to a file.
@@ -65,6 +69,8 @@ pub enum EyesResult {
     Solved(Solved),
     /// A calibration read from a file.
     Opened(Opened),
+    /// What ordinary pairs say of the calibrations.
+    Health(HealthState),
     /// A calibration that is kept.
     Accepted(Accepted),
     /// Files that were written.
@@ -89,6 +95,7 @@ impl LongWork for EyesWork {
             Self::CollectRecording(_) => "Collect the pairs of the recording".to_owned(),
             Self::Solve(solve) => format!("Solve {}", counted(solve.pair_count(), "pair")),
             Self::Open(open) => open.title(),
+            Self::Health(_) => "Judge the calibration by what the eyes see".to_owned(),
             Self::Accept(_) => "Accept calibration".to_owned(),
             Self::Export(export) => format!("Write {}", export.file.display()),
             Self::Restore(_) => "Read the calibration in use".to_owned(),
@@ -99,9 +106,12 @@ impl LongWork for EyesWork {
 
     fn is_quiet(&self) -> bool {
         match self {
-            Self::Capture(_) | Self::Recognize(_) | Self::Keep(_) | Self::Restore(_) | Self::Accept(_) => {
-                true
-            }
+            Self::Capture(_)
+            | Self::Recognize(_)
+            | Self::Keep(_)
+            | Self::Restore(_)
+            | Self::Health(_)
+            | Self::Accept(_) => true,
             Self::CollectRecording(_)
             | Self::Solve(_)
             | Self::Open(_)
@@ -118,6 +128,7 @@ impl LongWork for EyesWork {
             Self::CollectRecording(work) => EyesResult::Collected(work.run(context)?),
             Self::Solve(work) => EyesResult::Solved(work.run(context)?),
             Self::Open(work) => EyesResult::Opened(work.run(context)?),
+            Self::Health(work) => EyesResult::Health(work.run(context)?),
             Self::Accept(work) => EyesResult::Accepted(work.run()?),
             Self::Export(work) => EyesResult::Exported(work.run()?),
             Self::Restore(work) => EyesResult::Restored(work.run(context)?),
@@ -136,6 +147,7 @@ impl EyesResult {
             Self::Collected(collected) => collected.summary(),
             Self::Solved(solved) => solved.summary(),
             Self::Opened(opened) => format!("Read {}.", opened.what()),
+            Self::Health(_) => "The calibration was judged by what the eyes see.".to_owned(),
             Self::Accepted(_) => "The calibration is in use.".to_owned(),
             Self::Exported(files) => {
                 let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use plumbline_grasp::{Failure, HandChoice, Record, Step};
 use plumbline_twin::Toy;
 
-use super::bench::{Bench, words};
+use super::bench::{Bench, tracks_in, words};
 use crate::command::{GraspCommand, HandStep, RobotCommand, TwinCommand};
 use crate::view::{GateState, GraspOutcome, GraspStep, MotionState};
 
@@ -113,6 +113,9 @@ fn killed_in_any_step_the_record_says_how_far_it_came_and_the_next_grasp_works()
         println!("killed in {step:?}: {:?}, then {:?}", record.step, after.step);
         assert!(after.outcome.is_none(), "killed in {step:?}: {:?}", after.outcome);
         assert!(has_reached(after.step, step), "{:?} after {step:?}", after.step);
+        // What the joints did until then is there.
+        let rows = tracks_in(&folder.path().join("twin/grasps").join(&name));
+        assert!(!rows.is_empty(), "killed in {step:?}");
         names.push(name);
     }
     let bench =

@@ -152,6 +152,12 @@ impl Bench {
         serde_json::from_str(&text).expect("a record")
     }
 
+    /// The joint tracks that were kept of the newest attempt.
+    pub fn kept_tracks(&self) -> Vec<Vec<String>> {
+        let grasps = std::fs::read_dir(self.folder.join("twin/grasps")).expect("attempts were kept");
+        tracks_in(&grasps.flatten().map(|entry| entry.path()).max().expect("one at least"))
+    }
+
     /// Begins a grasp: from then on the window shows this one, and not the one before.
     pub fn begin(&self) {
         self.send(GraspCommand::Grasp);
@@ -164,6 +170,17 @@ impl Bench {
         let view = self.until_idle();
         view.grasp.run.clone().expect("there was one")
     }
+}
+
+/// The rows of the joint tracks in the folder of an attempt, below their header; all have all cells.
+pub fn tracks_in(attempt: &Path) -> Vec<Vec<String>> {
+    let text = std::fs::read_to_string(attempt.join("tracks.csv")).expect("they are kept");
+    assert!(text.ends_with('\n'), "half a row is left");
+    let mut rows = text.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+    let head = rows.next().expect("a header");
+    let rows: Vec<_> = rows.collect();
+    assert!(rows.iter().all(|row| row.len() == head.len()), "{text}");
+    rows
 }
 
 /// Where the middle of a toy really is, robot frame, m, for judging; `None`: put away.

@@ -8,4 +8,5 @@ mod bus;
 mod lab;
 mod refusals;
 mod steps;
+mod stepwise;
 mod twin;

@@ -35,6 +35,7 @@ fn a_thing_is_grasped_put_down_and_grasped_again() {
     assert!(run.lamps.iter().all(|(_, lamp)| *lamp == LampState::Done), "{:?}", run.lamps);
     let record = bench.kept();
     assert_eq!(record.outcome, Some(GraspOutcome::Success));
+    the_joints_were_followed(&bench.kept_tracks(), record.seconds.expect("it lifted"));
     bench.send(GraspCommand::Judge { attempt: run.name.clone(), held: false });
     bench.until("the word of the operator", |view| {
         view.grasp.attempts.first().is_some_and(|attempt| attempt.told == Some(false))
@@ -47,6 +48,30 @@ fn a_thing_is_grasped_put_down_and_grasped_again() {
     assert!(!said.as_deref().is_some_and(|text| text.contains("Put down")), "{said:?}");
     let run = bench.grasp();
     assert_eq!(run.outcome, Some(GraspOutcome::Success), "{run:?}");
+}
+
+/// About ten rows a second to the end, the steps in their order, and arms that move where they are sent.
+fn the_joints_were_followed(rows: &[Vec<String>], lifted_s: f64) {
+    let time_s = |row: &Vec<String>| row[0].parse::<f64>().expect("a time");
+    assert!(rows.windows(2).all(|pair| time_s(&pair[0]) < time_s(&pair[1])));
+    assert!(rows.last().is_some_and(|row| time_s(row) > lifted_s), "they end at {:?}", rows.last());
+    // A machine that is busy with other tests reads less often.
+    let per_s = rows.len() as f64 / lifted_s;
+    assert!((2.0..20.0).contains(&per_s), "{per_s:.1} rows a second");
+    let mut steps: Vec<&str> = rows.iter().filter_map(|row| row.last()).map(String::as_str).collect();
+    steps.dedup();
+    for step in ["approach", "lower", "close", "lift", "check"] {
+        assert!(steps.contains(&step), "{step} is not in {steps:?}");
+    }
+    let moves = |column: usize| {
+        let angles_rad: Vec<f64> = rows.iter().filter_map(|row| row[column].parse().ok()).collect();
+        let (least, most) = angles_rad.iter().fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(*x), b.max(*x)));
+        most - least
+    };
+    let columns = rows[0].len();
+    let moved = (1..columns - 1).step_by(2).filter(|column| moves(*column) > 0.1).count();
+    let sent = (2..columns - 1).step_by(2).filter(|column| moves(*column) > 0.1).count();
+    assert!(moved >= 5 && sent >= 5, "{moved} joints moved, {sent} were sent somewhere");
 }
 
 #[test]

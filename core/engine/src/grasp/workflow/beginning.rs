@@ -10,6 +10,7 @@ use crate::grasp::keeping::grasps_in;
 use crate::grasp::progress::Progress;
 use crate::grasp::refusal::Refusal;
 use crate::grasp::steps::HandWork;
+use crate::grasp::stepwise::StopAfterEach;
 use crate::grasp::work::{Context, GraspWork};
 use crate::ground::jobs::JobId;
 use crate::robot::{Leader, Reins, RobotControl};
@@ -77,6 +78,7 @@ impl GraspWorkflow {
         let object = target.class.clone().unwrap_or_else(|| "what is seen best".to_owned());
         let progress = Progress::new(self.method, &object);
         self.progress = Some(progress.clone());
+        let stops = self.stops_in(around);
         Attempt {
             rests_on: around.rests_on(),
             hand: self.choice,
@@ -86,7 +88,13 @@ impl GraspWorkflow {
             grasps: grasps_in(&self.folder),
             at: context.time.day,
             progress,
+            stops,
         }
+    }
+
+    /// An experiment goes on by itself, and its attempts are compared: they hold nowhere.
+    fn stops_in(&self, around: &GraspAround) -> StopAfterEach {
+        if around.in_experiment { StopAfterEach::default() } else { self.stops.clone() }
     }
 
     /// What is under way has ended; what was to be done then begins.
@@ -100,5 +108,26 @@ impl GraspWorkflow {
         {
             context.refuse(why);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+    use std::sync::Arc;
+
+    use plumbline_model::robot::Rig;
+
+    use super::*;
+
+    #[test]
+    fn attempts_of_an_experiment_do_not_stop_after_each_step_and_the_switch_reaches_one_under_way() {
+        let rig = Arc::new(Rig::built_in("nico").expect("comes with the program"));
+        let workflow = GraspWorkflow::new(Path::new("unused"));
+        let by_hand = workflow.stops_in(&GraspAround::bare(&rig));
+        let of_experiment =
+            workflow.stops_in(&GraspAround { in_experiment: true, ..GraspAround::bare(&rig) });
+        workflow.stops.set(true);
+        assert!(by_hand.is_on() && !of_experiment.is_on());
     }
 }

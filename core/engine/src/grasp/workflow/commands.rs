@@ -7,6 +7,7 @@ use crate::grasp::around::GraspAround;
 use crate::grasp::command::{GraspCommand, GraspTarget, HandStep};
 use crate::grasp::pointing::pointed_at;
 use crate::grasp::refusal::Refusal;
+use crate::grasp::stepwise::go_on;
 use crate::grasp::work::{Context, GraspWork};
 
 impl GraspWorkflow {
@@ -43,8 +44,9 @@ impl GraspWorkflow {
             }
             GraspCommand::Grasp => self.begin(What::Grasp, around, context)?,
             GraspCommand::Pause => self.under_way()?.reins.hold_tight(true),
-            GraspCommand::Resume => self.under_way()?.reins.hold_tight(false),
+            GraspCommand::Resume => go_on(self.progress.as_ref(), &self.under_way()?.reins),
             GraspCommand::End => self.end()?,
+            GraspCommand::StopAfterEachStep(on) => self.stops.set(on),
             GraspCommand::Hand(HandStep::Home) if self.running.is_some() => {
                 self.end()?;
                 self.then = Some(HandStep::Home);
@@ -87,7 +89,7 @@ impl GraspWorkflow {
     fn end(&mut self) -> Result<(), Refusal> {
         let running = self.running.as_mut().ok_or(Refusal::NothingUnderWay)?;
         running.reins.end();
-        running.reins.hold_tight(false);
+        go_on(self.progress.as_ref(), &running.reins);
         running.ending = true;
         Ok(())
     }

@@ -16,6 +16,7 @@ use super::held::HeldWatch;
 use super::keeping::grasps_in;
 use super::progress::Progress;
 use super::sights::Sights;
+use super::stepwise::StopAfterEach;
 use super::view::{AttemptView, GraspView, PlannedGrasp};
 use super::work::{Context, GraspResult, GraspWork};
 use crate::ground::jobs::JobId;
@@ -47,6 +48,8 @@ pub struct GraspWorkflow {
     pub(in crate::grasp) method: Method,
     pub(in crate::grasp) choice: HandChoice,
     pub(in crate::grasp) target: GraspTarget,
+    /// Whether attempts hold after each step.
+    pub(in crate::grasp) stops: StopAfterEach,
     pub(in crate::grasp) running: Option<Running>,
     /// What is done when what is under way has ended.
     then: Option<HandStep>,
@@ -82,6 +85,7 @@ impl GraspWorkflow {
             method: Method::M5,
             choice: HandChoice::default(),
             target: GraspTarget::default(),
+            stops: StopAfterEach::default(),
             running: None,
             then: None,
             plan: None,

@@ -2,7 +2,10 @@
 //! answers. What moves goes through [`super::arm::Arm`] and with it through all limits.
 
 mod closing;
+mod course;
 mod follow;
+#[cfg(test)]
+pub(crate) mod made_up;
 mod wire;
 
 pub use wire::{GivenUp, LeadAnswer, LeadOrder, Leader, Led, Reins};
@@ -97,6 +100,9 @@ impl Worker {
     /// Takes orders and goes on with the one that is carried out.
     pub(super) fn step_lead(&mut self, now: Instant) {
         let Some(led) = self.leading.led.clone() else { return };
+        if let Some(state) = self.arm().ok().and_then(|arm| arm.state()) {
+            led.note(&state);
+        }
         loop {
             match led.orders.try_recv() {
                 Ok(order) => self.take_order(&led, order),

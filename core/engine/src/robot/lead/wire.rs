@@ -9,6 +9,8 @@ use plumbline_hardware::joints::JointState;
 use plumbline_model::robot::collision::Allowance;
 use plumbline_model::robot::{JointIndex, Posture};
 
+use super::course::Course;
+
 /// One order is under way at a time; a second place lets it be ended.
 const WAITING: usize = 4;
 
@@ -103,9 +105,15 @@ pub struct Led {
     pub(super) orders: Receiver<LeadOrder>,
     answers: Sender<LeadAnswer>,
     pub(super) reins: Reins,
+    course: Course,
 }
 
 impl Led {
+    /// How the joints are now, for who wants to know it all the time.
+    pub(crate) fn note(&self, state: &Arc<JointState>) {
+        self.course.note(state);
+    }
+
     /// An answer that nobody waits for is let go: whoever leads has ended.
     pub(super) fn tell(&self, answer: LeadAnswer) {
         if let Err(error) = self.answers.try_send(answer) {
@@ -119,6 +127,7 @@ impl Led {
 pub struct Leader {
     orders: Sender<LeadOrder>,
     answers: Receiver<LeadAnswer>,
+    course: Course,
 }
 
 impl Leader {
@@ -126,8 +135,27 @@ impl Leader {
     pub fn pair(title: &str, moves: bool, reins: &Reins) -> (Self, Led) {
         let (orders_in, orders) = crossbeam_channel::bounded(WAITING);
         let (answers_in, answers) = crossbeam_channel::bounded(WAITING);
-        let led = Led { title: title.to_owned(), moves, orders, answers: answers_in, reins: reins.clone() };
-        (Self { orders: orders_in, answers }, led)
+        let course = Course::default();
+        let led = Led {
+            title: title.to_owned(),
+            moves,
+            orders,
+            answers: answers_in,
+            reins: reins.clone(),
+            course: course.clone(),
+        };
+        (Self { orders: orders_in, answers, course }, led)
+    }
+
+    /// From now on what the joints do is kept, also while an order is carried out: their states, this far
+    /// apart at least.
+    pub fn keep_course(&self, every: Duration) {
+        self.course.keep(every);
+    }
+
+    /// The states since this was asked last, oldest first, and how many more there were than could wait.
+    pub fn take_course(&self) -> (Vec<Arc<JointState>>, usize) {
+        self.course.take()
     }
 
     /// Hands an order over.

@@ -54,6 +54,11 @@ impl TrialsWorkflow {
         std::mem::take(&mut self.wishes)
     }
 
+    /// Whether it makes its attempts: one is under way, or prepared.
+    pub fn is_under_way(&self) -> bool {
+        self.under_way.is_some()
+    }
+
     fn obey(
         &mut self,
         command: TrialsCommand,

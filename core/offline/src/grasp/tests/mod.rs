@@ -14,7 +14,7 @@ use plumbline_engine::trials::Experiment;
 use plumbline_engine::trials::store::begin;
 use plumbline_grasp::attempt::{HandFinder, RenderedHand};
 use plumbline_grasp::{
-    Corrections, Failure, Halt, Hand, HandChoice, Knowledge, Method, Order, Outcome, Record, Step,
+    Corrections, Failure, Halt, Hand, HandChoice, Knowledge, Method, Order, Outcome, Record, Step, tracks,
 };
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_model::{StereoCalibration, Unattended};
@@ -203,6 +203,9 @@ fn what_is_taken_away_or_pushed_on_the_way_is_not_called_held() {
 #[test]
 fn what_is_missed_is_looked_for_and_grasped_once_more() {
     let mut bench = bench("perfect");
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join(tracks::FILE);
+    bench.track_in(file.clone());
     let mut pushes = |task: &Task| {
         let mut times = 0;
         let mut push = |now: Step, twin: &mut Lockstep| {
@@ -221,6 +224,40 @@ fn what_is_missed_is_looked_for_and_grasped_once_more() {
     assert!(record.standing_m.is_some_and(|[x, y]| (x - 0.35).hypot(y + 0.17) < 0.02));
     let kept: Record = serde_json::from_str(&serde_json::to_string(&record).expect("text")).expect("read");
     assert_eq!(kept, record);
+    tracks_say_the_same(&std::fs::read_to_string(&file).expect("kept"), &record, bench.rig());
+}
+
+/// The joints over time, of both tries: as often as is said, each row of the step that was under way, and where a
+/// step had ended there the record has the joints, too.
+fn tracks_say_the_same(text: &str, record: &Record, rig: &Rig) {
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let head = lines.next().expect("a header");
+    let rows: Vec<Vec<&str>> = lines.collect();
+    assert!(head.len() == 2 + 2 * rig.servos.len() && rows.iter().all(|row| row.len() == head.len()));
+    let time_s = |row: &[&str]| row[0].parse::<f64>().expect("a time");
+    for pair in rows.windows(2) {
+        let apart_s = time_s(&pair[1]) - time_s(&pair[0]);
+        assert!((apart_s - tracks::EVERY_S).abs() < 2e-3, "{apart_s} s at {}", pair[0][0]);
+    }
+    let mut steps: Vec<&str> = rows.iter().map(|row| row[head.len() - 1]).collect();
+    steps.dedup();
+    let ended = |step: &str| steps.iter().filter(|of| **of == step).count();
+    assert_eq!((ended("approach"), ended("close"), ended("again")), (2, 2, 1), "{steps:?}");
+    for moment in &record.moments {
+        let last = rows.iter().rfind(|row| time_s(row) <= moment.at_s + 1e-9).expect("a row");
+        assert!(moment.at_s - time_s(last) < tracks::EVERY_S + 2e-3, "at {} s", moment.at_s);
+        for (k, encoder_rad) in moment.encoder_rad.iter().enumerate() {
+            // A finger may still close between two rows.
+            let measured_rad: f64 = last[1 + 2 * k].parse().expect("all are heard");
+            assert!((measured_rad - encoder_rad).abs() < 0.1, "{} at {} s", head[1 + 2 * k], moment.at_s);
+            let commanded_rad: f64 = last[2 + 2 * k].parse().expect("all are known");
+            let sent_rad = moment.commanded_rad[rig.servos[k].joint.0];
+            assert!((commanded_rad - sent_rad).abs() < 1e-3, "{} at {} s", head[2 + 2 * k], moment.at_s);
+        }
+    }
+    let (bytes, lasted_s) = (text.len(), rows.len() as f64 * tracks::EVERY_S);
+    println!("{bytes} bytes in {lasted_s:.1} s");
+    assert!((bytes as f64) < 6000.0 * lasted_s + 2000.0, "{bytes} bytes in {lasted_s:.1} s");
 }
 
 #[test]
@@ -264,6 +301,10 @@ fn two_shards_put_together_are_one_run_byte_for_byte() {
         found
     };
     assert_eq!(files(&whole_in), files(&merged_in));
+    let is_tracks = |(name, text): &&(PathBuf, Vec<u8>)| {
+        name.to_string_lossy().ends_with("-m5.tracks.csv") && text.starts_with(b"t_s,")
+    };
+    assert_eq!(files(&merged_in).iter().filter(is_tracks).count(), 3, "the joints of every attempt");
     // Another experiment is not mixed in.
     let other = Experiment { seed: 8, ..experiment.clone() };
     let refused = begin(&whole_in, &other).expect_err("another one").to_string();

@@ -71,6 +71,8 @@ pub(super) struct FitPart {
 pub(super) struct EvidencePart {
     pub created: jiff::Timestamp,
     pub software: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub minutes_since_on: Option<f64>,
     pub joints: Vec<String>,
     pub options: MountOptions,
     pub nominal_head_from_left: PosePart,

@@ -168,6 +168,9 @@ impl Reader<'_> {
         let views =
             part.view.into_iter().map(|view| self.view(view, part.joints.len())).collect::<Result<_, _>>()?;
         let apart = self.pose("evidence.cameras.right_from_left", &part.cameras.right_from_left)?;
+        if let Some(minutes) = part.minutes_since_on {
+            self.positive("evidence.minutes_since_on", minutes)?;
+        }
         let place = "evidence.cameras.right_from_left";
         self.plausible(place, plausible::BASELINE_M, &[apart.translation.vector.norm()])?;
         Ok(MountEvidence {
@@ -184,6 +187,7 @@ impl Reader<'_> {
             views,
             created: part.created,
             software: part.software,
+            minutes_since_on: part.minutes_since_on,
         })
     }
 

@@ -30,6 +30,7 @@ pub(super) fn parts(mount: &MountCalibration) -> File {
         evidence: EvidencePart {
             created: evidence.created,
             software: evidence.software.clone(),
+            minutes_since_on: evidence.minutes_since_on,
             joints: evidence.joints.clone(),
             options: evidence.options.clone(),
             nominal_head_from_left: pose_part(&evidence.nominal.isometry),

@@ -10,7 +10,9 @@ fn a_mount_read_back_is_the_same() {
     views[2].right = None;
     views[3].left.as_mut().expect("seen")[5] = None;
     let options = MountOptions { head_zero_sd_rad: Some(0.01), ..MountOptions::default() };
-    let solved = world.solve_with(&views, &Target::UnknownBoard(board()), &options).expect("solvable");
+    let mut solved = world.solve_with(&views, &Target::UnknownBoard(board()), &options).expect("solvable");
+    assert_eq!(solved.evidence.minutes_since_on, None, "views do not say it");
+    solved.evidence.minutes_since_on = Some(12.5);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("mount.toml");
     solved.write(&file).expect("writable");

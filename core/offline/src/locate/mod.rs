@@ -1,43 +1,59 @@
 //! `plumbline locate`: where in space points of the raw left image are.
 
+mod known;
+
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use image::RgbImage;
-use plumbline_effects::rig_model::ModelEffect;
-use plumbline_effects::{RobotModel, SeenUnder};
 use plumbline_engine::ground::text::sentence;
-use plumbline_engine::rig_models::{Accepted, mounted};
 use plumbline_hardware::load_image;
-use plumbline_model::robot::{Posture, RigPart};
-use plumbline_model::{JobContext, Pixel, Raw, StereoCameras};
+use plumbline_model::{JobContext, Pixel, Raw};
 use plumbline_vision::calibration_file;
 use plumbline_vision::locate::{Located, Locator};
-use plumbline_vision::mount::MountCalibration;
 use serde::Serialize;
 
+use self::known::Known;
 use super::OfflineError;
-use super::ik::find_rig;
 use super::pairs::check_sizes;
-use super::session::ModelFile;
 use super::table::Table;
+
+/// Why a point that was found has no place in the robot's frame.
+const NO_PLACE: &str = "With the effects of the model there is no place that the eyes would see so: ask for another \
+                        point, or look at the model.";
 
 /// What to locate.
 #[derive(Clone, Debug)]
 pub struct LocateArgs {
-    /// Calibration file in any known format; two files for ROS, left eye first.
-    pub cameras: Vec<PathBuf>,
+    /// Whose eyes took the images.
+    pub eyes: LocateEyes,
     /// Left image.
     pub left: PathBuf,
     /// Right image.
     pub right: PathBuf,
     /// Table with the columns `u_px`, `v_px`: pixels of the raw left image.
     pub points: PathBuf,
-    /// The robot whose eyes they are, for places in its frame.
-    pub robot: Option<LocateRobot>,
 }
 
-/// The robot whose eyes took the images.
+/// Whose eyes took the images.
+#[derive(Clone, Debug)]
+pub enum LocateEyes {
+    /// Eyes of which there is a calibration.
+    Calibrated {
+        /// Calibration file in any known format; two files for ROS, left eye first.
+        cameras: Vec<PathBuf>,
+        /// The robot that they sit on, for places in its frame.
+        robot: Option<LocateRobot>,
+    },
+    /// Those of a commissioned lab: calibration, mount and effects are those that were accepted there.
+    OfLab {
+        /// Its folder.
+        lab: PathBuf,
+        /// How the robot stood.
+        stood: Stood,
+    },
+}
+
+/// The robot whose eyes took the images, from files.
 #[derive(Clone, Debug)]
 pub struct LocateRobot {
     /// Name of a rig that comes with the program, or the path of a rig file.
@@ -46,9 +62,18 @@ pub struct LocateRobot {
     pub rig_model: PathBuf,
     /// A calibrated mount of the eyes; `None`: nominal.
     pub mount: Option<PathBuf>,
+    /// How it stood.
+    pub stood: Stood,
+}
+
+/// How the robot stood when the images were taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stood {
     /// Angles of the head (pan, positive to the left; tilt, positive up; rad); `None`: as in the rig's
-    /// home pose.
+    /// home pose, from which a commissioning looks at the table.
     pub head_rad: [Option<f64>; 2],
+    /// For how long the eyes had been on, s; `None`: what moves as they warm up takes no effect.
+    pub eyes_on_s: Option<f64>,
 }
 
 /// Where the points are.
@@ -56,7 +81,7 @@ pub struct LocateRobot {
 pub struct LocateReport {
     /// In the order of the table.
     pub points: Vec<LocatedPoint>,
-    /// What was noticed about the images.
+    /// What was noticed about the images, and why places in the robot's frame are stated with a wide uncertainty.
     pub notes: Vec<String>,
     /// The model of the robot that places in its frame rest on: "as described", "with 2 effects".
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -64,6 +89,12 @@ pub struct LocateReport {
     /// Its effects, as `id@site`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<String>,
+    /// Angle of the head to the side that these places rest on, positive to the left.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub head_z_rad: Option<f64>,
+    /// Angle of the head up.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub head_y_rad: Option<f64>,
 }
 
 /// One point. What is not known is null, and `reason` says why.
@@ -85,7 +116,7 @@ pub struct LocatedPoint {
     pub match_u_px: Option<f64>,
     /// Row of the match in the raw right image.
     pub match_v_px: Option<f64>,
-    /// Why the point was not found.
+    /// Why the point was not found, or has no place in the robot's frame.
     pub reason: Option<String>,
     /// Where it is in the robot's frame; only where a model of the robot was given.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
@@ -101,19 +132,33 @@ pub struct PointInRobot {
     pub robot_y_m: f64,
     /// Up.
     pub robot_z_m: f64,
-    /// One standard deviation along the worst direction, with that of the model's effects.
+    /// One standard deviation along the worst direction, with those of the mount (or how far mounts usually are off,
+    /// where none was given) and of the model's effects.
     pub robot_sigma_m: f64,
 }
 
 /// Locates every point of the table.
+///
+/// # Errors
+/// When the eyes or the robot are not known, or images and points cannot be read.
 pub fn locate(args: &LocateArgs, context: &dyn JobContext) -> Result<LocateReport, OfflineError> {
-    let calibration = calibration_file::load(&args.cameras)?;
+    let (calibration, robot) = match &args.eyes {
+        LocateEyes::Calibrated { cameras, robot } => {
+            let calibration = calibration_file::load(cameras)?;
+            let known = |robot| Known::of_files(robot, &calibration);
+            let robot = robot.as_ref().map(known).transpose()?;
+            (calibration, robot)
+        }
+        LocateEyes::OfLab { lab, stood } => {
+            let (calibration, robot) = Known::of_lab(lab, stood)?;
+            (calibration, Some(robot))
+        }
+    };
     let pixels = read_points(&args.points)?;
     let mut notes = Vec::new();
     let left = read_image(&args.left, &mut notes)?;
     let right = read_image(&args.right, &mut notes)?;
     check_sizes(&calibration.cameras, [left.dimensions(), right.dimensions()])?;
-    let robot = args.robot.as_ref().map(|robot| known(robot, &calibration.cameras)).transpose()?;
     let locator = Locator::new(&calibration)?;
     context.checkpoint()?;
     context.report(0.1, "locating");
@@ -122,60 +167,43 @@ pub fn locate(args: &LocateArgs, context: &dyn JobContext) -> Result<LocateRepor
     let points = pixels.iter().zip(located).map(|(pixel, located)| {
         let asked = LocatedPoint { u_px: pixel.u_px, v_px: pixel.v_px, ..LocatedPoint::default() };
         match located {
-            Ok(found) => LocatedPoint {
-                x_m: Some(found.point.coords.x),
-                y_m: Some(found.point.coords.y),
-                z_m: Some(found.point.coords.z),
-                sigma_m: Some(found.sigma_m),
-                match_u_px: Some(found.match_in_right.u_px),
-                match_v_px: Some(found.match_in_right.v_px),
-                robot: robot.as_ref().and_then(|robot| in_robot(robot, &found)),
-                ..asked
-            },
+            Ok(found) => in_robot(robot.as_ref(), &found, asked),
             Err(reason) => LocatedPoint { reason: Some(sentence(&reason.to_string())), ..asked },
         }
     });
     let points = points.collect();
-    let model = robot.as_ref().map(|(model, _)| model.title());
-    let effects = robot.iter().flat_map(|(model, _)| model.added().effects().iter().map(ModelEffect::name));
-    Ok(LocateReport { points, notes, model, effects: effects.collect() })
+    notes.extend(robot.as_ref().and_then(Known::wide_because).map(str::to_owned));
+    let head_rad = robot.as_ref().map(Known::head_rad);
+    Ok(LocateReport {
+        points,
+        notes,
+        model: robot.as_ref().map(Known::title),
+        effects: robot.as_ref().map(Known::effects).unwrap_or_default(),
+        head_z_rad: head_rad.map(|[pan_rad, _]| pan_rad),
+        head_y_rad: head_rad.map(|[_, tilt_rad]| tilt_rad),
+    })
 }
 
-/// The robot as it is known, with these eyes, and how it stands.
-fn known(args: &LocateRobot, cameras: &StereoCameras) -> Result<(RobotModel, Posture), OfflineError> {
-    let mut rig = find_rig(&args.rig)?;
-    let effects = match ModelFile::read(&args.rig_model, &rig)? {
-        ModelFile::Effects(effects) => Some(Arc::new(*effects)),
-        ModelFile::Rig(other) => {
-            rig = *other;
-            None
-        }
-        ModelFile::Placement(placement) => {
-            rig.touchscreen = placement.screen;
-            None
-        }
-    };
-    rig.need(RigPart::Eyes)?;
-    let mount = args.mount.as_ref().map(|file| MountCalibration::read(file, &rig)).transpose()?;
-    let accepted = Accepted {
-        cameras: Some(cameras),
-        head_from_left: mount.as_ref().map(|mount| mount.head_from_left),
-        mounted: mount.as_ref().map(mounted),
-        screen: None,
-        effects: effects.as_ref(),
-    };
-    let model = accepted.robot_model(&rig)?;
-    let mut posture = rig.home();
-    for (joint, angle_rad) in [rig.eyes.pan, rig.eyes.tilt].into_iter().zip(args.head_rad) {
-        posture[joint] = angle_rad.unwrap_or(posture[joint]);
+/// A point that was found, with its place in the frame of the robot where one is known.
+fn in_robot(robot: Option<&Known>, found: &Located, asked: LocatedPoint) -> LocatedPoint {
+    let in_left = found.point.coords;
+    let place = robot.map(|robot| robot.place(found));
+    LocatedPoint {
+        x_m: Some(in_left.x),
+        y_m: Some(in_left.y),
+        z_m: Some(in_left.z),
+        sigma_m: Some(found.sigma_m),
+        match_u_px: Some(found.match_in_right.u_px),
+        match_v_px: Some(found.match_in_right.v_px),
+        reason: matches!(place, Some(None)).then(|| NO_PLACE.to_owned()),
+        robot: place.flatten().map(|place| PointInRobot {
+            robot_x_m: place.point.coords.x,
+            robot_y_m: place.point.coords.y,
+            robot_z_m: place.point.coords.z,
+            robot_sigma_m: place.sigma_m(),
+        }),
+        ..asked
     }
-    Ok((model, posture))
-}
-
-fn in_robot((model, posture): &(RobotModel, Posture), found: &Located) -> Option<PointInRobot> {
-    let place = model.place(&found.point, &found.covariance_m2, posture, &SeenUnder::default())?;
-    let at = place.point.coords;
-    Some(PointInRobot { robot_x_m: at.x, robot_y_m: at.y, robot_z_m: at.z, robot_sigma_m: place.sigma_m() })
 }
 
 /// Reads an image and keeps what was noticed about it.

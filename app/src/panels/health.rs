@@ -1,0 +1,79 @@
+//! Whether the calibration in use still holds, and whether the proposed one is better: one button, and what came of it.
+
+use egui::{Button, Ui};
+use plumbline_engine::View;
+use plumbline_engine::view::{EyesHealth, HealthFigures, HealthState};
+use plumbline_widgets::format;
+use plumbline_widgets::key_value::{KeyValue, key_value_grid};
+use plumbline_widgets::theme::{self, group_heading, space};
+
+use super::parts::warning;
+use crate::operator::words::health as words;
+use crate::operator::{Action, Outbox};
+
+const ROWS: [&str; 3] = ["Near", "Middle", "Far"];
+
+pub fn show(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
+    group_heading(ui, "Does the calibration hold?");
+    match &view.eyes.health.state {
+        HealthState::NotAsked => {
+            let text = "Four pairs of whatever lies there, without a board, say how far off it puts places. It takes \
+                some seconds.";
+            ui.label(theme::weak(ui, text));
+        }
+        HealthState::Gathering { pairs, of } => busy(ui, &format!("Looks: {pairs} of {of} pairs.")),
+        HealthState::Judging => busy(ui, "Compares what both eyes see."),
+        HealthState::Failed(why) => warning(ui, why),
+        HealthState::Judged(health) => judged(ui, health),
+    }
+    // What is not offered is said where it would be.
+    let against = view.eyes.health.is_against_proposal();
+    if let Some(said) = view.eyes.health.judged().filter(|_| !against).and_then(words::proposed) {
+        ui.label(said);
+    }
+    ui.add_space(space::XS);
+    let action = Action::JudgeHealth;
+    let why = action.refusal(view);
+    let button = ui.add_enabled(why.is_none(), Button::new(action.label()));
+    if button.on_disabled_hover_text(why.unwrap_or_default()).clicked() {
+        outbox.act(action);
+    }
+}
+
+fn busy(ui: &mut Ui, text: &str) {
+    ui.horizontal(|ui| {
+        ui.spinner();
+        ui.label(text);
+    });
+}
+
+fn judged(ui: &mut Ui, health: &EyesHealth) {
+    let said = words::in_use(health);
+    if health.in_use.is_good {
+        ui.label(said);
+    } else {
+        warning(ui, &said);
+    }
+    figures(ui, "In use", &health.in_use);
+    if let Some((proposed, _)) = &health.proposed {
+        figures(ui, "Proposed", proposed);
+    }
+    let (places, pairs) = (format::count(health.places, "place"), format::count(health.pairs, "pair"));
+    ui.label(theme::small(ui, format!("By {places} in {pairs}.")));
+}
+
+fn figures(ui: &mut Ui, name: &str, figures: &HealthFigures) {
+    group_heading(ui, name);
+    let off = figures.off_m.into_iter().zip(figures.sigma_m);
+    let mut rows: Vec<KeyValue> = ROWS
+        .into_iter()
+        .zip(off)
+        .map(|(row, (off_m, sigma_m))| KeyValue::text(row, format::cm_with(off_m, sigma_m)))
+        .collect();
+    rows.push(KeyValue::text("Right eye has turned", format::degrees(figures.turn_rad)));
+    rows.push(
+        KeyValue::text("Vertical error", format::px(figures.epipolar_px))
+            .help("How far matched places leave the epipolar lines"),
+    );
+    key_value_grid(ui, &format!("health {name}"), &rows);
+}

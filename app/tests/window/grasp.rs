@@ -1,0 +1,145 @@
+//! Grasping: one step after the other, and things that are chosen where they are drawn.
+
+use std::sync::Arc;
+
+use egui::{Modifiers, Pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use nalgebra::Point3;
+use plumbline::{PlumblineWindow, Screen, WindowSettings};
+use plumbline_engine::view::{
+    BetweenSteps, GraspHand, GraspMethod, GraspPhase, GraspRun, GraspStep, GraspView, LampState,
+};
+use plumbline_engine::{Command, GraspCommand, GraspTarget, View};
+use plumbline_model::frame::Point;
+use plumbline_widgets::scene3d::SceneCamera;
+
+use crate::fake::{Fake, click, says, shows};
+use crate::made_up::everything;
+
+/// In front of everything else for who looks at the scene from where it is looked at first, m.
+const TOMATO_M: [f64; 3] = [0.55, -0.25, 0.084];
+
+fn with(grasp: GraspView) -> View {
+    View { grasp: Arc::new(grasp), ..everything() }
+}
+
+fn on_grasp(fake: &Fake) -> Harness<'static, PlumblineWindow> {
+    fake.window(WindowSettings { screen: Screen::Grasp, ..WindowSettings::default() })
+}
+
+/// An attempt that holds by itself between two steps.
+fn held(stops_after_each: bool) -> GraspView {
+    let lamps = [
+        (GraspStep::Approach, LampState::Done),
+        (GraspStep::Align, LampState::Done),
+        (GraspStep::Lower, LampState::Dark),
+    ];
+    let run = GraspRun {
+        name: "run".to_owned(),
+        object: "Tomato".to_owned(),
+        method: Some(GraspMethod::M5),
+        hand: Some(GraspHand::Right),
+        tries: [1, 3],
+        lamps: lamps.to_vec(),
+        between: Some(BetweenSteps { done: GraspStep::Approach, next: GraspStep::Lower }),
+        ..GraspRun::default()
+    };
+    let phase = GraspPhase::Grasping { paused: true, ending: false };
+    GraspView { phase, run: Some(Arc::new(run)), stops_after_each, ..GraspView::default() }
+}
+
+#[test]
+fn the_switch_stands_beside_the_buttons_also_while_a_grasp_is_under_way() {
+    let running = GraspPhase::Grasping { paused: false, ending: false };
+    for (phase, on) in [(GraspPhase::Idle, false), (running, true)] {
+        let fake = Fake::over(with(GraspView { phase, stops_after_each: on, ..GraspView::default() }));
+        let mut window = on_grasp(&fake);
+        click(&mut window, "Stop after each step");
+        assert_eq!(fake.take_sent(), [Command::from(GraspCommand::StopAfterEachStep(!on))]);
+    }
+}
+
+#[test]
+fn a_grasp_that_holds_says_what_is_done_what_comes_next_and_what_moves_and_one_button_goes_on() {
+    let fake = Fake::over(with(held(true)));
+    let mut window = on_grasp(&fake);
+    assert!(says(&window, "The hand is above the tomato; the arm holds."));
+    assert!(says(&window, "Next, lower: the arm goes straight down at the tomato."));
+    assert!(shows(&window, "Approach done") && shows(&window, "Lower to come"));
+    assert!(!shows(&window, "Go on"));
+    click(&mut window, "Next step: lower");
+    click(&mut window, "End");
+    let sent = [GraspCommand::Resume, GraspCommand::End].map(Command::from);
+    assert_eq!(fake.take_sent(), sent);
+}
+
+#[test]
+fn with_the_switch_turned_off_meanwhile_the_button_goes_on_to_the_end() {
+    let fake = Fake::over(with(held(false)));
+    let mut window = on_grasp(&fake);
+    assert!(says(&window, "All that comes after follows without a stop."));
+    click(&mut window, "Go on");
+    assert_eq!(fake.take_sent(), [Command::from(GraspCommand::Resume)]);
+}
+
+/// A toy stands on the twin's table, in sight.
+fn with_tomato(phase: GraspPhase) -> View {
+    let mut view = with(GraspView { phase, classes: Arc::from(["Tomato", "Onion"]), ..GraspView::default() });
+    let [x_m, y_m, z_m] = TOMATO_M;
+    for toy in &mut Arc::make_mut(&mut view.twin).toys {
+        toy.place = (toy.name == "tomato").then(|| Point::new(x_m, y_m, z_m));
+    }
+    view
+}
+
+/// Where the tomato is drawn in the scene.
+fn tomato_in(window: &Harness<'_, PlumblineWindow>) -> Pos2 {
+    let scene = window.get_by_role_and_label(egui::accesskit::Role::Image, "Robot").rect();
+    let mapping = SceneCamera::default().view(scene.size());
+    let (place, _) = mapping.project(&Point3::from(TOMATO_M)).expect("in view");
+    scene.min + place.to_vec2()
+}
+
+fn button(pos: Pos2, pressed: bool) -> egui::Event {
+    let (button, modifiers) = (egui::PointerButton::Primary, Modifiers::NONE);
+    egui::Event::PointerButton { pos, button, pressed, modifiers }
+}
+
+/// Presses the pointer at one place and lets it go at another.
+fn press(window: &mut Harness<'_, PlumblineWindow>, from: Pos2, to: Pos2) {
+    window.event(egui::Event::PointerMoved(from));
+    window.run_steps(2);
+    window.event(button(from, true));
+    window.run_steps(1);
+    window.event(egui::Event::PointerMoved(to));
+    window.run_steps(1);
+    window.event(button(to, false));
+    window.run_steps(2);
+}
+
+#[test]
+fn a_thing_that_is_clicked_in_the_scene_is_what_is_grasped() {
+    let fake = Fake::over(with_tomato(GraspPhase::Idle));
+    let mut window = on_grasp(&fake);
+    let at = tomato_in(&window);
+    press(&mut window, at, at);
+    let near_m = Some([TOMATO_M[0], TOMATO_M[1]]);
+    let target = GraspTarget { class: Some("Tomato".to_owned()), near_m };
+    assert_eq!(fake.take_sent(), [Command::from(GraspCommand::Target(target))]);
+    assert!(!shows(&window, "Look here"), "it is no point to look at");
+}
+
+#[test]
+fn neither_a_drag_over_it_nor_a_click_while_something_is_under_way_chooses_a_thing() {
+    let fake = Fake::over(with_tomato(GraspPhase::Idle));
+    let mut window = on_grasp(&fake);
+    let at = tomato_in(&window);
+    press(&mut window, at - vec2(70.0, 0.0), at);
+    assert_eq!(fake.take_sent(), [], "that has turned the scene");
+    let fake = Fake::over(with_tomato(GraspPhase::Planning));
+    let mut window = on_grasp(&fake);
+    let at = tomato_in(&window);
+    press(&mut window, at, at);
+    assert_eq!(fake.take_sent(), []);
+}

@@ -1,0 +1,126 @@
+//! Whether the calibration in use still holds, and what is offered of a proposal that was judged.
+
+use std::sync::Arc;
+
+use plumbline::{Screen, WindowSettings};
+use plumbline_engine::view::{
+    AcceptedCalibration, EyesHealth, EyesView, HealthFigures, HealthState, HealthView, Origin, Proposal,
+    ProposalHealth, SourceStatus, SourceView,
+};
+use plumbline_engine::{Command, EyesCommand, View};
+use plumbline_model::StereoCalibration;
+
+use crate::fake::{Fake, click, says, shows};
+use crate::made_up::{everything, rig};
+
+const ASK: &str = "Is the calibration still good?";
+
+fn on(screen: Screen) -> WindowSettings {
+    WindowSettings { screen, ..WindowSettings::default() }
+}
+
+fn figures(far_m: f64) -> HealthFigures {
+    HealthFigures {
+        is_good: far_m <= 0.008,
+        off_m: [0.25 * far_m, 0.5 * far_m, far_m],
+        sigma_m: [0.001; 3],
+        turn_rad: 0.01,
+        epipolar_px: 0.3,
+    }
+}
+
+fn judged(in_use_m: f64, proposed: Option<(f64, ProposalHealth)>) -> HealthState {
+    let proposed = proposed.map(|(far_m, verdict)| (figures(far_m), verdict));
+    HealthState::Judged(Arc::new(EyesHealth { in_use: figures(in_use_m), proposed, pairs: 4, places: 520 }))
+}
+
+/// A calibration is in use, and another one proposed.
+fn with(state: HealthState) -> View {
+    let calibration = || Arc::new(StereoCalibration::bare(rig().eyes.cameras));
+    let in_use = AcceptedCalibration {
+        id: "first".to_owned(),
+        calibration: calibration(),
+        accepted: jiff::Timestamp::now(),
+        uncertainty: None,
+        stated_at_m: 0.45,
+        depth_per_px_m: None,
+    };
+    let proposal = Proposal {
+        calibration: calibration(),
+        origin: Origin::Imported { file: "another.toml".to_owned() },
+        difference: None,
+        uncertainty: None,
+        stated_at_m: 0.45,
+        depth_per_px_m: None,
+        doubts: vec![],
+        stale: None,
+    };
+    let eyes = EyesView {
+        in_use: Some(Arc::new(in_use)),
+        proposal: Some(Arc::new(proposal)),
+        health: HealthView { state },
+        ..EyesView::default()
+    };
+    let source = SourceView { status: SourceStatus::Running, ..SourceView::clone(&everything().source) };
+    View { eyes: Arc::new(eyes), source: Arc::new(source), ..everything() }
+}
+
+#[test]
+fn it_is_asked_for_beside_drift_and_answered_in_centimeters() {
+    let fake = Fake::over(with(HealthState::NotAsked));
+    let mut window = fake.window(on(Screen::Drift));
+    click(&mut window, ASK);
+    assert_eq!(fake.take_sent(), [Command::from(EyesCommand::JudgeHealth)]);
+    for (state, words) in [
+        (HealthState::Gathering { pairs: 2, of: 4 }, "Looks: 2 of 4 pairs."),
+        (HealthState::Judging, "Compares what both eyes see."),
+        (HealthState::Failed("Is the light on?".to_owned()), "Is the light on?"),
+        (judged(0.004, None), "still good: places are off by 0.1 cm near, 0.2 cm in the middle, 0.4 cm far"),
+        (
+            judged(0.04, None),
+            "not good any more: places are off by 1.0 cm near, 2.0 cm in the middle, 4.0 cm far",
+        ),
+    ] {
+        let fake = Fake::over(with(state));
+        assert!(says(&fake.window(on(Screen::Drift)), words), "{words}");
+    }
+}
+
+#[test]
+fn while_it_is_looked_at_it_is_not_asked_for_again() {
+    let fake = Fake::over(with(HealthState::Judging));
+    let mut window = fake.window(on(Screen::Drift));
+    click(&mut window, ASK);
+    assert_eq!(fake.take_sent(), []);
+}
+
+#[test]
+fn a_proposal_that_is_not_better_is_not_offered_and_both_are_told_in_figures() {
+    for (verdict, words) in
+        [(ProposalHealth::Worse, "is worse than"), (ProposalHealth::Undecided, "cannot be told apart from")]
+    {
+        let fake = Fake::over(with(judged(0.004, Some((0.02, verdict)))));
+        let window = fake.window(on(Screen::Accept));
+        assert!(says(&window, words), "{words}");
+        assert!(says(&window, "In use: 0.1 cm near, 0.2 cm in the middle, 0.4 cm far"), "{words}");
+        assert!(says(&window, "proposed: 0.5 cm near, 1.0 cm in the middle, 2.0 cm far"), "{words}");
+        assert!(
+            !shows(&window, "Accept calibration") && !shows(&window, "Accept it all the same"),
+            "{words}"
+        );
+    }
+}
+
+#[test]
+fn a_proposal_that_is_better_or_was_not_judged_is_offered() {
+    for state in [
+        HealthState::NotAsked,
+        judged(0.04, Some((0.002, ProposalHealth::Better))),
+        judged(0.04, Some((0.04, ProposalHealth::Untold))),
+    ] {
+        let fake = Fake::over(with(state));
+        let mut window = fake.window(on(Screen::Accept));
+        click(&mut window, "Accept calibration");
+        assert_eq!(fake.take_sent(), [Command::from(EyesCommand::Accept)]);
+    }
+}

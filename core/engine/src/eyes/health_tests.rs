@@ -1,0 +1,247 @@
+//! Calibrations judged by rendered pairs: what is said, and what is then offered.
+
+use std::sync::{Arc, OnceLock};
+use std::time::Duration;
+
+use image::{DynamicImage, GrayImage, RgbImage};
+use nalgebra::{Isometry3, Vector3};
+use plumbline_hardware::SourceSpec;
+use plumbline_model::robot::default_rig;
+use plumbline_model::{Stamp, StereoCalibration, StereoCameras, StereoFrame, Unattended};
+use plumbline_vision::health::turned;
+use plumbline_vision::synthetic::{Plane, Scene, granite_texture};
+use tempfile::TempDir;
+
+use super::command::EyesCommand;
+use super::view::{AcceptedCalibration, EyesHealth, EyesView, HealthState, Origin, Proposal, ProposalHealth};
+use super::work::{EyesResult, EyesWork};
+use super::{EyesAround, EyesWorkflow};
+use crate::ground::jobs::JobId;
+use crate::ground::jobs::list::JobList;
+use crate::ground::notice::Notices;
+use crate::ground::stage::Skipped;
+use crate::ground::{Asked, Context, LongWork as _, Moment, Nothing, Time, Workflow as _};
+use crate::source::view::{SourceStatus, SourceView};
+
+struct Desk {
+    room: EyesWorkflow,
+    around: EyesAround,
+    notices: Notices,
+    jobs: JobList,
+    time: Time,
+    started: Vec<(JobId, EyesWork)>,
+    _folder: TempDir,
+}
+
+impl Desk {
+    /// Eyes as the rig has them look at a table and a wall; a calibration is in use whose right eye is off by so much.
+    fn new(in_use_off_deg: f64) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        let source = SourceView {
+            spec: Some(SourceSpec::Cameras { left_index: 0, right_index: 2 }),
+            status: SourceStatus::Running,
+            opened: 1,
+            ..SourceView::default()
+        };
+        let mut room = EyesWorkflow::new(folder.path());
+        room.in_use = Some(Arc::new(AcceptedCalibration {
+            id: "in use".to_owned(),
+            calibration: calibration(in_use_off_deg),
+            accepted: jiff::Timestamp::UNIX_EPOCH,
+            uncertainty: None,
+            stated_at_m: 0.45,
+            depth_per_px_m: None,
+        }));
+        let time = Time::now();
+        let around = EyesAround {
+            newest: Some(frame(seen(), time)),
+            source: Arc::new(source),
+            twin_on_s: None,
+            rig: default_rig(),
+        };
+        Self {
+            room,
+            around,
+            notices: Notices::default(),
+            jobs: JobList::default(),
+            time,
+            started: vec![],
+            _folder: folder,
+        }
+    }
+
+    fn propose(&mut self, off_deg: f64) {
+        self.room.proposal = Some(Arc::new(Proposal {
+            calibration: calibration(off_deg),
+            origin: Origin::Imported { file: "another.toml".to_owned() },
+            difference: None,
+            uncertainty: None,
+            stated_at_m: 0.45,
+            depth_per_px_m: None,
+            doubts: vec![],
+            stale: None,
+        }));
+    }
+
+    fn with(&mut self, act: impl FnOnce(&mut EyesWorkflow, &EyesAround, &mut super::work::Context<'_>)) {
+        let mut asked: Vec<Asked<EyesWork, Nothing>> = vec![];
+        let Self { room, around, notices, jobs, time, .. } = self;
+        act(room, around, &mut Context::new(notices, jobs, *time, &mut asked));
+        for one in asked {
+            if let Asked::Start(id, work) = one {
+                self.started.push((id, work));
+            }
+        }
+    }
+
+    fn ask(&mut self, command: EyesCommand) {
+        self.with(|room, around, context| room.apply(command, around, context));
+    }
+
+    /// A second passes, and a pair comes.
+    fn see(&mut self, images: [Arc<RgbImage>; 2]) {
+        self.time = self.time.after(Duration::from_secs(1));
+        let frame = frame(images, self.time);
+        self.with(|room, around, context| room.saw(&frame, around, context));
+    }
+
+    /// Asks, sees four pairs, and waits for what comes of them.
+    fn judged(&mut self, images: &[Arc<RgbImage>; 2]) -> HealthState {
+        self.around.newest = Some(frame(images.clone(), self.time));
+        self.ask(EyesCommand::JudgeHealth);
+        for pairs in 1..4 {
+            assert_eq!(self.view().health.state, HealthState::Gathering { pairs, of: 4 });
+            self.see(images.clone());
+        }
+        assert_eq!(self.view().health.state, HealthState::Judging);
+        let (id, work) = self.started.pop().expect("it is judged");
+        let result = work.run(&Unattended).expect("not cancelled");
+        assert!(matches!(result, EyesResult::Health(_)), "{result:?}");
+        self.with(|room, around, context| room.work_done(id, result, around, context));
+        self.view().health.state.clone()
+    }
+
+    fn health(&mut self) -> EyesHealth {
+        match self.judged(&seen()) {
+            HealthState::Judged(health) => *health,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn view(&mut self) -> Arc<EyesView> {
+        let moment = Moment { now: self.time.instant, skipped: Skipped::default() };
+        self.room.view(&self.around, &moment)
+    }
+
+    fn said(&mut self) -> Vec<String> {
+        self.notices.view().iter().map(|notice| notice.text.clone()).collect()
+    }
+
+    /// Whether the proposal is put in use when that is asked for.
+    fn accepts(&mut self) -> bool {
+        self.ask(EyesCommand::Accept);
+        matches!(self.started.pop(), Some((_, EyesWork::Accept(_))))
+    }
+}
+
+fn turned_by(cameras: &StereoCameras, pan_deg: f64) -> StereoCameras {
+    turned(cameras, &Vector3::new(0.0, pan_deg.to_radians(), 0.0))
+}
+
+/// Of the rig's eyes, the right one off by so much.
+fn calibration(off_deg: f64) -> Arc<StereoCalibration> {
+    Arc::new(StereoCalibration::bare(turned_by(&default_rig().eyes.cameras, off_deg)))
+}
+
+/// A table and a wall; rendered once.
+fn seen() -> [Arc<RgbImage>; 2] {
+    static SEEN: OnceLock<[Arc<RgbImage>; 2]> = OnceLock::new();
+    SEEN.get_or_init(rendered).clone()
+}
+
+fn rendered() -> [Arc<RgbImage>; 2] {
+    let table = Isometry3::new(Vector3::new(0.0, 0.25, 0.5), Vector3::new(1.9, 0.0, 0.0));
+    let wall = Isometry3::translation(0.0, 0.0, 1.6);
+    let planes =
+        vec![Plane::new(table, granite_texture(0.012, 7)), Plane::new(wall, granite_texture(0.05, 8))];
+    let scene = Scene { planes, balls: vec![], background: 90.0 };
+    let (left, right) = scene.render_pair(&default_rig().eyes.cameras, 1.0, 3);
+    let rgb = |gray: GrayImage| Arc::new(DynamicImage::ImageLuma8(gray).to_rgb8());
+    [rgb(left), rgb(right)]
+}
+
+fn dark() -> [Arc<RgbImage>; 2] {
+    [0, 1].map(|_| Arc::new(RgbImage::from_pixel(640, 480, image::Rgb([3; 3]))))
+}
+
+fn frame([left, right]: [Arc<RgbImage>; 2], time: Time) -> StereoFrame {
+    let stamp = Stamp { seq: 1, captured_at: time.instant };
+    StereoFrame { stamp, left, right, time_difference_s: None, name: None }
+}
+
+#[test]
+fn a_calibration_that_holds_passes_and_one_whose_eye_has_turned_does_not() {
+    let health = Desk::new(0.0).health();
+    assert!(health.in_use.is_good && health.proposed.is_none() && health.pairs == 4, "{health:?}");
+    assert!(health.in_use.off_m.iter().all(|off_m| *off_m < 4e-3), "{health:?}");
+    let off = Desk::new(0.6).health().in_use;
+    assert!(!off.is_good && (off.turn_rad.to_degrees() - 0.6).abs() < 0.05, "{off:?}");
+    let [near_m, middle_m, far_m] = off.off_m;
+    assert!(near_m < middle_m && middle_m < far_m && far_m > 0.02, "{off:?}");
+}
+
+#[test]
+fn a_proposal_that_is_worse_or_cannot_be_told_apart_is_not_put_in_use() {
+    for (proposed_deg, expected) in [(0.6, ProposalHealth::Worse), (5e-4, ProposalHealth::Undecided)] {
+        let mut desk = Desk::new(0.0);
+        desk.propose(proposed_deg);
+        let health = desk.health();
+        let (figures, verdict) = health.proposed.expect("both are judged");
+        assert_eq!(verdict, expected, "{health:?}");
+        assert!(desk.view().health.is_against_proposal());
+        assert!(!desk.accepts(), "{expected:?}");
+        assert!(desk.said().iter().any(|text| text.contains("not put in use")), "{:?}", desk.said());
+        assert_eq!(figures.is_good, expected == ProposalHealth::Undecided);
+        // Another one is not what was judged.
+        desk.propose(0.0);
+        assert!(!desk.view().health.is_against_proposal() && desk.accepts());
+    }
+}
+
+#[test]
+fn a_proposal_that_is_better_is_put_in_use() {
+    let mut desk = Desk::new(0.6);
+    desk.propose(0.0);
+    let health = desk.health();
+    assert_eq!(health.proposed.map(|(_, verdict)| verdict), Some(ProposalHealth::Better), "{health:?}");
+    assert!(!desk.view().health.is_against_proposal() && desk.accepts());
+}
+
+#[test]
+fn in_the_dark_nothing_is_said_of_it_and_without_a_calibration_or_image_nothing_is_looked_at() {
+    let mut desk = Desk::new(0.0);
+    desk.propose(0.6);
+    let state = desk.judged(&dark());
+    assert!(matches!(state, HealthState::Failed(_)), "{state:?}");
+    assert!(!desk.view().health.is_against_proposal() && desk.accepts(), "nobody knows that it is worse");
+    desk.around.newest = None;
+    desk.ask(EyesCommand::JudgeHealth);
+    assert!(desk.said().iter().any(|text| text.contains("no image")), "{:?}", desk.said());
+    desk.room.in_use = None;
+    desk.ask(EyesCommand::JudgeHealth);
+    assert!(desk.said().iter().any(|text| text.contains("No calibration is in use")), "{:?}", desk.said());
+    assert!(desk.started.is_empty());
+}
+
+#[test]
+fn photographs_are_judged_at_once_and_pairs_of_other_eyes_are_not_mixed() {
+    let mut desk = Desk::new(0.0);
+    desk.ask(EyesCommand::JudgeHealth);
+    Arc::make_mut(&mut desk.around.source).opened = 2;
+    desk.see(dark());
+    assert!(desk.started.is_empty() && !desk.room.wants_pairs());
+    assert!(desk.said().iter().any(|text| text.contains("Other eyes were opened")), "{:?}", desk.said());
+    Arc::make_mut(&mut desk.around.source).photographs = true;
+    desk.ask(EyesCommand::JudgeHealth);
+    assert!(matches!(&desk.started[..], [(_, EyesWork::Health(work))] if work.pairs.len() == 1));
+}

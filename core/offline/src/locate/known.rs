@@ -1,0 +1,121 @@
+//! The robot whose eyes took the images: from files of its own, or as it was accepted in a lab.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use plumbline_effects::rig_model::ModelEffect;
+use plumbline_effects::{PlaceInRobot, RobotModel, SeenUnder};
+use plumbline_engine::eyes::store::Store as EyesStore;
+use plumbline_engine::ground::World;
+use plumbline_engine::rig_models::{Accepted, calibrated_at, in_use, mounted};
+use plumbline_model::StereoCalibration;
+use plumbline_model::robot::{Posture, Rig, RigPart};
+use plumbline_vision::locate::Located;
+use plumbline_vision::mount::MountCalibration;
+
+use super::{LocateRobot, Stood};
+use crate::OfflineError;
+use crate::commission::CommissionError;
+use crate::ik::find_rig;
+use crate::session::ModelFile;
+
+/// What an encoder may say beyond the limits of its joint: its zero is known no better, rad.
+const BEYOND_LIMITS_RAD: f64 = 0.1;
+
+const NO_MOUNT: &str = "The ± of places in the robot's frame is wide because no calibrated mount of the eyes was given: \
+     it holds how far mounts usually are off. Calibrate the mount, and name its file with --mount.";
+
+/// The robot as it is known, and how it stood.
+pub(super) struct Known {
+    model: RobotModel,
+    posture: Posture,
+    seen: SeenUnder,
+}
+
+impl Known {
+    /// From files, with these eyes.
+    pub fn of_files(files: &LocateRobot, eyes: &StereoCalibration) -> Result<Self, OfflineError> {
+        let mut rig = find_rig(&files.rig)?;
+        let effects = match ModelFile::read(&files.rig_model, &rig)? {
+            ModelFile::Effects(effects) => Some(Arc::new(*effects)),
+            ModelFile::Rig(other) => {
+                rig = *other;
+                None
+            }
+            ModelFile::Placement(placement) => {
+                rig.touchscreen = placement.screen;
+                None
+            }
+        };
+        rig.need(RigPart::Eyes)?;
+        let mount = files.mount.as_ref().map(|file| MountCalibration::read(file, &rig)).transpose()?;
+        let accepted = Accepted {
+            cameras: Some(&eyes.cameras),
+            head_from_left: mount.as_ref().map(|mount| mount.head_from_left),
+            calibrated_at: calibrated_at(Some(eyes), mount.as_ref()),
+            mounted: mount.as_ref().map(mounted),
+            screen: None,
+            effects: effects.as_ref(),
+        };
+        Self::new(accepted.robot_model(&rig)?, &files.stood)
+    }
+
+    /// All that was accepted in a lab, as its window would use it; and its calibrated eyes.
+    pub fn of_lab(lab: &Path, stood: &Stood) -> Result<(StereoCalibration, Self), OfflineError> {
+        let world = World::Twin.folder(lab);
+        let no_lab = |why| OfflineError::NoLab { folder: lab.to_owned(), why };
+        if !world.is_dir() {
+            return Err(no_lab("it has no folder twin"));
+        }
+        let calibration = EyesStore::of_world(&world).in_use().map_err(CommissionError::room)?;
+        let calibration = calibration.ok_or_else(|| no_lab("no calibration of the eyes is in use"))?;
+        let model = in_use(&world, &Rig::built_in("nico")?).map_err(CommissionError::room)?;
+        // A commissioning that has accepted none has not come far enough.
+        if model.mounted().is_none() {
+            return Err(no_lab("no mount of the eyes is in use"));
+        }
+        Ok((calibration, Self::new(model, stood)?))
+    }
+
+    fn new(model: RobotModel, stood: &Stood) -> Result<Self, OfflineError> {
+        let rig = model.rig();
+        let mut posture = rig.home();
+        for (joint, asked_rad) in [rig.eyes.pan, rig.eyes.tilt].into_iter().zip(stood.head_rad) {
+            let Some(angle_rad) = asked_rad else { continue };
+            let limits = rig.limits(joint);
+            if limits.excess_rad(angle_rad).abs() > BEYOND_LIMITS_RAD || !angle_rad.is_finite() {
+                let joint = rig.description.joint(joint).name.clone();
+                return Err(OfflineError::HeadAngle { joint, angle_rad, limits });
+            }
+            posture[joint] = angle_rad;
+        }
+        let seen = SeenUnder { t_secs: stood.eyes_on_s, ..SeenUnder::default() };
+        Ok(Self { model, posture, seen })
+    }
+
+    /// What it is called for people.
+    pub fn title(&self) -> String {
+        self.model.title()
+    }
+
+    /// Its effects in force, as `id@site`.
+    pub fn effects(&self) -> Vec<String> {
+        self.model.added().effects().iter().map(ModelEffect::name).collect()
+    }
+
+    /// How the head stood (pan, tilt), rad.
+    pub fn head_rad(&self) -> [f64; 2] {
+        let eyes = &self.model.rig().eyes;
+        [eyes.pan, eyes.tilt].map(|joint| self.posture[joint])
+    }
+
+    /// Why places are stated with a wide uncertainty, and what to do: a sentence or two.
+    pub fn wide_because(&self) -> Option<&'static str> {
+        self.model.unmeasured().mount.then_some(NO_MOUNT)
+    }
+
+    /// Where something is; `None`: with the effects of the model there is no such place.
+    pub fn place(&self, found: &Located) -> Option<PlaceInRobot> {
+        self.model.place(&found.point, &found.covariance_m2, &self.posture, &self.seen)
+    }
+}
