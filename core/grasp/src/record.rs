@@ -202,7 +202,7 @@ pub struct Record {
     pub seen_after: Vec<Seen>,
     /// How far the fingers were kept from where they were sent after the lift, rad.
     pub fingers_open_rad: Option<f64>,
-    /// From the beginning to the end of the lift, s of the robot's clock.
+    /// From the beginning to the end of the lift, s of the robot's clock; holds between steps are left out.
     pub seconds: Option<f64>,
     /// What it took itself for.
     pub outcome: Option<Outcome>,

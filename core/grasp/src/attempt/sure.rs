@@ -21,7 +21,11 @@ pub(super) fn sure_enough(object_m2: &Matrix3<f64>, hand_m2: &Matrix3<f64>) -> R
 /// of the hand later, both together would be refused over the object.
 pub(super) fn sure_of_object(object: &str, object_m2: &Matrix3<f64>) -> Result<(), End> {
     let what = format!("where the {} stands is known", object.to_lowercase());
-    known_to(&what, object_m2, "put it nearer to the middle of what both eyes see, or calibrate the eyes")
+    known_to(
+        &what,
+        object_m2,
+        "put it nearer to the middle of what both eyes see, or calibrate the eyes and their mount",
+    )
 }
 
 fn known_to(what: &str, covariance_m2: &Matrix3<f64>, remedy: &str) -> Result<(), End> {
@@ -72,7 +76,10 @@ mod tests {
         assert_eq!(refused(sure_enough(&worst_m2(0.004), &worst_m2(0.004))), None);
         // Each by itself would do.
         let why = refused(sure_enough(&worst_m2(0.006), &worst_m2(0.006))).expect("refused");
-        assert!(why.contains("known to 8.5 mm only, 7.0 mm are needed") && why.contains("calibrate"), "{why}");
+        assert!(
+            why.contains("known to 8.5 mm only, 7.0 mm are needed") && why.contains("calibrate"),
+            "{why}"
+        );
         let unknown = Matrix3::from_element(f64::NAN);
         let why = refused(sure_enough(&worst_m2(0.001), &unknown)).expect("nothing is known of it");
         assert!(why.contains("are known not at all, 7.0 mm are needed"), "{why}");
