@@ -201,6 +201,91 @@ fn step_by_step() {
     }
 }
 
+/// The palm of a robot with errors, brought exactly to where it belongs: how far it is tilted there all the same, and
+/// whether it holds. `PLUMBLINE_SCENARIO` is the robot, one of development.
+#[test]
+#[ignore = "for who looks for what a tilted palm holds"]
+fn brought_there_exactly_by_a_robot_with_errors() {
+    let name = std::env::var("PLUMBLINE_SCENARIO").unwrap_or_else(|_| "drawn-602".to_owned());
+    let scenario = Scenario::named_or_file(&name).expect("a robot");
+    let rig = Arc::new(Rig::built_in("nico").expect("valid"));
+    let link = rig.description.find_link("right_palm_center").expect("a tip");
+    let planner = planner(&rig);
+    let mut held = 0;
+    for at_m in PLACES_M {
+        let mut twin = Lockstep::new(rig.clone(), &scenario, 1).expect("a twin");
+        Toy::ALL.iter().filter(|other| **other != Toy::Tomato).for_each(|other| twin.remove_toy(*other));
+        twin.place_toy(Toy::Tomato, at_m[0], at_m[1]).expect("on the table");
+        twin.wait(1.0);
+        let place = |twin: &mut Lockstep| twin.truth_for_judging().toys[0].1.expect("out").translation.vector;
+        let palm = |twin: &mut Lockstep| twin.truth_for_judging().robot_from_link[link.0].expect("there");
+        let before = place(&mut twin);
+        let standing = Standing {
+            xy_m: [before.x, before.y],
+            support_m: before.z - 0.027,
+            height_m: 0.054,
+            lower_m: 0.0,
+        };
+        let from = twin.commanded().clone();
+        let mut shift = Vector3::zeros();
+        let mut plan = planner.plan(&standing, &shift, &from);
+        for _ in 0..3 {
+            let Ok(there) = &plan else { break };
+            twin.follow(&there.approach, 0.8);
+            twin.wait(0.5);
+            let above = planner.arm().palm(there.above().expect("above")).coords.coords - shift;
+            shift += above - palm(&mut twin).translation.vector;
+            plan = planner.plan(&standing, &shift, twin.commanded());
+        }
+        let Ok(plan) = plan else { continue };
+        twin.follow(&plan.approach, 0.8);
+        twin.follow(&plan.down, 0.5);
+        let closing = plan.closing().expect("a way down").clone();
+        let planned = planner.arm().robot_from_palm(&closing).isometry;
+        let tilt = |twin: &mut Lockstep, planned: &nalgebra::Isometry3<f64>| {
+            let turn = palm(twin).rotation * planned.rotation.inverse();
+            turn.scaled_axis().map(|axis| axis.to_degrees())
+        };
+        let closing_deg = tilt(&mut twin, &planned);
+        let off = (palm(&mut twin).translation.vector - (planned.translation.vector - shift)) * 1e3;
+        let close = rig.pose("close-hand").expect("a pose").applied_to(&closing);
+        let joint = |name: &str| rig.description.find_joint(name).expect("a joint");
+        let thumb = [joint("r_thumb_x"), joint("r_thumb_z")];
+        for finger in rig.arms.iter().flat_map(|arm| arm.hand.iter().copied()) {
+            twin.limit(finger, force(&rig, finger));
+        }
+        twin.follow(&[closing.with(&thumb, &close.of(&thumb))], GRIP_RAD_S);
+        twin.follow(std::slice::from_ref(&close), GRIP_RAD_S);
+        twin.wait(0.3);
+        let in_palm = |twin: &mut Lockstep| {
+            (palm(twin).inverse_transform_point(&place(twin).into()).coords * 1e3).map(|mm| mm.round())
+        };
+        let closed = in_palm(&mut twin);
+        let up = planner.lift(&close, plan.heading_rad, GraspPlanner::LIFT_M);
+        twin.follow(&up, 0.4);
+        let lifted = in_palm(&mut twin);
+        let level = planner.arm().level(up.last().unwrap_or(&close));
+        if std::env::var_os("PLUMBLINE_CREEP").is_some() {
+            creep(&mut twin, &rig, Toy::Tomato);
+        }
+        twin.wait(HOLDS_S);
+        let up_mm = (place(&mut twin).z - before.z) * 1e3;
+        held += u32::from(up_mm > 40.0);
+        println!(
+            "{at_m:?}: up {up_mm:.0} mm, beside [{:.1} {:.1} {:.1}] mm, turned [{:.1} {:.1} {:.1}] deg, level {level:.3}, in the palm closed {:?} lifted {:?}",
+            off.x,
+            off.y,
+            off.z,
+            closing_deg.x,
+            closing_deg.y,
+            closing_deg.z,
+            closed.as_slice(),
+            lifted.as_slice()
+        );
+    }
+    println!("{held} of {}", PLACES_M.len());
+}
+
 #[test]
 #[ignore = "for who looks for why a hand does not come down"]
 fn room_at_the_edge() {
