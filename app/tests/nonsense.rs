@@ -448,6 +448,8 @@ fn eyes_that_cannot_be_are_refused_before_memory_is_asked_for() {
     assert!(neither.status == Some(2) && neither.said.contains("--cameras"), "{}", neither.said);
     let in_lab = [&["locate", "--lab", "lab"][..], &locate[1..3], &of_images[2..]].concat();
     desk.refuses(&in_lab, &["lab is no commissioned lab", "plumbline commission"]);
+    let before = desk.run(&[&in_lab[..], &["--eyes-on-s=-5"]].concat());
+    assert!(before.status == Some(2) && before.said.contains("must not be less than 0"), "{}", before.said);
     let sound = desk.text("eyes.yaml");
     let older = sound.split("self_test:").next().expect("before").to_owned() + "complete: true\n";
     for (from, to, said) in [

@@ -62,6 +62,14 @@ pub fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A finite number that is not below zero.
+pub fn not_negative(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        number if number < 0.0 => Err("must not be less than 0".to_owned()),
+        number => Ok(number),
+    }
+}
+
 /// A number that is one.
 pub fn finite(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|number| number.is_finite());

@@ -9,7 +9,7 @@ use plumbline_offline::{
 use plumbline_widgets::format;
 
 use super::calibrate::say_notes;
-use super::common::finite;
+use super::common::{finite, not_negative};
 use super::output::Output;
 
 /// Arguments of `locate`.
@@ -57,7 +57,13 @@ pub struct Locate {
     #[arg(long, value_name = "RAD", requires = "robot", allow_negative_numbers = true, value_parser = finite)]
     head_y_rad: Option<f64>,
     /// For how long the eyes had been on, s; without it, what moves as they warm up takes no effect.
-    #[arg(long, value_name = "S", requires = "robot", value_parser = finite)]
+    #[arg(
+        long,
+        value_name = "S",
+        requires = "robot",
+        allow_negative_numbers = true,
+        value_parser = not_negative
+    )]
     eyes_on_s: Option<f64>,
 }
 

@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, view: &View, outbox: &mut Outbox) {
     }
     // What is not offered is said where it would be.
     let against = view.eyes.health.is_against_proposal();
-    if let Some(said) = view.eyes.health.judged().filter(|_| !against).and_then(words::proposed) {
+    if let Some(said) = view.eyes.health.judged.as_deref().filter(|_| !against).and_then(words::proposed) {
         ui.label(said);
     }
     ui.add_space(space::XS);

@@ -34,8 +34,13 @@ fn judged(in_use_m: f64, proposed: Option<(f64, ProposalHealth)>) -> HealthState
     HealthState::Judged(Arc::new(EyesHealth { in_use: figures(in_use_m), proposed, pairs: 4, places: 520 }))
 }
 
-/// A calibration is in use, and another one proposed.
 fn with(state: HealthState) -> View {
+    let judged = if let HealthState::Judged(health) = &state { Some(health.clone()) } else { None };
+    with_health(HealthView { state, judged })
+}
+
+/// A calibration is in use, and another one proposed.
+fn with_health(health: HealthView) -> View {
     let calibration = || Arc::new(StereoCalibration::bare(rig().eyes.cameras));
     let in_use = AcceptedCalibration {
         id: "first".to_owned(),
@@ -58,7 +63,7 @@ fn with(state: HealthState) -> View {
     let eyes = EyesView {
         in_use: Some(Arc::new(in_use)),
         proposal: Some(Arc::new(proposal)),
-        health: HealthView { state },
+        health,
         ..EyesView::default()
     };
     let source = SourceView { status: SourceStatus::Running, ..SourceView::clone(&everything().source) };
@@ -87,11 +92,32 @@ fn it_is_asked_for_beside_drift_and_answered_in_centimeters() {
 }
 
 #[test]
-fn while_it_is_looked_at_it_is_not_asked_for_again() {
-    let fake = Fake::over(with(HealthState::Judging));
-    let mut window = fake.window(on(Screen::Drift));
-    click(&mut window, ASK);
-    assert_eq!(fake.take_sent(), []);
+fn while_it_is_computed_it_is_not_asked_for_again_and_while_pairs_are_gathered_it_begins_anew() {
+    for (state, sent) in [
+        (HealthState::Judging, vec![]),
+        (HealthState::Gathering { pairs: 2, of: 4 }, vec![Command::from(EyesCommand::JudgeHealth)]),
+    ] {
+        let fake = Fake::over(with(state));
+        let mut window = fake.window(on(Screen::Drift));
+        click(&mut window, ASK);
+        assert_eq!(fake.take_sent(), sent);
+    }
+}
+
+#[test]
+fn a_proposal_that_was_not_better_stays_so_while_it_is_judged_again_and_when_that_fails() {
+    let HealthState::Judged(health) = judged(0.004, Some((0.02, ProposalHealth::Worse))) else {
+        unreachable!("just made")
+    };
+    for state in [
+        HealthState::Gathering { pairs: 2, of: 4 },
+        HealthState::Judging,
+        HealthState::Failed("Is the light on?".to_owned()),
+    ] {
+        let fake = Fake::over(with_health(HealthView { state, judged: Some(health.clone()) }));
+        let window = fake.window(on(Screen::Accept));
+        assert!(says(&window, "is worse than") && !shows(&window, "Accept calibration"));
+    }
 }
 
 #[test]

@@ -33,6 +33,9 @@ pub struct SeenPlace {
     pub point_m: [f64; 3],
     /// Its covariance, m².
     pub covariance_m2: Matrix3<f64>,
+    /// The part of it by the mount of the eyes, m²; zero in records of programs that did not tell it apart.
+    #[serde(default)]
+    pub by_mount_m2: Matrix3<f64>,
 }
 
 impl SeenPlace {
@@ -123,6 +126,7 @@ impl Looker {
                     Ok(SeenPlace {
                         point_m: place.point.coords.coords.into(),
                         covariance_m2: place.covariance_m2,
+                        by_mount_m2: place.by_mount_m2,
                     })
                 }),
             })

@@ -42,7 +42,8 @@ impl Start {
     /// When they do not fit to it.
     pub fn with(&self, added: RigModel) -> Result<Self, HandEyeError> {
         let mounted = self.model.mounted().copied();
-        let model = RobotModel::new(self.model.rig().clone(), Arc::new(added))?.with_mounted(mounted);
+        let model = RobotModel::new(self.model.rig().clone(), Arc::new(added))?;
+        let model = model.with_mounted(mounted).with_not_calibrated(self.model.not_calibrated());
         Ok(Self { model, ..self.clone() })
     }
 

@@ -18,6 +18,7 @@ use serde::Serialize;
 use serde_json::{Map, Value};
 
 use super::OfflineError;
+use super::gap_calibrations::{newest_localized, of_calibrations};
 use super::session::{self, ModelFile};
 
 /// Where to look for a gap.
@@ -145,7 +146,8 @@ pub fn gap(args: &GapArgs, context: &dyn JobContext) -> Result<GapReport, Offlin
     let given = read(&args.sessions, args.rig_model.as_deref())?;
     check_outputs(args, &given)?;
     let options = Options { seed: args.seed, ..Options::default() };
-    let finding = find(&given.measurements, &options, context)?;
+    let mut finding = find(&given.measurements, &options, context)?;
+    finding.warnings.extend(of_calibrations(&given.sessions, &given.rig, &finding.effects));
     let mut report = GapReport::of(finding);
     if let Some(file) = &args.add_to {
         report.added = add(&given, &report.finding, file)?;
@@ -220,9 +222,9 @@ fn write_report(given: &Given, finding: &Finding, file: &Path) -> Result<(), Off
 }
 
 /// All that a search is made on.
-struct Given {
-    sessions: Vec<Session>,
-    rig: Rig,
+pub(super) struct Given {
+    pub sessions: Vec<Session>,
+    pub rig: Rig,
     model: RigModel,
     measurements: Measurements,
     /// Whether the model that was given is one with effects, whose file keeps what it was before.
@@ -230,7 +232,7 @@ struct Given {
 }
 
 /// Reads all sessions; their robot is that of the first one, or of the rig model.
-fn read(folders: &[PathBuf], rig_model: Option<&Path>) -> Result<Given, OfflineError> {
+pub(super) fn read(folders: &[PathBuf], rig_model: Option<&Path>) -> Result<Given, OfflineError> {
     let sessions: Vec<(String, Session)> = folders
         .iter()
         .map(|folder| Ok((title_of(folder), Session::read(folder)?)))
@@ -256,6 +258,10 @@ fn read(folders: &[PathBuf], rig_model: Option<&Path>) -> Result<Given, OfflineE
                 has_history = true;
             }
         }
+    }
+    // What grows as the eyes warm up counts from the calibration by which places were localized.
+    if let Some(newest) = newest_localized(sessions.iter().map(|(_, session)| session)) {
+        rig.eyes.calibrated_at = newest.manifest.calibrated_at();
     }
     let measurements = model.put_into(Measurements::of_sessions(&sessions, &rig)?);
     let sessions = sessions.into_iter().map(|(_, session)| session).collect();

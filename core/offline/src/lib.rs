@@ -17,6 +17,7 @@ mod disparity;
 pub mod doctor;
 mod error;
 mod gap;
+mod gap_calibrations;
 mod grasp;
 mod grid;
 mod health;

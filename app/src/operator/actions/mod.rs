@@ -28,7 +28,7 @@ pub use trials::TrialsAction;
 
 use std::borrow::Cow;
 
-use plumbline_engine::view::{RecordingState, SourceStatus};
+use plumbline_engine::view::{HealthState, RecordingState, SourceStatus};
 use plumbline_engine::{ExportFormat, Exported, View, WatchedThread};
 use serde::Serialize;
 use serde_json::Value;
@@ -437,7 +437,9 @@ impl Action {
             Self::Undo => when(eyes.can_undo, "nothing was changed"),
             Self::Solve if eyes.solving.is_some() => Some("a solution is being computed".into()),
             Self::Solve => when(!eyes.collected.is_empty(), "no pair is collected"),
-            Self::JudgeHealth if eyes.health.is_busy() => Some("it is being looked at".into()),
+            Self::JudgeHealth if eyes.health.state == HealthState::Judging => {
+                Some("what both eyes see is being compared".into())
+            }
             Self::JudgeHealth if eyes.in_use.is_none() => Some("no calibration is in use".into()),
             Self::JudgeHealth => when(view.source.status != SourceStatus::None, "no source is open"),
             Self::Accept if eyes.health.is_against_proposal() => {

@@ -39,7 +39,7 @@ pub fn proposed(health: &EyesHealth) -> Option<String> {
 
 /// Why the proposal is not offered; `None`: it is, or nobody has judged it.
 pub fn not_offered(eyes: &EyesView) -> Option<String> {
-    eyes.health.judged().filter(|_| eyes.health.is_against_proposal()).and_then(proposed)
+    eyes.health.judged.as_deref().filter(|_| eyes.health.is_against_proposal()).and_then(proposed)
 }
 
 /// "0.2 cm near, 0.4 cm in the middle, 0.9 cm far".

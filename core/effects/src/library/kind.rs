@@ -159,13 +159,13 @@ impl Kind {
     }
 
     /// Whether an effect of this kind in this shape turns or shifts the eyes the more, the longer they are on.
-    pub(crate) fn is_growth_of_eyes(self, shape: Option<f64>) -> bool {
+    pub fn is_growth_of_eyes(self, shape: Option<f64>) -> bool {
         shape.is_some() && matches!(self.entry().shape, Shape::Growth(_))
     }
 
     /// When the calibration holds that it corrects, s since the eyes were switched on: the mount holds how both sit in
     /// the head, the lenses hold all else. `None`: nobody knows.
-    pub(crate) fn held_at_s(self, calibrated_at: &CalibratedAt) -> Option<f64> {
+    pub fn held_at_s(self, calibrated_at: &CalibratedAt) -> Option<f64> {
         if self == Self::CameraMount { calibrated_at.mount_s } else { calibrated_at.cameras_s }
     }
 

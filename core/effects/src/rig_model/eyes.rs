@@ -41,6 +41,18 @@ fn held_at_s(effect: &ModelEffect, calibrated_at: &CalibratedAt) -> Option<f64> 
     kind.held_at_s(calibrated_at).filter(|_| kind.is_growth_of_eyes(effect.shape))
 }
 
+impl ModelEffect {
+    /// The same beside the calibration of these eyes: what grows counts from it, or from cold eyes where it is not
+    /// known how warm they were. When an effect was found, and by which program, says nothing of that.
+    #[must_use]
+    pub fn beside(mut self, calibrated_at: &CalibratedAt) -> Self {
+        if let Some(kind) = Kind::of_id(&self.id).filter(|kind| kind.is_growth_of_eyes(self.shape)) {
+            self.reference_s = kind.held_at_s(calibrated_at).unwrap_or(0.0);
+        }
+        self
+    }
+}
+
 impl Contents {
     /// Takes effects on the eyes to other eyes: what grows goes on from the new calibration, all else goes.
     pub(super) fn take_to_eyes(&mut self, calibrated_at: &CalibratedAt) {
@@ -209,6 +221,24 @@ mod tests {
         let after = [("eye-yaw", 720.0), ("camera-mount", 900.0), ("box-bias", 0.0)];
         assert_eq!(references(&model), after.map(|(id, reference_s)| (id.to_owned(), reference_s)));
         assert!(model.effects_of_other_eyes(&calibrated).is_empty());
+    }
+
+    #[test]
+    fn an_effect_counts_from_the_calibration_that_it_is_added_beside_whenever_it_was_found() {
+        let both = CalibratedAt { cameras_s: Some(720.0), mount_s: Some(900.0) };
+        let of_cameras = ModelEffect { shape: Some(300.0), ..effect("eye-yaw", "right", &[0.006]) };
+        let of_mount =
+            ModelEffect { shape: Some(300.0), ..effect("camera-mount", "eyes", &[0.0, 0.004, 0.0]) };
+        // Found beside cold eyes, by a program that did not say it, or beside another calibration.
+        for found_s in [0.0, 60.0] {
+            let beside = |effect: &ModelEffect, calibrated_at: &CalibratedAt| {
+                ModelEffect { reference_s: found_s, ..effect.clone() }.beside(calibrated_at).reference_s
+            };
+            assert_eq!(beside(&of_cameras, &both), 720.0);
+            assert_eq!(beside(&of_mount, &both), 900.0);
+            assert_eq!(beside(&of_cameras, &CalibratedAt::default()), 0.0);
+        }
+        assert_eq!(effect("eye-yaw", "right", &[0.006]).beside(&both).reference_s, 0.0, "it does not grow");
     }
 
     #[test]

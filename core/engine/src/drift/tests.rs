@@ -7,12 +7,13 @@ use std::time::Duration;
 use image::{GrayImage, RgbImage};
 use nalgebra::{Isometry3, Vector3};
 use plumbline_drift::{Mover, Verdict};
-use plumbline_effects::RobotModel;
+use plumbline_effects::{Kind, RobotModel};
 use plumbline_model::robot::{CalibratedAt, Rig, default_rig};
 use plumbline_model::{Stamp, StereoFrame};
 use plumbline_vision::health::turned;
 use plumbline_vision::synthetic::{Plane, Scene, granite_texture};
 
+use super::cold::counted_twice;
 use super::command::DriftCommand;
 use super::view::DriftView;
 use super::{DriftAround, DriftStage, DriftWorkflow};
@@ -21,6 +22,7 @@ use crate::ground::notice::Notices;
 use crate::ground::stage::{Skipped, Stage as _, Timed};
 use crate::ground::step::StepState;
 use crate::ground::{Context, Moment, Time, Workflow as _, World};
+use crate::rig_models::made_up::model_with;
 
 const EVERY: Duration = Duration::from_secs(3);
 
@@ -304,6 +306,30 @@ fn that_a_correction_may_count_twice_what_a_calibration_of_unknown_time_holds_is
         let said = said_when_explained(calibrated_at);
         let is_said = |text: &String| ["not known", words, "twice"].iter().all(|part| text.contains(part));
         assert!(said.iter().any(is_said), "{said:?}");
+    }
+}
+
+#[test]
+fn that_an_effect_in_force_counts_from_cold_eyes_beside_a_warm_calibration_is_said() {
+    let said = |reference_s: f64, shape: Option<f64>, calibrated_s: f64| {
+        let mut rig = Rig::clone(&default_rig());
+        rig.eyes.calibrated_at = CalibratedAt { cameras_s: Some(calibrated_s), mount_s: Some(calibrated_s) };
+        let mut added = model_with(&rig, &[("eye-yaw", "right", &[0.006])]);
+        for effect in &mut added.contents.effects {
+            (effect.shape, effect.reference_s) = (shape, reference_s);
+        }
+        let model = RobotModel::new(Arc::new(rig), Arc::new(added)).expect("it fits");
+        counted_twice(&DriftAround { model: Arc::new(model), ..Desk::new().around })
+    };
+    let cold = said(0.0, Some(300.0), 1500.0);
+    assert!(
+        matches!(&cold[..], [words] if words.contains(Kind::EyeYaw.about()) && words.contains("25 min")),
+        "{cold:?}"
+    );
+    for (reference_s, shape, calibrated_s) in
+        [(1500.0, Some(300.0), 1500.0), (0.0, None, 1500.0), (0.0, Some(300.0), 20.0)]
+    {
+        assert_eq!(said(reference_s, shape, calibrated_s), [""; 0], "{reference_s} {shape:?} {calibrated_s}");
     }
 }
 

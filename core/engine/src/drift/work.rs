@@ -200,7 +200,7 @@ fn manifest(rig: &Rig, started: Timestamp, purpose: &str, notes: &str) -> Manife
     let mut extra = toml::Table::new();
     extra.insert("software".to_owned(), software().into());
     extra.insert("purpose".to_owned(), purpose.into());
-    Manifest {
+    let mut manifest = Manifest {
         rig: RigReference::Named(rig.name.clone()),
         started,
         operator: String::new(),
@@ -208,7 +208,10 @@ fn manifest(rig: &Rig, started: Timestamp, purpose: &str, notes: &str) -> Manife
         touchscreen: None,
         chain: None,
         extra,
-    }
+    };
+    // A search elsewhere knows neither calibration nor mount.
+    manifest.set_calibrated_at(&rig.eyes.calibrated_at);
+    manifest
 }
 
 impl DriftResult {
@@ -228,5 +231,20 @@ impl DriftResult {
                     .to_owned()
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use plumbline_model::robot::{CalibratedAt, default_rig};
+
+    use super::*;
+
+    #[test]
+    fn a_session_keeps_how_warm_the_eyes_were_when_they_were_calibrated() {
+        let mut rig = Rig::clone(&default_rig());
+        rig.eyes.calibrated_at = CalibratedAt { cameras_s: Some(720.0), mount_s: None };
+        let kept = manifest(&rig, Timestamp::UNIX_EPOCH, "watch-drift", WATCHED);
+        assert_eq!(kept.calibrated_at(), rig.eyes.calibrated_at);
     }
 }

@@ -154,7 +154,7 @@ impl DriftWorkflow {
             return context.refuse(format!("What was watched cannot be explained: {why}."));
         }
         let (Some(watch), Some(world)) = (&self.watch, around.world) else { return };
-        if let Some(words) = counted_twice(around) {
+        for words in counted_twice(around) {
             context.notices.add(NoticeLevel::Warning, words);
         }
         self.logging = Some(context.start(DriftWork::WriteLog {

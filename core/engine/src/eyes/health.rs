@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use plumbline_model::{StereoCalibration, StereoFrame};
 
-use super::view::{HealthState, HealthView, ProposalHealth};
+use super::view::{EyesHealth, HealthState, HealthView, ProposalHealth};
 use super::work::{Context, EyesWork, Health, Pictures};
 use super::workflow::{EyesAround, EyesWorkflow};
 use crate::ground::jobs::JobId;
@@ -49,7 +49,10 @@ struct Gathering {
 pub(super) struct HealthRoom {
     gathering: Option<Gathering>,
     judging: Option<(JobId, Of)>,
-    judged: Option<(Of, HealthState)>,
+    /// How judging ended last.
+    ended: Option<(Of, HealthState)>,
+    /// What was judged last: it stands while it is looked at again, and when nothing comes of that.
+    judged: Option<(Of, Arc<EyesHealth>)>,
 }
 
 impl EyesWorkflow {
@@ -78,13 +81,9 @@ impl EyesWorkflow {
 
     /// A pair has come while pairs are being gathered.
     pub fn saw(&mut self, frame: &StereoFrame, around: &EyesAround, context: &mut Context<'_>) {
+        self.source_changed(around, context);
         let now = context.time.instant;
         let Some(gathering) = &mut self.health.gathering else { return };
-        if gathering.opened != around.source.opened {
-            self.health.gathering = None;
-            return context
-                .refuse("Other eyes were opened: ask again whether the calibration is still good.");
-        }
         if now < gathering.due {
             return;
         }
@@ -95,6 +94,20 @@ impl EyesWorkflow {
         {
             self.judge_pairs(gathering.pairs, around, context);
         }
+    }
+
+    /// The source has something new: where no more pairs come of it, none are waited for.
+    pub fn source_changed(&mut self, around: &EyesAround, context: &mut Context<'_>) {
+        let Some(gathering) = &self.health.gathering else { return };
+        let why = if gathering.opened != around.source.opened {
+            "Other eyes were opened: ask again whether the calibration is still good."
+        } else if !goes_on(&around.source) {
+            "No more pairs come: ask again whether the calibration is still good when they do."
+        } else {
+            return;
+        };
+        self.health.gathering = None;
+        context.refuse(why);
     }
 
     fn judge_pairs(&mut self, pairs: Vec<Pictures>, around: &EyesAround, context: &mut Context<'_>) {
@@ -124,9 +137,11 @@ impl EyesWorkflow {
 
     /// Judged, or why not.
     pub(super) fn judged_health(&mut self, id: JobId, state: HealthState) {
-        if let Some((_, of)) = self.health.judging.take_if(|(job, _)| *job == id) {
-            self.health.judged = Some((of, state));
+        let Some((_, of)) = self.health.judging.take_if(|(job, _)| *job == id) else { return };
+        if let HealthState::Judged(health) = &state {
+            self.health.judged = Some((of.clone(), health.clone()));
         }
+        self.health.ended = Some((of, state));
     }
 
     /// Nothing came of the work.
@@ -134,7 +149,7 @@ impl EyesWorkflow {
         if let Some((_, of)) = self.health.judging.take_if(|(job, _)| *job == id)
             && let Some(why) = why
         {
-            self.health.judged = Some((of, HealthState::Failed(why.to_owned())));
+            self.health.ended = Some((of, HealthState::Failed(why.to_owned())));
         }
     }
 
@@ -143,19 +158,19 @@ impl EyesWorkflow {
         let now = self.to_be_judged();
         let is_of_now = |of: &Of| now.as_ref().is_some_and(|now| of.is(now));
         let gathered = self.health.gathering.as_ref().map(|gathering| gathering.pairs.len());
+        let ended = self.health.ended.as_ref().filter(|(of, _)| is_of_now(of));
         let judged = self.health.judged.as_ref().filter(|(of, _)| is_of_now(of));
         let state = match (gathered, &self.health.judging) {
             (Some(pairs), _) => HealthState::Gathering { pairs, of: PAIRS },
             (None, Some(_)) => HealthState::Judging,
-            (None, None) => judged.map_or(HealthState::NotAsked, |(_, state)| state.clone()),
+            (None, None) => ended.map_or(HealthState::NotAsked, |(_, state)| state.clone()),
         };
-        HealthView { state }
+        HealthView { state, judged: judged.map(|(_, health)| health.clone()) }
     }
 
     /// Why the proposal is not offered; `None`: it is, or nobody has judged it.
     pub(super) fn not_offered(&self) -> Option<&'static str> {
-        let HealthState::Judged(health) = self.shown_health().state else { return None };
-        match health.proposed?.1 {
+        match self.shown_health().judged?.proposed?.1 {
             ProposalHealth::Better | ProposalHealth::Untold => None,
             ProposalHealth::Worse => Some(
                 "The proposed calibration fits what the eyes see worse than the one in use: it is not put in use. \

@@ -1,7 +1,7 @@
 //! Calibrations judged by rendered pairs: what is said, and what is then offered.
 
 use std::sync::{Arc, OnceLock};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use image::{DynamicImage, GrayImage, RgbImage};
 use nalgebra::{Isometry3, Vector3};
@@ -21,7 +21,7 @@ use crate::ground::jobs::list::JobList;
 use crate::ground::notice::Notices;
 use crate::ground::stage::Skipped;
 use crate::ground::{Asked, Context, LongWork as _, Moment, Nothing, Time, Workflow as _};
-use crate::source::view::{SourceStatus, SourceView};
+use crate::source::view::{ReplayView, SourceStatus, SourceView};
 
 struct Desk {
     room: EyesWorkflow,
@@ -105,6 +105,12 @@ impl Desk {
         self.with(|room, around, context| room.saw(&frame, around, context));
     }
 
+    /// The source has something new.
+    fn source(&mut self, change: impl FnOnce(&mut SourceView)) {
+        change(Arc::make_mut(&mut self.around.source));
+        self.with(|room, around, context| room.source_changed(around, context));
+    }
+
     /// Asks, sees four pairs, and waits for what comes of them.
     fn judged(&mut self, images: &[Arc<RgbImage>; 2]) -> HealthState {
         self.around.newest = Some(frame(images.clone(), self.time));
@@ -142,6 +148,11 @@ impl Desk {
         self.ask(EyesCommand::Accept);
         matches!(self.started.pop(), Some((_, EyesWork::Accept(_))))
     }
+}
+
+/// A recording that was paused.
+fn held_still() -> ReplayView {
+    ReplayView { position: Some(3), length: 9, playing: false, looping: true, pairs_per_second: None }
 }
 
 fn turned_by(cameras: &StereoCameras, pan_deg: f64) -> StereoCameras {
@@ -244,4 +255,52 @@ fn photographs_are_judged_at_once_and_pairs_of_other_eyes_are_not_mixed() {
     Arc::make_mut(&mut desk.around.source).photographs = true;
     desk.ask(EyesCommand::JudgeHealth);
     assert!(matches!(&desk.started[..], [(_, EyesWork::Health(work))] if work.pairs.len() == 1));
+}
+
+#[test]
+fn where_no_more_pairs_come_none_are_waited_for_and_it_can_be_asked_again() {
+    let stop: [fn(&mut SourceView); 3] = [
+        |source| {
+            let reason = "unplugged".to_owned();
+            source.status = SourceStatus::Lost { reason, since: Instant::now(), attempts: 0 };
+        },
+        |source| *source = SourceView { opened: source.opened, ..SourceView::default() },
+        |source| source.replay = Some(held_still()),
+    ];
+    for stop in stop {
+        let mut desk = Desk::new(0.0);
+        desk.ask(EyesCommand::JudgeHealth);
+        desk.see(seen());
+        let going = desk.around.source.clone();
+        desk.source(|_| {});
+        assert_eq!(desk.view().health.state, HealthState::Gathering { pairs: 2, of: 4 }, "they still come");
+        desk.source(stop);
+        assert_eq!(desk.view().health.state, HealthState::NotAsked, "{:?}", desk.around.source);
+        assert!(desk.said().iter().any(|text| text.contains("No more pairs come")), "{:?}", desk.said());
+        desk.source(|source| *source = SourceView::clone(&going));
+        desk.ask(EyesCommand::JudgeHealth);
+        desk.see(seen());
+        // Asked while pairs are gathered, it begins anew.
+        desk.ask(EyesCommand::JudgeHealth);
+        assert_eq!(desk.view().health.state, HealthState::Gathering { pairs: 1, of: 4 });
+    }
+}
+
+#[test]
+fn what_was_judged_stands_while_it_is_judged_again_and_when_nothing_comes_of_that() {
+    let mut desk = Desk::new(0.0);
+    desk.propose(0.6);
+    let health = desk.health();
+    assert_eq!(health.proposed.map(|(_, verdict)| verdict), Some(ProposalHealth::Worse), "{health:?}");
+    let is_refused = |desk: &mut Desk| desk.view().health.is_against_proposal() && !desk.accepts();
+    desk.ask(EyesCommand::JudgeHealth);
+    assert!(is_refused(&mut desk), "while pairs are gathered");
+    (0..3).for_each(|_| desk.see(dark()));
+    assert_eq!(desk.view().health.state, HealthState::Judging);
+    assert!(desk.view().health.is_against_proposal(), "while it is computed");
+    let state = desk.judged(&dark());
+    assert!(matches!(state, HealthState::Failed(_)), "{state:?}");
+    assert!(is_refused(&mut desk), "in the dark nothing else is known");
+    desk.propose(0.0);
+    assert!(!desk.view().health.is_against_proposal(), "another one is not what was judged");
 }

@@ -7,22 +7,14 @@ use std::sync::Arc;
 pub struct HealthView {
     /// How far it is.
     pub state: HealthState,
+    /// What was judged last, also while it is looked at again; `None`: nothing yet, or of other calibrations.
+    pub judged: Option<Arc<EyesHealth>>,
 }
 
 impl HealthView {
-    /// Whether it is being looked at.
-    pub fn is_busy(&self) -> bool {
-        matches!(self.state, HealthState::Gathering { .. } | HealthState::Judging)
-    }
-
-    /// What was judged; `None`: nothing yet, or of other calibrations.
-    pub fn judged(&self) -> Option<&EyesHealth> {
-        if let HealthState::Judged(health) = &self.state { Some(health) } else { None }
-    }
-
     /// Whether the proposal was judged and is not better: then it is not offered.
     pub fn is_against_proposal(&self) -> bool {
-        let proposed = self.judged().and_then(|health| health.proposed);
+        let proposed = self.judged.as_ref().and_then(|health| health.proposed);
         matches!(proposed, Some((_, ProposalHealth::Worse | ProposalHealth::Undecided)))
     }
 }

@@ -9,8 +9,9 @@ use plumbline_grasp::attempt::{AIR_RAD_S, DOWN_RAD_S, LIFT_RAD_S};
 use plumbline_grasp::plan::GraspPlan;
 use plumbline_grasp::see::Seen;
 use plumbline_grasp::things::Thing;
-use plumbline_grasp::{Body, Grasper, Halt, HandChoice, Method, Order, Outcome, Record};
+use plumbline_grasp::{Body, Failure, Grasper, Halt, HandChoice, Method, Order, Outcome, Record};
 use plumbline_model::JobContext;
+use plumbline_model::files::FileError;
 use plumbline_model::robot::{Posture, Rig};
 use plumbline_vision::detect::DetectError;
 
@@ -61,6 +62,15 @@ pub struct Proposed {
     pub seen: Vec<Seen>,
     /// What was chosen of it.
     pub chosen: Option<usize>,
+}
+
+/// What came of an attempt.
+#[derive(Clone, Debug)]
+pub struct CarriedOut {
+    /// As it is kept.
+    pub attempt: AttemptView,
+    /// Why the end of the joint tracks of one that held is not kept.
+    pub not_kept: Option<String>,
 }
 
 /// Why nothing is ordered. Reads as a sentence.
@@ -126,7 +136,7 @@ impl Attempt {
     }
 
     /// Grasps once. Whatever happens, the record says it.
-    pub fn carry_out(&self, context: &dyn JobContext) -> Result<AttemptView, JobError> {
+    pub fn carry_out(&self, context: &dyn JobContext) -> Result<CarriedOut, JobError> {
         let keeping = Keeping::begin(&self.grasps, self.method, self.at).map_err(JobError::told)?;
         self.progress.change(|run| run.name = keeping.name());
         context.report(0.0, "getting ready");
@@ -156,13 +166,10 @@ impl Attempt {
                 record
             }
         };
-        if let Some(problem) = watcher.problem.or(tracks.end().map(KeepingError::from)) {
-            let why = format!("it could not be kept: {problem}");
-            record.outcome = Some(Outcome::Failed { failure: plumbline_grasp::Failure::Halted, why });
-        }
+        let not_kept = conclude(&mut record, watcher.problem, tracks.end());
         self.progress.ended(&record);
         keeping.record(&record).map_err(JobError::told)?;
-        Ok(keeping.view(&record))
+        Ok(CarriedOut { attempt: keeping.view(&record), not_kept })
     }
 
     fn body<'a>(&self, context: &'a dyn JobContext) -> LedBody<'a> {
@@ -214,6 +221,22 @@ impl Attempt {
     }
 }
 
+/// What could not be kept ended the attempt; of one that holds all the same the rest of its tracks alone is missing,
+/// and why is returned.
+fn conclude(
+    record: &mut Record,
+    problem: Option<KeepingError>,
+    of_tracks: Option<FileError>,
+) -> Option<String> {
+    if problem.is_none() && record.is_success() {
+        return of_tracks.map(|problem| problem.to_string());
+    }
+    let problem = problem.or(of_tracks.map(KeepingError::from))?;
+    let why = format!("it could not be kept: {problem}");
+    record.outcome = Some(Outcome::Failed { failure: Failure::Halted, why });
+    None
+}
+
 /// Why there is no plan.
 fn why_of(record: &Record) -> NoPlan {
     match &record.outcome {
@@ -244,4 +267,50 @@ fn whole(from: &Posture, plan: &GraspPlan, lift: &[Posture]) -> Duration {
         + along(above, &plan.down, DOWN_RAD_S)
         + Duration::from_secs_f64(2.0 * CLOSING_S)
         + along(&lift.first().cloned().unwrap_or_else(|| closing.clone()), lift, LIFT_RAD_S)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// As where a disk is full.
+    fn unwritable() -> FileError {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        plumbline_model::files::write(folder.path(), "a folder is no file").expect_err("it is a folder")
+    }
+
+    fn concluded(
+        outcome: Outcome,
+        problem: Option<KeepingError>,
+        of_tracks: Option<FileError>,
+    ) -> (Option<Outcome>, Option<String>) {
+        let mut record = Record::new(Method::M5, "Tomato", Timestamp::UNIX_EPOCH, String::new());
+        record.outcome = Some(outcome);
+        let not_kept = conclude(&mut record, problem, of_tracks);
+        (record.outcome, not_kept)
+    }
+
+    #[test]
+    fn what_is_held_stays_held_where_the_end_of_its_tracks_alone_is_not_kept() {
+        assert_eq!(concluded(Outcome::Success, None, None), (Some(Outcome::Success), None));
+        let problem = unwritable();
+        let said = problem.to_string();
+        assert_eq!(concluded(Outcome::Success, None, Some(problem)), (Some(Outcome::Success), Some(said)));
+    }
+
+    #[test]
+    fn what_could_not_be_kept_on_the_way_is_why_it_ended() {
+        let ended = Outcome::Failed { failure: Failure::Halted, why: "it was ended".to_owned() };
+        for (outcome, problem, of_tracks) in [
+            (Outcome::Success, Some(unwritable().into()), None),
+            (Outcome::Success, Some(unwritable().into()), Some(unwritable())),
+            (ended, None, Some(unwritable())),
+        ] {
+            let (outcome, not_kept) = concluded(outcome, problem, of_tracks);
+            let Some(Outcome::Failed { failure: Failure::Halted, why }) = outcome else {
+                panic!("{outcome:?}")
+            };
+            assert!(why.contains("could not be kept") && not_kept.is_none(), "{why}");
+        }
+    }
 }

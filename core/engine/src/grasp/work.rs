@@ -6,7 +6,7 @@ use std::time::Duration;
 use plumbline_grasp::Outcome;
 use plumbline_model::JobContext;
 
-use super::attempt::{Attempt, Proposed};
+use super::attempt::{Attempt, CarriedOut, Proposed};
 use super::command::HandStep;
 use super::keeping::{self, Keeping};
 use super::steps::{HandWork, NoStep};
@@ -53,7 +53,7 @@ pub enum GraspResult {
     /// What would be sent.
     Planned(Box<Proposed>),
     /// What became of an attempt.
-    Grasped(Box<AttemptView>),
+    Grasped(Box<CarriedOut>),
     /// A step was made, or why not.
     HandDone(HandStep, Result<(), NoStep>),
     /// What the operator saw is kept.
@@ -120,8 +120,8 @@ impl GraspResult {
                 Ok(_) => "A grasp is planned.".to_owned(),
                 Err(why) => format!("No grasp is planned: {why}."),
             },
-            Self::Grasped(attempt) => match &attempt.outcome {
-                Some(Outcome::Success) => format!("The {} is held.", attempt.object.to_lowercase()),
+            Self::Grasped(done) => match &done.attempt.outcome {
+                Some(Outcome::Success) => format!("The {} is held.", done.attempt.object.to_lowercase()),
                 Some(Outcome::Failed { why, .. }) => format!("Not held: {why}."),
                 Some(Outcome::Refused { why }) => format!("Not grasped: {why}."),
                 None => "The grasp ended without a word.".to_owned(),

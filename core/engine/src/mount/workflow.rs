@@ -303,11 +303,15 @@ impl Workflow for MountWorkflow {
                 self.step(around, context);
             }
             MountCommand::Capture => self.wait_for_image(Waiting::Capture, around, context),
-            MountCommand::Delete { view } => self.views.retain(|known| known.name != view),
+            MountCommand::Delete { view } => {
+                self.views.retain(|known| known.name != view);
+                self.taken_min.remove(&view);
+            }
             MountCommand::DeleteAll => {
                 // Without its view no pose was seen.
                 (self.tour, self.seen) = (None, 0);
                 self.views.clear();
+                self.taken_min.clear();
                 self.proposal = None;
             }
             MountCommand::Solve => self.solve(around, context),

@@ -95,7 +95,8 @@ pub fn history(model: &RigModel) -> impl Iterator<Item = (&Step, &StepGap)> {
 
 /// A model with effects of a finding, by their places in it, and with where the finding places its
 /// sessions' frames. `replaces`: the search began with the nominal robot, so that what it found takes
-/// the place of all that is in the model. `rig`: the robot with the eyes of the search. `at`: when it is done.
+/// the place of all that is in the model. `rig`: the robot with the eyes as they are calibrated now, beside which what
+/// grows counts, however warm those of the search were. `at`: when it is done.
 ///
 /// # Errors
 /// A sentence: why they cannot be added.
@@ -132,7 +133,10 @@ pub fn with(
     let eyes = if chosen.iter().any(is_of_eyes) { numbers_of_eyes(rig) } else { vec![] };
     let addition = Addition {
         together: vec![],
-        effects: chosen.into_iter().map(|effect| model_effect(effect, tip)).collect(),
+        effects: chosen
+            .into_iter()
+            .map(|effect| model_effect(effect, tip).beside(&rig.eyes.calibrated_at))
+            .collect(),
         screens,
         externals,
         eyes,

@@ -330,3 +330,27 @@ fn an_arm_is_sized_from_enough_touches_of_one_session_only() {
     measurements.rows.truncate(11);
     assert!(ArmTouches::of(&sessions[..1], &measurements).is_none(), "too few");
 }
+
+#[test]
+fn what_grows_counts_from_the_calibration_in_use_whatever_the_finding_says() {
+    let mut rig = nico();
+    let at = Timestamp::UNIX_EPOCH;
+    // Found beside eyes that were calibrated after ten minutes, or kept by a program that did not say it.
+    for found_s in [600.0, 0.0] {
+        let growing = NamedEffect {
+            shape: Some(300.0),
+            reference_s: found_s,
+            values: vec![0.006],
+            ..named("eye-yaw", "right", 0.006)
+        };
+        let found = finding(vec![growing, named("joint-zero", "r_elbow_y", 0.03)]);
+        for (cameras_s, counts_from_s) in [(Some(1500.0), 1500.0), (None, 0.0)] {
+            rig.eyes.calibrated_at.cameras_s = cameras_s;
+            let sessions = [session(&rig)];
+            let model = with(&RigModel::nominal(&rig), &rig, (&found, &sessions), &[0, 1], true, at);
+            let model = model.expect("they fit");
+            let references: Vec<f64> = model.effects().iter().map(|effect| effect.reference_s).collect();
+            assert_eq!(references, [counts_from_s, 0.0], "found at {found_s} s, calibrated at {cameras_s:?}");
+        }
+    }
+}

@@ -363,6 +363,13 @@ impl State {
         self.with::<RecordingWorkflow>(World::default(), |recording, around, context| {
             recording.follow_source(around, context);
         });
+        for world in World::ALL {
+            if self.rooms.eyes.of(world).wants_pairs() {
+                self.with::<EyesWorkflow>(world, |eyes, around, context| {
+                    eyes.source_changed(around, context)
+                });
+            }
+        }
         self.use_models();
         self.rooms.live.use_nominal_lenses(own_lenses);
     }

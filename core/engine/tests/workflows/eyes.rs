@@ -320,7 +320,11 @@ fn a_point_on_a_wall_is_measured_where_the_wall_is() {
     let probe = view.live.probe.as_ref().expect("probed");
     let reading = probe.reading.as_ref().expect("the wall is textured");
     let z_m = reading.point_in_left.coords.z;
-    assert!((z_m - WALL_M).abs() < 4.0 * reading.sigma_m.max(1e-3), "{z_m} ± {}", reading.sigma_m);
+    assert!(
+        (z_m - WALL_M).abs() < 4.0 * reading.range_sigma_m.max(1e-3),
+        "{z_m} ± {}",
+        reading.range_sigma_m
+    );
     let disparity = view.live.disparity.as_ref().expect("computed");
     assert_eq!(disparity.stamp, view.live.rectified.as_ref().expect("computed").stamp);
     let pixel = reading.left_rectified.expect("in the view");

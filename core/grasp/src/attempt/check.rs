@@ -126,7 +126,8 @@ mod tests {
 
     fn tomato(point_m: [f64; 3], left_px: f32) -> Seen {
         let area = Some([left_px, 100.0, left_px + 60.0, 160.0]);
-        let place = Ok(SeenPlace { point_m, covariance_m2: Matrix3::identity() * 1e-6 });
+        let (covariance_m2, by_mount_m2) = (Matrix3::identity() * 1e-6, Matrix3::zeros());
+        let place = Ok(SeenPlace { point_m, covariance_m2, by_mount_m2 });
         Seen { class: "Tomato".to_owned(), confidence: 0.9, boxes_px: [area, area], place }
     }
 

@@ -81,7 +81,7 @@ impl Running<'_> {
         let (mut point, mut covariance_m2) = (place.point().coords.coords, place.covariance_m2);
         if let Some(off_m) = over_table_m(knowledge, thing, place) {
             return Err(End::Refused(format!(
-                "the {} seems to be {:.0} mm {} the table: put it down, or calibrate the eyes again",
+                "the {} seems to be {:.0} mm {} the table: put it down, or calibrate the eyes and their mount again",
                 thing.class.to_lowercase(),
                 off_m.abs() * 1e3,
                 if off_m > 0.0 { "over" } else { "under" }
@@ -107,11 +107,12 @@ impl Running<'_> {
 }
 
 /// How far over the table a thing seems to be that does not stand on it (under it: negative), m; `None`: it
-/// seems to stand there.
+/// seems to stand there. The mount of the eyes is left out of how sure that is: it moves all that is seen alike, and how
+/// far mounts that nobody measured are usually off would let a thing in the air pass.
 fn over_table_m(knowledge: &Knowledge, thing: &Thing, place: &SeenPlace) -> Option<f64> {
     let [x_m, y_m, z_m] = place.point_m;
     let off_m = z_m - knowledge.support_m(x_m, y_m) - 0.5 * thing.height_m;
-    let sigma_m = place.covariance_m2[(2, 2)].max(0.0).sqrt();
+    let sigma_m = (place.covariance_m2 - place.by_mount_m2)[(2, 2)].max(0.0).sqrt();
     (off_m.abs() > NOT_ON_TABLE_M + 3.0 * sigma_m).then_some(off_m)
 }
 
@@ -165,12 +166,24 @@ fn nearest(
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use plumbline_effects::RobotModel;
+    use plumbline_model::StereoCalibration;
+    use plumbline_model::robot::default_rig;
+
     use super::*;
+    use crate::knowledge::Corrections;
 
     fn tomato(place: Result<[f64; 3], &str>, boxes_px: [Option<[f32; 4]>; 2]) -> Seen {
         let place = place.map_err(str::to_owned);
-        let place = place.map(|point_m| SeenPlace { point_m, covariance_m2: Matrix3::identity() * 1e-6 });
+        let place = place.map(seen_at);
         Seen { class: "Tomato".to_owned(), confidence: 0.9, boxes_px, place }
+    }
+
+    fn seen_at(point_m: [f64; 3]) -> SeenPlace {
+        let covariance_m2 = Matrix3::identity() * 1e-6;
+        SeenPlace { point_m, covariance_m2, by_mount_m2: Matrix3::zeros() }
     }
 
     const BOX: Option<[f32; 4]> = Some([10.0, 10.0, 50.0, 50.0]);
@@ -211,6 +224,34 @@ mod tests {
             let seen = [tomato(Err("hidden"), boxes_px)];
             let why = nearest(&seen, "tomato", None, |_| true).map_err(why).expect_err("it has no place");
             assert!(why.contains(words), "{why}");
+        }
+    }
+
+    #[test]
+    fn a_thing_in_the_air_does_not_stand_on_the_table_however_little_is_known_of_the_mount() {
+        let rig = default_rig();
+        let knowledge = Knowledge {
+            described: rig.clone(),
+            model: RobotModel::nominal(rig.clone()),
+            calibration: Arc::new(StereoCalibration::bare(rig.eyes.cameras)),
+            corrections: Corrections::default(),
+        };
+        let thing = Thing::of_class("Tomato").expect("known");
+        let [x_m, y_m] = [0.4, 0.1];
+        let stands_m = knowledge.support_m(x_m, y_m) + 0.5 * thing.height_m;
+        let seen = |up_m: f64, sigma_m: f64, by_mount_m: f64| {
+            let [all_m2, by_mount_m2] = [sigma_m.powi(2) + by_mount_m.powi(2), by_mount_m.powi(2)];
+            let place = SeenPlace {
+                covariance_m2: Matrix3::identity() * all_m2,
+                by_mount_m2: Matrix3::identity() * by_mount_m2,
+                ..seen_at([x_m, y_m, stands_m + up_m])
+            };
+            over_table_m(&knowledge, &thing, &place)
+        };
+        for by_mount_m in [0.0, 0.03] {
+            assert_eq!(seen(0.02, 2e-3, by_mount_m), None);
+            assert!(seen(0.06, 2e-3, by_mount_m).is_some_and(|off_m| (off_m - 0.06).abs() < 1e-9));
+            assert_eq!(seen(0.06, 0.02, by_mount_m), None, "what is seen badly may stand there");
         }
     }
 }

@@ -7,6 +7,7 @@ use nalgebra::Vector3;
 
 use super::document;
 use super::error::SessionError;
+use super::eyes_setup;
 use super::pose_setup::PoseSetup;
 use crate::formats::node::Field;
 use crate::formats::{FormatError, text_file};
@@ -108,6 +109,7 @@ impl Manifest {
             Ok(root.find(key)?.map(|field| field.text()).transpose()?.unwrap_or_default())
         };
         PoseSetup::read(&root)?;
+        eyes_setup::check(&root)?;
         Ok(Self {
             rig: rig(&root)?,
             started: root.get("started")?.timestamp()?,

@@ -13,6 +13,7 @@
 
 mod document;
 mod error;
+mod eyes_setup;
 mod joint_columns;
 mod localizations;
 mod manifest;

@@ -140,6 +140,7 @@ impl Bench {
         let mut body = self.world(task)?;
         let done = self.attempt_in(&mut body, task, meddler);
         self.put_away(body);
+        let done = done?;
         if let Some(problem) = self.problem.take() {
             return Err(problem.into());
         }
@@ -162,20 +163,20 @@ impl Bench {
         self.eyes = body.into_twin().take_eyes();
     }
 
-    /// One attempt in a world as it is now.
+    /// One attempt in a world as it is now. What cannot be kept is not begun.
     pub fn attempt_in(
         &mut self,
         body: &mut TwinBody,
         task: &Task,
         meddler: &mut dyn Meddler,
-    ) -> (Record, Judged) {
+    ) -> Result<(Record, Judged), OfflineError> {
         body.taken_over();
         meddler.before(body.twin());
         let judge = Rc::new(RefCell::new(Judge::new(body.twin(), task.toy, &self.rig)));
         let step = Rc::new(RefCell::new(Step::Ready));
         let meddler = RefCell::new(meddler);
         let tracked = match &self.tracks {
-            Some(file) => Tracked::begin(file, body.twin()),
+            Some(file) => Tracked::begin(file, body.twin()).map_err(KeepingError::from)?,
             None => Tracked::default(),
         };
         let mut watched = Watched {
@@ -195,7 +196,7 @@ impl Bench {
         self.problem = watch.problem.or(tracked.end(body.twin()).map(KeepingError::from));
         self.hold(body, &mut record);
         let judged = judge.borrow().judge(body.twin(), &record);
-        (record, judged)
+        Ok((record, judged))
     }
 
     /// Stands still with what is in the hand; as in the window, the record keeps that it slipped out.

@@ -23,18 +23,16 @@ struct Kept {
 
 impl Tracked {
     /// From now on all joints of the twin are kept in this file, in place of what was in it.
-    pub fn begin(file: &Path, twin: &mut Lockstep) -> Self {
-        let kept = match Tracks::begin(file, twin.rig()) {
-            Ok(tracks) => {
-                twin.keep_course(EVERY_S);
-                Kept { tracks: Some(tracks), problem: None }
-            }
-            Err(problem) => Kept { tracks: None, problem: Some(problem) },
-        };
-        let tracked = Self(Rc::new(RefCell::new(kept)));
+    ///
+    /// # Errors
+    /// When it cannot be written: what cannot be kept is not begun.
+    pub fn begin(file: &Path, twin: &mut Lockstep) -> Result<Self, FileError> {
+        let tracks = Tracks::begin(file, twin.rig())?;
+        twin.keep_course(EVERY_S);
+        let tracked = Self(Rc::new(RefCell::new(Kept { tracks: Some(tracks), problem: None })));
         tracked.step(Step::Ready);
         tracked.take(twin);
-        tracked
+        Ok(tracked)
     }
 
     /// A step begins.

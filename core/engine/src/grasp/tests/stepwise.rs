@@ -63,7 +63,7 @@ fn it_holds_after_each_step_until_it_is_told_to_go_on_and_with_the_switch_off_go
             let moved_rad = bench.creeps_rad();
             assert!(moved_rad < 0.01, "it holds, and moves by {moved_rad} rad");
         }
-        std::thread::sleep(LOOKS);
+        bench.until("a look", |_| began.elapsed() > LOOKS);
         if next == GraspStep::Lift {
             bench.send(GraspCommand::StopAfterEachStep(false));
             bench.until("the switch", |view| !view.grasp.stops_after_each);

@@ -154,7 +154,7 @@ impl Workflow for GraspWorkflow {
                 }
             }
             GraspResult::Planned(proposed) => self.planned(*proposed, context),
-            GraspResult::Grasped(attempt) => self.grasped(*attempt, &summary, around, context),
+            GraspResult::Grasped(done) => self.grasped(*done, &summary, around, context),
             GraspResult::HandDone(_, done) => {
                 self.plan = None;
                 if done.is_err() {

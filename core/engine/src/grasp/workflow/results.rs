@@ -4,7 +4,7 @@ use plumbline_grasp::Outcome;
 
 use super::GraspWorkflow;
 use crate::grasp::around::GraspAround;
-use crate::grasp::attempt::Proposed;
+use crate::grasp::attempt::{CarriedOut, Proposed};
 use crate::grasp::held::HeldWatch;
 use crate::grasp::view::{AttemptView, SinceHeld};
 use crate::grasp::work::{Context, GraspWork};
@@ -29,16 +29,21 @@ impl GraspWorkflow {
 
     pub(super) fn grasped(
         &mut self,
-        attempt: AttemptView,
+        done: CarriedOut,
         summary: &str,
         around: &GraspAround,
         context: &mut Context<'_>,
     ) {
+        let CarriedOut { attempt, not_kept } = done;
         let level = match attempt.outcome {
             Some(Outcome::Success) => NoticeLevel::Success,
             _ => NoticeLevel::Warning,
         };
         context.notices.add(level, summary);
+        if let Some(why) = not_kept {
+            let text = format!("How the joints moved at its end is not kept: {why}.");
+            context.notices.add(NoticeLevel::Warning, text);
+        }
         self.plan = None;
         self.closed_at_m = attempt.closed_at_m.or(self.closed_at_m);
         self.held = match attempt.outcome {

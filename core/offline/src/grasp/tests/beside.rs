@@ -107,7 +107,7 @@ fn what_stands_twelve_centimeters_beside_it_is_not_knocked_over() {
         let mut world = bench.world(&task).expect("a world");
         Neighbor { at_m }.before(world.twin());
         let before = stands(world.twin(), Toy::Duck);
-        let (record, judged) = bench.attempt_in(&mut world, &task, &mut ());
+        let (record, judged) = bench.attempt_in(&mut world, &task, &mut ()).expect("nothing is kept");
         let after = stands(world.twin(), Toy::Duck);
         bench.put_away(world);
         assert_honest(&format!("{at_m:.2?}"), &record, &judged);

@@ -98,7 +98,7 @@ fn the_bus_lost_or_the_program_killed_in_any_step_the_arm_holds_and_the_next_gra
     let mut world = bench.world(&task).expect("a world");
     for at in STEPS {
         let mut breaks = Breaks::new(at, Halt::Lost("the bus does not answer".to_owned()));
-        let (record, _) = bench.attempt_in(&mut world, &task, &mut breaks);
+        let (record, _) = bench.attempt_in(&mut world, &task, &mut breaks).expect("nothing is kept");
         assert_eq!(failure(&record), Some(Failure::Halted), "{at:?}: {:?}", record.outcome);
         let Some(Outcome::Failed { why, .. }) = &record.outcome else { unreachable!("just seen") };
         assert!(why.contains("does not answer") && record.step == Some(at), "{at:?}: {why}");
@@ -108,7 +108,7 @@ fn the_bus_lost_or_the_program_killed_in_any_step_the_arm_holds_and_the_next_gra
         assert_eq!((left.step, &left.outcome), (Some(at), &None));
         assert!(left.wanted_m.is_some() && left.chosen.is_some(), "{at:?}");
         home(&next, &mut world, Toy::Tomato);
-        let (record, judged) = next.attempt_in(&mut world, &task, &mut ());
+        let (record, judged) = next.attempt_in(&mut world, &task, &mut ()).expect("nothing is kept");
         assert_eq!(record.outcome, Some(Outcome::Success), "after {at:?}");
         assert!(judged.lifted, "after {at:?}");
         home(&next, &mut world, Toy::Tomato);
@@ -139,15 +139,15 @@ fn a_servo_that_gets_too_hot_on_the_way_ends_it_and_when_it_is_cool_the_next_gra
     for at in [Step::Lower, Step::Lift] {
         let hot_c = world.rig().gate.hot_c + 5.0;
         let mut breaks = Breaks { hot_c: Some(hot_c), ..Breaks::new(at, halt.clone()) };
-        let (record, _) = bench.attempt_in(&mut world, &task, &mut breaks);
+        let (record, _) = bench.attempt_in(&mut world, &task, &mut breaks).expect("nothing is kept");
         assert_eq!(failure(&record), Some(Failure::Halted), "{at:?}: {:?}", record.outcome);
         assert_holds(&format!("{at:?}"), &bench, &mut world);
         // While it is hot nothing moves.
-        let (record, _) = bench.attempt_in(&mut world, &task, &mut breaks);
+        let (record, _) = bench.attempt_in(&mut world, &task, &mut breaks).expect("nothing is kept");
         let Some(Outcome::Refused { why }) = &record.outcome else { panic!("{:?}", record.outcome) };
         assert!(why.contains("let it cool down") && record.moments.is_empty(), "{why}");
         home(&bench, &mut world, Toy::Tomato);
-        let (record, judged) = bench.attempt_in(&mut world, &task, &mut ());
+        let (record, judged) = bench.attempt_in(&mut world, &task, &mut ()).expect("nothing is kept");
         assert!(judged.lifted && record.is_success(), "after {at:?}: {:?} {:?}", record.outcome, record.seen);
         home(&bench, &mut world, Toy::Tomato);
     }
@@ -173,13 +173,16 @@ fn a_hand_that_is_hidden_from_both_eyes_ends_m4_with_the_reason_and_the_next_gra
     let mut bench = with_heights();
     let task_m4 = task(Method::M4, Toy::Tomato, EASY_M);
     let mut world = bench.world(&task_m4).expect("a world");
-    let (record, judged) = bench.attempt_in(&mut world, &task_m4, &mut HandHidden::default());
+    let (record, judged) =
+        bench.attempt_in(&mut world, &task_m4, &mut HandHidden::default()).expect("nothing is kept");
     assert_eq!(failure(&record), Some(Failure::HandWrong), "{:?}", record.outcome);
     assert!(record.iterations.iter().all(|look| look.hand_m.is_none()) && !record.iterations.is_empty());
     assert_honest("M4", &record, &judged);
     assert_holds("M4", &bench, &mut world);
     home(&bench, &mut world, Toy::Tomato);
-    let (record, judged) = bench.attempt_in(&mut world, &task(Method::M5, Toy::Tomato, EASY_M), &mut ());
+    let (record, judged) = bench
+        .attempt_in(&mut world, &task(Method::M5, Toy::Tomato, EASY_M), &mut ())
+        .expect("nothing is kept");
     assert!(judged.lifted && record.is_success(), "{:?}", record.outcome);
 }
 
@@ -188,11 +191,12 @@ fn after_a_hand_that_was_hidden_the_next_grasp_in_the_same_world_works() {
     let mut bench = perfect();
     let task = task(Method::M5, Toy::Tomato, EASY_M);
     let mut world = bench.world(&task).expect("a world");
-    let (record, judged) = bench.attempt_in(&mut world, &task, &mut HandHidden::default());
+    let (record, judged) =
+        bench.attempt_in(&mut world, &task, &mut HandHidden::default()).expect("nothing is kept");
     assert!(record.iterations.iter().all(|look| look.hand_m.is_none()), "{:?}", record.iterations);
     assert_honest("M5", &record, &judged);
     assert_holds("M5", &bench, &mut world);
     home(&bench, &mut world, Toy::Tomato);
-    let (record, judged) = bench.attempt_in(&mut world, &task, &mut ());
+    let (record, judged) = bench.attempt_in(&mut world, &task, &mut ()).expect("nothing is kept");
     assert!(judged.lifted && record.is_success(), "{:?}", record.outcome);
 }

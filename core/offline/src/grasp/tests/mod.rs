@@ -227,6 +227,23 @@ fn what_is_missed_is_looked_for_and_grasped_once_more() {
     tracks_say_the_same(&std::fs::read_to_string(&file).expect("kept"), &record, bench.rig());
 }
 
+#[test]
+fn what_cannot_be_kept_is_not_begun() {
+    let mut bench = bench("perfect");
+    let folder = tempfile::tempdir().expect("a folder");
+    // A folder is no file.
+    bench.track_in(folder.path().to_owned());
+    let mut steps = 0;
+    let mut count = |_: Step, _: &mut Lockstep| {
+        steps += 1;
+        Ok(())
+    };
+    let refused = bench.attempt_disturbed(&task(Method::M5, Toy::Tomato, [0.3, -0.1]), &mut count);
+    let why = refused.map(|(record, _)| record.outcome).expect_err("it is not begun").to_string();
+    assert!(why.contains(&folder.path().display().to_string()), "{why}");
+    assert_eq!(steps, 0, "nothing has moved");
+}
+
 /// The joints over time, of both tries: as often as is said, each row of the step that was under way, and where a
 /// step had ended there the record has the joints, too.
 fn tracks_say_the_same(text: &str, record: &Record, rig: &Rig) {
