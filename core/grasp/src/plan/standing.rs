@@ -6,14 +6,17 @@ use plumbline_model::{Point, Robot};
 // In the middle of how far off things may be and still be lifted (`tests/tolerance.rs`): about 6 mm along and
 // across the hand, 10 to 16 mm from the palm to the middle of a tomato. Nearer to the palm the thumb pushes it
 // across the hand, farther it slips out below: 3 to 5 mm off along and across, of 132 hands 121 lift it with the
-// palm at 8 mm, 132 at 10, 131 at 12 and 129 at 14.
+// palm at 8 mm, 132 at 10, 131 at 12 and 129 at 14. Of two robots
+// whose palms are tilted by 3° to 5° without knowing it (drawn-502, drawn-602; `brought_there_exactly…`), asked ten
+// seconds later, of 44 hands 33 hold a thing that is 6 mm nearer to the fingertips than here, 42 and 43 one that is 2 mm
+// to either side, 39 one that is 5 mm nearer to the palm, and 43 hold 3 mm lower.
 
 /// Things belong so much nearer to the fingers than the middle of the palm, m…
-const INTO_FINGERS_M: f64 = 0.017;
+const INTO_FINGERS_M: f64 = 0.015;
 /// …and so much away from the thumb: toward the right of a right hand, m.
 const FROM_THUMB_M: f64 = 0.004;
 /// …and the palm closes so much below the top of a thing, m.
-const BELOW_TOP_M: f64 = 0.015;
+const BELOW_TOP_M: f64 = 0.016;
 
 /// What is to be grasped, on what it stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
