@@ -212,7 +212,7 @@ mod tests {
             run.iterations = vec![look.clone()];
             holds(&grasp).expect("it holds")
         };
-        assert!(said(&look).contains("seen the hand 4.2 mm beside where it belongs"), "{}", said(&look));
+        assert!(said(&look).contains("seen the hand 4.20 mm beside where it belongs"), "{}", said(&look));
         look.distance_m = None;
         assert!(said(&look).contains("have not found it"), "{}", said(&look));
     }

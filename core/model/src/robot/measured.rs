@@ -10,13 +10,13 @@ use serde::Deserialize;
 use super::description::{Description, JointIndex, LinkIndex};
 use super::error::RigError;
 use super::outlines::Outlines;
-use super::rig::{Bus, CalibratedAt, EyeMount, Gate, Rig, RigPart, TableTop, WorkPatch};
+use super::rig::{Bus, EyeMount, Gate, Rig, RigPart, TableTop, WorkPatch};
 use super::rig_file::{ArmPart, EyesPart, PosePart, Reader, ScreenPart, TablePart, WorkspacePart};
 use crate::camera::{Camera, CameraModel, Fisheye};
 use crate::files::{self, Size, told};
 use crate::formats::depth;
 use crate::frame::{Direction, Point, Pose};
-use crate::session::Touchscreen;
+use crate::session::{CalibratedAt, Touchscreen};
 use crate::stereo::StereoCameras;
 
 /// What tells a complete rig file, which is read strictly, from one of a robot that was only

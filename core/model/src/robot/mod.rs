@@ -29,6 +29,7 @@ mod tests;
 mod tests_measured;
 mod urdf;
 
+pub use crate::session::CalibratedAt;
 pub use chain::Chain;
 pub use check::Problem;
 pub use description::{
@@ -40,7 +41,7 @@ pub use outlines::{BodyEdges, Outlines, ScreenFrame};
 pub use posture::Posture;
 pub use reach::{Plan, Reach, ReachError, ReachOptions, Refusal};
 pub use rig::{
-    Arm, Board, Bus, CalibratedAt, CoupledLimit, Direction as ServoDirection, EyeMount, Gate, NamedPose, Rig,
-    RigPart, Servo, TableTop, TipName, WorkPatch,
+    Arm, Board, Bus, CoupledLimit, Direction as ServoDirection, EyeMount, Gate, NamedPose, Rig, RigPart,
+    Servo, TableTop, TipName, WorkPatch,
 };
 pub use rig_file::default_rig;

@@ -10,7 +10,7 @@ use super::error::{DescriptionError, RigError};
 use super::outlines::Outlines;
 use super::posture::Posture;
 use crate::frame::{Head, LeftCamera, Point, Pose, Robot};
-use crate::session::Touchscreen;
+use crate::session::{CalibratedAt, Touchscreen};
 use crate::stereo::StereoCameras;
 use crate::workspace::Workspace;
 
@@ -210,16 +210,6 @@ pub struct EyeMount {
     pub cameras: StereoCameras,
     /// How warm the eyes were when both were calibrated.
     pub calibrated_at: CalibratedAt,
-}
-
-/// Time since the eyes were switched on when the pairs of a calibration were taken, in the mean, s. Eyes turn while they
-/// warm up: what they had turned until then is in the calibration. `None`: not known, or not calibrated.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct CalibratedAt {
-    /// Of lenses, and of how the eyes sit to each other.
-    pub cameras_s: Option<f64>,
-    /// Of the mount in the head.
-    pub mount_s: Option<f64>,
 }
 
 impl EyeMount {

@@ -11,15 +11,15 @@ use super::description::{Description, JointIndex, Limits};
 use super::error::{DescriptionError, RigError};
 use super::outlines::OutlinesPart;
 use super::rig::{
-    Arm, Board, Bus, CalibratedAt, CoupledLimit, Direction, EyeMount, Gate, NamedPose, Rig, Servo, TableTop,
-    TipName, WorkPatch,
+    Arm, Board, Bus, CoupledLimit, Direction, EyeMount, Gate, NamedPose, Rig, Servo, TableTop, TipName,
+    WorkPatch,
 };
 use crate::camera::{Camera, CameraModel, Fisheye};
 use crate::files::{self, Size, told};
 use crate::formats::depth;
 use crate::frame::{Direction as Axis, Point, Pose};
 use crate::plausible::{self, Quantity};
-use crate::session::Touchscreen;
+use crate::session::{CalibratedAt, Touchscreen};
 use crate::stereo::StereoCameras;
 
 /// Version of the format.

@@ -10,7 +10,6 @@
 use super::Manifest;
 use crate::formats::FormatError;
 use crate::formats::node::Field;
-use crate::robot::CalibratedAt;
 
 const SECTION: &str = "eyes";
 const CAMERAS: &str = "cameras_calibrated_at_s";
@@ -27,6 +26,16 @@ pub(super) fn check(root: &Field<'_>) -> Result<(), FormatError> {
         }
     }
     Ok(())
+}
+
+/// Time since the eyes were switched on when the pairs of a calibration were taken, in the mean, s. Eyes turn while they
+/// warm up: what they had turned until then is in the calibration. `None`: not known, or not calibrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CalibratedAt {
+    /// Of lenses, and of how the eyes sit to each other.
+    pub cameras_s: Option<f64>,
+    /// Of the mount in the head.
+    pub mount_s: Option<f64>,
 }
 
 impl Manifest {

@@ -28,6 +28,7 @@ use std::path::{Path, PathBuf};
 use crate::files;
 
 pub use error::{Cell, SessionError};
+pub use eyes_setup::CalibratedAt;
 pub use localizations::{LocalizationRow, LocalizationTable};
 pub use manifest::{Chain, Manifest, RigReference, Touchscreen};
 pub use pose_setup::{EncoderSide, PoseSetup};
