@@ -41,7 +41,10 @@ enum Line<'a> {
 fn line_of(view: &View, screen: Screen) -> Line<'_> {
     let failed = failed_inside(view, screen);
     // What failed inside is not hidden behind work that goes on.
-    if let (Some(job), None) = (view.running_job(), &failed) {
+    // An attempt that holds waits for the operator: what its button does next stands where the button was that
+    // began it, and not what ends it.
+    let waits = screen == Screen::Grasp && view.grasp.phase.is_paused();
+    if let (Some(job), None, false) = (view.running_job(), &failed, waits) {
         return Line::Running(job);
     }
     match (failed, course(view)) {

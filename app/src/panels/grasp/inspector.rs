@@ -27,6 +27,8 @@ pub fn show(ui: &mut Ui, view: &View, state: &PanelState) {
         ui.label(theme::small(ui, closed(why)));
     }
     ui.add_space(space::XS);
+    ui.label(theme::small(ui, format!("Sent by the robot {}.", attempt.model)))
+        .on_hover_text("The model of the robot that the arm was sent by");
     ui.label(theme::small(ui, format!("Kept as {}", attempt.name)))
         .on_hover_text(attempt.folder.display().to_string());
 }
@@ -36,7 +38,6 @@ fn rows(attempt: &AttemptView) -> Vec<KeyValue> {
         KeyValue::text("When", clock(attempt.began)),
         KeyValue::text("Method", method(attempt.method)),
         KeyValue::text("Hand", attempt.hand.name()),
-        KeyValue::text("Robot", &*attempt.model).help("The model of the robot that the arm was sent by"),
         KeyValue::text("Object", attempt.object.to_lowercase()),
         KeyValue::text("Result", result(attempt)),
     ];

@@ -70,17 +70,17 @@ fn buttons(ui: &mut Ui, cx: &mut PanelContext<'_>) {
             }
         }
         stop_after_each(ui, cx);
-        match &cx.view.grasp.phase {
-            GraspPhase::Idle | GraspPhase::Planning => {}
-            phase if phase.is_paused() => {
-                let said = holds(&cx.view.grasp).unwrap_or_else(|| "Paused: the arm holds.".to_owned());
-                ui.label(theme::weak(ui, said));
-            }
-            GraspPhase::Grasping { .. } | GraspPhase::Hand { .. } => {
-                ui.label(theme::weak(ui, doing(cx.view)));
-            }
-        }
     });
+    match &cx.view.grasp.phase {
+        GraspPhase::Idle | GraspPhase::Planning => {}
+        phase if phase.is_paused() => {
+            let said = holds(&cx.view.grasp).unwrap_or_else(|| "Paused: the arm holds.".to_owned());
+            ui.label(theme::weak(ui, said));
+        }
+        GraspPhase::Grasping { .. } | GraspPhase::Hand { .. } => {
+            ui.label(theme::weak(ui, doing(cx.view)));
+        }
+    }
 }
 
 /// Whether an attempt goes step by step. Also while one is under way.
