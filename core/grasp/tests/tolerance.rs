@@ -42,6 +42,20 @@ fn force(rig: &Rig, joint: JointIndex) -> f64 {
     }
 }
 
+/// Closes the hand as a grip does, the thumb first; the posture in which all is closed.
+fn closed(twin: &mut Lockstep, rig: &Rig, closing: &Posture) -> Posture {
+    let close = rig.pose("close-hand").expect("a pose").applied_to(closing);
+    let joint = |name: &str| rig.description.find_joint(name).expect("a joint");
+    let thumb = [joint("r_thumb_x"), joint("r_thumb_z")];
+    for finger in rig.arms.iter().flat_map(|arm| arm.hand.iter().copied()) {
+        twin.limit(finger, force(rig, finger));
+    }
+    twin.follow(&[closing.with(&thumb, &close.of(&thumb))], GRIP_RAD_S);
+    twin.follow(std::slice::from_ref(&close), GRIP_RAD_S);
+    twin.wait(0.3);
+    close
+}
+
 /// How far (m) a toy is up after it was held for ten seconds, by a hand that is sent so much beside it (along the
 /// fingers, across, up), and presses as a grip does.
 fn lifted_m(toy: Toy, at_m: [f64; 2], off_m: [f64; 3]) -> Result<(f64, f64, f64), String> {
@@ -80,15 +94,7 @@ fn lifted_m(toy: Toy, at_m: [f64; 2], off_m: [f64; 3]) -> Result<(f64, f64, f64)
     twin.follow(&plan.approach, 0.8);
     twin.follow(&plan.down, 0.5);
     let closing = plan.closing().expect("a way down").clone();
-    let close = rig.pose("close-hand").expect("a pose").applied_to(&closing);
-    let joint = |name: &str| rig.description.find_joint(name).expect("a joint");
-    let thumb = [joint("r_thumb_x"), joint("r_thumb_z")];
-    for finger in rig.arms.iter().flat_map(|arm| arm.hand.iter().copied()) {
-        twin.limit(finger, force(&rig, finger));
-    }
-    twin.follow(&[closing.with(&thumb, &close.of(&thumb))], GRIP_RAD_S);
-    twin.follow(std::slice::from_ref(&close), GRIP_RAD_S);
-    twin.wait(0.3);
+    let close = closed(&mut twin, &rig, &closing);
     let up: Vec<Posture> = planner.lift(&close, plan.heading_rad, GraspPlanner::LIFT_M);
     twin.follow(&up, 0.4);
     let seconds = twin.now_s() - began_s;
@@ -256,19 +262,11 @@ fn brought_there_exactly_by_a_robot_with_errors() {
             (palm(&mut twin).rotation * planned.rotation.inverse()).scaled_axis().map(f64::to_degrees);
         let off =
             (palm(&mut twin).translation.vector - (planned.translation.vector - shift + beside_m)) * 1e3;
-        let close = rig.pose("close-hand").expect("a pose").applied_to(&closing);
-        let joint = |name: &str| rig.description.find_joint(name).expect("a joint");
-        let thumb = [joint("r_thumb_x"), joint("r_thumb_z")];
-        for finger in rig.arms.iter().flat_map(|arm| arm.hand.iter().copied()) {
-            twin.limit(finger, force(&rig, finger));
-        }
-        twin.follow(&[closing.with(&thumb, &close.of(&thumb))], GRIP_RAD_S);
-        twin.follow(std::slice::from_ref(&close), GRIP_RAD_S);
-        twin.wait(0.3);
+        let close = closed(&mut twin, &rig, &closing);
         let in_palm = |twin: &mut Lockstep| {
             (palm(twin).inverse_transform_point(&place(twin).into()).coords * 1e3).map(|mm| mm.round())
         };
-        let closed = in_palm(&mut twin);
+        let when_closed = in_palm(&mut twin);
         let up = planner.lift(&close, plan.heading_rad, GraspPlanner::LIFT_M);
         twin.follow(&up, 0.4);
         let lifted = in_palm(&mut twin);
@@ -277,17 +275,17 @@ fn brought_there_exactly_by_a_robot_with_errors() {
             creep(&mut twin, &rig, Toy::Tomato);
         }
         twin.wait(HOLDS_S);
-        let beside_mm = (place(&mut twin).z - before.z) * 1e3;
-        held += u32::from(beside_mm > 40.0);
+        let up_mm = (place(&mut twin).z - before.z) * 1e3;
+        held += u32::from(up_mm > 40.0);
         println!(
-            "{at_m:?}: up {beside_mm:.0} mm, beside [{:.1} {:.1} {:.1}] mm, turned [{:.1} {:.1} {:.1}] deg, level {level:.3}, in the palm closed {:?} lifted {:?}",
+            "{at_m:?}: up {up_mm:.0} mm, beside [{:.1} {:.1} {:.1}] mm, turned [{:.1} {:.1} {:.1}] deg, level {level:.3}, in the palm closed {:?} lifted {:?}",
             off.x,
             off.y,
             off.z,
             turned_deg.x,
             turned_deg.y,
             turned_deg.z,
-            closed.as_slice(),
+            when_closed.as_slice(),
             lifted.as_slice()
         );
     }

@@ -210,7 +210,7 @@ fn the_tip_is_turned_as_its_joints_are() {
 }
 
 /// Standard normal numbers, always the same ones: a linear congruence and twelve uniform ones a piece.
-struct Noise(u64);
+pub(super) struct Noise(pub(super) u64);
 
 impl Noise {
     fn uniform(&mut self) -> f64 {
@@ -218,7 +218,7 @@ impl Noise {
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    fn normal(&mut self) -> f64 {
+    pub(super) fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }
 }

@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Matrix6, Vector3};
 use plumbline_model::robot::{Posture, Rig, default_rig};
 use plumbline_model::{LeftCamera, Point, Robot};
 
+use super::laws::Noise;
 use super::*;
 use crate::library::Kind;
 use crate::rig_model::ModelEffect;
@@ -14,20 +15,6 @@ const MOUNT: Unmeasured = Unmeasured { mount: true, lenses: false };
 const INSIDE: f64 = 7.815;
 /// Mean error over the table with a mount that nobody measured, as published, m.
 const PUBLISHED_M: f64 = 0.0368;
-
-/// Standard normal numbers, always the same ones: a linear congruence and twelve uniform ones a piece.
-struct Noise(u64);
-
-impl Noise {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
-    }
-}
 
 fn effect(kind: Kind, site: &str, shape: Option<f64>, values: Vec<f64>) -> ModelEffect {
     ModelEffect {
