@@ -23,6 +23,7 @@ use plumbline_recording::{About, Jpeg, RecordingWriter};
 use serde_json::Value;
 
 use common::{WALL_M, board, board_pairs, eyes, wall_pair, write_pairs};
+use lab::{NOD_RAD, nodding};
 
 fn args(folder: &Path, exclude: &[&str]) -> CalibrateArgs {
     CalibrateArgs {
@@ -130,7 +131,6 @@ fn calibrate_check_locate_disparity() {
 
 /// With a model of the robot the same points have a place in its frame, which the model decides.
 fn in_the_robots_frame(args: &LocateArgs, cameras: &[PathBuf], bare: &LocateReport, folder: &Path) {
-    const NOD_RAD: f64 = 0.03;
     let rig = plumbline_model::robot::default_rig();
     let mut model = plumbline_effects::RigModel::nominal(&rig);
     let file = folder.join("rig-model.toml");
@@ -159,18 +159,7 @@ fn in_the_robots_frame(args: &LocateArgs, cameras: &[PathBuf], bare: &LocateRepo
     let told_to = |report: &LocateReport| report.notes.iter().any(|note| note.contains("--mount"));
     assert!(told_to(&described) && !told_to(bare), "{:?}", described.notes);
     let (_, nodding_m) = with(&model, -0.5 + NOD_RAD);
-    model.contents.effects = vec![plumbline_effects::rig_model::ModelEffect {
-        id: "head-joint".to_owned(),
-        site: rig.description.joint(rig.eyes.tilt).name.clone(),
-        title: String::new(),
-        tip: None,
-        shape: None,
-        reference_s: 0.0,
-        values: vec![NOD_RAD],
-        covariance: vec![1e-4],
-        probability: None,
-        parameters: vec![],
-    }];
+    model.contents.effects = nodding(&rig).contents.effects;
     let (known, place_m) = with(&model, -0.5);
     assert_eq!((known.model.as_deref(), known.effects.len()), (Some("with 1 effect"), 1));
     assert!((place_m - nodding_m).norm() < 1e-6 && (place_m - nominal_m).norm() > 5e-3);

@@ -16,7 +16,8 @@ use plumbline_vision::mount::{HeadView, MountCalibration, MountOptions, Target, 
 
 use super::common::{eyes, wall_pair, write_pairs};
 
-const NOD_RAD: f64 = 0.03;
+/// So much more, rad.
+pub const NOD_RAD: f64 = 0.03;
 
 /// A folder with a pair of the wall, points in it, and nothing accepted in the lab beside them.
 struct Desk(tempfile::TempDir);
@@ -78,7 +79,7 @@ fn mount(rig: &Rig) -> MountCalibration {
 }
 
 /// The head nods by more than its encoder says.
-fn nodding(rig: &Rig) -> RigModel {
+pub fn nodding(rig: &Rig) -> RigModel {
     let mut model = RigModel::nominal(rig);
     model.contents.effects = vec![ModelEffect {
         id: "head-joint".to_owned(),
