@@ -381,3 +381,24 @@ fn a_new_data_set_needs_an_empty_folder_and_names_of_their_own() {
     desk.send(LabelsCommand::Create { folder: desk.path("b"), names: vec!["A".into(), "A".into()] });
     assert!(desk.said().contains("Class 2 is called \"A\""), "{}", desk.said());
 }
+
+/// Opening a data set writes what the program looks for when it begins.
+#[test]
+fn a_data_set_opened_while_the_last_one_is_looked_for_is_not_the_last_one() {
+    let ends = |found_late: bool| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let mut desk = Desk { state: State::new(&folder.path().join("data")), folder };
+        let looking = if found_late { desk.state.take_actions() } else { Vec::new() };
+        let (folder, names) = (desk.path("toys"), vec!["Tomato".into()]);
+        let opened = desk.send(LabelsCommand::Create { folder, names });
+        assert_eq!(opened.labels.recent, None);
+        for action in looking {
+            let Action::Start(id, work) = action else { continue };
+            desk.state.work_ended(id, work.run(&Unattended).into(), Duration::ZERO);
+        }
+        let open = desk.view().labels.recent.clone();
+        (open, desk.send(LabelsCommand::Close).labels.recent.clone().is_some())
+    };
+    assert_eq!(ends(true), (None, true));
+    assert_eq!(ends(true), ends(false));
+}

@@ -20,6 +20,7 @@ impl LabelsWorkflow {
         // A changed set that is read again stays at the image that was shown.
         let shown = self.set.as_ref().and_then(Set::shown_image).map(|image| image.entry.name.clone());
         self.forget_set();
+        self.recent = None;
         let mut set = Set::new(set);
         set.shown = shown
             .and_then(|name| set.images.iter().position(|image| image.entry.name == name))

@@ -193,7 +193,9 @@ impl Workflow for LabelsWorkflow {
     fn work_done(&mut self, id: JobId, result: LabelsResult, _: &LabelsAround, context: &mut Context<'_>) {
         self.working.take_if(|working| *working == id);
         match result {
-            LabelsResult::Restored(recent) => self.recent = recent,
+            // Opening one writes what is looked for here: which of the two came first must not show.
+            LabelsResult::Restored(recent) if self.set.is_none() => self.recent = recent,
+            LabelsResult::Restored(_) => {}
             LabelsResult::Opened(set) => self.opened(*set, context),
             LabelsResult::Loaded(name, pixels) => {
                 self.loaded.read(id, name, pixels);
